@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+
+namespace vmesh {
+
+/// A point or direction in the internal frame: LPS, millimetres.
+using Vec3 = Eigen::Vector3d;
+
+/// Index of a node, segment, vertex or face.
+using Index = std::uint32_t;
+
+/// "No element": the value of an Index that points at nothing.
+inline constexpr Index kNone = std::numeric_limits<Index>::max();
+
+}  // namespace vmesh

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "vmesh/core/types.h"
+
+namespace vmesh {
+
+using Triangle = std::array<Index, 3>;
+
+/// An indexed triangle mesh. Faces are counter-clockwise seen from outside. Positions in mm.
+struct TriMesh {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> faces;
+};
+
+/// One number per vertex or per face, under a name ("radius", "segment", "EquiangleSkewness" ...).
+struct MeshAttribute {
+  std::string name;
+  std::vector<double> values;
+  bool integer = false;  ///< the values are whole numbers (labels, indices) and are stored as such
+};
+
+/// What travels with a mesh into and out of files: attributes, in file order.
+struct MeshAttributes {
+  std::vector<MeshAttribute> vertex;  ///< each as long as TriMesh::vertices
+  std::vector<MeshAttribute> face;    ///< each as long as TriMesh::faces
+};
+
+/// Normal of face `f`, its length twice the face's area (mm^2).
+inline Vec3 area_normal(const TriMesh& mesh, Index f) {
+  const auto& [a, b, c] = mesh.faces[f];
+  return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+}
+
+/// Unit normal of every vertex, area-weighted over its faces; zero where a vertex has no area around it.
+std::vector<Vec3> vertex_normals(const TriMesh& mesh);
+
+}  // namespace vmesh

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vmesh/centerline/centerline.h"
+#include "vmesh/core/progress.h"
+#include "vmesh/mesh/tri_mesh.h"
+
+namespace vmesh {
+
+/// How a surface is grown and finished. Lengths are in units of the local vessel radius unless said otherwise.
+struct GenerateOptions {
+  /// Weight of the attraction by the vessel boundary against the vertex normal, Eq. 11; in [0, 1].
+  double beta = 0.3;
+  /// Width of the rounding at branches, in units of the smaller of the two radii; 0 = plain union of round cones.
+  double blend = 0.5;
+  /// Intended number of vertices around a vessel, 3 to 200: the size field is proportional to radius / around.
+  int around = 6;
+  /// A grown face is split edge-centrically when its centre is farther than this from the boundary.
+  double max_center_distance = 0.25;
+  /// Sweeps of the final optimisation; 0 leaves the surface as it was grown.
+  int sweeps = 30;
+};
+
+/// Where on the centerline a surface vertex belongs: segment and parameter in [0, 1] from its node a to its node b.
+/// An isolated node i of the centerline (a sphere) is segment segments().size() + its rank among isolated nodes.
+struct CenterlineBinding {
+  Index segment = kNone;
+  double t = 0;
+};
+
+/// Seconds spent in one stage of a run.
+struct StageTime {
+  std::string stage;
+  double seconds = 0;
+};
+
+/// A generated surface. What went wrong is data, never hidden: see `warnings`.
+struct GenerateResult {
+  TriMesh mesh;
+  std::vector<CenterlineBinding> binding;  ///< one per vertex
+  std::vector<double> radius;              ///< local vessel radius at every vertex's binding (mm)
+  std::vector<StageTime> stages;
+  std::vector<std::string> warnings;
+};
+
+/// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.
+/// Throws InvalidInput for options out of range, Cancelled when `progress` asks to stop.
+GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options = {},
+                                const Progress& progress = {});
+
+}  // namespace vmesh
