@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmesh/centerline/centerline.h"
+
+namespace vmesh {
+
+enum class LengthUnit { unknown, um, mm, cm, m };
+
+/// Patient frames: x to the Left, y to the Posterior, z to the Superior (LPS), or Right, Anterior, Superior (RAS).
+enum class Space { unknown, lps, ras };
+
+/// "um", "mm", "cm", "m" or "unknown"; "LPS", "RAS" or "unknown".
+std::string_view to_string(LengthUnit unit);
+std::string_view to_string(Space space);
+
+/// The reverse, upper or lower case ("micrometer", "micron", "millimeter" ... too); nothing when not understood.
+std::optional<LengthUnit> parse_length_unit(std::string_view text);
+std::optional<Space> parse_space(std::string_view text);
+
+/// Millimetres in one unit. Throws InvalidInput for LengthUnit::unknown.
+double millimetres_per(LengthUnit unit);
+
+/// A centerline as a file tells it, before it is checked or cleaned. Anything may be wrong with its content.
+struct RawCenterline {
+  std::vector<CenterlineNode> nodes;  ///< in `unit` and `space`; radius 0 where unknown
+  std::vector<CenterlineSegment> segments;
+  LengthUnit unit = LengthUnit::unknown;
+  Space space = Space::unknown;
+
+  /// First segments of polylines, ascending, when the file has polylines: the segments up to the next entry run head to
+  /// tail. Empty when the file gives segments one by one.
+  std::vector<Index> path_starts;
+  /// Branches of this kind of file may stop short of their parent (see CleaningOptions::join_gaps).
+  bool loose_branches = false;
+
+  std::string source;                          ///< file name for messages
+  std::string node_word = "node";              ///< what a node is called in the file: "line", "point", "nodes row" ...
+  std::string segment_word = "segment";        ///< the same for segments
+  std::vector<std::uint64_t> node_numbers;     ///< number of every node under that word; empty: its index
+  std::vector<std::uint64_t> segment_numbers;  ///< the same for segments
+  std::vector<std::string> warnings;           ///< what the reader left out or assumed
+
+  /// "tree.swc: line 12": how messages name node `n` or segment `s`.
+  std::string name_of_node(Index n) const;
+  std::string name_of_segment(Index s) const;
+};
+
+/// Converts to millimetres and LPS. An override wins over what the file says. Where neither knows, millimetres or LPS
+/// are taken and a line in `warnings` says so; it also says so when an override contradicts the file.
+RawCenterline convert_to_internal(RawCenterline raw, std::optional<LengthUnit> unit_override,
+                                  std::optional<Space> space_override, std::vector<std::string>& warnings);
+
+}  // namespace vmesh

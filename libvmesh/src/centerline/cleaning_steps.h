@@ -1,0 +1,81 @@
+// The steps of clean(), internal to the module.
+#pragma once
+
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vmesh/centerline/cleaning.h"
+
+namespace vmesh::cleaning {
+
+/// Disjoint sets of indices; the lowest index of a set represents it.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+
+  Index find(Index i) {
+    while (parent_[i] != i) {
+      parent_[i] = parent_[parent_[i]];
+      i = parent_[i];
+    }
+    return i;
+  }
+
+  bool unite(Index i, Index j) {
+    i = find(i);
+    j = find(j);
+    if (i == j) return false;
+    if (j < i) std::swap(i, j);
+    parent_[j] = i;
+    return true;
+  }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+/// Adjacency of a list of segments, each node's segments in ascending order.
+struct Adjacency {
+  std::vector<Index> offsets, segments;
+
+  Adjacency(std::size_t node_count, const std::vector<CenterlineSegment>& list);
+  std::size_t degree(Index n) const { return offsets[n + 1] - offsets[n]; }
+};
+
+/// The graph while it is cleaned. Nodes keep their raw indices; merged nodes share a representative.
+struct Workspace {
+  const RawCenterline& raw;
+  const CleaningOptions& options;
+  std::vector<CenterlineNode> nodes;        // a representative's radius is the first one > 0 of its set
+  std::vector<CenterlineSegment> segments;  // between raw nodes; see compact()
+  std::vector<Index> raw_segment;           // of every segment; kNone for added ones
+  std::vector<char> is_path_start;          // per node: a polyline begins here
+  DisjointSets merged;
+  CleaningReport report;
+
+  Workspace(const RawCenterline& raw_centerline, const CleaningOptions& cleaning_options);
+
+  void add(CleaningAction::Kind kind, CleaningAction::Element element, Index index, std::string message) {
+    report.actions.push_back({kind, element, index, std::move(message)});
+  }
+  /// Distance below which nodes `a` and `b` count as one.
+  double tolerance(Index a, Index b) const { return options.tolerance * std::min(nodes[a].radius, nodes[b].radius); }
+  double distance(Index a, Index b) const { return (nodes[a].position - nodes[b].position).norm(); }
+  /// Makes the sets of `a` and `b` one; the lower representative's position stays.
+  void merge(Index a, Index b);
+  /// Replaces the ends of all segments by their representatives; drops the segments whose ends became one.
+  void compact();
+};
+
+void round_to_grid(Workspace& work);
+void merge_trunks(Workspace& work);
+void contract_short_segments(Workspace& work);
+void merge_coincident_nodes(Workspace& work);
+void remove_duplicate_segments(Workspace& work);
+void repair_radii(Workspace& work);
+void join_gaps(Workspace& work);
+CleanedCenterline build(Workspace& work);
+
+}  // namespace vmesh::cleaning
