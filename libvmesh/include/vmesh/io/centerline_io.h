@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmesh/centerline/cleaning.h"
+#include "vmesh/centerline/raw_centerline.h"
+
+namespace vmesh {
+
+enum class CenterlineFormat {
+  swc,   ///< .swc; rows `id type x y z radius parent`
+  vtp,   ///< .vtp; lines with a radius per point; needs a build with VTK
+  json,  ///< .json; schema "vmesh.centerline/1"
+  csv,   ///< .csv; a pair of files, see csv_segments_path()
+};
+
+/// By the file's extension, upper or lower case. Throws Unsupported, with the extensions that are.
+CenterlineFormat centerline_format(const std::filesystem::path& path);
+
+/// The second file of a CSV pair: tree.csv or tree.nodes.csv (header `id,x,y,z,radius`) goes with
+/// tree.segments.csv (header `a,b`, the ids of the nodes it joins).
+std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path);
+
+struct CenterlineReadOptions {
+  /// VTP: name of the point array that holds the radius. Empty: MaximumInscribedSphereRadius, Radius or radius.
+  std::string radius_array;
+};
+
+/// Reads a centerline as it is in the file; see clean() for the way to a Centerline. Memory is bounded by the file's
+/// size. Throws ReadError (missing, a directory, unreadable), InvalidInput (content; names the line or element),
+/// Unsupported (format, or VTP in a build without VTK).
+RawCenterline read_centerline(const std::filesystem::path& path, const CenterlineReadOptions& options = {});
+
+/// The same from memory; `source` names it in messages. A CSV pair has its second part in `csv_segments`.
+RawCenterline parse_centerline(std::string_view content, CenterlineFormat format, const std::string& source,
+                               const CenterlineReadOptions& options = {}, std::string_view csv_segments = {});
+
+/// The same from a stream.
+RawCenterline read_centerline(std::istream& in, CenterlineFormat format, const std::string& source,
+                              const CenterlineReadOptions& options = {});
+
+/// From file to valid centerline in one call: read_centerline, convert_to_internal, clean.
+struct CenterlineLoadOptions {
+  CenterlineReadOptions read;
+  std::optional<LengthUnit> unit;  ///< wins over the file's
+  std::optional<Space> space;      ///< wins over the file's
+  CleaningOptions cleaning;
+};
+struct LoadedCenterline {
+  CleanedCenterline cleaned;
+  std::vector<std::string> warnings;  ///< of reader and conversion; what cleaning did is in cleaned.report
+};
+LoadedCenterline load_centerline(const std::filesystem::path& path, const CenterlineLoadOptions& options = {});
+
+struct CenterlineMetadata {
+  std::string generator;     ///< program and version
+  std::string options;       ///< how it was made, free text
+  std::string input_name;    ///< what it was made from
+  std::string input_sha256;  ///< see sha256_of_file()
+};
+
+/// Writes a centerline, in mm and LPS and saying so, by extension: JSON, SWC, VTP, CSV pair. Numbers round-trip
+/// exactly, the bytes depend on the arguments alone, and the file appears complete or not at all. Node order is kept.
+/// Throws Unsupported for a centerline with loops in SWC (a tree format), for an unknown extension, and for VTP without
+/// VTK; WriteError when the file cannot be written.
+void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
+                      const CenterlineMetadata& metadata = {});
+
+}  // namespace vmesh
