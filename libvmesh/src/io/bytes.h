@@ -1,0 +1,29 @@
+// Numbers in binary files, internal to the module.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <string>
+
+namespace vmesh::io {
+
+/// The number of type T that `bytes` hold in little-endian (or big-endian) order.
+template <class T>
+T load(const char* bytes, bool big_endian = false) {
+  std::array<char, sizeof(T)> buffer;
+  std::memcpy(buffer.data(), bytes, sizeof(T));
+  if (big_endian != (std::endian::native == std::endian::big)) std::reverse(buffer.begin(), buffer.end());
+  return std::bit_cast<T>(buffer);
+}
+
+/// Appends `value` in little-endian order.
+template <class T>
+void store(std::string& bytes, T value) {
+  auto buffer = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if (std::endian::native == std::endian::big) std::reverse(buffer.begin(), buffer.end());
+  bytes.append(buffer.data(), buffer.size());
+}
+
+}  // namespace vmesh::io

@@ -1,0 +1,137 @@
+#include <array>
+#include <ostream>
+#include <unordered_map>
+
+#include "comments.h"
+#include "formats.h"
+#include "text.h"
+
+namespace vmesh::io {
+namespace {
+
+/// Rows of a CSV table whose header names the columns; '#' begins a comment.
+class CsvTable {
+ public:
+  CsvTable(std::string_view content, std::string source) : lines_(content), source_(std::move(source)) {}
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InvalidInput(source_ + ": line " + std::to_string(lines_.number()) + ": " + what);
+  }
+
+  template <std::size_t N>
+  void read_header(const std::array<std::string_view, N>& names, LengthUnit& unit, Space& space) {
+    const std::string wanted = "the header must name the columns " + join(names);
+    std::string_view line;
+    do {
+      if (!lines_.next(line)) throw InvalidInput(source_ + ": there is no table in it; " + wanted);
+      if (trim(line).starts_with('#')) read_tags(line, unit, space);
+    } while (is_skipped(line));
+    split_comma(line, fields_);
+    for (const auto name : names) {
+      std::size_t column = 0;
+      while (column < fields_.size() && lower(fields_[column]) != name) ++column;
+      if (column == fields_.size()) fail("there is no column " + std::string(name) + "; " + wanted);
+      columns_.push_back(column);
+    }
+    width_ = fields_.size();
+  }
+
+  bool next_row() {
+    std::string_view line;
+    do {
+      if (!lines_.next(line)) return false;
+    } while (is_skipped(line));
+    split_comma(line, fields_);
+    if (fields_.size() != width_) {
+      fail("it has " + std::to_string(fields_.size()) + " columns, the header has " + std::to_string(width_));
+    }
+    return true;
+  }
+
+  /// Of the wanted columns, in the order asked for.
+  std::string_view field(std::size_t i) const { return fields_[columns_[i]]; }
+
+  std::int64_t integer(std::size_t i) const {
+    const auto value = parse_integer(field(i));
+    if (!value) fail(cite(field(i)) + " is no whole number");
+    return *value;
+  }
+
+  double real(std::size_t i) const {
+    const auto value = parse_double(field(i));
+    if (!value) fail(cite(field(i)) + " is no number");
+    return *value;
+  }
+
+  std::uint64_t line_number() const { return lines_.number(); }
+
+ private:
+  static bool is_skipped(std::string_view line) {
+    const auto text = trim(line);
+    return text.empty() || text.front() == '#';
+  }
+
+  template <std::size_t N>
+  static std::string join(const std::array<std::string_view, N>& names) {
+    std::string text;
+    for (const auto name : names) text.append(text.empty() ? "" : ",").append(name);
+    return text;
+  }
+
+  LineReader lines_;
+  std::string source_;
+  std::vector<std::string_view> fields_;
+  std::vector<std::size_t> columns_;
+  std::size_t width_ = 0;
+};
+
+}  // namespace
+
+RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source) {
+  RawCenterline raw;
+  raw.source = source;
+  raw.node_word = "line";
+  raw.segment_word = "line of the segments file";
+  CsvTable table(nodes, source);
+  table.read_header(std::array<std::string_view, 5>{"id", "x", "y", "z", "radius"}, raw.unit, raw.space);
+  std::unordered_map<std::int64_t, Index> index_of;
+  while (table.next_row()) {
+    const std::int64_t id = table.integer(0);
+    if (!index_of.try_emplace(id, static_cast<Index>(raw.nodes.size())).second) {
+      table.fail("the id " + std::to_string(id) + " was given before; ids must be unique");
+    }
+    raw.nodes.push_back({{table.real(1), table.real(2), table.real(3)}, table.real(4)});
+    raw.node_numbers.push_back(table.line_number());
+  }
+  if (trim(segments).empty()) return raw;
+  CsvTable pairs(segments, csv_segments_path(source).string());
+  pairs.read_header(std::array<std::string_view, 2>{"a", "b"}, raw.unit, raw.space);
+  while (pairs.next_row()) {
+    const auto end = [&](std::size_t i) {
+      const auto found = index_of.find(pairs.integer(i));
+      if (found == index_of.end())
+        pairs.fail("there is no node with the id " + std::string(pairs.field(i)) + " in " + source);
+      return found->second;
+    };
+    const Index a = end(0);
+    raw.segments.push_back({a, end(1)});
+    raw.segment_numbers.push_back(pairs.line_number());
+  }
+  return raw;
+}
+
+void write_centerline_csv(std::ostream& nodes, std::ostream& segments, const Centerline& centerline,
+                          const CenterlineMetadata& metadata) {
+  nodes << comments(metadata, "# ") << "id,x,y,z,radius\n";
+  std::string row;
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    const auto& [p, r] = centerline.node(n);
+    row = std::to_string(n);
+    for (const double x : {p.x(), p.y(), p.z(), r}) append(row += ',', x);
+    nodes << row << "\n";
+  }
+  segments << "a,b\n";
+  for (const auto& [a, b] : centerline.segments()) segments << std::to_string(a) << "," << std::to_string(b) << "\n";
+}
+
+}  // namespace vmesh::io

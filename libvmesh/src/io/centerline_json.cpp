@@ -1,0 +1,137 @@
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+#include "comments.h"
+#include "formats.h"
+#include "text.h"
+
+namespace vmesh::io {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kSchema = "vmesh.centerline/1";
+
+class JsonReader {
+ public:
+  JsonReader(const Json& document, const std::string& source) : document_(document) {
+    raw_.source = source;
+    raw_.node_word = "nodes entry";
+    raw_.segment_word = "segments entry";
+  }
+
+  RawCenterline run() {
+    if (!document_.is_object())
+      fail("the top level must be an object {\"schema\": \"" + std::string(kSchema) + "\", ...}");
+    if (text_of("schema") != kSchema) {
+      throw Unsupported(raw_.source + ": the schema is " + cite(text_of("schema")) + "; this version reads \"" +
+                        kSchema + "\"");
+    }
+    read_unit_and_space();
+    read_nodes(array_of("nodes"));
+    read_segments(array_of("segments"));
+    return std::move(raw_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw InvalidInput(raw_.source + ": " + what); }
+
+  std::string text_of(const char* key) const {
+    const auto found = document_.find(key);
+    return found != document_.end() && found->is_string() ? found->get<std::string>() : std::string();
+  }
+
+  const Json& array_of(const char* key) const {
+    const auto found = document_.find(key);
+    if (found == document_.end() || !found->is_array())
+      fail(std::string("\"") + key + "\" must be an array; it is missing or no array");
+    return *found;
+  }
+
+  void read_unit_and_space() {
+    if (document_.contains("unit")) {
+      const auto unit = parse_length_unit(text_of("unit"));
+      if (!unit) fail("the unit " + cite(text_of("unit")) + " is not known; use um, mm, cm or m");
+      raw_.unit = *unit;
+    }
+    if (document_.contains("space")) {
+      const auto space = parse_space(text_of("space"));
+      if (!space) fail("the space " + cite(text_of("space")) + " is not known; use LPS or RAS");
+      raw_.space = *space;
+    }
+  }
+
+  void read_nodes(const Json& nodes) {
+    for (const Json& row : nodes) {
+      const std::string name = "nodes entry " + std::to_string(raw_.nodes.size());
+      if (!row.is_array() || row.size() != 4) fail(name + ": it must be [x, y, z, radius]");
+      for (const Json& value : row) {
+        if (!value.is_number()) fail(name + ": every value of [x, y, z, radius] must be a number");
+      }
+      raw_.nodes.push_back({{row[0].get<double>(), row[1].get<double>(), row[2].get<double>()}, row[3].get<double>()});
+    }
+  }
+
+  void read_segments(const Json& segments) {
+    const auto end = [&](const Json& value) {
+      const bool known = value.is_number_unsigned() && value.get<std::uint64_t>() < raw_.nodes.size();
+      if (!known) {
+        fail("segments entry " + std::to_string(raw_.segments.size()) + ": " + cite(value.dump()) +
+             " is no node; the nodes are 0 to " + std::to_string(static_cast<std::ptrdiff_t>(raw_.nodes.size()) - 1));
+      }
+      return static_cast<Index>(value.get<std::uint64_t>());
+    };
+    for (const Json& row : segments) {
+      if (!row.is_array() || row.size() != 2) {
+        fail("segments entry " + std::to_string(raw_.segments.size()) + ": it must be [a, b], two node indices");
+      }
+      const Index a = end(row[0]);
+      raw_.segments.push_back({a, end(row[1])});
+    }
+  }
+
+  const Json& document_;
+  RawCenterline raw_;
+};
+
+std::string string_member(const char* key, const std::string& value) {
+  if (value.empty()) return {};
+  return "  " + Json(key).dump() + ": " + Json(one_line(value)).dump(-1, ' ', false, Json::error_handler_t::replace) +
+         ",\n";
+}
+
+}  // namespace
+
+RawCenterline parse_centerline_json(std::string_view content, const std::string& source) {
+  Json document;
+  try {
+    document = Json::parse(content);
+  } catch (const Json::exception& error) {
+    throw InvalidInput(source + ": this is no valid JSON: " + one_line(error.what()));
+  }
+  return JsonReader(document, source).run();
+}
+
+void write_centerline_json(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata) {
+  out << "{\n  \"schema\": \"" << kSchema << "\",\n  \"space\": \"LPS\",\n  \"unit\": \"mm\",\n"
+      << string_member("generator", metadata.generator) << string_member("options", metadata.options)
+      << string_member("input", metadata.input_name) << string_member("input_sha256", metadata.input_sha256)
+      << "  \"nodes\": [";
+  std::string row;
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    const auto& [p, r] = centerline.node(n);
+    row = n == 0 ? "\n    [" : ",\n    [";
+    append(row, p.x());
+    for (const double x : {p.y(), p.z(), r}) append(row += ", ", x);
+    out << row << "]";
+  }
+  out << "\n  ],\n  \"segments\": [";
+  for (Index s = 0; s < centerline.segments().size(); ++s) {
+    const auto& [a, b] = centerline.segment(s);
+    out << (s == 0 ? "\n    [" : ",\n    [") << std::to_string(a) << ", " << std::to_string(b) << "]";
+  }
+  out << "\n  ]\n}\n";
+}
+
+}  // namespace vmesh::io

@@ -1,0 +1,40 @@
+// One reader and one writer per format, internal to the module. Readers take the file's content and its name for
+// messages; writers write to a stream whose state the caller checks.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <string_view>
+
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
+
+namespace vmesh::io {
+
+RawCenterline parse_swc(std::string_view content, const std::string& source);
+RawCenterline parse_centerline_json(std::string_view content, const std::string& source);
+RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source);
+RawCenterline parse_centerline_vtp(std::string_view content, const std::string& source,
+                                   const std::string& radius_array);
+
+void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);
+void write_centerline_json(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);
+void write_centerline_csv(std::ostream& nodes, std::ostream& segments, const Centerline& centerline,
+                          const CenterlineMetadata& metadata);
+void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);
+
+LoadedSurface parse_off(std::string_view content, const std::string& source);
+LoadedSurface parse_obj(std::string_view content, const std::string& source);
+LoadedSurface parse_stl(std::string_view content, const std::string& source);
+LoadedSurface parse_ply(std::string_view content, const std::string& source);
+LoadedSurface parse_surface_vtp(std::string_view content, const std::string& source);
+
+void write_off(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);
+void write_obj(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);
+void write_stl(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);
+void write_ply(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+               const SurfaceMetadata& metadata);
+void write_surface_vtp(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+                       const SurfaceMetadata& metadata);
+
+}  // namespace vmesh::io

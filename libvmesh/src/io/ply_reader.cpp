@@ -1,0 +1,349 @@
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bytes.h"
+#include "formats.h"
+#include "ply.h"
+#include "text.h"
+#include "triangulation.h"
+
+namespace vmesh::io {
+namespace {
+
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::float32;
+  bool is_list = false;
+  PlyType count_type = PlyType::uint8;
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+std::size_t size_of(PlyType type) {
+  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
+  return kSizes[static_cast<std::size_t>(type)];
+}
+
+std::optional<PlyType> type_of(std::string_view name) {
+  static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kNames = {{
+      {"char", PlyType::int8},
+      {"int8", PlyType::int8},
+      {"uchar", PlyType::uint8},
+      {"uint8", PlyType::uint8},
+      {"short", PlyType::int16},
+      {"int16", PlyType::int16},
+      {"ushort", PlyType::uint16},
+      {"uint16", PlyType::uint16},
+      {"int", PlyType::int32},
+      {"int32", PlyType::int32},
+      {"uint", PlyType::uint32},
+      {"uint32", PlyType::uint32},
+      {"float", PlyType::float32},
+      {"float32", PlyType::float32},
+      {"double", PlyType::float64},
+      {"float64", PlyType::float64},
+  }};
+  for (const auto& [key, type] : kNames) {
+    if (key == name) return type;
+  }
+  return std::nullopt;
+}
+
+/// The values after the header, one by one, text or binary.
+class PlyValues {
+ public:
+  enum class Encoding { text, little_endian, big_endian };
+
+  PlyValues(std::string_view body, Encoding encoding, const std::string& source)
+      : body_(body), encoding_(encoding), source_(source) {}
+
+  /// A value takes at least this many bytes.
+  std::size_t least_size(PlyType type) const { return encoding_ == Encoding::text ? 2 : size_of(type); }
+  std::size_t left() const { return body_.size() - at_ + 1; }  // + 1: the last text value needs no separator
+
+  double next(PlyType type, const std::string& element, std::uint64_t index) {
+    if (encoding_ == Encoding::text) return next_text(element, index);
+    const std::size_t size = size_of(type);
+    if (body_.size() - at_ < size) fail_short(element, index);
+    const char* bytes = body_.data() + at_;
+    at_ += size;
+    const bool big = encoding_ == Encoding::big_endian;
+    switch (type) {
+      case PlyType::int8:
+        return load<std::int8_t>(bytes);
+      case PlyType::uint8:
+        return load<std::uint8_t>(bytes);
+      case PlyType::int16:
+        return load<std::int16_t>(bytes, big);
+      case PlyType::uint16:
+        return load<std::uint16_t>(bytes, big);
+      case PlyType::int32:
+        return load<std::int32_t>(bytes, big);
+      case PlyType::uint32:
+        return load<std::uint32_t>(bytes, big);
+      case PlyType::float32:
+        return load<float>(bytes, big);
+      case PlyType::float64:
+        return load<double>(bytes, big);
+    }
+    return 0;
+  }
+
+ private:
+  [[noreturn]] void fail_short(const std::string& element, std::uint64_t index) const {
+    throw InvalidInput(source_ + ": " + element + " " + std::to_string(index) +
+                       ": the file ends here; it is cut short");
+  }
+
+  double next_text(const std::string& element, std::uint64_t index) {
+    constexpr std::string_view kBlank = " \t\r\n\v\f";
+    const std::size_t begin = std::min(body_.find_first_not_of(kBlank, at_), body_.size());
+    const std::size_t end = std::min(body_.find_first_of(kBlank, begin), body_.size());
+    if (begin == end) fail_short(element, index);
+    at_ = end;
+    const auto value = parse_double(body_.substr(begin, end - begin));
+    if (!value) {
+      throw InvalidInput(source_ + ": " + element + " " + std::to_string(index) + ": " +
+                         cite(body_.substr(begin, end - begin)) + " is no number");
+    }
+    return *value;
+  }
+
+  std::string_view body_;
+  std::size_t at_ = 0;
+  Encoding encoding_;
+  const std::string& source_;
+};
+
+class PlyReader {
+ public:
+  PlyReader(std::string_view content, const std::string& source) : lines_(content), source_(source) {}
+
+  LoadedSurface run() {
+    read_header();
+    PlyValues values(lines_.rest(), encoding_, source_);
+    FaceCollector faces(surface_, source_);
+    // A face may come before the vertices; its corners are checked when all are known.
+    for (const auto& element : elements_) read_element(element, values);
+    for (std::size_t f = 0; f + 1 < face_offsets_.size(); ++f) {
+      faces.add({corners_.begin() + face_offsets_[f], corners_.begin() + face_offsets_[f + 1]},
+                "face " + std::to_string(f));
+    }
+    faces.finish();
+    keep_face_attributes(faces.face_of_triangle());
+    warn_without_tags(surface_, source_);
+    return std::move(surface_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InvalidInput(source_ + ": line " + std::to_string(lines_.number()) + ": " + what);
+  }
+
+  void read_header() {
+    std::string_view line;
+    if (!lines_.next(line) || trim(line) != "ply") fail("this is no PLY file: its first line must be \"ply\"");
+    bool has_format = false;
+    while (true) {
+      if (!lines_.next(line)) fail("the header has no end (end_header)");
+      split_blank(line, fields_);
+      if (fields_.empty()) continue;
+      if (fields_[0] == "end_header") break;
+      if (fields_[0] == "format") {
+        read_format();
+        has_format = true;
+      } else if (fields_[0] == "comment" || fields_[0] == "obj_info") {
+        read_tags(line, surface_.unit, surface_.space);
+        if (trim(line) == kSkewnessComment) quality_is_skewness_ = true;
+      } else if (fields_[0] == "element") {
+        read_element_line();
+      } else if (fields_[0] == "property") {
+        read_property_line();
+      } else {
+        fail("the header line begins with " + cite(fields_[0]) + ", which PLY does not know");
+      }
+    }
+    if (!has_format) fail("the header does not say its format (ascii, binary_little_endian, binary_big_endian)");
+  }
+
+  void read_format() {
+    const std::string_view name = fields_.size() > 1 ? fields_[1] : std::string_view();
+    if (name == "ascii") {
+      encoding_ = PlyValues::Encoding::text;
+    } else if (name == "binary_little_endian") {
+      encoding_ = PlyValues::Encoding::little_endian;
+    } else if (name == "binary_big_endian") {
+      encoding_ = PlyValues::Encoding::big_endian;
+    } else {
+      fail("the format " + cite(name) + " is not known (ascii, binary_little_endian, binary_big_endian)");
+    }
+  }
+
+  void read_element_line() {
+    const auto count = fields_.size() == 3 ? parse_integer(fields_[2]) : std::nullopt;
+    if (!count || *count < 0) fail("an element has a name and a count");
+    elements_.push_back({std::string(fields_[1]), static_cast<std::uint64_t>(*count), {}});
+  }
+
+  PlyType type(std::string_view name) const {
+    const auto result = type_of(name);
+    if (!result) fail("the type " + cite(name) + " is not known");
+    return *result;
+  }
+
+  void read_property_line() {
+    if (elements_.empty()) fail("a property must follow an element");
+    PlyProperty property;
+    if (fields_.size() == 5 && fields_[1] == "list") {
+      property = {std::string(fields_[4]), type(fields_[3]), true, type(fields_[2])};
+    } else if (fields_.size() == 3) {
+      property = {std::string(fields_[2]), type(fields_[1])};
+    } else {
+      fail("a property is `property TYPE NAME` or `property list TYPE TYPE NAME`");
+    }
+    elements_.back().properties.push_back(std::move(property));
+  }
+
+  /// Before anything is allocated: can the file hold that many?
+  void check_count(const PlyElement& element, const PlyValues& values) const {
+    std::size_t least = 0;
+    for (const auto& p : element.properties) least += values.least_size(p.is_list ? p.count_type : p.type);
+    if (least == 0 || element.count <= values.left() / least) return;
+    throw InvalidInput(source_ + ": the header promises " + std::to_string(element.count) + " of element " +
+                       cite(element.name) + ", the file has room for " + std::to_string(values.left() / least) +
+                       "; it is cut short or broken");
+  }
+
+  void read_element(const PlyElement& element, PlyValues& values) {
+    if (element.properties.empty()) return;
+    check_count(element, values);
+    if (element.count >= kNone) throw InvalidInput(source_ + ": too many of element " + cite(element.name));
+    if (element.name == "vertex") {
+      read_vertices(element, values);
+    } else if (element.name == "face") {
+      read_faces(element, values);
+    } else {
+      for (std::uint64_t i = 0; i < element.count; ++i) {
+        for (const auto& p : element.properties) skip(p, values, element.name, i);
+      }
+    }
+  }
+
+  std::size_t list_size(const PlyProperty& p, PlyValues& values, const std::string& element, std::uint64_t i) const {
+    const double count = values.next(p.count_type, element, i);
+    if (!(count >= 0) || count != std::floor(count) ||
+        count > static_cast<double>(values.left() / values.least_size(p.type))) {
+      throw InvalidInput(source_ + ": " + element + " " + std::to_string(i) + ": the list " + cite(p.name) +
+                         " has an impossible length");
+    }
+    return static_cast<std::size_t>(count);
+  }
+
+  void skip(const PlyProperty& p, PlyValues& values, const std::string& element, std::uint64_t i) const {
+    const std::size_t count = p.is_list ? list_size(p, values, element, i) : 1;
+    for (std::size_t k = 0; k < count; ++k) values.next(p.type, element, i);
+  }
+
+  static std::vector<MeshAttribute> declare_attributes(const PlyElement& element, std::uint64_t count,
+                                                       bool (*is_attribute)(const PlyProperty&)) {
+    std::vector<MeshAttribute> attributes;
+    for (const auto& p : element.properties) {
+      if (!is_attribute(p)) continue;
+      attributes.push_back({p.name, {}, p.type != PlyType::float32 && p.type != PlyType::float64});
+      attributes.back().values.reserve(count);
+    }
+    return attributes;
+  }
+
+  static bool is_vertex_attribute(const PlyProperty& p) {
+    if (p.is_list) return false;
+    for (const char* own : {"x", "y", "z", "nx", "ny", "nz"}) {
+      if (p.name == own) return false;
+    }
+    return true;
+  }
+
+  static bool is_face_attribute(const PlyProperty& p) { return !p.is_list; }
+
+  void read_vertices(const PlyElement& element, PlyValues& values) {
+    int coordinates = 0;
+    for (const auto& p : element.properties)
+      coordinates += !p.is_list && (p.name == "x" || p.name == "y" || p.name == "z");
+    if (coordinates != 3) throw InvalidInput(source_ + ": the vertices must have the properties x, y and z");
+    auto& attributes = surface_.attributes.vertex;
+    attributes = declare_attributes(element, element.count, is_vertex_attribute);
+    surface_.mesh.vertices.reserve(element.count);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      Vec3 position = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+      std::size_t next_attribute = 0;
+      for (const auto& p : element.properties) {
+        if (p.is_list) {
+          skip(p, values, element.name, i);
+          continue;
+        }
+        const double value = values.next(p.type, element.name, i);
+        if (p.name == "x" || p.name == "y" || p.name == "z") position[p.name[0] - 'x'] = value;
+        if (is_vertex_attribute(p)) attributes[next_attribute++].values.push_back(value);
+      }
+      surface_.mesh.vertices.push_back(position);
+    }
+  }
+
+  void read_faces(const PlyElement& element, PlyValues& values) {
+    auto& attributes = surface_.attributes.face;
+    attributes = declare_attributes(element, element.count, is_face_attribute);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      std::size_t next_attribute = 0;
+      for (const auto& p : element.properties) {
+        if (p.is_list && (p.name == "vertex_indices" || p.name == "vertex_index")) {
+          const std::size_t count = list_size(p, values, element.name, i);
+          for (std::size_t k = 0; k < count; ++k) corners_.push_back(corner(values.next(p.type, element.name, i)));
+        } else if (p.is_list) {
+          skip(p, values, element.name, i);
+        } else {
+          attributes[next_attribute++].values.push_back(values.next(p.type, element.name, i));
+        }
+      }
+      face_offsets_.push_back(static_cast<std::ptrdiff_t>(corners_.size()));
+    }
+  }
+
+  static std::int64_t corner(double value) {
+    return value >= 0 && value < 0x1p53 ? static_cast<std::int64_t>(value) : -1;
+  }
+
+  void keep_face_attributes(const std::vector<Index>& face_of_triangle) {
+    for (auto& attribute : surface_.attributes.face) {
+      std::vector<double> values;
+      values.reserve(face_of_triangle.size());
+      for (const Index f : face_of_triangle) values.push_back(attribute.values[f]);
+      attribute.values = std::move(values);
+      if (quality_is_skewness_ && attribute.name == "quality") attribute.name = kSkewnessName;
+    }
+  }
+
+  LineReader lines_;
+  const std::string& source_;
+  LoadedSurface surface_;
+  std::vector<std::string_view> fields_;
+  PlyValues::Encoding encoding_ = PlyValues::Encoding::text;
+  std::vector<PlyElement> elements_;
+  std::vector<std::int64_t> corners_;
+  std::vector<std::ptrdiff_t> face_offsets_ = {0};
+  bool quality_is_skewness_ = false;
+};
+
+}  // namespace
+
+LoadedSurface parse_ply(std::string_view content, const std::string& source) {
+  return PlyReader(content, source).run();
+}
+
+}  // namespace vmesh::io

@@ -1,0 +1,96 @@
+#include "vmesh/io/surface_io.h"
+
+#include "vmesh/core/error.h"
+#include "vmesh/io/atomic_file.h"
+
+#include "formats.h"
+#include "text.h"
+
+namespace vmesh {
+namespace {
+
+void check(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes) {
+  const std::string name = path.string();
+  if (mesh.vertices.size() >= 0x80000000 || mesh.faces.size() >= 0x80000000) {
+    throw InvalidInput(name + ": the surface has too many vertices or faces for its file format (2^31)");
+  }
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (const Index v : mesh.faces[f]) {
+      if (v >= mesh.vertices.size()) {
+        throw InvalidInput(name + ": face " + std::to_string(f) + ": there is no vertex " + std::to_string(v));
+      }
+    }
+  }
+  const auto check_all = [&](const std::vector<MeshAttribute>& list, std::size_t count, const char* kind) {
+    for (const auto& a : list) {
+      if (a.name.empty()) throw InvalidInput(name + ": a " + kind + " attribute has no name");
+      if (a.values.size() != count) {
+        throw InvalidInput(name + ": the " + kind + " attribute " + a.name + " has " + std::to_string(a.values.size()) +
+                           " values, there should be " + std::to_string(count));
+      }
+    }
+  };
+  check_all(attributes.vertex, mesh.vertices.size(), "vertex");
+  check_all(attributes.face, mesh.faces.size(), "face");
+}
+
+}  // namespace
+
+SurfaceFormat surface_format(const std::filesystem::path& path) {
+  const std::string extension = io::lower(path.extension().string());
+  if (extension == ".off") return SurfaceFormat::off;
+  if (extension == ".obj") return SurfaceFormat::obj;
+  if (extension == ".stl") return SurfaceFormat::stl;
+  if (extension == ".ply") return SurfaceFormat::ply;
+  if (extension == ".vtp") return SurfaceFormat::vtp;
+  throw Unsupported(path.string() + ": surfaces are .off, .obj, .stl, .ply or .vtp; \"" + extension +
+                    "\" is not supported");
+}
+
+void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes,
+                   const SurfaceMetadata& metadata) {
+  const SurfaceFormat format = surface_format(path);
+  check(path, mesh, attributes);
+  AtomicFile file(path);
+  switch (format) {
+    case SurfaceFormat::off:
+      io::write_off(file.stream(), mesh, metadata);
+      break;
+    case SurfaceFormat::obj:
+      io::write_obj(file.stream(), mesh, metadata);
+      break;
+    case SurfaceFormat::stl:
+      io::write_stl(file.stream(), mesh, metadata);
+      break;
+    case SurfaceFormat::ply:
+      io::write_ply(file.stream(), mesh, attributes, metadata);
+      break;
+    case SurfaceFormat::vtp:
+      io::write_surface_vtp(file.stream(), mesh, attributes, metadata);
+      break;
+  }
+  file.commit();
+}
+
+LoadedSurface parse_surface(std::string_view content, SurfaceFormat format, const std::string& source) {
+  switch (format) {
+    case SurfaceFormat::off:
+      return io::parse_off(content, source);
+    case SurfaceFormat::obj:
+      return io::parse_obj(content, source);
+    case SurfaceFormat::stl:
+      return io::parse_stl(content, source);
+    case SurfaceFormat::ply:
+      return io::parse_ply(content, source);
+    case SurfaceFormat::vtp:
+      return io::parse_surface_vtp(content, source);
+  }
+  throw Unsupported(source + ": unknown surface format");
+}
+
+LoadedSurface read_surface(const std::filesystem::path& path) {
+  const SurfaceFormat format = surface_format(path);
+  return parse_surface(io::read_file(path), format, path.string());
+}
+
+}  // namespace vmesh

@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <ostream>
+#include <unordered_map>
+
+#include "comments.h"
+#include "formats.h"
+#include "text.h"
+
+namespace vmesh::io {
+namespace {
+
+class SwcReader {
+ public:
+  SwcReader(std::string_view content, const std::string& source) : lines_(content) {
+    raw_.source = source;
+    raw_.node_word = raw_.segment_word = "line";
+  }
+
+  RawCenterline run() {
+    std::string_view line;
+    while (lines_.next(line)) read_line(line);
+    if (raw_.nodes.empty()) {
+      throw InvalidInput(raw_.source +
+                         ": there is no sample in it; an SWC file has rows `id type x y z radius parent`");
+    }
+    connect();
+    check_acyclic();
+    note();
+    return std::move(raw_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::uint64_t line, const std::string& what) const {
+    throw InvalidInput(raw_.source + ": line " + std::to_string(line) + ": " + what);
+  }
+
+  void read_line(std::string_view line) {
+    const std::size_t hash = line.find('#');
+    if (hash != std::string_view::npos) {
+      read_tags(line.substr(hash + 1), raw_.unit, raw_.space);
+      line = line.substr(0, hash);
+    }
+    split_blank(line, fields_);
+    if (fields_.empty()) return;
+    if (fields_.size() < 7) {
+      fail(lines_.number(),
+           "it has " + std::to_string(fields_.size()) + " columns; an SWC row has seven: id type x y z radius parent");
+    }
+    if (fields_.size() > 7) ++rows_with_more_;
+    read_row();
+  }
+
+  void read_row() {
+    const std::uint64_t line = lines_.number();
+    const std::int64_t id = integer(0, "id");
+    const std::int64_t parent = integer(6, "parent");
+    if (id < 0) fail(line, "the id " + std::to_string(id) + " is negative; ids are 0 or more");
+    const Index index = static_cast<Index>(raw_.nodes.size());
+    const auto [place, is_new] = index_of_.try_emplace(id, index);
+    if (!is_new) {
+      fail(line, "the id " + std::to_string(id) + " was given before, in line " +
+                     std::to_string(raw_.node_numbers[place->second]) + "; ids must be unique");
+    }
+    raw_.nodes.push_back({{real(2, "x"), real(3, "y"), real(4, "z")}, real(5, "radius")});
+    raw_.node_numbers.push_back(line);
+    parent_id_.push_back(parent);
+    if (parent < -1) ++odd_roots_;
+  }
+
+  std::int64_t integer(std::size_t column, const char* name) const {
+    const auto value = parse_integer(fields_[column]);
+    if (!value) fail(lines_.number(), std::string("the ") + name + " " + cite(fields_[column]) + " is no whole number");
+    return *value;
+  }
+
+  double real(std::size_t column, const char* name) const {
+    const auto value = parse_double(fields_[column]);
+    if (!value) fail(lines_.number(), std::string("the ") + name + " " + cite(fields_[column]) + " is no number");
+    return *value;
+  }
+
+  void connect() {
+    parent_.assign(raw_.nodes.size(), kNone);
+    for (Index n = 0; n < raw_.nodes.size(); ++n) {
+      if (parent_id_[n] < 0) continue;
+      const auto found = index_of_.find(parent_id_[n]);
+      if (found == index_of_.end()) {
+        fail(raw_.node_numbers[n], "its parent " + std::to_string(parent_id_[n]) +
+                                       " is not in the file; add that sample or make this one a root (parent -1)");
+      }
+      parent_[n] = found->second;
+      raw_.segments.push_back({parent_[n], n});
+      raw_.segment_numbers.push_back(raw_.node_numbers[n]);
+    }
+  }
+
+  void check_acyclic() const {
+    std::vector<Index> visit(parent_.size(), kNone);  // from which sample the walk to the root came by
+    for (Index n = 0; n < parent_.size(); ++n) {
+      Index m = n;
+      while (m != kNone && visit[m] == kNone) {
+        visit[m] = n;
+        m = parent_[m];
+      }
+      if (m != kNone && visit[m] == n) {
+        fail(raw_.node_numbers[m],
+             "this sample is its own ancestor: following the parents from it leads back to it; "
+             "give one sample of the loop the parent -1");
+      }
+    }
+  }
+
+  void note() {
+    if (rows_with_more_ > 0) {
+      raw_.warnings.push_back(raw_.source + ": " + std::to_string(rows_with_more_) +
+                              " rows have more than seven columns; the rest was ignored");
+    }
+    if (odd_roots_ > 0) {
+      raw_.warnings.push_back(raw_.source + ": " + std::to_string(odd_roots_) +
+                              " samples have a negative parent other than -1; taken as roots");
+    }
+  }
+
+  LineReader lines_;
+  RawCenterline raw_;
+  std::vector<std::string_view> fields_;
+  std::unordered_map<std::int64_t, Index> index_of_;
+  std::vector<std::int64_t> parent_id_;
+  std::vector<Index> parent_;
+  std::size_t rows_with_more_ = 0, odd_roots_ = 0;
+};
+
+/// The parent of every node, away from the lowest node of its component.
+std::vector<Index> parents_in_forest(const Centerline& centerline) {
+  std::vector<Index> parent(centerline.nodes().size(), kNone), stack;
+  std::vector<char> seen(parent.size(), 0);
+  for (Index root = 0; root < parent.size(); ++root) {
+    if (seen[root]) continue;
+    seen[root] = 1;
+    stack.push_back(root);
+    while (!stack.empty()) {
+      const Index n = stack.back();
+      stack.pop_back();
+      for (const Index s : centerline.incident_segments(n)) {
+        const Index m = centerline.other_node(s, n);
+        if (seen[m]) continue;
+        seen[m] = 1;
+        parent[m] = n;
+        stack.push_back(m);
+      }
+    }
+  }
+  return parent;
+}
+
+}  // namespace
+
+RawCenterline parse_swc(std::string_view content, const std::string& source) {
+  return SwcReader(content, source).run();
+}
+
+void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata) {
+  constexpr int kSoma = 1, kBranch = 3;
+  const auto parent = parents_in_forest(centerline);
+  out << comments(metadata, "# ") << "# id type x y z radius parent\n";
+  std::string row;
+  for (Index n = 0; n < parent.size(); ++n) {
+    const auto& [p, r] = centerline.node(n);
+    row = std::to_string(n + 1) + (parent[n] == kNone ? " " + std::to_string(kSoma) : " " + std::to_string(kBranch));
+    for (const double x : {p.x(), p.y(), p.z(), r}) append(row += ' ', x);
+    row += parent[n] == kNone ? " -1\n" : " " + std::to_string(parent[n] + 1) + "\n";
+    out << row;
+  }
+}
+
+}  // namespace vmesh::io

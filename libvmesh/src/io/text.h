@@ -1,0 +1,62 @@
+// Helpers for text files, internal to the module. Numbers are read and written without regard to the locale.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmesh/centerline/raw_centerline.h"
+#include "vmesh/core/error.h"
+
+namespace vmesh::io {
+
+/// The whole file. Throws ReadError when it is missing, a folder, or cannot be read, InvalidInput when it is empty.
+std::string read_file(const std::filesystem::path& path);
+
+/// A line at a time; ends with LF, CRLF or CR.
+class LineReader {
+ public:
+  explicit LineReader(std::string_view text);
+  bool next(std::string_view& line);
+  std::uint64_t number() const { return number_; }  ///< of the last line, from 1
+  std::string_view rest() const { return text_; }
+
+ private:
+  std::string_view text_;
+  std::uint64_t number_ = 0;
+};
+
+std::string_view trim(std::string_view text);
+
+/// Fields between spaces and tabs; `fields` is reused.
+void split_blank(std::string_view line, std::vector<std::string_view>& fields);
+/// Trimmed fields between commas.
+void split_comma(std::string_view line, std::vector<std::string_view>& fields);
+
+/// The whole of `text` as a number ("nan" and "inf" too, a leading + allowed). A number too large for a double is
+/// infinite, one too small is zero.
+std::optional<double> parse_double(std::string_view text);
+
+/// A whole number of at most 2^53, also when written like 12.0 or 1.2e1.
+std::optional<std::int64_t> parse_integer(std::string_view text);
+
+/// Appends the shortest text that reads back as `value`.
+void append(std::string& text, double value);
+void append(std::string& text, std::uint64_t value);
+
+/// Lower case of ASCII letters.
+std::string lower(std::string_view text);
+
+/// Looks for SPACE=... and UNIT=... in a comment.
+void read_tags(std::string_view comment, LengthUnit& unit, Space& space);
+
+/// `text` on one line: control characters become blanks.
+std::string one_line(std::string_view text);
+
+/// "12.3abc" cut to a length fit for a message.
+std::string cite(std::string_view text);
+
+}  // namespace vmesh::io

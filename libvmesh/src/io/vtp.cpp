@@ -1,0 +1,393 @@
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <ostream>
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCommand.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkStringArray.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include "formats.h"
+#include "text.h"
+#include "triangulation.h"
+
+namespace vmesh::io {
+namespace {
+
+/// Keeps VTK's error messages off the terminal and in `text`.
+class ErrorCollector : public vtkCommand {
+ public:
+  static ErrorCollector* New() { return new ErrorCollector; }
+
+  void Execute(vtkObject*, unsigned long event, void* data) override {
+    if (event == vtkCommand::ErrorEvent && data) text.append(static_cast<const char*>(data)).append(" ");
+  }
+
+  std::string text;
+};
+
+/// VTK allocates what the header promises before it reads: promises that no file of this size can keep are refused.
+void check_promises(std::string_view content, const std::string& source) {
+  constexpr std::uint64_t kMostPerByte = 1032;  // zlib's best ratio; at least a byte per element before that
+  for (const std::string_view key : {"NumberOfPoints=", "NumberOfVerts=", "NumberOfLines=", "NumberOfStrips=",
+                                     "NumberOfPolys=", "NumberOfComponents=", "NumberOfTuples="}) {
+    for (std::size_t at = content.find(key); at != std::string_view::npos; at = content.find(key, at + 1)) {
+      const std::string_view value = content.substr(at + key.size() + 1, 24);
+      const std::uint64_t most = key == "NumberOfComponents=" ? 4096 : content.size() * kMostPerByte;
+      std::uint64_t count = 0;
+      const auto result = std::from_chars(value.data(), value.data() + value.size(), count);
+      if (result.ec == std::errc() && count <= most) continue;
+      throw InvalidInput(source + ": " + std::string(key) + cite(value.substr(0, value.find('"'))) +
+                         " is no count that a file of this size can hold; it is broken");
+    }
+  }
+}
+
+vtkSmartPointer<vtkPolyData> read_poly_data(std::string_view content, const std::string& source) {
+  if (content.find("<VTKFile") == std::string_view::npos) {
+    throw InvalidInput(source + ": this is no VTP file: there is no <VTKFile> element in it");
+  }
+  check_promises(content, source);
+  vtkNew<ErrorCollector> errors;
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->AddObserver(vtkCommand::ErrorEvent, errors);
+  reader->SetReaderErrorObserver(errors);
+  reader->SetParserErrorObserver(errors);
+  reader->ReadFromInputStringOn();
+  reader->SetInputString(std::string(content));
+  try {
+    reader->Update();
+  } catch (const std::bad_alloc&) {
+    throw InvalidInput(source + ": the file asks for more memory than there is; it is broken");
+  }
+  if (!errors->text.empty()) throw InvalidInput(source + ": VTK cannot read it: " + one_line(errors->text));
+  vtkSmartPointer<vtkPolyData> data = reader->GetOutput();
+  if (!data || !data->GetPoints() || data->GetNumberOfPoints() == 0) {
+    throw InvalidInput(source + ": there is no point in it");
+  }
+  if (data->GetNumberOfPoints() >= static_cast<vtkIdType>(kNone)) throw InvalidInput(source + ": too many points");
+  return data;
+}
+
+/// The cells of one kind as lists of point ids. VTK does not check what the file says about them.
+class Cells {
+ public:
+  Cells(vtkCellArray* cells, vtkIdType point_count, const std::string& source, const char* kind) {
+    if (!cells || cells->GetNumberOfCells() == 0) return;
+    vtkDataArray* offsets = cells->GetOffsetsArray();
+    vtkDataArray* ids = cells->GetConnectivityArray();
+    const vtkIdType count = offsets->GetNumberOfTuples() - 1;
+    for (vtkIdType c = 0; c <= count; ++c) {
+      const double offset = offsets->GetComponent(c, 0);
+      const double before = offsets_.empty() ? 0.0 : static_cast<double>(offsets_.back());
+      if (!(offset >= before) || offset > static_cast<double>(ids->GetNumberOfTuples())) {
+        throw InvalidInput(source + ": " + kind + " " + std::to_string(c) + ": its offset is out of range");
+      }
+      offsets_.push_back(static_cast<std::size_t>(offset));
+    }
+    for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i) {
+      const double id = ids->GetComponent(i, 0);
+      if (!(id >= 0 && id < static_cast<double>(point_count))) {
+        throw InvalidInput(source + ": " + kind + "s: there is no point " + std::to_string(static_cast<long long>(id)) +
+                           "; the points are 0 to " + std::to_string(point_count - 1));
+      }
+      ids_.push_back(static_cast<Index>(id));
+    }
+  }
+
+  std::size_t size() const { return offsets_.empty() ? 0 : offsets_.size() - 1; }
+  std::span<const Index> operator[](std::size_t c) const {
+    return {ids_.data() + offsets_[c], ids_.data() + offsets_[c + 1]};
+  }
+
+ private:
+  std::vector<std::size_t> offsets_;
+  std::vector<Index> ids_;
+};
+
+std::string field_text(vtkPolyData& data, const char* name) {
+  auto* array = vtkStringArray::SafeDownCast(data.GetFieldData()->GetAbstractArray(name));
+  return array && array->GetNumberOfValues() > 0 ? std::string(array->GetValue(0)) : std::string();
+}
+
+template <class Target>
+void read_field_tags(vtkPolyData& data, Target& target) {
+  if (const auto space = parse_space(field_text(data, "SPACE"))) target.space = *space;
+  if (const auto unit = parse_length_unit(field_text(data, "UNIT"))) target.unit = *unit;
+}
+
+Vec3 point(vtkPolyData& data, vtkIdType i) {
+  Vec3 p;
+  data.GetPoint(i, p.data());
+  return p;
+}
+
+vtkDataArray* find_radius(vtkPolyData& data, const std::string& wanted, const std::string& source) {
+  std::vector<std::string> names = {"MaximumInscribedSphereRadius", "Radius", "radius"};
+  if (!wanted.empty()) names = {wanted};
+  vtkPointData* point_data = data.GetPointData();
+  for (const auto& name : names) {
+    vtkDataArray* array = point_data->GetArray(name.c_str());
+    if (!array) continue;
+    if (array->GetNumberOfComponents() == 1 && array->GetNumberOfTuples() == data.GetNumberOfPoints()) return array;
+    throw InvalidInput(source + ": the point array " + name + " must hold one number for every point");
+  }
+  std::string present;
+  for (int a = 0; a < point_data->GetNumberOfArrays(); ++a) {
+    if (const char* name = point_data->GetArrayName(a)) present.append(present.empty() ? "" : ", ").append(name);
+  }
+  throw InvalidInput(source + ": there is no point array " +
+                     (wanted.empty() ? names[0] + ", Radius or radius" : wanted) + "; it has " +
+                     (present.empty() ? "none" : present) + "; name the one that holds the radius");
+}
+
+class CenterlineReader {
+ public:
+  CenterlineReader(std::string_view content, const std::string& source, const std::string& radius_array)
+      : data_(read_poly_data(content, source)), radius_(find_radius(*data_, radius_array, source)) {
+    raw_.source = source;
+    raw_.node_word = "point";
+    raw_.segment_word = "line cell";
+    raw_.loose_branches = true;
+    read_field_tags(*data_, raw_);
+  }
+
+  RawCenterline run() {
+    const Cells lines(data_->GetLines(), data_->GetNumberOfPoints(), raw_.source, "line cell");
+    // Cells of a vtkPolyData are numbered vertices first, then lines.
+    const auto first_number = static_cast<std::uint64_t>(data_->GetNumberOfVerts());
+    index_of_.assign(static_cast<std::size_t>(data_->GetNumberOfPoints()), kNone);
+    std::size_t empty = 0;
+    for (std::size_t c = 0; c < lines.size(); ++c) {
+      if (lines[c].size() < 2) ++empty;
+      read_line(lines[c], first_number + c);
+    }
+    if (raw_.segments.empty()) {
+      throw InvalidInput(raw_.source + ": there is no line in it; a centerline is made of lines or polylines");
+    }
+    const std::size_t unused = index_of_.size() - raw_.nodes.size();
+    warn(empty, "lines have fewer than two points");
+    warn(unused, "points belong to no line");
+    return std::move(raw_);
+  }
+
+ private:
+  void warn(std::size_t count, const char* what) {
+    if (count > 0) raw_.warnings.push_back(raw_.source + ": " + std::to_string(count) + " " + what + "; left out");
+  }
+
+  void read_line(std::span<const Index> ids, std::uint64_t number) {
+    if (ids.size() < 2) return;
+    raw_.path_starts.push_back(static_cast<Index>(raw_.segments.size()));
+    for (std::size_t i = 0; i + 1 < ids.size(); ++i) {
+      const Index a = node(ids[i]);
+      raw_.segments.push_back({a, node(ids[i + 1])});
+      raw_.segment_numbers.push_back(number);
+    }
+  }
+
+  Index node(Index id) {
+    if (index_of_[id] == kNone) {
+      index_of_[id] = static_cast<Index>(raw_.nodes.size());
+      raw_.nodes.push_back({point(*data_, id), radius_->GetComponent(id, 0)});
+      raw_.node_numbers.push_back(id);
+    }
+    return index_of_[id];
+  }
+
+  vtkSmartPointer<vtkPolyData> data_;
+  vtkDataArray* radius_;
+  RawCenterline raw_;
+  std::vector<Index> index_of_;
+};
+
+constexpr std::array<std::pair<const char*, const char*>, 3> kPointNames = {
+    {{"radius", "MaximumInscribedSphereRadius"}, {"distance", "Distance"}, {"group", "GroupIds"}}};
+constexpr std::array<std::pair<const char*, const char*>, 2> kCellNames = {
+    {{"quality", "Quality"}, {"group", "GroupIds"}}};
+
+template <std::size_t N>
+std::string to_vtk(const std::array<std::pair<const char*, const char*>, N>& names, const std::string& name) {
+  for (const auto& [ours, theirs] : names) {
+    if (name == ours) return theirs;
+  }
+  return name;
+}
+
+template <std::size_t N>
+std::string from_vtk(const std::array<std::pair<const char*, const char*>, N>& names, const std::string& name) {
+  for (const auto& [ours, theirs] : names) {
+    if (name == theirs) return ours;
+  }
+  return name;
+}
+
+/// The arrays of one number per element, picked by `element_of` for every element kept.
+template <class Names>
+std::vector<MeshAttribute> read_attributes(vtkFieldData& arrays, const Names& names, const std::vector<vtkIdType>& kept,
+                                           vtkIdType count) {
+  std::vector<MeshAttribute> result;
+  for (int a = 0; a < arrays.GetNumberOfArrays(); ++a) {
+    vtkDataArray* array = arrays.GetArray(a);
+    if (!array || !array->GetName() || array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != count)
+      continue;
+    const int type = array->GetDataType();
+    MeshAttribute attribute{from_vtk(names, array->GetName()), {}, type != VTK_FLOAT && type != VTK_DOUBLE};
+    attribute.values.reserve(kept.size());
+    for (const vtkIdType i : kept) attribute.values.push_back(array->GetComponent(i, 0));
+    result.push_back(std::move(attribute));
+  }
+  return result;
+}
+
+void add_text(vtkPolyData& data, const char* name, const std::string& value) {
+  if (value.empty()) return;
+  vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  array->InsertNextValue(one_line(value));
+  data.GetFieldData()->AddArray(array);
+}
+
+template <class Metadata>
+void add_metadata(vtkPolyData& data, const Metadata& metadata) {
+  add_text(data, "SPACE", "LPS");
+  add_text(data, "UNIT", "mm");
+  add_text(data, "Generator", metadata.generator);
+  add_text(data, "Options", metadata.options);
+  add_text(data, "Input", metadata.input_name);
+  add_text(data, "InputSHA256", metadata.input_sha256);
+}
+
+void add_points(vtkPolyData& data, std::size_t count, const auto& position) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count; ++i) points->SetPoint(static_cast<vtkIdType>(i), position(i).data());
+  data.SetPoints(points);
+}
+
+void add_numbers(vtkFieldData& target, const std::string& name, const std::vector<double>& values, bool integer) {
+  const auto fill = [&](auto& array, auto convert) {
+    array.SetName(name.c_str());
+    array.SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+    for (std::size_t i = 0; i < values.size(); ++i) array.SetValue(static_cast<vtkIdType>(i), convert(values[i]));
+    target.AddArray(&array);
+  };
+  if (integer) {
+    vtkNew<vtkIntArray> array;
+    fill(*array, [](double x) { return static_cast<int>(x); });
+  } else {
+    vtkNew<vtkDoubleArray> array;
+    fill(*array, [](double x) { return x; });
+  }
+}
+
+void write_poly_data(std::ostream& out, vtkPolyData& data) {
+  vtkNew<ErrorCollector> errors;
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->AddObserver(vtkCommand::ErrorEvent, errors);
+  writer->SetInputData(&data);
+  writer->SetDataModeToBinary();
+  writer->WriteToOutputStringOn();
+  if (writer->Write() != 1 || !errors->text.empty())
+    throw WriteError("VTK cannot write the file: " + one_line(errors->text));
+  out << writer->GetOutputString();
+}
+
+}  // namespace
+
+RawCenterline parse_centerline_vtp(std::string_view content, const std::string& source,
+                                   const std::string& radius_array) {
+  return CenterlineReader(content, source, radius_array).run();
+}
+
+void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata) {
+  vtkNew<vtkPolyData> data;
+  const auto& nodes = centerline.nodes();
+  add_points(*data, nodes.size(), [&](std::size_t i) { return nodes[i].position; });
+  std::vector<double> radius;
+  for (const auto& node : nodes) radius.push_back(node.radius);
+  add_numbers(*data->GetPointData(), "MaximumInscribedSphereRadius", radius, false);
+  vtkNew<vtkCellArray> lines;
+  for (const auto& [a, b] : centerline.segments()) {
+    const vtkIdType ids[2] = {a, b};
+    lines->InsertNextCell(2, ids);
+  }
+  data->SetLines(lines);
+  add_metadata(*data, metadata);
+  write_poly_data(out, *data);
+}
+
+LoadedSurface parse_surface_vtp(std::string_view content, const std::string& source) {
+  const auto data = read_poly_data(content, source);
+  const vtkIdType point_count = data->GetNumberOfPoints();
+  const Cells polygons(data->GetPolys(), point_count, source, "polygon");
+  const Cells strips(data->GetStrips(), point_count, source, "strip");
+  LoadedSurface surface;
+  read_field_tags(*data, surface);
+  std::vector<vtkIdType> kept;
+  for (vtkIdType i = 0; i < point_count; ++i) {
+    surface.mesh.vertices.push_back(point(*data, i));
+    kept.push_back(i);
+  }
+  surface.attributes.vertex = read_attributes(*data->GetPointData(), kPointNames, kept, point_count);
+  // Cells of a vtkPolyData are numbered vertices, lines, polygons, strips.
+  const vtkIdType first_cell = data->GetNumberOfVerts() + data->GetNumberOfLines();
+  FaceCollector faces(surface, source);
+  std::vector<vtkIdType> cell_of_face;
+  for (std::size_t c = 0; c < polygons.size(); ++c) {
+    cell_of_face.push_back(first_cell + static_cast<vtkIdType>(c));
+    faces.add({polygons[c].begin(), polygons[c].end()}, "polygon " + std::to_string(c));
+  }
+  for (std::size_t c = 0; c < strips.size(); ++c) {
+    const auto strip = strips[c];
+    for (std::size_t i = 2; i < strip.size(); ++i) {
+      cell_of_face.push_back(first_cell + static_cast<vtkIdType>(polygons.size() + c));
+      const bool odd = i % 2 == 1;
+      faces.add({strip[i - (odd ? 1 : 2)], strip[i - (odd ? 2 : 1)], strip[i]}, "strip " + std::to_string(c));
+    }
+  }
+  faces.finish();
+  kept.clear();
+  for (const Index f : faces.face_of_triangle()) kept.push_back(cell_of_face[f]);
+  surface.attributes.face = read_attributes(*data->GetCellData(), kCellNames, kept, data->GetNumberOfCells());
+  warn_without_tags(surface, source);
+  return surface;
+}
+
+void write_surface_vtp(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+                       const SurfaceMetadata& metadata) {
+  vtkNew<vtkPolyData> data;
+  add_points(*data, mesh.vertices.size(), [&](std::size_t i) { return mesh.vertices[i]; });
+  vtkNew<vtkCellArray> polygons;
+  for (const auto& [a, b, c] : mesh.faces) {
+    const vtkIdType ids[3] = {a, b, c};
+    polygons->InsertNextCell(3, ids);
+  }
+  data->SetPolys(polygons);
+  vtkNew<vtkFloatArray> normals;
+  normals->SetName("Normals");
+  normals->SetNumberOfComponents(3);
+  for (const Vec3& n : vertex_normals(mesh)) normals->InsertNextTuple(n.data());
+  data->GetPointData()->SetNormals(normals);
+  for (const auto& a : attributes.vertex) {
+    add_numbers(*data->GetPointData(), to_vtk(kPointNames, a.name), a.values, a.integer);
+  }
+  for (const auto& a : attributes.face)
+    add_numbers(*data->GetCellData(), to_vtk(kCellNames, a.name), a.values, a.integer);
+  add_metadata(*data, metadata);
+  write_poly_data(out, *data);
+}
+
+}  // namespace vmesh::io
