@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>  // cross() compiles without it and then does not link
 #include <cstdint>
 #include <limits>
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
 #include "vmesh/centerline/centerline.h"
+#include "vmesh/volume/box_tree.h"
 
 namespace vmesh {
 
@@ -60,16 +62,12 @@ class VesselField {
 
  private:
   struct Cone {
-    Vec3 origin, axis;           // axis = last - first, mm
+    Vec3 origin, axis;          // axis = last - first, mm
     double r0 = 0, r1 = 0;
-    double inv_length2 = 0;      // 1 / |axis|^2; 0 for a sphere or when one end sphere contains the other
-    double sin_over_length = 0;  // (r0 - r1) / |axis|^2: how far a touching sphere's centre lags the foot point
-    double cos = 1;              // of the lateral surface's half angle
+    double inv_length2 = 0;     // 1 / |axis|^2; 0 for a sphere
+    double lag = 0;             // tan(half angle) / |axis|: how far the touching sphere lags the foot point
+    double t_low = 0, t_high = 1;  // equal where one end sphere contains the other
     Index a = kNone, b = kNone;
-  };
-  struct BoundingNode {
-    Vec3 low, high;
-    Index first = 0, count = 0;  // leaf: cones order_[first, first + count); inner: children at first, first + 1
   };
   struct Distance {
     double value;
@@ -77,9 +75,12 @@ class VesselField {
   };
 
   static Cone make_cone(const Centerline& centerline, Index a, Index b);
-  Distance distance_to(const Cone& cone, const Vec3& p) const;
-  Vec3 gradient_of(const Cone& cone, const Vec3& p, double t) const;
+  static Distance distance_to(const Cone& cone, const Vec3& p);
+  static Vec3 gradient_of(const Cone& cone, const Vec3& p, double t);
+  double max_radius(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
+  bool overlap(Index i, Index j) const;
   FieldSample blended(const Vec3& p, std::span<const Index> cones) const;
+  void blend_candidates(const Vec3& p, std::span<const Index> near, FieldSample& sample) const;
   void find_local_cones();
   void build_tree();
 
@@ -87,8 +88,7 @@ class VesselField {
   double blend_;
   std::vector<Cone> cones_;
   std::vector<Index> local_offsets_, local_;
-  std::vector<BoundingNode> tree_;
-  std::vector<Index> order_;
+  BoxTree tree_;
 };
 
 }  // namespace vmesh

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "vmesh/core/types.h"
+
+namespace vmesh {
+
+/// A balanced tree of axis-aligned boxes over items that each lie in a box of their own.
+class BoxTree {
+ public:
+  BoxTree() = default;
+  /// `low`, `high`: the items' boxes (mm). O(n log n), deterministic.
+  BoxTree(const std::vector<Vec3>& low, const std::vector<Vec3>& high);
+
+  /// Calls visit(item) for every item whose signed distance at `p` may be at most `limit`, near boxes first.
+  /// The visitor may lower `limit` as it goes: this is how a minimum is found.
+  template <class Visit>
+  void visit(const Vec3& p, const double& limit, Visit&& visit_item) const {
+    if (!nodes_.empty()) visit_node(0, p, limit, visit_item);
+  }
+
+  /// Calls visit(item) for every item whose box meets the box [low, high].
+  template <class Visit>
+  void visit_overlapping(const Vec3& low, const Vec3& high, Visit&& visit_item) const {
+    if (!nodes_.empty()) visit_overlapping_node(0, low, high, visit_item);
+  }
+
+ private:
+  struct Node {
+    Vec3 low, high;
+    Index first = 0;  // leaf: first of its items in order_; inner: first of its two children
+    Index count = 0;  // items of a leaf; 0 for an inner node
+
+    // Signed distance to the box: a lower bound of the signed distance to whatever lies in it.
+    double bound(const Vec3& p) const {
+      const Vec3 outside = (low - p).cwiseMax(p - high);
+      const double deepest = outside.maxCoeff();
+      return deepest <= 0 ? deepest : outside.cwiseMax(0).norm();
+    }
+  };
+
+  void build(Index node, Index first, Index count, const std::vector<Vec3>& low, const std::vector<Vec3>& high);
+
+  template <class Visit>
+  void visit_node(Index n, const Vec3& p, const double& limit, Visit&& visit_item) const {
+    const Node& node = nodes_[n];
+    if (node.count > 0) {
+      for (Index i = 0; i < node.count; ++i) visit_item(order_[node.first + i]);
+      return;
+    }
+    double bounds[2] = {nodes_[node.first].bound(p), nodes_[node.first + 1].bound(p)};
+    const int near = bounds[1] < bounds[0] ? 1 : 0;
+    for (const int child : {near, 1 - near}) {
+      if (bounds[child] <= limit) visit_node(node.first + child, p, limit, visit_item);
+    }
+  }
+
+  template <class Visit>
+  void visit_overlapping_node(Index n, const Vec3& low, const Vec3& high, Visit&& visit_item) const {
+    const Node& node = nodes_[n];
+    if ((node.low.array() > high.array()).any() || (node.high.array() < low.array()).any()) return;
+    if (node.count > 0) {
+      for (Index i = 0; i < node.count; ++i) visit_item(order_[node.first + i]);
+      return;
+    }
+    visit_overlapping_node(node.first, low, high, visit_item);
+    visit_overlapping_node(node.first + 1, low, high, visit_item);
+  }
+
+  std::vector<Node> nodes_;
+  std::vector<Index> order_;
+};
+
+}  // namespace vmesh

@@ -1,0 +1,86 @@
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/box_intersection_d.h>
+#include <CGAL/intersections.h>
+
+#include <algorithm>
+
+#include "vmesh/mesh/topology.h"
+
+namespace vmesh {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, Index>;
+
+Point to_point(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+class FacePairTest {
+ public:
+  explicit FacePairTest(const TriMesh& mesh) : mesh_(mesh) {
+    points_.reserve(mesh.vertices.size());
+    for (const Vec3& v : mesh.vertices) points_.push_back(to_point(v));
+  }
+
+  bool degenerate(Index face) const {
+    const auto& [a, b, c] = mesh_.faces[face];
+    return CGAL::collinear(points_[a], points_[b], points_[c]);
+  }
+
+  bool intersect(Index f, Index g) const {
+    const Triangle& x = mesh_.faces[f];
+    const Triangle& y = mesh_.faces[g];
+    Index common[3];
+    int count = 0;
+    for (const Index v : x) {
+      if (std::find(y.begin(), y.end(), v) != y.end()) common[count++] = v;
+    }
+    if (count == 3) return true;
+    if (count == 2) return folded(common[0], common[1], apex(x, common), apex(y, common));
+    if (count == 1) return opposite_edge_meets(x, y, common[0]) || opposite_edge_meets(y, x, common[0]);
+    return CGAL::do_intersect(triangle(x), triangle(y));
+  }
+
+ private:
+  Kernel::Triangle_3 triangle(const Triangle& t) const { return {points_[t[0]], points_[t[1]], points_[t[2]]}; }
+
+  static Index apex(const Triangle& t, const Index edge[2]) {
+    return *std::find_if(t.begin(), t.end(), [&](Index v) { return v != edge[0] && v != edge[1]; });
+  }
+
+  // Two faces at an edge overlap only when they are coplanar and lie on the same side of it.
+  bool folded(Index a, Index b, Index c, Index d) const {
+    return CGAL::coplanar(points_[a], points_[b], points_[c], points_[d]) &&
+           CGAL::coplanar_orientation(points_[a], points_[b], points_[c], points_[d]) == CGAL::POSITIVE;
+  }
+
+  bool opposite_edge_meets(const Triangle& x, const Triangle& y, Index common) const {
+    const auto i = std::find(x.begin(), x.end(), common) - x.begin();
+    return CGAL::do_intersect(triangle(y), Kernel::Segment_3(points_[x[(i + 1) % 3]], points_[x[(i + 2) % 3]]));
+  }
+
+  const TriMesh& mesh_;
+  std::vector<Point> points_;
+};
+
+}  // namespace
+
+std::vector<std::pair<Index, Index>> self_intersections(const TriMesh& mesh) {
+  const FacePairTest test(mesh);
+  std::vector<Box> boxes;
+  boxes.reserve(mesh.faces.size());
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    if (test.degenerate(f)) continue;
+    CGAL::Bbox_3 box;
+    for (const Index v : mesh.faces[f]) box += to_point(mesh.vertices[v]).bbox();
+    boxes.emplace_back(box, f);
+  }
+  std::vector<std::pair<Index, Index>> pairs;
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& x, const Box& y) {
+    if (test.intersect(x.info(), y.info())) pairs.push_back(std::minmax(x.info(), y.info()));
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace vmesh

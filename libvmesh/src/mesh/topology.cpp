@@ -1,0 +1,144 @@
+#include "vmesh/mesh/topology.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "vmesh/core/error.h"
+
+namespace vmesh {
+namespace {
+
+// One side of a face, keyed by its edge.
+struct Side {
+  Index low, high;  // the edge's vertices
+  Index face;
+  bool forward;  // the face runs from low to high
+
+  auto key() const { return std::pair(low, high); }
+};
+
+std::vector<Side> sorted_sides(const TriMesh& mesh) {
+  std::vector<Side> sides;
+  sides.reserve(3 * mesh.faces.size());
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    for (int i = 0; i < 3; ++i) {
+      const Index a = mesh.faces[f][i], b = mesh.faces[f][(i + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), f, a < b});
+    }
+  }
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& x, const Side& y) { return std::tie(x.low, x.high, x.face) < std::tie(y.low, y.high, y.face); });
+  return sides;
+}
+
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+  Index find(Index i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(Index i, Index j) { parent_[std::max(find(i), find(j))] = std::min(find(i), find(j)); }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+// A vertex is manifold when its faces, joined across edges at it, form one fan: count fans as classes of face corners.
+bool one_fan_each(const TriMesh& mesh, const std::vector<Side>& sides) {
+  DisjointSets corners(3 * mesh.faces.size());
+  const auto corner_of = [&](Index face, Index vertex) {
+    const auto& f = mesh.faces[face];
+    return 3 * face + (f[0] == vertex ? 0 : f[1] == vertex ? 1 : 2);
+  };
+  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+    if (sides[i].key() != sides[i + 1].key()) continue;
+    for (const Index v : {sides[i].low, sides[i].high}) {
+      corners.unite(corner_of(sides[i].face, v), corner_of(sides[i + 1].face, v));
+    }
+  }
+  std::vector<Index> fan(mesh.vertices.size(), kNone);
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    for (Index i = 0; i < 3; ++i) {
+      Index& known = fan[mesh.faces[f][i]];
+      const Index root = corners.find(3 * f + i);
+      if (known == kNone) known = root;
+      if (known != root) return false;
+    }
+  }
+  return true;
+}
+
+void check_indices(const TriMesh& mesh) {
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (const Index v : mesh.faces[f]) {
+      if (v >= mesh.vertices.size()) {
+        throw InvalidInput("face " + std::to_string(f) + " names vertex " + std::to_string(v) + ", but the mesh has " +
+                           std::to_string(mesh.vertices.size()) + " vertices");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Topology measure_topology(const TriMesh& mesh) {
+  check_indices(mesh);
+  Topology topology;
+  const std::vector<Side> sides = sorted_sides(mesh);
+  std::int64_t edges = 0;
+  bool edge_manifold = true;
+  topology.oriented = true;
+  for (std::size_t i = 0, next; i < sides.size(); i = next) {
+    for (next = i + 1; next < sides.size() && sides[next].key() == sides[i].key(); ++next) {}
+    ++edges;
+    if (next - i == 1) ++topology.boundary_edges;
+    if (next - i > 2 || sides[i].low == sides[i].high) edge_manifold = false;
+    if (next - i == 2 && sides[i].forward == sides[i + 1].forward) topology.oriented = false;
+  }
+  topology.oriented = topology.oriented && edge_manifold;
+  topology.manifold = edge_manifold && one_fan_each(mesh, sides);
+  topology.closed = !mesh.faces.empty() && topology.boundary_edges == 0;
+
+  DisjointSets sets(mesh.vertices.size());
+  std::vector<char> used(mesh.vertices.size(), 0);
+  for (const auto& [a, b, c] : mesh.faces) {
+    used[a] = used[b] = used[c] = 1;
+    sets.unite(a, b);
+    sets.unite(a, c);
+  }
+  std::int64_t vertices = 0;
+  for (Index v = 0; v < used.size(); ++v) {
+    vertices += used[v];
+    if (used[v] && sets.find(v) == v) ++topology.components;
+  }
+  topology.euler_characteristic = vertices - edges + static_cast<std::int64_t>(mesh.faces.size());
+  const bool surface = topology.closed && topology.manifold && topology.oriented;
+  if (surface) {
+    topology.genus = static_cast<std::int64_t>(topology.components) - topology.euler_characteristic / 2;
+    std::vector<double> volume(mesh.vertices.size(), 0);
+    for (const auto& [a, b, c] : mesh.faces) {
+      // Relative to a vertex of the component, so that a far origin costs no digits.
+      const Vec3& origin = mesh.vertices[sets.find(a)];
+      volume[sets.find(a)] +=
+          (mesh.vertices[a] - origin).dot((mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin));
+    }
+    topology.outward = true;
+    for (Index v = 0; v < used.size(); ++v) {
+      if (used[v] && sets.find(v) == v && !(volume[v] > 0)) topology.outward = false;
+    }
+  }
+  return topology;
+}
+
+double enclosed_volume(const TriMesh& mesh) {
+  if (mesh.vertices.empty()) return 0;
+  const Vec3& origin = mesh.vertices.front();
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.faces) {
+    sum += (mesh.vertices[a] - origin).dot((mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin));
+  }
+  return sum / 6;
+}
+
+}  // namespace vmesh

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <CGAL/Surface_mesh.h>
+
+#include "vmesh/core/types.h"
+#include "vmesh/mesh/tri_mesh.h"
+#include "vmesh/surface/generate.h"
+#include "vmesh/volume/vessel_field.h"
+
+namespace vmesh {
+
+using SurfaceMesh = CGAL::Surface_mesh<Vec3>;
+using Vertex = SurfaceMesh::Vertex_index;
+using Halfedge = SurfaceMesh::Halfedge_index;
+using Edge = SurfaceMesh::Edge_index;
+using Face = SurfaceMesh::Face_index;
+
+/// A surface under construction: a halfedge mesh whose vertices know their place on the centerline.
+class BoundSurface {
+ public:
+  explicit BoundSurface(const VesselField& vessel_field);
+  BoundSurface(const BoundSurface&) = delete;
+  BoundSurface& operator=(const BoundSurface&) = delete;
+
+  const VesselField& field;
+  SurfaceMesh mesh;
+  SurfaceMesh::Property_map<Vertex, Index> cone;     ///< closest round cone, the hint of the next query
+  SurfaceMesh::Property_map<Vertex, double> t;       ///< parameter on its axis
+  SurfaceMesh::Property_map<Vertex, Vec3> gradient;  ///< outward normal of the boundary there
+  /// Factor in (0, 1] on the size field around the vertex, where the surface had to be refined for accuracy.
+  SurfaceMesh::Property_map<Vertex, double> refinement;
+
+  const Vec3& position(Vertex v) const { return mesh.point(v); }
+  double radius(Vertex v) const { return field.radius_at(cone[v], t[v]); }
+
+  /// Places `v` at `p` and binds it to what `sample` says.
+  void place(Vertex v, const Vec3& p, const FieldSample& sample);
+
+  /// Places `v` at the boundary point that follows from `p` (project_to_boundary).
+  void place_on_boundary(Vertex v, const Vec3& p, Index hint);
+
+  Vec3 face_area_normal(Face f) const;
+  Vec3 vertex_normal(Vertex v) const;
+
+  /// Edge-centric split of a face: its edges are halved, it becomes four faces and each neighbour two.
+  /// The three new vertices are bound like one of their edge's ends and stay at the edges' midpoints.
+  std::array<Vertex, 3> split_edge_centric(Face f);
+
+  /// Halves an edge and both its faces. The new vertex lies at the midpoint, bound like an end of the edge.
+  Vertex split_edge(Edge e);
+
+  /// The finished mesh with its binding. Vertices and faces in the order of the halfedge mesh.
+  void export_to(GenerateResult& result) const;
+
+ private:
+  Vertex halve(Halfedge h);
+};
+
+/// A point and what the field says about it.
+struct BoundaryPoint {
+  Vec3 position;
+  FieldSample sample;
+};
+
+/// Follows the field from `p` to the boundary (Newton steps along the gradient) until |distance| is at most
+/// `tolerance` local radii, or no longer shrinks.
+BoundaryPoint project_to_boundary(const VesselField& field, const Vec3& p, Index hint, double tolerance = 1e-6);
+
+}  // namespace vmesh

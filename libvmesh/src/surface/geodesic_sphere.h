@@ -1,0 +1,11 @@
+#pragma once
+
+#include "surface/bound_surface.h"
+
+namespace vmesh {
+
+/// Adds a geodesic sphere to `surface`: an icosahedron whose faces are split edge-centrically once (42 vertices,
+/// 80 faces). Vertices are bound through the field, started from `hint`. Returns the new vertices.
+std::vector<Vertex> add_geodesic_sphere(BoundSurface& surface, const Vec3& center, double radius, Index hint);
+
+}  // namespace vmesh

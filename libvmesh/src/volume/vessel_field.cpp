@@ -1,0 +1,163 @@
+#include "vmesh/volume/vessel_field.h"
+
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "vmesh/core/error.h"
+
+namespace vmesh {
+namespace {
+
+constexpr std::size_t kMaxBlended = 16;  // cones closer than the blend width at one point; more never matter
+constexpr int kMaxHintSteps = 16;
+
+}  // namespace
+
+VesselField::VesselField(const Centerline& centerline, double blend) : centerline_(&centerline), blend_(blend) {
+  if (!(blend >= 0 && blend <= 2)) throw InvalidInput("blend must be in [0, 2]");
+  cones_.reserve(centerline.segments().size());
+  for (const auto& s : centerline.segments()) cones_.push_back(make_cone(centerline, s.a, s.b));
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    if (centerline.degree(n) == 0) cones_.push_back(make_cone(centerline, n, n));
+  }
+  find_local_cones();
+  build_tree();
+}
+
+VesselField::Cone VesselField::make_cone(const Centerline& centerline, Index a, Index b) {
+  const auto& first = centerline.node(a);
+  const auto& last = centerline.node(b);
+  Cone cone;
+  cone.a = a;
+  cone.b = b;
+  cone.origin = first.position;
+  cone.axis = last.position - first.position;
+  cone.r0 = first.radius;
+  cone.r1 = last.radius;
+  const double length = cone.axis.norm();
+  if (length > 0) cone.inv_length2 = 1 / (length * length);
+  if (std::abs(cone.r0 - cone.r1) >= length) {
+    cone.t_low = cone.t_high = cone.r0 >= cone.r1 ? 0 : 1;
+  } else {
+    const double sine = (cone.r0 - cone.r1) / length;
+    cone.lag = sine / std::sqrt(1 - sine * sine) / length;
+  }
+  return cone;
+}
+
+// The closest of the spheres that sweep the cone: the touching sphere's centre lies where the axis is met by the
+// normal of the lateral surface through p, clamped to the axis.
+VesselField::Distance VesselField::distance_to(const Cone& cone, const Vec3& p) {
+  const Vec3 q = p - cone.origin;
+  const double foot = q.dot(cone.axis) * cone.inv_length2;
+  const double off_axis = (q - foot * cone.axis).norm();
+  const double t = std::clamp(foot - off_axis * cone.lag, cone.t_low, cone.t_high);
+  return {(q - t * cone.axis).norm() - (cone.r0 + t * (cone.r1 - cone.r0)), t};
+}
+
+Vec3 VesselField::gradient_of(const Cone& cone, const Vec3& p, double t) {
+  const Vec3 away = p - cone.origin - t * cone.axis;
+  const double norm = away.norm();
+  return norm > 0 ? Vec3(away / norm) : Vec3(Vec3::Zero());
+}
+
+FieldSample VesselField::sample_cone(const Vec3& p, Index cone) const {
+  const Distance d = distance_to(cones_[cone], p);
+  return {d.value, gradient_of(cones_[cone], p, d.t), cone, d.t};
+}
+
+FieldSample VesselField::sample(const Vec3& p, Index hint) const {
+  FieldSample sample = blended(p, local_cones(hint));
+  for (int step = 0; step < kMaxHintSteps && sample.cone != hint; ++step) {
+    hint = sample.cone;
+    sample = blended(p, local_cones(hint));
+  }
+  return sample;
+}
+
+FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones) const {
+  FieldSample sample;
+  sample.distance = std::numeric_limits<double>::infinity();
+  std::array<Index, kMaxBlended> near;
+  std::size_t near_count = 0;
+  if (blend_ == 0) {
+    for (const Index c : cones) {
+      const Distance d = distance_to(cones_[c], p);
+      if (d.value < sample.distance) sample = {d.value, sample.gradient, c, d.t};
+    }
+  } else {
+    // One pass keeps the cones within the widest possible blend of the best so far.
+    std::array<double, kMaxBlended> values;
+    for (const Index c : cones) {
+      const Distance d = distance_to(cones_[c], p);
+      if (d.value >= sample.distance + 2 * blend_ * max_radius(c)) continue;
+      if (d.value < sample.distance) {
+        sample = {d.value, sample.gradient, c, d.t};
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < near_count; ++i) {
+          if (values[i] >= d.value + 2 * blend_ * max_radius(near[i])) continue;
+          near[kept] = near[i];
+          values[kept++] = values[i];
+        }
+        near_count = kept;
+      }
+      if (near_count < kMaxBlended) {
+        near[near_count] = c;
+        values[near_count++] = d.value;
+      }
+    }
+  }
+  sample.gradient = gradient_of(cones_[sample.cone], p, sample.t);
+  if (near_count > 1) blend_candidates(p, {near.data(), near_count}, sample);
+  return sample;
+}
+
+// The least of the pairwise smooth minima: continuous, and the plain minimum where gradients agree.
+void VesselField::blend_candidates(const Vec3& p, std::span<const Index> near, FieldSample& sample) const {
+  struct Candidate {
+    double value, radius;
+    Vec3 gradient;
+  };
+  std::array<Candidate, kMaxBlended> candidates;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const Distance d = distance_to(cones_[near[i]], p);
+    candidates[i] = {d.value, radius_at(near[i], d.t), gradient_of(cones_[near[i]], p, d.t)};
+  }
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    for (std::size_t j = i + 1; j < near.size(); ++j) {
+      const auto& [low, high] = candidates[i].value <= candidates[j].value ? std::tie(candidates[i], candidates[j])
+                                                                             : std::tie(candidates[j], candidates[i]);
+      const double width = blend_ * std::min(low.radius, high.radius) * (1 - low.gradient.dot(high.gradient));
+      const double gap = high.value - low.value;
+      if (gap >= width) continue;
+      const double h = 1 - gap / width;
+      const double value = low.value - h * h * width / 4;
+      if (value >= sample.distance) continue;
+      sample.distance = value;
+      sample.gradient = (1 - h / 2) * low.gradient + h / 2 * high.gradient;
+    }
+  }
+}
+
+FieldSample VesselField::sample_global(const Vec3& p) const {
+  Index best = 0;
+  double limit = std::numeric_limits<double>::infinity();
+  tree_.visit(p, limit, [&](Index c) {
+    const double value = distance_to(cones_[c], p).value;
+    if (value < limit || (value == limit && c < best)) {
+      limit = value;
+      best = c;
+    }
+  });
+  if (blend_ == 0) return sample_cone(p, best);
+  double reach = limit + 2 * blend_ * max_radius(best);
+  std::vector<Index> near;
+  tree_.visit(p, reach, [&](Index c) {
+    if (distance_to(cones_[c], p).value <= reach) near.push_back(c);
+  });
+  std::sort(near.begin(), near.end());
+  return blended(p, near);
+}
+
+}  // namespace vmesh
