@@ -169,7 +169,7 @@ void contract_short_segments(Workspace& work) {
     const auto [low, high] = std::minmax(a, b);
     work.add(Kind::contracted_segment, Element::segment, work.raw_segment[s],
              work.raw.name_of_segment(work.raw_segment[s]) + ": its length " + number(length) + " mm counts as zero; " +
-                 work.raw.name_of_node(high) + " merged into " + work.raw.name_of_node(low));
+                 work.raw.place_of_node(high) + " merged into " + work.raw.place_of_node(low));
     work.merge(a, b);
   }
   work.compact();
@@ -192,7 +192,7 @@ void remove_duplicate_segments(Workspace& work) {
     if (first[s] == s) continue;
     work.add(Kind::removed_duplicate_segment, Element::segment, work.raw_segment[s],
              work.raw.name_of_segment(work.raw_segment[s]) + ": it joins the same nodes as " +
-                 work.raw.name_of_segment(work.raw_segment[first[s]]) + "; removed");
+                 work.raw.place_of_segment(work.raw_segment[first[s]]) + "; removed");
   }
   std::size_t kept = 0;
   for (Index s = 0; s < first.size(); ++s) {

@@ -75,26 +75,22 @@ class TrunkMerger {
   void follow(std::size_t path, std::size_t begin, std::size_t end) {
     const auto& segments = work_.raw.segments;
     const Index start = segments[begin].a;
-    std::vector<std::pair<Index, Index>> repeated;  // own node, node of the earlier polyline
     std::size_t s = begin;
     Index at = find_start(start);
-    if (at != kNone) {
-      if (home_[start] == kNone) repeated.emplace_back(start, at);
+    if (at == kNone) {
+      at = home_[start] = start;
+    } else {
+      const Index first = at;
+      const bool is_new = take(start, at);
       for (; s < end; ++s) {
         const Index child = find_child(at, segments[s].b);
         if (child == kNone) break;
-        if (home_[segments[s].b] == kNone) repeated.emplace_back(segments[s].b, child);
+        take(segments[s].b, child);
+        work_.segments[s] = {child, child};  // compact() drops it
         at = child;
       }
-    } else {
-      at = start;
-      home_[start] = start;
+      report(path, begin, s - begin, first, is_new);
     }
-    for (const auto& [own, earlier] : repeated) {
-      home_[own] = earlier;
-      work_.merge(own, earlier);
-    }
-    report(path, begin, repeated);
     for (; s < end; ++s) {
       Index& home = home_[segments[s].b];
       if (home == kNone) home = segments[s].b;
@@ -103,13 +99,27 @@ class TrunkMerger {
     }
   }
 
-  void report(std::size_t path, std::size_t begin, const std::vector<std::pair<Index, Index>>& repeated) {
-    if (repeated.empty()) return;
-    work_.add(Kind::merged_trunk, Element::segment, static_cast<Index>(begin),
-              work_.raw.name_of_segment(static_cast<Index>(begin)) + ": polyline " + std::to_string(path) +
-                  " begins with " + std::to_string(repeated.size()) + " points of an earlier one; merged, from " +
-                  work_.raw.name_of_node(repeated.front().first) + " into " +
-                  work_.raw.name_of_node(repeated.front().second));
+  /// Makes node `n` one with `earlier`, unless it belongs to an earlier polyline already.
+  bool take(Index n, Index earlier) {
+    if (home_[n] != kNone) return false;
+    home_[n] = earlier;
+    work_.merge(n, earlier);
+    return true;
+  }
+
+  void report(std::size_t path, std::size_t begin, std::size_t repeated, Index first, bool start_is_new) {
+    const auto segment = static_cast<Index>(begin);
+    const Index start = work_.raw.segments[begin].a;
+    if (repeated > 0) {
+      work_.add(Kind::merged_trunk, Element::segment, segment,
+                work_.raw.name_of_segment(segment) + ": the first " + std::to_string(repeated) +
+                    " segments of polyline " + std::to_string(path) + " repeat an earlier one from " +
+                    work_.raw.place_of_node(first) + "; merged");
+    } else if (start_is_new) {
+      work_.add(Kind::merged_node, Element::node, start,
+                work_.raw.name_of_node(start) + ": it lies at the place of " + work_.raw.place_of_node(first) +
+                    "; merged into it");
+    }
   }
 
   Workspace& work_;
@@ -150,10 +160,15 @@ class NodeMerger {
  private:
   bool is_end(Index n) const { return degree_[n] <= 1; }
 
+  bool may_merge(Index n, Index m) {
+    if (joined_.find(n) != joined_.find(m)) return true;
+    return !work_.raw.tree_only && (is_end(n) || is_end(m));
+  }
+
   void merge(Index n, Index into) {
     work_.add(
         Kind::merged_node, Element::node, n,
-        work_.raw.name_of_node(n) + ": it lies at the place of " + work_.raw.name_of_node(into) + "; merged into it");
+        work_.raw.name_of_node(n) + ": it lies at the place of " + work_.raw.place_of_node(into) + "; merged into it");
     const Index degree = degree_[n] + degree_[into];
     work_.merge(n, into);
     degree_[work_.merged.find(n)] = degree;
@@ -169,11 +184,11 @@ class NodeMerger {
       const auto [place, is_new] = first.try_emplace({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}, n);
       if (is_new) continue;
       const Index other = place->second;
-      if (is_end(n) || is_end(other) || joined_.find(n) != joined_.find(other)) {
+      if (may_merge(n, other)) {
         merge(n, other);
       } else {
         work_.add(Kind::kept_crossing, Element::node, n,
-                  work_.raw.name_of_node(n) + ": it lies at the place of " + work_.raw.name_of_node(other) +
+                  work_.raw.name_of_node(n) + ": it lies at the place of " + work_.raw.place_of_node(other) +
                       ", but joining the two would close a loop; left apart");
       }
     }
@@ -189,7 +204,8 @@ class NodeMerger {
     for (Index n = 0; n < work_.nodes.size(); ++n) {
       if (work_.merged.find(n) != n || !is_end(n)) continue;
       const Index other = tree.nearest(work_.nodes[n].position, kNone - 1, [&](Index m) {
-        return work_.merged.find(m) != n && work_.distance(n, m) <= work_.tolerance(n, m);
+        const Index into = work_.merged.find(m);
+        return into != n && work_.distance(n, m) <= work_.tolerance(n, m) && may_merge(n, into);
       });
       if (other != kNone) merge(std::max(n, work_.merged.find(other)), std::min(n, work_.merged.find(other)));
     }

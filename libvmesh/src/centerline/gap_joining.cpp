@@ -92,7 +92,7 @@ class GapJoiner {
     has_join_[starts_component_[from]] = has_join_[starts_component_[to]] = 1;
     std::ostringstream text;
     text << work_.raw.name_of_node(from) << ": this loose end of a branch lies " << work_.distance(from, to)
-         << " mm from " << work_.raw.name_of_node(to) << " (" << relative_distance << " of the radius there); joined";
+         << " mm from " << work_.raw.place_of_node(to) << " (" << relative_distance << " of the radius there); joined";
     work_.add(CleaningAction::Kind::joined_gap, CleaningAction::Element::node, from, text.str());
   }
 

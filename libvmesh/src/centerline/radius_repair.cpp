@@ -89,8 +89,8 @@ class RadiusRepair {
     const auto& [nearest, second] = labels_[n];
     std::ostringstream text;
     text << work_.raw.name_of_node(n) << ": its radius is 0; set to " << radius << " mm, from "
-         << work_.raw.name_of_node(nearest.source);
-    if (second.source != kNone) text << " and " << work_.raw.name_of_node(second.source);
+         << work_.raw.place_of_node(nearest.source);
+    if (second.source != kNone) text << " and " << work_.raw.place_of_node(second.source);
     work_.add(CleaningAction::Kind::repaired_radius, CleaningAction::Element::node, n, text.str());
   }
 

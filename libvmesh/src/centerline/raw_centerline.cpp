@@ -17,10 +17,9 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-std::string name_of(const std::string& source, const std::string& word, const std::vector<std::uint64_t>& numbers,
-                    Index i) {
+std::string place(const std::string& word, const std::vector<std::uint64_t>& numbers, Index i) {
   const std::uint64_t number = i < numbers.size() ? numbers[i] : i;
-  return (source.empty() ? "" : source + ": ") + word + " " + std::to_string(number);
+  return word + " " + std::to_string(number);
 }
 
 template <class Value>
@@ -93,9 +92,17 @@ double millimetres_per(LengthUnit unit) {
   throw InvalidInput("the unit of length is unknown; choose um, mm, cm or m");
 }
 
-std::string RawCenterline::name_of_node(Index n) const { return name_of(source, node_word, node_numbers, n); }
+std::string RawCenterline::name_of_node(Index n) const {
+  return (source.empty() ? "" : source + ": ") + place_of_node(n);
+}
 
-std::string RawCenterline::name_of_segment(Index s) const { return name_of(source, segment_word, segment_numbers, s); }
+std::string RawCenterline::name_of_segment(Index s) const {
+  return (source.empty() ? "" : source + ": ") + place_of_segment(s);
+}
+
+std::string RawCenterline::place_of_node(Index n) const { return place(node_word, node_numbers, n); }
+
+std::string RawCenterline::place_of_segment(Index s) const { return place(segment_word, segment_numbers, s); }
 
 RawCenterline convert_to_internal(RawCenterline raw, std::optional<LengthUnit> unit_override,
                                   std::optional<Space> space_override, std::vector<std::string>& warnings) {

@@ -47,8 +47,10 @@ class OffReader {
   void read_counts() {
     next_fields("the word OFF");
     const std::string word = lower(fields_[0]);
-    if (!word.ends_with("off")) fail("an OFF file begins with the word OFF, not " + cite(fields_[0]));
-    fields_.erase(fields_.begin());
+    const std::size_t end = word.find("off");
+    if (end == std::string::npos || end > 4) fail("an OFF file begins with the word OFF, not " + cite(fields_[0]));
+    fields_[0].remove_prefix(end + 3);  // the counts may follow without a blank
+    if (fields_[0].empty()) fields_.erase(fields_.begin());
     if (fields_.empty()) next_fields("the counts of vertices and faces");
     if (fields_[0] == "BINARY")
       throw Unsupported(source_ + ": binary OFF is not supported; save it as PLY or text OFF");

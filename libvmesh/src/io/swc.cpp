@@ -14,6 +14,7 @@ class SwcReader {
   SwcReader(std::string_view content, const std::string& source) : lines_(content) {
     raw_.source = source;
     raw_.node_word = raw_.segment_word = "line";
+    raw_.tree_only = true;
   }
 
   RawCenterline run() {

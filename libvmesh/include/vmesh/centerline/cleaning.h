@@ -33,7 +33,7 @@ struct CleaningAction {
     merged_trunk,               ///< the beginning of a polyline repeats an earlier one
     contracted_segment,         ///< a segment of no length: its nodes became one
     merged_node,                ///< a node at the place of another
-    kept_crossing,              ///< two nodes at one place were left apart: joining them would close a false loop
+    kept_crossing,              ///< two nodes at one place were left apart: joining them would close a loop
     removed_duplicate_segment,  ///< a segment between nodes that are joined already
     repaired_radius,            ///< a zero radius was interpolated along the graph
     joined_gap,                 ///< a segment was added from a branch's loose end to its parent
@@ -68,11 +68,10 @@ struct CleanedCenterline {
 /// Turns a raw centerline into a valid one. Deterministic; time near linear in the number of nodes.
 /// Nodes are merged where polylines begin with the same points (VMTK repeats the trunk for every target), where a
 /// segment has no length, and where a node coincides with another one of which at least one is an end. Interior nodes
-/// that coincide are merged only when that closes no loop. A zero radius becomes the distance-weighted mean of the two
-/// nearest radii along the graph.
-/// Precondition: `raw` is in mm and LPS (convert_to_internal), else InvalidInput.
-/// Throws InvalidInput that names file and line or element for: no nodes, non-finite numbers, negative radii,
-/// segments to unknown nodes, a component without any radius.
+/// that coincide, and all nodes of a format that knows trees only, are merged only when that closes no loop. A zero
+/// radius becomes the distance-weighted mean of the two nearest radii along the graph. Precondition: `raw` is in mm and
+/// LPS (convert_to_internal), else InvalidInput. Throws InvalidInput that names file and line or element for: no nodes,
+/// non-finite numbers, negative radii, segments to unknown nodes, a component without any radius.
 CleanedCenterline clean(const RawCenterline& raw, const CleaningOptions& options = {});
 
 }  // namespace vmesh

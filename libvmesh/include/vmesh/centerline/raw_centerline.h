@@ -36,6 +36,8 @@ struct RawCenterline {
   /// First segments of polylines, ascending, when the file has polylines: the segments up to the next entry run head to
   /// tail. Empty when the file gives segments one by one.
   std::vector<Index> path_starts;
+  /// The format knows trees only: points at one place are no sign that a loop is closed there.
+  bool tree_only = false;
   /// Branches of this kind of file may stop short of their parent (see CleaningOptions::join_gaps).
   bool loose_branches = false;
 
@@ -49,6 +51,9 @@ struct RawCenterline {
   /// "tree.swc: line 12": how messages name node `n` or segment `s`.
   std::string name_of_node(Index n) const;
   std::string name_of_segment(Index s) const;
+  /// "line 12": the same without the file.
+  std::string place_of_node(Index n) const;
+  std::string place_of_segment(Index s) const;
 };
 
 /// Converts to millimetres and LPS. An override wins over what the file says. Where neither knows, millimetres or LPS
