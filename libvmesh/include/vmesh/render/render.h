@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "vmesh/mesh/tri_mesh.h"
+#include "vmesh/render/image.h"
+
+namespace vmesh {
+
+/// Where the camera stands, as seen from the mesh (LPS). Azimuth 0 is in front (anterior), 90 at the patient's left;
+/// elevation 90 is above (superior).
+struct ViewDirection {
+  double azimuth_deg = 0;
+  double elevation_deg = 0;
+};
+
+/// "front", "back", "left", "right", "top", "bottom" or "iso"; also "AZIMUTH,ELEVATION" in degrees ("30,-15").
+/// Throws InvalidInput for anything else.
+ViewDirection view_direction(std::string_view name);
+
+/// What a picture shows and how.
+struct RenderOptions {
+  int width = 1600;   ///< pixels, 16 to 16384
+  int height = 1200;  ///< pixels, 16 to 16384
+
+  ViewDirection view;
+  /// The point in the middle of the picture; without it the middle of the mesh.
+  std::optional<Vec3> look_at;
+  /// Height of the scene the picture shows at look_at, mm; 0: what holds the whole mesh with a margin.
+  double view_height_mm = 0;
+  /// Magnification on top of that, > 0.
+  double zoom = 1;
+  /// Vertical field of view, degrees, below 120; 0 is an orthographic picture.
+  double field_of_view_deg = 0;
+
+  bool edges = false;                ///< draw the triangles' edges
+  double edge_width_px = 1.4;        ///< > 0
+  bool smooth = true;                ///< shade with interpolated normals, else facet by facet
+  bool highlight_back_faces = true;  ///< the inside of the surface in magenta: turned faces and holes show
+  double occlusion = 0.7;            ///< darkening where little light gets in, 0 to 1
+  bool legend = true;                ///< draw the legend of an attribute
+  Color material = {204, 44, 36};    ///< where no attribute says otherwise
+  Color background = {246, 247, 249};
+
+  /// Attribute values at the ends of the colour scale; without it the smallest and the largest value.
+  std::optional<std::pair<double, double>> range;
+};
+
+/// Draws a mesh without a display, by casting rays. The same input gives the same picture.
+/// Throws InvalidInput for a mesh without faces, with faces that name vertices which do not exist, with positions
+/// that are not finite, and for options out of range.
+Image render(const TriMesh& mesh, const RenderOptions& options = {});
+
+/// What an attribute has one value for.
+enum class AttributeDomain { vertex, face };
+
+/// The same, coloured by an attribute, from dark blue (low) to yellow (high), with a legend. NaN is drawn grey. Throws
+/// InvalidInput also when there is not one value per vertex or face, or when none is finite and no range is given.
+Image render(const TriMesh& mesh, const MeshAttribute& attribute, AttributeDomain domain,
+             const RenderOptions& options = {});
+
+}  // namespace vmesh
