@@ -1,0 +1,140 @@
+#include "arguments.h"
+
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "vmesh/core/version.h"
+
+#include "exit_code.h"
+
+namespace vmesh::tool {
+namespace {
+
+constexpr const char* kGenerateExamples = R"(Examples:
+  vmesh generate tree.swc -o tree.ply
+  vmesh generate tree.vtp -o tree.vtp --around 8 --blend 0.8 --json summary.json
+  vmesh generate network.csv -o network.stl --unit um --check)";
+constexpr const char* kInfoExamples = R"(Examples:
+  vmesh info tree.swc
+  vmesh info tree.ply --json -
+  vmesh info tree.ply --check && echo flawless)";
+constexpr const char* kSynthExamples = R"(Examples:
+  vmesh synth -o tree.json
+  vmesh synth --vertices 119 --seed 7 -o small.swc)";
+constexpr const char* kConvertExamples = R"(Examples:
+  vmesh convert tree.swc -o tree.vtp
+  vmesh convert tree.swc -o tree.json --unit um
+  vmesh convert tree.ply -o tree.stl)";
+constexpr const char* kRenderExamples = R"(Examples:
+  vmesh render tree.ply -o tree.png
+  vmesh render tree.ply -o tree.png --edges --color radius --view left --width 1200 --height 900)";
+
+void add_common(CLI::App& verb, CommonArguments& common, bool with_json = true) {
+  verb.add_flag("-q,--quiet", common.quiet, "only warnings and errors on stderr");
+  if (with_json) verb.add_option("--json", common.json, "write a summary to this file; - for stdout");
+}
+
+void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& help) {
+  verb.add_option("-o,--output", output, help)->required();
+}
+
+void add_input(CLI::App& verb, InputArguments& input, const std::string& help) {
+  verb.add_option("IN", input.path, help)->required();
+  verb.add_option_function<std::string>(
+          "--unit", [&input](const std::string& text) { input.unit = parse_length_unit(text); },
+          "unit of the numbers in the file; overrides what the file says")
+      ->check(CLI::IsMember({"um", "mm", "cm", "m"}));
+  verb.add_option_function<std::string>(
+          "--space", [&input](const std::string& text) { input.space = parse_space(text); },
+          "patient frame of the file; overrides what the file says")
+      ->check(CLI::IsMember({"LPS", "RAS"}));
+}
+
+void add_generate(CLI::App& app, GenerateArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
+  add_input(verb, arguments.input, "centerline");
+  add_output(verb, arguments.output, "surface");
+  for_each_generate_option(arguments.options,
+                           [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
+                             verb.add_option(flag, member, help)->check(CLI::Range(low, high))->capture_default_str();
+                           });
+  verb.add_flag("--check", arguments.check,
+                "exit with 1 unless the surface is closed, manifold, free of "
+                "self-intersections, of the expected topology, and holds every centerline node");
+  add_common(verb, arguments.common);
+  verb.footer(kGenerateExamples);
+}
+
+void add_info(CLI::App& app, InfoArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand("info", "Tell what is in a centerline or surface, and what is wrong with it");
+  add_input(verb, arguments.input, "centerline or surface");
+  verb.add_flag("--check", arguments.check, "exit with 1 when there is a problem");
+  add_common(verb, arguments.common);
+  verb.footer(kInfoExamples);
+}
+
+void add_synth(CLI::App& app, SynthArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand("synth", "Make a synthetic tree like a liver's portal vein");
+  add_output(verb, arguments.output, "centerline");
+  verb.add_option("--vertices", arguments.options.vertices, "nodes of the centerline")
+      ->check(CLI::Range(2, 1000000))
+      ->capture_default_str();
+  verb.add_option("--seed", arguments.options.seed, "each number gives another tree")->capture_default_str();
+  add_common(verb, arguments.common, false);
+  verb.footer(kSynthExamples);
+}
+
+void add_convert(CLI::App& app, ConvertArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand(
+      "convert", "Convert between centerline formats or between surface formats; writes millimetres and LPS");
+  add_input(verb, arguments.input, "centerline or surface");
+  add_output(verb, arguments.output, "file of the same kind");
+  add_common(verb, arguments.common, false);
+  verb.footer(kConvertExamples);
+}
+
+void add_render(CLI::App& app, RenderArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand("render", "Draw a surface; needs no display");
+  verb.add_option("MESH", arguments.input, "surface")->required();
+  add_output(verb, arguments.output, "picture (.png)");
+  add_common(verb, arguments.common, false);
+  verb.footer(kRenderExamples);
+}
+
+}  // namespace
+
+std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int& exit_code) {
+  CLI::App app("vmesh turns vessel centerlines into surfaces.", "vmesh");
+  app.set_version_flag("--version", "vmesh " + std::string(version()));
+  app.footer(
+      "vmesh VERB --help tells the options of a verb and shows examples.\n"
+      "Exit codes: 0 ok, 1 a requested check failed, 2 usage, 3 bad input, 4 unsupported or not built in,\n"
+      "5 cannot write, 6 did not converge, 130 interrupted.");
+  app.require_subcommand(1);
+
+  GenerateArguments generate;
+  InfoArguments info;
+  SynthArguments synth;
+  ConvertArguments convert;
+  RenderArguments render;
+  add_generate(app, generate);
+  add_info(app, info);
+  add_synth(app, synth);
+  add_convert(app, convert);
+  add_render(app, render);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // CLI11's own codes run from 100 to 127.
+    exit_code = app.exit(error, std::cout, std::cerr) == 0 ? kOk : kUsage;
+    return std::nullopt;
+  }
+  if (app.got_subcommand("generate")) return generate;
+  if (app.got_subcommand("info")) return info;
+  if (app.got_subcommand("synth")) return synth;
+  if (app.got_subcommand("convert")) return convert;
+  return render;
+}
+
+}  // namespace vmesh::tool

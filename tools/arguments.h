@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "vmesh/centerline/raw_centerline.h"
+#include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/surface/generate.h"
+
+namespace vmesh::tool {
+
+/// What every verb takes.
+struct CommonArguments {
+  bool quiet = false;
+  std::filesystem::path json;  ///< where a summary goes; "-" for stdout, empty for nowhere
+};
+
+/// A centerline or surface file and how to read its numbers.
+struct InputArguments {
+  std::filesystem::path path;
+  std::optional<LengthUnit> unit;
+  std::optional<Space> space;
+};
+
+struct GenerateArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+  GenerateOptions options;
+  bool check = false;  ///< exit code 1 unless the surface is flawless
+};
+
+struct InfoArguments {
+  CommonArguments common;
+  InputArguments input;
+  bool check = false;  ///< exit code 1 when the file has problems
+};
+
+struct SynthArguments {
+  CommonArguments common;
+  std::filesystem::path output;
+  SyntheticTreeOptions options;
+};
+
+struct ConvertArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+};
+
+struct RenderArguments {
+  CommonArguments common;
+  std::filesystem::path input, output;
+};
+
+using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments>;
+
+/// Calls `visit(flag, member, low, high, help)` for every option of the growth. The one list behind the command line
+/// and the summary.
+template <class Options, class Visitor>
+void for_each_generate_option(Options& options, Visitor visit) {
+  visit("--beta", options.beta, 0.0, 1.0, "attraction by the vessel wall against the vertex normal");
+  visit("--blend", options.blend, 0.0, 2.0, "rounding at branches, in smaller radii; 0: plain union of round cones");
+  visit("--around", options.around, 3, 200, "intended number of vertices around a vessel");
+  visit("--max-center-distance", options.max_center_distance, 0.01, 10.0,
+        "split faces whose centre is farther from the wall than this, in local radii");
+  visit("--sweeps", options.sweeps, 0, 1000, "sweeps of the final optimisation; 0: leave the surface as grown");
+}
+
+/// Parses the command line. Without a value the command is done with `exit_code`: help, version or a usage error
+/// were printed.
+std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int& exit_code);
+
+}  // namespace vmesh::tool

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmesh/core/progress.h"
+
+namespace vmesh::tool {
+
+/// Everything the command says that is not data. All of it goes to stderr.
+class Console {
+ public:
+  /// Quiet: neither log lines nor progress; warnings and errors remain.
+  explicit Console(bool quiet = false);
+  ~Console() { clear_bar(); }
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+
+  void set_quiet(bool quiet);
+  void log(std::string_view line);
+  void warn(std::string_view line);
+  void warn(const std::vector<std::string>& lines);
+  void error(std::string_view line);
+
+  /// Asks to stop once the process was interrupted; draws a bar when stderr is a terminal. Must not outlive the
+  /// console.
+  Progress progress();
+
+ private:
+  void draw_bar(std::string_view stage, double fraction);
+  void clear_bar();
+  void print(std::string_view prefix, std::string_view line);
+
+  bool quiet_;
+  bool terminal_;
+  bool bar_drawn_ = false;
+  std::string bar_;
+  std::chrono::steady_clock::time_point next_draw_;
+};
+
+/// Measures the wall time of stages.
+class Stopwatch {
+ public:
+  /// Seconds since construction or the last lap.
+  double lap();
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace vmesh::tool

@@ -1,0 +1,114 @@
+#include "vmesh/io/sha256.h"
+
+#include "exit_code.h"
+#include "inputs.h"
+#include "interrupt.h"
+#include "outputs.h"
+#include "summary.h"
+#include "verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+std::string number(double value, int digits = 3) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+MeshAttributes attributes_of(const GenerateResult& result) {
+  MeshAttributes attributes;
+  MeshAttribute segment{"segment", {}, true}, parameter{"parameter", {}};
+  for (const CenterlineBinding& binding : result.binding) {
+    segment.values.push_back(binding.segment);
+    parameter.values.push_back(binding.t);
+  }
+  attributes.vertex = {{"radius", result.radius}, std::move(segment), std::move(parameter)};
+  attributes.face = {{"EquiangleSkewness", equiangle_skewness(result.mesh)}};
+  return attributes;
+}
+
+void log_result(const GenerateReport& report, Console& console) {
+  const TriMesh& mesh = report.result->mesh;
+  const double size = report.cleaned->centerline.length_in_radii();
+  console.log(std::to_string(mesh.vertices.size()) + " vertices (" +
+              number(static_cast<double>(mesh.vertices.size()) / size, 1) + " per length of one radius), " +
+              std::to_string(mesh.faces.size()) + " faces, skewness " + number(report.measurement.skewness.mean) +
+              " mean, " + number(report.measurement.skewness.max) + " max");
+  double total = 0;
+  for (const StageTime& stage : report.stages) total += stage.seconds;
+  console.log("wrote " + report.arguments->output.string() + " after " + number(total, 2) + " s");
+}
+
+void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+LoadedCenterline load(const InputArguments& input, Console& console) {
+  CenterlineLoadOptions options;
+  options.unit = input.unit;
+  options.space = input.space;
+  LoadedCenterline loaded = load_centerline(input.path, options);
+  console.warn(loaded.warnings);
+  for (const std::string& line : loaded.cleaned.report.summary()) console.log("cleaning: " + line);
+  const Centerline& centerline = loaded.cleaned.centerline;
+  console.log(std::to_string(centerline.nodes().size()) + " nodes, " + std::to_string(centerline.segments().size()) +
+              " segments, " + std::to_string(centerline.component_count()) + " components, " +
+              std::to_string(centerline.cycle_rank()) + " loops");
+  return loaded;
+}
+
+/// Fills in what is measured of the surface and what is wrong with it.
+void measure(GenerateReport& report, Console& console) {
+  const Centerline& centerline = report.cleaned->centerline;
+  report.measurement = measure_surface(report.result->mesh);
+  stop_if_interrupted();
+  report.nodes_inside = count_nodes_inside(centerline, report.result->mesh);
+  stop_if_interrupted();
+  report.problems =
+      problems_of(report.measurement, expected_surface(centerline), report.nodes_inside, centerline.nodes().size());
+  for (const std::string& problem : report.problems) console.warn("surface: " + problem);
+}
+
+void write(const GenerateReport& report) {
+  const GenerateArguments& arguments = *report.arguments;
+  write_surface(
+      arguments.output, report.result->mesh, attributes_of(*report.result),
+      {generator_name(), describe(arguments.options), arguments.input.path.filename().string(), report.input_sha256});
+}
+
+}  // namespace
+
+int run(const GenerateArguments& arguments, Console& console) {
+  using Kind = PlannedOutput::Kind;
+  check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}},
+                files_of(arguments.input.path));
+  Stopwatch watch;
+  GenerateReport report;
+  report.arguments = &arguments;
+
+  const LoadedCenterline loaded = load(arguments.input, console);
+  report.input_sha256 = sha256_of_file(arguments.input.path);
+  report.cleaned = &loaded.cleaned;
+  report.stages.push_back({"read", watch.lap()});
+  stop_if_interrupted();
+
+  const GenerateResult result = generate_surface(loaded.cleaned.centerline, arguments.options, console.progress());
+  console.warn(result.warnings);
+  report.result = &result;
+  report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
+  append(report.warnings, loaded.warnings);
+  append(report.warnings, result.warnings);
+
+  watch.lap();
+  measure(report, console);
+  report.stages.push_back({"measure", watch.lap()});
+
+  write(report);
+  report.stages.push_back({"write", watch.lap()});
+  log_result(report, console);
+  if (!arguments.common.json.empty()) write_json(arguments.common.json, to_json(report));
+  return arguments.check && !report.problems.empty() ? kCheckFailed : kOk;
+}
+
+}  // namespace vmesh::tool

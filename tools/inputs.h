@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
+
+#include "arguments.h"
+
+namespace vmesh::tool {
+
+/// A centerline as its file tells it, in mm and LPS; warnings are appended.
+RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings);
+
+/// A surface in mm and LPS. Attributes that are lengths are converted too.
+LoadedSurface load_surface(const InputArguments& input);
+
+/// Either of the two, by extension; what a .vtp holds, its content decides.
+using AnyInput = std::variant<RawCenterline, LoadedSurface>;
+AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings);
+
+/// All files behind an input: a CSV centerline has two.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& input);
+
+}  // namespace vmesh::tool

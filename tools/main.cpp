@@ -1,0 +1,54 @@
+#include <new>
+
+#include "exit_code.h"
+#include "interrupt.h"
+#include "usage_error.h"
+#include "verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+int run_verb(const Arguments& arguments, Console& console) {
+  return std::visit(
+      [&console](const auto& verb) {
+        console.set_quiet(verb.common.quiet);
+        return run(verb, console);
+      },
+      arguments);
+}
+
+int run_command(int argc, const char* const* argv) {
+  Console console;
+  const auto fail = [&console](int code, std::string_view message) {
+    console.error(message);
+    return code;
+  };
+  try {
+    int exit_code = kOk;
+    const std::optional<Arguments> arguments = parse_arguments(argc, argv, exit_code);
+    if (!arguments) return exit_code;
+    catch_interrupts();
+    return run_verb(*arguments, console);
+  } catch (const UsageError& error) {
+    return fail(kUsage, error.what());
+  } catch (const InvalidInput& error) {
+    return fail(kBadInput, error.what());
+  } catch (const ReadError& error) {
+    return fail(kBadInput, error.what());
+  } catch (const Unsupported& error) {
+    return fail(kUnsupported, error.what());
+  } catch (const WriteError& error) {
+    return fail(kCannotWrite, error.what());
+  } catch (const Cancelled&) {
+    return fail(kInterrupted, "interrupted; nothing was written");
+  } catch (const std::bad_alloc&) {
+    return fail(kUnsupported, "out of memory; nothing was written");
+  } catch (const std::exception& error) {
+    return fail(kInternal, std::string("a defect of vmesh, please report it: ") + error.what());
+  }
+}
+
+}  // namespace
+}  // namespace vmesh::tool
+
+int main(int argc, char** argv) { return vmesh::tool::run_command(argc, argv); }

@@ -1,0 +1,113 @@
+#include "outputs.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+
+#include <unistd.h>
+
+#include "vmesh/core/version.h"
+#include "vmesh/io/atomic_file.h"
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
+
+#include "usage_error.h"
+
+namespace vmesh::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Kind = PlannedOutput::Kind;
+
+const char* name_of(Kind kind) {
+  switch (kind) {
+    case Kind::surface:
+      return "surface";
+    case Kind::centerline:
+      return "centerline";
+    case Kind::picture:
+      return "picture";
+    case Kind::summary:
+      return "summary";
+  }
+  return "";
+}
+
+bool needs_no_check(const PlannedOutput& output) {
+  return output.path.empty() || (output.kind == Kind::summary && output.path == "-");
+}
+
+fs::path folder_of(const fs::path& path) {
+  const fs::path parent = path.parent_path();
+  return parent.empty() ? fs::path(".") : parent;
+}
+
+/// Whether both names lead to one file, through links and detours; also when it does not exist yet.
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  const fs::path full_a = fs::weakly_canonical(a, error), full_b = fs::weakly_canonical(b, error);
+  return !full_a.empty() && full_a == full_b;
+}
+
+void check_format(const PlannedOutput& output) {
+  if (output.kind == Kind::summary) return;
+  if (output.kind == Kind::surface) surface_format(output.path);
+  if (output.kind == Kind::centerline) centerline_format(output.path);
+  const std::string extension = extension_of(output.path);
+  if (output.kind == Kind::picture && extension != ".png")
+    throw Unsupported(output.path.string() + ": pictures are written as .png only");
+  if (extension == ".vtp" && !VMESH_TOOL_WITH_VTK)
+    throw Unsupported(output.path.string() + ": this vmesh was built without VTK and cannot write .vtp");
+}
+
+void check_writable(const fs::path& path) {
+  const fs::path folder = folder_of(path);
+  if (fs::is_directory(path)) throw WriteError(path.string() + ": is a folder; name a file in it");
+  if (fs::exists(path) && !fs::is_regular_file(path)) return;  // a device or pipe: written directly
+  if (!fs::is_directory(folder)) throw WriteError(path.string() + ": there is no folder " + folder.string());
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw WriteError(path.string() + ": cannot write into " + folder.string() + ": " + std::strerror(errno));
+}
+
+}  // namespace
+
+std::string extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<fs::path>& inputs) {
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    if (needs_no_check(*output)) continue;
+    const std::string name = output->path.string();
+    check_format(*output);
+    for (const fs::path& input : inputs)
+      if (same_file(output->path, input))
+        throw UsageError(name + ": is an input; choose another name for the " + name_of(output->kind));
+    for (auto other = outputs.begin(); other != output; ++other)
+      if (!needs_no_check(*other) && same_file(output->path, other->path))
+        throw UsageError(name + ": named for the " + name_of(other->kind) + " and for the " + name_of(output->kind));
+    check_writable(output->path);
+  }
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  if (path == "-") {
+    std::cout << text << std::flush;
+    if (!std::cout) throw WriteError("cannot write to stdout");
+    return;
+  }
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+std::string generator_name() { return "vmesh " + std::string(version()); }
+
+}  // namespace vmesh::tool

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vmesh::tool {
+
+/// Lower-case extension with its dot.
+std::string extension_of(const std::filesystem::path& path);
+
+/// A file a command is going to write.
+struct PlannedOutput {
+  enum class Kind { surface, centerline, picture, summary };
+  std::filesystem::path path;
+  Kind kind;
+};
+
+/// Refuses what could not be written later: throws Unsupported for an extension this build cannot write, WriteError for
+/// a folder that does not exist or cannot be written, UsageError for a file that is an input or another output, under
+/// whatever name. An empty path, and "-" (stdout) for a summary, are always fine.
+void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<std::filesystem::path>& inputs);
+
+/// Writes `text` to stdout when `path` is "-", else to the file: complete or not at all. Throws WriteError.
+void write_text(const std::filesystem::path& path, const std::string& text);
+
+/// "vmesh 0.1.0", for metadata.
+std::string generator_name();
+
+}  // namespace vmesh::tool

@@ -1,0 +1,132 @@
+#include "summary.h"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "vmesh/core/version.h"
+
+#include "outputs.h"
+
+namespace vmesh::tool {
+namespace {
+
+/// "--max-center-distance" -> "max_center_distance"
+std::string key_of(const char* flag) {
+  std::string key = flag;
+  key.erase(0, key.find_first_not_of('-'));
+  std::replace(key.begin(), key.end(), '-', '_');
+  return key;
+}
+
+Json options_json(const GenerateArguments& arguments) {
+  Json json;
+  for_each_generate_option(arguments.options, [&json](const char* flag, const auto& value, auto, auto, const char*) {
+    json[key_of(flag)] = value;
+  });
+  json["unit"] = arguments.input.unit ? Json(to_string(*arguments.input.unit)) : Json();
+  json["space"] = arguments.input.space ? Json(to_string(*arguments.input.space)) : Json();
+  return json;
+}
+
+Json stages_json(const std::vector<StageTime>& stages) {
+  Json json;
+  double total = 0;
+  for (const StageTime& stage : stages) {
+    json[stage.stage] = json.value(stage.stage, 0.0) + stage.seconds;
+    total += stage.seconds;
+  }
+  json["total"] = total;
+  return json;
+}
+
+}  // namespace
+
+Json generator_json() { return {{"name", "vmesh"}, {"version", version()}}; }
+
+Json to_json(const Centerline& centerline) {
+  double length = 0;
+  for (Index s = 0; s < centerline.segments().size(); ++s) length += centerline.length(s);
+  const auto [thin, thick] = std::minmax_element(centerline.nodes().begin(), centerline.nodes().end(),
+                                                 [](const auto& a, const auto& b) { return a.radius < b.radius; });
+  std::size_t isolated = 0, ends = 0, branches = 0;
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    const std::size_t degree = centerline.degree(n);
+    isolated += degree == 0;
+    ends += degree == 1;
+    branches += degree > 2;
+  }
+  return {{"nodes", centerline.nodes().size()},
+          {"segments", centerline.segments().size()},
+          {"components", centerline.component_count()},
+          {"loops", centerline.cycle_rank()},
+          {"ends", ends},
+          {"branch_nodes", branches},
+          {"isolated_nodes", isolated},
+          {"radius_min_mm", thin->radius},
+          {"radius_max_mm", thick->radius},
+          {"length_mm", length},
+          {"length_in_radii", centerline.length_in_radii()}};
+}
+
+Json to_json(const CleaningReport& report) {
+  std::map<std::string, std::size_t> counts;
+  for (const CleaningAction& action : report.actions) ++counts[std::string(to_string(action.kind))];
+  return {{"counts", counts.empty() ? Json::object() : Json(counts)}, {"actions", report.summary()}};
+}
+
+Json to_json(const SurfaceMeasurement& measurement) {
+  const Topology& topology = measurement.topology;
+  return {{"topology",
+           {{"closed", topology.closed},
+            {"manifold", topology.manifold},
+            {"oriented", topology.oriented},
+            {"outward", topology.outward},
+            {"components", topology.components},
+            {"genus", topology.genus},
+            {"boundary_edges", topology.boundary_edges},
+            {"euler_characteristic", topology.euler_characteristic}}},
+          {"skewness", {{"mean", measurement.skewness.mean}, {"max", measurement.skewness.max}}},
+          {"self_intersections", measurement.self_intersections}};
+}
+
+Json to_json(const GenerateReport& report) {
+  const GenerateArguments& arguments = *report.arguments;
+  const Centerline& centerline = report.cleaned->centerline;
+  const TriMesh& mesh = report.result->mesh;
+  const double size = centerline.length_in_radii();
+  const SurfaceExpectation expected = expected_surface(centerline);
+  Json json = {
+      {"schema", "vmesh.summary/1"},
+      {"generator", generator_json()},
+      {"input", {{"file", arguments.input.path.string()}, {"sha256", report.input_sha256}}},
+      {"output", arguments.output.string()},
+      {"options", options_json(arguments)},
+      {"centerline", to_json(centerline)},
+      {"cleaning", to_json(report.cleaned->report)},
+      {"vertices", mesh.vertices.size()},
+      {"faces", mesh.faces.size()},
+      {"vertices_per_length_in_radii", size > 0 ? Json(static_cast<double>(mesh.vertices.size()) / size) : Json()}};
+  json.update(to_json(report.measurement));
+  json["topology"]["expected_components"] = expected.components;
+  json["topology"]["expected_genus"] = expected.genus;
+  json["nodes_inside"] = report.nodes_inside ? Json(*report.nodes_inside) : Json();
+  json["seconds"] = stages_json(report.stages);
+  json["warnings"] = report.warnings;
+  json["problems"] = report.problems;
+  return json;
+}
+
+void write_json(const std::filesystem::path& path, const Json& json) {
+  write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::string describe(const GenerateOptions& options) {
+  std::ostringstream text;
+  for_each_generate_option(options, [&text](const char* flag, const auto& value, auto, auto, const char*) {
+    text << (text.tellp() > 0 ? " " : "") << flag << " " << value;
+  });
+  return text.str();
+}
+
+}  // namespace vmesh::tool

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "vmesh/centerline/cleaning.h"
+
+#include "arguments.h"
+#include "measure.h"
+
+namespace vmesh::tool {
+
+/// JSON that keeps the order in which its members were written.
+using Json = nlohmann::ordered_json;
+
+/// Everything `vmesh generate` reports. Schema "vmesh.summary/1".
+struct GenerateReport {
+  const GenerateArguments* arguments = nullptr;
+  std::string input_sha256;
+  const CleanedCenterline* cleaned = nullptr;
+  const GenerateResult* result = nullptr;
+  SurfaceMeasurement measurement;
+  std::optional<std::size_t> nodes_inside;
+  std::vector<StageTime> stages;  ///< of the whole run
+  std::vector<std::string> warnings, problems;
+};
+
+Json to_json(const GenerateReport& report);
+
+/// Parts that several verbs use.
+Json to_json(const Centerline& centerline);
+Json to_json(const CleaningReport& report);
+Json to_json(const SurfaceMeasurement& measurement);
+Json generator_json();
+
+/// Writes the JSON with a newline at its end, as write_text() does. Text that is not UTF-8 is repaired.
+void write_json(const std::filesystem::path& path, const Json& json);
+
+/// "--beta 0.3 --blend 0.5 ...": how a surface was made.
+std::string describe(const GenerateOptions& options);
+
+}  // namespace vmesh::tool

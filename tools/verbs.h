@@ -1,0 +1,15 @@
+#pragma once
+
+#include "arguments.h"
+#include "console.h"
+
+namespace vmesh::tool {
+
+/// One function per verb. Returns the exit code; throws what the library throws, and UsageError.
+int run(const GenerateArguments& arguments, Console& console);
+int run(const InfoArguments& arguments, Console& console);
+int run(const SynthArguments& arguments, Console& console);
+int run(const ConvertArguments& arguments, Console& console);
+int run(const RenderArguments& arguments, Console& console);
+
+}  // namespace vmesh::tool
