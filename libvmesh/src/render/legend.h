@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/canvas.h"
+
+namespace vmesh {
+
+/// What a legend tells: the attribute's name, the values at both ends of the colour scale, and whether some elements
+/// have no value.
+struct Legend {
+  std::string name;
+  double low = 0, high = 1;
+  bool integer = false;
+  bool has_missing = false;
+};
+
+/// Round numbers in [low, high], about `wanted` of them; the value itself when low equals high.
+std::vector<double> legend_ticks(double low, double high, bool integer, int wanted);
+
+/// `value` with as many decimals as ticks a `step` apart need.
+std::string tick_label(double value, double step);
+
+/// Columns at the right side of a picture of this size that the legend takes.
+int legend_width(const Legend& legend, int width, int height);
+
+void draw_legend(Canvas& canvas, const Legend& legend, const Vec3& background);
+
+}  // namespace vmesh

@@ -1,0 +1,102 @@
+#include "render/ray_scene.h"
+
+#include <string>
+
+#include <embree3/rtcore.h>
+
+#include "vmesh/core/error.h"
+
+namespace vmesh {
+namespace {
+
+// One thread and one instruction set: the tree of boxes, and with it which of two faces an edge ray hits, is the same
+// every time and on every machine.
+#if defined(__x86_64__)
+constexpr const char* kDeviceConfig = "threads=1,set_affinity=0,isa=sse4.2";
+#else
+constexpr const char* kDeviceConfig = "threads=1,set_affinity=0";
+#endif
+
+[[noreturn]] void fail(RTCDevice device) {
+  throw Error("Embree failed (error " + std::to_string(static_cast<int>(rtcGetDeviceError(device))) + ")");
+}
+
+}  // namespace
+
+struct RayScene::Embree {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  Vec3 origin = Vec3::Zero();  // Embree computes in float: coordinates are relative to this point
+
+  ~Embree() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+};
+
+RayScene::RayScene(const TriMesh& mesh) : embree_(std::make_unique<Embree>()) {
+  embree_->device = rtcNewDevice(kDeviceConfig);
+  if (!embree_->device) fail(nullptr);
+  const RTCDevice device = embree_->device;
+  embree_->scene = rtcNewScene(device);
+  rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
+  embree_->origin = mesh.vertices[mesh.faces[0][0]];
+
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                3 * sizeof(float), mesh.vertices.size()));
+  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                 3 * sizeof(unsigned), mesh.faces.size()));
+  if (!positions || !indices) {
+    rtcReleaseGeometry(geometry);
+    fail(device);
+  }
+  for (const Vec3& p : mesh.vertices) {
+    for (int d = 0; d < 3; ++d) *positions++ = static_cast<float>(p[d] - embree_->origin[d]);
+  }
+  for (const auto& face : mesh.faces) {
+    for (const Index v : face) *indices++ = v;
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(embree_->scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(embree_->scene);
+  if (rtcGetDeviceError(device) != RTC_ERROR_NONE) fail(device);
+}
+
+RayScene::~RayScene() = default;
+
+std::array<RayHit, 4> RayScene::cast(const Packet& rays, double reach) const {
+  alignas(16) RTCRayHit4 packet;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 origin = rays[i].origin - embree_->origin;
+    packet.ray.org_x[i] = static_cast<float>(origin.x());
+    packet.ray.org_y[i] = static_cast<float>(origin.y());
+    packet.ray.org_z[i] = static_cast<float>(origin.z());
+    packet.ray.dir_x[i] = static_cast<float>(rays[i].direction.x());
+    packet.ray.dir_y[i] = static_cast<float>(rays[i].direction.y());
+    packet.ray.dir_z[i] = static_cast<float>(rays[i].direction.z());
+    packet.ray.tnear[i] = 0;
+    packet.ray.tfar[i] = static_cast<float>(reach);
+    packet.ray.time[i] = 0;
+    packet.ray.mask[i] = ~0u;
+    packet.ray.id[i] = 0;
+    packet.ray.flags[i] = 0;
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  alignas(16) const int all[4] = {-1, -1, -1, -1};
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect4(all, embree_->scene, &context, &packet);
+
+  std::array<RayHit, 4> hits;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    hits[i] = {packet.hit.primID[i], packet.ray.tfar[i], packet.hit.u[i], packet.hit.v[i]};
+  }
+  return hits;
+}
+
+}  // namespace vmesh
