@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "vmesh/core/error.h"
@@ -137,22 +139,37 @@ void Workspace::compact() {
   raw_segment.resize(kept);
 }
 
+namespace {
+
+/// `x` to that many decimals: the number that its decimal text reads back as.
+double round_decimal(double x, int decimals, double power) {
+  const double scaled = x * power;
+  if (std::abs(scaled) > 0x1p52) return x;
+  const double whole = std::nearbyint(scaled);
+  // Near a tie the product's own rounding could decide; means of decimal numbers are often ties.
+  if (std::abs(std::abs(scaled - whole) - 0.5) > std::abs(scaled) * 0x1p-50) return whole / power + 0.0;
+  std::array<char, 400> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::fixed, decimals).ptr;
+  double rounded = x;
+  std::from_chars(text.data(), end, rounded);
+  return rounded + 0.0;
+}
+
+}  // namespace
+
 void round_to_grid(Workspace& work) {
   const int decimals = grid_decimals(work.nodes);
   if (decimals > 22) return;  // powers of ten are exact up to there
   const double power = std::pow(10.0, decimals);
   double largest_change = 0;
-  const auto round = [&](double x) {
-    const double scaled = x * power;
-    if (std::abs(scaled) > 0x1p53) return x;
-    // Division makes it the number that the decimal text reads as.
-    const double rounded = std::nearbyint(scaled) / power + 0.0;
+  const auto round = [&](double& x) {
+    const double rounded = round_decimal(x, decimals, power);
     largest_change = std::max(largest_change, std::abs(rounded - x));
-    return rounded;
+    x = rounded;
   };
   for (auto& [position, radius] : work.nodes) {
-    for (double& x : position) x = round(x);
-    radius = round(radius);
+    for (double& x : position) round(x);
+    round(radius);
   }
   if (largest_change == 0) return;
   work.add(Kind::rounded, Element::graph, kNone,

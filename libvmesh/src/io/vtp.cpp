@@ -1,16 +1,20 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <mutex>
 #include <ostream>
+#include <thread>
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkCommand.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkIntArray.h>
+#include <vtkLogger.h>
 #include <vtkNew.h>
+#include <vtkOutputWindow.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
@@ -25,17 +29,57 @@
 namespace vmesh::io {
 namespace {
 
-/// Keeps VTK's error messages off the terminal and in `text`.
-class ErrorCollector : public vtkCommand {
+/// Collects what VTK's objects say about errors and warnings.
+class MessageWindow : public vtkOutputWindow {
  public:
-  static ErrorCollector* New() { return new ErrorCollector; }
-
-  void Execute(vtkObject*, unsigned long event, void* data) override {
-    if (event == vtkCommand::ErrorEvent && data) text.append(static_cast<const char*>(data)).append(" ");
+  static MessageWindow* New() { return new MessageWindow; }
+  void DisplayText(const char* message) override {
+    if (std::this_thread::get_id() == owner_) text.append(message ? message : "").append(" ");
   }
+  void DisplayDebugText(const char*) override {}
 
   std::string text;
+
+ private:
+  std::thread::id owner_ = std::this_thread::get_id();
 };
+
+/// While it lives, VTK's messages go to text() instead of the terminal. VTK's output window and log level belong to the
+/// process, so one at a time; both are put back at the end.
+class VtkMessages {
+ public:
+  VtkMessages()
+      : lock_(mutex()), before_(vtkOutputWindow::GetInstance()), level_(vtkLogger::GetCurrentVerbosityCutoff()) {
+    vtkOutputWindow::SetInstance(window_);
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  }
+  ~VtkMessages() {
+    vtkLogger::SetStderrVerbosity(level_);
+    vtkOutputWindow::SetInstance(before_);
+  }
+  VtkMessages(const VtkMessages&) = delete;
+  VtkMessages& operator=(const VtkMessages&) = delete;
+
+  const std::string& text() const { return window_->text; }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex instance;
+    return instance;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+  vtkSmartPointer<vtkOutputWindow> before_;
+  vtkLogger::Verbosity level_;
+  vtkNew<MessageWindow> window_;
+};
+
+/// The first of VTK's messages without file, line and address of the object.
+std::string first_message(std::string_view text) {
+  const std::size_t address = text.find("): ");
+  if (address != std::string_view::npos) text.remove_prefix(address + 3);
+  return one_line(trim(text.substr(0, text.find('\n'))));
+}
 
 /// VTK allocates what the header promises before it reads: promises that no file of this size can keep are refused.
 void check_promises(std::string_view content, const std::string& source) {
@@ -43,7 +87,7 @@ void check_promises(std::string_view content, const std::string& source) {
   for (const std::string_view key : {"NumberOfPoints=", "NumberOfVerts=", "NumberOfLines=", "NumberOfStrips=",
                                      "NumberOfPolys=", "NumberOfComponents=", "NumberOfTuples="}) {
     for (std::size_t at = content.find(key); at != std::string_view::npos; at = content.find(key, at + 1)) {
-      const std::string_view value = content.substr(at + key.size() + 1, 24);
+      const std::string_view value = content.substr(std::min(at + key.size() + 1, content.size()), 24);
       const std::uint64_t most = key == "NumberOfComponents=" ? 4096 : content.size() * kMostPerByte;
       std::uint64_t count = 0;
       const auto result = std::from_chars(value.data(), value.data() + value.size(), count);
@@ -59,11 +103,8 @@ vtkSmartPointer<vtkPolyData> read_poly_data(std::string_view content, const std:
     throw InvalidInput(source + ": this is no VTP file: there is no <VTKFile> element in it");
   }
   check_promises(content, source);
-  vtkNew<ErrorCollector> errors;
+  const VtkMessages messages;
   vtkNew<vtkXMLPolyDataReader> reader;
-  reader->AddObserver(vtkCommand::ErrorEvent, errors);
-  reader->SetReaderErrorObserver(errors);
-  reader->SetParserErrorObserver(errors);
   reader->ReadFromInputStringOn();
   reader->SetInputString(std::string(content));
   try {
@@ -71,7 +112,7 @@ vtkSmartPointer<vtkPolyData> read_poly_data(std::string_view content, const std:
   } catch (const std::bad_alloc&) {
     throw InvalidInput(source + ": the file asks for more memory than there is; it is broken");
   }
-  if (!errors->text.empty()) throw InvalidInput(source + ": VTK cannot read it: " + one_line(errors->text));
+  if (!messages.text().empty()) throw InvalidInput(source + ": VTK cannot read it: " + first_message(messages.text()));
   vtkSmartPointer<vtkPolyData> data = reader->GetOutput();
   if (!data || !data->GetPoints() || data->GetNumberOfPoints() == 0) {
     throw InvalidInput(source + ": there is no point in it");
@@ -173,12 +214,16 @@ class CenterlineReader {
       if (lines[c].size() < 2) ++empty;
       read_line(lines[c], first_number + c);
     }
-    if (raw_.segments.empty()) {
+    const Cells vertices(data_->GetVerts(), data_->GetNumberOfPoints(), raw_.source, "vertex cell");
+    for (std::size_t c = 0; c < vertices.size(); ++c) {
+      for (const Index id : vertices[c]) node(id);
+    }
+    if (raw_.nodes.empty()) {
       throw InvalidInput(raw_.source + ": there is no line in it; a centerline is made of lines or polylines");
     }
     const std::size_t unused = index_of_.size() - raw_.nodes.size();
     warn(empty, "lines have fewer than two points");
-    warn(unused, "points belong to no line");
+    warn(unused, "points belong to no line or vertex");
     return std::move(raw_);
   }
 
@@ -294,14 +339,14 @@ void add_numbers(vtkFieldData& target, const std::string& name, const std::vecto
 }
 
 void write_poly_data(std::ostream& out, vtkPolyData& data) {
-  vtkNew<ErrorCollector> errors;
+  const VtkMessages messages;
   vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->AddObserver(vtkCommand::ErrorEvent, errors);
   writer->SetInputData(&data);
   writer->SetDataModeToBinary();
   writer->WriteToOutputStringOn();
-  if (writer->Write() != 1 || !errors->text.empty())
-    throw WriteError("VTK cannot write the file: " + one_line(errors->text));
+  if (writer->Write() != 1 || !messages.text().empty()) {
+    throw WriteError("VTK cannot write the file: " + first_message(messages.text()));
+  }
   out << writer->GetOutputString();
 }
 
@@ -325,6 +370,12 @@ void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const
     lines->InsertNextCell(2, ids);
   }
   data->SetLines(lines);
+  vtkNew<vtkCellArray> spheres;
+  for (Index n = 0; n < nodes.size(); ++n) {
+    const vtkIdType id = n;
+    if (centerline.degree(n) == 0) spheres->InsertNextCell(1, &id);
+  }
+  if (spheres->GetNumberOfCells() > 0) data->SetVerts(spheres);
   add_metadata(*data, metadata);
   write_poly_data(out, *data);
 }

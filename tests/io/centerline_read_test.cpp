@@ -1,0 +1,197 @@
+#include <cmath>
+#include <sstream>
+
+#include "vmesh/io/centerline_io.h"
+
+#include "io_support.h"
+
+namespace vmesh {
+namespace {
+
+using testing::expect_contains;
+using testing::message_of;
+using testing::TemporaryFolder;
+
+RawCenterline swc(const std::string& text) { return parse_centerline(text, CenterlineFormat::swc, "t.swc"); }
+RawCenterline json(const std::string& text) { return parse_centerline(text, CenterlineFormat::json, "t.json"); }
+std::string swc_error(const std::string& text) {
+  return message_of<InvalidInput>([&] { swc(text); });
+}
+std::string json_error(const std::string& text) {
+  return message_of<InvalidInput>([&] { json(text); });
+}
+const std::string kJsonHead = R"({"schema":"vmesh.centerline/1",)";
+
+TEST(ReadSwc, TakesTheUsualTraps) {
+  const auto raw =
+      swc("\xEF\xBB\xBF# made by hand, UNIT=um\r\n"
+          "\r\n"
+          "10.0\t3\t 1.5 2 +3 0.5\t7 # its parent comes later\r\n"
+          "  7 1 0 0 0 1e0 -1\r\n"
+          "3 3 -1E1 .5 0 0 7.0\r\n"
+          "8 0 5 5 5 2 -1");
+  ASSERT_EQ(raw.nodes.size(), 4u);
+  EXPECT_EQ(raw.nodes[0].position, Vec3(1.5, 2, 3));
+  EXPECT_EQ(raw.nodes[2].position, Vec3(-10, 0.5, 0));
+  EXPECT_EQ(raw.nodes[2].radius, 0);
+  ASSERT_EQ(raw.segments.size(), 2u);
+  EXPECT_EQ(raw.segments[0].a, 1u);
+  EXPECT_EQ(raw.segments[0].b, 0u);
+  EXPECT_EQ(raw.segments[1].b, 2u);
+  EXPECT_EQ(raw.unit, LengthUnit::um);
+  EXPECT_EQ(raw.space, Space::unknown);
+  EXPECT_EQ(raw.name_of_node(0), "t.swc: line 3");
+  EXPECT_EQ(raw.name_of_segment(1), "t.swc: line 5");
+}
+
+TEST(ReadSwc, IsIndependentOfTheLocale) {
+  const std::locale before = std::locale();
+  class Comma : public std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+  };
+  std::locale::global(std::locale(before, new Comma));
+  const auto raw = swc("1 1 0.25 0 0 1.5 -1\n");
+  std::locale::global(before);
+  EXPECT_EQ(raw.nodes[0].position.x(), 0.25);
+  EXPECT_EQ(raw.nodes[0].radius, 1.5);
+}
+
+TEST(ReadSwc, NamesTheLineThatIsWrong) {
+  expect_contains(swc_error("# c\n1 1 0 0 0 1\n"), "t.swc: line 2");
+  expect_contains(swc_error("1 1 0 0 zero 1 -1\n"), "line 1: the z \"zero\"");
+  expect_contains(swc_error("1.5 1 0 0 0 1 -1\n"), "line 1: the id");
+  expect_contains(swc_error("1 1 0,5 0 0 1 -1\n"), "line 1: the x");
+  expect_contains(swc_error("1 1 0 0 0 1 -1\n2 1 0 0 1 1 9\n"), "line 2: its parent 9");
+  expect_contains(swc_error("1 1 0 0 0 1 -1\n1 1 0 0 1 1 1\n"), "line 2: the id 1");
+  expect_contains(swc_error("1 1 0 0 0 1 -1\n1 1 0 0 1 1 1\n"), "in line 1");
+  expect_contains(swc_error("1 1 0 0 0 1 1\n"), "line 1: this sample is its own ancestor");
+  expect_contains(swc_error("1 1 0 0 0 1 -1\n2 1 0 0 0 1 4\n3 1 0 0 0 1 2\n4 1 0 0 0 1 3\n"), "its own ancestor");
+  expect_contains(swc_error("# nothing\n\n"), "no sample");
+}
+
+TEST(ReadSwc, LeavesNonFiniteNumbersToCleaningWhichNamesTheLine) {
+  for (const std::string bad : {"nan", "inf", "-inf", "1e999"}) {
+    auto raw = swc("1 1 0 0 0 1 -1\n2 1 " + bad + " 0 0 1 1\n");
+    EXPECT_FALSE(std::isfinite(raw.nodes[1].position.x())) << bad;
+    std::vector<std::string> warnings;
+    raw = convert_to_internal(std::move(raw), LengthUnit::mm, Space::lps, warnings);
+    expect_contains(message_of<InvalidInput>([&] { clean(raw); }), "t.swc: line 2");
+  }
+}
+
+TEST(ReadSwc, SaysWhatItIgnores) {
+  const auto raw = swc("1 1 0 0 0 1 -1 77\n2 1 0 0 1 1 -5\n");
+  EXPECT_EQ(raw.warnings.size(), 2u);
+  EXPECT_TRUE(raw.segments.empty());
+}
+
+TEST(ReadSwc, AMillionNodesThatEndInALoopAreRefusedQuickly) {
+  std::string text = "1 1 0 0 0 1 1000000\n";
+  for (int i = 2; i <= 1000000; ++i)
+    text += std::to_string(i) + " 3 0 0 " + std::to_string(i) + " 1 " + std::to_string(i - 1) + "\n";
+  expect_contains(swc_error(text), "its own ancestor");
+}
+
+TEST(ReadSwc, SurvivesALineOfManyMegabytes) {
+  expect_contains(swc_error(std::string(8 << 20, '1') + "\n"), "line 1");
+  EXPECT_EQ(swc("#" + std::string(8 << 20, 'x') + "\n1 1 0 0 0 1 -1\n").nodes.size(), 1u);
+}
+
+TEST(ReadJson, ReadsOurSchema) {
+  const auto raw =
+      json(kJsonHead + R"("space":"RAS","unit":"cm","nodes":[[0,1,2,3],[4,5e-1,6,7]],"segments":[[1,0]],"more":1})");
+  ASSERT_EQ(raw.nodes.size(), 2u);
+  EXPECT_EQ(raw.nodes[1].position, Vec3(4, 0.5, 6));
+  EXPECT_EQ(raw.nodes[1].radius, 7);
+  EXPECT_EQ(raw.segments[0].a, 1u);
+  EXPECT_EQ(raw.unit, LengthUnit::cm);
+  EXPECT_EQ(raw.space, Space::ras);
+}
+
+TEST(ReadJson, NamesTheEntryThatIsWrong) {
+  expect_contains(json_error("{"), "t.json");
+  expect_contains(json_error("[]"), "t.json");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1],[0,0,1]],"segments":[]})"), "nodes entry 1");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,null,1]],"segments":[]})"), "nodes entry 0");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,1e999,1]],"segments":[]})"), "t.json");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]],"segments":[[0,1]]})"), "segments entry 0");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]],"segments":[[0,-1]]})"), "segments entry 0");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]],"segments":[[0,0.5]]})"), "segments entry 0");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]]})"), "\"segments\"");
+  expect_contains(json_error(kJsonHead + R"("unit":"furlong","nodes":[],"segments":[]})"), "furlong");
+  expect_contains(message_of<Unsupported>([] { json(R"({"schema":"vmesh.centerline/9"})"); }), "vmesh.centerline/1");
+}
+
+TEST(ReadJson, SurvivesDeepNesting) {
+  expect_contains(json_error(std::string(1000000, '[')), "t.json");
+  expect_contains(json_error(std::string(1000000, '[') + std::string(1000000, ']')), "t.json");
+}
+
+TEST(ReadJson, ALoopOfAMillionNodesIsALoop) {
+  std::string nodes, segments;
+  constexpr int kCount = 1000000;
+  for (int i = 0; i < kCount; ++i) {
+    nodes += (i ? ",[" : "[") + std::to_string(i % 1000) + "," + std::to_string(i / 1000) + ",0,0.1]";
+    segments += (i ? ",[" : "[") + std::to_string(i) + "," + std::to_string((i + 1) % kCount) + "]";
+  }
+  std::vector<std::string> warnings;
+  const auto raw = convert_to_internal(json(kJsonHead + "\"nodes\":[" + nodes + "],\"segments\":[" + segments + "]}"),
+                                       {}, {}, warnings);
+  const auto result = clean(raw);
+  EXPECT_EQ(result.centerline.cycle_rank(), 1u);
+}
+
+TEST(ReadCsv, ReadsAPairOfFiles) {
+  const TemporaryFolder folder;
+  folder.write("t.segments.csv", "a,b\n7,3\n");
+  const auto path = folder.write("t.csv", "# SPACE=LPS UNIT=mm\nRadius, z,y,x,id\n\n1.5,3,2,1,7\n2.5,6,5,4,3\n");
+  const auto raw = read_centerline(path);
+  ASSERT_EQ(raw.nodes.size(), 2u);
+  EXPECT_EQ(raw.nodes[1].position, Vec3(4, 5, 6));
+  EXPECT_EQ(raw.nodes[0].radius, 1.5);
+  EXPECT_EQ(raw.segments[0].a, 0u);
+  EXPECT_EQ(raw.segments[0].b, 1u);
+  EXPECT_EQ(raw.unit, LengthUnit::mm);
+  EXPECT_EQ(csv_segments_path("d/t.nodes.csv"), "d/t.segments.csv");
+  EXPECT_EQ(csv_segments_path("d/t.csv"), "d/t.segments.csv");
+}
+
+TEST(ReadCsv, NamesFileAndLineThatAreWrong) {
+  const TemporaryFolder folder;
+  const auto error = [&](const std::string& nodes, const std::string& segments) {
+    folder.write("t.segments.csv", segments);
+    return message_of<InvalidInput>([&] { read_centerline(folder.write("t.csv", nodes)); });
+  };
+  expect_contains(error("id,x,y,z\n", "a,b\n"), "no column radius");
+  expect_contains(error("id,x,y,z,radius\n1,2,3\n", "a,b\n"), "t.csv: line 2");
+  expect_contains(error("id,x,y,z,radius\n1,2,3,4,five\n", "a,b\n"), "line 2: \"five\"");
+  expect_contains(error("id,x,y,z,radius\n1,2,3,4,5\n1,2,3,4,5\n", "a,b\n"), "line 3: the id 1");
+  expect_contains(error("id,x,y,z,radius\n1,2,3,4,5\n", "a,b\n1,2\n"), "t.segments.csv: line 2");
+  std::filesystem::remove(folder / "t.segments.csv");
+  expect_contains(message_of<ReadError>([&] { read_centerline(folder / "t.csv"); }), "t.segments.csv");
+  folder.write("t.segments.csv", "a,b\n");
+  expect_contains(message_of<InvalidInput>([&] { read_centerline(folder / "t.segments.csv"); }), "nodes");
+}
+
+TEST(ReadCenterline, SaysWhenThereIsNothingToRead) {
+  const TemporaryFolder folder;
+  expect_contains(message_of<ReadError>([&] { read_centerline(folder / "none.swc"); }), "none.swc");
+  std::filesystem::create_directory(folder / "sub.swc");
+  expect_contains(message_of<ReadError>([&] { read_centerline(folder / "sub.swc"); }), "folder");
+  for (const std::string name : {"e.swc", "e.json", "e.csv", "e.vtp"}) {
+    folder.write("e.segments.csv", "");
+    expect_contains(message_of<InvalidInput>([&] { read_centerline(folder.write(name, "")); }), name);
+  }
+  expect_contains(message_of<Unsupported>([&] { read_centerline(folder / "a.vtk"); }), ".vtp");
+  expect_contains(message_of<Unsupported>([&] { read_centerline(folder / "a"); }), ".swc");
+}
+
+TEST(ReadCenterline, ReadsFromAStream) {
+  std::istringstream in("1 1 0 0 0 1 -1\n");
+  EXPECT_EQ(read_centerline(in, CenterlineFormat::swc, "stdin").nodes.size(), 1u);
+  std::istringstream empty;
+  expect_contains(message_of<InvalidInput>([&] { read_centerline(empty, CenterlineFormat::swc, "stdin"); }), "stdin");
+}
+
+}  // namespace
+}  // namespace vmesh

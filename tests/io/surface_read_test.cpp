@@ -1,0 +1,198 @@
+#include <set>
+
+#include "vmesh/io/surface_io.h"
+
+#include "io_support.h"
+#include "shared_data.h"
+
+namespace vmesh {
+namespace {
+
+using testing::expect_contains;
+using testing::message_of;
+using testing::shared_data;
+using testing::TemporaryFolder;
+
+LoadedSurface parse(SurfaceFormat format, const std::string& text) { return parse_surface(text, format, "t"); }
+std::string error(SurfaceFormat format, const std::string& text) {
+  return message_of<InvalidInput>([&] { parse(format, text); });
+}
+
+const std::string kPlyText =
+    "ply\nformat ascii 1.0\ncomment SPACE=RAS\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "property uchar label\nelement face 2\nproperty list uchar int vertex_indices\nproperty float "
+    "quality\nend_header\n";
+
+TEST(ReadPly, SplitsPolygonsAndKeepsAttributes) {
+  const auto surface =
+      parse(SurfaceFormat::ply, kPlyText + "0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0.5 4\n4 0 1 2 3 0.25\n3 0 1 3 0.5\n");
+  EXPECT_EQ(surface.mesh.vertices[3], Vec3(0, 1, 0.5));
+  EXPECT_EQ(surface.mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 1, 3}}));
+  ASSERT_EQ(surface.attributes.vertex.size(), 1u);
+  EXPECT_EQ(surface.attributes.vertex[0].values, (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_TRUE(surface.attributes.vertex[0].integer);
+  ASSERT_EQ(surface.attributes.face.size(), 1u);
+  EXPECT_EQ(surface.attributes.face[0].values, (std::vector<double>{0.25, 0.25, 0.5}));
+  EXPECT_EQ(surface.space, Space::ras);
+  EXPECT_EQ(surface.warnings.size(), 2u) << "the polygon and the missing unit";
+}
+
+TEST(ReadPly, ReadsBigEndian) {
+  std::string bytes =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty short x\nproperty uchar y\nproperty char z\n"
+      "element face 1\nproperty list uchar ushort vertex_index\nend_header\n";
+  const std::vector<std::vector<int>> records = {
+      {1, 2, 3, 0xff}, {0xff, 0xfe, 200, 0xff}, {1, 0, 7, 0}, {3, 0, 0, 0, 1, 0, 2}};
+  for (const auto& record : records) {
+    for (const int byte : record) bytes += static_cast<char>(byte);
+  }
+  const auto surface = parse(SurfaceFormat::ply, bytes);
+  EXPECT_EQ(surface.mesh.vertices[0], Vec3(258, 3, -1));
+  EXPECT_EQ(surface.mesh.vertices[1], Vec3(-2, 200, -1));
+  EXPECT_EQ(surface.mesh.vertices[2], Vec3(256, 7, 0));
+}
+
+TEST(ReadPly, BelievesNoHeaderThatTheFileCannotKeep) {
+  const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex ";
+  expect_contains(error(SurfaceFormat::ply,
+                        head + "353535235358\nproperty float x\nproperty float y\nproperty float z\nend_header\n"),
+                  "353535235358");
+  expect_contains(error(SurfaceFormat::ply, head + "1\nproperty list uint float x\nend_header\n\xff\xff\xff\xff"),
+                  "x, y and z");
+  expect_contains(
+      error(SurfaceFormat::ply, head + "0\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                                       "property list uint int vertex_indices\nend_header\n\xff\xff\xff\x7f"),
+      "length");
+  expect_contains(error(SurfaceFormat::ply, head + "-1\nend_header\n"), "line 3");
+  expect_contains(error(SurfaceFormat::ply, head + "99999999999999999\nend_header\n"), "line 3");
+  expect_contains(error(SurfaceFormat::ply, head + "4000000000\nend_header\n"), "no triangle");
+}
+
+TEST(ReadPly, NamesWhatIsWrong) {
+  expect_contains(error(SurfaceFormat::ply, "plx\n"), "line 1");
+  expect_contains(error(SurfaceFormat::ply, "ply\nformat ascii 1.0\n"), "end_header");
+  expect_contains(error(SurfaceFormat::ply, "ply\nend_header\n"), "format");
+  expect_contains(error(SurfaceFormat::ply, "ply\nformat zip 1.0\n"), "zip");
+  expect_contains(error(SurfaceFormat::ply, "ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\n"), "quad");
+  expect_contains(error(SurfaceFormat::ply, kPlyText + "0 0 0 1\n1 0 0 2\n"), "promises");
+  expect_contains(error(SurfaceFormat::ply, kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 x 4 3 0 1 2 0 3 0 1 2 0"),
+                  "vertex 3");
+  expect_contains(error(SurfaceFormat::ply, kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 nan 4 3 0 1 2 0 3 0 1 2 0"),
+                  "vertex 3");
+  expect_contains(error(SurfaceFormat::ply, kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 0 4 3 0 1 2 0 3 0 1 4 0"),
+                  "face 1");
+  expect_contains(error(SurfaceFormat::ply, kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 0 4 3 0 1 2 0 3 0 1 -1 0"),
+                  "face 1");
+}
+
+TEST(ReadStl, JoinsEqualCornersOfTextAndBinary) {
+  const std::string facet = " facet normal 0 0 1\n  outer loop\n";
+  const auto surface =
+      parse(SurfaceFormat::stl, "solid SPACE=LPS\n" + facet +
+                                    "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n" + facet +
+                                    "vertex -0 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\nendsolid\n");
+  EXPECT_EQ(surface.mesh.vertices.size(), 4u);
+  EXPECT_EQ(surface.mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(surface.space, Space::lps);
+}
+
+TEST(ReadStl, NamesWhatIsWrong) {
+  expect_contains(error(SurfaceFormat::stl, "hello"), "no STL");
+  expect_contains(error(SurfaceFormat::stl, std::string(80, ' ') + "\xff\xff\xff\xff" + std::string(50, '\0')),
+                  "promises");
+  expect_contains(error(SurfaceFormat::stl, "solid\nvertex 0 0\n"), "line 2");
+  expect_contains(error(SurfaceFormat::stl, "solid\nvertex 0 0 nan\n"), "line 2");
+}
+
+TEST(ReadObj, TakesAllKindsOfCorners) {
+  const auto surface =
+      parse(SurfaceFormat::obj,
+            "# SPACE=LPS UNIT=cm\nf 1 2/5 3//7\nv 0 0 0 0.5 0.5 0.5\nv 1 0 0\nv 0 1 0\nvt 0 0\nv 0 0 1\n"
+            "f -4/1/1 -1 \\\n -2\nl 1 2\nf 1 1 2\n");
+  EXPECT_EQ(surface.mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 3, 2}}));
+  EXPECT_EQ(surface.unit, LengthUnit::cm);
+  EXPECT_EQ(surface.warnings.size(), 1u) << "the face with a repeated corner";
+}
+
+TEST(ReadObj, NamesTheLineThatIsWrong) {
+  expect_contains(error(SurfaceFormat::obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"), "line 4");
+  expect_contains(error(SurfaceFormat::obj, "v 0 0 0\nf 1 0 1\n"), "line 2");
+  expect_contains(error(SurfaceFormat::obj, "v 0 0\n"), "line 1");
+  expect_contains(error(SurfaceFormat::obj, "v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n"), "vertex 2");
+  expect_contains(error(SurfaceFormat::obj, "v 0 0 0\nf -2 1 1\n"), "line 2");
+}
+
+TEST(ReadOff, NamesTheLineThatIsWrong) {
+  EXPECT_EQ(parse(SurfaceFormat::off, "OFF 3 1 0\n0 0 0\n# c\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n").mesh.faces.size(), 1u);
+  expect_contains(error(SurfaceFormat::off, "OFG\n"), "line 1");
+  expect_contains(error(SurfaceFormat::off, "OFF\n999999999999 1 0\n0 0 0\n"), "999999999999");
+  expect_contains(error(SurfaceFormat::off, "OFF\n3 1 0\n0 0 0\n1 0 0\n"), "ends");
+  expect_contains(error(SurfaceFormat::off, "OFF\n1 1 0\n0 0 0\n9 0 0 0\n"), "line 4");
+}
+
+TEST(ReadSurface, SaysWhenThereIsNothingToRead) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(read_surface(folder / "none.ply"), ReadError);
+  std::filesystem::create_directory(folder / "sub.ply");
+  EXPECT_THROW(read_surface(folder / "sub.ply"), ReadError);
+  EXPECT_THROW(read_surface(folder.write("a.docx", "x")), Unsupported);
+  for (const std::string name : {"e.ply", "e.stl", "e.obj", "e.off", "e.vtp"}) {
+    expect_contains(message_of<InvalidInput>([&] { read_surface(folder.write(name, "")); }), name);
+  }
+}
+
+TEST(ReadSurface, EveryCutFileIsRefusedOrRead) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  for (const auto format : {SurfaceFormat::ply, SurfaceFormat::stl, SurfaceFormat::off, SurfaceFormat::obj}) {
+    const std::string name =
+        std::vector<std::string>{"t.off", "t.obj", "t.stl", "t.ply"}[static_cast<std::size_t>(format)];
+    write_surface(folder / name, mesh, {{{"radius", {1, 2, 3, 4}, false}}, {}});
+    const std::string whole = testing::content_of(folder / name);
+    std::size_t refused = 0;
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      try {
+        parse(format, whole.substr(0, size));
+      } catch (const InvalidInput&) {
+        ++refused;
+      }
+    }
+    EXPECT_GT(refused, whole.size() / 3) << name;
+    EXPECT_NO_THROW(parse(format, whole)) << name;
+  }
+}
+
+TEST(SharedData, EveryAdversarialMeshIsReadOrRefusedWithItsName) {
+  VMESH_NEED_SHARED_DATA("adversarial_mesh_trimesh");
+  std::set<std::string> refused;
+  std::size_t read = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(shared_data("adversarial_mesh_trimesh"))) {
+    const std::string name = entry.path().filename().string();
+    if (name == "LICENSE.md") continue;
+    SCOPED_TRACE(name);
+    try {
+      EXPECT_FALSE(read_surface(entry.path()).mesh.faces.empty());
+      ++read;
+    } catch (const InvalidInput& problem) {
+      expect_contains(problem.what(), name);
+      refused.insert(name);
+    }
+  }
+  EXPECT_GE(read, 20u);
+  for (const auto& name : refused) {
+    EXPECT_TRUE(name.find("empty") != std::string::npos || name.find("points") != std::string::npos) << name;
+  }
+}
+
+TEST(SharedData, KnownMeshesHaveTheirKnownSizes) {
+  VMESH_NEED_SHARED_DATA("adversarial_mesh_trimesh");
+  const auto sphere = read_surface(shared_data("adversarial_mesh_trimesh/unit_sphere.STL")).mesh;
+  EXPECT_EQ(sphere.vertices.size() + sphere.faces.size(), 3 * sphere.faces.size() / 2 + 2) << "Euler: closed, genus 0";
+  const auto torus = read_surface(shared_data("adversarial_mesh_trimesh/torus.STL")).mesh;
+  EXPECT_EQ(torus.vertices.size() + torus.faces.size(), 3 * torus.faces.size() / 2) << "Euler: closed, genus 1";
+  const auto knot = read_surface(shared_data("adversarial_mesh_trimesh/quadknot.obj")).mesh;
+  EXPECT_EQ(knot.vertices.size() + knot.faces.size(), 3 * knot.faces.size() / 2);
+}
+
+}  // namespace
+}  // namespace vmesh

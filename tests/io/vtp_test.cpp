@@ -1,0 +1,141 @@
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
+
+#include "io_support.h"
+
+namespace vmesh {
+namespace {
+
+using testing::expect_contains;
+using testing::message_of;
+using testing::TemporaryFolder;
+
+#if VMESH_WITH_VTK
+
+/// A file of two polylines with five points, one of them in no line.
+std::string vtp(const std::string& radius_name = "Radius", const std::string& points = "0 0 0 1 0 0 2 0 0 5 5 5 2 1 0",
+                const std::string& ids = "0 1 2 2 4", const std::string& offsets = "3 5",
+                const std::string& count = "5") {
+  return R"(<?xml version="1.0"?><VTKFile type="PolyData" version="0.1" byte_order="LittleEndian"><PolyData>
+<Piece NumberOfPoints=")" +
+         count + R"(" NumberOfVerts="0" NumberOfLines="2" NumberOfStrips="0" NumberOfPolys="0">
+<PointData><DataArray type="Float64" Name=")" +
+         radius_name + R"(" format="ascii">1 2 3 4 5</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">)" +
+         points + R"(</DataArray></Points>
+<Lines><DataArray type="Int64" Name="connectivity" format="ascii">)" +
+         ids + R"(</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">)" +
+         offsets + R"(</DataArray></Lines></Piece></PolyData></VTKFile>)";
+}
+
+RawCenterline parse(const std::string& text, const std::string& radius = {}) {
+  return parse_centerline(text, CenterlineFormat::vtp, "t.vtp", {radius});
+}
+
+std::string error(const std::string& text) {
+  ::testing::internal::CaptureStderr();
+  const auto message = message_of<InvalidInput>([&] { parse(text); });
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "VTK must not write to the terminal";
+  expect_contains(message, "t.vtp");
+  return message;
+}
+
+TEST(ReadVtp, ReadsPolylinesAndLeavesUnusedPointsOut) {
+  const auto raw = parse(vtp());
+  ASSERT_EQ(raw.nodes.size(), 4u);
+  EXPECT_EQ(raw.nodes[3].position, Vec3(2, 1, 0));
+  EXPECT_EQ(raw.nodes[3].radius, 5);
+  EXPECT_EQ(raw.segments.size(), 3u);
+  EXPECT_EQ(raw.path_starts, (std::vector<Index>{0, 2}));
+  EXPECT_EQ(raw.name_of_node(3), "t.vtp: point 4");
+  EXPECT_EQ(raw.name_of_segment(2), "t.vtp: line cell 1");
+  EXPECT_EQ(raw.warnings.size(), 1u);
+  EXPECT_EQ(raw.unit, LengthUnit::unknown);
+  EXPECT_TRUE(raw.loose_branches);
+}
+
+TEST(ReadVtp, FindsTheRadiusUnderItsUsualNamesOrTheOneGiven) {
+  for (const std::string name : {"MaximumInscribedSphereRadius", "Radius", "radius"}) {
+    EXPECT_EQ(parse(vtp(name)).nodes[0].radius, 1) << name;
+  }
+  EXPECT_EQ(parse(vtp("thickness"), "thickness").nodes[0].radius, 1);
+  expect_contains(error(vtp("thickness")), "thickness");
+}
+
+TEST(ReadVtp, RefusesBrokenFilesWithoutNoise) {
+  error("<VTKFile");
+  error("not XML at all");
+  error("<VTKFile type=\"PolyData\"><unclosed></VTKFile>");
+  error("<VTKFile type=\"ImageData\" version=\"0.1\"></VTKFile>");
+  expect_contains(error(vtp("Radius", "0 0 0 1 0 0 2 0 0 5 5 5 2 1 0", "0 1 2 2 9")), "point 9");
+  expect_contains(error(vtp("Radius", "0 0 0 1 0 0 2 0 0 5 5 5 2 1 0", "0 1 2 2 -1")), "point -1");
+  error(vtp("Radius", "0 0 0 1 0 0 2 0 0 5 5 5 2 1 0", "0 1 2 2 4", "3 500"));
+  error(vtp("Radius", "0 0 0 1 0 0 2 0 0 5 5 5 2 1 0", "0 1 2 2 4", "5 3"));
+  expect_contains(error(vtp("Radius", "0 0 0 1 0 0 2 0 0 5 5 5 2 1 0", "0 1 2 2 4", "3 5", "99999999999")),
+                  "99999999999");
+  expect_contains(error(vtp("Radius", "0 0 0 1 0 0 2 0 0 5 5 5 2 1 0", "0 1 2 2 4", "3 5", "-4")), "-4");
+}
+
+TEST(ReadVtp, EveryCutFileIsRefused) {
+  const std::string whole = vtp();
+  for (std::size_t size = 0; size + 1 < whole.size(); size += 3) {
+    SCOPED_TRACE(size);
+    error(whole.substr(0, size));
+  }
+}
+
+TEST(ReadVtp, CutsOfACompressedFileAreRefused) {
+  const TemporaryFolder folder;
+  std::vector<CenterlineNode> nodes;
+  std::vector<CenterlineSegment> segments;
+  for (Index i = 0; i < 500; ++i) {
+    nodes.push_back({{i * 0.1, i * 0.01, 0}, 1});
+    if (i > 0) segments.push_back({i - 1, i});
+  }
+  write_centerline(folder / "t.vtp", Centerline(nodes, segments));
+  const std::string whole = testing::content_of(folder / "t.vtp");
+  for (std::size_t size = 0; size + 20 < whole.size(); size += 97) {
+    SCOPED_TRACE(size);
+    error(whole.substr(0, size));
+  }
+  // Damage inside the data: an error or other numbers, but no crash.
+  for (std::size_t at = 400; at < whole.size(); at += 53) {
+    std::string damaged = whole;
+    damaged[at] = damaged[at] == 'A' ? 'B' : 'A';
+    try {
+      parse(damaged);
+    } catch (const InvalidInput& problem) {
+      expect_contains(problem.what(), "t.vtp");
+    }
+  }
+}
+
+TEST(WriteVtp, NamesItsArraysLikeVmtkDoes) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  write_surface(folder / "t.vtp", mesh,
+                {{{"radius", {1, 2, 3}, false}, {"group", {0, 0, 1}, true}, {"distance", {0, 0, 0}, false}},
+                 {{"EquiangleSkewness", {0.25}, false}, {"quality", {1}, false}}});
+  const std::string content = testing::content_of(folder / "t.vtp");
+  for (const char* name : {"Normals", "MaximumInscribedSphereRadius", "GroupIds", "Distance", "EquiangleSkewness",
+                           "Quality", "SPACE", "UNIT"}) {
+    expect_contains(content, std::string("Name=\"") + name + "\"");
+  }
+}
+
+#else
+
+TEST(Vtp, IsRefusedWithAdviceInABuildWithoutVtk) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("t.vtp", "<VTKFile/>");
+  expect_contains(message_of<Unsupported>([&] { read_centerline(path); }), "VMESH_WITH_VTK");
+  expect_contains(message_of<Unsupported>([&] { read_surface(path); }), "VMESH_WITH_VTK");
+  EXPECT_THROW(write_surface(folder / "a.vtp", {{{0, 0, 0}}, {}}), Unsupported);
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
+#endif
+
+}  // namespace
+}  // namespace vmesh
