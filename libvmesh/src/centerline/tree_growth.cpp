@@ -192,7 +192,7 @@ class Grower {
     for (double gone = 0; gone < 1.5 * direct; gone += h) {
       const Vec3 to = target - tip.position;
       const double left = norm(to);
-      if (left < h || (left < 6 * branches_[b].radius && dot(to, tip.heading) < 0)) return;
+      if (left < h || dot(to, tip.heading) < -0.1 * left) return;
       wobble = 0.9 * wobble + 0.13 * random_.in_cube();
       if (!step(b, tip, unit(unit(to, tip.heading) + wobble, tip.heading))) return;
     }
@@ -262,12 +262,13 @@ class Grower {
                                     const std::array<double, 2>& radii, double spread, double roll) const {
     const Vec3 to0 = unit(targets[0] - tip.position, tip.heading), to1 = unit(targets[1] - tip.position, tip.heading);
     const Vec3 mean = unit(to0 + to1, tip.heading);
-    const Vec3 forward = unit(tip.heading + 0.35 * mean, tip.heading);
+    const Vec3 forward = unit(tip.heading + 0.6 * mean, tip.heading);
     const Vec3 apart = to0 - to1;
     const Vec3 side = rotate(unit(apart - dot(apart, forward) * forward, any_perpendicular(forward)), forward, roll);
-    // The smaller vessel turns off, the larger one goes on.
+    // The smaller vessel turns off, the larger one goes on; neither turns back.
     const double w0 = portable::pow(radii[0], 1.3), w1 = portable::pow(radii[1], 1.3);
-    const double angle0 = spread * w1 / (w0 + w1);
+    const double most = 60 * kDegree;
+    const double angle0 = std::clamp(spread * w1 / (w0 + w1), spread - most, most);
     return {rotate_towards(forward, side, angle0), rotate_towards(forward, -side, spread - angle0)};
   }
 
@@ -303,7 +304,7 @@ class Grower {
   bool fork(Index b, const Tip& tip, const std::array<Territory, 2>& halves) {
     const std::array<Vec3, 2> targets{centroid(halves[0]), centroid(halves[1])};
     const std::array<double, 2> weights{static_cast<double>(halves[0].count), static_cast<double>(halves[1].count)};
-    const double spread = random_.uniform(76, 96) * kDegree;
+    const double spread = random_.uniform(76, 100) * kDegree;
     for (const double roll : {0., 25., -25., 50., -50., 75., -75., 90.}) {
       const auto headings = fork_headings(tip, targets, {law_(weights[0]), law_(weights[1])}, spread, roll * kDegree);
       Tip tips[2] = {{tip.position, headings[0]}, {tip.position, headings[1]}};
