@@ -101,7 +101,7 @@ Ray Camera::ray(double x, double y) const {
 Vec2 Camera::project(const Vec3& p) const {
   const Vec3 d = p - center_;
   double scale = 1 / mm_per_pixel_;
-  if (distance_ > 0) scale *= distance_ / std::max(distance_ - d.dot(towards_), 1e-3 * distance_);
+  if (distance_ > 0) scale *= distance_ / std::max(distance_ - d.dot(towards_), kNearest * distance_);
   return {middle_.x() + scale * d.dot(right_), middle_.y() - scale * d.dot(up_)};
 }
 

@@ -23,6 +23,10 @@ class Camera {
   Ray ray(double x, double y) const;
   /// Where `p` appears, in pixels.
   Vec2 project(const Vec3& p) const;
+  /// Whether `p` can be projected: it is not behind the eye nor next to it.
+  bool is_in_front(const Vec3& p) const {
+    return distance_ == 0 || distance_ - (p - center_).dot(towards_) > kNearest * distance_;
+  }
   /// Distance of `p` in front of the foremost point of the mesh, as a share of the mesh's depth.
   double depth_share(const Vec3& p) const { return (front_ - (p - center_).dot(towards_)) / depth_; }
 
@@ -31,6 +35,8 @@ class Camera {
   const Vec3& towards() const { return towards_; }  ///< from the mesh to the camera
 
  private:
+  static constexpr double kNearest = 1e-3;  // of distance_
+
   void fit(const TriMesh& mesh, const RenderOptions& options);
 
   Vec3 right_, up_, towards_;

@@ -80,9 +80,12 @@ int legend_width(const Legend& legend, int width, int height) {
 void draw_legend(Canvas& canvas, const Legend& legend, const Vec3& background) {
   const Layout at = layout_of(legend, canvas.width(), canvas.height());
   const Vec3 ink = background.sum() > 0.6 ? Vec3::Constant(0.02) : Vec3::Constant(0.85);
-  const Vec3 panel = background;
   const double x = at.left, label_x = x + at.bar_width + at.text;
-  canvas.fill({x - at.margin, 0}, {canvas.width(), canvas.height()}, panel, 0.8);
+  // What is drawn below the legend fades out towards it.
+  for (int column = static_cast<int>(x - at.margin); column < canvas.width(); ++column) {
+    const double opacity = 0.9 * std::min(1.0, (column + 0.5 - (x - at.margin)) / at.margin);
+    canvas.fill({column, 0}, {column + 1, canvas.height()}, background, opacity);
+  }
 
   // A name too long for the column is set smaller.
   const double room = canvas.width() - x - 0.3 * at.margin;

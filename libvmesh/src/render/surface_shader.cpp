@@ -16,9 +16,9 @@ namespace {
 const Vec3 kBackFace(0.80, 0.02, 0.62);  // magenta
 const Vec3 kEdge(0.015, 0.015, 0.02);
 constexpr double kEdgeOpacity = 0.75;
-constexpr double kHaze = 0.30;            // share of background in the farthest part, where no attribute is shown
+constexpr double kHaze = 0.14;            // share of background in the farthest part, where no attribute is shown
 constexpr double kOcclusionReach = 0.10;  // of the mesh's diagonal
-constexpr int kOcclusionRays = 96;        // over the whole sphere
+constexpr double kOcclusionRays = 1.5e6;  // over the whole sphere, dealt evenly to the vertices
 
 // Evenly spread unit vectors (Fibonacci spiral).
 std::vector<Vec3> sphere_directions(int count) {
@@ -63,7 +63,8 @@ SurfaceShader::SurfaceShader(const TriMesh& mesh, const RenderOptions& options, 
 // How much of a cosine-weighted hemisphere is open at every vertex; near obstacles count more than far ones.
 void SurfaceShader::measure_occlusion(const RayScene& scene) {
   const double reach = kOcclusionReach * diagonal_of(mesh_), offset = 1e-3 * reach;
-  const auto directions = sphere_directions(kOcclusionRays);
+  const auto directions = sphere_directions(
+      static_cast<int>(std::clamp(kOcclusionRays / static_cast<double>(mesh_.vertices.size()), 32., 96.)));
   openness_.assign(mesh_.vertices.size(), 1);
   for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
     const Vec3& normal = normals_[v];
