@@ -94,10 +94,55 @@ void add_convert(CLI::App& app, ConvertArguments& arguments) {
   verb.footer(kConvertExamples);
 }
 
+void add_render_view(CLI::App& verb, RenderOptions& options) {
+  verb.add_option("--width", options.width, "pixels")->check(CLI::Range(16, 16384))->capture_default_str();
+  verb.add_option("--height", options.height, "pixels")->check(CLI::Range(16, 16384))->capture_default_str();
+  verb.add_option_function<std::string>(
+      "--view",
+      [&options](const std::string& text) {
+        try {
+          options.view = view_direction(text);
+        } catch (const InvalidInput& error) {
+          throw CLI::ValidationError("--view", error.what());
+        }
+      },
+      "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees");
+  verb.add_option_function<std::array<double, 3>>(
+      "--look-at", [&options](const std::array<double, 3>& p) { options.look_at = Vec3(p[0], p[1], p[2]); },
+      "point in the middle of the picture, mm; default: the middle of the mesh");
+  verb.add_option("--view-height", options.view_height_mm, "height of the scene in the picture, mm; 0: the whole mesh")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  verb.add_option("--zoom", options.zoom, "magnification")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
+  verb.add_option("--field-of-view", options.field_of_view_deg, "degrees; 0: orthographic")
+      ->check(CLI::Range(0.0, 119.0))
+      ->capture_default_str();
+}
+
+void add_render_look(CLI::App& verb, RenderArguments& arguments) {
+  RenderOptions& options = arguments.options;
+  verb.add_flag("--edges", options.edges, "draw the triangles' edges");
+  verb.add_option("--edge-width", options.edge_width_px, "pixels")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+  verb.add_flag("!--flat", options.smooth, "shade facet by facet");
+  verb.add_flag("!--no-back-faces", options.highlight_back_faces, "do not show the inside of the surface in magenta");
+  verb.add_flag("!--no-legend", options.legend, "leave the colour scale out");
+  verb.add_option("--occlusion", options.occlusion, "darkening where little light gets in")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb.add_option("--color", arguments.color, "colour by this attribute of the file, or by skewness");
+  verb.add_option_function<std::pair<double, double>>(
+      "--range", [&options](const std::pair<double, double>& range) { options.range = range; },
+      "attribute values at the ends of the colour scale");
+}
+
 void add_render(CLI::App& app, RenderArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("render", "Draw a surface; needs no display");
-  verb.add_option("MESH", arguments.input, "surface")->required();
+  add_input(verb, arguments.input, "surface");
   add_output(verb, arguments.output, "picture (.png)");
+  add_render_view(verb, arguments.options);
+  add_render_look(verb, arguments);
   add_common(verb, arguments.common, false);
   verb.footer(kRenderExamples);
 }

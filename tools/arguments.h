@@ -8,6 +8,7 @@
 
 #include "vmesh/centerline/raw_centerline.h"
 #include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/render/render.h"
 #include "vmesh/surface/generate.h"
 
 namespace vmesh::tool {
@@ -53,7 +54,10 @@ struct ConvertArguments {
 
 struct RenderArguments {
   CommonArguments common;
-  std::filesystem::path input, output;
+  InputArguments input;
+  std::filesystem::path output;
+  RenderOptions options;
+  std::string color;  ///< attribute to colour by, or "skewness"; empty: one colour
 };
 
 using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments>;
