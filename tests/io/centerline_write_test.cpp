@@ -107,6 +107,7 @@ TEST(WriteCenterline, LeavesNothingBehindWhenItFails) {
   const TemporaryFolder folder;
   expect_contains(message_of<WriteError>([&] { write_centerline(folder / "none/t.json", sample(false)); }), "t.json");
   EXPECT_THROW(write_centerline(folder / "t.docx", sample(false)), Unsupported);
+  EXPECT_THROW(write_centerline(folder / "t.segments.csv", sample(false)), InvalidInput);
   std::filesystem::create_directory(folder / "t.segments.csv");
   EXPECT_THROW(write_centerline(folder / "t.csv", sample(false)), WriteError);
   EXPECT_EQ(folder.file_count(), 1u);

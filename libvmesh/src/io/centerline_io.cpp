@@ -28,6 +28,15 @@ std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path)
   return std::filesystem::path(nodes_path).replace_filename(stem.string() + ".segments.csv");
 }
 
+namespace {
+
+void check_is_nodes_file(const std::filesystem::path& path) {
+  if (io::lower(path.stem().extension().string()) != ".segments") return;
+  throw InvalidInput(path.string() + ": this names the second file of a CSV pair; give the one with the nodes");
+}
+
+}  // namespace
+
 RawCenterline parse_centerline(std::string_view content, CenterlineFormat format, const std::string& source,
                                const CenterlineReadOptions& options, std::string_view csv_segments) {
   switch (format) {
@@ -48,9 +57,7 @@ RawCenterline read_centerline(const std::filesystem::path& path, const Centerlin
   const std::string content = io::read_file(path);
   std::string segments;
   if (format == CenterlineFormat::csv) {
-    if (io::lower(path.stem().extension().string()) == ".segments") {
-      throw InvalidInput(path.string() + ": this is the second file of a CSV pair; give the one with the nodes");
-    }
+    check_is_nodes_file(path);
     segments = io::read_file(csv_segments_path(path));
   }
   return parse_centerline(content, format, path.string(), options, segments);
@@ -79,6 +86,7 @@ void write_centerline(const std::filesystem::path& path, const Centerline& cente
     throw Unsupported(path.string() + ": SWC holds trees only and this centerline has " +
                       std::to_string(centerline.cycle_rank()) + " independent loops; write it as .json, .csv or .vtp");
   }
+  if (format == CenterlineFormat::csv) check_is_nodes_file(path);
   AtomicFile file(path);
   switch (format) {
     case CenterlineFormat::swc:
