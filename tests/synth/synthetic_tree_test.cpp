@@ -133,9 +133,6 @@ TEST_P(SyntheticTree, ForksAtWideAngles) {
 }
 
 TEST_P(SyntheticTree, VesselsThatAreNotNeighboursKeepApart) {
-  if (GetParam().vertices > 2000) GTEST_SKIP() << "every pair of segments is compared: too many here";
-  double thickest = 0;
-  for (const auto& node : tree_.nodes()) thickest = std::max(thickest, node.radius);
   const auto radius = [&](Index s) { return std::max(tree_.radius_at(s, 0), tree_.radius_at(s, 1)); };
   for (Index i = 0; i < tree_.segments().size(); ++i) {
     for (Index j = i + 1; j < tree_.segments().size(); ++j) {
@@ -173,7 +170,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, SyntheticTree,
                          ::testing::Values(Case{2, 1}, Case{3, 5}, Case{9, 1}, Case{10, 2}, Case{20, 3}, Case{50, 1},
                                            Case{119, 1}, Case{119, 2}, Case{119, 3}, Case{119, ~0ull}, Case{500, 4},
                                            Case{777, 0}, Case{1560, 1}, Case{1560, 2}, Case{1560, 3}, Case{1560, 12345},
-                                           Case{20000, 1}),
+                                           Case{8000, 1}),
                          [](const auto& tree) {
                            return std::to_string(tree.param.vertices) + "Seed" + std::to_string(tree.param.seed);
                          });
