@@ -14,7 +14,7 @@ namespace vmesh {
 /// their coming.
 class SphereGrid {
  public:
-  /// The largest reach expected (larger ones are allowed, but cost).
+  /// `largest_reach` > 0: no item reaches farther.
   explicit SphereGrid(double largest_reach) : largest_(largest_reach), slots_(1024) {}
 
   Index size() const { return static_cast<Index>(items_.size()); }

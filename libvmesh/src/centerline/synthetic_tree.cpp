@@ -226,7 +226,7 @@ bool Tree::cut_contacts() {
   }
   std::sort(cuts.begin(), cuts.end());
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-  // Only the first of each round in tree order matters; what hangs below it goes with it.
+  // In tree order: what hangs below a cut goes with it, and its own cuts find nothing.
   for (const Index n : cuts) cut_before(n);
   return !cuts.empty();
 }
