@@ -1,6 +1,7 @@
 #include "arguments.h"
 
 #include <iostream>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 
@@ -30,6 +31,19 @@ constexpr const char* kRenderExamples = R"(Examples:
   vmesh render tree.ply -o tree.png
   vmesh render tree.ply -o tree.png --edges --color radius --view left --width 1200 --height 900)";
 
+/// CLI::Range lets NaN pass.
+template <class Number>
+CLI::Validator in_range(Number low, Number high) {
+  std::ostringstream name;
+  name << "in [" << low << ", " << high << "]";
+  const auto check = [low, high, words = name.str()](std::string& text) {
+    Number value;
+    const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+    return good ? std::string() : "not " + words + ": " + text;
+  };
+  return {check, name.str()};
+}
+
 void add_common(CLI::App& verb, CommonArguments& common, bool with_json = true) {
   verb.add_flag("-q,--quiet", common.quiet, "only warnings and errors on stderr");
   if (with_json) verb.add_option("--json", common.json, "write a summary to this file; - for stdout");
@@ -57,7 +71,7 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   add_output(verb, arguments.output, "surface");
   for_each_generate_option(arguments.options,
                            [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
-                             verb.add_option(flag, member, help)->check(CLI::Range(low, high))->capture_default_str();
+                             verb.add_option(flag, member, help)->check(in_range(low, high))->capture_default_str();
                            });
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
@@ -78,7 +92,7 @@ void add_synth(CLI::App& app, SynthArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("synth", "Make a synthetic tree like a liver's portal vein");
   add_output(verb, arguments.output, "centerline");
   verb.add_option("--vertices", arguments.options.vertices, "nodes of the centerline")
-      ->check(CLI::Range(2, 1000000))
+      ->check(in_range(2, 1000000))
       ->capture_default_str();
   verb.add_option("--seed", arguments.options.seed, "each number gives another tree")->capture_default_str();
   add_common(verb, arguments.common, false);
@@ -95,8 +109,8 @@ void add_convert(CLI::App& app, ConvertArguments& arguments) {
 }
 
 void add_render_view(CLI::App& verb, RenderOptions& options) {
-  verb.add_option("--width", options.width, "pixels")->check(CLI::Range(16, 16384))->capture_default_str();
-  verb.add_option("--height", options.height, "pixels")->check(CLI::Range(16, 16384))->capture_default_str();
+  verb.add_option("--width", options.width, "pixels")->check(in_range(16, 16384))->capture_default_str();
+  verb.add_option("--height", options.height, "pixels")->check(in_range(16, 16384))->capture_default_str();
   verb.add_option_function<std::string>(
       "--view",
       [&options](const std::string& text) {
@@ -111,25 +125,23 @@ void add_render_view(CLI::App& verb, RenderOptions& options) {
       "--look-at", [&options](const std::array<double, 3>& p) { options.look_at = Vec3(p[0], p[1], p[2]); },
       "point in the middle of the picture, mm; default: the middle of the mesh");
   verb.add_option("--view-height", options.view_height_mm, "height of the scene in the picture, mm; 0: the whole mesh")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(in_range(0.0, 1e9))
       ->capture_default_str();
-  verb.add_option("--zoom", options.zoom, "magnification")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
+  verb.add_option("--zoom", options.zoom, "magnification")->check(in_range(1e-3, 1e6))->capture_default_str();
   verb.add_option("--field-of-view", options.field_of_view_deg, "degrees; 0: orthographic")
-      ->check(CLI::Range(0.0, 119.0))
+      ->check(in_range(0.0, 119.0))
       ->capture_default_str();
 }
 
 void add_render_look(CLI::App& verb, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
   verb.add_flag("--edges", options.edges, "draw the triangles' edges");
-  verb.add_option("--edge-width", options.edge_width_px, "pixels")
-      ->check(CLI::Range(0.01, 100.0))
-      ->capture_default_str();
+  verb.add_option("--edge-width", options.edge_width_px, "pixels")->check(in_range(0.01, 100.0))->capture_default_str();
   verb.add_flag("!--flat", options.smooth, "shade facet by facet");
   verb.add_flag("!--no-back-faces", options.highlight_back_faces, "do not show the inside of the surface in magenta");
   verb.add_flag("!--no-legend", options.legend, "leave the colour scale out");
   verb.add_option("--occlusion", options.occlusion, "darkening where little light gets in")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(in_range(0.0, 1.0))
       ->capture_default_str();
   verb.add_option("--color", arguments.color, "colour by this attribute of the file, or by skewness");
   verb.add_option_function<std::pair<double, double>>(

@@ -20,7 +20,7 @@ std::string key_of(const char* flag) {
 }
 
 Json options_json(const GenerateArguments& arguments) {
-  Json json;
+  Json json = Json::object();
   for_each_generate_option(arguments.options, [&json](const char* flag, const auto& value, auto, auto, const char*) {
     json[key_of(flag)] = value;
   });
@@ -30,7 +30,7 @@ Json options_json(const GenerateArguments& arguments) {
 }
 
 Json stages_json(const std::vector<StageTime>& stages) {
-  Json json;
+  Json json = Json::object();
   double total = 0;
   for (const StageTime& stage : stages) {
     json[stage.stage] = json.value(stage.stage, 0.0) + stage.seconds;

@@ -10,14 +10,14 @@ const char* const kVerbs[] = {"generate", "info", "synth", "convert", "render"};
 using CommandLine = CommandTest;
 
 TEST_F(CommandLine, VersionGoesToStdout) {
-  const Run run = vmesh({"--version"});
+  const Outcome run = vmesh({"--version"});
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_EQ(run.out, "vmesh " + std::string(version()) + "\n");
   EXPECT_EQ(run.err, "");
 }
 
 TEST_F(CommandLine, HelpNamesEveryVerbAndTheExitCodes) {
-  const Run run = vmesh({"--help"});
+  const Outcome run = vmesh({"--help"});
   EXPECT_EQ(run.exit_code, 0);
   for (const char* verb : kVerbs) EXPECT_NE(run.out.find(verb), std::string::npos) << verb;
   EXPECT_NE(run.out.find("130 interrupted"), std::string::npos);
@@ -26,7 +26,7 @@ TEST_F(CommandLine, HelpNamesEveryVerbAndTheExitCodes) {
 
 TEST_F(CommandLine, HelpOfEveryVerbShowsExamples) {
   for (const char* verb : kVerbs) {
-    const Run run = vmesh({verb, "--help"});
+    const Outcome run = vmesh({verb, "--help"});
     EXPECT_EQ(run.exit_code, 0) << verb;
     EXPECT_NE(run.out.find("Examples:\n  vmesh " + std::string(verb)), std::string::npos) << run.out;
     EXPECT_EQ(run.err, "") << verb;
@@ -49,7 +49,7 @@ TEST_F(CommandLine, UsageErrorsExitWithTwoAndKeepStdoutClean) {
       {"convert", "@y.swc", "-o", "@y.ply"},
   };
   for (const auto& arguments : wrong) {
-    const Run run = vmesh(arguments);
+    const Outcome run = vmesh(arguments);
     EXPECT_EQ(run.exit_code, 2) << (arguments.empty() ? "no verb" : arguments.back());
     EXPECT_EQ(run.out, "");
     EXPECT_NE(run.err, "");

@@ -22,7 +22,7 @@ TEST_F(Convert, CenterlinesGoThroughEveryFormatUnchanged) {
   if (VMESH_TEST_WITH_VTK) names.insert(names.begin(), "a.vtp");
   std::string from = "y.swc";
   for (const std::string& name : names) {
-    const Run run = vmesh({"convert", "@" + from, "-o", "@" + name});
+    const Outcome run = vmesh({"convert", "@" + from, "-o", "@" + name});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run.out, "");
     from = name;
@@ -47,7 +47,7 @@ TEST_F(Convert, SurfacesGoThroughEveryFormat) {
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply"}).exit_code, 0);
   const TriMesh before = read_surface(path("y.ply")).mesh;
   for (const char* name : {"b.obj", "b.off", "b.stl"}) {
-    const Run run = vmesh({"convert", "@y.ply", "-o", "@" + std::string(name)});
+    const Outcome run = vmesh({"convert", "@y.ply", "-o", "@" + std::string(name)});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const TriMesh after = read_surface(path(name)).mesh;
     EXPECT_EQ(after.vertices.size(), before.vertices.size()) << name;

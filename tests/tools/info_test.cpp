@@ -12,7 +12,7 @@ class Info : public CommandTest {
   Info() { write_y("y.swc"); }
 
   json info(const std::string& name) const {
-    const Run run = vmesh({"info", "@" + name, "--json", "-"});
+    const Outcome run = vmesh({"info", "@" + name, "--json", "-"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return json::parse(run.out);
   }
@@ -35,7 +35,7 @@ TEST_F(Info, DescribesACenterline) {
 }
 
 TEST_F(Info, TextHasOneValuePerLine) {
-  const Run run = vmesh({"info", "@y.swc"});
+  const Outcome run = vmesh({"info", "@y.swc"});
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_NE(run.out.find("\ncenterline.nodes: 4\n"), std::string::npos) << run.out;
 }
@@ -59,14 +59,14 @@ TEST_F(Info, CheckFailsForACenterlineWithProblems) {
 
 TEST_F(Info, CheckFailsForAnOpenSurface) {
   write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  const Run run = vmesh({"info", "@open.off", "--check"});
+  const Outcome run = vmesh({"info", "@open.off", "--check"});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_NE(run.out.find("problems: not closed"), std::string::npos) << run.out;
 }
 
 TEST_F(Info, WhatCannotBeCleanedIsBadInput) {
   write("hopeless.swc", "1 0 0 0 0 nan -1\n2 0 0 0 9 3 1\n");
-  const Run run = vmesh({"info", "@hopeless.swc"});
+  const Outcome run = vmesh({"info", "@hopeless.swc"});
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_NE(run.err.find("hopeless.swc"), std::string::npos) << run.err;
 }

@@ -10,7 +10,7 @@ namespace {
 class Interrupt : public CommandTest {
  protected:
   /// Runs `vmesh generate` on a large tree, interrupts it in the middle of the work, and waits for its end.
-  Run interrupted_by(int signal) {
+  Outcome interrupted_by(int signal) {
     if (vmesh({"synth", "--vertices", "20000", "-o", "@large.json"}).exit_code != 0) throw std::runtime_error("synth");
     Process process = start({"generate", "@large.json", "-o", "@large.ply", "--json", "@large_summary.json"});
     // The log line about the centerline comes just before growth, which takes seconds.
@@ -23,7 +23,7 @@ class Interrupt : public CommandTest {
 };
 
 TEST_F(Interrupt, ControlCEndsWith130AndLeavesNothing) {
-  const Run run = interrupted_by(SIGINT);
+  const Outcome run = interrupted_by(SIGINT);
   EXPECT_EQ(run.exit_code, 130) << run.err;
   EXPECT_EQ(run.out, "");
   EXPECT_NE(run.err.find("interrupted"), std::string::npos) << run.err;
@@ -31,7 +31,7 @@ TEST_F(Interrupt, ControlCEndsWith130AndLeavesNothing) {
 }
 
 TEST_F(Interrupt, TerminationToo) {
-  const Run run = interrupted_by(SIGTERM);
+  const Outcome run = interrupted_by(SIGTERM);
   EXPECT_EQ(run.exit_code, 130) << run.err;
   EXPECT_EQ(files(), std::vector<std::string>{"large.json"});
 }

@@ -15,7 +15,7 @@ class Outputs : public CommandTest {
   /// Runs, and expects the exit code, a message with `text`, and the folder as it was.
   void expect_refused(const std::vector<std::string>& arguments, int exit_code, const std::string& text) const {
     const auto before = files();
-    const Run run = vmesh(arguments);
+    const Outcome run = vmesh(arguments);
     EXPECT_EQ(run.exit_code, exit_code) << run.err;
     EXPECT_NE(run.err.find(text), std::string::npos) << run.err;
     EXPECT_EQ(run.out, "");
@@ -53,7 +53,7 @@ TEST_F(Outputs, FoldersThatCannotTakeTheFileAreRefused) {
 
 TEST_F(Outputs, AFullDiskIsReported) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-  const Run run = vmesh({"info", "@y.swc", "--json", "/dev/full"});
+  const Outcome run = vmesh({"info", "@y.swc", "--json", "/dev/full"});
   EXPECT_EQ(run.exit_code, 5) << run.err;
 }
 

@@ -8,7 +8,7 @@ using Render = CommandTest;
 TEST_F(Render, DrawsAPictureOfTheSizeAskedFor) {
   write_y("y.swc");
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply"}).exit_code, 0);
-  const Run run = vmesh({"render", "@y.ply", "-o", "@y.png", "--width", "160", "--height", "120"});
+  const Outcome run = vmesh({"render", "@y.ply", "-o", "@y.png", "--width", "160", "--height", "120"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, "");
   const std::string png = read("y.png");

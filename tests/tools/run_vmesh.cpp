@@ -60,7 +60,7 @@ void Process::send(int signal) const { kill(pid_, signal); }
 
 std::string Process::err() const { return read_file(err_path_); }
 
-Run Process::finish() {
+Outcome Process::finish() {
   int status = 0;
   waitpid(pid_, &status, 0);
   pid_ = -1;

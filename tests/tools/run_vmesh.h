@@ -10,7 +10,7 @@
 namespace vmesh::testing {
 
 /// What a run of the command left behind.
-struct Run {
+struct Outcome {
   int exit_code = -1;  ///< minus the signal's number when a signal ended it
   std::string out, err;
 };
@@ -28,7 +28,7 @@ class Process {
   /// What it has written to stderr so far.
   std::string err() const;
   /// Waits for its end.
-  Run finish();
+  Outcome finish();
 
  private:
   std::filesystem::path out_path_, err_path_;
@@ -41,7 +41,7 @@ class CommandTest : public ::testing::Test {
   CommandTest();
   ~CommandTest() override;
 
-  Run vmesh(const std::vector<std::string>& arguments) const {
+  Outcome vmesh(const std::vector<std::string>& arguments) const {
     return Process(logs_, arguments_in(arguments)).finish();
   }
   /// The same in the background.
