@@ -27,13 +27,14 @@ BoundSurface::BoundSurface(const VesselField& vessel_field)
       cone(mesh.add_property_map<Vertex, Index>("v:cone", kNone).first),
       t(mesh.add_property_map<Vertex, double>("v:t", 0.0).first),
       gradient(mesh.add_property_map<Vertex, Vec3>("v:gradient", Vec3::Zero()).first),
-      refinement(mesh.add_property_map<Vertex, double>("v:refinement", 1.0).first) {}
+      distance(mesh.add_property_map<Vertex, double>("v:distance", 0.0).first) {}
 
 void BoundSurface::place(Vertex v, const Vec3& p, const FieldSample& sample) {
   mesh.point(v) = p;
   cone[v] = sample.cone;
   t[v] = sample.t;
   gradient[v] = sample.gradient.normalized();
+  distance[v] = sample.distance;
 }
 
 void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {
@@ -61,7 +62,6 @@ Vertex BoundSurface::halve(Halfedge h) {
   cone[v] = cone[a];
   t[v] = t[a];
   gradient[v] = (gradient[a] + gradient[b]).normalized();
-  refinement[v] = std::min(refinement[a], refinement[b]);
   return v;
 }
 

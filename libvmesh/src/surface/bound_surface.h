@@ -27,8 +27,8 @@ class BoundSurface {
   SurfaceMesh::Property_map<Vertex, Index> cone;     ///< closest round cone, the hint of the next query
   SurfaceMesh::Property_map<Vertex, double> t;       ///< parameter on its axis
   SurfaceMesh::Property_map<Vertex, Vec3> gradient;  ///< outward normal of the boundary there
-  /// Factor in (0, 1] on the size field around the vertex, where the surface had to be refined for accuracy.
-  SurfaceMesh::Property_map<Vertex, double> refinement;
+
+  SurfaceMesh::Property_map<Vertex, double> distance;  ///< signed distance to the boundary, mm
 
   const Vec3& position(Vertex v) const { return mesh.point(v); }
   double radius(Vertex v) const { return field.radius_at(cone[v], t[v]); }

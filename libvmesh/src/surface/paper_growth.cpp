@@ -13,7 +13,8 @@ constexpr double kSeedFraction = 0.5;       // seed radius in vessel radii: "som
 constexpr double kSettledTolerance = 0.01;  // distance in vessel radii at which a vertex has reached the boundary
 constexpr double kMaxStep = 0.5;            // step in vessel radii
 constexpr int kMaxSteps = 100;              // of one vertex, before it is projected
-constexpr double kBehind = 0.5;             // vessel radii a crossing may lie behind its segment's front
+constexpr double kMaxFlight = 2;            // vessel radii a vertex may travel before only the boundary attracts it
+constexpr double kBehind = 0.1;             // vessel radii a crossing may lie behind its segment's front
 constexpr double kSmallestFace = 0.02;      // longest edge, in radii of the crossing segment, that is still split
 
 class Growth {
@@ -25,6 +26,7 @@ class Growth {
         beta_(beta),
         progress_(progress),
         paths_(surface.field.centerline()),
+        travelled_(mesh_.add_property_map<Vertex, double>("v:travelled", 0.0).first),
         steps_(mesh_.add_property_map<Vertex, int>("v:steps", 0).first) {}
 
   PaperGrowthReport run() {
@@ -34,6 +36,7 @@ class Growth {
       move_vertices();
       split_crossed_faces();
     }
+    mesh_.remove_property_map(travelled_);
     mesh_.remove_property_map(steps_);
     return report_;
   }
@@ -80,7 +83,9 @@ class Growth {
         settled_.push_back(v);
         continue;
       }
-      const Vec3 p = surface_.position(v) + std::min(-here.distance, kMaxStep * radius) * force(v, here);
+      const double step = std::min(-here.distance, kMaxStep * radius);
+      travelled_[v] += step / radius;
+      const Vec3 p = surface_.position(v) + step * force(v, here, travelled_[v] > kMaxFlight ? 1 : beta_);
       surface_.place(v, p, field_.sample(p, here.cone));
       still_moving.push_back(v);
     }
@@ -88,8 +93,8 @@ class Growth {
   }
 
   // Direction of Eq. 11: F = (1 - beta) n + beta a, n the vertex normal, a towards the closest boundary point.
-  Vec3 force(Vertex v, const FieldSample& here) const {
-    const Vec3 f = (1 - beta_) * surface_.vertex_normal(v) + beta_ * here.gradient;
+  Vec3 force(Vertex v, const FieldSample& here, double beta) const {
+    const Vec3 f = (1 - beta) * surface_.vertex_normal(v) + beta * here.gradient;
     const double norm = f.norm();
     return norm > 0 ? Vec3(f / norm) : here.gradient;
   }
@@ -153,6 +158,7 @@ class Growth {
     ++report_.splits;
     for (const Vertex v : surface_.split_edge_centric(f)) {
       steps_[v] = 0;
+      travelled_[v] = 0;
       moving_.push_back(v);
     }
   }
@@ -168,6 +174,7 @@ class Growth {
   double beta_;
   const Progress& progress_;
   GrowthPaths paths_;
+  SurfaceMesh::Property_map<Vertex, double> travelled_;  // in vessel radii
   SurfaceMesh::Property_map<Vertex, int> steps_;
   std::vector<Vertex> moving_, settled_;
   std::vector<Face> faces_;
