@@ -15,6 +15,7 @@ namespace {
 constexpr double kSplitLength = 1.35;    // in target lengths
 constexpr double kCollapseLength = 0.65;
 constexpr double kEdgeFactor = 1.08;     // target length in edges of a regular polygon around the vessel
+constexpr double kGrownAround = 6;
 constexpr double kGradation = 0.5;       // largest slope of the size field along the surface
 constexpr double kMinAgreement = 0.2;    // cosine between a face's normal and the mean gradient of its corners
 constexpr double kMaxTurn = 0.5;         // cosine of the angle a face may turn in one move
@@ -31,13 +32,21 @@ class Optimizer {
       : surface_(surface),
         mesh_(surface.mesh),
         field_(surface.field),
-        edge_per_radius_(kEdgeFactor * 2 * std::sin(std::numbers::pi / options.around)),
+        around_(options.around),
         max_center_distance_(options.max_center_distance),
         sweeps_(options.sweeps),
         size_(mesh_.add_property_map<Vertex, double>("v:size", 0.0).first),
         stirred_(mesh_.add_property_map<Vertex, char>("v:stirred", kActive | kStirred).first) {}
 
+  // From the resolution of the grown mesh to the one asked for, doubling at most: an even mesh is refined or
+  // coarsened safely, a grown one is not.
   void run(const Progress& progress) {
+    for (double around = kGrownAround; around != around_; around = std::min<double>(2 * around, around_)) {
+      set_resolution(around);
+      sweep(0, progress, "optimize");
+      if (loosen_tangles() > 0) sweep(sweeps_ / 2, progress, "optimize");
+    }
+    set_resolution(around_);
     sweep(0, progress, "optimize");
     std::size_t before = std::numeric_limits<std::size_t>::max();
     for (std::size_t tangled = loosen_tangles(); tangled > 0 && tangled < before; tangled = loosen_tangles()) {
@@ -50,6 +59,11 @@ class Optimizer {
 
  private:
   static constexpr char kActive = 1, kStirred = 2;
+
+  void set_resolution(double around) {
+    edge_per_radius_ = kEdgeFactor * 2 * std::sin(std::numbers::pi / around);
+    for (const Vertex v : mesh_.vertices()) stirred_[v] = kActive | kStirred;
+  }
 
   // Sweeps from number `first` on: first towards the size field, then for shape alone.
   void sweep(int first, const Progress& progress, const char* stage) {
@@ -471,7 +485,8 @@ class Optimizer {
   BoundSurface& surface_;
   SurfaceMesh& mesh_;
   const VesselField& field_;
-  double edge_per_radius_;
+  int around_;
+  double edge_per_radius_ = 0;
   double max_center_distance_;
   int sweeps_;
   SurfaceMesh::Property_map<Vertex, double> size_;

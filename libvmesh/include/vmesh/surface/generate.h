@@ -18,7 +18,7 @@ struct GenerateOptions {
   /// Intended number of vertices around a vessel, 3 to 200: the size field is proportional to radius / around.
   int around = 6;
   /// A grown face is split edge-centrically when its centre is farther than this from the boundary.
-  double max_center_distance = 0.25;
+  double max_center_distance = 0.35;
   /// Sweeps of the final optimisation; 0 leaves the surface as it was grown.
   int sweeps = 30;
 };
