@@ -23,6 +23,7 @@ constexpr double kMaxBulge = 0.3;        // see bulge()
 constexpr double kOffBoundary = 0.01;     // vessel radii
 constexpr double kBadEnergy = 1.8;        // squared inverse mean ratio; skewness about 0.4
 constexpr double kNoticeableMove = 0.02; // in target lengths, for the neighbours to be looked at again
+constexpr double kHopeless = 0.02;       // share of the vertices in tangles
 constexpr int kLooseRings = 2;
 constexpr int kLoosePasses = 5;
 
@@ -71,7 +72,7 @@ class Optimizer {
     for (int sweep = first; sweep < sweeps_; ++sweep) {
       const double done = static_cast<double>(sweep) / sweeps_;
       report_progress(progress, stage, done);
-      update_sizes(); if (getenv("DBG")) fprintf(stderr, "%s %d: %zu\n", stage, sweep, (size_t)mesh_.number_of_vertices());
+      update_sizes();
       if (next_active() == 0) break;
       if (done < 0.7) {
         if (sweep % 4 == 0) repair_strays();
@@ -419,10 +420,12 @@ class Optimizer {
   }
 
   // Finds faces that intersect although their vessels are neighbours, and lets their surroundings relax like a
-  // rubber sheet on the boundary, which pulls folds flat. Returns how many vertices they had.
+  // rubber sheet on the boundary, which pulls folds flat. Returns how many vertices they had, 0 where
+  // they are too many: then growth covered vessels twice, and no local operation helps.
   std::size_t loosen_tangles() {
     std::vector<Vertex> region = tangled_vertices();
     const std::size_t count = region.size();
+    if (count > kHopeless * static_cast<double>(mesh_.number_of_vertices())) return 0;
     for (int ring = 0; ring < kLooseRings; ++ring) grow_region(region);
     for (int pass = 0; pass < kLoosePasses; ++pass) {
       for (const Vertex v : region) {
