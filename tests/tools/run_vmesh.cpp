@@ -77,6 +77,7 @@ CommandTest::~CommandTest() {
 
 std::vector<std::string> CommandTest::arguments_in(const std::vector<std::string>& arguments) const {
   std::vector<std::string> expanded;
+  expanded.reserve(arguments.size());
   for (const std::string& argument : arguments)
     expanded.push_back(argument.starts_with('@') ? path(argument.substr(1)).string() : argument);
   return expanded;
