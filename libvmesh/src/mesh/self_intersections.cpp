@@ -1,8 +1,8 @@
+#include <algorithm>
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
 #include <CGAL/intersections.h>
-
-#include <algorithm>
 
 #include "vmesh/mesh/topology.h"
 

@@ -26,8 +26,9 @@ std::vector<Side> sorted_sides(const TriMesh& mesh) {
       sides.push_back({std::min(a, b), std::max(a, b), f, a < b});
     }
   }
-  std::sort(sides.begin(), sides.end(),
-            [](const Side& x, const Side& y) { return std::tie(x.low, x.high, x.face) < std::tie(y.low, y.high, y.face); });
+  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+    return std::tie(x.low, x.high, x.face) < std::tie(y.low, y.high, y.face);
+  });
   return sides;
 }
 
@@ -90,7 +91,8 @@ Topology measure_topology(const TriMesh& mesh) {
   bool edge_manifold = true;
   topology.oriented = true;
   for (std::size_t i = 0, next; i < sides.size(); i = next) {
-    for (next = i + 1; next < sides.size() && sides[next].key() == sides[i].key(); ++next) {}
+    for (next = i + 1; next < sides.size() && sides[next].key() == sides[i].key(); ++next) {
+    }
     ++edges;
     if (next - i == 1) ++topology.boundary_edges;
     if (next - i > 2 || sides[i].low == sides[i].high) edge_manifold = false;

@@ -44,7 +44,8 @@ void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {
 
 Vec3 BoundSurface::face_area_normal(Face f) const {
   const Halfedge h = mesh.halfedge(f);
-  const Vec3 &a = mesh.point(mesh.source(h)), &b = mesh.point(mesh.target(h)), &c = mesh.point(mesh.target(mesh.next(h)));
+  const Vec3 &a = mesh.point(mesh.source(h)), &b = mesh.point(mesh.target(h)),
+             &c = mesh.point(mesh.target(mesh.next(h)));
   return (b - a).cross(c - a);
 }
 
@@ -104,8 +105,8 @@ void BoundSurface::export_to(GenerateResult& result) const {
   }
   for (const Face f : mesh.faces()) {
     const Halfedge h = mesh.halfedge(f);
-    result.mesh.faces.push_back({number[mesh.source(h).idx()], number[mesh.target(h).idx()],
-                                 number[mesh.target(mesh.next(h)).idx()]});
+    result.mesh.faces.push_back(
+        {number[mesh.source(h).idx()], number[mesh.target(h).idx()], number[mesh.target(mesh.next(h)).idx()]});
   }
 }
 

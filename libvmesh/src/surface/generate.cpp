@@ -3,10 +3,11 @@
 #include <chrono>
 #include <optional>
 
+#include "vmesh/core/error.h"
+
 #include "surface/bound_surface.h"
 #include "surface/optimize.h"
 #include "surface/paper_growth.h"
-#include "vmesh/core/error.h"
 
 namespace vmesh {
 namespace {
@@ -19,7 +20,8 @@ class StageClock {
   void time(std::string stage, Work&& work) {
     const auto start = std::chrono::steady_clock::now();
     work();
-    stages_.push_back({std::move(stage), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+    stages_.push_back(
+        {std::move(stage), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
   }
 
  private:
@@ -51,7 +53,8 @@ void add_warnings(const PaperGrowthReport& growth, std::vector<std::string>& war
 
 }  // namespace
 
-GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options, const Progress& progress) {
+GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options,
+                                const Progress& progress) {
   check_options(options);
   GenerateResult result;
   StageClock clock(result.stages);

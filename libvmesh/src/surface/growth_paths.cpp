@@ -37,8 +37,6 @@ double GrowthPaths::depth(Index segment, double t) const {
   return start_[segment] + (direction_[segment] < 0 ? 1 - t : t) * centerline_.length(segment);
 }
 
-void GrowthPaths::advance(Index segment, double depth) {
-  reached_[segment] = std::max(reached_[segment], depth);
-}
+void GrowthPaths::advance(Index segment, double depth) { reached_[segment] = std::max(reached_[segment], depth); }
 
 }  // namespace vmesh

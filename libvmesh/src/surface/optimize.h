@@ -1,8 +1,9 @@
 #pragma once
 
-#include "surface/bound_surface.h"
 #include "vmesh/core/progress.h"
 #include "vmesh/surface/generate.h"
+
+#include "surface/bound_surface.h"
 
 namespace vmesh {
 

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
+#include "vmesh/volume/crossing.h"
+
 #include "surface/geodesic_sphere.h"
 #include "surface/growth_paths.h"
-#include "vmesh/volume/crossing.h"
 
 namespace vmesh {
 namespace {

@@ -18,8 +18,7 @@ BoxTree::BoxTree(const std::vector<Vec3>& low, const std::vector<Vec3>& high) {
   build(0, 0, static_cast<Index>(low.size()), low, high);
 }
 
-void BoxTree::build(Index node, Index first, Index count, const std::vector<Vec3>& low,
-                    const std::vector<Vec3>& high) {
+void BoxTree::build(Index node, Index first, Index count, const std::vector<Vec3>& low, const std::vector<Vec3>& high) {
   Vec3 box_low = low[order_[first]], box_high = high[order_[first]];
   Vec3 mid_low = box_low + box_high, mid_high = mid_low;
   for (Index i = first; i < first + count; ++i) {

@@ -1,8 +1,8 @@
 #include "vmesh/volume/crossing.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-
 #include <algorithm>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 namespace vmesh {
 namespace {
@@ -21,8 +21,8 @@ bool in_front(const Point triangle[3], const Point& p) {
 int side_of_edge(const Point& p, const Point& q, const Point corner[3], const Index index[3], int i) {
   const int j = (i + 1) % 3;
   const bool forward = index[i] < index[j];
-  const auto sign = forward ? CGAL::orientation(p, q, corner[i], corner[j])
-                            : CGAL::orientation(p, q, corner[j], corner[i]);
+  const auto sign =
+      forward ? CGAL::orientation(p, q, corner[i], corner[j]) : CGAL::orientation(p, q, corner[j], corner[i]);
   const int canonical = sign == CGAL::NEGATIVE ? -1 : 1;
   return forward ? canonical : -canonical;
 }
@@ -37,8 +37,7 @@ std::optional<Crossing> find_crossing(const Vec3& first, const Vec3& last, const
   const int side = side_of_edge(p, q, corner, triangle.index, 0);
   if (side_of_edge(p, q, corner, triangle.index, 1) != side) return std::nullopt;
   if (side_of_edge(p, q, corner, triangle.index, 2) != side) return std::nullopt;
-  const Vec3 normal =
-      (triangle.corner[1] - triangle.corner[0]).cross(triangle.corner[2] - triangle.corner[0]);
+  const Vec3 normal = (triangle.corner[1] - triangle.corner[0]).cross(triangle.corner[2] - triangle.corner[0]);
   const double before = normal.dot(first - triangle.corner[0]), after = normal.dot(last - triangle.corner[0]);
   const double span = before - after;
   const double t = span != 0 ? std::clamp(before / span, 0.0, 1.0) : 0.5;

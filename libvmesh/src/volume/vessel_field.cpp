@@ -127,7 +127,7 @@ void VesselField::blend_candidates(const Vec3& p, std::span<const Index> near, F
   for (std::size_t i = 0; i < near.size(); ++i) {
     for (std::size_t j = i + 1; j < near.size(); ++j) {
       const auto& [low, high] = candidates[i].value <= candidates[j].value ? std::tie(candidates[i], candidates[j])
-                                                                             : std::tie(candidates[j], candidates[i]);
+                                                                           : std::tie(candidates[j], candidates[i]);
       const double width = blend_ * std::min(low.radius, high.radius) * (1 - low.gradient.dot(high.gradient));
       const double gap = high.value - low.value;
       if (gap >= width) continue;

@@ -46,9 +46,7 @@ class Centerline {
   Index other_node(Index s, Index n) const { return segments_[s].a == n ? segments_[s].b : segments_[s].a; }
 
   /// Euclidean length of segment `s`.
-  double length(Index s) const {
-    return (nodes_[segments_[s].b].position - nodes_[segments_[s].a].position).norm();
-  }
+  double length(Index s) const { return (nodes_[segments_[s].b].position - nodes_[segments_[s].a].position).norm(); }
 
   /// The point at parameter `t` in [0, 1] of segment `s`, and the radius there (linear interpolation).
   Vec3 point_at(Index s, double t) const {

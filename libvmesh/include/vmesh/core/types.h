@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>  // cross() compiles without it and then does not link
 #include <cstdint>
 #include <limits>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>  // cross() compiles without it and then does not link
 
 namespace vmesh {
 

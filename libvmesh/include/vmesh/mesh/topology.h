@@ -10,14 +10,14 @@ namespace vmesh {
 
 /// The topology of a triangle mesh, coincident vertices counted as different.
 struct Topology {
-  bool closed = false;                   ///< every edge has two faces or more
-  bool manifold = false;                 ///< no edge with more than two faces, no vertex with two fans
-  bool oriented = false;                 ///< neighbouring faces run along their common edge in opposite directions
-  bool outward = false;                  ///< closed, oriented, and every component encloses a positive volume
-  std::size_t components = 0;            ///< of faces, joined by common vertices
-  std::size_t boundary_edges = 0;        ///< edges with one face
-  std::int64_t euler_characteristic = 0; ///< vertices - edges + faces; vertices without a face do not count
-  std::int64_t genus = 0;                ///< sum over components; defined when closed, manifold and oriented, else 0
+  bool closed = false;                    ///< every edge has two faces or more
+  bool manifold = false;                  ///< no edge with more than two faces, no vertex with two fans
+  bool oriented = false;                  ///< neighbouring faces run along their common edge in opposite directions
+  bool outward = false;                   ///< closed, oriented, and every component encloses a positive volume
+  std::size_t components = 0;             ///< of faces, joined by common vertices
+  std::size_t boundary_edges = 0;         ///< edges with one face
+  std::int64_t euler_characteristic = 0;  ///< vertices - edges + faces; vertices without a face do not count
+  std::int64_t genus = 0;                 ///< sum over components; defined when closed, manifold and oriented, else 0
 };
 
 /// Throws InvalidInput when a face names a vertex that does not exist.

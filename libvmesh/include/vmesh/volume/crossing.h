@@ -8,7 +8,7 @@ namespace vmesh {
 
 /// Where a centerline segment crosses a triangle.
 struct Crossing {
-  double t = 0;     ///< parameter on the segment, in [0, 1]
+  double t = 0;       ///< parameter on the segment, in [0, 1]
   int direction = 1;  ///< +1: from first to last it leaves through the triangle's front (counter-clockwise) side
 };
 

@@ -62,10 +62,10 @@ class VesselField {
 
  private:
   struct Cone {
-    Vec3 origin, axis;          // axis = last - first, mm
+    Vec3 origin, axis;  // axis = last - first, mm
     double r0 = 0, r1 = 0;
-    double inv_length2 = 0;     // 1 / |axis|^2; 0 for a sphere
-    double lag = 0;             // tan(half angle) / |axis|: how far the touching sphere lags the foot point
+    double inv_length2 = 0;        // 1 / |axis|^2; 0 for a sphere
+    double lag = 0;                // tan(half angle) / |axis|: how far the touching sphere lags the foot point
     double t_low = 0, t_high = 1;  // equal where one end sphere contains the other
     Index a = kNone, b = kNone;
   };

@@ -1,0 +1,42 @@
+#include "vmesh/surface/deviation.h"
+
+#include <cmath>
+
+namespace vmesh {
+namespace {
+
+constexpr double kSampleWeights[4][3] = {
+    {1.0 / 3, 1.0 / 3, 1.0 / 3}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}};
+
+}  // namespace
+
+Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
+                            const VesselField& field) {
+  Deviation deviation;
+  double total_area = 0;
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    const double area = area_normal(mesh, f).norm();
+    total_area += 4 * area;
+    for (const auto& weight : kSampleWeights) {
+      Vec3 p = Vec3::Zero();
+      for (int i = 0; i < 3; ++i) p += weight[i] * mesh.vertices[mesh.faces[f][i]];
+      const FieldSample sample = field.sample(p, binding[mesh.faces[f][0]].segment);
+      const double distance = std::abs(sample.distance);
+      const double relative = distance / field.radius_at(sample.cone, sample.t);
+      deviation.mean_mm += area * distance;
+      deviation.mean_relative += area * relative;
+      deviation.max_mm = std::max(deviation.max_mm, distance);
+      if (relative > deviation.max_relative) {
+        deviation.max_relative = relative;
+        deviation.max_at = p;
+      }
+    }
+  }
+  if (total_area > 0) {
+    deviation.mean_mm /= total_area;
+    deviation.mean_relative /= total_area;
+  }
+  return deviation;
+}
+
+}  // namespace vmesh

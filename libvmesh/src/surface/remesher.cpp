@@ -1,0 +1,224 @@
+#include "surface/remesher.h"
+
+#include <queue>
+
+#include <CGAL/boost/graph/Euler_operations.h>
+
+namespace vmesh {
+namespace {
+
+constexpr double kSplitLength = 1.35;  // in target lengths
+constexpr double kCollapseLength = 0.65;
+constexpr double kMaxBulge = 0.3;     // see bulge()
+constexpr double kUprightFlip = 0.5;  // agreement that a flip may always lead to
+constexpr double kBadEnergy = 1.8;    // of a face: skewness about 0.4
+
+}  // namespace
+
+void Remesher::split_long_edges() {
+  std::priority_queue<std::pair<double, Index>> queue;
+  const auto push = [&](Edge e, double limit = std::numeric_limits<double>::infinity()) {
+    const double excess = state_.length(e) / state_.target_length(e);
+    if (excess > kSplitLength && excess < limit && upright(e)) queue.emplace(excess, e.idx());
+  };
+  for (const Edge e : mesh_.edges()) {
+    if (state_.active(e)) push(e);
+  }
+  while (!queue.empty()) {
+    const auto [excess, index] = queue.top();
+    queue.pop();
+    const Edge e(index);
+    if (state_.length(e) / state_.target_length(e) != excess) continue;  // has changed since, and was pushed again
+    const Vertex v = split(e);
+    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+      push(mesh_.edge(h), 0.99 * excess);  // shorter each time: this ends
+      try_flip(mesh_.edge(mesh_.prev(h)), 0);
+    }
+  }
+}
+
+bool Remesher::upright(Edge e) const {
+  for (const Halfedge h : {mesh_.halfedge(e), mesh_.opposite(mesh_.halfedge(e))}) {
+    if (state_.agreement(mesh_.source(h), mesh_.target(h), mesh_.target(mesh_.next(h))) < SweepState::kMinAgreement)
+      return false;
+  }
+  return true;
+}
+
+Vertex Remesher::split(Edge e) {
+  const double size = state_.target_length(e);
+  const Vertex v = surface_.split_edge(e);
+  state_.size[v] = size;
+  state_.activate(v);
+  state_.stir(v);
+  move_to_boundary(v);
+  return v;
+}
+
+void Remesher::move_to_boundary(Vertex v) {
+  const BoundaryPoint target = project_to_boundary(field_, state_.point(v), surface_.cone[v]);
+  const bool far = (target.position - state_.point(v)).norm() > state_.size[v];
+  for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+    const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
+    if (far || state_.agreement(target, b, c) < std::min(SweepState::kMinAgreement, state_.agreement(v, b, c))) {
+      surface_.place(v, state_.point(v), field_.sample(state_.point(v), surface_.cone[v]));
+      return;
+    }
+  }
+  surface_.place(v, target.position, target.sample);
+}
+
+void Remesher::collapse_short_edges() {
+  const auto count = static_cast<Index>(mesh_.num_edges());
+  for (Index i = 0; i < count; ++i) {
+    const Edge e(i);
+    if (mesh_.is_removed(e) || !state_.active(e) || state_.length(e) >= kCollapseLength * state_.target_length(e))
+      continue;
+    collapse(e);
+  }
+}
+
+bool Remesher::collapse(Edge e) {
+  const Vertex a = mesh_.vertex(e, 0), b = mesh_.vertex(e, 1);
+  const BoundaryPoint target = project_to_boundary(field_, 0.5 * (state_.point(a) + state_.point(b)), surface_.cone[a]);
+  if (!collapsible_to(a, b, target) || !collapsible_to(b, a, target)) return false;
+  if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return false;
+  const double size = std::min(state_.size[a], state_.size[b]);
+  const Vertex v = CGAL::Euler::collapse_edge(e, mesh_);
+  surface_.place(v, target.position, target.sample);
+  state_.size[v] = size;
+  state_.stir(v);
+  return true;
+}
+
+void Remesher::collapse_bad_faces() {
+  const auto count = static_cast<Index>(mesh_.num_faces());
+  for (Index i = 0; i < count; ++i) {
+    const Face f(i);
+    if (mesh_.is_removed(f)) continue;
+    const auto [a, b, c] = state_.corners(f);
+    if (state_.energy(a, b, c) < kBadEnergy) continue;
+    Halfedge shortest = mesh_.halfedge(f);
+    for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
+      if (state_.length(mesh_.edge(h)) < state_.length(mesh_.edge(shortest))) shortest = h;
+    }
+    const Vertex u = mesh_.source(shortest), v = mesh_.target(shortest);
+    const BoundaryPoint target =
+        project_to_boundary(field_, 0.5 * (state_.point(u) + state_.point(v)), surface_.cone[u]);
+    const double worst = std::max(worst_energy(u, v, target.position), worst_energy(v, u, target.position));
+    if (worst < state_.energy(a, b, c)) collapse(mesh_.edge(shortest));
+  }
+}
+
+double Remesher::worst_energy(Vertex v, Vertex other, const Vec3& p) const {
+  double worst = 0;
+  for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+    const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
+    if (b != other && c != other) worst = std::max(worst, SweepState::energy(p, state_.point(b), state_.point(c)));
+  }
+  return worst;
+}
+
+bool Remesher::collapsible_to(Vertex v, Vertex other, const BoundaryPoint& target) const {
+  for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+    const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
+    if (b == other || c == other) continue;
+    if ((state_.point(c) - target.position).norm() > kSplitLength * 0.5 * (state_.size[c] + state_.size[v]))
+      return false;
+    if (!state_.stays_upright(v, b, c, target)) return false;
+    const double reach = (state_.point(c) - target.position).norm();
+    if (std::abs(field_.sample(0.5 * (state_.point(c) + target.position), target.sample.cone).distance) >
+        kMaxBulge * reach) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Remesher::split_far_faces(double max_distance) {
+  const auto count = static_cast<Index>(mesh_.num_faces());
+  for (Index i = 0; i < count; ++i) {
+    const Face f(i);
+    if (mesh_.is_removed(f)) continue;
+    const std::array<Vertex, 3> corner = state_.corners(f);
+    const Vec3 center = (state_.point(corner[0]) + state_.point(corner[1]) + state_.point(corner[2])) / 3;
+    const FieldSample s = field_.sample(center, surface_.cone[corner[0]]);
+    if (std::abs(s.distance) <= max_distance * field_.radius_at(s.cone, s.t)) continue;
+    for (const Vertex v : surface_.split_edge_centric(f)) {
+      state_.size[v] = std::min({state_.size[corner[0]], state_.size[corner[1]], state_.size[corner[2]]}) / 2;
+      state_.activate(v);
+      state_.stir(v);
+      move_to_boundary(v);
+    }
+  }
+}
+
+double Remesher::bulge(Vertex a, Vertex b) const {
+  const Vec3 middle = 0.5 * (state_.point(a) + state_.point(b));
+  return std::abs(field_.sample(middle, surface_.cone[a]).distance) / (state_.point(a) - state_.point(b)).norm();
+}
+
+void Remesher::repair_strays() {
+  const auto count = static_cast<Index>(mesh_.num_edges());
+  for (Index i = 0; i < count; ++i) {
+    const Edge e(i);
+    if (mesh_.is_removed(e) || !state_.active(e)) continue;
+    const Vertex a = mesh_.vertex(e, 0), b = mesh_.vertex(e, 1);
+    const double stray = bulge(a, b);
+    if (stray < kMaxBulge) continue;
+    const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
+    const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
+    if (can_flip(h) && bulge(c, d) < 0.5 * stray && flip_stays_upright(a, b, c, d)) {
+      flip(h);
+    }
+  }
+}
+
+bool Remesher::can_flip(Halfedge h) const {
+  const Halfedge o = mesh_.opposite(h);
+  if (mesh_.degree(mesh_.source(h)) <= 3 || mesh_.degree(mesh_.target(h)) <= 3) return false;
+  return mesh_.halfedge(mesh_.target(mesh_.next(h)), mesh_.target(mesh_.next(o))) == SurfaceMesh::null_halfedge();
+}
+
+bool Remesher::flip_stays_upright(Vertex a, Vertex b, Vertex c, Vertex d) const {
+  const double then = std::min(state_.agreement(c, d, b), state_.agreement(d, c, a));
+  return then >= kUprightFlip || then >= std::min(state_.agreement(a, b, c), state_.agreement(b, a, d));
+}
+
+double Remesher::irregularity(Vertex v, int change) const {
+  const double defect = static_cast<double>(mesh_.degree(v)) + change - 6;
+  return defect * defect;
+}
+
+void Remesher::flip_edges(double regularity) {
+  for (const Edge e : mesh_.edges()) {
+    if (state_.active(e)) try_flip(e, regularity);
+  }
+}
+
+void Remesher::flip(Halfedge h) {
+  for (const Halfedge side : {h, mesh_.opposite(h)}) {
+    state_.touch(mesh_.target(side));
+    state_.touch(mesh_.target(mesh_.next(side)));
+  }
+  CGAL::Euler::flip_edge(h, mesh_);
+}
+
+bool Remesher::try_flip(Edge e, double regularity) {
+  const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
+  const Vertex a = mesh_.source(h), b = mesh_.target(h);
+  const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
+  double gain = state_.energy(a, b, c) + state_.energy(b, a, d) - state_.energy(c, d, b) - state_.energy(d, c, a);
+  if (regularity > 0) {
+    gain += regularity * (irregularity(a, 0) + irregularity(b, 0) + irregularity(c, 0) + irregularity(d, 0) -
+                          irregularity(a, -1) - irregularity(b, -1) - irregularity(c, 1) - irregularity(d, 1));
+  }
+  if (!(gain > 1e-9)) return false;
+  if (!can_flip(h) || !flip_stays_upright(a, b, c, d)) return false;
+  const double stray = bulge(c, d);
+  if (stray > kMaxBulge && stray > bulge(a, b)) return false;
+  flip(h);
+  return true;
+}
+
+}  // namespace vmesh
