@@ -1,4 +1,5 @@
 #include "vmesh/io/sha256.h"
+#include "vmesh/volume/vessel_field.h"
 
 #include "exit_code.h"
 #include "inputs.h"
@@ -31,10 +32,13 @@ MeshAttributes attributes_of(const GenerateResult& result) {
 void log_result(const GenerateReport& report, Console& console) {
   const TriMesh& mesh = report.result->mesh;
   const double size = report.cleaned->centerline.length_in_radii();
-  console.log(std::to_string(mesh.vertices.size()) + " vertices (" +
-              number(static_cast<double>(mesh.vertices.size()) / size, 1) + " per length of one radius), " +
-              std::to_string(mesh.faces.size()) + " faces, skewness " + number(report.measurement.skewness.mean) +
-              " mean, " + number(report.measurement.skewness.max) + " max");
+  std::string vertices = std::to_string(mesh.vertices.size()) + " vertices";
+  if (size > 0)
+    vertices += " (" + number(static_cast<double>(mesh.vertices.size()) / size, 1) + " per radius of length)";
+  console.log(vertices + ", " + std::to_string(mesh.faces.size()) + " faces, skewness " +
+              number(report.measurement.skewness.mean) + " mean, " + number(report.measurement.skewness.max) + " max");
+  console.log("distance to the volume " + number(report.deviation.mean_relative) + " mean, " +
+              number(report.deviation.max_relative) + " max, in local radii");
   double total = 0;
   for (const StageTime& stage : report.stages) total += stage.seconds;
   console.log("wrote " + report.arguments->output.string() + " after " + number(total, 2) + " s");

@@ -29,6 +29,14 @@ Json options_json(const GenerateArguments& arguments) {
   return json;
 }
 
+Json to_json(const Deviation& deviation) {
+  return {{"mean_mm", deviation.mean_mm},
+          {"max_mm", deviation.max_mm},
+          {"mean_relative", deviation.mean_relative},
+          {"max_relative", deviation.max_relative},
+          {"max_at", {deviation.max_at.x(), deviation.max_at.y(), deviation.max_at.z()}}};
+}
+
 Json stages_json(const std::vector<StageTime>& stages) {
   Json json = Json::object();
   double total = 0;
@@ -111,6 +119,7 @@ Json to_json(const GenerateReport& report) {
   json["topology"]["expected_components"] = expected.components;
   json["topology"]["expected_genus"] = expected.genus;
   json["nodes_inside"] = report.nodes_inside ? Json(*report.nodes_inside) : Json();
+  json["distance"] = to_json(report.deviation);
   json["seconds"] = stages_json(report.stages);
   json["warnings"] = report.warnings;
   json["problems"] = report.problems;

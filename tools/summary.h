@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vmesh/centerline/cleaning.h"
+#include "vmesh/surface/deviation.h"
 
 #include "arguments.h"
 #include "measure.h"
@@ -22,6 +23,7 @@ struct GenerateReport {
   const GenerateResult* result = nullptr;
   SurfaceMeasurement measurement;
   std::optional<std::size_t> nodes_inside;
+  Deviation deviation;
   std::vector<StageTime> stages;  ///< of the whole run
   std::vector<std::string> warnings, problems;
 };
