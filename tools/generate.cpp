@@ -65,9 +65,13 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
 /// Fills in what is measured of the surface and what is wrong with it.
 void measure(GenerateReport& report, Console& console) {
   const Centerline& centerline = report.cleaned->centerline;
-  report.measurement = measure_surface(report.result->mesh);
+  const GenerateResult& result = *report.result;
+  report.measurement = measure_surface(result.mesh);
   stop_if_interrupted();
-  report.nodes_inside = count_nodes_inside(centerline, report.result->mesh);
+  const VesselField field(centerline, report.arguments->options.blend);
+  report.deviation = measure_deviation(result.mesh, result.binding, field);
+  stop_if_interrupted();
+  report.nodes_inside = count_nodes_inside(centerline, result.mesh);
   stop_if_interrupted();
   report.problems =
       problems_of(report.measurement, expected_surface(centerline), report.nodes_inside, centerline.nodes().size());

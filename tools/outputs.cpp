@@ -2,11 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 #include <iostream>
-
-#include <unistd.h>
 
 #include "vmesh/core/version.h"
 #include "vmesh/io/atomic_file.h"
@@ -40,11 +36,6 @@ bool needs_no_check(const PlannedOutput& output) {
   return output.path.empty() || (output.kind == Kind::summary && output.path == "-");
 }
 
-fs::path folder_of(const fs::path& path) {
-  const fs::path parent = path.parent_path();
-  return parent.empty() ? fs::path(".") : parent;
-}
-
 /// Whether both names lead to one file, through links and detours; also when it does not exist yet.
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
@@ -65,12 +56,8 @@ void check_format(const PlannedOutput& output) {
 }
 
 void check_writable(const fs::path& path) {
-  const fs::path folder = folder_of(path);
-  if (fs::is_directory(path)) throw WriteError(path.string() + ": is a folder; name a file in it");
-  if (fs::exists(path) && !fs::is_regular_file(path)) return;  // a device or pipe: written directly
-  if (!fs::is_directory(folder)) throw WriteError(path.string() + ": there is no folder " + folder.string());
-  if (access(folder.c_str(), W_OK | X_OK) != 0)
-    throw WriteError(path.string() + ": cannot write into " + folder.string() + ": " + std::strerror(errno));
+  if (fs::exists(path) && !fs::is_regular_file(path) && !fs::is_directory(path)) return;  // a device or a pipe
+  const AtomicFile probe(path);  // throws WriteError; removed as it is not committed
 }
 
 }  // namespace

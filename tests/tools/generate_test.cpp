@@ -65,6 +65,7 @@ TEST_F(Generate, SummaryTellsWhatCameOut) {
   EXPECT_EQ(summary.at("self_intersections"), 0);
   EXPECT_EQ(summary.at("nodes_inside"), 4);
   EXPECT_EQ(summary.at("centerline").at("nodes"), 4);
+  EXPECT_GT(summary.at("distance").at("mean_relative"), 0.01);  // no polygon is a circle
   EXPECT_LT(summary.at("distance").at("mean_relative"), 0.2);
   EXPECT_GE(summary.at("distance").at("max_mm"), summary.at("distance").at("mean_mm"));
   EXPECT_GT(summary.at("skewness").at("mean"), 0.0);
