@@ -115,9 +115,10 @@ Topology measure_topology(const TriMesh& mesh) {
     if (used[v] && sets.find(v) == v) ++topology.components;
   }
   topology.euler_characteristic = vertices - edges + static_cast<std::int64_t>(mesh.faces.size());
-  const bool surface = topology.closed && topology.manifold && topology.oriented;
-  if (surface) {
-    topology.genus = static_cast<std::int64_t>(topology.components) - topology.euler_characteristic / 2;
+  if (topology.closed && topology.oriented) {
+    if (topology.manifold) {
+      topology.genus = static_cast<std::int64_t>(topology.components) - topology.euler_characteristic / 2;
+    }
     std::vector<double> volume(mesh.vertices.size(), 0);
     for (const auto& [a, b, c] : mesh.faces) {
       // Relative to a vertex of the component, so that a far origin costs no digits.

@@ -1,0 +1,213 @@
+#include "vmesh/mesh/topology.h"
+
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "vmesh/core/error.h"
+
+#include "draw.h"
+#include "shapes.h"
+
+namespace vmesh {
+namespace {
+
+using testing::operator+;
+using testing::moved, testing::inverted, testing::tetrahedron, testing::cube, testing::icosphere, testing::torus;
+
+TEST(Topology, OfASphere) {
+  const auto t = measure_topology(icosphere(2));
+  EXPECT_TRUE(t.closed);
+  EXPECT_TRUE(t.manifold);
+  EXPECT_TRUE(t.oriented);
+  EXPECT_TRUE(t.outward);
+  EXPECT_EQ(t.components, 1u);
+  EXPECT_EQ(t.boundary_edges, 0u);
+  EXPECT_EQ(t.euler_characteristic, 2);
+  EXPECT_EQ(t.genus, 0);
+}
+
+TEST(Topology, OfATorus) {
+  const auto t = measure_topology(torus(3, 1, 12, 8));
+  EXPECT_TRUE(t.closed && t.manifold && t.oriented && t.outward);
+  EXPECT_EQ(t.euler_characteristic, 0);
+  EXPECT_EQ(t.genus, 1);
+}
+
+TEST(Topology, SumsTheGenusOverComponents) {
+  const auto t = measure_topology(torus(3, 1, 12, 8) + moved(cube(), {9, 0, 0}) + moved(torus(3, 1, 5, 4), {0, 0, 9}));
+  EXPECT_EQ(t.components, 3u);
+  EXPECT_EQ(t.euler_characteristic, 2);
+  EXPECT_EQ(t.genus, 2);
+}
+
+TEST(Topology, DoesNotCountVerticesWithoutAFace) {
+  TriMesh mesh = tetrahedron();
+  mesh.vertices.insert(mesh.vertices.begin(), {7, 7, 7});
+  for (Triangle& f : mesh.faces) f = {f[0] + 1, f[1] + 1, f[2] + 1};
+  mesh.vertices.emplace_back(8, 8, 8);
+  const auto t = measure_topology(mesh);
+  EXPECT_EQ(t.components, 1u);
+  EXPECT_EQ(t.euler_characteristic, 2);
+  EXPECT_TRUE(t.outward);
+}
+
+TEST(Topology, CountsTheEdgesOfAHole) {
+  TriMesh mesh = cube();
+  mesh.faces.pop_back();
+  const auto t = measure_topology(mesh);
+  EXPECT_FALSE(t.closed);
+  EXPECT_TRUE(t.manifold);
+  EXPECT_TRUE(t.oriented);
+  EXPECT_FALSE(t.outward);
+  EXPECT_EQ(t.boundary_edges, 3u);
+  EXPECT_EQ(t.euler_characteristic, 1);
+  EXPECT_EQ(t.genus, 0);
+}
+
+TEST(Topology, SeesAnEdgeWithThreeFaces) {
+  TriMesh mesh = tetrahedron();
+  mesh.vertices.emplace_back(1, 1, 0);
+  mesh.faces.push_back({1, 2, 4});
+  const auto t = measure_topology(mesh);
+  EXPECT_FALSE(t.manifold);
+  EXPECT_FALSE(t.oriented);
+  EXPECT_FALSE(t.closed);
+  EXPECT_EQ(t.boundary_edges, 2u);
+}
+
+TEST(Topology, SeesTwoBodiesThatShareAnEdge) {
+  TriMesh mesh = tetrahedron();
+  mesh.vertices.emplace_back(-1, 0, 0);
+  mesh.vertices.emplace_back(0, -1, 0);
+  mesh.faces.insert(mesh.faces.end(), {{0, 5, 4}, {0, 4, 3}, {0, 3, 5}, {4, 5, 3}});  // shares the edge 0-3
+  const auto t = measure_topology(mesh);
+  EXPECT_TRUE(t.closed);
+  EXPECT_FALSE(t.manifold);
+  EXPECT_FALSE(t.oriented);
+  EXPECT_FALSE(t.outward);
+  EXPECT_EQ(t.components, 1u);
+}
+
+TEST(Topology, SeesTwoBodiesThatShareAVertex) {
+  TriMesh mesh = tetrahedron();
+  mesh.vertices.insert(mesh.vertices.end(), {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}});
+  mesh.faces.insert(mesh.faces.end(), {{0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}});
+  const auto t = measure_topology(mesh);
+  EXPECT_FALSE(t.manifold);
+  EXPECT_TRUE(t.closed);
+  EXPECT_TRUE(t.oriented);
+  EXPECT_TRUE(t.outward);
+  EXPECT_EQ(t.components, 1u);
+  EXPECT_EQ(t.euler_characteristic, 3);
+  EXPECT_EQ(t.genus, 0);  // not defined
+}
+
+TEST(Topology, SeesAFanThatTouchesAnotherAtAVertexOfAnOpenMesh) {
+  const TriMesh mesh = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}};
+  const auto t = measure_topology(mesh);
+  EXPECT_FALSE(t.manifold);
+  EXPECT_TRUE(t.oriented);
+  EXPECT_EQ(t.boundary_edges, 6u);
+}
+
+TEST(Topology, TellsInwardFromInconsistent) {
+  auto t = measure_topology(inverted(cube()));
+  EXPECT_TRUE(t.closed && t.manifold && t.oriented);
+  EXPECT_FALSE(t.outward);
+  TriMesh one_flipped = cube();
+  std::swap(one_flipped.faces[5][0], one_flipped.faces[5][1]);
+  t = measure_topology(one_flipped);
+  EXPECT_TRUE(t.closed && t.manifold);
+  EXPECT_FALSE(t.oriented);
+  EXPECT_FALSE(t.outward);
+}
+
+TEST(Topology, WantsEveryComponentOutward) {
+  const auto t = measure_topology(icosphere(1) + moved(inverted(tetrahedron()), {5, 0, 0}));
+  EXPECT_TRUE(t.oriented);
+  EXPECT_FALSE(t.outward);
+}
+
+TEST(Topology, OrientsFarFromTheOrigin) {
+  // 2^40 leaves 12 bits behind the point: the cube's corners are still exact, a product with the position is not.
+  const Vec3 far(0x1p40, -0x1p40, 0x1p40);
+  EXPECT_TRUE(measure_topology(moved(cube(), far)).outward);
+  EXPECT_FALSE(measure_topology(moved(inverted(cube()), far)).outward);
+}
+
+TEST(Topology, OfAnEmptyMeshIsNothing) {
+  const auto t = measure_topology({});
+  EXPECT_FALSE(t.closed);
+  EXPECT_FALSE(t.outward);
+  EXPECT_EQ(t.components, 0u);
+  EXPECT_EQ(t.euler_characteristic, 0);
+}
+
+TEST(Topology, CallsAFaceThatRepeatsAVertexNotManifold) {
+  EXPECT_FALSE(measure_topology({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}}).manifold);
+}
+
+TEST(Topology, RefusesAFaceWithAnUnknownVertex) {
+  try {
+    measure_topology({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 3}}});
+    FAIL() << "no exception";
+  } catch (const InvalidInput& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("face 1"), std::string::npos) << text;
+    EXPECT_NE(text.find("vertex 3"), std::string::npos) << text;
+  }
+}
+
+TEST(Topology, DoesNotDependOnTheOrderOfFacesAndVertices) {
+  testing::Draw draw(2);
+  for (int trial = 0; trial < 50; ++trial) {
+    // Random faces on few vertices: every defect appears, and often several at once.
+    TriMesh mesh;
+    mesh.vertices.resize(6, Vec3::Zero());
+    for (Vec3& v : mesh.vertices) v = draw.in_cube(1);
+    for (Index f = 0; f < 3 + draw.below(8); ++f) {
+      std::vector<Index> v = {0, 1, 2, 3, 4, 5};
+      draw.shuffle(v);
+      mesh.faces.push_back({v[0], v[1], v[2]});
+    }
+    const auto before = measure_topology(mesh);
+    std::vector<Index> number = {0, 1, 2, 3, 4, 5};
+    draw.shuffle(number);
+    TriMesh other = mesh;
+    for (Index v = 0; v < 6; ++v) other.vertices[number[v]] = mesh.vertices[v];
+    for (Triangle& f : other.faces) f = {number[f[1]], number[f[2]], number[f[0]]};
+    draw.shuffle(other.faces);
+    const auto after = measure_topology(other);
+    EXPECT_EQ(after.closed, before.closed);
+    EXPECT_EQ(after.manifold, before.manifold);
+    EXPECT_EQ(after.oriented, before.oriented);
+    EXPECT_EQ(after.components, before.components);
+    EXPECT_EQ(after.boundary_edges, before.boundary_edges);
+    EXPECT_EQ(after.euler_characteristic, before.euler_characteristic);
+  }
+}
+
+TEST(EnclosedVolume, OfSimpleBodiesIsExact) {
+  EXPECT_EQ(enclosed_volume({}), 0);
+  // Products and sums of small whole numbers are exact, the division by 6 rounds once.
+  EXPECT_DOUBLE_EQ(enclosed_volume(tetrahedron()), 1.0 / 6);
+  EXPECT_DOUBLE_EQ(enclosed_volume(cube()), 1);
+  EXPECT_DOUBLE_EQ(enclosed_volume(inverted(cube())), -1);
+  EXPECT_DOUBLE_EQ(enclosed_volume(moved(cube(), {0x1p40, 0x1p40, 0x1p40})), 1);
+  EXPECT_DOUBLE_EQ(enclosed_volume(cube() + moved(tetrahedron(), {5, 5, 5})), 7.0 / 6);
+}
+
+TEST(EnclosedVolume, OfAPrismaticTorusFollowsPappus) {
+  // Between two neighbouring cross-sections lies a prismatoid; as the tube's corners lie on cones around the axis, the
+  // volume is the polygon's area times its centre's path, with sin(2 pi / n) in place of 2 pi / n for both polygons.
+  const Index along = 40, around = 24;
+  const double expected = 0.5 * around * std::sin(2 * std::numbers::pi / around) *  // area of the cross-section
+                          3 * along * std::sin(2 * std::numbers::pi / along);       // path of its centre
+  const double volume = enclosed_volume(torus(3, 1, along, around));
+  // The quadrilaterals are planar trapezoids, so that their diagonals do not matter: only rounding is left.
+  EXPECT_NEAR(volume, expected, 1e-12 * expected);
+}
+
+}  // namespace
+}  // namespace vmesh

@@ -1,0 +1,92 @@
+#include "vmesh/mesh/triangle_quality.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "draw.h"
+#include "shapes.h"
+
+namespace vmesh {
+namespace {
+
+// An angle is one atan2 of a cross and a dot product: a few rounding errors of at most pi each, divided by pi / 3.
+constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+
+Vec3 at_angle(double degrees) {
+  const double radians = degrees * std::numbers::pi / 180;
+  return {std::cos(radians), std::sin(radians), 0};
+}
+
+TEST(EquiangleSkewness, OfKnownTriangles) {
+  const Vec3 o(0, 0, 0), x(1, 0, 0);
+  EXPECT_NEAR(equiangle_skewness(o, x, at_angle(60)), 0, kRounding);
+  EXPECT_NEAR(equiangle_skewness(o, x, Vec3(0, 1, 0)), 0.25, kRounding);            // 90 45 45
+  EXPECT_NEAR(equiangle_skewness(o, x, Vec3(0, std::sqrt(3), 0)), 0.5, kRounding);  // 90 60 30
+  EXPECT_NEAR(equiangle_skewness(o, x, at_angle(120)), 0.5, kRounding);             // 120 30 30
+  EXPECT_NEAR(equiangle_skewness(o, x, at_angle(20)), 2.0 / 3, kRounding);          // 20 80 80: the least counts
+  EXPECT_NEAR(equiangle_skewness(o, x, at_angle(150)), 0.75, kRounding);            // 150 15 15
+}
+
+TEST(EquiangleSkewness, IsOneForADegenerateTriangle) {
+  const Vec3 o(0, 0, 0), x(1, 0, 0);
+  EXPECT_EQ(equiangle_skewness(o, x, Vec3(2, 0, 0)), 1);
+  EXPECT_EQ(equiangle_skewness(x, o, Vec3(2, 0, 0)), 1);
+  EXPECT_EQ(equiangle_skewness(o, o, x), 1);
+  EXPECT_EQ(equiangle_skewness(o, x, o), 1);
+  EXPECT_EQ(equiangle_skewness(x, o, o), 1);
+  EXPECT_EQ(equiangle_skewness(x, x, x), 1);
+}
+
+TEST(EquiangleSkewness, StaysBetweenZeroAndOneAndCaresForNeitherOrderNorSize) {
+  testing::Draw draw(1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 a = draw.in_cube(1), b = draw.in_cube(1),
+               c = draw.chance(0.3) ? Vec3(a + 1e-9 * draw.in_cube(1)) : draw.in_cube(1);
+    const double skewness = equiangle_skewness(a, b, c);
+    EXPECT_GE(skewness, 0);
+    EXPECT_LE(skewness, 1);
+    EXPECT_NEAR(equiangle_skewness(b, c, a), skewness, kRounding);
+    EXPECT_NEAR(equiangle_skewness(b, a, c), skewness, kRounding);
+    // A power of two costs no digit, so nothing may change at all.
+    for (const double scale : {0x1p-100, 0x1p+100}) {
+      EXPECT_EQ(equiangle_skewness(scale * a, scale * b, scale * c), skewness);
+    }
+  }
+}
+
+TEST(EquiangleSkewness, OfAMeshIsThatOfItsFacesInOrder) {
+  TriMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, at_angle(60)};
+  mesh.faces = {{0, 1, 2}, {0, 1, 3}, {0, 1, 1}};
+  const auto skewness = equiangle_skewness(mesh);
+  ASSERT_EQ(skewness.size(), 3u);
+  EXPECT_NEAR(skewness[0], 0.25, kRounding);
+  EXPECT_NEAR(skewness[1], 0, kRounding);
+  EXPECT_EQ(skewness[2], 1);
+  const auto summary = summarize_skewness(mesh);
+  EXPECT_NEAR(summary.mean, 1.25 / 3, kRounding);
+  EXPECT_EQ(summary.max, 1);
+}
+
+TEST(EquiangleSkewness, OfAnEmptyMeshIsZero) {
+  const auto summary = summarize_skewness({});
+  EXPECT_EQ(summary.mean, 0);
+  EXPECT_EQ(summary.max, 0);
+}
+
+TEST(VertexNormals, PointOutwardsWeightedByArea) {
+  TriMesh mesh = testing::icosphere(2);
+  const auto normals = vertex_normals(mesh);
+  // The faces around a vertex of a subdivided icosahedron lean by no more than their size, 0.3 of the radius.
+  for (std::size_t v = 0; v < normals.size(); ++v) EXPECT_GT(normals[v].dot(mesh.vertices[v]), 0.99);
+  // A wall of area 8 and one of area 2 at a right angle, on one vertex.
+  mesh = {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, -1}, {9, 9, 9}}, {{0, 1, 2}, {0, 2, 3}}};
+  const Vec3 expected = Vec3(-4, 0, 16).normalized();
+  EXPECT_LT((vertex_normals(mesh)[0] - expected).norm(), kRounding);
+  EXPECT_EQ(vertex_normals(mesh)[4], Vec3(0, 0, 0));
+}
+
+}  // namespace
+}  // namespace vmesh
