@@ -74,6 +74,14 @@ TEST_F(Generate, SummaryTellsWhatCameOut) {
   EXPECT_TRUE(summary.at("problems").empty()) << summary.at("problems");
 }
 
+TEST_F(Generate, AFinerSurfaceIsCloserToTheVolume) {
+  const auto distance = [this](const char* around) {
+    const Outcome run = vmesh({"generate", "@y.swc", "-o", "@y.ply", "--json", "-", "--around", around});
+    return json::parse(run.out).at("distance").at("mean_relative").get<double>();
+  };
+  EXPECT_LT(distance("14"), 0.5 * distance("6"));
+}
+
 TEST_F(Generate, SummaryOnStdoutIsAllThatIsThere) {
   const Outcome run = vmesh({"generate", "@y.swc", "-o", "@y.ply", "--json", "-"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
