@@ -41,11 +41,12 @@ TriMesh refine(const TriMesh& coarse) {
 
 }  // namespace
 
-std::vector<Vertex> add_geodesic_sphere(BoundSurface& surface, const Vec3& center, double radius, Index hint) {
+std::vector<Vertex> add_geodesic_sphere(BoundSurface& surface, const Vec3& center, double radius,
+                                        const Eigen::Matrix3d& orientation, Index hint) {
   static const TriMesh sphere = refine(icosahedron());
   std::vector<Vertex> vertices;
   for (const Vec3& direction : sphere.vertices) {
-    const Vec3 p = center + radius * direction.normalized();
+    const Vec3 p = center + radius * (orientation * direction.normalized());
     vertices.push_back(surface.mesh.add_vertex(p));
     surface.place(vertices.back(), p, surface.field.sample(p, hint));
   }

@@ -18,6 +18,23 @@ constexpr double kMaxFlight = 2;            // vessel radii a vertex may travel 
 constexpr double kBehind = 0.1;             // vessel radii a crossing may lie behind its segment's front
 constexpr double kSmallestFace = 0.02;      // longest edge, in radii of the crossing segment, that is still split
 
+// A frame that turns with the centerline: along the node's first segment, and as far as possible from its others.
+Eigen::Matrix3d frame_at(const Centerline& centerline, Index node) {
+  Vec3 along = Vec3::UnitZ(), across = Vec3::Zero();
+  for (const Index s : centerline.incident_segments(node)) {
+    const Vec3 way = centerline.node(centerline.other_node(s, node)).position - centerline.node(node).position;
+    if (s == centerline.incident_segments(node)[0]) {
+      along = way.normalized();
+    } else if (along.cross(way.normalized()).norm() > across.norm()) {
+      across = along.cross(way.normalized());
+    }
+  }
+  const Vec3 side = across.norm() > 1e-6 ? Vec3(across.normalized()) : Vec3(along.unitOrthogonal());
+  Eigen::Matrix3d frame;
+  frame << side, along.cross(side), along;
+  return frame;
+}
+
 class Growth {
  public:
   Growth(BoundSurface& surface, double beta, const Progress& progress)
@@ -62,7 +79,8 @@ class Growth {
       paths_.start_at(n);
       const Index cone = centerline.degree(n) > 0 ? centerline.incident_segments(n)[0] : ball_of_node[n];
       const auto& node = centerline.node(n);
-      for (const Vertex v : add_geodesic_sphere(surface_, node.position, kSeedFraction * node.radius, cone)) {
+      for (const Vertex v :
+           add_geodesic_sphere(surface_, node.position, kSeedFraction * node.radius, frame_at(centerline, n), cone)) {
         moving_.push_back(v);
       }
     }
