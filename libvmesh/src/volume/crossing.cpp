@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/MP_Float.h>
 
 namespace vmesh {
 namespace {
@@ -12,19 +13,32 @@ using Point = Kernel::Point_3;
 
 Point to_point(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
+// Ties are broken as if the whole polyline were moved by (e, e^2, e^3), e > 0 infinitely small. The moved polyline
+// meets no edge and no vertex, so that it crosses a closed mesh as often outwards and inwards as its ends tell.
+// Where a determinant vanishes, the sign of its change under the move decides: that of a vector's first component
+// that is not zero.
+
 bool in_front(const Point triangle[3], const Point& p) {
-  return CGAL::orientation(triangle[0], triangle[1], triangle[2], p) != CGAL::NEGATIVE;
+  const Point &a = triangle[0], &b = triangle[1], &c = triangle[2];
+  auto sign = CGAL::orientation(a, b, c, p);
+  for (int i = 0; i < 3 && sign == CGAL::ZERO; ++i) {  // the triangle's normal
+    const auto flat = [i](const Point& v) { return Kernel::Point_2(v[(i + 1) % 3], v[(i + 2) % 3]); };
+    sign = CGAL::orientation(flat(a), flat(b), flat(c));
+  }
+  return sign == CGAL::POSITIVE;
 }
 
-// Side on which the line pq passes the edge from corner i to corner i + 1. Evaluated in the order of the corners'
-// indices, so that both faces of an edge agree; a line that meets the edge passes it on the positive side.
-int side_of_edge(const Point& p, const Point& q, const Point corner[3], const Index index[3], int i) {
-  const int j = (i + 1) % 3;
-  const bool forward = index[i] < index[j];
-  const auto sign =
-      forward ? CGAL::orientation(p, q, corner[i], corner[j]) : CGAL::orientation(p, q, corner[j], corner[i]);
-  const int canonical = sign == CGAL::NEGATIVE ? -1 : 1;
-  return forward ? canonical : -canonical;
+// Side on which the line pq passes the edge uv: the sign of (q - p) x (u - p) . (v - p); its change is the sign of
+// (q - p) x (v - u). Zero only for an edge along the line, of a triangle that pq does not cross.
+CGAL::Sign side_of_edge(const Point& p, const Point& q, const Point& u, const Point& v) {
+  auto sign = CGAL::orientation(p, q, u, v);
+  for (int i = 0; i < 3 && sign == CGAL::ZERO; ++i) {
+    using Exact = CGAL::MP_Float;
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    sign = CGAL::sign((Exact(q[j]) - Exact(p[j])) * (Exact(v[k]) - Exact(u[k])) -
+                      (Exact(q[k]) - Exact(p[k])) * (Exact(v[j]) - Exact(u[j])));
+  }
+  return sign;
 }
 
 }  // namespace
@@ -34,9 +48,9 @@ std::optional<Crossing> find_crossing(const Vec3& first, const Vec3& last, const
   const Point corner[3] = {to_point(triangle.corner[0]), to_point(triangle.corner[1]), to_point(triangle.corner[2])};
   const bool first_in_front = in_front(corner, p);
   if (first_in_front == in_front(corner, q)) return std::nullopt;
-  const int side = side_of_edge(p, q, corner, triangle.index, 0);
-  if (side_of_edge(p, q, corner, triangle.index, 1) != side) return std::nullopt;
-  if (side_of_edge(p, q, corner, triangle.index, 2) != side) return std::nullopt;
+  const auto side = side_of_edge(p, q, corner[0], corner[1]);
+  if (side_of_edge(p, q, corner[1], corner[2]) != side) return std::nullopt;
+  if (side_of_edge(p, q, corner[2], corner[0]) != side) return std::nullopt;
   const Vec3 normal = (triangle.corner[1] - triangle.corner[0]).cross(triangle.corner[2] - triangle.corner[0]);
   const double before = normal.dot(first - triangle.corner[0]), after = normal.dot(last - triangle.corner[0]);
   const double span = before - after;

@@ -1,7 +1,7 @@
 #include "vmesh/volume/vessel_field.h"
 
-#include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "vmesh/core/error.h"
@@ -9,8 +9,8 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kMaxBlended = 16;  // cones closer than the blend width at one point; more never matter
-constexpr int kMaxHintSteps = 16;
+// Relative to coordinates: covers the rounding in a distance and in the bound by which a cone is skipped.
+constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -69,7 +69,7 @@ FieldSample VesselField::sample_cone(const Vec3& p, Index cone) const {
 
 FieldSample VesselField::sample(const Vec3& p, Index hint) const {
   FieldSample sample = blended(p, local_cones(hint));
-  for (int step = 0; step < kMaxHintSteps && sample.cone != hint; ++step) {
+  while (sample.cone != hint) {  // ends: every step is to a closer cone, or to an equally close one of lower number
     hint = sample.cone;
     sample = blended(p, local_cones(hint));
   }
@@ -79,8 +79,10 @@ FieldSample VesselField::sample(const Vec3& p, Index hint) const {
 FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones) const {
   FieldSample sample;
   sample.distance = std::numeric_limits<double>::infinity();
-  std::array<Index, kMaxBlended> near;
-  std::size_t near_count = 0;
+  // Kept from call to call, so that a query allocates nothing.
+  thread_local std::vector<Index> near;
+  thread_local std::vector<double> values;
+  near.clear();
   if (blend_ == 0) {
     for (const Index c : cones) {
       const Distance d = distance_to(cones_[c], p);
@@ -88,28 +90,27 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones) co
     }
   } else {
     // One pass keeps the cones within the widest possible blend of the best so far.
-    std::array<double, kMaxBlended> values;
+    values.clear();
     for (const Index c : cones) {
       const Distance d = distance_to(cones_[c], p);
       if (d.value >= sample.distance + 2 * blend_ * max_radius(c)) continue;
       if (d.value < sample.distance) {
         sample = {d.value, sample.gradient, c, d.t};
         std::size_t kept = 0;
-        for (std::size_t i = 0; i < near_count; ++i) {
+        for (std::size_t i = 0; i < near.size(); ++i) {
           if (values[i] >= d.value + 2 * blend_ * max_radius(near[i])) continue;
           near[kept] = near[i];
           values[kept++] = values[i];
         }
-        near_count = kept;
+        near.resize(kept);
+        values.resize(kept);
       }
-      if (near_count < kMaxBlended) {
-        near[near_count] = c;
-        values[near_count++] = d.value;
-      }
+      near.push_back(c);
+      values.push_back(d.value);
     }
   }
   sample.gradient = gradient_of(cones_[sample.cone], p, sample.t);
-  if (near_count > 1) blend_candidates(p, {near.data(), near_count}, sample);
+  if (near.size() > 1) blend_candidates(p, near, sample);
   return sample;
 }
 
@@ -119,17 +120,20 @@ void VesselField::blend_candidates(const Vec3& p, std::span<const Index> near, F
     double value, radius;
     Vec3 gradient;
   };
-  std::array<Candidate, kMaxBlended> candidates;
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    const Distance d = distance_to(cones_[near[i]], p);
-    candidates[i] = {d.value, radius_at(near[i], d.t), gradient_of(cones_[near[i]], p, d.t)};
+  thread_local std::vector<Candidate> candidates;
+  candidates.clear();
+  for (const Index c : near) {
+    const Distance d = distance_to(cones_[c], p);
+    candidates.push_back({d.value, radius_at(c, d.t), gradient_of(cones_[c], p, d.t)});
   }
   for (std::size_t i = 0; i < near.size(); ++i) {
     for (std::size_t j = i + 1; j < near.size(); ++j) {
       const auto& [low, high] = candidates[i].value <= candidates[j].value ? std::tie(candidates[i], candidates[j])
                                                                            : std::tie(candidates[j], candidates[i]);
-      const double width = blend_ * std::min(low.radius, high.radius) * (1 - low.gradient.dot(high.gradient));
       const double gap = high.value - low.value;
+      const double thinner = blend_ * std::min(low.radius, high.radius);
+      if (gap >= 2 * thinner) continue;
+      const double width = thinner * (1 - low.gradient.dot(high.gradient));
       if (gap >= width) continue;
       const double h = 1 - gap / width;
       const double value = low.value - h * h * width / 4;
@@ -141,21 +145,20 @@ void VesselField::blend_candidates(const Vec3& p, std::span<const Index> near, F
 }
 
 FieldSample VesselField::sample_global(const Vec3& p) const {
+  const double rounding = kRounding * p.norm();
   Index best = 0;
-  double limit = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), limit = least;
   tree_.visit(p, limit, [&](Index c) {
     const double value = distance_to(cones_[c], p).value;
-    if (value < limit || (value == limit && c < best)) {
-      limit = value;
+    if (value < least || (value == least && c < best)) {
+      least = value;
+      limit = value + rounding;
       best = c;
     }
   });
   if (blend_ == 0) return sample_cone(p, best);
-  double reach = limit + 2 * blend_ * max_radius(best);
   std::vector<Index> near;
-  tree_.visit(p, reach, [&](Index c) {
-    if (distance_to(cones_[c], p).value <= reach) near.push_back(c);
-  });
+  tree_.visit(p, limit, [&](Index c) { near.push_back(c); });
   std::sort(near.begin(), near.end());
   return blended(p, near);
 }

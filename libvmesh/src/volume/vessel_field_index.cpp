@@ -1,5 +1,6 @@
 // How a VesselField finds the cones that matter at a point: along the graph, and in space.
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <queue>
 #include <unordered_set>
@@ -12,6 +13,8 @@ namespace {
 // Overlap that keeps siblings one union: measured in sums of radii (ALGORITHM: flooding of the locality).
 constexpr double kOverlapFactor = 1.1;
 constexpr double kPathFactor = 2;
+// Relative to coordinates: covers the rounding in a distance and in a box.
+constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
 double segment_distance(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
   const Vec3 w = p - q;
@@ -137,13 +140,18 @@ void VesselField::find_local_cones() {
   }
 }
 
+// The box of a cone holds all points at which it may be blended in: those closer to it than the widest blend.
 void VesselField::build_tree() {
   std::vector<Vec3> low(cones_.size()), high(cones_.size());
-  for (std::size_t c = 0; c < cones_.size(); ++c) {
+  for (Index c = 0; c < cones_.size(); ++c) {
     const Cone& cone = cones_[c];
     const Vec3 end = cone.origin + cone.axis;
     low[c] = (cone.origin.array() - cone.r0).min(end.array() - cone.r1);
     high[c] = (cone.origin.array() + cone.r0).max(end.array() + cone.r1);
+    const double size = low[c].cwiseAbs().cwiseMax(high[c].cwiseAbs()).maxCoeff();
+    const double margin = 2 * blend_ * max_radius(c) + kRounding * size;
+    low[c].array() -= margin;
+    high[c].array() += margin;
   }
   tree_ = BoxTree(low, high);
 }

@@ -12,15 +12,15 @@ struct Crossing {
   int direction = 1;  ///< +1: from first to last it leaves through the triangle's front (counter-clockwise) side
 };
 
-/// A triangle with the indices of its corners, which break ties.
+/// A triangle and the indices of its corners.
 struct IndexedTriangle {
   Vec3 corner[3];
   Index index[3];
 };
 
-/// Whether the segment first-last crosses the triangle. Exact predicates. Ties are broken so that a polyline which
-/// pierces a closed mesh crosses exactly one of the faces around a touched edge or vertex, and exactly one of its
-/// segments crosses where a node lies on a face: a point on the triangle's plane counts as in front of it.
+/// Whether the segment first-last crosses the triangle. Exact predicates. Ties are broken as if the segment were moved
+/// by (e, e^2, e^3), e > 0 infinitely small: a polyline's crossings with a closed mesh then add up to whether its ends
+/// are inside, and where it pierces the mesh at an edge, a vertex or with a node of its own, it crosses one face once.
 std::optional<Crossing> find_crossing(const Vec3& first, const Vec3& last, const IndexedTriangle& triangle);
 
 }  // namespace vmesh

@@ -23,7 +23,7 @@ struct FieldSample {
 /// The distance to one cone is exact. The union's is exact outside and on the boundary; inside it is a lower bound of
 /// the depth, so that a step of |distance| never leaves the volume. With `blend` > 0 branches are rounded: where
 /// two cones of radii r1, r2 meet under gradients g1, g2 the minimum is smooth over a width of
-/// blend * min(r1, r2) * (1 - g1.g2); along a straight chain the gradients agree and nothing bulges.
+/// blend * min(r1, r2) * (1 - g1.g2); along a straight chain the gradients agree and, up to blend 1, nothing bulges.
 ///
 /// Local queries carry a cone they were last closest to; only cones near it along the graph take part
 /// (path distance at most 2 (r_i + r_j), extended over overlapping neighbours). Vessels that come close in space but

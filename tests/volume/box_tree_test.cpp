@@ -1,0 +1,155 @@
+#include "vmesh/volume/box_tree.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "draw.h"
+
+namespace vmesh {
+namespace {
+
+using testing::Draw;
+
+struct Boxes {
+  std::vector<Vec3> low, high;
+};
+
+Boxes random_boxes(Draw& draw, Index count, double size) {
+  Boxes boxes;
+  for (Index i = 0; i < count; ++i) {
+    boxes.low.push_back(draw.in_cube(10));
+    boxes.high.push_back(boxes.low.back() + Vec3(draw.uniform(0, size), draw.uniform(0, size), draw.uniform(0, size)));
+  }
+  return boxes;
+}
+
+double distance(const Boxes& boxes, Index i, const Vec3& p) {
+  return (boxes.low[i] - p).cwiseMax(p - boxes.high[i]).cwiseMax(0).norm();
+}
+
+std::vector<Index> overlapping(const BoxTree& tree, const Vec3& low, const Vec3& high) {
+  std::vector<Index> found;
+  tree.visit_overlapping(low, high, [&](Index i) { found.push_back(i); });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// The tree hands out whole leaves: what it must not do is leave out an item, or hand out one twice.
+void expect_all_overlapping(const Boxes& boxes, const BoxTree& tree, const Vec3& low, const Vec3& high) {
+  const auto found = overlapping(tree, low, high);
+  EXPECT_TRUE(std::adjacent_find(found.begin(), found.end()) == found.end());
+  for (Index i = 0; i < boxes.low.size(); ++i) {
+    const bool meets = (boxes.low[i].array() <= high.array()).all() && (boxes.high[i].array() >= low.array()).all();
+    if (meets) {
+      EXPECT_TRUE(std::binary_search(found.begin(), found.end(), i)) << i;
+    }
+  }
+}
+
+TEST(BoxTree, FindsTheMinimum) {
+  Draw draw(21);
+  for (const Index count : {1u, 2u, 4u, 5u, 9u, 64u, 1000u}) {
+    const Boxes boxes = random_boxes(draw, count, 1);
+    const BoxTree tree(boxes.low, boxes.high);
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 p = draw.in_cube(15);
+      double expected = std::numeric_limits<double>::infinity(), limit = expected;
+      for (Index item = 0; item < count; ++item) expected = std::min(expected, distance(boxes, item, p));
+      tree.visit(p, limit, [&](Index item) { limit = std::min(limit, distance(boxes, item, p)); });
+      EXPECT_EQ(limit, expected);
+    }
+  }
+}
+
+TEST(BoxTree, FindsTheMinimumWithoutLookingAtEverything) {
+  Draw draw(22);
+  const Index count = 4096;
+  const Boxes boxes = random_boxes(draw, count, 0.1);
+  const BoxTree tree(boxes.low, boxes.high);
+  int visited = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 p = draw.in_cube(10);
+    double limit = std::numeric_limits<double>::infinity();
+    tree.visit(p, limit, [&](Index item) {
+      ++visited;
+      limit = std::min(limit, distance(boxes, item, p));
+    });
+  }
+  // About 20 leaves of 4 touch the ball up to the closest of uniformly spread items; a sixth of all is far beyond that.
+  EXPECT_LT(visited / 100, static_cast<int>(count / 6));
+}
+
+TEST(BoxTree, VisitsEveryItemWithinTheLimitOnce) {
+  Draw draw(23);
+  const Boxes boxes = random_boxes(draw, 500, 2);
+  const BoxTree tree(boxes.low, boxes.high);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 p = draw.in_cube(12);
+    const double limit = draw.uniform(0, 4);
+    std::vector<int> visits(500, 0);
+    tree.visit(p, limit, [&](Index item) { ++visits[item]; });
+    for (Index item = 0; item < 500; ++item) {
+      EXPECT_LE(visits[item], 1);
+      if (distance(boxes, item, p) <= limit) {
+        EXPECT_EQ(visits[item], 1);
+      }
+    }
+  }
+}
+
+TEST(BoxTree, DoesNotMissWhatIsDeepestInside) {
+  // Nested cubes around the origin, the deepest sphere in the largest one: a signed distance below zero.
+  Boxes boxes;
+  for (int i = 1; i <= 50; ++i) {
+    boxes.low.push_back(Vec3::Constant(-i));
+    boxes.high.push_back(Vec3::Constant(i));
+  }
+  const BoxTree tree(boxes.low, boxes.high);
+  Draw draw(24);
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 p = draw.in_cube(1);
+    double limit = std::numeric_limits<double>::infinity();
+    tree.visit(p, limit, [&](Index item) { limit = std::min(limit, p.norm() - (item + 1)); });
+    EXPECT_EQ(limit, p.norm() - 50);
+  }
+}
+
+TEST(BoxTree, VisitsAllOverlappingItems) {
+  Draw draw(25);
+  for (const Index count : {1u, 2u, 5u, 300u}) {
+    const Boxes boxes = random_boxes(draw, count, 3);
+    const BoxTree tree(boxes.low, boxes.high);
+    for (int i = 0; i < 100; ++i) {
+      const Vec3 low = draw.in_cube(10);
+      expect_all_overlapping(boxes, tree, low, low + Vec3(draw.uniform(0, 8), draw.uniform(0, 8), draw.uniform(0, 8)));
+      expect_all_overlapping(boxes, tree, low, low);  // a point
+    }
+  }
+}
+
+TEST(BoxTree, CountsBoxesThatOnlyTouchAsOverlapping) {
+  const BoxTree tree({{0, 0, 0}}, {{1, 1, 1}});
+  EXPECT_EQ(overlapping(tree, {1, 1, 1}, {2, 2, 2}), (std::vector<Index>{0}));
+  EXPECT_EQ(overlapping(tree, {-1, -1, -1}, {0, 0, 0}), (std::vector<Index>{0}));
+  EXPECT_TRUE(overlapping(tree, {1, 1, std::nextafter(1.0, 2.0)}, {2, 2, 2}).empty());
+  EXPECT_TRUE(overlapping(tree, {-1, 0, 0}, {std::nextafter(0.0, -1.0), 1, 1}).empty());
+}
+
+TEST(BoxTree, KeepsDuplicatesApart) {
+  const BoxTree tree(std::vector<Vec3>(100, Vec3(1, 2, 3)), std::vector<Vec3>(100, Vec3(2, 3, 4)));
+  const auto found = overlapping(tree, {1, 2, 3}, {1, 2, 3});
+  ASSERT_EQ(found.size(), 100u);
+  for (Index i = 0; i < 100; ++i) EXPECT_EQ(found[i], i);
+}
+
+TEST(BoxTree, VisitsNothingWhenEmpty) {
+  const double limit = std::numeric_limits<double>::infinity();
+  for (const BoxTree& tree : {BoxTree(), BoxTree({}, {})}) {
+    tree.visit({0, 0, 0}, limit, [](Index) { FAIL(); });
+    EXPECT_TRUE(overlapping(tree, {-1, -1, -1}, {1, 1, 1}).empty());
+  }
+}
+
+}  // namespace
+}  // namespace vmesh

@@ -1,0 +1,301 @@
+// Which cones a query along the graph sees.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "vmesh/volume/vessel_field.h"
+
+#include "random_centerline.h"
+
+namespace vmesh {
+namespace {
+
+using testing::CenterlineBuilder;
+using testing::Draw;
+
+bool is_local(const VesselField& field, Index i, Index j) {
+  const auto cones = field.local_cones(i);
+  return std::find(cones.begin(), cones.end(), j) != cones.end();
+}
+
+double max_radius(const VesselField& field, Index c) { return std::max(field.radius_at(c, 0), field.radius_at(c, 1)); }
+
+double distance_to_axis(const VesselField& field, const Vec3& p, Index c) {
+  const Vec3 a = field.axis_point(c, 0), axis = field.axis_point(c, 1) - a;
+  return (p - a - std::clamp(axis.dot(p - a) / axis.squaredNorm(), 0.0, 1.0) * axis).norm();
+}
+
+// The distance from a point of one axis to the other axis is convex in the point: bisection by thirds.
+double axis_distance(const VesselField& field, Index i, Index j) {
+  double low = 0, high = 1;
+  for (int k = 0; k < 90; ++k) {
+    const double u = low + (high - low) / 3, v = high - (high - low) / 3;
+    if (distance_to_axis(field, field.axis_point(i, u), j) < distance_to_axis(field, field.axis_point(i, v), j)) {
+      high = v;
+    } else {
+      low = u;
+    }
+  }
+  double least = distance_to_axis(field, field.axis_point(i, low), j);
+  for (const double t : {0.0, 1.0}) least = std::min(least, distance_to_axis(field, field.axis_point(i, t), j));
+  return least;
+}
+
+// The definition, by brute force: path distance at most 2 (r_i + r_j); then, where i and j are local and overlap (axes
+// closer than 1.1 (r_i + r_j)), neighbours of i that overlap j are local to j, until nothing changes.
+class Locality {
+ public:
+  explicit Locality(const VesselField& field)
+      : field_(field), count_(field.centerline().segments().size()), local_(count_ * count_, 0) {
+    measure_paths();
+    for (Index i = 0; i < count_; ++i) {
+      for (Index j = 0; j < count_; ++j) {
+        const double limit = 2 * (max_radius(field, i) + max_radius(field, j));
+        local_[i * count_ + j] = path_between(i, j) <= limit;
+        note(path_between(i, j), limit);
+        const double reach = 1.1 * (max_radius(field, i) + max_radius(field, j)), apart = axis_distance(field, i, j);
+        overlap_.push_back(apart < reach);
+        note(apart, reach);
+      }
+    }
+    while (flood()) {
+    }
+  }
+
+  bool operator()(Index i, Index j) const { return local_[i * count_ + j]; }
+  /// Some decision was so close that rounding takes it.
+  bool undecided() const { return undecided_; }
+
+ private:
+  void note(double value, double limit) { undecided_ |= std::abs(value - limit) < 1e-9; }
+
+  void measure_paths() {
+    const auto& centerline = field_.centerline();
+    const std::size_t n = centerline.nodes().size();
+    path_.assign(n * n, std::numeric_limits<double>::infinity());
+    for (std::size_t v = 0; v < n; ++v) path_[v * n + v] = 0;
+    for (Index s = 0; s < count_; ++s) {
+      const auto& [a, b] = centerline.segment(s);
+      path_[a * n + b] = path_[b * n + a] = centerline.length(s);
+    }
+    for (std::size_t via = 0; via < n; ++via) {
+      for (std::size_t a = 0; a < n; ++a) {
+        for (std::size_t b = 0; b < n; ++b) {
+          path_[a * n + b] = std::min(path_[a * n + b], path_[a * n + via] + path_[via * n + b]);
+        }
+      }
+    }
+  }
+
+  double path_between(Index i, Index j) const {
+    const std::size_t n = field_.centerline().nodes().size();
+    double least = std::numeric_limits<double>::infinity();
+    for (const Index a : {field_.first_node(i), field_.last_node(i)}) {
+      for (const Index b : {field_.first_node(j), field_.last_node(j)}) least = std::min(least, path_[a * n + b]);
+    }
+    return least;
+  }
+
+  bool flood() {
+    bool changed = false;
+    for (Index i = 0; i < count_; ++i) {
+      for (Index j = 0; j < count_; ++j) {
+        if (i == j || !local_[i * count_ + j] || !overlap_[i * count_ + j]) continue;
+        for (Index k = 0; k < count_; ++k) {
+          const bool neighbour = k != i && path_between(i, k) == 0;
+          if (!neighbour || k == j || local_[k * count_ + j] || !overlap_[k * count_ + j]) continue;
+          local_[k * count_ + j] = local_[j * count_ + k] = 1;
+          changed = true;
+        }
+      }
+    }
+    return changed;
+  }
+
+  const VesselField& field_;
+  std::size_t count_;
+  std::vector<double> path_;
+  std::vector<char> local_, overlap_;
+  bool undecided_ = false;
+};
+
+TEST(Locality, IsPathDistanceExtendedOverOverlappingNeighbours) {
+  Draw draw(61);
+  int tested = 0, local_pairs = 0, far_pairs = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    // A random walk that branches and closes loops, tight enough that overlaps spread.
+    CenterlineBuilder walk;
+    walk.add({0, 0, 0}, 0.5);
+    for (int i = 0; i < 30; ++i) {
+      const auto count = static_cast<Index>(walk.nodes.size());
+      const Index from = draw.chance(0.8) ? count - 1 : draw.below(count);
+      const Vec3 place = walk.nodes[from].position + draw.uniform(0.2, 2) * draw.direction();
+      walk.add(place, draw.uniform(0.05, 0.6), from);
+    }
+    walk.segments.push_back({0, 29});
+    walk.add({50, 0, 0}, 1);
+    const Centerline centerline = walk.build();
+    const VesselField field(centerline);
+    const Locality expected(field);
+    if (expected.undecided()) continue;
+    ++tested;
+    const auto segments = static_cast<Index>(centerline.segments().size());
+    for (Index i = 0; i < segments; ++i) {
+      for (Index j = 0; j < segments; ++j) {
+        EXPECT_EQ(is_local(field, i, j), expected(i, j)) << "trial " << trial << ", cones " << i << " and " << j;
+        (expected(i, j) ? local_pairs : far_pairs) += 1;
+      }
+      const auto cones = field.local_cones(i);
+      EXPECT_TRUE(std::is_sorted(cones.begin(), cones.end(), std::less_equal<>()));  // ascending, none twice
+    }
+    const auto ball = field.local_cones(segments);
+    EXPECT_EQ(std::vector<Index>(ball.begin(), ball.end()), (std::vector<Index>{segments}));
+  }
+  EXPECT_GT(tested, 50);
+  EXPECT_GT(local_pairs, 5000);
+  EXPECT_GT(far_pairs, 5000);
+}
+
+// An open ring whose ends touch in space.
+Centerline open_ring() {
+  CenterlineBuilder ring;
+  Index last = kNone;
+  for (int i = 0; i <= 60; ++i) {
+    const double angle = 0.2 + i * (2 * 3.14159265358979 - 0.4) / 60;
+    last = ring.add({10 * std::cos(angle), 10 * std::sin(angle), 0}, 2.2, last);
+  }
+  return ring.build();
+}
+
+TEST(Locality, HidesVesselsThatTouchInSpaceButAreFarAlongTheGraph) {
+  const Centerline centerline = open_ring();
+  const VesselField field(centerline);
+  const Index first = 0, last = 59;
+  EXPECT_FALSE(is_local(field, first, last));
+  // In the gap, beyond the first end and within the last one's sphere.
+  const Vec3 p(10 * std::cos(-0.15), 10 * std::sin(-0.15), 0);
+  const auto seen_from_first = field.sample(p, first), seen_from_last = field.sample(p, last);
+  EXPECT_EQ(seen_from_first.cone, first);
+  EXPECT_GT(seen_from_first.distance, 0);
+  EXPECT_EQ(seen_from_last.cone, last);
+  EXPECT_LT(seen_from_last.distance, 0);
+  EXPECT_EQ(field.sample_global(p).cone, last);
+  EXPECT_EQ(field.sample_global(p).distance, seen_from_last.distance);
+}
+
+TEST(Locality, HidesVesselsOfOtherComponents) {
+  const Centerline centerline({{{-5, 0, 0}, 1}, {{5, 0, 0}, 1}, {{0, -5, 1}, 1}, {{0, 5, 1}, 1}, {{0, 0, 0.5}, 1}},
+                              {{0, 1}, {2, 3}});
+  const VesselField field(centerline, 0.5);
+  for (Index c = 0; c < 3; ++c) {
+    ASSERT_EQ(field.local_cones(c).size(), 1u);
+    const Vec3 p(0.2, 0.3, 1.2);
+    EXPECT_EQ(field.sample(p, c).cone, c);
+    EXPECT_EQ(field.sample(p, c).distance, field.sample_cone(p, c).distance);
+  }
+}
+
+// Two vessels from one node, `angle` apart, with steps of their own.
+Centerline siblings(Draw& draw, double degrees, double length, double shortest, double longest) {
+  CenterlineBuilder tree;
+  const Index trunk = tree.add({-6, 0, 0}, 1.2);
+  const Index fork = tree.add({0, 0, 0}, 1.2, trunk);
+  for (const double side : {-0.5, 0.5}) {
+    const double angle = side * degrees * 3.14159265358979 / 180;
+    Index last = fork;
+    for (double s = 0; s < length;) {
+      s += draw.uniform(shortest, longest);
+      last = tree.add({s * std::cos(angle), s * std::sin(angle), 0}, 1, last);
+    }
+  }
+  return tree.build();
+}
+
+TEST(Locality, KeepsShallowSiblingsOneUnionUntilTheyPart) {
+  Draw draw(62);
+  // At 2 degrees spheres of radius 1 part after 57, and the overlap rule (2.2) holds on until 63.
+  for (const auto& [shortest, longest] : {std::pair(0.3, 0.3001), {0.2, 3.0}, {4.0, 9.0}}) {
+    const Centerline centerline = siblings(draw, 2, 80, shortest, longest);
+    const VesselField field(centerline);
+    const auto count = static_cast<Index>(centerline.segments().size());
+    int overlapping = 0, parted = 0;
+    for (Index i = 0; i < count; ++i) {
+      for (Index j = 0; j < count; ++j) {
+        const double apart = axis_distance(field, i, j), radii = max_radius(field, i) + max_radius(field, j);
+        if (apart < radii) {
+          ++overlapping;
+          EXPECT_TRUE(is_local(field, i, j)) << i << " " << j;
+        }
+        // Beyond the overlap only a path shorter than 4 connects; after 70 along both it is 140.
+        if (field.axis_point(i, 0).x() > 70 && field.axis_point(j, 0).x() > 70 &&
+            field.axis_point(i, 0).y() * field.axis_point(j, 0).y() < 0) {
+          ++parted;
+          EXPECT_FALSE(is_local(field, i, j)) << i << " " << j;
+        }
+      }
+    }
+    EXPECT_GT(overlapping, static_cast<int>(count));
+    EXPECT_GT(parted, 0);
+    // So a query from either sees the union: on every cross-section until they part, around both.
+    for (int k = 0; k < 2000; ++k) {
+      const double x = draw.uniform(0, 57);
+      const Vec3 p(x, draw.uniform(-2, 2), draw.uniform(-1.2, 1.2));
+      const auto global = field.sample_global(p);
+      if (global.distance > 0.2) continue;
+      for (Index c = 1; c < count; ++c) {
+        const double from = std::min(field.axis_point(c, 0).x(), field.axis_point(c, 1).x());
+        const double to = std::max(field.axis_point(c, 0).x(), field.axis_point(c, 1).x());
+        if (x >= from && x <= to) {
+          EXPECT_EQ(field.sample(p, c).distance, global.distance) << p.transpose();
+        }
+      }
+    }
+  }
+}
+
+// Two parallel legs `gap` apart, joined by a half circle.
+Centerline hairpin(double gap) {
+  CenterlineBuilder line;
+  Index last = kNone;
+  for (double x = 30; x > 0; x -= 0.5) last = line.add({x, gap / 2, 0}, 1, last);
+  for (int i = 0; i <= 12; ++i) {
+    const double angle = 3.14159265358979 * (0.5 + i / 12.0);
+    last = line.add({gap / 2 * std::cos(angle), gap / 2 * std::sin(angle), 0}, 1, last);
+  }
+  for (double x = 0.5; x <= 30; x += 0.5) last = line.add({x, -gap / 2, 0}, 1, last);
+  return line.build();
+}
+
+TEST(Locality, ZipsUpATightHairpinAndLeavesAWideOneOpen) {
+  for (const auto& [gap, zipped] : {std::pair(1.5, true), {2.1, true}, {2.3, false}, {3.0, false}}) {
+    const Centerline centerline = hairpin(gap);
+    const VesselField field(centerline);
+    const auto count = static_cast<Index>(centerline.segments().size());
+    for (const Index i : {0u, 10u, 30u}) {  // at x = 30, 25, 15; the opposite cone is as far from the other end
+      const Index opposite = count - 1 - i;
+      EXPECT_NEAR(axis_distance(field, i, opposite), gap, 0.01);
+      EXPECT_EQ(is_local(field, i, opposite), zipped) << "gap " << gap << ", cone " << i;
+      const Vec3 wall = field.axis_point(opposite, 0.5) + Vec3(0, 0, 1.01);
+      EXPECT_EQ(field.sample(wall, i).cone == field.sample_global(wall).cone, zipped);
+    }
+    EXPECT_TRUE(is_local(field, count / 2, count / 2 + 1));
+  }
+}
+
+TEST(Locality, AQueryFollowsTheVesselFromAnyHint) {
+  CenterlineBuilder line;
+  Index last = line.add({0, 0, 0}, 1);
+  for (int i = 1; i <= 400; ++i) last = line.add({0.5 * i, 0, 0}, 1, last);
+  const Centerline centerline = line.build();
+  const VesselField field(centerline);
+  for (const Index hint : {0u, 57u, 200u, 399u}) {
+    for (const double x : {0.3, 40.2, 120.7, 199.8}) {
+      const auto s = field.sample({x, 1.5, 0}, hint);
+      EXPECT_EQ(s.cone, static_cast<Index>(2 * x));
+      EXPECT_EQ(s.distance, 0.5);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vmesh
