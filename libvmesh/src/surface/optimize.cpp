@@ -51,26 +51,33 @@ class Optimizer {
     return static_cast<double>(tangles.size()) > kHopeless * state_.mesh.number_of_vertices();
   }
 
-  // Sweeps from number `first` on, until nothing changes any more.
+  // Sweeps from number `first` on: towards the size field, then for shape alone. Each until nothing changes any more.
   void sweep_from(int first) {
-    bool sizing = true;
-    for (int sweep = first; sweep < options_.sweeps; ++sweep) {
-      const double done = static_cast<double>(sweep) / options_.sweeps;
-      report_progress(progress_, "optimize", done);
-      state_.update_sizes(edge_per_radius_);
-      if (state_.next_sweep() == 0) break;
-      if (done < kSizingShare) {
-        if (sweep % kStrayInterval == 0) remesher_.repair_strays();
-        remesher_.split_long_edges();
-        remesher_.collapse_short_edges();
-      } else {
-        if (sizing) remesher_.split_far_faces(options_.max_center_distance);
-        sizing = false;
-        remesher_.collapse_bad_faces();
-      }
-      remesher_.flip_edges(done < kRegularityShare ? 1 - done : 0);
-      relocate_vertices(state_);
+    const int shape_begin = static_cast<int>(kSizingShare * options_.sweeps);
+    for (int sweep = first; sweep < shape_begin && begin_sweep(sweep); ++sweep) {
+      if (sweep % kStrayInterval == 0) remesher_.repair_strays();
+      remesher_.split_long_edges();
+      remesher_.collapse_short_edges();
+      end_sweep(sweep);
     }
+    remesher_.split_far_faces(options_.max_center_distance);
+    for (int sweep = std::max(first, shape_begin); sweep < options_.sweeps && begin_sweep(sweep); ++sweep) {
+      remesher_.collapse_bad_faces();
+      end_sweep(sweep);
+    }
+  }
+
+  double done(int sweep) const { return static_cast<double>(sweep) / options_.sweeps; }
+
+  bool begin_sweep(int sweep) {
+    report_progress(progress_, "optimize", done(sweep));
+    state_.update_sizes(edge_per_radius_);
+    return state_.next_sweep() > 0;
+  }
+
+  void end_sweep(int sweep) {
+    remesher_.flip_edges(done(sweep) < kRegularityShare ? 1 - done(sweep) : 0);
+    relocate_vertices(state_);
   }
 
   SweepState state_;

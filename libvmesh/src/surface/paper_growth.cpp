@@ -18,7 +18,8 @@ constexpr double kMaxFlight = 2;            // vessel radii a vertex may travel 
 constexpr double kBehind = 0.1;             // vessel radii a crossing may lie behind its segment's front
 constexpr double kSmallestFace = 0.02;      // longest edge, in radii of the crossing segment, that is still split
 
-// A frame that turns with the centerline: along the node's first segment, and as far as possible from its others.
+// A frame that turns with the centerline: along the node's first segment, and as far as possible from its others; then
+// turned to where no segment runs through a vertex or a mirror plane of the seed, so that nothing hangs on rounding.
 Eigen::Matrix3d frame_at(const Centerline& centerline, Index node) {
   Vec3 along = Vec3::UnitZ(), across = Vec3::Zero();
   for (const Index s : centerline.incident_segments(node)) {
@@ -32,7 +33,7 @@ Eigen::Matrix3d frame_at(const Centerline& centerline, Index node) {
   const Vec3 side = across.norm() > 1e-6 ? Vec3(across.normalized()) : Vec3(along.unitOrthogonal());
   Eigen::Matrix3d frame;
   frame << side, along.cross(side), along;
-  return frame;
+  return frame * Eigen::AngleAxisd(0.4, Vec3(2, 3, 6) / 7).toRotationMatrix();
 }
 
 class Growth {

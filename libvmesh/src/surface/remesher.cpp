@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kSplitLength = 1.35;  // in target lengths
 constexpr double kCollapseLength = 0.65;
+constexpr double kSplitFar = 0.8;
 constexpr double kMaxBulge = 0.3;     // see bulge()
 constexpr double kUprightFlip = 0.5;  // agreement that a flip may always lead to
 constexpr double kBadEnergy = 1.8;    // of a face: skewness about 0.4
@@ -144,6 +145,12 @@ void Remesher::split_far_faces(double max_distance) {
     const Vec3 center = (state_.point(corner[0]) + state_.point(corner[1]) + state_.point(corner[2])) / 3;
     const FieldSample s = field_.sample(center, surface_.cone[corner[0]]);
     if (std::abs(s.distance) <= max_distance * field_.radius_at(s.cone, s.t)) continue;
+    double longest = 0, target = 0;
+    for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
+      longest = std::max(longest, state_.length(mesh_.edge(h)));
+      target = std::max(target, state_.target_length(mesh_.edge(h)));
+    }
+    if (longest < kSplitFar * target) continue;  // a web over a crotch: finer faces would not bring it closer
     for (const Vertex v : surface_.split_edge_centric(f)) {
       state_.size[v] = std::min({state_.size[corner[0]], state_.size[corner[1]], state_.size[corner[2]]}) / 2;
       state_.activate(v);

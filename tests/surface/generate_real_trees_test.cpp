@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/generate.h"
+
+#include "shared_data.h"
+
+namespace vmesh {
+namespace {
+
+Centerline load(const std::string& file) { return load_centerline(testing::shared_data(file)).cleaned.centerline; }
+
+std::size_t nodes_inside(const Centerline& centerline, const TriMesh& mesh) {
+  std::vector<Vec3> positions;
+  for (const auto& node : centerline.nodes()) positions.push_back(node.position);
+  const auto inside = points_inside(mesh, positions);
+  return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), true));
+}
+
+class RealLiverTree : public ::testing::TestWithParam<const char*> {};
+
+// The paper's low-resolution row of Table 2 (mean 0.23, maximum 0.70), at a bounded number of vertices.
+TEST_P(RealLiverTree, BecomesOneCleanSurfaceAtThePapersQuality) {
+  const std::string file = std::string("liver_portal_centerlines/liverModelPatient1__") + GetParam() + "_1.swc";
+  VMESH_NEED_SHARED_DATA(file);
+  const Centerline centerline = load(file);
+  const GenerateResult result = generate_surface(centerline);
+  const Topology topology = measure_topology(result.mesh);
+  EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented && topology.outward);
+  EXPECT_EQ(topology.components, 1u);
+  EXPECT_EQ(topology.genus, 0);
+  EXPECT_TRUE(self_intersections(result.mesh).empty());
+  EXPECT_EQ(nodes_inside(centerline, result.mesh), centerline.nodes().size());
+  const SkewnessSummary skewness = summarize_skewness(result.mesh);
+  EXPECT_LE(skewness.mean, 0.23);
+  EXPECT_LE(skewness.max, 0.70);
+  EXPECT_LE(static_cast<double>(result.mesh.vertices.size()), 8 * centerline.length_in_radii());
+}
+
+INSTANTIATE_TEST_SUITE_P(Foundation, RealLiverTree,
+                         ::testing::Values("portal1", "portal3", "portal15", "hepatic1", "hepatic3", "hepatic15",
+                                           "arterial15", "vessel_portal", "vessel_hepatic", "vessel_arterial"));
+
+// Where branch nodes crowd together a single seed covers some places twice; growth must end all the same.
+class CrowdedTree : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(CrowdedTree, EndsWithABoundedNumberOfVertices) {
+  VMESH_NEED_SHARED_DATA(GetParam());
+  const Centerline centerline = load(GetParam());
+  GenerateOptions options;
+  options.sweeps = 4;  // growth is what is bounded here; the sweeps keep to the size field
+  const GenerateResult result = generate_surface(centerline, options);
+  EXPECT_LE(static_cast<double>(result.mesh.vertices.size()), 10 * centerline.length_in_radii());
+  const Topology topology = measure_topology(result.mesh);
+  EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented);
+  EXPECT_EQ(topology.euler_characteristic, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(SingleSeed, CrowdedTree,
+                         ::testing::Values("liver_portal_centerlines/liverModelPatient1__bile1_1.swc",
+                                           "liver_portal_centerlines/geo__Portal_Sim_Post_1.swc",
+                                           "liver_portal_centerlines/liverModelPatient1__strahlerGroup8_1.swc",
+                                           "brain_brava_swc/BG0002.CNG.swc", "brain_brava_swc/BG001.CNG.swc",
+                                           "brain_brava_swc/BG04.CNG.swc", "brain_brava_swc/BG07.CNG.swc"));
+
+}  // namespace
+}  // namespace vmesh
