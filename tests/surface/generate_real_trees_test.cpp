@@ -43,27 +43,5 @@ INSTANTIATE_TEST_SUITE_P(Foundation, RealLiverTree,
                          ::testing::Values("portal1", "portal3", "portal15", "hepatic1", "hepatic3", "hepatic15",
                                            "arterial15", "vessel_portal", "vessel_hepatic", "vessel_arterial"));
 
-// Where branch nodes crowd together a single seed covers some places twice; growth must end all the same.
-class CrowdedTree : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(CrowdedTree, EndsWithABoundedNumberOfVertices) {
-  VMESH_NEED_SHARED_DATA(GetParam());
-  const Centerline centerline = load(GetParam());
-  GenerateOptions options;
-  options.sweeps = 4;  // growth is what is bounded here; the sweeps keep to the size field
-  const GenerateResult result = generate_surface(centerline, options);
-  EXPECT_LE(static_cast<double>(result.mesh.vertices.size()), 10 * centerline.length_in_radii());
-  const Topology topology = measure_topology(result.mesh);
-  EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented);
-  EXPECT_EQ(topology.euler_characteristic, 2);
-}
-
-INSTANTIATE_TEST_SUITE_P(SingleSeed, CrowdedTree,
-                         ::testing::Values("liver_portal_centerlines/liverModelPatient1__bile1_1.swc",
-                                           "liver_portal_centerlines/geo__Portal_Sim_Post_1.swc",
-                                           "liver_portal_centerlines/liverModelPatient1__strahlerGroup8_1.swc",
-                                           "brain_brava_swc/BG0002.CNG.swc", "brain_brava_swc/BG001.CNG.swc",
-                                           "brain_brava_swc/BG04.CNG.swc", "brain_brava_swc/BG07.CNG.swc"));
-
 }  // namespace
 }  // namespace vmesh

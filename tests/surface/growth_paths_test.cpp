@@ -37,6 +37,8 @@ TEST(GrowthPaths, RememberHowFarASegmentIsCovered) {
   paths.advance(1, 5);
   EXPECT_EQ(paths.reached(1), 6);
   EXPECT_EQ(paths.reached(0), 0);
+  EXPECT_EQ(paths.crossings(1), 2);
+  EXPECT_EQ(paths.crossings(0), 0);
 }
 
 TEST(GrowthPaths, CutALoopOnce) {

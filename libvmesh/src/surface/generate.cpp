@@ -37,9 +37,10 @@ void check_options(const GenerateOptions& o) {
 
 void add_warnings(const PaperGrowthReport& growth, std::vector<std::string>& warnings) {
   if (growth.refused > 0) {
-    warnings.push_back("growth: " + std::to_string(growth.refused) +
-                       " faces were crossed by the centerline behind its front and left alone; branch nodes crowd "
-                       "there, expect overlapping faces");
+    warnings.push_back(
+        "growth: " + std::to_string(growth.refused) +
+        " faces were crossed by the centerline behind its front, or too often, and left alone; branch nodes crowd "
+        "there, expect overlapping faces");
   }
   if (growth.unclosed > 0) {
     warnings.push_back("growth: " + std::to_string(growth.unclosed) +

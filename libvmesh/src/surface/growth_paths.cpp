@@ -7,17 +7,17 @@ namespace vmesh {
 GrowthPaths::GrowthPaths(const Centerline& centerline)
     : centerline_(centerline),
       direction_(centerline.segments().size(), 0),
-      parent_(centerline.segments().size(), kNone),
       start_(centerline.segments().size(), 0),
       reached_(centerline.segments().size(), 0),
+      crossings_(centerline.segments().size(), 0),
       seen_(centerline.nodes().size(), 0) {}
 
 void GrowthPaths::start_at(Index seed) {
   struct Arrival {
-    Index node, segment;
+    Index node;
     double depth;
   };
-  std::vector<Arrival> queue = {{seed, kNone, 0}};
+  std::vector<Arrival> queue = {{seed, 0}};
   seen_[seed] = 1;
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const Arrival arrival = queue[i];
@@ -26,9 +26,8 @@ void GrowthPaths::start_at(Index seed) {
       if (seen_[next]) continue;
       seen_[next] = 1;
       direction_[s] = centerline_.segment(s).a == arrival.node ? 1 : -1;
-      parent_[s] = arrival.segment;
       start_[s] = reached_[s] = arrival.depth;
-      queue.push_back({next, s, arrival.depth + centerline_.length(s)});
+      queue.push_back({next, arrival.depth + centerline_.length(s)});
     }
   }
 }
@@ -37,6 +36,9 @@ double GrowthPaths::depth(Index segment, double t) const {
   return start_[segment] + (direction_[segment] < 0 ? 1 - t : t) * centerline_.length(segment);
 }
 
-void GrowthPaths::advance(Index segment, double depth) { reached_[segment] = std::max(reached_[segment], depth); }
+void GrowthPaths::advance(Index segment, double depth) {
+  reached_[segment] = std::max(reached_[segment], depth);
+  ++crossings_[segment];
+}
 
 }  // namespace vmesh

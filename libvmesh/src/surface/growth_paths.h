@@ -22,18 +22,21 @@ class GrowthPaths {
   /// Path length from the seed to the point at `t` of `segment` (mm).
   double depth(Index segment, double t) const;
 
-  /// How far beyond depth(segment, .) growth has come on `segment` and its descendants.
+  /// How far, as a depth, growth has come on `segment`.
   double reached(Index segment) const { return reached_[segment]; }
 
   /// Growth crosses `segment` at `depth`.
   void advance(Index segment, double depth);
 
+  /// How often growth has crossed `segment`.
+  int crossings(Index segment) const { return crossings_[segment]; }
+
  private:
   const Centerline& centerline_;
   std::vector<int> direction_;
-  std::vector<Index> parent_;  // of a segment: the segment growth came from
   std::vector<double> start_;  // path length at the segment's near end
   std::vector<double> reached_;
+  std::vector<int> crossings_;
   std::vector<char> seen_;  // nodes
 };
 

@@ -16,6 +16,7 @@ constexpr double kMaxStep = 0.5;            // step in vessel radii
 constexpr int kMaxSteps = 100;              // of one vertex, before it is projected
 constexpr double kMaxFlight = 2;            // vessel radii a vertex may travel before only the boundary attracts it
 constexpr double kBehind = 0.1;             // vessel radii a crossing may lie behind its segment's front
+constexpr double kMaxSplits = 20;           // crossings of a segment per vessel radius, some twenty times what is usual
 constexpr double kSmallestFace = 0.02;      // longest edge, in radii of the crossing segment, that is still split
 
 // A frame that turns with the centerline: along the node's first segment, and as far as possible from its others; then
@@ -163,7 +164,9 @@ class Growth {
       const double radius = field_.radius_at(s, crossing->t);
       const double depth = paths_.depth(s, crossing->t);
       const double smallest = kSmallestFace * radius;
-      if (depth < paths_.reached(s) - kBehind * radius || size2 < smallest * smallest) {
+      const double allowed = kMaxSplits * (1 + field_.centerline().length(s) / radius);
+      if (depth < paths_.reached(s) - kBehind * radius || size2 < smallest * smallest ||
+          paths_.crossings(s) > allowed) {
         behind = true;
         continue;
       }

@@ -8,11 +8,10 @@ namespace vmesh {
 
 /// What happened while a surface grew.
 struct PaperGrowthReport {
-  std::size_t splits = 0;     ///< faces crossed by the centerline and split
-  std::size_t refused = 0;    ///< faces crossed again behind the front of their segment, left alone
-  std::size_t forced = 0;     ///< vertices that did not settle by themselves and were projected
-  std::size_t unclosed = 0;   ///< segments that close a loop and that a single seed cannot cover
-  std::size_t unreached = 0;  ///< segments outside the surface when growth ended
+  std::size_t splits = 0;    ///< faces crossed by the centerline and split
+  std::size_t refused = 0;   ///< faces crossed behind the front of their segment, or too often, left alone
+  std::size_t forced = 0;    ///< vertices that did not settle by themselves and were projected
+  std::size_t unclosed = 0;  ///< segments that close a loop and that a single seed cannot cover
 };
 
 /// Growth from a single seed per component (paper, section 4): a geodesic sphere at the widest branching node
