@@ -55,6 +55,7 @@ class Optimizer {
   void sweep_from(int first) {
     const int shape_begin = static_cast<int>(kSizingShare * options_.sweeps);
     for (int sweep = first; sweep < shape_begin && begin_sweep(sweep); ++sweep) {
+      state_.update_sizes(edge_per_radius_);
       if (sweep % kStrayInterval == 0) remesher_.repair_strays();
       remesher_.split_long_edges();
       remesher_.collapse_short_edges();
@@ -71,7 +72,6 @@ class Optimizer {
 
   bool begin_sweep(int sweep) {
     report_progress(progress_, "optimize", done(sweep));
-    state_.update_sizes(edge_per_radius_);
     return state_.next_sweep() > 0;
   }
 

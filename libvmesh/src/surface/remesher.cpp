@@ -192,9 +192,9 @@ bool Remesher::flip_stays_upright(Vertex a, Vertex b, Vertex c, Vertex d) const 
   return then >= kUprightFlip || then >= std::min(state_.agreement(a, b, c), state_.agreement(b, a, d));
 }
 
-double Remesher::irregularity(Vertex v, int change) const {
-  const double defect = static_cast<double>(mesh_.degree(v)) + change - 6;
-  return defect * defect;
+int Remesher::valence_gain(Vertex a, Vertex b, Vertex c, Vertex d) const {
+  const auto valence = [&](Vertex v) { return static_cast<int>(mesh_.degree(v)); };
+  return 2 * (valence(a) + valence(b) - valence(c) - valence(d)) - 4;
 }
 
 void Remesher::flip_edges(double regularity) {
@@ -216,10 +216,7 @@ bool Remesher::try_flip(Edge e, double regularity) {
   const Vertex a = mesh_.source(h), b = mesh_.target(h);
   const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
   double gain = state_.energy(a, b, c) + state_.energy(b, a, d) - state_.energy(c, d, b) - state_.energy(d, c, a);
-  if (regularity > 0) {
-    gain += regularity * (irregularity(a, 0) + irregularity(b, 0) + irregularity(c, 0) + irregularity(d, 0) -
-                          irregularity(a, -1) - irregularity(b, -1) - irregularity(c, 1) - irregularity(d, 1));
-  }
+  if (regularity > 0) gain += regularity * valence_gain(a, b, c, d);
   if (!(gain > 1e-9)) return false;
   if (!can_flip(h) || !flip_stays_upright(a, b, c, d)) return false;
   const double stray = bulge(c, d);

@@ -41,7 +41,8 @@ class Remesher {
   bool can_flip(Halfedge h) const;
   // Whether the faces left and right of ab, with apexes c and d, may be exchanged for those of cd.
   bool flip_stays_upright(Vertex a, Vertex b, Vertex c, Vertex d) const;
-  double irregularity(Vertex v, int change) const;
+  // How much the sum of squared valence defects (valence - 6) of the four vertices falls when ab becomes cd.
+  int valence_gain(Vertex a, Vertex b, Vertex c, Vertex d) const;
   void flip(Halfedge h);
   bool try_flip(Edge e, double regularity);
 
