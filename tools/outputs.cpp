@@ -4,8 +4,8 @@
 #include <cctype>
 #include <iostream>
 
+#include "vmesh/core/atomic_file.h"
 #include "vmesh/core/version.h"
-#include "vmesh/io/atomic_file.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 

@@ -3,8 +3,8 @@
 #include <istream>
 #include <iterator>
 
+#include "vmesh/core/atomic_file.h"
 #include "vmesh/core/error.h"
-#include "vmesh/io/atomic_file.h"
 
 #include "formats.h"
 #include "text.h"

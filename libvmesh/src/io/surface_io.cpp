@@ -1,7 +1,7 @@
 #include "vmesh/io/surface_io.h"
 
+#include "vmesh/core/atomic_file.h"
 #include "vmesh/core/error.h"
-#include "vmesh/io/atomic_file.h"
 
 #include "formats.h"
 #include "text.h"

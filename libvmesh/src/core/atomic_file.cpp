@@ -1,4 +1,4 @@
-#include "vmesh/io/atomic_file.h"
+#include "vmesh/core/atomic_file.h"
 
 #include <atomic>
 #include <cerrno>
