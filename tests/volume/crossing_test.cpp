@@ -15,9 +15,9 @@ namespace {
 using testing::Draw;
 using Polyline = std::vector<Vec3>;
 
-IndexedTriangle face_of(const TriMesh& mesh, Index f) {
+TriangleCorners face_of(const TriMesh& mesh, Index f) {
   const auto& [a, b, c] = mesh.faces[f];
-  return {{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {a, b, c}};
+  return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
 }
 
 struct Count {
@@ -30,7 +30,7 @@ Count count_crossings(const TriMesh& mesh, const Polyline& line) {
   Count count;
   for (std::size_t s = 0; s + 1 < line.size(); ++s) {
     for (Index f = 0; f < mesh.faces.size(); ++f) {
-      const IndexedTriangle triangle = face_of(mesh, f);
+      const TriangleCorners triangle = face_of(mesh, f);
       const auto crossing = find_crossing(line[s], line[s + 1], triangle);
       if (!crossing) continue;
       ++count.total;
@@ -42,8 +42,8 @@ Count count_crossings(const TriMesh& mesh, const Polyline& line) {
       // rounding errors of that size. The point's height inherits them, however flat the crossing.
       const Vec3 point = line[s] + crossing->t * (line[s + 1] - line[s]);
       const Vec3 normal = area_normal(mesh, f).normalized();
-      const double size = line[s].norm() + line[s + 1].norm() + triangle.corner[0].norm() + 1;
-      EXPECT_LE(std::abs(normal.dot(point - triangle.corner[0])), 64 * std::numeric_limits<double>::epsilon() * size);
+      const double size = line[s].norm() + line[s + 1].norm() + triangle[0].norm() + 1;
+      EXPECT_LE(std::abs(normal.dot(point - triangle[0])), 64 * std::numeric_limits<double>::epsilon() * size);
     }
   }
   return count;
@@ -138,7 +138,7 @@ bool inside_hull(const TriMesh& mesh, const Vec3& p) {
 }
 
 TEST(Crossing, OfASegmentThroughAFaceHasItsPlaceAndDirection) {
-  const IndexedTriangle triangle{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {7, 3, 5}};
+  const TriangleCorners triangle = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
   const auto out = find_crossing({1, 1, -1}, {1, 1, 3}, triangle);
   ASSERT_TRUE(out);
   EXPECT_EQ(out->t, 0.25);

@@ -142,20 +142,18 @@ class Growth {
   // in the direction of growth count: the others belong to a front that met covered ground.
   bool crossed(Face f) {
     const Halfedge h = mesh_.halfedge(f);
-    IndexedTriangle triangle;
+    TriangleCorners triangle;
     candidates_.clear();
     int i = 0;
     for (const Vertex v : mesh_.vertices_around_face(h)) {
-      triangle.corner[i] = surface_.position(v);
-      triangle.index[i++] = v.idx();
+      triangle[i++] = surface_.position(v);
       const auto local = field_.local_cones(surface_.cone[v]);
       candidates_.insert(candidates_.end(), local.begin(), local.end());
     }
     std::sort(candidates_.begin(), candidates_.end());
     candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
-    const double size2 = std::max({(triangle.corner[0] - triangle.corner[1]).squaredNorm(),
-                                   (triangle.corner[1] - triangle.corner[2]).squaredNorm(),
-                                   (triangle.corner[2] - triangle.corner[0]).squaredNorm()});
+    const double size2 = std::max({(triangle[0] - triangle[1]).squaredNorm(), (triangle[1] - triangle[2]).squaredNorm(),
+                                   (triangle[2] - triangle[0]).squaredNorm()});
     bool ahead = false, behind = false;
     for (const Index s : candidates_) {
       if (s >= field_.centerline().segments().size() || paths_.direction(s) == 0) continue;

@@ -43,16 +43,16 @@ CGAL::Sign side_of_edge(const Point& p, const Point& q, const Point& u, const Po
 
 }  // namespace
 
-std::optional<Crossing> find_crossing(const Vec3& first, const Vec3& last, const IndexedTriangle& triangle) {
+std::optional<Crossing> find_crossing(const Vec3& first, const Vec3& last, const TriangleCorners& triangle) {
   const Point p = to_point(first), q = to_point(last);
-  const Point corner[3] = {to_point(triangle.corner[0]), to_point(triangle.corner[1]), to_point(triangle.corner[2])};
+  const Point corner[3] = {to_point(triangle[0]), to_point(triangle[1]), to_point(triangle[2])};
   const bool first_in_front = in_front(corner, p);
   if (first_in_front == in_front(corner, q)) return std::nullopt;
   const auto side = side_of_edge(p, q, corner[0], corner[1]);
   if (side_of_edge(p, q, corner[1], corner[2]) != side) return std::nullopt;
   if (side_of_edge(p, q, corner[2], corner[0]) != side) return std::nullopt;
-  const Vec3 normal = (triangle.corner[1] - triangle.corner[0]).cross(triangle.corner[2] - triangle.corner[0]);
-  const double before = normal.dot(first - triangle.corner[0]), after = normal.dot(last - triangle.corner[0]);
+  const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+  const double before = normal.dot(first - triangle[0]), after = normal.dot(last - triangle[0]);
   const double span = before - after;
   const double t = span != 0 ? std::clamp(before / span, 0.0, 1.0) : 0.5;
   return Crossing{t, first_in_front ? -1 : 1};

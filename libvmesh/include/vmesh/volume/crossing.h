@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "vmesh/core/types.h"
@@ -12,15 +13,12 @@ struct Crossing {
   int direction = 1;  ///< +1: from first to last it leaves through the triangle's front (counter-clockwise) side
 };
 
-/// A triangle and the indices of its corners.
-struct IndexedTriangle {
-  Vec3 corner[3];
-  Index index[3];
-};
+/// The corners of a triangle, counter-clockwise seen from its front.
+using TriangleCorners = std::array<Vec3, 3>;
 
 /// Whether the segment first-last crosses the triangle. Exact predicates. Ties are broken as if the segment were moved
 /// by (e, e^2, e^3), e > 0 infinitely small: a polyline's crossings with a closed mesh then add up to whether its ends
 /// are inside, and where it pierces the mesh at an edge, a vertex or with a node of its own, it crosses one face once.
-std::optional<Crossing> find_crossing(const Vec3& first, const Vec3& last, const IndexedTriangle& triangle);
+std::optional<Crossing> find_crossing(const Vec3& first, const Vec3& last, const TriangleCorners& triangle);
 
 }  // namespace vmesh
