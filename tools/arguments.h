@@ -72,6 +72,8 @@ void for_each_generate_option(Options& options, Visitor visit) {
   visit("--max-center-distance", options.max_center_distance, 0.01, 10.0,
         "split faces whose centre is farther from the wall than this, in local radii");
   visit("--sweeps", options.sweeps, 0, 1000, "sweeps of the final optimisation; 0: leave the surface as grown");
+  visit("--max-vertices", options.max_vertices, 100, 1'000'000'000,
+        "refuse a centerline whose length and radii ask for more than this");
 }
 
 /// Parses the command line. Without a value the command is done with `exit_code`: help, version or a usage error

@@ -62,6 +62,14 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
   return loaded;
 }
 
+GenerateResult grow(const Centerline& centerline, const GenerateArguments& arguments, Console& console) {
+  try {
+    return generate_surface(centerline, arguments.options, console.progress());
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(arguments.input.path.string() + ": " + error.what());
+  }
+}
+
 /// Fills in what is measured of the surface and what is wrong with it.
 void measure(GenerateReport& report, Console& console) {
   const Centerline& centerline = report.cleaned->centerline;
@@ -101,7 +109,7 @@ int run(const GenerateArguments& arguments, Console& console) {
   report.stages.push_back({"read", watch.lap()});
   stop_if_interrupted();
 
-  const GenerateResult result = generate_surface(loaded.cleaned.centerline, arguments.options, console.progress());
+  const GenerateResult result = grow(loaded.cleaned.centerline, arguments, console);
   console.warn(result.warnings);
   report.result = &result;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());

@@ -253,6 +253,25 @@ TEST(Generate, RefusesOptionsOutOfRange) {
   for (const double bad : {0.0, -1.0, nan}) refuses([&](auto& o) { o.max_center_distance = bad; });
   for (const int bad : {2, -6, 201}) refuses([&](auto& o) { o.around = bad; });
   refuses([](auto& o) { o.sweeps = -1; });
+  refuses([](auto& o) { o.max_vertices = 0; });
+}
+
+TEST(Generate, RefusesAVesselMuchTooThinForItsLength) {
+  const Centerline hair({{{0, 0, 0}, 1}, {{5, 0, 0}, 1}, {{10, 0, 0}, 1e-9}, {{13, 0, 0}, 1e-9}},
+                        {{0, 1}, {1, 2}, {2, 3}});
+  try {
+    generate_surface(hair);
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("segment 2 at (11.5"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Generate, RefusesMoreVerticesThanAllowed) {
+  GenerateOptions options;
+  const auto count = generate_surface(fork(), options).mesh.vertices.size();
+  options.max_vertices = static_cast<int>(count / 2);
+  EXPECT_THROW(generate_surface(fork(), options), InvalidInput);
 }
 
 TEST(Generate, StopsWhenAsked) {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <optional>
+#include <sstream>
 
 #include "vmesh/core/error.h"
 
@@ -33,6 +34,28 @@ void check_options(const GenerateOptions& o) {
   if (!(o.around >= 3 && o.around <= 200)) throw InvalidInput("around must be in [3, 200]");
   if (!(o.max_center_distance > 0)) throw InvalidInput("max_center_distance must be > 0");
   if (o.sweeps < 0) throw InvalidInput("sweeps must be >= 0");
+  if (o.max_vertices < 1) throw InvalidInput("max_vertices must be > 0");
+}
+
+void check_size(const Centerline& centerline, const GenerateOptions& options) {
+  const double expected = expected_vertices(centerline, options.around);
+  if (expected <= options.max_vertices) return;
+  Index longest = 0;
+  double most = 0;
+  for (Index s = 0; s < centerline.segments().size(); ++s) {
+    const double radii = centerline.length(s) / centerline.radius_at(s, 0.5);
+    if (radii > most) {
+      most = radii;
+      longest = s;
+    }
+  }
+  std::ostringstream text;
+  text << "about " << expected << " vertices would be needed, more than the " << options.max_vertices
+       << " allowed; the vessel thinnest for its length is segment " << longest << " at ("
+       << centerline.point_at(longest, 0.5).transpose() << "): " << centerline.length(longest) << " mm at radius "
+       << centerline.radius_at(longest, 0.5)
+       << " mm. Check its radii, ask for fewer vertices around, or allow more in all";
+  throw InvalidInput(text.str());
 }
 
 void add_warnings(const PaperGrowthReport& growth, std::vector<std::string>& warnings) {
@@ -52,11 +75,20 @@ void add_warnings(const PaperGrowthReport& growth, std::vector<std::string>& war
   }
 }
 
+void add_warnings(const OptimizeReport& optimized, std::vector<std::string>& warnings) {
+  if (optimized.limited) {
+    warnings.push_back(
+        "optimize: refinement stopped early, the surface has far more vertices already than its length and radii ask "
+        "for; expect folds");
+  }
+}
+
 }  // namespace
 
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options,
                                 const Progress& progress) {
   check_options(options);
+  check_size(centerline, options);
   GenerateResult result;
   StageClock clock(result.stages);
   std::optional<VesselField> field;
@@ -64,7 +96,7 @@ GenerateResult generate_surface(const Centerline& centerline, const GenerateOpti
   BoundSurface surface(*field);
   clock.time("grow", [&] { add_warnings(grow_from_single_seeds(surface, options.beta, progress), result.warnings); });
   clock.time("optimize", [&] {
-    if (options.sweeps > 0) optimize(surface, options, progress);
+    if (options.sweeps > 0) add_warnings(optimize(surface, options, progress), result.warnings);
   });
   surface.export_to(result);
   return result;

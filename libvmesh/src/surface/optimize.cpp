@@ -13,6 +13,8 @@ constexpr double kEdgeFactor = 1.08;      // target length in edges of a regular
 constexpr double kGrownAround = 6;        // a resolution at which a grown mesh becomes even
 constexpr double kSizingShare = 0.7;      // of the sweeps that work towards the size field; the rest for shape alone
 constexpr double kRegularityShare = 0.8;  // of the sweeps that flip towards valence 6 as well
+constexpr double kVerticesPerRadius = 7;  // and unit of length, at kGrownAround
+constexpr double kMaxExcess = 1.5;  // vertices against those grown plus those expected; well-grown trees reach 0.6
 constexpr int kStrayInterval = 4;
 constexpr double kHopeless = 0.02;  // share of the vertices in tangles: growth covered vessels twice
 
@@ -23,17 +25,21 @@ class Optimizer {
 
   // From the resolution of the grown mesh to the one asked for, doubling at most: an even mesh is refined or
   // coarsened safely, a grown one is not.
-  void run() {
+  OptimizeReport run() {
+    const double grown = state_.mesh.number_of_vertices();
     double around = kGrownAround;
-    optimize_at(around);
+    optimize_at(around, grown);
     while (around != options_.around) {
       around = std::min<double>(2 * around, options_.around);
-      optimize_at(around);
+      optimize_at(around, grown);
     }
+    return {remesher_.limited()};
   }
 
  private:
-  void optimize_at(double around) {
+  void optimize_at(double around, double grown) {
+    const double expected = expected_vertices(state_.field.centerline(), around);
+    remesher_.limit_vertices(static_cast<std::size_t>(kMaxExcess * (grown + expected)));
     edge_per_radius_ = kEdgeFactor * 2 * std::sin(std::numbers::pi / around);
     state_.stir_all();
     sweep_from(0);
@@ -89,8 +95,13 @@ class Optimizer {
 
 }  // namespace
 
-void optimize(BoundSurface& surface, const GenerateOptions& options, const Progress& progress) {
-  Optimizer(surface, options, progress).run();
+double expected_vertices(const Centerline& centerline, double around) {
+  const double finer = around / kGrownAround;
+  return kVerticesPerRadius * finer * finer * centerline.length_in_radii();
+}
+
+OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const Progress& progress) {
+  return Optimizer(surface, options, progress).run();
 }
 
 }  // namespace vmesh

@@ -7,10 +7,18 @@
 
 namespace vmesh {
 
+struct OptimizeReport {
+  bool limited = false;  ///< refinement stopped at the bound on the number of vertices
+};
+
+/// Vertices that the size field asks for, about, as measured on trees.
+double expected_vertices(const Centerline& centerline, double around);
+
 /// Turns a grown surface into a good one: edges are split, collapsed and flipped towards a size field proportional
 /// to the local radius and towards regular valence, faces whose centre is too far from the boundary are split
 /// edge-centrically, vertices move in their tangent plane to where their triangles' shape energy is least and are
-/// reprojected. Topology is kept. Uses around, max_center_distance and sweeps of the options.
-void optimize(BoundSurface& surface, const GenerateOptions& options, const Progress& progress);
+/// reprojected. Topology is kept. The number of vertices is bounded: folded surfaces could be refined for ever. Uses
+/// around, max_center_distance and sweeps of the options.
+OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const Progress& progress);
 
 }  // namespace vmesh

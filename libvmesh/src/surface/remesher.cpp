@@ -30,6 +30,7 @@ void Remesher::split_long_edges() {
     queue.pop();
     const Edge e(index);
     if (state_.length(e) / state_.target_length(e) != excess) continue;  // has changed since, and was pushed again
+    if (full()) break;
     const Vertex v = split(e);
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       push(mesh_.edge(h), 0.99 * excess);  // shorter each time: this ends
@@ -151,6 +152,7 @@ void Remesher::split_far_faces(double max_distance) {
       target = std::max(target, state_.target_length(mesh_.edge(h)));
     }
     if (longest < kSplitFar * target) continue;  // a web over a crotch: finer faces would not bring it closer
+    if (full()) break;
     for (const Vertex v : surface_.split_edge_centric(f)) {
       state_.size[v] = std::min({state_.size[corner[0]], state_.size[corner[1]], state_.size[corner[2]]}) / 2;
       state_.activate(v);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "surface/sweep_state.h"
 
 namespace vmesh {
@@ -24,7 +26,17 @@ class Remesher {
   /// Flips where the two triangles' energy plus `regularity` times the valence defects falls and both stay upright.
   void flip_edges(double regularity);
 
+  /// From now on nothing is refined when the mesh has so many vertices.
+  void limit_vertices(std::size_t count) { max_vertices_ = count; }
+  /// Whether something was not refined because of that.
+  bool limited() const { return limited_; }
+
  private:
+  bool full() {
+    const bool is_full = mesh_.number_of_vertices() >= max_vertices_;
+    limited_ = limited_ || is_full;
+    return is_full;
+  }
   // Folded faces are not refined: there is no telling where their new vertices belong.
   bool upright(Edge e) const;
   Vertex split(Edge e);
@@ -50,6 +62,8 @@ class Remesher {
   BoundSurface& surface_;
   SurfaceMesh& mesh_;
   const VesselField& field_;
+  std::size_t max_vertices_ = std::numeric_limits<std::size_t>::max();
+  bool limited_ = false;
 };
 
 }  // namespace vmesh

@@ -21,6 +21,8 @@ struct GenerateOptions {
   double max_center_distance = 0.35;
   /// Sweeps of the final optimisation; 0 leaves the surface as it was grown.
   int sweeps = 30;
+  /// A centerline whose length and radii ask for more vertices than this is refused.
+  int max_vertices = 20'000'000;
 };
 
 /// Where on the centerline a surface vertex belongs: segment and parameter in [0, 1] from its node a to its node b.
@@ -46,7 +48,7 @@ struct GenerateResult {
 };
 
 /// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.
-/// Throws InvalidInput for options out of range, Cancelled when `progress` asks to stop.
+/// Throws InvalidInput for options out of range and for a centerline too long for its radii, Cancelled when `progress` asks to stop.
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options = {},
                                 const Progress& progress = {});
 
