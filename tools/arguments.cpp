@@ -73,6 +73,11 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
                            [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
                              verb.add_option(flag, member, help)->check(in_range(low, high))->capture_default_str();
                            });
+  verb.add_option_function<std::string>(
+          "--growth", [&arguments](const std::string& text) { arguments.options.growth = parse_growth_method(text); },
+          "guided: topology as the centerline's; paper: a single seed, as published")
+      ->check(CLI::IsMember({"guided", "paper"}))
+      ->default_str("guided");
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
                 "self-intersections, of the expected topology, and holds every centerline node");

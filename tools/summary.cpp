@@ -24,6 +24,7 @@ Json options_json(const GenerateArguments& arguments) {
   for_each_generate_option(arguments.options, [&json](const char* flag, const auto& value, auto, auto, const char*) {
     json[key_of(flag)] = value;
   });
+  json["growth"] = to_string(arguments.options.growth);
   json["unit"] = arguments.input.unit ? Json(to_string(*arguments.input.unit)) : Json();
   json["space"] = arguments.input.space ? Json(to_string(*arguments.input.space)) : Json();
   return json;
@@ -135,6 +136,7 @@ std::string describe(const GenerateOptions& options) {
   for_each_generate_option(options, [&text](const char* flag, const auto& value, auto, auto, const char*) {
     text << (text.tellp() > 0 ? " " : "") << flag << " " << value;
   });
+  text << " --growth " << to_string(options.growth);
   return text.str();
 }
 

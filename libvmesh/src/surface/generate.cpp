@@ -7,6 +7,7 @@
 #include "vmesh/core/error.h"
 
 #include "surface/bound_surface.h"
+#include "surface/guided_growth.h"
 #include "surface/optimize.h"
 #include "surface/paper_growth.h"
 
@@ -75,6 +76,13 @@ void add_warnings(const PaperGrowthReport& growth, std::vector<std::string>& war
   }
 }
 
+void add_warnings(const GuidedGrowthReport& growth, std::vector<std::string>& warnings) {
+  if (growth.filled_loops > 0) {
+    warnings.push_back("growth: " + std::to_string(growth.filled_loops) +
+                       " loops of the centerline are too short to have a hole; the surface is filled there");
+  }
+}
+
 void add_warnings(const OptimizeReport& optimized, std::vector<std::string>& warnings) {
   if (optimized.limited) {
     warnings.push_back(
@@ -85,6 +93,15 @@ void add_warnings(const OptimizeReport& optimized, std::vector<std::string>& war
 
 }  // namespace
 
+std::string_view to_string(GrowthMethod method) { return method == GrowthMethod::paper ? "paper" : "guided"; }
+
+GrowthMethod parse_growth_method(std::string_view text) {
+  for (const GrowthMethod method : {GrowthMethod::guided, GrowthMethod::paper}) {
+    if (text == to_string(method)) return method;
+  }
+  throw InvalidInput("growth method \"" + std::string(text) + "\": must be guided or paper");
+}
+
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options,
                                 const Progress& progress) {
   check_options(options);
@@ -94,7 +111,13 @@ GenerateResult generate_surface(const Centerline& centerline, const GenerateOpti
   std::optional<VesselField> field;
   clock.time("volume", [&] { field.emplace(centerline, options.blend); });
   BoundSurface surface(*field);
-  clock.time("grow", [&] { add_warnings(grow_from_single_seeds(surface, options.beta, progress), result.warnings); });
+  clock.time("grow", [&] {
+    if (options.growth == GrowthMethod::paper) {
+      add_warnings(grow_from_single_seeds(surface, options.beta, progress), result.warnings);
+    } else {
+      add_warnings(grow_guided(surface, options, progress), result.warnings);
+    }
+  });
   clock.time("optimize", [&] {
     if (options.sweeps > 0) add_warnings(optimize(surface, options, progress), result.warnings);
   });

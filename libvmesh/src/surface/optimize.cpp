@@ -1,7 +1,5 @@
 #include "surface/optimize.h"
 
-#include <numbers>
-
 #include "surface/relocation.h"
 #include "surface/remesher.h"
 #include "surface/untangle.h"
@@ -9,7 +7,6 @@
 namespace vmesh {
 namespace {
 
-constexpr double kEdgeFactor = 1.08;      // target length in edges of a regular polygon around the vessel
 constexpr double kGrownAround = 6;        // a resolution at which a grown mesh becomes even
 constexpr double kSizingShare = 0.7;      // of the sweeps that work towards the size field; the rest for shape alone
 constexpr double kRegularityShare = 0.8;  // of the sweeps that flip towards valence 6 as well
@@ -27,7 +24,7 @@ class Optimizer {
   // coarsened safely, a grown one is not.
   OptimizeReport run() {
     const double grown = state_.mesh.number_of_vertices();
-    double around = kGrownAround;
+    double around = options_.growth == GrowthMethod::guided ? options_.around : kGrownAround;
     optimize_at(around, grown);
     while (around != options_.around) {
       around = std::min<double>(2 * around, options_.around);
@@ -40,7 +37,7 @@ class Optimizer {
   void optimize_at(double around, double grown) {
     const double expected = expected_vertices(state_.field.centerline(), around);
     remesher_.limit_vertices(static_cast<std::size_t>(kMaxExcess * (grown + expected)));
-    edge_per_radius_ = kEdgeFactor * 2 * std::sin(std::numbers::pi / around);
+    edge_per_radius_ = edge_length_per_radius(around);
     state_.stir_all();
     sweep_from(0);
     std::vector<Vertex> tangles = find_tangles(state_);

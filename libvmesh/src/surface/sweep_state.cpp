@@ -1,14 +1,19 @@
 #include "surface/sweep_state.h"
 
+#include <numbers>
+
 namespace vmesh {
 namespace {
 
-constexpr double kGradation = 0.5;  // largest slope of the size field along the surface
+constexpr double kEdgeFactor = 1.08;  // target length in edges of a regular polygon around the vessel
+constexpr double kGradation = 0.5;    // largest slope of the size field along the surface
 constexpr int kGradationPasses = 3;
 constexpr double kMaxTurn = 0.5;     // cosine of the angle a face may turn in one move ...
 constexpr double kFreeToTurn = 0.8;  // ... unless it agrees so well with the boundary afterwards
 
 }  // namespace
+
+double edge_length_per_radius(double around) { return kEdgeFactor * 2 * std::sin(std::numbers::pi / around); }
 
 SweepState::SweepState(BoundSurface& bound_surface)
     : surface(bound_surface),
@@ -22,8 +27,9 @@ SweepState::~SweepState() {
   mesh.remove_property_map(stirred_);
 }
 
-void SweepState::update_sizes(double edge_per_radius) {
+void SweepState::update_sizes(double edge_per_radius, const std::vector<std::pair<Vertex, double>>& limits) {
   for (const Vertex v : mesh.vertices()) size[v] = edge_per_radius * surface.radius(v);
+  for (const auto& [v, limit] : limits) size[v] = std::min(size[v], limit);
   for (int pass = 0; pass < kGradationPasses; ++pass) {
     for (const Edge e : mesh.edges()) {
       const Vertex a = mesh.vertex(e, 0), b = mesh.vertex(e, 1);

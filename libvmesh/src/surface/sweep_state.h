@@ -8,6 +8,9 @@
 
 namespace vmesh {
 
+/// Target edge length in vessel radii at `around` vertices around a vessel.
+double edge_length_per_radius(double around);
+
 /// What the steps of a sweep share: the surface, its size field, and which vertices are worth looking at.
 class SweepState {
  public:
@@ -29,8 +32,9 @@ class SweepState {
     return {mesh.source(h), mesh.target(h), mesh.target(mesh.next(h))};
   }
 
-  /// Sets the size field: `edge_per_radius` times the local radius, its slope along the surface bounded.
-  void update_sizes(double edge_per_radius);
+  /// Sets the size field: `edge_per_radius` times the local radius, at most the `limits` given for single vertices, its
+  /// slope along the surface bounded.
+  void update_sizes(double edge_per_radius, const std::vector<std::pair<Vertex, double>>& limits = {});
 
   // Only what changed in the last sweep, and its neighbours, is looked at in the next one.
   bool active(Vertex v) const { return stirred_[v] & kActive; }

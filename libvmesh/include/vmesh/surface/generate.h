@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "vmesh/centerline/centerline.h"
@@ -8,6 +9,14 @@
 #include "vmesh/mesh/tri_mesh.h"
 
 namespace vmesh {
+
+/// guided: a tube per stretch of vessel with a cross-section of its own, a seed per junction between them; the
+/// surface's topology is that of the centerline. paper: a single seed per component, as published.
+enum class GrowthMethod { guided, paper };
+
+std::string_view to_string(GrowthMethod method);
+/// Throws InvalidInput unless `text` is "guided" or "paper".
+GrowthMethod parse_growth_method(std::string_view text);
 
 /// How a surface is grown and finished. Lengths are in units of the local vessel radius unless said otherwise.
 struct GenerateOptions {
@@ -23,6 +32,7 @@ struct GenerateOptions {
   int sweeps = 30;
   /// A centerline whose length and radii ask for more vertices than this is refused.
   int max_vertices = 20'000'000;
+  GrowthMethod growth = GrowthMethod::guided;
 };
 
 /// Where on the centerline a surface vertex belongs: segment and parameter in [0, 1] from its node a to its node b.
@@ -48,7 +58,8 @@ struct GenerateResult {
 };
 
 /// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.
-/// Throws InvalidInput for options out of range and for a centerline too long for its radii, Cancelled when `progress` asks to stop.
+/// Throws InvalidInput for options out of range and for a centerline too long for its radii, Cancelled when `progress`
+/// asks to stop.
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options = {},
                                 const Progress& progress = {});
 

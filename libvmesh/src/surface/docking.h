@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "vmesh/core/types.h"
+#include "vmesh/mesh/tri_mesh.h"
+
+namespace vmesh {
+
+/// Faces that join a loop of vertices to the next one along `direction of growth`: both counter-clockwise about it. Of
+/// all bands that start at the bottom's vertex closest to the top, the one with the least sum of squared edges.
+/// Indices are into `bottom` and, from bottom.size() on, into `top`. Each loop needs at least three vertices.
+std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3> top);
+
+/// A closed piece of surface from which discs are cut.
+class DiscCutter {
+ public:
+  DiscCutter(const std::vector<Vec3>& vertices, const std::vector<Triangle>& faces);
+
+  /// Cuts the faces at the tip of a vessel: around the vertex of `candidates` farthest along `normal` all that lie
+  /// beyond the plane through `center`, fewer where those are no disc, at least one face. Returns the loop around the
+  /// hole, counter-clockwise about `normal`; discs never overlap.
+  std::vector<Index> cut(const Vec3& center, const Vec3& normal, double radius, const std::vector<Index>& candidates);
+
+  /// Faces that are left.
+  std::vector<Triangle> rest() const;
+
+ private:
+  std::vector<Index> tip_region(Index apex, const Vec3& center, const Vec3& normal, double radius, double height) const;
+  // The loop around the faces of `region`; empty if these are no disc or touch what was cut before.
+  std::vector<Index> loop_around(const std::vector<Index>& region, std::vector<Index>& cut_faces) const;
+  std::vector<Index> take(const std::vector<Index>& loop, const std::vector<Index>& cut_faces);
+  std::vector<Index> cut_one_face(const Vec3& near);
+
+  const std::vector<Vec3>& vertices_;
+  const std::vector<Triangle>& faces_;
+  std::vector<std::vector<Index>> faces_of_;
+  std::vector<char> cut_, on_loop_;
+};
+
+}  // namespace vmesh

@@ -1,0 +1,121 @@
+#include "surface/guided_growth.h"
+
+#include "vmesh/core/error.h"
+
+#include "surface/docking.h"
+#include "surface/junction_growth.h"
+
+namespace vmesh {
+namespace {
+
+// Vertices and faces of all pieces, by number, before they become one halfedge mesh.
+class Assembly {
+ public:
+  Assembly(const GrowthSkeleton& skeleton) : skeleton_(skeleton), first_(skeleton.tubes.size()) {}
+
+  void add_tube(Index number) {
+    const Tube& tube = skeleton_.tubes[number];
+    for (const Ring& ring : tube.rings) {
+      first_[number].push_back(size());
+      for (const BoundaryPoint& p : ring.points) vertices_.push_back({p.position, p.sample.cone});
+    }
+    const std::size_t count = tube.rings.size();
+    for (std::size_t k = 0; k + 1 < count; ++k) band(ring_vertices(number, k), ring_vertices(number, k + 1));
+    if (tube.periodic) band(ring_vertices(number, count - 1), ring_vertices(number, 0));
+    if (tube.starts_at_tip) cap(tube.rings.front(), -1, reversed(ring_vertices(number, 0)));
+    if (tube.ends_at_tip) cap(tube.rings.back(), 1, ring_vertices(number, count - 1));
+  }
+
+  void add_junction(const JunctionSurface& junction) {
+    const Index offset = size();
+    vertices_.insert(vertices_.end(), junction.patch.vertices.begin(), junction.patch.vertices.end());
+    for (const auto& [a, b, c] : junction.patch.faces) faces_.push_back({a + offset, b + offset, c + offset});
+    for (std::size_t i = 0; i < junction.openings.size(); ++i) {
+      std::vector<Index> rim = junction.rims[i];
+      for (Index& v : rim) v += offset;
+      const auto& [tube, at_end] = junction.openings[i];
+      const auto ring = ring_vertices(tube, at_end ? skeleton_.tubes[tube].rings.size() - 1 : 0);
+      band(rim, at_end ? reversed(ring) : ring);
+    }
+  }
+
+  void build(BoundSurface& surface) const {
+    std::vector<Vertex> vertex(vertices_.size(), SurfaceMesh::null_vertex());
+    for (const Triangle& f : faces_) {
+      for (const Index v : f) {
+        if (vertex[v] != SurfaceMesh::null_vertex()) continue;
+        vertex[v] = surface.mesh.add_vertex(vertices_[v].position);
+        surface.place(vertex[v], vertices_[v].position, surface.field.sample(vertices_[v].position, vertices_[v].cone));
+      }
+    }
+    for (const auto& [a, b, c] : faces_) {
+      if (surface.mesh.add_face(vertex[a], vertex[b], vertex[c]) == SurfaceMesh::null_face())
+        throw std::logic_error("pieces of the surface do not fit together");
+    }
+  }
+
+ private:
+  Index size() const { return static_cast<Index>(vertices_.size()); }
+
+  std::vector<Index> ring_vertices(Index tube, std::size_t k) const {
+    std::vector<Index> ring(skeleton_.tubes[tube].rings[k].points.size());
+    for (std::size_t j = 0; j < ring.size(); ++j) ring[j] = first_[tube][k] + static_cast<Index>(j);
+    return ring;
+  }
+
+  static std::vector<Index> reversed(std::vector<Index> loop) {
+    std::reverse(loop.begin(), loop.end());
+    return loop;
+  }
+
+  std::vector<Vec3> positions(const std::vector<Index>& loop) const {
+    std::vector<Vec3> result;
+    for (const Index v : loop) result.push_back(vertices_[v].position);
+    return result;
+  }
+
+  void band(const std::vector<Index>& bottom, const std::vector<Index>& top) {
+    const auto vertex = [&](Index i) { return i < bottom.size() ? bottom[i] : top[i - bottom.size()]; };
+    for (const auto& [a, b, c] : stitch(positions(bottom), positions(top)))
+      faces_.push_back({vertex(a), vertex(b), vertex(c)});
+  }
+
+  void cap(const Ring& ring, double side, const std::vector<Index>& loop) {
+    const Index apex = size();
+    vertices_.push_back({ring.center + side * ring.radius * ring.normal, ring.points.front().sample.cone});
+    for (std::size_t j = 0; j < loop.size(); ++j) faces_.push_back({loop[j], loop[(j + 1) % loop.size()], apex});
+  }
+
+  const GrowthSkeleton& skeleton_;
+  std::vector<SurfacePoint> vertices_;
+  std::vector<Triangle> faces_;
+  std::vector<std::vector<Index>> first_;  // vertex of every ring of every tube
+};
+
+}  // namespace
+
+GuidedGrowthReport grow_guided(BoundSurface& surface, const GenerateOptions& options, const Progress& progress) {
+  const VesselField& field = surface.field;
+  const std::vector<Branch> branches = find_branches(field.centerline());
+  std::vector<BranchAxis> axes;
+  for (const Branch& branch : branches) axes.emplace_back(field.centerline(), branch);
+  const GrowthSkeleton skeleton = make_growth_skeleton(field, axes, options.around);
+
+  Assembly assembly(skeleton);
+  for (Index t = 0; t < skeleton.tubes.size(); ++t) assembly.add_tube(t);
+  for (std::size_t j = 0; j < skeleton.junctions.size(); ++j) {
+    report_progress(progress, "grow", static_cast<double>(j) / static_cast<double>(skeleton.junctions.size()));
+    assembly.add_junction(grow_junction(field, axes, skeleton, skeleton.junctions[j], options));
+  }
+  assembly.build(surface);
+
+  GuidedGrowthReport report;
+  report.junctions = skeleton.junctions.size();
+  report.tubes = skeleton.tubes.size();
+  report.components = skeleton.component_count();
+  report.cycle_rank = skeleton.cycle_rank();
+  report.filled_loops = field.centerline().cycle_rank() - report.cycle_rank;
+  return report;
+}
+
+}  // namespace vmesh

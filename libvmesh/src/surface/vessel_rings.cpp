@@ -1,0 +1,109 @@
+#include "surface/vessel_rings.h"
+
+#include <numbers>
+
+namespace vmesh {
+namespace {
+
+constexpr double kPitch = 1.08;       // of rings, in heights of the equilateral band
+constexpr double kSmoothing = 0.6;    // radii before and behind over which the direction of the vessel is taken
+constexpr int kSteps = 8;             // of the search for the boundary along a ray
+constexpr double kOnBoundary = 1e-3;  // radii
+constexpr double kNearest = 0.5, kFarthest = 2;  // radii at which the boundary may lie
+constexpr double kFacing = 0.5;                  // cosine between ray and boundary normal
+constexpr double kOwnReach = 1.5;                // radii along the branch from which the boundary may come
+constexpr double kClearance = 1.35;              // radii at which no other vessel may be ...
+constexpr double kFreeSpace = 0.15;              // ... within this many radii
+constexpr double kMinGap = 0.2;                  // pitches between two rings anywhere
+
+// Height of the band of triangles between two rings, in ring radii, when all its edges are as long as the ring's.
+double equilateral_height(int around) {
+  const double edge = 2 * std::sin(std::numbers::pi / around);
+  const double shift = 2 * std::sin(std::numbers::pi / (2 * around));  // of a vertex turned half a step
+  return std::sqrt(edge * edge - shift * shift);
+}
+
+bool apart(const Ring& ring, const Ring& next, double gap) {
+  for (const auto& p : next.points) {
+    if ((p.position - ring.center).dot(ring.normal) < gap * ring.radius) return false;
+  }
+  for (const auto& p : ring.points) {
+    if ((next.center - p.position).dot(next.normal) < gap * next.radius) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes,
+                     const std::vector<SegmentPlace>& places, int around)
+    : field_(field), axes_(axes), places_(places), around_(around) {}
+
+std::vector<Ring> RingLayer::lay(Index branch) const {
+  const BranchAxis& axis = axes_[branch];
+  const double pitch = kPitch * equilateral_height(around_);
+  const double total = axis.length_in_radii();
+  const auto bands = static_cast<std::size_t>(std::max(1.0, std::round(total / pitch)));
+  const std::size_t count = axis.periodic() ? bands : bands + 1;
+  std::vector<Ring> rings;
+  Vec3 side = Vec3::Zero(), last_normal = Vec3::Zero();
+  for (std::size_t k = 0; k < count; ++k) {
+    const double place = axis.place_at_radii(total * static_cast<double>(k) / static_cast<double>(bands));
+    const Vec3 normal = axis.direction(place, kSmoothing * axis.at(place).radius);
+    side = k == 0 ? normal.unitOrthogonal() : Vec3(Eigen::Quaterniond::FromTwoVectors(last_normal, normal) * side);
+    side = (side - side.dot(normal) * normal).normalized();
+    rings.push_back(lay_one(branch, place, normal, side, static_cast<double>(k % 2) / 2));
+    last_normal = normal;
+  }
+  std::vector<char> collides(rings.size(), 0);
+  for (std::size_t k = 0; k < bands && rings.size() > 1; ++k) {
+    const std::size_t next = (k + 1) % rings.size();
+    if (!rings[k].free || !rings[next].free || apart(rings[k], rings[next], kMinGap * pitch)) continue;
+    collides[k] = collides[next] = 1;
+  }
+  for (std::size_t k = 0; k < rings.size(); ++k) rings[k].free = rings[k].free && !collides[k];
+  return rings;
+}
+
+Ring RingLayer::lay_one(Index branch, double place, const Vec3& normal, const Vec3& side, double phase) const {
+  const BranchAxis::Point axis = axes_[branch].at(place);
+  Ring ring;
+  ring.place = place;
+  ring.center = axis.position;
+  ring.normal = normal;
+  ring.radius = axis.radius;
+  const Vec3 up = normal.cross(side);
+  for (int j = 0; j < around_; ++j) {
+    const double angle = 2 * std::numbers::pi * (j + phase) / around_;
+    BoundaryPoint seen;
+    if (!see(branch, ring, axis, std::cos(angle) * side + std::sin(angle) * up, seen)) return ring;
+    ring.points.push_back(seen);
+  }
+  ring.free = true;
+  return ring;
+}
+
+bool RingLayer::see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way,
+                    BoundaryPoint& seen) const {
+  const Index segment = axes_[branch].branch().segments[axis.piece];
+  double far = ring.radius;
+  FieldSample s;
+  for (int step = 0; step < kSteps; ++step) {
+    s = field_.sample(ring.center + far * way, segment);
+    if (std::abs(s.distance) < kOnBoundary * ring.radius) break;
+    const double slope = s.gradient.dot(way);
+    if (slope < kFacing) return false;
+    far -= s.distance / slope;
+    if (!(far > kNearest * ring.radius && far < kFarthest * ring.radius)) return false;
+  }
+  if (!(std::abs(s.distance) < kOnBoundary * ring.radius) || s.gradient.dot(way) < kFacing) return false;
+  seen = {ring.center + far * way, s};
+  const SegmentPlace at = places_[s.cone];
+  if (at.branch != branch) return false;
+  const BranchAxis& a = axes_[branch];
+  if (a.apart(a.place_of(at.piece, s.t), ring.place) > kOwnReach * ring.radius) return false;
+  const Vec3 beside = ring.center + kClearance * far * way;
+  return field_.sample(beside, segment).distance > kFreeSpace * ring.radius;
+}
+
+}  // namespace vmesh

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "surface/bound_surface.h"
+#include "surface/branch_axis.h"
+
+namespace vmesh {
+
+/// A ring of vertices around a branch, on the vessel boundary, counter-clockwise about `normal`.
+struct Ring {
+  double place = 0;  ///< on the branch
+  Vec3 center = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();  ///< along the branch, in the order of its nodes
+  double radius = 0;
+  std::vector<BoundaryPoint> points;
+  /// The cross-section there belongs to this branch alone: nothing else covers it or comes close.
+  bool free = false;
+};
+
+/// Where every segment lies: its branch and its number there.
+struct SegmentPlace {
+  Index branch = kNone;
+  Index piece = kNone;
+};
+
+/// Lays rings of `around` vertices along branches, evenly in units of the local radius, each turned half a step
+/// against the one before: bands of nearly equilateral triangles. The first and the last ring lie at the branch's ends.
+class RingLayer {
+ public:
+  RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes, const std::vector<SegmentPlace>& places,
+            int around);
+
+  std::vector<Ring> lay(Index branch) const;
+
+ private:
+  Ring lay_one(Index branch, double place, const Vec3& normal, const Vec3& side, double phase) const;
+  // The boundary point seen from `center` in direction `way`; false if it does not belong to the place alone.
+  bool see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way, BoundaryPoint& seen) const;
+
+  const VesselField& field_;
+  const std::vector<BranchAxis>& axes_;
+  const std::vector<SegmentPlace>& places_;
+  int around_;
+};
+
+}  // namespace vmesh
