@@ -10,7 +10,6 @@ namespace vmesh {
 namespace {
 
 constexpr std::array kCutHeights = {-0.3, 0.0, 0.3, 0.6};  // radii beyond the tip's centre, tried in this order
-constexpr double kTipReach = 2;                            // radii around the tip's centre that count as tip
 
 // Shortest way through the grid of pairs (bottom i, top j) from (0, start) once around both loops.
 class BandSearch {
@@ -101,10 +100,10 @@ DiscCutter::DiscCutter(const std::vector<Vec3>& vertices, const std::vector<Tria
 }
 
 std::vector<Index> DiscCutter::cut(const Vec3& center, const Vec3& normal, double radius,
-                                   const std::vector<Index>& candidates) {
+                                   const std::vector<Index>& own) {
   Index apex = kNone;
   double highest = -std::numeric_limits<double>::infinity();
-  for (const Index v : candidates) {
+  for (const Index v : own) {
     const double height = (vertices_[v] - center).dot(normal);
     const bool whole = std::none_of(faces_of_[v].begin(), faces_of_[v].end(), [&](Index f) { return cut_[f]; });
     if (height > highest && whole && !on_loop_[v]) {
@@ -115,24 +114,24 @@ std::vector<Index> DiscCutter::cut(const Vec3& center, const Vec3& normal, doubl
   if (apex == kNone) return cut_one_face(center + radius * normal);
   std::vector<Index> cut_faces;
   for (const double height : kCutHeights) {
-    const auto loop = loop_around(tip_region(apex, center, normal, radius, height * radius), cut_faces);
+    const auto loop = loop_around(tip_region(apex, center, normal, height * radius, own), cut_faces);
     if (!loop.empty()) return take(loop, cut_faces);
   }
   const auto loop = loop_around({apex}, cut_faces);
   return loop.empty() ? cut_one_face(vertices_[apex]) : take(loop, cut_faces);
 }
 
-std::vector<Index> DiscCutter::tip_region(Index apex, const Vec3& center, const Vec3& normal, double radius,
-                                          double height) const {
+std::vector<Index> DiscCutter::tip_region(Index apex, const Vec3& center, const Vec3& normal, double height,
+                                          const std::vector<Index>& own) const {
+  std::vector<char> open(vertices_.size(), 0);  // may join and has not yet
+  for (const Index v : own) open[v] = (vertices_[v] - center).dot(normal) > height;
   std::vector<Index> region = {apex};
-  std::vector<char> seen(vertices_.size(), 0);
-  seen[apex] = 1;
+  open[apex] = 0;
   for (std::size_t i = 0; i < region.size(); ++i) {
     for (const Index f : faces_of_[region[i]]) {
       for (const Index v : faces_[f]) {
-        const Vec3 away = vertices_[v] - center;
-        if (seen[v] || away.dot(normal) <= height || away.norm() > kTipReach * radius) continue;
-        seen[v] = 1;
+        if (!open[v]) continue;
+        open[v] = 0;
         region.push_back(v);
       }
     }

@@ -18,16 +18,17 @@ class DiscCutter {
  public:
   DiscCutter(const std::vector<Vec3>& vertices, const std::vector<Triangle>& faces);
 
-  /// Cuts the faces at the tip of a vessel: around the vertex of `candidates` farthest along `normal` all that lie
-  /// beyond the plane through `center`, fewer where those are no disc, at least one face. Returns the loop around the
-  /// hole, counter-clockwise about `normal`; discs never overlap.
-  std::vector<Index> cut(const Vec3& center, const Vec3& normal, double radius, const std::vector<Index>& candidates);
+  /// Cuts the faces at the tip of a vessel: around the vertex of `own` farthest along `normal` all vertices of `own`
+  /// that lie beyond the plane through `center`, fewer where those are no disc, at least one face. Returns the loop
+  /// around the hole, counter-clockwise about `normal`; discs never overlap.
+  std::vector<Index> cut(const Vec3& center, const Vec3& normal, double radius, const std::vector<Index>& own);
 
   /// Faces that are left.
   std::vector<Triangle> rest() const;
 
  private:
-  std::vector<Index> tip_region(Index apex, const Vec3& center, const Vec3& normal, double radius, double height) const;
+  std::vector<Index> tip_region(Index apex, const Vec3& center, const Vec3& normal, double height,
+                                const std::vector<Index>& own) const;
   // The loop around the faces of `region`; empty if these are no disc or touch what was cut before.
   std::vector<Index> loop_around(const std::vector<Index>& region, std::vector<Index>& cut_faces) const;
   std::vector<Index> take(const std::vector<Index>& loop, const std::vector<Index>& cut_faces);

@@ -101,19 +101,21 @@ GuidedGrowthReport grow_guided(BoundSurface& surface, const GenerateOptions& opt
   for (const Branch& branch : branches) axes.emplace_back(field.centerline(), branch);
   const GrowthSkeleton skeleton = make_growth_skeleton(field, axes, options.around);
 
+  GuidedGrowthReport report;
   Assembly assembly(skeleton);
   for (Index t = 0; t < skeleton.tubes.size(); ++t) assembly.add_tube(t);
   for (std::size_t j = 0; j < skeleton.junctions.size(); ++j) {
     report_progress(progress, "grow", static_cast<double>(j) / static_cast<double>(skeleton.junctions.size()));
-    assembly.add_junction(grow_junction(field, axes, skeleton, skeleton.junctions[j], options));
+    const JunctionSurface junction = grow_junction(field, axes, skeleton, skeleton.junctions[j], options);
+    report.cycle_rank += junction.handles;
+    assembly.add_junction(junction);
   }
   assembly.build(surface);
 
-  GuidedGrowthReport report;
   report.junctions = skeleton.junctions.size();
   report.tubes = skeleton.tubes.size();
   report.components = skeleton.component_count();
-  report.cycle_rank = skeleton.cycle_rank();
+  report.cycle_rank += skeleton.cycle_rank();
   report.filled_loops = field.centerline().cycle_rank() - report.cycle_rank;
   return report;
 }

@@ -21,12 +21,11 @@ struct JunctionSurface {
   SurfacePatch patch;
   std::vector<Opening> openings;
   std::vector<std::vector<Index>> rims;  ///< counter-clockwise about the direction away from the junction
+  std::size_t handles = 0;               ///< loops of the centerline that the junction closes itself
 };
 
-/// Grows the surface of a junction: a geodesic sphere at its widest place, a volume that extends along all its gaps
-/// step by step, vertices that follow the boundary by Eq. 11, faces crossed by a vessel's tip refined until the surface
-/// enters it. The surface is always one around the volume reached so far, so nothing can be covered twice; it ends when
-/// the openings are reached.
+/// Grows the surface of a junction from its widest place, in a lattice as fine as its thinnest vessel
+/// (grow_in_lattice), brings it onto the boundary and to the size field, and cuts its openings.
 JunctionSurface grow_junction(const VesselField& field, const std::vector<BranchAxis>& axes,
                               const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options);
 
