@@ -1,35 +1,32 @@
 #include "surface/junction_growth.h"
 
+#include <array>
 #include <map>
 
+#include "vmesh/mesh/topology.h"
 #include "surface/docking.h"
 #include "surface/lattice_growth.h"
-#include "surface/relocation.h"
-#include "surface/remesher.h"
+#include "surface/optimize.h"
 
 namespace vmesh {
 namespace {
 
 constexpr double kSpacing = 0.6;         // of the lattice, in the smallest radii ...
 constexpr double kFinestSpacing = 0.08;  // ... but at least in the largest
+constexpr std::array kFiner = {2, 3, 4};  // halves of the resolution, tried until the surface does not intersect itself
 constexpr int kSweeps = 8;               // from the lattice's triangles to those of the size field
 constexpr double kOwnReach = 1.5;        // radii along the branch from which a tip's vertices come
 
 // The part of a centerline that belongs to a junction, cut at its openings. Segments know the place they come from.
 struct JunctionCenterline {
   struct Origin {
-    Index branch;
-    double begin, end;
-  };
-  struct Tip {
-    Opening opening;
-    Index node;
+    Index gap;
+    double begin, end;  // places
   };
 
   std::vector<CenterlineNode> nodes;
   std::vector<CenterlineSegment> segments;
   std::vector<Origin> origins;  // of the segments
-  std::vector<Tip> tips;
 };
 
 class JunctionCenterlineMaker {
@@ -39,7 +36,7 @@ class JunctionCenterlineMaker {
 
   JunctionCenterline make(const Junction& junction) {
     for (const Index n : junction.nodes) node_of(n);
-    for (const Gap& gap : junction.gaps) add(gap);
+    for (Index g = 0; g < junction.gaps.size(); ++g) add(junction.gaps[g], g);
     return std::move(result_);
   }
 
@@ -59,12 +56,10 @@ class JunctionCenterlineMaker {
     const BranchAxis& axis = axes_[gap.branch];
     if (gap.openings[end].tube == kNone) return node_of(end ? axis.branch().nodes.back() : axis.branch().nodes.front());
     const auto point = axis.at(end ? gap.end : gap.begin);
-    const Index node = add_node(point.position, point.radius);
-    result_.tips.push_back({gap.openings[end], node});
-    return node;
+    return add_node(point.position, point.radius);
   }
 
-  void add(const Gap& gap) {
+  void add(const Gap& gap, Index number) {
     const BranchAxis& axis = axes_[gap.branch];
     std::vector<double> places = {gap.begin};
     const auto pass = [&](double place) {
@@ -82,7 +77,7 @@ class JunctionCenterlineMaker {
       const auto point = axis.at(places[i]);
       const Index next = i + 1 == places.size() ? end : add_node(point.position, point.radius);
       result_.segments.push_back({last, next});
-      result_.origins.push_back({gap.branch, places[i - 1], places[i]});
+      result_.origins.push_back({number, places[i - 1], places[i]});
       last = next;
     }
   }
@@ -119,20 +114,21 @@ void fill(BoundSurface& surface, const LatticeSurface& lattice) {
   for (const auto& [a, b, c] : lattice.faces) surface.mesh.add_face(Vertex(a), Vertex(b), Vertex(c));
 }
 
-// Onto the boundary, and from the lattice's many triangles to those of the size field.
-void coarsen(BoundSurface& surface, int around) {
-  SweepState state(surface);
-  Remesher remesher(state);
-  remesher.limit_vertices(2 * surface.mesh.number_of_vertices() + 100);
-  state.stir_all();
-  for (int sweep = 0; sweep < kSweeps && state.next_sweep() > 0; ++sweep) {
-    state.update_sizes(edge_length_per_radius(around));
-    remesher.repair_strays();
-    remesher.split_long_edges();
-    remesher.collapse_short_edges();
-    remesher.flip_edges(1);
-    relocate_vertices(state);
+// The finer the safer: narrow places do not bear triangles of every size.
+GenerateResult onto_boundary(const VesselField& field, const LatticeSurface& lattice, GenerateOptions options) {
+  GenerateResult piece;
+  options.sweeps = kSweeps;
+  const int around = options.around;
+  for (const int finer : kFiner) {
+    BoundSurface surface(field);
+    fill(surface, lattice);
+    options.around = finer * around / 2;
+    optimize(surface, options, {});
+    piece = {};
+    surface.export_to(piece);
+    if (self_intersections(piece.mesh).empty()) break;
   }
+  return piece;
 }
 
 // The cone of the whole field that a cone of the junction's field is part of.
@@ -144,8 +140,22 @@ Index original_cone(const VesselField& field, const std::vector<BranchAxis>& axe
     return ball;
   }
   const auto& origin = local.origins[cone];
-  const BranchAxis& axis = axes[origin.branch];
+  const BranchAxis& axis = axes[junction.gaps[origin.gap].branch];
   return axis.branch().segments[axis.at(0.5 * (origin.begin + origin.end)).piece];
+}
+
+// The vertices bound to gap number `g`, near one of its ends and nearer than to the other.
+std::vector<Index> vertices_near_end(const GenerateResult& piece, const JunctionCenterline& local, const Gap& gap,
+                                     Index g, bool at_end, double reach) {
+  std::vector<Index> near;
+  for (Index v = 0; v < piece.binding.size(); ++v) {
+    const auto& [segment, t] = piece.binding[v];
+    const auto& origin = local.origins[segment];
+    const double place = origin.begin + t * (origin.end - origin.begin);
+    const double away = at_end ? gap.end - place : place - gap.begin;
+    if (origin.gap == g && away < reach && away < 0.5 * (gap.end - gap.begin)) near.push_back(v);
+  }
+  return near;
 }
 
 }  // namespace
@@ -156,34 +166,34 @@ JunctionSurface grow_junction(const VesselField& field, const std::vector<Branch
   const JunctionCenterline local = JunctionCenterlineMaker(field.centerline(), axes).make(junction);
   const Centerline centerline(local.nodes, local.segments);
   const VesselField local_field(centerline, options.blend);
+  auto t0 = clock();
   const Index start = widest_node(centerline);
   const Index hint = centerline.degree(start) > 0 ? centerline.incident_segments(start)[0] : 0;
   const LatticeSurface lattice =
       grow_in_lattice(local_field, centerline.node(start).position, hint, lattice_spacing(centerline),
                       Eigen::AngleAxisd(0.4, Vec3(2, 3, 6) / 7).toRotationMatrix(), centerline.cycle_rank());
-  BoundSurface surface(local_field);
-  fill(surface, lattice);
-  coarsen(surface, options.around);
+  const GenerateResult piece = onto_boundary(local_field, lattice, options);
 
-  GenerateResult piece;
-  surface.export_to(piece);
+  if (getenv("DBG")) { auto si = self_intersections(piece.mesh).size();
+    if (si) { static int n = 0; for (int k = 0; k < 2; ++k) { auto& vv = k ? lattice.vertices : piece.mesh.vertices; auto& ff = k ? lattice.faces : piece.mesh.faces; FILE* o = fopen(("/tmp/proto/j" + std::to_string(n) + (k ? "l" : "") + ".off").c_str(), "w"); fprintf(o, "OFF\n%zu %zu 0\n", vv.size(), ff.size()); for (auto& x : vv) fprintf(o, "%.9g %.9g %.9g\n", x.x(), x.y(), x.z()); for (auto& f : ff) fprintf(o, "3 %u %u %u\n", f[0], f[1], f[2]); fclose(o); } ++n; for (size_t i = 0; i < local.nodes.size(); ++i) fprintf(stderr, "DBGN %g %g %g %g\n", local.nodes[i].position.x(), local.nodes[i].position.y(), local.nodes[i].position.z(), local.nodes[i].radius); for (auto& s : local.segments) fprintf(stderr, "DBGN seg %u %u\n", s.a, s.b); }
+    fprintf(stderr, "DBG %s nodes %zu tips %zu gaps %zu lat %zu v %zu h %zu rank %zu at %.2f %.2f %.2f SI %zu sp %.3f time %.3f\n", si ? "BAD" : "ok", local.nodes.size(), junction.gaps.size(), junction.gaps.size(), lattice.vertices.size(), piece.mesh.vertices.size(), lattice.handles, centerline.cycle_rank(), local.nodes[0].position.x(), local.nodes[0].position.y(), local.nodes[0].position.z(), si, lattice_spacing(centerline), double(clock() - t0) * 1e-6);
+  }
   JunctionSurface result;
   result.handles = lattice.handles;
   DiscCutter cutter(piece.mesh.vertices, piece.mesh.faces);
-  for (const auto& tip : local.tips) {
-    const Tube& tube = skeleton.tubes[tip.opening.tube];
-    const Ring& ring = tip.opening.at_end ? tube.rings.back() : tube.rings.front();
-    std::vector<Index> own;  // vertices on the branch, near the opening
-    for (Index v = 0; v < piece.binding.size(); ++v) {
-      const auto& origin = local.origins[piece.binding[v].segment];
-      const double place = tip.opening.at_end ? origin.begin : origin.end;
-      if (origin.branch == tube.branch && axes[tube.branch].apart(place, ring.place) < kOwnReach * ring.radius)
-        own.push_back(v);
+  for (Index g = 0; g < junction.gaps.size(); ++g) {
+    const Gap& gap = junction.gaps[g];
+    for (const bool at_end : {false, true}) {
+      const Opening& opening = gap.openings[at_end];
+      if (opening.tube == kNone) continue;
+      const Tube& tube = skeleton.tubes[opening.tube];
+      const Ring& ring = opening.at_end ? tube.rings.back() : tube.rings.front();
+      result.openings.push_back(opening);
+      result.rims.push_back(cutter.cut(ring.center, opening.at_end ? Vec3(-ring.normal) : ring.normal, ring.radius,
+                                       vertices_near_end(piece, local, gap, g, at_end, kOwnReach * ring.radius)));
     }
-    result.openings.push_back(tip.opening);
-    result.rims.push_back(
-        cutter.cut(ring.center, tip.opening.at_end ? Vec3(-ring.normal) : ring.normal, ring.radius, own));
   }
+  if (getenv("DBG")) for (size_t i = 0; i < result.rims.size(); ++i) if (result.rims[i].size() <= 3 || result.rims[i].size() > 11) { const auto& c = skeleton.tubes[result.openings[i].tube].rings[result.openings[i].at_end ? skeleton.tubes[result.openings[i].tube].rings.size()-1 : 0]; fprintf(stderr, "DBG RIM %zu at %.2f %.2f %.2f r %.3f\n", result.rims[i].size(), c.center.x(), c.center.y(), c.center.z(), c.radius); }
   result.patch.faces = cutter.rest();
   for (std::size_t v = 0; v < piece.binding.size(); ++v) {
     result.patch.vertices.push_back(

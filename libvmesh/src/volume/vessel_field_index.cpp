@@ -11,8 +11,7 @@ namespace vmesh {
 namespace {
 
 // Overlap that keeps siblings one union: measured in sums of radii (ALGORITHM: flooding of the locality).
-constexpr double kOverlapFactor = 1.1;
-constexpr double kPathFactor = 2;
+constexpr double kOverlapFactor = 1.3;
 // Relative to coordinates: covers the rounding in a distance and in a box.
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
@@ -26,48 +25,6 @@ double segment_distance(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3&
   t = c > 0 ? std::clamp((b * s + e) / c, 0.0, 1.0) : 0.0;
   return (w + s * u - t * v).norm();
 }
-
-// Path distances from one node set, as far as a limit; reused from cone to cone.
-class PathSearch {
- public:
-  explicit PathSearch(const Centerline& centerline)
-      : centerline_(centerline), distance_(centerline.nodes().size(), kFar) {}
-
-  // Calls visit(node, distance) for every node within `limit` of nodes a and b.
-  template <class Visit>
-  void run(Index a, Index b, double limit, Visit&& visit) {
-    reach(a, 0);
-    reach(b, 0);
-    while (!queue_.empty()) {
-      const auto [distance, node] = queue_.top();
-      queue_.pop();
-      if (distance > distance_[node]) continue;
-      visit(node, distance);
-      for (const Index s : centerline_.incident_segments(node)) {
-        const double next = distance + centerline_.length(s);
-        if (next <= limit) reach(centerline_.other_node(s, node), next);
-      }
-    }
-    for (const Index n : touched_) distance_[n] = kFar;
-    touched_.clear();
-  }
-
- private:
-  static constexpr double kFar = std::numeric_limits<double>::infinity();
-  using Entry = std::pair<double, Index>;
-
-  void reach(Index node, double distance) {
-    if (distance >= distance_[node]) return;
-    if (distance_[node] == kFar) touched_.push_back(node);
-    distance_[node] = distance;
-    queue_.emplace(distance, node);
-  }
-
-  const Centerline& centerline_;
-  std::vector<double> distance_;
-  std::vector<Index> touched_;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
-};
 
 // A growing symmetric relation between cones.
 class PairSet {
@@ -95,17 +52,12 @@ bool VesselField::overlap(Index i, Index j) const {
 void VesselField::find_local_cones() {
   const auto segment_count = static_cast<Index>(centerline_->segments().size());
   PairSet set;
-  PathSearch search(*centerline_);
   for (Index i = 0; i < segment_count; ++i) {
-    // A pair is found from its thicker cone, so the search need not look farther than 4 r.
-    const double r = max_radius(i);
-    search.run(cones_[i].a, cones_[i].b, 2 * kPathFactor * r, [&](Index node, double distance) {
+    for (const Index node : {cones_[i].a, cones_[i].b}) {
       for (const Index j : centerline_->incident_segments(node)) {
-        if (j != i && max_radius(j) <= r && (distance == 0 || distance <= kPathFactor * (r + max_radius(j)))) {
-          set.insert(i, j);
-        }
+        if (j != i) set.insert(i, j);
       }
-    });
+    }
   }
   const auto flood = [&](Index i, Index j) {  // neighbours of i that overlap j
     for (const Index node : {cones_[i].a, cones_[i].b}) {
