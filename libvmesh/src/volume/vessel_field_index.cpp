@@ -2,7 +2,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <queue>
 #include <unordered_set>
 
 #include "vmesh/volume/vessel_field.h"
@@ -10,20 +9,50 @@
 namespace vmesh {
 namespace {
 
-// Overlap that keeps siblings one union: measured in sums of radii (ALGORITHM: flooding of the locality).
-constexpr double kOverlapFactor = 1.3;
+constexpr double kContact = 1.25;  // sums of radii within which two spheres of the volume touch, or blend
+constexpr double kSampling = 0.5;  // mean radii between two spheres that stand for a cone
+constexpr int kMaxSamples = 200;   // per cone
 // Relative to coordinates: covers the rounding in a distance and in a box.
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
-double segment_distance(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
-  const Vec3 w = p - q;
-  const double a = u.dot(u), b = u.dot(v), c = v.dot(v), d = u.dot(w), e = v.dot(w);
-  const double det = a * c - b * b;
-  double s = det > 1e-14 * a * c ? std::clamp((b * e - c * d) / det, 0.0, 1.0) : 0.0;
-  double t = c > 0 ? std::clamp((b * s + e) / c, 0.0, 1.0) : 0.0;
-  s = a > 0 ? std::clamp((b * t - d) / a, 0.0, 1.0) : 0.0;
-  t = c > 0 ? std::clamp((b * s + e) / c, 0.0, 1.0) : 0.0;
-  return (w + s * u - t * v).norm();
+// Spheres along all segments, every one next to those before and after it.
+struct SphereChain {
+  std::vector<Vec3> centers;
+  std::vector<double> radii;
+  std::vector<std::vector<Index>> next;   // neighbours along the centerline
+  std::vector<std::vector<Index>> cones;  // of which a sphere is part: several at a node
+};
+
+SphereChain make_chain(const Centerline& centerline) {
+  SphereChain chain;
+  const auto add = [&](const Vec3& center, double radius) {
+    chain.centers.push_back(center);
+    chain.radii.push_back(radius);
+    chain.next.emplace_back();
+    chain.cones.emplace_back();
+    return static_cast<Index>(chain.centers.size() - 1);
+  };
+  const auto link = [&](Index p, Index q, Index cone) {
+    chain.next[p].push_back(q);
+    chain.next[q].push_back(p);
+    for (const Index sphere : {p, q}) {
+      if (chain.cones[sphere].empty() || chain.cones[sphere].back() != cone) chain.cones[sphere].push_back(cone);
+    }
+  };
+  for (const auto& node : centerline.nodes()) add(node.position, node.radius);
+  for (Index s = 0; s < centerline.segments().size(); ++s) {
+    const double steps = std::ceil(centerline.length(s) / (kSampling * centerline.radius_at(s, 0.5)));
+    const int count = static_cast<int>(std::clamp(steps, 1.0, double{kMaxSamples}));
+    Index last = centerline.segment(s).a;
+    for (int k = 1; k < count; ++k) {
+      const double t = static_cast<double>(k) / count;
+      const Index sphere = add(centerline.point_at(s, t), centerline.radius_at(s, t));
+      link(last, sphere, s);
+      last = sphere;
+    }
+    link(last, centerline.segment(s).b, s);
+  }
+  return chain;
 }
 
 // A growing symmetric relation between cones.
@@ -44,33 +73,35 @@ class PairSet {
 
 }  // namespace
 
-bool VesselField::overlap(Index i, Index j) const {
-  const Cone &x = cones_[i], &y = cones_[j];
-  return segment_distance(x.origin, x.axis, y.origin, y.axis) < kOverlapFactor * (max_radius(i) + max_radius(j));
-}
-
+// Two cones are local to each other where a pair of spheres, one on each, can be reached from a pair of one and the
+// same by moving either along the centerline without losing touch.
 void VesselField::find_local_cones() {
-  const auto segment_count = static_cast<Index>(centerline_->segments().size());
-  PairSet set;
-  for (Index i = 0; i < segment_count; ++i) {
-    for (const Index node : {cones_[i].a, cones_[i].b}) {
-      for (const Index j : centerline_->incident_segments(node)) {
-        if (j != i) set.insert(i, j);
+  const SphereChain chain = make_chain(*centerline_);
+  PairSet touching, set;
+  const auto touch = [&](Index p, Index q) {
+    const double reach = kContact * (chain.radii[p] + chain.radii[q]);
+    if ((chain.centers[p] - chain.centers[q]).squaredNorm() < reach * reach && p != q) touching.insert(p, q);
+  };
+  for (Index p = 0; p < chain.centers.size(); ++p) {
+    for (const Index i : chain.cones[p]) {
+      for (const Index j : chain.cones[p]) {
+        if (i != j) set.insert(i, j);
       }
+    }
+    for (const Index q : chain.next[p]) touch(p, q);
+    for (std::size_t n = 0; n < chain.next[p].size(); ++n) {
+      for (std::size_t m = 0; m < n; ++m) touch(chain.next[p][n], chain.next[p][m]);
     }
   }
-  const auto flood = [&](Index i, Index j) {  // neighbours of i that overlap j
-    for (const Index node : {cones_[i].a, cones_[i].b}) {
-      for (const Index k : centerline_->incident_segments(node)) {
-        if (k != i && k != j && overlap(k, j)) set.insert(k, j);
+  for (std::size_t n = 0; n < touching.pairs().size(); ++n) {
+    const auto [p, q] = touching.pairs()[n];
+    for (const Index i : chain.cones[p]) {
+      for (const Index j : chain.cones[q]) {
+        if (i != j) set.insert(i, j);
       }
     }
-  };
-  for (std::size_t n = 0; n < set.pairs().size(); ++n) {
-    const auto [i, j] = set.pairs()[n];
-    if (!overlap(i, j)) continue;
-    flood(i, j);
-    flood(j, i);
+    for (const Index next : chain.next[p]) touch(next, q);
+    for (const Index next : chain.next[q]) touch(p, next);
   }
 
   local_offsets_.assign(cones_.size() + 1, 0);

@@ -25,9 +25,9 @@ struct FieldSample {
 /// two cones of radii r1, r2 meet under gradients g1, g2 the minimum is smooth over a width of
 /// blend * min(r1, r2) * (1 - g1.g2); along a straight chain the gradients agree and, up to blend 1, nothing bulges.
 ///
-/// Local queries carry a cone they were last closest to; only cones near it along the graph take part
-/// (path distance at most 2 (r_i + r_j), extended over overlapping neighbours). Vessels that come close in space but
-/// not along the graph do not see each other. Global queries see every cone, for evaluation.
+/// Local queries carry a cone they were last closest to; only cones near it along the graph take part: those whose
+/// spheres it touches without a break from a common place on. Vessels that part and meet again, or come close in space
+/// but not along the graph do not see each other. Global queries see every cone, for evaluation.
 class VesselField {
  public:
   /// `blend` in [0, 2]. Keeps a reference to `centerline`, which must outlive the field.
@@ -84,7 +84,6 @@ class VesselField {
   static Distance distance_to(const Cone& cone, const Vec3& p);
   static Vec3 gradient_of(const Cone& cone, const Vec3& p, double t);
   double max_radius(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
-  bool overlap(Index i, Index j) const;
   FieldSample blended(const Vec3& p, std::span<const Index> cones) const;
   void blend_candidates(const Vec3& p, std::span<const Index> near, FieldSample& sample) const;
   void find_local_cones();
