@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
-#include <stdexcept>
+#include <numeric>
+#include <set>
 
 namespace vmesh {
 namespace {
@@ -22,7 +24,7 @@ class BandSearch {
     start_ = start;
     for (std::size_t i = 0; i <= bottom_.size(); ++i) {
       for (std::size_t j = 0; j <= top_.size(); ++j) {
-        const double edge = i + j == 0 ? 0 : (low(i) - high(j)).squaredNorm();
+        const double edge = i + j == 0 ? 0 : in_step(i, j) ? (low(i) - high(j)).squaredNorm() : kInfinite;
         const double via_bottom = i > 0 ? cost(i - 1, j) : kInfinite, via_top = j > 0 ? cost(i, j - 1) : kInfinite;
         from_bottom_[at(i, j)] = via_bottom < via_top;
         cost_[at(i, j)] = i + j == 0 ? 0 : std::min(via_bottom, via_top) + edge;
@@ -47,6 +49,12 @@ class BandSearch {
 
  private:
   static constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+  // Neither loop may be walked around while the other stands still: an edge would come back.
+  bool in_step(std::size_t i, std::size_t j) const {
+    const auto n = static_cast<double>(bottom_.size()), m = static_cast<double>(top_.size());
+    return std::abs(static_cast<double>(i) / n - static_cast<double>(j) / m) < 0.5;
+  }
 
   std::size_t at(std::size_t i, std::size_t j) const { return i * (top_.size() + 1) + j; }
   double cost(std::size_t i, std::size_t j) const { return cost_[at(i, j)]; }
@@ -88,37 +96,38 @@ std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3>
   return search.faces();
 }
 
-DiscCutter::DiscCutter(const std::vector<Vec3>& vertices, const std::vector<Triangle>& faces)
-    : vertices_(vertices),
-      faces_(faces),
-      faces_of_(vertices.size()),
-      cut_(faces.size(), 0),
-      on_loop_(vertices.size(), 0) {
-  for (Index f = 0; f < faces.size(); ++f) {
-    for (const Index v : faces[f]) faces_of_[v].push_back(f);
+DiscCutter::DiscCutter(std::vector<Vec3> vertices, std::vector<Triangle> faces)
+    : vertices_(std::move(vertices)),
+      faces_(std::move(faces)),
+      source_(vertices_.size()),
+      faces_of_(vertices_.size()),
+      cut_(faces_.size(), 0) {
+  std::iota(source_.begin(), source_.end(), Index{0});
+  for (Index f = 0; f < faces_.size(); ++f) {
+    for (const Index v : faces_[f]) faces_of_[v].push_back(f);
   }
 }
 
 std::vector<Index> DiscCutter::cut(const Vec3& center, const Vec3& normal, double radius,
                                    const std::vector<Index>& own) {
-  Index apex = kNone;
-  double highest = -std::numeric_limits<double>::infinity();
-  for (const Index v : own) {
-    const double height = (vertices_[v] - center).dot(normal);
-    const bool whole = std::none_of(faces_of_[v].begin(), faces_of_[v].end(), [&](Index f) { return cut_[f]; });
-    if (height > highest && whole && !on_loop_[v]) {
-      highest = height;
-      apex = v;
-    }
-  }
-  if (apex == kNone) return cut_one_face(center + radius * normal);
+  const Index apex = farthest(normal, own);
+  if (apex == kNone) return open_window(center + radius * normal);
   std::vector<Index> cut_faces;
   for (const double height : kCutHeights) {
-    const auto loop = loop_around(tip_region(apex, center, normal, height * radius, own), cut_faces);
-    if (!loop.empty()) return take(loop, cut_faces);
+    const auto rim = rim_around(tip_region(apex, center, normal, height * radius, own), cut_faces);
+    if (!rim.empty()) return take(rim, cut_faces);
   }
-  const auto loop = loop_around({apex}, cut_faces);
-  return loop.empty() ? cut_one_face(vertices_[apex]) : take(loop, cut_faces);
+  const auto rim = rim_around({apex}, cut_faces);
+  return rim.empty() ? open_window(vertices_[apex]) : take(rim, cut_faces);
+}
+
+Index DiscCutter::farthest(const Vec3& normal, const std::vector<Index>& own) const {
+  Index apex = kNone;
+  for (const Index v : own) {
+    const bool whole = std::none_of(faces_of_[v].begin(), faces_of_[v].end(), [&](Index f) { return cut_[f]; });
+    if (whole && (apex == kNone || vertices_[v].dot(normal) > vertices_[apex].dot(normal))) apex = v;
+  }
+  return apex;
 }
 
 std::vector<Index> DiscCutter::tip_region(Index apex, const Vec3& center, const Vec3& normal, double height,
@@ -139,57 +148,68 @@ std::vector<Index> DiscCutter::tip_region(Index apex, const Vec3& center, const 
   return region;
 }
 
-std::vector<Index> DiscCutter::loop_around(const std::vector<Index>& region, std::vector<Index>& cut_faces) const {
+std::vector<Index> DiscCutter::rim_around(const std::vector<Index>& region, std::vector<Index>& cut_faces) const {
   cut_faces.clear();
-  for (const Index v : region) {
-    if (on_loop_[v]) return {};
-    cut_faces.insert(cut_faces.end(), faces_of_[v].begin(), faces_of_[v].end());
-  }
+  for (const Index v : region) cut_faces.insert(cut_faces.end(), faces_of_[v].begin(), faces_of_[v].end());
   std::sort(cut_faces.begin(), cut_faces.end());
   cut_faces.erase(std::unique(cut_faces.begin(), cut_faces.end()), cut_faces.end());
-  std::map<std::pair<Index, Index>, int> edges;  // directed
+  std::vector<Index> corners;
+  std::set<std::pair<Index, Index>> edges;  // directed
   for (const Index f : cut_faces) {
     if (cut_[f]) return {};
-    for (int i = 0; i < 3; ++i) edges[{faces_[f][i], faces_[f][(i + 1) % 3]}] = 1;
-  }
-  std::map<Index, Index> next;
-  for (const auto& [edge, used] : edges) {
-    if (edges.count({edge.second, edge.first})) continue;
-    if (!next.emplace(edge.first, edge.second).second) return {};  // the rim touches itself
-  }
-  if (next.size() < 3) return {};
-  std::vector<Index> loop = {next.begin()->first};
-  for (Index v = next.begin()->second; v != loop.front(); v = next.at(v)) loop.push_back(v);
-  // One rim, and as many faces as a disc with these vertices has.
-  std::vector<Index> inner;
-  for (const Index f : cut_faces) inner.insert(inner.end(), faces_[f].begin(), faces_[f].end());
-  std::sort(inner.begin(), inner.end());
-  const auto vertex_count = static_cast<std::size_t>(std::unique(inner.begin(), inner.end()) - inner.begin());
-  if (loop.size() != next.size() || cut_faces.size() != 2 * vertex_count - loop.size() - 2) return {};
-  return loop;
-}
-
-std::vector<Index> DiscCutter::take(const std::vector<Index>& loop, const std::vector<Index>& cut_faces) {
-  for (const Index v : loop) on_loop_[v] = 1;
-  for (const Index f : cut_faces) cut_[f] = 1;
-  return loop;
-}
-
-std::vector<Index> DiscCutter::cut_one_face(const Vec3& near) {
-  Index best = kNone;
-  double least = std::numeric_limits<double>::infinity();
-  for (Index f = 0; f < faces_.size(); ++f) {
-    if (cut_[f]) continue;
-    const auto& [a, b, c] = faces_[f];
-    const double distance = ((vertices_[a] + vertices_[b] + vertices_[c]) / 3 - near).squaredNorm();
-    if (distance < least) {
-      least = distance;
-      best = f;
+    for (int i = 0; i < 3; ++i) {
+      corners.push_back(faces_[f][i]);
+      edges.emplace(faces_[f][i], faces_[f][(i + 1) % 3]);
     }
   }
-  if (best == kNone) throw std::logic_error("a junction has fewer faces than branches");
-  const auto& [a, b, c] = faces_[best];
-  return take({a, b, c}, {best});
+  std::map<Index, Index> next;
+  for (const auto& [from, to] : edges) {
+    if (edges.count({to, from})) continue;
+    if (!next.emplace(from, to).second) return {};  // the rim touches itself
+  }
+  if (next.size() < 3) return {};
+  std::vector<Index> rim = {next.begin()->first};
+  for (Index v = next.begin()->second; v != rim.front(); v = next.at(v)) rim.push_back(v);
+  // One rim, and as many faces as a disc with these vertices has.
+  std::sort(corners.begin(), corners.end());
+  const auto vertex_count = static_cast<std::size_t>(std::unique(corners.begin(), corners.end()) - corners.begin());
+  if (rim.size() != next.size() || cut_faces.size() != 2 * vertex_count - rim.size() - 2) return {};
+  return rim;
+}
+
+std::vector<Index> DiscCutter::take(const std::vector<Index>& rim, const std::vector<Index>& cut_faces) {
+  for (const Index f : cut_faces) cut_[f] = 1;
+  return rim;
+}
+
+std::vector<Index> DiscCutter::open_window(const Vec3& near) {
+  const auto center = [&](Index f) -> Vec3 {
+    return (vertices_[faces_[f][0]] + vertices_[faces_[f][1]] + vertices_[faces_[f][2]]) / 3;
+  };
+  Index best = kNone;
+  for (Index f = 0; f < faces_.size(); ++f) {
+    if (cut_[f]) continue;
+    if (best == kNone || (center(f) - near).squaredNorm() < (center(best) - near).squaredNorm()) best = f;
+  }
+  const Triangle outer = faces_[best];
+  std::vector<Index> window;
+  for (const Index v : outer) {
+    window.push_back(static_cast<Index>(vertices_.size()));
+    vertices_.push_back(0.5 * (vertices_[v] + center(best)));
+    source_.push_back(source_[v]);
+    faces_of_.emplace_back();
+  }
+  const auto add = [&](const Triangle& face) {
+    for (const Index v : face) faces_of_[v].push_back(static_cast<Index>(faces_.size()));
+    faces_.push_back(face);
+    cut_.push_back(0);
+  };
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    add({outer[i], outer[next], window[i]});
+    add({outer[next], window[next], window[i]});
+  }
+  return take(window, {best});
 }
 
 std::vector<Triangle> DiscCutter::rest() const {

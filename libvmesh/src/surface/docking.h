@@ -16,28 +16,33 @@ std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3>
 /// A closed piece of surface from which discs are cut.
 class DiscCutter {
  public:
-  DiscCutter(const std::vector<Vec3>& vertices, const std::vector<Triangle>& faces);
+  DiscCutter(std::vector<Vec3> vertices, std::vector<Triangle> faces);
 
   /// Cuts the faces at the tip of a vessel: around the vertex of `own` farthest along `normal` all vertices of `own`
-  /// that lie beyond the plane through `center`, fewer where those are no disc, at least one face. Returns the loop
-  /// around the hole, counter-clockwise about `normal`; discs never overlap.
+  /// that lie beyond the plane through `center`, fewer where those are no disc; where nothing is left to cut, a window
+  /// is opened in the face nearest to the tip. Returns the rim, counter-clockwise about `normal`; discs never overlap.
   std::vector<Index> cut(const Vec3& center, const Vec3& normal, double radius, const std::vector<Index>& own);
 
+  const std::vector<Vec3>& vertices() const { return vertices_; }
+  /// The vertex of the piece that vertex `v` is, or that it was made next to.
+  Index source(Index v) const { return source_[v]; }
   /// Faces that are left.
   std::vector<Triangle> rest() const;
 
  private:
+  Index farthest(const Vec3& normal, const std::vector<Index>& own) const;
   std::vector<Index> tip_region(Index apex, const Vec3& center, const Vec3& normal, double height,
                                 const std::vector<Index>& own) const;
-  // The loop around the faces of `region`; empty if these are no disc or touch what was cut before.
-  std::vector<Index> loop_around(const std::vector<Index>& region, std::vector<Index>& cut_faces) const;
-  std::vector<Index> take(const std::vector<Index>& loop, const std::vector<Index>& cut_faces);
-  std::vector<Index> cut_one_face(const Vec3& near);
+  // The rim around the faces of `region`; empty if these are no disc or touch what was cut before.
+  std::vector<Index> rim_around(const std::vector<Index>& region, std::vector<Index>& cut_faces) const;
+  std::vector<Index> take(const std::vector<Index>& rim, const std::vector<Index>& cut_faces);
+  std::vector<Index> open_window(const Vec3& near);
 
-  const std::vector<Vec3>& vertices_;
-  const std::vector<Triangle>& faces_;
+  std::vector<Vec3> vertices_;
+  std::vector<Triangle> faces_;
+  std::vector<Index> source_;
   std::vector<std::vector<Index>> faces_of_;
-  std::vector<char> cut_, on_loop_;
+  std::vector<char> cut_;
 };
 
 }  // namespace vmesh

@@ -3,19 +3,19 @@
 #include <array>
 #include <map>
 
-#include "vmesh/mesh/topology.h"
 #include "surface/docking.h"
 #include "surface/lattice_growth.h"
+#include "surface/node_frame.h"
 #include "surface/optimize.h"
 
 namespace vmesh {
 namespace {
 
-constexpr double kSpacing = 0.9;         // of the lattice, in the smallest radii ...
-constexpr double kFinestSpacing = 0.08;  // ... but at least in the largest
+constexpr double kSpacing = 0.9;          // of the lattice, in the smallest radii ...
+constexpr double kFinestSpacing = 0.08;   // ... but at least in the largest
 constexpr std::array kFiner = {2, 3, 4};  // halves of the resolution, tried until the surface does not intersect itself
-constexpr int kSweeps = 8;               // from the lattice's triangles to those of the size field
-constexpr double kOwnReach = 1.5;        // radii along the branch from which a tip's vertices come
+constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
+constexpr double kOwnReach = 1.5;         // radii along the branch from which a tip's vertices come
 
 // The part of a centerline that belongs to a junction, cut at its openings. Segments know the place they come from.
 struct JunctionCenterline {
@@ -123,10 +123,10 @@ GenerateResult onto_boundary(const VesselField& field, const LatticeSurface& lat
     BoundSurface surface(field);
     fill(surface, lattice);
     options.around = finer * around / 2;
-    optimize(surface, options, {});
+    const bool tangled = optimize(surface, options, {}).tangled;
     piece = {};
     surface.export_to(piece);
-    if (self_intersections(piece.mesh).empty()) break;
+    if (!tangled) break;
   }
   return piece;
 }
@@ -166,18 +166,13 @@ JunctionSurface grow_junction(const VesselField& field, const std::vector<Branch
   const JunctionCenterline local = JunctionCenterlineMaker(field.centerline(), axes).make(junction);
   const Centerline centerline(local.nodes, local.segments);
   const VesselField local_field(centerline, options.blend);
-  auto t0 = clock();
   const Index start = widest_node(centerline);
   const Index hint = centerline.degree(start) > 0 ? centerline.incident_segments(start)[0] : 0;
   const LatticeSurface lattice =
       grow_in_lattice(local_field, centerline.node(start).position, hint, lattice_spacing(centerline),
-                      Eigen::AngleAxisd(0.4, Vec3(2, 3, 6) / 7).toRotationMatrix(), centerline.cycle_rank());
+                      frame_at(centerline, start), centerline.cycle_rank());
   const GenerateResult piece = onto_boundary(local_field, lattice, options);
 
-  if (getenv("DBG")) { auto si = self_intersections(piece.mesh).size();
-    if (si) { static int n = 0; for (int k = 0; k < 2; ++k) { auto& vv = k ? lattice.vertices : piece.mesh.vertices; auto& ff = k ? lattice.faces : piece.mesh.faces; FILE* o = fopen(("/tmp/proto/j" + std::to_string(n) + (k ? "l" : "") + ".off").c_str(), "w"); fprintf(o, "OFF\n%zu %zu 0\n", vv.size(), ff.size()); for (auto& x : vv) fprintf(o, "%.9g %.9g %.9g\n", x.x(), x.y(), x.z()); for (auto& f : ff) fprintf(o, "3 %u %u %u\n", f[0], f[1], f[2]); fclose(o); } ++n; for (size_t i = 0; i < local.nodes.size(); ++i) fprintf(stderr, "DBGN %g %g %g %g\n", local.nodes[i].position.x(), local.nodes[i].position.y(), local.nodes[i].position.z(), local.nodes[i].radius); for (auto& s : local.segments) fprintf(stderr, "DBGN seg %u %u\n", s.a, s.b); }
-    fprintf(stderr, "DBG %s nodes %zu tips %zu gaps %zu lat %zu v %zu h %zu rank %zu at %.2f %.2f %.2f SI %zu sp %.3f time %.3f\n", si ? "BAD" : "ok", local.nodes.size(), junction.gaps.size(), junction.gaps.size(), lattice.vertices.size(), piece.mesh.vertices.size(), lattice.handles, centerline.cycle_rank(), local.nodes[0].position.x(), local.nodes[0].position.y(), local.nodes[0].position.z(), si, lattice_spacing(centerline), double(clock() - t0) * 1e-6);
-  }
   JunctionSurface result;
   result.handles = lattice.handles;
   DiscCutter cutter(piece.mesh.vertices, piece.mesh.faces);
@@ -193,11 +188,10 @@ JunctionSurface grow_junction(const VesselField& field, const std::vector<Branch
                                        vertices_near_end(piece, local, gap, g, at_end, kOwnReach * ring.radius)));
     }
   }
-  if (getenv("DBG")) for (size_t i = 0; i < result.rims.size(); ++i) if (result.rims[i].size() <= 3 || result.rims[i].size() > 11) { const auto& c = skeleton.tubes[result.openings[i].tube].rings[result.openings[i].at_end ? skeleton.tubes[result.openings[i].tube].rings.size()-1 : 0]; fprintf(stderr, "DBG RIM %zu at %.2f %.2f %.2f r %.3f\n", result.rims[i].size(), c.center.x(), c.center.y(), c.center.z(), c.radius); }
   result.patch.faces = cutter.rest();
-  for (std::size_t v = 0; v < piece.binding.size(); ++v) {
-    result.patch.vertices.push_back(
-        {piece.mesh.vertices[v], original_cone(field, axes, junction, local, piece.binding[v].segment)});
+  for (Index v = 0; v < cutter.vertices().size(); ++v) {
+    const Index cone = piece.binding[cutter.source(v)].segment;
+    result.patch.vertices.push_back({cutter.vertices()[v], original_cone(field, axes, junction, local, cone)});
   }
   return result;
 }

@@ -30,7 +30,7 @@ class Optimizer {
       around = std::min<double>(2 * around, options_.around);
       optimize_at(around, grown);
     }
-    return {remesher_.limited()};
+    return {tangled_, remesher_.limited()};
   }
 
  private:
@@ -48,6 +48,7 @@ class Optimizer {
       tangles = find_tangles(state_);
       if (tangles.size() >= before) break;
     }
+    tangled_ = !tangles.empty();
   }
 
   bool hopeless(const std::vector<Vertex>& tangles) const {
@@ -88,6 +89,7 @@ class Optimizer {
   const GenerateOptions& options_;
   const Progress& progress_;
   double edge_per_radius_ = 0;
+  bool tangled_ = false;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 namespace vmesh {
 
 struct OptimizeReport {
+  bool tangled = false;  ///< faces still intersect within the volume's own neighbourhood
   bool limited = false;  ///< refinement stopped at the bound on the number of vertices
 };
 

@@ -6,6 +6,7 @@
 
 #include "surface/geodesic_sphere.h"
 #include "surface/growth_paths.h"
+#include "surface/node_frame.h"
 
 namespace vmesh {
 namespace {
@@ -18,24 +19,6 @@ constexpr double kMaxFlight = 2;            // vessel radii a vertex may travel 
 constexpr double kBehind = 0.1;             // vessel radii a crossing may lie behind its segment's front
 constexpr double kMaxSplits = 20;           // crossings of a segment per vessel radius, some twenty times what is usual
 constexpr double kSmallestFace = 0.02;      // longest edge, in radii of the crossing segment, that is still split
-
-// A frame that turns with the centerline: along the node's first segment, and as far as possible from its others; then
-// turned to where no segment runs through a vertex or a mirror plane of the seed, so that nothing hangs on rounding.
-Eigen::Matrix3d frame_at(const Centerline& centerline, Index node) {
-  Vec3 along = Vec3::UnitZ(), across = Vec3::Zero();
-  for (const Index s : centerline.incident_segments(node)) {
-    const Vec3 way = centerline.node(centerline.other_node(s, node)).position - centerline.node(node).position;
-    if (s == centerline.incident_segments(node)[0]) {
-      along = way.normalized();
-    } else if (along.cross(way.normalized()).norm() > across.norm()) {
-      across = along.cross(way.normalized());
-    }
-  }
-  const Vec3 side = across.norm() > 1e-6 ? Vec3(across.normalized()) : Vec3(along.unitOrthogonal());
-  Eigen::Matrix3d frame;
-  frame << side, along.cross(side), along;
-  return frame * Eigen::AngleAxisd(0.4, Vec3(2, 3, 6) / 7).toRotationMatrix();
-}
 
 class Growth {
  public:

@@ -14,6 +14,7 @@ constexpr double kFacing = 0.5;                  // cosine between ray and bound
 constexpr double kOwnReach = 1.5;                // radii along the branch from which the boundary may come
 constexpr double kClearance = 1.35;              // radii at which no other vessel may be ...
 constexpr double kFreeSpace = 0.15;              // ... within this many radii
+constexpr double kStraight = 1e-3;               // sine of an angle below which directions count as equal
 constexpr double kMinGap = 0.2;                  // pitches between two rings anywhere
 
 // Height of the band of triangles between two rings, in ring radii, when all its edges are as long as the ring's.
@@ -50,7 +51,7 @@ std::vector<Ring> RingLayer::lay(Index branch) const {
   for (std::size_t k = 0; k < count; ++k) {
     const double place = axis.place_at_radii(total * static_cast<double>(k) / static_cast<double>(bands));
     const Vec3 normal = axis.direction(place, kSmoothing * axis.at(place).radius);
-    side = k == 0 ? normal.unitOrthogonal() : Vec3(Eigen::Quaterniond::FromTwoVectors(last_normal, normal) * side);
+    side = k == 0 ? reference(branch, normal) : Vec3(Eigen::Quaterniond::FromTwoVectors(last_normal, normal) * side);
     side = (side - side.dot(normal) * normal).normalized();
     rings.push_back(lay_one(branch, place, normal, side, static_cast<double>(k % 2) / 2));
     last_normal = normal;
@@ -63,6 +64,26 @@ std::vector<Ring> RingLayer::lay(Index branch) const {
   }
   for (std::size_t k = 0; k < rings.size(); ++k) rings[k].free = rings[k].free && !collides[k];
   return rings;
+}
+
+// From where angles count: turns with the centerline, where that is not straight throughout.
+Vec3 RingLayer::reference(Index branch, const Vec3& normal) const {
+  const Centerline& centerline = field_.centerline();
+  const auto& nodes = axes_[branch].branch().nodes;
+  Vec3 best = kStraight * normal.unitOrthogonal();
+  const auto offer = [&](const Vec3& way) {
+    const Vec3 across = way - way.dot(normal) * normal;
+    if (across.norm() > best.norm() * (1 + kStraight)) best = across;
+  };
+  for (const Index end : {nodes.front(), nodes.back()}) {
+    for (const Index s : centerline.incident_segments(end)) {
+      offer((centerline.node(centerline.other_node(s, end)).position - centerline.node(end).position).normalized());
+    }
+  }
+  for (const Index n : nodes) {
+    offer((centerline.node(n).position - centerline.node(nodes.front()).position) / axes_[branch].length());
+  }
+  return best.normalized();
 }
 
 Ring RingLayer::lay_one(Index branch, double place, const Vec3& normal, const Vec3& side, double phase) const {

@@ -35,6 +35,7 @@ class RingLayer {
   std::vector<Ring> lay(Index branch) const;
 
  private:
+  Vec3 reference(Index branch, const Vec3& normal) const;
   Ring lay_one(Index branch, double place, const Vec3& normal, const Vec3& side, double phase) const;
   // The boundary point seen from `center` in direction `way`; false if it does not belong to the place alone.
   bool see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way, BoundaryPoint& seen) const;
