@@ -11,7 +11,7 @@
 namespace vmesh {
 namespace {
 
-constexpr std::array kCutHeights = {-0.3, 0.0, 0.3, 0.6};  // radii beyond the tip's centre, tried in this order
+constexpr double kNearestCut = 0.1;  // of an edge: cuts keep that far from its ends
 
 // Shortest way through the grid of pairs (bottom i, top j) from (0, start) once around both loops.
 class BandSearch {
@@ -97,47 +97,37 @@ std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3>
 }
 
 DiscCutter::DiscCutter(std::vector<Vec3> vertices, std::vector<Triangle> faces)
-    : vertices_(std::move(vertices)),
-      faces_(std::move(faces)),
-      source_(vertices_.size()),
-      faces_of_(vertices_.size()),
-      cut_(faces_.size(), 0) {
+    : source_(vertices.size()), faces_of_(vertices.size()), removed_vertex_(vertices.size(), 0) {
+  vertices_ = std::move(vertices);
   std::iota(source_.begin(), source_.end(), Index{0});
-  for (Index f = 0; f < faces_.size(); ++f) {
-    for (const Index v : faces_[f]) faces_of_[v].push_back(f);
-  }
+  for (const Triangle& face : faces) add_face(face);
 }
 
-std::vector<Index> DiscCutter::cut(const Vec3& center, const Vec3& normal, double radius,
-                                   const std::vector<Index>& own) {
+std::vector<Index> DiscCutter::cut(const Vec3& center, const Vec3& normal, const std::vector<Index>& own) {
   const Index apex = farthest(normal, own);
-  if (apex == kNone) return open_window(center + radius * normal);
-  std::vector<Index> cut_faces;
-  for (const double height : kCutHeights) {
-    const auto rim = rim_around(tip_region(apex, center, normal, height * radius, own), cut_faces);
-    if (!rim.empty()) return take(rim, cut_faces);
-  }
-  const auto rim = rim_around({apex}, cut_faces);
-  return rim.empty() ? open_window(vertices_[apex]) : take(rim, cut_faces);
+  if (apex == kNone) return open_window(center);
+  const Plane plane{normal, center.dot(normal)};
+  const auto region = tip_region(apex, plane, own);
+  return is_disc(region) ? cut_off(region, plane) : cut_off({apex}, plane);
 }
 
 Index DiscCutter::farthest(const Vec3& normal, const std::vector<Index>& own) const {
   Index apex = kNone;
   for (const Index v : own) {
-    const bool whole = std::none_of(faces_of_[v].begin(), faces_of_[v].end(), [&](Index f) { return cut_[f]; });
-    if (whole && (apex == kNone || vertices_[v].dot(normal) > vertices_[apex].dot(normal))) apex = v;
+    if (removed_vertex_[v]) continue;
+    if (apex == kNone || vertices_[v].dot(normal) > vertices_[apex].dot(normal)) apex = v;
   }
   return apex;
 }
 
-std::vector<Index> DiscCutter::tip_region(Index apex, const Vec3& center, const Vec3& normal, double height,
-                                          const std::vector<Index>& own) const {
+std::vector<Index> DiscCutter::tip_region(Index apex, const Plane& plane, const std::vector<Index>& own) const {
   std::vector<char> open(vertices_.size(), 0);  // may join and has not yet
-  for (const Index v : own) open[v] = (vertices_[v] - center).dot(normal) > height;
+  for (const Index v : own) open[v] = !removed_vertex_[v] && plane.above(vertices_[v]) > 0;
   std::vector<Index> region = {apex};
   open[apex] = 0;
   for (std::size_t i = 0; i < region.size(); ++i) {
     for (const Index f : faces_of_[region[i]]) {
+      if (removed_face_[f]) continue;
       for (const Index v : faces_[f]) {
         if (!open[v]) continue;
         open[v] = 0;
@@ -148,38 +138,92 @@ std::vector<Index> DiscCutter::tip_region(Index apex, const Vec3& center, const 
   return region;
 }
 
-std::vector<Index> DiscCutter::rim_around(const std::vector<Index>& region, std::vector<Index>& cut_faces) const {
-  cut_faces.clear();
-  for (const Index v : region) cut_faces.insert(cut_faces.end(), faces_of_[v].begin(), faces_of_[v].end());
-  std::sort(cut_faces.begin(), cut_faces.end());
-  cut_faces.erase(std::unique(cut_faces.begin(), cut_faces.end()), cut_faces.end());
-  std::vector<Index> corners;
-  std::set<std::pair<Index, Index>> edges;  // directed
-  for (const Index f : cut_faces) {
-    if (cut_[f]) return {};
-    for (int i = 0; i < 3; ++i) {
-      corners.push_back(faces_[f][i]);
-      edges.emplace(faces_[f][i], faces_[f][(i + 1) % 3]);
+std::vector<Index> DiscCutter::faces_around(const std::vector<Index>& region) const {
+  std::vector<Index> faces;
+  for (const Index v : region) {
+    for (const Index f : faces_of_[v]) {
+      if (!removed_face_[f]) faces.push_back(f);
     }
   }
-  std::map<Index, Index> next;
-  for (const auto& [from, to] : edges) {
-    if (edges.count({to, from})) continue;
-    if (!next.emplace(from, to).second) return {};  // the rim touches itself
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
+// A connected region away from all rims: it is a disc if its Euler characteristic is 1.
+bool DiscCutter::is_disc(const std::vector<Index>& region) const {
+  const std::set<Index> inside(region.begin(), region.end());
+  std::size_t half_edges = 0, faces = 0;
+  for (const Index f : faces_around(region)) {
+    const auto& [a, b, c] = faces_[f];
+    const int count = static_cast<int>(inside.count(a) + inside.count(b) + inside.count(c));
+    half_edges += count == 3 ? 3 : count == 2 ? 1 : 0;
+    faces += count == 3;
   }
-  if (next.size() < 3) return {};
+  return region.size() + faces == half_edges / 2 + 1;
+}
+
+std::vector<Index> DiscCutter::cut_off(const std::vector<Index>& region, const Plane& plane) {
+  const std::set<Index> inside(region.begin(), region.end());
+  std::map<std::pair<Index, Index>, Index> cuts;  // by the edge's end inside and its end outside
+  const auto cut = [&](Index in, Index out) {
+    const auto [it, is_new] = cuts.try_emplace({in, out}, kNone);
+    if (is_new) {
+      const double high = plane.above(vertices_[in]), low = plane.above(vertices_[out]);
+      const double t = low < 0 ? std::clamp(high / (high - low), kNearestCut, 1 - kNearestCut) : 0.5;
+      it->second = add_vertex((1 - t) * vertices_[in] + t * vertices_[out], source_[t < 0.5 ? in : out]);
+    }
+    return it->second;
+  };
+  std::map<Index, Index> next;  // along the rim
+  for (const Index f : faces_around(region)) {
+    removed_face_[f] = 1;
+    Triangle face = faces_[f];
+    const auto is_inside = [&](int i) { return inside.count(face[i]) > 0; };
+    const int count = is_inside(0) + is_inside(1) + is_inside(2);
+    if (count == 3) continue;
+    while (is_inside(0) != (count == 1) || is_inside(1) != (count == 2))
+      std::rotate(face.begin(), face.begin() + 1, face.end());
+    const auto& [a, b, c] = face;
+    if (count == 1) {  // a is inside
+      const Index p = cut(a, b), q = cut(a, c);
+      next[p] = q;
+      add_quad(p, b, c, q);
+    } else {  // b and c are
+      const Index p = cut(c, a), q = cut(b, a);
+      next[p] = q;
+      add_face({a, q, p});
+    }
+  }
+  for (const Index v : region) removed_vertex_[v] = 1;
   std::vector<Index> rim = {next.begin()->first};
   for (Index v = next.begin()->second; v != rim.front(); v = next.at(v)) rim.push_back(v);
-  // One rim, and as many faces as a disc with these vertices has.
-  std::sort(corners.begin(), corners.end());
-  const auto vertex_count = static_cast<std::size_t>(std::unique(corners.begin(), corners.end()) - corners.begin());
-  if (rim.size() != next.size() || cut_faces.size() != 2 * vertex_count - rim.size() - 2) return {};
   return rim;
 }
 
-std::vector<Index> DiscCutter::take(const std::vector<Index>& rim, const std::vector<Index>& cut_faces) {
-  for (const Index f : cut_faces) cut_[f] = 1;
-  return rim;
+Index DiscCutter::add_vertex(const Vec3& position, Index source) {
+  vertices_.push_back(position);
+  source_.push_back(source);
+  faces_of_.emplace_back();
+  removed_vertex_.push_back(0);
+  return static_cast<Index>(vertices_.size() - 1);
+}
+
+void DiscCutter::add_face(const Triangle& face) {
+  for (const Index v : face) faces_of_[v].push_back(static_cast<Index>(faces_.size()));
+  faces_.push_back(face);
+  removed_face_.push_back(0);
+}
+
+// Along its shorter diagonal.
+void DiscCutter::add_quad(Index a, Index b, Index c, Index d) {
+  if ((vertices_[a] - vertices_[c]).squaredNorm() < (vertices_[b] - vertices_[d]).squaredNorm()) {
+    add_face({a, b, c});
+    add_face({a, c, d});
+  } else {
+    add_face({a, b, d});
+    add_face({b, c, d});
+  }
 }
 
 std::vector<Index> DiscCutter::open_window(const Vec3& near) {
@@ -188,34 +232,25 @@ std::vector<Index> DiscCutter::open_window(const Vec3& near) {
   };
   Index best = kNone;
   for (Index f = 0; f < faces_.size(); ++f) {
-    if (cut_[f]) continue;
+    if (removed_face_[f]) continue;
     if (best == kNone || (center(f) - near).squaredNorm() < (center(best) - near).squaredNorm()) best = f;
   }
   const Triangle outer = faces_[best];
+  const Vec3 middle = center(best);
   std::vector<Index> window;
-  for (const Index v : outer) {
-    window.push_back(static_cast<Index>(vertices_.size()));
-    vertices_.push_back(0.5 * (vertices_[v] + center(best)));
-    source_.push_back(source_[v]);
-    faces_of_.emplace_back();
-  }
-  const auto add = [&](const Triangle& face) {
-    for (const Index v : face) faces_of_[v].push_back(static_cast<Index>(faces_.size()));
-    faces_.push_back(face);
-    cut_.push_back(0);
-  };
+  for (const Index v : outer) window.push_back(add_vertex(0.5 * (vertices_[v] + middle), source_[v]));
   for (int i = 0; i < 3; ++i) {
     const int next = (i + 1) % 3;
-    add({outer[i], outer[next], window[i]});
-    add({outer[next], window[next], window[i]});
+    add_quad(outer[i], outer[next], window[next], window[i]);
   }
-  return take(window, {best});
+  removed_face_[best] = 1;
+  return window;
 }
 
 std::vector<Triangle> DiscCutter::rest() const {
   std::vector<Triangle> result;
   for (Index f = 0; f < faces_.size(); ++f) {
-    if (!cut_[f]) result.push_back(faces_[f]);
+    if (!removed_face_[f]) result.push_back(faces_[f]);
   }
   return result;
 }

@@ -18,10 +18,11 @@ class DiscCutter {
  public:
   DiscCutter(std::vector<Vec3> vertices, std::vector<Triangle> faces);
 
-  /// Cuts the faces at the tip of a vessel: around the vertex of `own` farthest along `normal` all vertices of `own`
-  /// that lie beyond the plane through `center`, fewer where those are no disc; where nothing is left to cut, a window
-  /// is opened in the face nearest to the tip. Returns the rim, counter-clockwise about `normal`; discs never overlap.
-  std::vector<Index> cut(const Vec3& center, const Vec3& normal, double radius, const std::vector<Index>& own);
+  /// Cuts off the tip of a vessel: what lies around the vertex of `own` farthest along `normal`, beyond the plane
+  /// through `center`. Only vertices of `own` go; faces are cut where they cross the plane. Where that is no disc, the
+  /// farthest vertex goes alone; without one, a window is opened in the face nearest to the tip. Returns the rim,
+  /// counter-clockwise about `normal`; no two rims touch.
+  std::vector<Index> cut(const Vec3& center, const Vec3& normal, const std::vector<Index>& own);
 
   const std::vector<Vec3>& vertices() const { return vertices_; }
   /// The vertex of the piece that vertex `v` is, or that it was made next to.
@@ -30,19 +31,27 @@ class DiscCutter {
   std::vector<Triangle> rest() const;
 
  private:
+  struct Plane {
+    Vec3 normal;
+    double height;
+    double above(const Vec3& p) const { return p.dot(normal) - height; }
+  };
+
   Index farthest(const Vec3& normal, const std::vector<Index>& own) const;
-  std::vector<Index> tip_region(Index apex, const Vec3& center, const Vec3& normal, double height,
-                                const std::vector<Index>& own) const;
-  // The rim around the faces of `region`; empty if these are no disc or touch what was cut before.
-  std::vector<Index> rim_around(const std::vector<Index>& region, std::vector<Index>& cut_faces) const;
-  std::vector<Index> take(const std::vector<Index>& rim, const std::vector<Index>& cut_faces);
+  std::vector<Index> tip_region(Index apex, const Plane& plane, const std::vector<Index>& own) const;
+  bool is_disc(const std::vector<Index>& region) const;
+  std::vector<Index> cut_off(const std::vector<Index>& region, const Plane& plane);
   std::vector<Index> open_window(const Vec3& near);
+  Index add_vertex(const Vec3& position, Index source);
+  void add_face(const Triangle& face);
+  void add_quad(Index a, Index b, Index c, Index d);
+  std::vector<Index> faces_around(const std::vector<Index>& region) const;
 
   std::vector<Vec3> vertices_;
   std::vector<Triangle> faces_;
   std::vector<Index> source_;
   std::vector<std::vector<Index>> faces_of_;
-  std::vector<char> cut_;
+  std::vector<char> removed_face_, removed_vertex_;
 };
 
 }  // namespace vmesh

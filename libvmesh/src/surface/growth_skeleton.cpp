@@ -56,8 +56,6 @@ class SkeletonMaker {
       divide_loop(b, std::move(rings));
       return;
     }
-    if (!axis.starts_at_tip()) rings.front().free = false;
-    if (!axis.ends_at_tip()) rings.back().free = false;
     Gap gap{b, 0, 0, {}};
     for (std::size_t k = 0; k < rings.size();) {
       if (!rings[k].free) {

@@ -184,7 +184,8 @@ JunctionSurface grow_junction(const VesselField& field, const std::vector<Branch
       const Tube& tube = skeleton.tubes[opening.tube];
       const Ring& ring = opening.at_end ? tube.rings.back() : tube.rings.front();
       result.openings.push_back(opening);
-      result.rims.push_back(cutter.cut(ring.center, opening.at_end ? Vec3(-ring.normal) : ring.normal, ring.radius,
+      const CrossSection& section = ring.beside[opening.at_end];
+      result.rims.push_back(cutter.cut(section.center, opening.at_end ? Vec3(-section.normal) : section.normal,
                                        vertices_near_end(piece, local, gap, g, at_end, kOwnReach * ring.radius)));
     }
   }

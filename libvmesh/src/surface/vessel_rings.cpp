@@ -45,16 +45,18 @@ std::vector<Ring> RingLayer::lay(Index branch) const {
   const double pitch = kPitch * equilateral_height(around_);
   const double total = axis.length_in_radii();
   const auto bands = static_cast<std::size_t>(std::max(1.0, std::round(total / pitch)));
+  const double step = total / static_cast<double>(bands);
   const std::size_t count = axis.periodic() ? bands : bands + 1;
   std::vector<Ring> rings;
-  Vec3 side = Vec3::Zero(), last_normal = Vec3::Zero();
+  Vec3 side = Vec3::Zero();
   for (std::size_t k = 0; k < count; ++k) {
-    const double place = axis.place_at_radii(total * static_cast<double>(k) / static_cast<double>(bands));
-    const Vec3 normal = axis.direction(place, kSmoothing * axis.at(place).radius);
-    side = k == 0 ? reference(branch, normal) : Vec3(Eigen::Quaterniond::FromTwoVectors(last_normal, normal) * side);
-    side = (side - side.dot(normal) * normal).normalized();
-    rings.push_back(lay_one(branch, place, normal, side, static_cast<double>(k % 2) / 2));
-    last_normal = normal;
+    const double radii = step * static_cast<double>(k);
+    const CrossSection here = section(branch, radii);
+    side = k == 0 ? reference(branch, here.normal)
+                  : Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, here.normal) * side);
+    side = (side - side.dot(here.normal) * here.normal).normalized();
+    rings.push_back(lay_one(branch, here, side, static_cast<double>(k % 2) / 2));
+    rings.back().beside = {section(branch, radii - step / 2), section(branch, radii + step / 2)};
   }
   std::vector<char> collides(rings.size(), 0);
   for (std::size_t k = 0; k < bands && rings.size() > 1; ++k) {
@@ -63,7 +65,38 @@ std::vector<Ring> RingLayer::lay(Index branch) const {
     collides[k] = collides[next] = 1;
   }
   for (std::size_t k = 0; k < rings.size(); ++k) rings[k].free = rings[k].free && !collides[k];
+  clear_ends(branch, rings);
   return rings;
+}
+
+CrossSection RingLayer::section(Index branch, double radii) const {
+  const BranchAxis& axis = axes_[branch];
+  if (axis.periodic()) radii -= axis.length_in_radii() * std::floor(radii / axis.length_in_radii());
+  const double place = axis.place_at_radii(radii);
+  const auto point = axis.at(place);
+  return {place, point.position, axis.direction(place, kSmoothing * point.radius), point.radius};
+}
+
+void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings) const {
+  const BranchAxis& axis = axes_[branch];
+  const std::size_t count = rings.size();
+  if (!axis.periodic() && !axis.starts_at_tip()) rings.front().free = false;
+  if (!axis.periodic() && !axis.ends_at_tip()) rings.back().free = false;
+  const auto covered = [&](std::size_t k) { return !rings[k].free; };
+  const auto can_dock = [&](const Ring& ring, int side) {
+    const Vec3 across = ring.points.front().position - ring.center;
+    const CrossSection& next = ring.beside[side];
+    return lay_one(branch, next, (across - across.dot(next.normal) * next.normal).normalized(), 0).free;
+  };
+  const std::size_t laps = axis.periodic() ? 2 * count : count;
+  for (std::size_t k = 1; k < laps; ++k) {
+    Ring& ring = rings[k % count];
+    if (ring.free && covered((k - 1) % count)) ring.free = can_dock(ring, 0);
+  }
+  for (std::size_t k = laps - 1; k-- > 0;) {
+    Ring& ring = rings[k % count];
+    if (ring.free && covered((k + 1) % count)) ring.free = can_dock(ring, 1);
+  }
 }
 
 // From where angles count: turns with the centerline, where that is not straight throughout.
@@ -86,14 +119,10 @@ Vec3 RingLayer::reference(Index branch, const Vec3& normal) const {
   return best.normalized();
 }
 
-Ring RingLayer::lay_one(Index branch, double place, const Vec3& normal, const Vec3& side, double phase) const {
-  const BranchAxis::Point axis = axes_[branch].at(place);
-  Ring ring;
-  ring.place = place;
-  ring.center = axis.position;
-  ring.normal = normal;
-  ring.radius = axis.radius;
-  const Vec3 up = normal.cross(side);
+Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase) const {
+  const BranchAxis::Point axis = axes_[branch].at(section.place);
+  Ring ring{section, {}, {}, false};
+  const Vec3 up = section.normal.cross(side);
   for (int j = 0; j < around_; ++j) {
     const double angle = 2 * std::numbers::pi * (j + phase) / around_;
     BoundaryPoint seen;

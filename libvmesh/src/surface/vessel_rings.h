@@ -1,6 +1,6 @@
 #pragma once
 
-#include <memory>
+#include <array>
 #include <vector>
 
 #include "surface/bound_surface.h"
@@ -8,13 +8,18 @@
 
 namespace vmesh {
 
-/// A ring of vertices around a branch, on the vessel boundary, counter-clockwise about `normal`.
-struct Ring {
+/// A plane across a branch.
+struct CrossSection {
   double place = 0;  ///< on the branch
   Vec3 center = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  ///< along the branch, in the order of its nodes
   double radius = 0;
+};
+
+/// A ring of vertices around a branch, on the vessel boundary, counter-clockwise about `normal`.
+struct Ring : CrossSection {
   std::vector<BoundaryPoint> points;
+  std::array<CrossSection, 2> beside;  ///< half a step before and after it
   /// The cross-section there belongs to this branch alone: nothing else covers it or comes close.
   bool free = false;
 };
@@ -27,6 +32,7 @@ struct SegmentPlace {
 
 /// Lays rings of `around` vertices along branches, evenly in units of the local radius, each turned half a step
 /// against the one before: bands of nearly equilateral triangles. The first and the last ring lie at the branch's ends.
+/// Where free rings begin or end off a tip, the cross-section half a step further is free as well.
 class RingLayer {
  public:
   RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes, const std::vector<SegmentPlace>& places,
@@ -35,8 +41,10 @@ class RingLayer {
   std::vector<Ring> lay(Index branch) const;
 
  private:
+  CrossSection section(Index branch, double radii) const;
   Vec3 reference(Index branch, const Vec3& normal) const;
-  Ring lay_one(Index branch, double place, const Vec3& normal, const Vec3& side, double phase) const;
+  Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase) const;
+  void clear_ends(Index branch, std::vector<Ring>& rings) const;
   // The boundary point seen from `center` in direction `way`; false if it does not belong to the place alone.
   bool see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way, BoundaryPoint& seen) const;
 
