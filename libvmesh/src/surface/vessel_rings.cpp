@@ -12,8 +12,9 @@ constexpr double kOnBoundary = 1e-3;  // radii
 constexpr double kNearest = 0.5, kFarthest = 2;  // radii at which the boundary may lie
 constexpr double kFacing = 0.5;                  // cosine between ray and boundary normal
 constexpr double kOwnReach = 1.5;                // radii along the branch from which the boundary may come
-constexpr double kClearance = 1.35;              // radii at which no other vessel may be ...
+constexpr double kClearance = 1.35;              // radii around the axis at which no other vessel may be ...
 constexpr double kFreeSpace = 0.15;              // ... within this many radii
+constexpr int kDirections = 24;                  // in which that is looked at
 constexpr double kStraight = 1e-3;               // sine of an angle below which directions count as equal
 constexpr double kMinGap = 0.2;                  // pitches between two rings anywhere
 
@@ -123,6 +124,7 @@ Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& s
   const BranchAxis::Point axis = axes_[branch].at(section.place);
   Ring ring{section, {}, {}, false};
   const Vec3 up = section.normal.cross(side);
+  if (!is_clear(branch, section, axis, side, up)) return ring;
   for (int j = 0; j < around_; ++j) {
     const double angle = 2 * std::numbers::pi * (j + phase) / around_;
     BoundaryPoint seen;
@@ -148,12 +150,31 @@ bool RingLayer::see(Index branch, const Ring& ring, const BranchAxis::Point& axi
   }
   if (!(std::abs(s.distance) < kOnBoundary * ring.radius) || s.gradient.dot(way) < kFacing) return false;
   seen = {ring.center + far * way, s};
-  const SegmentPlace at = places_[s.cone];
+  return is_own(branch, ring, s);
+}
+
+bool RingLayer::is_own(Index branch, const CrossSection& section, const FieldSample& sample) const {
+  const SegmentPlace at = places_[sample.cone];
   if (at.branch != branch) return false;
-  const BranchAxis& a = axes_[branch];
-  if (a.apart(a.place_of(at.piece, s.t), ring.place) > kOwnReach * ring.radius) return false;
-  const Vec3 beside = ring.center + kClearance * far * way;
-  return field_.sample(beside, segment).distance > kFreeSpace * ring.radius;
+  const BranchAxis& axis = axes_[branch];
+  return axis.apart(axis.place_of(at.piece, sample.t), section.place) <= kOwnReach * section.radius;
+}
+
+bool RingLayer::is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
+                         const Vec3& up) const {
+  std::vector<Index> others;
+  for (const Index cone : field_.local_cones(axes_[branch].branch().segments[axis.piece])) {
+    const FieldSample s = field_.sample_cone(section.center, cone);
+    if (s.distance < (kClearance + kFreeSpace) * section.radius && !is_own(branch, section, s)) others.push_back(cone);
+  }
+  for (int j = 0; j < kDirections && !others.empty(); ++j) {
+    const double angle = 2 * std::numbers::pi * j / kDirections;
+    const Vec3 p = section.center + kClearance * section.radius * (std::cos(angle) * side + std::sin(angle) * up);
+    for (const Index cone : others) {
+      if (field_.sample_cone(p, cone).distance < kFreeSpace * section.radius) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace vmesh

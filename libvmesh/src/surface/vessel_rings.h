@@ -45,6 +45,10 @@ class RingLayer {
   Vec3 reference(Index branch, const Vec3& normal) const;
   Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase) const;
   void clear_ends(Index branch, std::vector<Ring>& rings) const;
+  // Whether no other vessel, nor a far part of this one, covers the cross-section or comes close.
+  bool is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
+                const Vec3& up) const;
+  bool is_own(Index branch, const CrossSection& section, const FieldSample& sample) const;
   // The boundary point seen from `center` in direction `way`; false if it does not belong to the place alone.
   bool see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way, BoundaryPoint& seen) const;
 
