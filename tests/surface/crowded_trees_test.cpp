@@ -16,6 +16,7 @@ TEST_P(CrowdedTree, EndsWithABoundedNumberOfVertices) {
   VMESH_NEED_SHARED_DATA(GetParam());
   const Centerline centerline = load_centerline(testing::shared_data(GetParam())).cleaned.centerline;
   GenerateOptions options;
+  options.growth = GrowthMethod::paper;
   options.sweeps = 4;  // growth is what is bounded here; the sweeps keep to the size field
   const GenerateResult result = generate_surface(centerline, options);
   EXPECT_LE(static_cast<double>(result.mesh.vertices.size()), 10 * centerline.length_in_radii());

@@ -52,8 +52,12 @@ TEST(Equivariance, UnderPowersOfTwoIsExact) {
 // A rigid motion rounds every coordinate of every node and of the query: three products and three sums of numbers of
 // size M, at most 4 eps M each, 7 eps M per point. The distance is 1-Lipschitz in the query and in the nodes, and its
 // own evaluation adds a dozen rounding errors on either side. 64 eps M covers all of it, M the largest norm around.
+//
+// Cones that meet at a node tie wherever the node is closest, and rounding decides which one a local query goes on
+// from: where that leads to different cones, these graphs of long crossing segments may show different vessels.
 TEST(Equivariance, UnderRigidMotionsIsExactToRounding) {
   Draw draw(72);
+  int same = 0, tied = 0;
   for (int trial = 0; trial < 60; ++trial) {
     const Centerline centerline = testing::random_graph(draw, 20);
     const Eigen::AngleAxisd turn(draw.uniform(-3, 3), draw.direction());
@@ -72,7 +76,11 @@ TEST(Equivariance, UnderRigidMotionsIsExactToRounding) {
       const auto s = field.sample_global(p), t = other.sample_global(move(p));
       EXPECT_NEAR(t.distance, s.distance, tolerance);
       const auto hint = draw.below(static_cast<Index>(field.cone_count()));
-      EXPECT_NEAR(other.sample(move(p), hint).distance, field.sample(p, hint).distance, tolerance);
+      const auto local = field.sample(p, hint), local_moved = other.sample(move(p), hint);
+      if (local.cone == local_moved.cone) {
+        EXPECT_NEAR(local_moved.distance, local.distance, tolerance);
+      }
+      (local.cone == local_moved.cone ? same : tied) += 1;
       // A gradient is as good as its base is long.
       const double base = s.distance + field.radius_at(s.cone, s.t);
       if (s.cone == t.cone && base > 0.1 && std::abs(s.t - t.t) < 1e-9) {
@@ -80,6 +88,7 @@ TEST(Equivariance, UnderRigidMotionsIsExactToRounding) {
       }
     }
   }
+  EXPECT_LT(tied, same / 20);
 }
 
 }  // namespace

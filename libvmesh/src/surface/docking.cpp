@@ -11,6 +11,7 @@
 namespace vmesh {
 namespace {
 
+constexpr double kTie = 1 - 1e-9;    // of a value: what is not less than that is equal
 constexpr double kNearestCut = 0.1;  // of an edge: cuts keep that far from its ends
 
 // Shortest way through the grid of pairs (bottom i, top j) from (0, start) once around both loops.
@@ -26,7 +27,7 @@ class BandSearch {
       for (std::size_t j = 0; j <= top_.size(); ++j) {
         const double edge = i + j == 0 ? 0 : in_step(i, j) ? (low(i) - high(j)).squaredNorm() : kInfinite;
         const double via_bottom = i > 0 ? cost(i - 1, j) : kInfinite, via_top = j > 0 ? cost(i, j - 1) : kInfinite;
-        from_bottom_[at(i, j)] = via_bottom < via_top;
+        from_bottom_[at(i, j)] = via_bottom < kTie * via_top;
         cost_[at(i, j)] = i + j == 0 ? 0 : std::min(via_bottom, via_top) + edge;
       }
     }
@@ -80,14 +81,14 @@ double distance2_to(std::span<const Vec3> loop, const Vec3& p) {
 std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3> top) {
   std::size_t first = 0;
   for (std::size_t i = 1; i < bottom.size(); ++i) {
-    if (distance2_to(top, bottom[i]) < distance2_to(top, bottom[first])) first = i;
+    if (distance2_to(top, bottom[i]) < kTie * distance2_to(top, bottom[first])) first = i;
   }
   BandSearch search(bottom, top);
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t start = 0; start < top.size(); ++start) {
     const double cost = search.run(first, start);
-    if (cost < least) {
+    if (cost < kTie * least) {
       least = cost;
       best = start;
     }

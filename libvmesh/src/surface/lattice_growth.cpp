@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <queue>
+#include <tuple>
 #include <unordered_map>
 
 namespace vmesh {
@@ -31,6 +32,7 @@ constexpr Mask kAll = (1 << kNeighbours) - 1;
 
 constexpr double kNearestToPoint = 0.25;  // of an edge: a surface vertex keeps that far from lattice points
 constexpr double kInside = 0.05;          // spacings below the boundary from which on a point counts as inside
+constexpr double kDepthStep = 1e-6;       // spacings below which depths count as equal
 constexpr double kBlockedDepth = 0.4;     // spacings below the boundary at which a blocked point asks for a handle
 
 // Which of the 14 are neighbours of each other: the edges of the link of a point, a triangulated sphere.
@@ -148,15 +150,18 @@ class LatticeGrowth {
     const Index cone = points_[p].cone;
     for (const Offset& offset : kOffsets) {
       const Index q = find(plus(at, offset), cone);
-      if (!points_[q].in && points_[q].distance < -kInside * spacing_) queue_.emplace(-points_[q].distance, ~q);
+      if (!points_[q].in && points_[q].distance < -kInside * spacing_) queue_.emplace(depth(q), key(points_[q].at), q);
     }
   }
+
+  // In steps, so that rounding does not decide between points of equal depth.
+  double depth(Index p) const { return std::round(-points_[p].distance / (kDepthStep * spacing_)); }
 
   // Deepest first. A point that is not simple is tried again when a neighbour has joined.
   void thicken() {
     const auto& simple = simple_table();
     while (!queue_.empty()) {
-      const Index p = ~queue_.top().second;
+      const Index p = std::get<Index>(queue_.top());
       queue_.pop();
       if (!points_[p].in && simple[neighbours_in(points_[p].at)]) add(p);
     }
@@ -168,7 +173,7 @@ class LatticeGrowth {
     Index deepest = kNone;
     for (Index p = 0; p < points_.size(); ++p) {
       if (points_[p].in || points_[p].distance > -kBlockedDepth * spacing_) continue;
-      if (deepest != kNone && points_[p].distance >= points_[deepest].distance) continue;
+      if (deepest != kNone && depth(p) <= depth(deepest)) continue;
       if (bridges[neighbours_in(points_[p].at)]) deepest = p;
     }
     if (deepest == kNone) return false;
@@ -268,7 +273,7 @@ class LatticeGrowth {
   Eigen::Matrix3d half_step_;
   std::vector<Point> points_;
   std::unordered_map<std::uint64_t, Index> number_, vertex_;
-  std::priority_queue<std::pair<double, Index>> queue_;
+  std::priority_queue<std::tuple<double, std::uint64_t, Index>> queue_;  // depth, key, number
   LatticeSurface surface_;
 };
 

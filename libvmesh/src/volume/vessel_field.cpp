@@ -85,7 +85,6 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones) co
   near.clear();
   if (blend_ == 0) {
     for (const Index c : cones) {
-      if (!active(c)) continue;
       const Distance d = distance_to(cones_[c], p);
       if (d.value < sample.distance) sample = {d.value, sample.gradient, c, d.t};
     }
@@ -93,7 +92,6 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones) co
     // One pass keeps the cones within the widest possible blend of the best so far.
     values.clear();
     for (const Index c : cones) {
-      if (!active(c)) continue;
       const Distance d = distance_to(cones_[c], p);
       if (d.value >= sample.distance + 2 * blend_ * max_radius(c)) continue;
       if (d.value < sample.distance) {

@@ -51,12 +51,6 @@ class VesselField {
     return {local_.data() + local_offsets_[cone], local_.data() + local_offsets_[cone + 1]};
   }
 
-  /// Cones that do not exist for local queries until they are activated: the volume of a vessel that grows. All are
-  /// active from the start. A local query needs an active hint.
-  void deactivate_all() { active_.assign(cones_.size(), 0); }
-  void activate(Index cone) { active_[cone] = 1; }
-  bool active(Index cone) const { return active_.empty() || active_[cone]; }
-
   /// The node a cone starts and ends at (equal for an isolated node).
   Index first_node(Index cone) const { return cones_[cone].a; }
   Index last_node(Index cone) const { return cones_[cone].b; }
@@ -92,7 +86,6 @@ class VesselField {
   const Centerline* centerline_;
   double blend_;
   std::vector<Cone> cones_;
-  std::vector<char> active_;  // empty: all
   std::vector<Index> local_offsets_, local_;
   BoxTree tree_;
 };
