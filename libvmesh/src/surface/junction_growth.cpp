@@ -15,6 +15,7 @@ constexpr double kSpacing = 0.9;          // of the lattice, in the smallest rad
 constexpr double kFinestSpacing = 0.08;   // ... but at least in the largest
 constexpr std::array kFiner = {2, 3, 4};  // halves of the resolution, tried until the surface does not intersect itself
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
+constexpr double kShortestPiece = 0.3;    // radii between nodes of a junction's centerline: finer ones do not matter
 constexpr double kOwnReach = 1.5;         // radii along the branch from which a tip's vertices come
 
 // The part of a centerline that belongs to a junction, cut at its openings. Segments know the place they come from.
@@ -63,7 +64,7 @@ class JunctionCenterlineMaker {
     const BranchAxis& axis = axes_[gap.branch];
     std::vector<double> places = {gap.begin};
     const auto pass = [&](double place) {
-      const double shortest = 1e-6 * axis.at(place).radius;
+      const double shortest = kShortestPiece * axis.at(place).radius;
       if (place > gap.begin + shortest && place < gap.end - shortest && place > places.back() + shortest)
         places.push_back(place);
     };

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "vmesh/core/error.h"
 
@@ -21,8 +20,20 @@ VesselField::VesselField(const Centerline& centerline, double blend) : centerlin
   for (Index n = 0; n < centerline.nodes().size(); ++n) {
     if (centerline.degree(n) == 0) cones_.push_back(make_cone(centerline, n, n));
   }
+  measure_runs();
   find_local_cones();
   build_tree();
+}
+
+void VesselField::measure_runs() {
+  runs_.resize(cones_.size());
+  for (Index c = 0; c < cones_.size(); ++c) {
+    const Cone& cone = cones_[c];
+    const bool continues = c > 0 && cones_[c - 1].b == cone.a && cone.a != cone.b;
+    const double travel = cone.axis.norm() + (1 + 2 * blend_) * std::abs(cone.r1 - cone.r0);
+    runs_[c].travel = (continues ? runs_[c - 1].travel : 0) + travel;
+    runs_[c].number = c == 0 ? 0 : runs_[c - 1].number + !continues;
+  }
 }
 
 VesselField::Cone VesselField::make_cone(const Centerline& centerline, Index a, Index b) {
@@ -83,31 +94,31 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones) co
   thread_local std::vector<Index> near;
   thread_local std::vector<double> values;
   near.clear();
-  if (blend_ == 0) {
-    for (const Index c : cones) {
-      const Distance d = distance_to(cones_[c], p);
-      if (d.value < sample.distance) sample = {d.value, sample.gradient, c, d.t};
+  values.clear();
+  // One pass keeps the cones within the widest possible blend of the best so far. After a cone out of reach it passes
+  // over those of its run that cannot be within reach.
+  Run out_of_reach;
+  for (const Index c : cones) {
+    if (runs_[c].number == out_of_reach.number && runs_[c].travel < out_of_reach.travel) continue;
+    const Distance d = distance_to(cones_[c], p);
+    const double excess = d.value - sample.distance - 2 * blend_ * max_radius(c);
+    if (excess >= 0) {
+      out_of_reach = {runs_[c].number, runs_[c].travel + excess};
+      continue;
     }
-  } else {
-    // One pass keeps the cones within the widest possible blend of the best so far.
-    values.clear();
-    for (const Index c : cones) {
-      const Distance d = distance_to(cones_[c], p);
-      if (d.value >= sample.distance + 2 * blend_ * max_radius(c)) continue;
-      if (d.value < sample.distance) {
-        sample = {d.value, sample.gradient, c, d.t};
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < near.size(); ++i) {
-          if (values[i] >= d.value + 2 * blend_ * max_radius(near[i])) continue;
-          near[kept] = near[i];
-          values[kept++] = values[i];
-        }
-        near.resize(kept);
-        values.resize(kept);
+    if (d.value < sample.distance) {
+      sample = {d.value, sample.gradient, c, d.t};
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < near.size(); ++i) {
+        if (values[i] >= d.value + 2 * blend_ * max_radius(near[i])) continue;
+        near[kept] = near[i];
+        values[kept++] = values[i];
       }
-      near.push_back(c);
-      values.push_back(d.value);
+      near.resize(kept);
+      values.resize(kept);
     }
+    near.push_back(c);
+    values.push_back(d.value);
   }
   sample.gradient = gradient_of(cones_[sample.cone], p, sample.t);
   if (near.size() > 1) blend_candidates(p, near, sample);
@@ -126,10 +137,10 @@ void VesselField::blend_candidates(const Vec3& p, std::span<const Index> near, F
     const Distance d = distance_to(cones_[c], p);
     candidates.push_back({d.value, radius_at(c, d.t), gradient_of(cones_[c], p, d.t)});
   }
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    for (std::size_t j = i + 1; j < near.size(); ++j) {
-      const auto& [low, high] = candidates[i].value <= candidates[j].value ? std::tie(candidates[i], candidates[j])
-                                                                           : std::tie(candidates[j], candidates[i]);
+  for (const Candidate& low : candidates) {
+    if (low.value - blend_ * low.radius / 2 >= sample.distance) continue;
+    for (const Candidate& high : candidates) {
+      if (high.value < low.value) continue;
       const double gap = high.value - low.value;
       const double thinner = blend_ * std::min(low.radius, high.radius);
       if (gap >= 2 * thinner) continue;

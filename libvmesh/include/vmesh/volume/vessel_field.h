@@ -69,6 +69,12 @@ class VesselField {
     double t_low = 0, t_high = 1;  // equal where one end sphere contains the other
     Index a = kNone, b = kNone;
   };
+  // Cones that follow each other along the graph form a run. From sphere to sphere along it, neither a distance nor that
+  // less the widest blend changes by more than `travel` does.
+  struct Run {
+    Index number = kNone;
+    double travel = 0;  // from the run's begin to the cone's end, mm
+  };
   struct Distance {
     double value;
     double t;
@@ -80,12 +86,14 @@ class VesselField {
   double max_radius(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
   FieldSample blended(const Vec3& p, std::span<const Index> cones) const;
   void blend_candidates(const Vec3& p, std::span<const Index> near, FieldSample& sample) const;
+  void measure_runs();
   void find_local_cones();
   void build_tree();
 
   const Centerline* centerline_;
   double blend_;
   std::vector<Cone> cones_;
+  std::vector<Run> runs_;
   std::vector<Index> local_offsets_, local_;
   BoxTree tree_;
 };
