@@ -11,7 +11,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kSpacing = 0.9;          // of the lattice, in the smallest radii ...
+constexpr double kSpacing = 1;            // of the lattice, in the smallest radii ...
 constexpr double kFinestSpacing = 0.08;   // ... but at least in the largest
 constexpr std::array kFiner = {2, 3, 4};  // halves of the resolution, tried until the surface does not intersect itself
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field

@@ -32,6 +32,7 @@ constexpr Mask kAll = (1 << kNeighbours) - 1;
 
 constexpr double kNearestToPoint = 0.25;  // of an edge: a surface vertex keeps that far from lattice points
 constexpr double kInside = 0.05;          // spacings below the boundary from which on a point counts as inside
+constexpr double kFarInside = 1.5;        // spacings below the boundary from which on depths need not be exact
 constexpr double kDepthStep = 1e-6;       // spacings below which depths count as equal
 constexpr double kBlockedDepth = 0.4;     // spacings below the boundary at which a blocked point asks for a handle
 
@@ -94,8 +95,7 @@ class LatticeGrowth {
       : field_(field), seed_(seed), spacing_(spacing), half_step_(0.5 * spacing * frame) {}
 
   LatticeSurface run(Index hint, std::size_t max_handles) {
-    const Index first = find({0, 0, 0}, hint);
-    add(first);
+    add(find({0, 0, 0}, {{}, 0, hint}));
     thicken();
     while (surface_.handles < max_handles && bridge()) thicken();
     extract();
@@ -118,12 +118,18 @@ class LatticeGrowth {
   Vec3 position(const Offset& at) const { return seed_ + half_step_ * Vec3(at[0], at[1], at[2]); }
   static Offset plus(const Offset& a, const Offset& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
-  // The point's number; it is made where it is not known yet.
-  Index find(const Offset& at, Index hint) {
+  // The number of the neighbour `at` of a point; it is made where it is not known yet. Far inside, an upper bound of its
+  // distance will do, which a step from the point gives.
+  Index find(const Offset& at, const Point& from) {
     const auto [it, is_new] = number_.emplace(key(at), static_cast<Index>(points_.size()));
     if (is_new) {
-      const FieldSample s = field_.sample(position(at), hint);
-      points_.push_back({at, s.distance, s.cone});
+      const double bound = from.distance + spacing_;
+      if (bound < -kFarInside * spacing_) {
+        points_.push_back({at, bound, from.cone});
+      } else {
+        const FieldSample s = field_.sample(position(at), from.cone);
+        points_.push_back({at, s.distance, s.cone});
+      }
     }
     return it->second;
   }
@@ -147,9 +153,8 @@ class LatticeGrowth {
   void add(Index p) {
     points_[p].in = true;
     const Offset at = points_[p].at;
-    const Index cone = points_[p].cone;
     for (const Offset& offset : kOffsets) {
-      const Index q = find(plus(at, offset), cone);
+      const Index q = find(plus(at, offset), Point(points_[p]));
       if (!points_[q].in && points_[q].distance < -kInside * spacing_) queue_.emplace(depth(q), key(points_[q].at), q);
     }
   }

@@ -11,6 +11,7 @@ constexpr double kSplitLength = 1.35;  // in target lengths
 constexpr double kCollapseLength = 0.65;
 constexpr double kSplitFar = 0.8;
 constexpr double kMaxBulge = 0.3;     // see bulge()
+constexpr double kCannotStray = 0.5;  // target lengths: shorter edges keep close to the boundary
 constexpr double kUprightFlip = 0.5;  // agreement that a flip may always lead to
 constexpr double kBadEnergy = 1.8;    // of a face: skewness about 0.4
 
@@ -125,11 +126,11 @@ bool Remesher::collapsible_to(Vertex v, Vertex other, const BoundaryPoint& targe
   for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
     const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
     if (b == other || c == other) continue;
-    if ((state_.point(c) - target.position).norm() > kSplitLength * 0.5 * (state_.size[c] + state_.size[v]))
-      return false;
-    if (!state_.stays_upright(v, b, c, target)) return false;
     const double reach = (state_.point(c) - target.position).norm();
-    if (std::abs(field_.sample(0.5 * (state_.point(c) + target.position), target.sample.cone).distance) >
+    const double size = 0.5 * (state_.size[c] + state_.size[v]);
+    if (reach > kSplitLength * size || !state_.stays_upright(v, b, c, target)) return false;
+    if (reach > kCannotStray * size &&
+        std::abs(field_.sample(0.5 * (state_.point(c) + target.position), target.sample.cone).distance) >
         kMaxBulge * reach) {
       return false;
     }
