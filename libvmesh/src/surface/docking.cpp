@@ -11,6 +11,7 @@
 namespace vmesh {
 namespace {
 
+constexpr std::size_t kStarts = 6;   // places from which a band is tried
 constexpr double kTie = 1 - 1e-9;    // of a value: what is not less than that is equal
 constexpr double kNearestCut = 0.1;  // of an edge: cuts keep that far from its ends
 
@@ -76,6 +77,20 @@ double distance2_to(std::span<const Vec3> loop, const Vec3& p) {
   return least;
 }
 
+// The numbers of the kStarts nearest points, nearest first; ties, rounding apart, by number.
+std::vector<std::size_t> nearest_of(std::span<const Vec3> points, const Vec3& p) {
+  double farthest = 0;
+  for (const Vec3& q : points) farthest = std::max(farthest, (q - p).squaredNorm());
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    order.emplace_back(std::round((points[i] - p).squaredNorm() / ((1 - kTie) * farthest)), i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::size_t> nearest;
+  for (std::size_t i = 0; i < std::min(order.size(), kStarts); ++i) nearest.push_back(order[i].second);
+  return nearest;
+}
+
 }  // namespace
 
 std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3> top) {
@@ -86,7 +101,7 @@ std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3>
   BandSearch search(bottom, top);
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t start = 0; start < top.size(); ++start) {
+  for (const std::size_t start : nearest_of(top, bottom[first])) {
     const double cost = search.run(first, start);
     if (cost < kTie * least) {
       least = cost;

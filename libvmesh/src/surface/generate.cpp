@@ -119,7 +119,8 @@ GenerateResult generate_surface(const Centerline& centerline, const GenerateOpti
     }
   });
   clock.time("optimize", [&] {
-    if (options.sweeps > 0) add_warnings(optimize(surface, options, progress), result.warnings);
+    const double grown_around = options.growth == GrowthMethod::paper ? kGrownAround : options.around;
+    if (options.sweeps > 0) add_warnings(optimize(surface, options, grown_around, progress), result.warnings);
   });
   surface.export_to(result);
   return result;

@@ -1,5 +1,7 @@
 #include "surface/guided_growth.h"
 
+#include <numbers>
+
 #include "vmesh/core/error.h"
 
 #include "surface/docking.h"
@@ -7,6 +9,8 @@
 
 namespace vmesh {
 namespace {
+
+constexpr int kFewestOnCap = 4;  // vertices of a cap's ring
 
 // Vertices and faces of all pieces, by number, before they become one halfedge mesh.
 class Assembly {
@@ -80,9 +84,30 @@ class Assembly {
       faces_.push_back({vertex(a), vertex(b), vertex(c)});
   }
 
-  void cap(const Ring& ring, double side, const std::vector<Index>& loop) {
-    const Index apex = size();
-    vertices_.push_back({ring.center + side * ring.radius * ring.normal, ring.points.front().sample.cone});
+  // Closes the loop of a tip's ring with a hemisphere: rings of fewer and fewer vertices, and a pole.
+  void cap(const Ring& ring, double side, std::vector<Index> loop) {
+    const double quarter = std::numbers::pi / 2;
+    const auto around = static_cast<double>(loop.size());
+    const int bands = std::max(1, static_cast<int>(std::round(quarter / ring_pitch(static_cast<int>(loop.size())))));
+    const Vec3 pole = side * ring.normal;
+    const Vec3 across = (vertices_[loop.front()].position - ring.center).normalized(), up = pole.cross(across);
+    const auto add = [&](const Vec3& way) {
+      vertices_.push_back({ring.center + ring.radius * way, ring.points.front().sample.cone});
+      return static_cast<Index>(vertices_.size() - 1);
+    };
+    for (int k = 1; k < bands; ++k) {
+      const double latitude = quarter * k / bands;
+      const int count = std::max(kFewestOnCap, static_cast<int>(std::round(around * std::cos(latitude))));
+      std::vector<Index> next;
+      for (int j = 0; j < count; ++j) {
+        const double angle = 2 * std::numbers::pi * (j + 0.5 * (k % 2)) / count;
+        next.push_back(add(std::sin(latitude) * pole +
+                           std::cos(latitude) * (std::cos(angle) * across + std::sin(angle) * up)));
+      }
+      band(loop, next);
+      loop = std::move(next);
+    }
+    const Index apex = add(pole);
     for (std::size_t j = 0; j < loop.size(); ++j) faces_.push_back({loop[j], loop[(j + 1) % loop.size()], apex});
   }
 

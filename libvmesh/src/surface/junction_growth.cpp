@@ -124,7 +124,8 @@ GenerateResult onto_boundary(const VesselField& field, const LatticeSurface& lat
     BoundSurface surface(field);
     fill(surface, lattice);
     options.around = finer * around / 2;
-    const bool tangled = optimize(surface, options, {}).tangled;
+    const double grown_around = std::min<double>(finer * kGrownAround / 2, options.around);
+    const bool tangled = optimize(surface, options, grown_around, {}).tangled;
     piece = {};
     surface.export_to(piece);
     if (!tangled) break;

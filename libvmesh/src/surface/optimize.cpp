@@ -7,7 +7,6 @@
 namespace vmesh {
 namespace {
 
-constexpr double kGrownAround = 6;        // a resolution at which a grown mesh becomes even
 constexpr double kSizingShare = 0.7;      // of the sweeps that work towards the size field; the rest for shape alone
 constexpr double kRegularityShare = 0.8;  // of the sweeps that flip towards valence 6 as well
 constexpr double kVerticesPerRadius = 7;  // and unit of length, at kGrownAround
@@ -20,11 +19,8 @@ class Optimizer {
   Optimizer(BoundSurface& surface, const GenerateOptions& options, const Progress& progress)
       : state_(surface), remesher_(state_), options_(options), progress_(progress) {}
 
-  // From the resolution of the grown mesh to the one asked for, doubling at most: an even mesh is refined or
-  // coarsened safely, a grown one is not.
-  OptimizeReport run() {
+  OptimizeReport run(double around) {
     const double grown = state_.mesh.number_of_vertices();
-    double around = options_.growth == GrowthMethod::guided ? options_.around : kGrownAround;
     optimize_at(around, grown);
     while (around != options_.around) {
       around = std::min<double>(2 * around, options_.around);
@@ -99,8 +95,9 @@ double expected_vertices(const Centerline& centerline, double around) {
   return kVerticesPerRadius * finer * finer * centerline.length_in_radii();
 }
 
-OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const Progress& progress) {
-  return Optimizer(surface, options, progress).run();
+OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, double grown_around,
+                        const Progress& progress) {
+  return Optimizer(surface, options, progress).run(grown_around);
 }
 
 }  // namespace vmesh
