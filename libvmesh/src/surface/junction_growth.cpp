@@ -7,6 +7,7 @@
 #include "surface/lattice_growth.h"
 #include "surface/node_frame.h"
 #include "surface/optimize.h"
+#include "surface/sweep_state.h"
 
 namespace vmesh {
 namespace {
@@ -16,6 +17,8 @@ constexpr double kFinestSpacing = 0.08;   // ... but at least in the largest
 constexpr std::array kFiner = {2, 3, 4};  // halves of the resolution, tried until the surface does not intersect itself
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
 constexpr double kShortestPiece = 0.3;    // radii between nodes of a junction's centerline: finer ones do not matter
+constexpr double kShortestRimEdge = 0.4;  // intended edges of the surface
+constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move onto the boundary
 constexpr double kOwnReach = 1.5;         // radii along the branch from which a tip's vertices come
 
 // The part of a centerline that belongs to a junction, cut at its openings. Segments know the place they come from.
@@ -188,7 +191,12 @@ JunctionSurface grow_junction(const VesselField& field, const std::vector<Branch
       result.openings.push_back(opening);
       const CrossSection& section = ring.beside[opening.at_end];
       result.rims.push_back(cutter.cut(section.center, opening.at_end ? Vec3(-section.normal) : section.normal,
-                                       vertices_near_end(piece, local, gap, g, at_end, kOwnReach * ring.radius)));
+                                       vertices_near_end(piece, local, gap, g, at_end, kOwnReach * ring.radius),
+                                       kShortestRimEdge * ring.radius * edge_length_per_radius(options.around)));
+      for (const Index v : result.rims.back()) {
+        const auto at = project_to_boundary(local_field, cutter.vertices()[v], piece.binding[cutter.source(v)].segment);
+        if ((at.position - cutter.vertices()[v]).norm() < kRimStep * ring.radius) cutter.move(v, at.position);
+      }
     }
   }
   result.patch.faces = cutter.rest();
