@@ -119,8 +119,10 @@ GenerateResult generate_surface(const Centerline& centerline, const GenerateOpti
     }
   });
   clock.time("optimize", [&] {
-    const double grown_around = options.growth == GrowthMethod::paper ? kGrownAround : options.around;
-    if (options.sweeps > 0) add_warnings(optimize(surface, options, grown_around, progress), result.warnings);
+    if (options.sweeps == 0) return;
+    const GrownMesh grown{options.growth == GrowthMethod::paper ? kGrownAround : options.around,
+                          expected_vertices(centerline, options.around)};
+    add_warnings(optimize(surface, options, grown, progress), result.warnings);
   });
   surface.export_to(result);
   return result;

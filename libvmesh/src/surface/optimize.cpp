@@ -19,20 +19,20 @@ class Optimizer {
   Optimizer(BoundSurface& surface, const GenerateOptions& options, const Progress& progress)
       : state_(surface), remesher_(state_), options_(options), progress_(progress) {}
 
-  OptimizeReport run(double around) {
-    const double grown = state_.mesh.number_of_vertices();
-    optimize_at(around, grown);
+  OptimizeReport run(const GrownMesh& grown) {
+    remesher_.limit_vertices(
+        static_cast<std::size_t>(kMaxExcess * (state_.mesh.number_of_vertices() + grown.expected_vertices)));
+    double around = grown.around;
+    optimize_at(around);
     while (around != options_.around) {
       around = std::min<double>(2 * around, options_.around);
-      optimize_at(around, grown);
+      optimize_at(around);
     }
-    return {tangled_, remesher_.limited()};
+    return {tangles_, remesher_.limited()};
   }
 
  private:
-  void optimize_at(double around, double grown) {
-    const double expected = expected_vertices(state_.field.centerline(), around);
-    remesher_.limit_vertices(static_cast<std::size_t>(kMaxExcess * (grown + expected)));
+  void optimize_at(double around) {
     edge_per_radius_ = edge_length_per_radius(around);
     state_.stir_all();
     sweep_from(0);
@@ -44,7 +44,7 @@ class Optimizer {
       tangles = find_tangles(state_);
       if (tangles.size() >= before) break;
     }
-    tangled_ = !tangles.empty();
+    tangles_ = tangles.size();
   }
 
   bool hopeless(const std::vector<Vertex>& tangles) const {
@@ -85,19 +85,23 @@ class Optimizer {
   const GenerateOptions& options_;
   const Progress& progress_;
   double edge_per_radius_ = 0;
-  bool tangled_ = false;
+  std::size_t tangles_ = 0;
 };
 
 }  // namespace
 
 double expected_vertices(const Centerline& centerline, double around) {
-  const double finer = around / kGrownAround;
-  return kVerticesPerRadius * finer * finer * centerline.length_in_radii();
+  return expected_vertices(centerline.length_in_radii(), around);
 }
 
-OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, double grown_around,
+double expected_vertices(double length_in_radii, double around) {
+  const double finer = around / kGrownAround;
+  return kVerticesPerRadius * finer * finer * length_in_radii;
+}
+
+OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const GrownMesh& grown,
                         const Progress& progress) {
-  return Optimizer(surface, options, progress).run(grown_around);
+  return Optimizer(surface, options, progress).run(grown);
 }
 
 }  // namespace vmesh
