@@ -12,11 +12,16 @@ constexpr double kOnBoundary = 1e-3;  // radii
 constexpr double kNearest = 0.5, kFarthest = 2;  // radii at which the boundary may lie
 constexpr double kFacing = 0.5;                  // cosine between ray and boundary normal
 constexpr double kOwnReach = 1.5;                // radii along the branch from which the boundary may come
-constexpr double kClearance = 1.35;              // radii around the axis at which no other vessel may be ...
-constexpr double kFreeSpace = 0.15;              // ... within this many radii
-constexpr int kDirections = 24;                  // in which that is looked at
-constexpr double kStraight = 1e-3;               // sine of an angle below which directions count as equal
-constexpr double kMinGap = 0.2;                  // pitches between two rings anywhere
+// Nothing else may come as close as `space` to the points `far` from the axis, both in radii, in kDirections
+// directions.
+struct Clearance {
+  double far, space;
+};
+constexpr Clearance kClearances[] = {{0, 0}, {0.5, 0}, {1, 0}, {1.35, 0.15}};
+constexpr double kNeighbourhood = 1.5;  // radii around the axis where that may fail
+constexpr int kDirections = 24;
+constexpr double kStraight = 1e-3;  // sine of an angle below which directions count as equal
+constexpr double kMinGap = 0.2;     // pitches between two rings anywhere
 
 // Height of the band of triangles between two rings, in ring radii, when all its edges are as long as the ring's.
 double equilateral_height(int around) {
@@ -167,13 +172,16 @@ bool RingLayer::is_clear(Index branch, const CrossSection& section, const Branch
   std::vector<Index> others;
   for (const Index cone : field_.local_cones(axes_[branch].branch().segments[axis.piece])) {
     const FieldSample s = field_.sample_cone(section.center, cone);
-    if (s.distance < (kClearance + kFreeSpace) * section.radius && !is_own(branch, section, s)) others.push_back(cone);
+    if (s.distance < kNeighbourhood * section.radius && !is_own(branch, section, s)) others.push_back(cone);
   }
   for (int j = 0; j < kDirections && !others.empty(); ++j) {
     const double angle = 2 * std::numbers::pi * j / kDirections;
-    const Vec3 p = section.center + kClearance * section.radius * (std::cos(angle) * side + std::sin(angle) * up);
-    for (const Index cone : others) {
-      if (field_.sample_cone(p, cone).distance < kFreeSpace * section.radius) return false;
+    const Vec3 way = std::cos(angle) * side + std::sin(angle) * up;
+    for (const auto& [far, space] : kClearances) {
+      const Vec3 p = section.center + far * section.radius * way;
+      for (const Index cone : others) {
+        if (field_.sample_cone(p, cone).distance < space * section.radius) return false;
+      }
     }
   }
   return true;
