@@ -18,6 +18,10 @@ class Burial {
       : field_(field), centerline_(field.centerline()), left_(centerline_.segments().size(), 1) {}
 
   std::vector<BuriedBranch> run() {
+    for (const auto& node : centerline_.nodes()) widest_ = std::max(widest_, node.radius);
+    for (Index n = 0; n < centerline_.nodes().size(); ++n) {
+      if (degree_left(n) == 1) trim(n);
+    }
     while (bury_some()) {
     }
     return std::move(buried_);
@@ -25,6 +29,40 @@ class Burial {
   bool is_left(Index segment) const { return left_[segment]; }
 
  private:
+  // From an end on, what lies within the sphere of one node of the branch: the radius falls there faster than the
+  // length grows.
+  void trim(Index tip) {
+    std::vector<Index> nodes = {tip}, segments;
+    std::size_t trimmed = 0;
+    double along = 0;
+    while (along < widest_) {
+      const Index s = first_left(nodes.back(), segments.empty() ? kNone : segments.back());
+      if (s == kNone || (!segments.empty() && degree_left(nodes.back()) != 2)) break;
+      segments.push_back(s);
+      nodes.push_back(centerline_.other_node(s, nodes.back()));
+      along += centerline_.length(s);
+      const bool holds_all =
+          std::all_of(nodes.rbegin() + 1, nodes.rend(), [&](Index n) { return sphere_within(n, nodes.back()); });
+      if (holds_all) trimmed = segments.size();
+    }
+    if (trimmed == 0) return;
+    segments.resize(trimmed);
+    for (const Index s : segments) left_[s] = 0;
+    buried_.push_back({std::move(segments), false});
+  }
+
+  bool sphere_within(Index inner, Index outer) const {
+    const auto &a = centerline_.node(inner), &b = centerline_.node(outer);
+    return (a.position - b.position).norm() + a.radius <= b.radius;
+  }
+
+  Index first_left(Index node, Index other_than) const {
+    for (const Index s : centerline_.incident_segments(node)) {
+      if (left_[s] && s != other_than) return s;
+    }
+    return kNone;
+  }
+
   // Goes through the branches of what is left. What is a branch changes where one goes: then it has to be done again.
   bool bury_some() {
     bool some = false;
@@ -119,6 +157,7 @@ class Burial {
 
   const VesselField& field_;
   const Centerline& centerline_;
+  double widest_ = 0;
   std::vector<char> left_;
   std::vector<BuriedBranch> buried_;
 };

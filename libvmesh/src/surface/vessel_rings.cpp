@@ -20,8 +20,10 @@ struct Clearance {
 constexpr Clearance kClearances[] = {{0, 0}, {0.5, 0}, {1, 0}, {1.35, 0.15}};
 constexpr double kNeighbourhood = 1.5;  // radii around the axis where that may fail
 constexpr int kDirections = 24;
-constexpr double kStraight = 1e-3;  // sine of an angle below which directions count as equal
-constexpr double kMinGap = 0.2;     // pitches between two rings anywhere
+constexpr double kStraight = 1e-3;      // sine of an angle below which directions count as equal
+constexpr double kLongestSkip = 2.5;    // radii along the branch
+constexpr double kStraightSkip = 0.95;  // cosine
+constexpr double kMinGap = 0.2;         // pitches between two rings anywhere
 
 // Height of the band of triangles between two rings, in ring radii, when all its edges are as long as the ring's.
 double equilateral_height(int around) {
@@ -38,6 +40,14 @@ bool apart(const Ring& ring, const Ring& next, double gap) {
     if ((next.center - p.position).dot(next.normal) < gap * next.radius) return false;
   }
   return true;
+}
+
+// A short way along which the vessel hardly bends.
+bool is_straight_between(const Ring& ring, const Ring& next) {
+  const double along = next.place - ring.place;
+  const Vec3 chord = next.center - ring.center;
+  return along < kLongestSkip * std::max(ring.radius, next.radius) && chord.dot(ring.normal) > kStraightSkip * along &&
+         chord.dot(next.normal) > kStraightSkip * along;
 }
 
 }  // namespace
@@ -73,6 +83,7 @@ std::vector<Ring> RingLayer::lay(Index branch) const {
     collides[k] = collides[next] = 1;
   }
   for (std::size_t k = 0; k < rings.size(); ++k) rings[k].free = rings[k].free && !collides[k];
+  leave_out_steps(rings, kMinGap * pitch);
   clear_ends(branch, rings);
   return rings;
 }
@@ -83,6 +94,19 @@ CrossSection RingLayer::section(Index branch, double radii) const {
   const double place = axis.place_at_radii(radii);
   const auto point = axis.at(place);
   return {place, point.position, axis.direction(place, kSmoothing * point.radius), point.radius};
+}
+
+void RingLayer::leave_out_steps(std::vector<Ring>& rings, double least_gap) {
+  std::vector<Ring> kept;
+  for (std::size_t k = 0; k < rings.size();) {
+    kept.push_back(rings[k]);
+    std::size_t next = k + 1;
+    while (next < rings.size() && rings[next].clear && !rings[next].free) ++next;
+    const bool skip = rings[k].free && next < rings.size() && rings[next].free && next > k + 1 &&
+                      is_straight_between(rings[k], rings[next]) && apart(rings[k], rings[next], least_gap);
+    k = skip ? next : k + 1;
+  }
+  rings = std::move(kept);
 }
 
 void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings) const {
@@ -129,9 +153,10 @@ Vec3 RingLayer::reference(Index branch, const Vec3& normal) const {
 
 Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase) const {
   const BranchAxis::Point axis = axes_[branch].at(section.place);
-  Ring ring{section, {}, {}, false};
+  Ring ring{section, {}, {}, false, false};
   const Vec3 up = section.normal.cross(side);
-  if (!is_clear(branch, section, axis, side, up)) return ring;
+  ring.clear = is_clear(branch, section, axis, side, up);
+  if (!ring.clear) return ring;
   for (int j = 0; j < around_; ++j) {
     const double angle = 2 * std::numbers::pi * (j + phase) / around_;
     BoundaryPoint seen;
