@@ -18,15 +18,16 @@ CenterlineFormat centerline_format(const std::filesystem::path& path) {
   if (extension == ".json") return CenterlineFormat::json;
   if (extension == ".csv") return CenterlineFormat::csv;
   if (extension == ".vmv") return CenterlineFormat::vmv;
-  const std::string advice = extension == ".vtk" ? " (save it as .vtp with ParaView or VMTK)" : "";
-  throw Unsupported(path.string() + ": centerlines are .swc, .vtp, .json, .csv or .vmv; \"" + extension +
-                    "\" is not supported" + advice);
+  if (extension == ".vtk") return CenterlineFormat::vtk;
+  throw Unsupported(path.string() + ": centerlines are .swc, .vtp, .json, .csv, .vmv or .vtk; \"" + extension +
+                    "\" is not supported");
 }
 
 CenterlineFormat centerline_output_format(const std::filesystem::path& path) {
   const CenterlineFormat format = centerline_format(path);
-  if (format == CenterlineFormat::vmv) {
-    throw Unsupported(path.string() + ": VMV files are read, not written; write the centerline as .json, .csv or .vtp");
+  if (format == CenterlineFormat::vmv || format == CenterlineFormat::vtk) {
+    throw Unsupported(path.string() +
+                      ": files of this kind are read, not written; write the centerline as .json, .csv or .vtp");
   }
   return format;
 }
@@ -59,6 +60,8 @@ RawCenterline parse_centerline(std::string_view content, CenterlineFormat format
       return io::parse_centerline_csv(content, csv_segments, source);
     case CenterlineFormat::vmv:
       return io::parse_vmv(content, source);
+    case CenterlineFormat::vtk:
+      return io::parse_centerline_vtk(content, source, options.radius_array);
   }
   throw Unsupported(source + ": unknown centerline format");
 }
@@ -116,6 +119,7 @@ void write_centerline(const std::filesystem::path& path, const Centerline& cente
       break;
     }
     case CenterlineFormat::vmv:
+    case CenterlineFormat::vtk:
       break;  // refused above
   }
   file.commit();

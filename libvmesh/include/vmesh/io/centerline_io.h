@@ -18,6 +18,7 @@ enum class CenterlineFormat {
   json,  ///< .json; schema "vmesh.centerline/1"
   csv,   ///< .csv; a pair of files, see csv_segments_path()
   vmv,   ///< .vmv; VessMorphoVis: vertices `id x y z radius`, strands `id vertex vertex ...`; read only
+  vtk,   ///< .vtk; legacy VTK in text: POLYDATA with lines and a radius per point; read only
 };
 
 /// By the file's extension, upper or lower case. Throws Unsupported, with the extensions that are.
@@ -31,7 +32,7 @@ CenterlineFormat centerline_output_format(const std::filesystem::path& path);
 std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path);
 
 struct CenterlineReadOptions {
-  /// VTP: name of the point array that holds the radius. Empty: MaximumInscribedSphereRadius, Radius or radius.
+  /// VTP and VTK: name of the point array that holds the radius. Empty: MaximumInscribedSphereRadius, Radius or radius.
   std::string radius_array;
 };
 
