@@ -1,5 +1,6 @@
 #include "arguments.h"
 
+#include <charconv>
 #include <iostream>
 #include <sstream>
 
@@ -65,6 +66,22 @@ void add_input(CLI::App& verb, InputArguments& input, const std::string& help) {
       ->check(CLI::IsMember({"LPS", "RAS"}));
 }
 
+OpenEnds parse_open_ends(const std::string& text) {
+  OpenEnds ends;
+  ends.all = text == "all";
+  if (ends.all) return ends;
+  std::istringstream list(text);
+  for (std::string item; std::getline(list, item, ',');) {
+    Index node = 0;
+    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), node);
+    if (error != std::errc() || end != item.data() + item.size())
+      throw CLI::ValidationError("--open-ends",
+                                 "\"" + item + "\" is no node number; give all, or numbers such as 3,17");
+    ends.nodes.push_back(node);
+  }
+  return ends;
+}
+
 void add_generate(CLI::App& app, GenerateArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
   add_input(verb, arguments.input, "centerline");
@@ -78,6 +95,14 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "guided: topology as the centerline's; paper: a single seed, as published")
       ->check(CLI::IsMember({"guided", "paper"}))
       ->default_str("guided");
+  verb.add_option_function<std::string>(
+          "--open-ends", [&arguments](const std::string& text) { arguments.options.open_ends = parse_open_ends(text); },
+          "leave the surface open at these ends of the centerline: all, or node numbers as in the summary, "
+          "separated by commas")
+      ->type_name("all|N,N,...");
+  verb.add_option("--threads", arguments.options.threads, "to work on; 0: as many as there are; the result is the same")
+      ->check(in_range(0, 4096))
+      ->capture_default_str();
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
                 "self-intersections, of the expected topology, and holds every centerline node");

@@ -22,6 +22,15 @@ MeshAttribute branch_attribute(const std::vector<Index>& labels) {
   return {"branch", {labels.begin(), labels.end()}, true};
 }
 
+// 0: not at an opening.
+MeshAttribute opening_labels(const GenerateResult& result) {
+  MeshAttribute labels{"opening", std::vector<double>(result.mesh.vertices.size(), 0), true};
+  for (std::size_t i = 0; i < result.openings.size(); ++i) {
+    for (const Index v : result.openings[i].ring) labels.values[v] = static_cast<double>(i + 1);
+  }
+  return labels;
+}
+
 MeshAttributes attributes_of(const GenerateResult& result, const Centerline& centerline) {
   MeshAttributes attributes;
   const BranchLabels branch = label_branches(result.mesh, result.binding, centerline);
@@ -32,6 +41,7 @@ MeshAttributes attributes_of(const GenerateResult& result, const Centerline& cen
   }
   attributes.vertex = {
       {"radius", result.radius}, std::move(segment), std::move(parameter), branch_attribute(branch.vertex)};
+  if (!result.openings.empty()) attributes.vertex.push_back(opening_labels(result));
   attributes.face = {{"EquiangleSkewness", equiangle_skewness(result.mesh)}, branch_attribute(branch.face)};
   return attributes;
 }
@@ -81,15 +91,15 @@ GenerateResult grow(const Centerline& centerline, const GenerateArguments& argum
 void measure(GenerateReport& report, Console& console) {
   const Centerline& centerline = report.cleaned->centerline;
   const GenerateResult& result = *report.result;
-  report.measurement = measure_surface(result.mesh);
+  report.measurement = measure_surface(result);
   stop_if_interrupted();
   const VesselField field(centerline, report.arguments->options.blend);
   report.deviation = measure_deviation(result.mesh, result.binding, field);
   stop_if_interrupted();
-  report.nodes_inside = count_nodes_inside(centerline, result.mesh);
+  report.nodes_inside = count_nodes_inside(centerline, result);
   stop_if_interrupted();
-  report.problems =
-      problems_of(report.measurement, expected_surface(centerline), report.nodes_inside, centerline.nodes().size());
+  report.problems = problems_of(report.measurement, expected_surface(centerline, result), report.nodes_inside,
+                                centerline.nodes().size());
   for (const std::string& problem : report.problems) console.warn("surface: " + problem);
 }
 

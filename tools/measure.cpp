@@ -24,16 +24,31 @@ SurfaceMeasurement measure_surface(const TriMesh& mesh) {
   return measurement;
 }
 
-SurfaceExpectation expected_surface(const Centerline& centerline) {
+SurfaceMeasurement measure_surface(const GenerateResult& result) {
+  SurfaceMeasurement measurement = measure_surface(result.mesh);
+  if (result.openings.empty()) return measurement;
+  std::size_t rings = 0;
+  for (const Opening& opening : result.openings) rings += opening.ring.size();
+  measurement.openings = result.openings.size();
+  measurement.open_elsewhere =
+      measurement.topology.boundary_edges - std::min(measurement.topology.boundary_edges, rings);
+  measurement.topology = measure_topology(with_lids(result));
+  return measurement;
+}
+
+SurfaceExpectation expected_surface(const Centerline& centerline, const GenerateResult& result) {
+  if (result.growth.components > 0) return {result.growth.components, result.growth.cycle_rank};
   return {centerline.component_count(), centerline.cycle_rank()};
 }
 
-std::optional<std::size_t> count_nodes_inside(const Centerline& centerline, const TriMesh& mesh) {
+std::optional<std::size_t> count_nodes_inside(const Centerline& centerline, const GenerateResult& result) {
+  const TriMesh mesh = with_lids(result);
   if (!measure_topology(mesh).closed) return std::nullopt;
   std::vector<Vec3> points;
   points.reserve(centerline.nodes().size());
   for (const CenterlineNode& node : centerline.nodes()) points.push_back(node.position);
-  const std::vector<bool> inside = points_inside(mesh, points);
+  std::vector<bool> inside = points_inside(mesh, points);
+  for (const Opening& opening : result.openings) inside[opening.node] = true;
   return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), true));
 }
 
@@ -45,6 +60,8 @@ std::vector<std::string> problems_of(const SurfaceMeasurement& measurement) {
   if (!topology.manifold) problems.push_back("not a manifold: an edge has three faces or a vertex two fans");
   if (!topology.oriented) problems.push_back("not oriented: neighbouring faces disagree about the outside");
   if (topology.closed && topology.oriented && !topology.outward) problems.push_back("faces point inwards");
+  if (measurement.open_elsewhere > 0)
+    problems.push_back(count(measurement.open_elsewhere, "boundary edge", "boundary edges") + " besides the openings");
   if (measurement.self_intersections > 0)
     problems.push_back(count(measurement.self_intersections, "pair of faces intersects", "pairs of faces intersect"));
   return problems;

@@ -95,6 +95,7 @@ Json to_json(const SurfaceMeasurement& measurement) {
             {"outward", topology.outward},
             {"components", topology.components},
             {"genus", topology.genus},
+            {"openings", measurement.openings},
             {"boundary_edges", topology.boundary_edges},
             {"euler_characteristic", topology.euler_characteristic}}},
           {"skewness", {{"mean", measurement.skewness.mean}, {"max", measurement.skewness.max}}},
@@ -106,7 +107,7 @@ Json to_json(const GenerateReport& report) {
   const Centerline& centerline = report.cleaned->centerline;
   const TriMesh& mesh = report.result->mesh;
   const double size = centerline.length_in_radii();
-  const SurfaceExpectation expected = expected_surface(centerline);
+  const SurfaceExpectation expected = expected_surface(centerline, *report.result);
   Json json = {
       {"schema", "vmesh.summary/1"},
       {"generator", generator_json()},
@@ -121,12 +122,44 @@ Json to_json(const GenerateReport& report) {
   json.update(to_json(report.measurement));
   json["topology"]["expected_components"] = expected.components;
   json["topology"]["expected_genus"] = expected.genus;
+  json["openings"] = openings_json(*report.result);
+  json["growth"] = arguments.options.growth == GrowthMethod::guided ? to_json(report.result->growth) : Json();
   json["nodes_inside"] = report.nodes_inside ? Json(*report.nodes_inside) : Json();
   json["distance"] = to_json(report.deviation);
   json["seconds"] = stages_json(report.stages);
   json["warnings"] = report.warnings;
   json["problems"] = report.problems;
   return json;
+}
+
+Json openings_json(const GenerateResult& result) {
+  Json json = Json::array();
+  for (std::size_t i = 0; i < result.openings.size(); ++i) {
+    const Opening& opening = result.openings[i];
+    json.push_back({{"label", i + 1},
+                    {"node", opening.node},
+                    {"center", {opening.center.x(), opening.center.y(), opening.center.z()}},
+                    {"normal", {opening.normal.x(), opening.normal.y(), opening.normal.z()}},
+                    {"radius", opening.radius},
+                    {"vertices", opening.ring}});
+  }
+  return json;
+}
+
+Json to_json(const GrowthSummary& growth) {
+  Json simplifications = Json::array();
+  for (const GrowthSimplification& s : growth.simplifications) {
+    simplifications.push_back({{"kind", to_string(s.kind)},
+                               {"position", {s.position.x(), s.position.y(), s.position.z()}},
+                               {"nodes", s.nodes},
+                               {"segments", s.segments},
+                               {"message", s.message}});
+  }
+  return {{"junctions", growth.junctions},
+          {"tubes", growth.tubes},
+          {"components", growth.components},
+          {"cycle_rank", growth.cycle_rank},
+          {"simplifications", std::move(simplifications)}};
 }
 
 void write_json(const std::filesystem::path& path, const Json& json) {
@@ -139,6 +172,9 @@ std::string describe(const GenerateOptions& options) {
     text << (text.tellp() > 0 ? " " : "") << flag << " " << value;
   });
   text << " --growth " << to_string(options.growth);
+  if (options.open_ends.all) text << " --open-ends all";
+  for (std::size_t i = 0; i < options.open_ends.nodes.size(); ++i)
+    text << (i == 0 ? " --open-ends " : ",") << options.open_ends.nodes[i];
   return text.str();
 }
 

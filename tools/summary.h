@@ -33,6 +33,8 @@ Json to_json(const GenerateReport& report);
 /// Parts that several verbs use.
 Json to_json(const Centerline& centerline);
 Json to_json(const CleaningReport& report);
+Json to_json(const GrowthSummary& growth);
+Json openings_json(const GenerateResult& result);
 Json to_json(const SurfaceMeasurement& measurement);
 Json generator_json();
 

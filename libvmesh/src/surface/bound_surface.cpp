@@ -112,7 +112,7 @@ std::array<Vertex, 3> BoundSurface::split_edge_centric(Face f) {
   return middles;
 }
 
-void BoundSurface::export_to(GenerateResult& result) const {
+std::vector<Index> BoundSurface::export_to(GenerateResult& result) const {
   std::vector<Index> number(mesh.num_vertices() + mesh.number_of_removed_vertices(), kNone);
   Index next = 0;
   for (const Vertex v : mesh.vertices()) {
@@ -128,6 +128,7 @@ void BoundSurface::export_to(GenerateResult& result) const {
     result.mesh.faces.push_back(
         {number[mesh.source(h).idx()], number[mesh.target(h).idx()], number[mesh.target(mesh.next(h)).idx()]});
   }
+  return number;
 }
 
 }  // namespace vmesh

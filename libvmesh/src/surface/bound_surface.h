@@ -61,7 +61,8 @@ class BoundSurface {
   Vertex split_edge(Edge e);
 
   /// The finished mesh with its binding, without lids. Vertices and faces in the order of the halfedge mesh.
-  void export_to(GenerateResult& result) const;
+  /// Returns the number of every vertex there, by its index here; kNone for those that are gone.
+  std::vector<Index> export_to(GenerateResult& result) const;
 
  private:
   Vertex halve(Halfedge h);

@@ -1,5 +1,6 @@
 #include "vmesh/surface/generate.h"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <sstream>
@@ -142,8 +143,58 @@ void generate_paper(const Centerline& centerline, const GenerateOptions& options
   surface.export_to(result);
 }
 
+void check_open_ends(const Centerline& centerline, const GenerateOptions& options) {
+  const OpenEnds& ends = options.open_ends;
+  if (!ends.all && ends.nodes.empty()) return;
+  if (options.growth == GrowthMethod::paper) throw InvalidInput("open ends need guided growth");
+  for (const Index n : ends.nodes) {
+    if (n >= centerline.nodes().size() || centerline.degree(n) != 1)
+      throw InvalidInput("node " + std::to_string(n) + " cannot be left open: it is not an end of the centerline");
+  }
+}
+
+bool is_chosen(const OpenEnds& ends, Index node) {
+  return ends.all || std::find(ends.nodes.begin(), ends.nodes.end(), node) != ends.nodes.end();
+}
+
+// For every node of the growth centerline, whether the surface is to be open there.
+std::vector<char> nodes_to_open(const Centerline& centerline, const std::vector<Index>& number, const OpenEnds& ends) {
+  std::vector<char> open(centerline.nodes().size(), 0);
+  for (Index n = 0; n < open.size(); ++n) open[n] = centerline.degree(n) == 1 && is_chosen(ends, number[n]);
+  return open;
+}
+
+Opening opening_at(const Centerline& centerline, const OpenLoop& loop, const std::vector<Index>& number) {
+  Opening opening{loop.node, centerline.node(loop.node).position, Vec3::Zero(), centerline.node(loop.node).radius, {}};
+  for (const Vertex v : loop.vertices) opening.ring.push_back(number[v.idx()]);
+  return opening;
+}
+
+void warn_of_closed_ends(const Centerline& centerline, const OpenEnds& ends, GenerateResult& result) {
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    if (centerline.degree(n) != 1 || !is_chosen(ends, n)) continue;
+    if (std::any_of(result.openings.begin(), result.openings.end(), [&](const Opening& o) { return o.node == n; }))
+      continue;
+    std::ostringstream text;
+    text << "open ends: the end at node " << n << " (" << centerline.node(n).position.transpose()
+         << ") stays closed: other vessels cover its cross-section";
+    result.warnings.push_back(text.str());
+  }
+}
+
 // From numbers of the growth centerline to those of the full one.
 void renumber(const GrowthCenterline& growth, const Centerline& full, GenerateResult& result) {
+  std::sort(result.openings.begin(), result.openings.end(),
+            [](const Opening& a, const Opening& b) { return a.node < b.node; });
+  for (Opening& opening : result.openings) {
+    opening.node = growth.node[opening.node];
+    for (std::size_t j = 0; j < opening.ring.size(); ++j) {
+      const Vec3 a = result.mesh.vertices[opening.ring[j]] - opening.center;
+      const Vec3 b = result.mesh.vertices[opening.ring[(j + 1) % opening.ring.size()]] - opening.center;
+      opening.normal += a.cross(b);
+    }
+    opening.normal.normalize();
+  }
   if (growth.buried.empty()) return;
   for (CenterlineBinding& binding : result.binding) binding.segment = growth.cone[binding.segment];
   for (GrowthSimplification& note : result.growth.simplifications) {
@@ -174,23 +225,40 @@ void generate_guided(const Centerline& centerline, const GenerateOptions& option
     growth.emplace(without_buried_branches(*field));
     if (!growth->buried.empty()) field.emplace(growth->centerline, options.blend);
   });
+  const std::vector<char> open = nodes_to_open(growth->centerline, growth->node, options.open_ends);
   BoundSurface surface(*field);
+  GuidedGrowthReport report;
   clock.time("grow", [&] {
-    GuidedGrowthReport report = grow_guided(surface, options, progress);
+    report = grow_guided(surface, open, options, progress);
     add_warnings(report, result.warnings);
     result.growth = std::move(report.summary);
   });
   clock.time("optimize", [&] { optimize_grown(surface, options, options.around, progress, result); });
-  surface.export_to(result);
+  const std::vector<Index> number = surface.export_to(result);
+  for (const OpenLoop& loop : report.open_loops)
+    result.openings.push_back(opening_at(growth->centerline, loop, number));
   renumber(*growth, centerline, result);
+  warn_of_closed_ends(centerline, options.open_ends, result);
 }
 
 }  // namespace
+
+TriMesh with_lids(const GenerateResult& result) {
+  TriMesh mesh = result.mesh;
+  for (const Opening& opening : result.openings) {
+    const auto middle = static_cast<Index>(mesh.vertices.size());
+    mesh.vertices.push_back(opening.center);
+    for (std::size_t j = 0; j < opening.ring.size(); ++j)
+      mesh.faces.push_back({opening.ring[j], opening.ring[(j + 1) % opening.ring.size()], middle});
+  }
+  return mesh;
+}
 
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options,
                                 const Progress& progress) {
   check_options(options);
   check_size(centerline, options);
+  check_open_ends(centerline, options);
   GenerateResult result;
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   arena.execute([&] {

@@ -109,7 +109,7 @@ class SkeletonMaker {
       const auto from = static_cast<Index>(first_tube + i), to = static_cast<Index>(first_tube + (i + 1) % count);
       Gap gap{b, skeleton_.tubes[from].rings.back().place, skeleton_.tubes[to].rings.front().place, {}};
       if (gap.end <= gap.begin) gap.end += axis.length();
-      gap.openings = {Opening{from, true}, Opening{to, false}};
+      gap.openings = {TubeEnd{from, true}, TubeEnd{to, false}};
       gaps_.push_back(gap);
     }
   }
@@ -162,7 +162,7 @@ std::size_t GrowthSkeleton::component_count() const {
   std::vector<Index> first(tubes.size(), kNone);
   for (Index j = 0; j < junctions.size(); ++j) {
     for (const Gap& gap : junctions[j].gaps) {
-      for (const Opening& opening : gap.openings) {
+      for (const TubeEnd& opening : gap.openings) {
         if (opening.tube == kNone) continue;
         Index& other = first[opening.tube];
         if (other == kNone) {

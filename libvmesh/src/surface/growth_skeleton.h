@@ -15,7 +15,7 @@ struct Tube {
 };
 
 /// The open end of a tube at which a junction docks.
-struct Opening {
+struct TubeEnd {
   Index tube = kNone;
   bool at_end = false;  ///< at its last ring; at its first otherwise
 };
@@ -24,7 +24,7 @@ struct Opening {
 struct Gap {
   Index branch = kNone;
   double begin = 0, end = 0;  ///< places
-  std::array<Opening, 2> openings;
+  std::array<TubeEnd, 2> openings;
 };
 
 /// What tubes leave over, as far as it hangs together: branching nodes and the gaps around them.

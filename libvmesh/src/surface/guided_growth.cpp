@@ -20,7 +20,9 @@ constexpr int kFewestOnCap = 4;  // vertices of a cap's ring
 // Vertices and faces of all pieces, by number, before they become one halfedge mesh.
 class Assembly {
  public:
-  Assembly(const GrowthSkeleton& skeleton) : skeleton_(skeleton), first_(skeleton.tubes.size()) {}
+  /// `open` says for every node whether the surface is to be open there.
+  Assembly(const GrowthSkeleton& skeleton, const std::vector<BranchAxis>& axes, const std::vector<char>& open)
+      : skeleton_(skeleton), axes_(axes), open_(open), first_(skeleton.tubes.size()) {}
 
   // The rings of a tube that no junction's piece replaces.
   void add_tube(Index number) {
@@ -35,8 +37,8 @@ class Assembly {
     }
     for (std::size_t k = begin; k + 1 < end; ++k) band(ring_vertices(number, k), ring_vertices(number, k + 1));
     if (tube.periodic) band(ring_vertices(number, count - 1), ring_vertices(number, 0));
-    if (tube.starts_at_tip) cap(tube.rings.front(), -1, reversed(ring_vertices(number, 0)));
-    if (tube.ends_at_tip) cap(tube.rings.back(), 1, ring_vertices(number, count - 1));
+    if (tube.starts_at_tip) end_at_tip(number, 0, -1, reversed(ring_vertices(number, 0)));
+    if (tube.ends_at_tip) end_at_tip(number, count - 1, 1, ring_vertices(number, count - 1));
   }
 
   void add_junction(const JunctionPiece& piece) {
@@ -52,7 +54,8 @@ class Assembly {
     for (const auto& [a, b, c] : piece.faces) faces_.push_back({number[a], number[b], number[c]});
   }
 
-  void build(BoundSurface& surface) const {
+  /// Fills in the surface; what is open has lids. Returns the loops around them.
+  std::vector<OpenLoop> build(BoundSurface& surface) const {
     std::vector<Vertex> vertex(vertices_.size(), SurfaceMesh::null_vertex());
     for (const Triangle& f : faces_) {
       for (const Index v : f) {
@@ -65,9 +68,29 @@ class Assembly {
       if (surface.mesh.add_face(vertex[a], vertex[b], vertex[c]) == SurfaceMesh::null_face())
         throw std::logic_error("pieces of the surface do not fit together");
     }
+    std::vector<OpenLoop> loops;
+    for (const auto& [node, ring] : openings_) {
+      OpenLoop loop{node, {}};
+      for (const Index v : ring) loop.vertices.push_back(vertex[v]);
+      surface.close_with_lid(loop.vertices, surface.field.centerline().node(node).position);
+      loops.push_back(std::move(loop));
+    }
+    return loops;
   }
 
  private:
+  // With a cap, or open.
+  void end_at_tip(Index number, std::size_t k, double side, std::vector<Index> loop) {
+    const Tube& tube = skeleton_.tubes[number];
+    const auto& nodes = axes_[tube.branch].branch().nodes;
+    const Index node = side < 0 ? nodes.front() : nodes.back();
+    if (open_[node]) {
+      openings_.push_back({node, std::move(loop)});
+    } else {
+      cap(tube.rings[k], side, std::move(loop));
+    }
+  }
+
   Index size() const { return static_cast<Index>(vertices_.size()); }
 
   std::vector<Index> ring_vertices(Index tube, std::size_t k) const {
@@ -120,7 +143,15 @@ class Assembly {
     for (std::size_t j = 0; j < loop.size(); ++j) faces_.push_back({loop[j], loop[(j + 1) % loop.size()], apex});
   }
 
+  struct TipRing {
+    Index node;
+    std::vector<Index> vertices;
+  };
+
   const GrowthSkeleton& skeleton_;
+  const std::vector<BranchAxis>& axes_;
+  const std::vector<char>& open_;
+  std::vector<TipRing> openings_;
   std::vector<SurfacePoint> vertices_;
   std::vector<Triangle> faces_;
   std::vector<std::vector<Index>> first_;  // vertex of every ring of every tube
@@ -186,7 +217,8 @@ void note_simplifications(const Centerline& centerline, const std::vector<Branch
 
 }  // namespace
 
-GuidedGrowthReport grow_guided(BoundSurface& surface, const GenerateOptions& options, const Progress& progress) {
+GuidedGrowthReport grow_guided(BoundSurface& surface, const std::vector<char>& open, const GenerateOptions& options,
+                               const Progress& progress) {
   const VesselField& field = surface.field;
   const std::vector<Branch> branches = find_branches(field.centerline());
   std::vector<BranchAxis> axes;
@@ -200,7 +232,7 @@ GuidedGrowthReport grow_guided(BoundSurface& surface, const GenerateOptions& opt
   summary.components = skeleton.component_count();
   summary.cycle_rank = skeleton.cycle_rank();
 
-  Assembly assembly(skeleton);
+  Assembly assembly(skeleton, axes, open);
   for (Index t = 0; t < skeleton.tubes.size(); ++t) assembly.add_tube(t);
   const std::vector<JunctionPiece> pieces = make_pieces(field, axes, skeleton, options, progress);
   for (std::size_t j = 0; j < pieces.size(); ++j) {
@@ -211,7 +243,7 @@ GuidedGrowthReport grow_guided(BoundSurface& surface, const GenerateOptions& opt
     note_simplifications(field.centerline(), axes, skeleton.junctions[j], pieces[j].filled_loops,
                          summary.simplifications);
   }
-  assembly.build(surface);
+  report.open_loops = assembly.build(surface);
   return report;
 }
 

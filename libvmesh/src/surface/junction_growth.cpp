@@ -117,10 +117,10 @@ LatticeSurface grow_lattice(const VesselField& field) {
 
 }  // namespace
 
-std::vector<Opening> openings_of(const Junction& junction) {
-  std::vector<Opening> openings;
+std::vector<TubeEnd> openings_of(const Junction& junction) {
+  std::vector<TubeEnd> openings;
   for (const Gap& gap : junction.gaps) {
-    for (const Opening& opening : gap.openings) {
+    for (const TubeEnd& opening : gap.openings) {
       if (opening.tube != kNone) openings.push_back(opening);
     }
   }
@@ -146,7 +146,7 @@ JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims) const {
   DiscCutter cutter(piece.mesh.vertices, piece.mesh.faces);
   for (Index g = 0; g < junction_.gaps.size(); ++g) {
     for (const bool at_end : {false, true}) {
-      const Opening& opening = junction_.gaps[g].openings[at_end];
+      const TubeEnd& opening = junction_.gaps[g].openings[at_end];
       if (opening.tube == kNone) continue;
       const Tube& tube = skeleton_.tubes[opening.tube];
       const CrossSection& section = (opening.at_end ? tube.rings.back() : tube.rings.front()).beside[opening.at_end];

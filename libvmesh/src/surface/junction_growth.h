@@ -37,7 +37,7 @@ struct JunctionCenterline {
 };
 
 /// The ends of a junction's gaps at tubes, in the order of the gaps.
-std::vector<Opening> openings_of(const Junction& junction);
+std::vector<TubeEnd> openings_of(const Junction& junction);
 
 /// Grows the surface of a junction from its widest place, in a lattice as fine as its thinnest vessel
 /// (grow_in_lattice), brings it onto the boundary and to a size field, and cuts its openings.

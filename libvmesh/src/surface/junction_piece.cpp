@@ -20,7 +20,7 @@ constexpr Variant kVariants[] = {{1, true}, {1.5, true}, {1, false}, {2, true}, 
 class PieceMaker {
  public:
   PieceMaker(const VesselField& field, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
-             const std::vector<Opening>& openings, const GenerateOptions& options)
+             const std::vector<TubeEnd>& openings, const GenerateOptions& options)
       : skeleton_(skeleton), growth_(growth), openings_(openings), options_(options), surface_(field) {}
 
   JunctionPiece make(const Variant& variant) {
@@ -48,7 +48,7 @@ class PieceMaker {
   }
 
   // Joins the rim to the first ring of the tube's end, that to the next one, up to the ring that is kept.
-  void dock(const Opening& opening, const std::vector<Index>& rim) {
+  void dock(const TubeEnd& opening, const std::vector<Index>& rim) {
     const Tube& tube = skeleton_.tubes[opening.tube];
     std::vector<Vertex> last;
     for (const Index v : rim) last.push_back(vertex_[v]);
@@ -119,14 +119,14 @@ class PieceMaker {
   }
 
   struct KeptRing {
-    Opening opening;
+    TubeEnd opening;
     Index ring;
     std::vector<Vertex> vertices;  // in the order of the ring
   };
 
   const GrowthSkeleton& skeleton_;
   const JunctionGrowth& growth_;
-  const std::vector<Opening>& openings_;
+  const std::vector<TubeEnd>& openings_;
   const GenerateOptions& options_;
   BoundSurface surface_;
   std::vector<Vertex> vertex_;  // of the junction's vertices
@@ -141,7 +141,7 @@ JunctionPiece make_junction_piece(const VesselField& field, const std::vector<Br
                                   const GrowthSkeleton& skeleton, const Junction& junction,
                                   const GenerateOptions& options) {
   const JunctionGrowth growth(field, axes, skeleton, junction, options);
-  const std::vector<Opening> openings = openings_of(junction);
+  const std::vector<TubeEnd> openings = openings_of(junction);
   JunctionPiece best;
   for (const Variant& variant : kVariants) {
     JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options).make(variant);

@@ -8,7 +8,7 @@ namespace vmesh {
 struct PieceVertex {
   Vec3 position;
   Index cone;
-  Opening tube;    ///< tube.tube == kNone: none
+  TubeEnd tube;    ///< tube.tube == kNone: none
   Index ring = 0;  ///< number of the ring in the tube
   Index number = 0;
 };

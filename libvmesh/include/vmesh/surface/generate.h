@@ -18,6 +18,12 @@ std::string_view to_string(GrowthMethod method);
 /// Throws InvalidInput unless `text` is "guided" or "paper".
 GrowthMethod parse_growth_method(std::string_view text);
 
+/// Ends of a centerline (nodes with one segment) at which the surface is left open.
+struct OpenEnds {
+  bool all = false;
+  std::vector<Index> nodes;  ///< these; ignored with `all`
+};
+
 /// How a surface is grown and finished. Lengths are in units of the local vessel radius unless said otherwise.
 struct GenerateOptions {
   /// Weight of the attraction by the vessel boundary against the vertex normal, Eq. 11; in [0, 1].
@@ -33,6 +39,8 @@ struct GenerateOptions {
   /// A centerline whose length and radii ask for more vertices than this is refused.
   int max_vertices = 20'000'000;
   GrowthMethod growth = GrowthMethod::guided;
+  /// The surface ends flat there instead of in a hemisphere. Guided growth only.
+  OpenEnds open_ends;
   /// Threads to work on; 0: as many as the machine has. The result does not depend on it.
   int threads = 0;
 };
@@ -77,15 +85,28 @@ struct GrowthSummary {
   std::vector<GrowthSimplification> simplifications;
 };
 
+/// A hole in the surface at an end of a vessel: a ring in the plane across the vessel through the end's node.
+struct Opening {
+  Index node = kNone;          ///< of the centerline
+  Vec3 center = Vec3::Zero();  ///< position of the node, mm
+  Vec3 normal = Vec3::Zero();  ///< out of the vessel
+  double radius = 0;           ///< of the vessel there, mm
+  std::vector<Index> ring;     ///< vertices, counter-clockwise about `normal`
+};
+
 /// A generated surface. What went wrong is data, never hidden: see `warnings`.
 struct GenerateResult {
   TriMesh mesh;
   std::vector<CenterlineBinding> binding;  ///< one per vertex
   std::vector<double> radius;              ///< local vessel radius at every vertex's binding (mm)
+  std::vector<Opening> openings;           ///< ascending in the nodes
   GrowthSummary growth;                    ///< of guided growth; empty after paper growth
   std::vector<StageTime> stages;
   std::vector<std::string> warnings;
 };
+
+/// The surface with its openings closed by flat fans around their centres: as many vertices more. It bounds a volume.
+TriMesh with_lids(const GenerateResult& result);
 
 /// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.
 /// Throws InvalidInput for options out of range and for a centerline too long for its radii, Cancelled when `progress`
