@@ -34,6 +34,7 @@ class VesselField {
   explicit VesselField(const Centerline& centerline, double blend = 0);
 
   const Centerline& centerline() const { return *centerline_; }
+  double blend() const { return blend_; }
   std::size_t cone_count() const { return cones_.size(); }
 
   /// Signed distance at `p` from the cones near `hint` along the graph. The closest cone found becomes the next
