@@ -15,7 +15,8 @@ namespace {
 constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate tree.swc -o tree.ply
   vmesh generate tree.vtp -o tree.vtp --around 8 --blend 0.8 --json summary.json
-  vmesh generate network.csv -o network.stl --unit um --check)";
+  vmesh generate network.csv -o network.stl --unit um --check
+  vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
   vmesh info tree.ply --json -
@@ -78,6 +79,17 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "guided: topology as the centerline's; paper: a single seed, as published")
       ->check(CLI::IsMember({"guided", "paper"}))
       ->default_str("guided");
+  verb.add_option_function<std::string>(
+          "--overlap",
+          [&arguments](const std::string& text) {
+            arguments.overlap = text == "separate" ? OverlapHandling::separate : OverlapHandling::keep;
+          },
+          "where vessels touch that are not neighbours: keep their radii, or separate them by narrowing")
+      ->check(CLI::IsMember({"keep", "separate"}))
+      ->default_str("keep");
+  verb.add_option("--gap", arguments.gap, "free space between vessels below which they touch, in smaller radii")
+      ->check(in_range(0.001, 1.0))
+      ->capture_default_str();
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
                 "self-intersections, of the expected topology, and holds every centerline node");
@@ -165,6 +177,10 @@ void add_render(CLI::App& app, RenderArguments& arguments) {
 }
 
 }  // namespace
+
+std::string_view to_string(OverlapHandling overlap) {
+  return overlap == OverlapHandling::separate ? "separate" : "keep";
+}
 
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int& exit_code) {
   CLI::App app("vmesh turns vessel centerlines into surfaces.", "vmesh");

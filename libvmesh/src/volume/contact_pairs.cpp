@@ -220,8 +220,8 @@ void number_regions(const VesselField& field, std::vector<ContactPair>& pairs) {
         const auto [low, high] = std::minmax(a, b);
         const auto [known, is_new] = first_with.try_emplace(std::uint64_t{low} << 32 | high, n);
         if (is_new) continue;
-        const auto [first, second] = std::minmax(root(known->second), root(n));
-        parent[second] = first;
+        const std::size_t first = root(known->second), second = root(n);
+        parent[std::max(first, second)] = std::min(first, second);
       }
     }
   }
