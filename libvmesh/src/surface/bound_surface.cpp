@@ -27,7 +27,25 @@ BoundSurface::BoundSurface(const VesselField& vessel_field)
       cone(mesh.add_property_map<Vertex, Index>("v:cone", kNone).first),
       t(mesh.add_property_map<Vertex, double>("v:t", 0.0).first),
       gradient(mesh.add_property_map<Vertex, Vec3>("v:gradient", Vec3::Zero()).first),
-      distance(mesh.add_property_map<Vertex, double>("v:distance", 0.0).first) {}
+      distance(mesh.add_property_map<Vertex, double>("v:distance", 0.0).first),
+      role(mesh.add_property_map<Vertex, Role>("v:role", Role::free).first) {}
+
+bool BoundSurface::is_lid(Face f) const {
+  for (const Vertex v : mesh.vertices_around_face(mesh.halfedge(f))) {
+    if (role[v] == Role::lid) return true;
+  }
+  return false;
+}
+
+void BoundSurface::close_with_lid(const std::vector<Vertex>& loop, const Vec3& center) {
+  const Vertex middle = mesh.add_vertex(center);
+  place(middle, center, field.sample(center, cone[loop.front()]));
+  role[middle] = Role::lid;
+  for (std::size_t j = 0; j < loop.size(); ++j) {
+    role[loop[j]] = Role::held;
+    mesh.add_face(loop[j], loop[(j + 1) % loop.size()], middle);
+  }
+}
 
 void BoundSurface::place(Vertex v, const Vec3& p, const FieldSample& sample) {
   mesh.point(v) = p;
@@ -98,12 +116,14 @@ void BoundSurface::export_to(GenerateResult& result) const {
   std::vector<Index> number(mesh.num_vertices() + mesh.number_of_removed_vertices(), kNone);
   Index next = 0;
   for (const Vertex v : mesh.vertices()) {
+    if (role[v] == Role::lid) continue;
     number[v.idx()] = next++;
     result.mesh.vertices.push_back(mesh.point(v));
     result.binding.push_back({cone[v], t[v]});
     result.radius.push_back(radius(v));
   }
   for (const Face f : mesh.faces()) {
+    if (is_lid(f)) continue;
     const Halfedge h = mesh.halfedge(f);
     result.mesh.faces.push_back(
         {number[mesh.source(h).idx()], number[mesh.target(h).idx()], number[mesh.target(mesh.next(h)).idx()]});

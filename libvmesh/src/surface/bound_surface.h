@@ -30,6 +30,17 @@ class BoundSurface {
 
   SurfaceMesh::Property_map<Vertex, double> distance;  ///< signed distance to the boundary, mm
 
+  /// What may happen to a vertex. Edges between two held ones stay as they are as well. A lid is the middle of the
+  /// faces that close an open end as long as the surface is worked on; it is never exported.
+  enum class Role : char { free, held, lid };
+  SurfaceMesh::Property_map<Vertex, Role> role;
+  bool held(Vertex v) const { return role[v] != Role::free; }
+  bool is_lid(Face f) const;
+
+  /// Closes the loop of vertices, counter-clockwise about the direction out of the surface, with a lid at `center`, and
+  /// holds them.
+  void close_with_lid(const std::vector<Vertex>& loop, const Vec3& center);
+
   const Vec3& position(Vertex v) const { return mesh.point(v); }
   double radius(Vertex v) const { return field.radius_at(cone[v], t[v]); }
 
@@ -49,7 +60,7 @@ class BoundSurface {
   /// Halves an edge and both its faces. The new vertex lies at the midpoint, bound like an end of the edge.
   Vertex split_edge(Edge e);
 
-  /// The finished mesh with its binding. Vertices and faces in the order of the halfedge mesh.
+  /// The finished mesh with its binding, without lids. Vertices and faces in the order of the halfedge mesh.
   void export_to(GenerateResult& result) const;
 
  private:

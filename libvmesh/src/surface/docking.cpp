@@ -11,8 +11,10 @@
 namespace vmesh {
 namespace {
 
-constexpr double kTie = 1 - 1e-9;    // of a value: what is not less than that is equal
-constexpr double kNearestCut = 0.1;  // of an edge: cuts keep that far from its ends
+constexpr std::size_t kShortestRim = 5;  // vertices
+constexpr std::size_t kStarts = 6;       // places from which a band is tried
+constexpr double kTie = 1 - 1e-9;        // of a value: what is not less than that is equal
+constexpr double kNearestCut = 0.1;      // of an edge: cuts keep that far from its ends
 
 // Shortest way through the grid of pairs (bottom i, top j) from (0, start) once around both loops.
 class BandSearch {
@@ -76,6 +78,20 @@ double distance2_to(std::span<const Vec3> loop, const Vec3& p) {
   return least;
 }
 
+// The numbers of the kStarts nearest points, nearest first; ties, rounding apart, by number.
+std::vector<std::size_t> nearest_of(std::span<const Vec3> points, const Vec3& p) {
+  double farthest = 0;
+  for (const Vec3& q : points) farthest = std::max(farthest, (q - p).squaredNorm());
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    order.emplace_back(std::round((points[i] - p).squaredNorm() / ((1 - kTie) * farthest)), i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::size_t> nearest;
+  for (std::size_t i = 0; i < std::min(order.size(), kStarts); ++i) nearest.push_back(order[i].second);
+  return nearest;
+}
+
 }  // namespace
 
 std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3> top) {
@@ -86,7 +102,7 @@ std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3>
   BandSearch search(bottom, top);
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t start = 0; start < top.size(); ++start) {
+  for (const std::size_t start : nearest_of(top, bottom[first])) {
     const double cost = search.run(first, start);
     if (cost < kTie * least) {
       least = cost;
@@ -104,12 +120,15 @@ DiscCutter::DiscCutter(std::vector<Vec3> vertices, std::vector<Triangle> faces)
   for (const Triangle& face : faces) add_face(face);
 }
 
-std::vector<Index> DiscCutter::cut(const Vec3& center, const Vec3& normal, const std::vector<Index>& own) {
+std::vector<Index> DiscCutter::cut(const Vec3& center, const Vec3& normal, const std::vector<Index>& own,
+                                   double shortest) {
   const Index apex = farthest(normal, own);
   if (apex == kNone) return open_window(center);
   const Plane plane{normal, center.dot(normal)};
   const auto region = tip_region(apex, plane, own);
-  return is_disc(region) ? cut_off(region, plane) : cut_off({apex}, plane);
+  std::vector<Index> rim = is_disc(region) ? cut_off(region, plane) : cut_off({apex}, plane);
+  collapse_short_edges(rim, shortest);
+  return rim;
 }
 
 Index DiscCutter::farthest(const Vec3& normal, const std::vector<Index>& own) const {
@@ -200,6 +219,54 @@ std::vector<Index> DiscCutter::cut_off(const std::vector<Index>& region, const P
   std::vector<Index> rim = {next.begin()->first};
   for (Index v = next.begin()->second; v != rim.front(); v = next.at(v)) rim.push_back(v);
   return rim;
+}
+
+void DiscCutter::collapse_short_edges(std::vector<Index>& rim, double shortest) {
+  for (std::size_t i = 0; i < rim.size() && rim.size() > kShortestRim;) {
+    const std::size_t next = (i + 1) % rim.size();
+    const Vec3 a = vertices_[rim[i]], b = vertices_[rim[next]];
+    if ((a - b).norm() >= shortest || !collapsible(rim[next], rim[i])) {
+      ++i;
+      continue;
+    }
+    collapse(rim[next], rim[i]);
+    vertices_[rim[i]] = 0.5 * (a + b);
+    rim.erase(rim.begin() + static_cast<std::ptrdiff_t>(next));
+  }
+}
+
+// The one face at the border edge has the only common neighbour, and neither vertex loses its last face.
+bool DiscCutter::collapsible(Index v, Index into) const {
+  const auto a = neighbours(v), b = neighbours(into);
+  std::vector<Index> common;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+  return common.size() == 1 && a.size() > 2 && b.size() > 2;
+}
+
+void DiscCutter::collapse(Index v, Index into) {
+  for (const Index f : faces_of_[v]) {
+    if (removed_face_[f]) continue;
+    if (std::count(faces_[f].begin(), faces_[f].end(), into)) {
+      removed_face_[f] = 1;
+    } else {
+      std::replace(faces_[f].begin(), faces_[f].end(), v, into);
+      faces_of_[into].push_back(f);
+    }
+  }
+  removed_vertex_[v] = 1;
+}
+
+std::vector<Index> DiscCutter::neighbours(Index v) const {
+  std::vector<Index> all;
+  for (const Index f : faces_of_[v]) {
+    if (removed_face_[f]) continue;
+    for (const Index w : faces_[f]) {
+      if (w != v) all.push_back(w);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
 }
 
 Index DiscCutter::add_vertex(const Vec3& position, Index source) {

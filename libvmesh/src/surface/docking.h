@@ -21,8 +21,11 @@ class DiscCutter {
   /// Cuts off the tip of a vessel: what lies around the vertex of `own` farthest along `normal`, beyond the plane
   /// through `center`. Only vertices of `own` go; faces are cut where they cross the plane. Where that is no disc, the
   /// farthest vertex goes alone; without one, a window is opened in the face nearest to the tip. Returns the rim,
-  /// counter-clockwise about `normal`; no two rims touch.
-  std::vector<Index> cut(const Vec3& center, const Vec3& normal, const std::vector<Index>& own);
+  /// counter-clockwise about `normal`; no two rims touch. Edges of the rim shorter than `shortest` are collapsed where
+  /// that keeps the surface's topology.
+  std::vector<Index> cut(const Vec3& center, const Vec3& normal, const std::vector<Index>& own, double shortest);
+
+  void move(Index v, const Vec3& position) { vertices_[v] = position; }
 
   const std::vector<Vec3>& vertices() const { return vertices_; }
   /// The vertex of the piece that vertex `v` is, or that it was made next to.
@@ -42,6 +45,10 @@ class DiscCutter {
   bool is_disc(const std::vector<Index>& region) const;
   std::vector<Index> cut_off(const std::vector<Index>& region, const Plane& plane);
   std::vector<Index> open_window(const Vec3& near);
+  void collapse_short_edges(std::vector<Index>& rim, double shortest);
+  bool collapsible(Index v, Index into) const;
+  void collapse(Index v, Index into);
+  std::vector<Index> neighbours(Index v) const;
   Index add_vertex(const Vec3& position, Index source);
   void add_face(const Triangle& face);
   void add_quad(Index a, Index b, Index c, Index d);

@@ -119,7 +119,10 @@ GenerateResult generate_surface(const Centerline& centerline, const GenerateOpti
     }
   });
   clock.time("optimize", [&] {
-    if (options.sweeps > 0) add_warnings(optimize(surface, options, progress), result.warnings);
+    if (options.sweeps == 0) return;
+    const GrownMesh grown{options.growth == GrowthMethod::paper ? kGrownAround : options.around,
+                          expected_vertices(centerline, options.around)};
+    add_warnings(optimize(surface, options, grown, progress), result.warnings);
   });
   surface.export_to(result);
   return result;

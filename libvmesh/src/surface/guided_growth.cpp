@@ -1,42 +1,54 @@
 #include "surface/guided_growth.h"
 
+#include <mutex>
+#include <numbers>
+
+#include <tbb/parallel_for.h>
+
 #include "vmesh/core/error.h"
 
 #include "surface/docking.h"
 #include "surface/junction_growth.h"
+#include "surface/junction_piece.h"
 
 namespace vmesh {
 namespace {
+
+constexpr int kFewestOnCap = 4;  // vertices of a cap's ring
 
 // Vertices and faces of all pieces, by number, before they become one halfedge mesh.
 class Assembly {
  public:
   Assembly(const GrowthSkeleton& skeleton) : skeleton_(skeleton), first_(skeleton.tubes.size()) {}
 
+  // The rings of a tube that no junction's piece replaces.
   void add_tube(Index number) {
     const Tube& tube = skeleton_.tubes[number];
-    for (const Ring& ring : tube.rings) {
-      first_[number].push_back(size());
-      for (const BoundaryPoint& p : ring.points) vertices_.push_back({p.position, p.sample.cone});
+    const std::size_t count = tube.rings.size(), given = rings_given_away(tube);
+    const std::size_t begin = tube.starts_at_tip || tube.periodic ? 0 : given;
+    const std::size_t end = tube.ends_at_tip || tube.periodic ? count : count - given;
+    first_[number].resize(count, kNone);
+    for (std::size_t k = begin; k < end; ++k) {
+      first_[number][k] = size();
+      for (const BoundaryPoint& p : tube.rings[k].points) vertices_.push_back({p.position, p.sample.cone});
     }
-    const std::size_t count = tube.rings.size();
-    for (std::size_t k = 0; k + 1 < count; ++k) band(ring_vertices(number, k), ring_vertices(number, k + 1));
+    for (std::size_t k = begin; k + 1 < end; ++k) band(ring_vertices(number, k), ring_vertices(number, k + 1));
     if (tube.periodic) band(ring_vertices(number, count - 1), ring_vertices(number, 0));
     if (tube.starts_at_tip) cap(tube.rings.front(), -1, reversed(ring_vertices(number, 0)));
     if (tube.ends_at_tip) cap(tube.rings.back(), 1, ring_vertices(number, count - 1));
   }
 
-  void add_junction(const JunctionSurface& junction) {
-    const Index offset = size();
-    vertices_.insert(vertices_.end(), junction.patch.vertices.begin(), junction.patch.vertices.end());
-    for (const auto& [a, b, c] : junction.patch.faces) faces_.push_back({a + offset, b + offset, c + offset});
-    for (std::size_t i = 0; i < junction.openings.size(); ++i) {
-      std::vector<Index> rim = junction.rims[i];
-      for (Index& v : rim) v += offset;
-      const auto& [tube, at_end] = junction.openings[i];
-      const auto ring = ring_vertices(tube, at_end ? skeleton_.tubes[tube].rings.size() - 1 : 0);
-      band(rim, at_end ? reversed(ring) : ring);
+  void add_junction(const JunctionPiece& piece) {
+    std::vector<Index> number;
+    for (const PieceVertex& v : piece.vertices) {
+      if (v.tube.tube == kNone) {
+        number.push_back(size());
+        vertices_.push_back({v.position, v.cone});
+      } else {
+        number.push_back(first_[v.tube.tube][v.ring] + v.number);
+      }
     }
+    for (const auto& [a, b, c] : piece.faces) faces_.push_back({number[a], number[b], number[c]});
   }
 
   void build(BoundSurface& surface) const {
@@ -80,9 +92,30 @@ class Assembly {
       faces_.push_back({vertex(a), vertex(b), vertex(c)});
   }
 
-  void cap(const Ring& ring, double side, const std::vector<Index>& loop) {
-    const Index apex = size();
-    vertices_.push_back({ring.center + side * ring.radius * ring.normal, ring.points.front().sample.cone});
+  // Closes the loop of a tip's ring with a hemisphere: rings of fewer and fewer vertices, and a pole.
+  void cap(const Ring& ring, double side, std::vector<Index> loop) {
+    const double quarter = std::numbers::pi / 2;
+    const auto around = static_cast<double>(loop.size());
+    const int bands = std::max(1, static_cast<int>(std::round(quarter / ring_pitch(static_cast<int>(loop.size())))));
+    const Vec3 pole = side * ring.normal;
+    const Vec3 across = (vertices_[loop.front()].position - ring.center).normalized(), up = pole.cross(across);
+    const auto add = [&](const Vec3& way) {
+      vertices_.push_back({ring.center + ring.radius * way, ring.points.front().sample.cone});
+      return static_cast<Index>(vertices_.size() - 1);
+    };
+    for (int k = 1; k < bands; ++k) {
+      const double latitude = quarter * k / bands;
+      const int count = std::max(kFewestOnCap, static_cast<int>(std::round(around * std::cos(latitude))));
+      std::vector<Index> next;
+      for (int j = 0; j < count; ++j) {
+        const double angle = 2 * std::numbers::pi * (j + 0.5 * (k % 2)) / count;
+        next.push_back(
+            add(std::sin(latitude) * pole + std::cos(latitude) * (std::cos(angle) * across + std::sin(angle) * up)));
+      }
+      band(loop, next);
+      loop = std::move(next);
+    }
+    const Index apex = add(pole);
     for (std::size_t j = 0; j < loop.size(); ++j) faces_.push_back({loop[j], loop[(j + 1) % loop.size()], apex});
   }
 
@@ -91,6 +124,24 @@ class Assembly {
   std::vector<Triangle> faces_;
   std::vector<std::vector<Index>> first_;  // vertex of every ring of every tube
 };
+
+// The pieces do not depend on each other, nor on the number of threads.
+std::vector<JunctionPiece> make_pieces(const VesselField& field, const std::vector<BranchAxis>& axes,
+                                       const GrowthSkeleton& skeleton, const GenerateOptions& options,
+                                       const Progress& progress) {
+  const std::size_t count = skeleton.junctions.size();
+  std::vector<JunctionPiece> pieces(count);
+  std::mutex reporting;
+  std::size_t done = 0;
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t j) {
+    {
+      const std::lock_guard lock(reporting);
+      report_progress(progress, "grow", static_cast<double>(done++) / static_cast<double>(count));
+    }
+    pieces[j] = make_junction_piece(field, axes, skeleton, skeleton.junctions[j], options);
+  });
+  return pieces;
+}
 
 }  // namespace
 
@@ -104,11 +155,10 @@ GuidedGrowthReport grow_guided(BoundSurface& surface, const GenerateOptions& opt
   GuidedGrowthReport report;
   Assembly assembly(skeleton);
   for (Index t = 0; t < skeleton.tubes.size(); ++t) assembly.add_tube(t);
-  for (std::size_t j = 0; j < skeleton.junctions.size(); ++j) {
-    report_progress(progress, "grow", static_cast<double>(j) / static_cast<double>(skeleton.junctions.size()));
-    const JunctionSurface junction = grow_junction(field, axes, skeleton, skeleton.junctions[j], options);
-    report.cycle_rank += junction.handles;
-    assembly.add_junction(junction);
+  for (const JunctionPiece& piece : make_pieces(field, axes, skeleton, options, progress)) {
+    report.cycle_rank += piece.handles;
+    report.tangled_junctions += piece.tangles > 0;
+    assembly.add_junction(piece);
   }
   assembly.build(surface);
 

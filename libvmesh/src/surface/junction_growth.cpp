@@ -1,34 +1,21 @@
 #include "surface/junction_growth.h"
 
-#include <array>
 #include <map>
 
-#include "surface/docking.h"
-#include "surface/lattice_growth.h"
 #include "surface/node_frame.h"
 #include "surface/optimize.h"
+#include "surface/sweep_state.h"
 
 namespace vmesh {
 namespace {
 
 constexpr double kSpacing = 1;            // of the lattice, in the smallest radii ...
 constexpr double kFinestSpacing = 0.08;   // ... but at least in the largest
-constexpr std::array kFiner = {2, 3, 4};  // halves of the resolution, tried until the surface does not intersect itself
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
 constexpr double kShortestPiece = 0.3;    // radii between nodes of a junction's centerline: finer ones do not matter
+constexpr double kShortestRimEdge = 0.4;  // intended edges of the surface
+constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move onto the boundary
 constexpr double kOwnReach = 1.5;         // radii along the branch from which a tip's vertices come
-
-// The part of a centerline that belongs to a junction, cut at its openings. Segments know the place they come from.
-struct JunctionCenterline {
-  struct Origin {
-    Index gap;
-    double begin, end;  // places
-  };
-
-  std::vector<CenterlineNode> nodes;
-  std::vector<CenterlineSegment> segments;
-  std::vector<Origin> origins;  // of the segments
-};
 
 class JunctionCenterlineMaker {
  public:
@@ -115,87 +102,110 @@ void fill(BoundSurface& surface, const LatticeSurface& lattice) {
   for (const auto& [a, b, c] : lattice.faces) surface.mesh.add_face(Vertex(a), Vertex(b), Vertex(c));
 }
 
-// The finer the safer: narrow places do not bear triangles of every size.
-GenerateResult onto_boundary(const VesselField& field, const LatticeSurface& lattice, GenerateOptions options) {
-  GenerateResult piece;
-  options.sweeps = kSweeps;
-  const int around = options.around;
-  for (const int finer : kFiner) {
-    BoundSurface surface(field);
-    fill(surface, lattice);
-    options.around = finer * around / 2;
-    const bool tangled = optimize(surface, options, {}).tangled;
-    piece = {};
-    surface.export_to(piece);
-    if (!tangled) break;
-  }
-  return piece;
-}
-
-// The cone of the whole field that a cone of the junction's field is part of.
-Index original_cone(const VesselField& field, const std::vector<BranchAxis>& axes, const Junction& junction,
-                    const JunctionCenterline& local, Index cone) {
-  if (local.origins.empty()) {
-    Index ball = static_cast<Index>(field.centerline().segments().size());
-    while (field.first_node(ball) != junction.nodes.front()) ++ball;
-    return ball;
-  }
-  const auto& origin = local.origins[cone];
-  const BranchAxis& axis = axes[junction.gaps[origin.gap].branch];
-  return axis.branch().segments[axis.at(0.5 * (origin.begin + origin.end)).piece];
-}
-
-// The vertices bound to gap number `g`, near one of its ends and nearer than to the other.
-std::vector<Index> vertices_near_end(const GenerateResult& piece, const JunctionCenterline& local, const Gap& gap,
-                                     Index g, bool at_end, double reach) {
-  std::vector<Index> near;
-  for (Index v = 0; v < piece.binding.size(); ++v) {
-    const auto& [segment, t] = piece.binding[v];
-    const auto& origin = local.origins[segment];
-    const double place = origin.begin + t * (origin.end - origin.begin);
-    const double away = at_end ? gap.end - place : place - gap.begin;
-    if (origin.gap == g && away < reach && away < 0.5 * (gap.end - gap.begin)) near.push_back(v);
-  }
-  return near;
+LatticeSurface grow_lattice(const VesselField& field) {
+  const Centerline& centerline = field.centerline();
+  const Index start = widest_node(centerline);
+  const Index hint = centerline.degree(start) > 0 ? centerline.incident_segments(start)[0] : 0;
+  return grow_in_lattice(field, centerline.node(start).position, hint, lattice_spacing(centerline),
+                         frame_at(centerline, start), centerline.cycle_rank());
 }
 
 }  // namespace
 
-JunctionSurface grow_junction(const VesselField& field, const std::vector<BranchAxis>& axes,
-                              const GrowthSkeleton& skeleton, const Junction& junction,
-                              const GenerateOptions& options) {
-  const JunctionCenterline local = JunctionCenterlineMaker(field.centerline(), axes).make(junction);
-  const Centerline centerline(local.nodes, local.segments);
-  const VesselField local_field(centerline, options.blend);
-  const Index start = widest_node(centerline);
-  const Index hint = centerline.degree(start) > 0 ? centerline.incident_segments(start)[0] : 0;
-  const LatticeSurface lattice =
-      grow_in_lattice(local_field, centerline.node(start).position, hint, lattice_spacing(centerline),
-                      frame_at(centerline, start), centerline.cycle_rank());
-  const GenerateResult piece = onto_boundary(local_field, lattice, options);
+std::vector<Opening> openings_of(const Junction& junction) {
+  std::vector<Opening> openings;
+  for (const Gap& gap : junction.gaps) {
+    for (const Opening& opening : gap.openings) {
+      if (opening.tube != kNone) openings.push_back(opening);
+    }
+  }
+  return openings;
+}
 
+JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes,
+                               const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options)
+    : field_(field),
+      axes_(axes),
+      skeleton_(skeleton),
+      junction_(junction),
+      options_(options),
+      local_(JunctionCenterlineMaker(field.centerline(), axes).make(junction)),
+      centerline_(local_.nodes, local_.segments),
+      local_field_(centerline_, options.blend),
+      lattice_(grow_lattice(local_field_)) {}
+
+JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims) const {
+  const GenerateResult piece = onto_boundary(finer);
+  const double edge = edge_length_per_radius(options_.around);
   JunctionSurface result;
-  result.handles = lattice.handles;
   DiscCutter cutter(piece.mesh.vertices, piece.mesh.faces);
-  for (Index g = 0; g < junction.gaps.size(); ++g) {
-    const Gap& gap = junction.gaps[g];
+  for (Index g = 0; g < junction_.gaps.size(); ++g) {
     for (const bool at_end : {false, true}) {
-      const Opening& opening = gap.openings[at_end];
+      const Opening& opening = junction_.gaps[g].openings[at_end];
       if (opening.tube == kNone) continue;
-      const Tube& tube = skeleton.tubes[opening.tube];
-      const Ring& ring = opening.at_end ? tube.rings.back() : tube.rings.front();
-      result.openings.push_back(opening);
-      const CrossSection& section = ring.beside[opening.at_end];
+      const Tube& tube = skeleton_.tubes[opening.tube];
+      const CrossSection& section = (opening.at_end ? tube.rings.back() : tube.rings.front()).beside[opening.at_end];
       result.rims.push_back(cutter.cut(section.center, opening.at_end ? Vec3(-section.normal) : section.normal,
-                                       vertices_near_end(piece, local, gap, g, at_end, kOwnReach * ring.radius)));
+                                       vertices_near_end(piece, g, at_end, kOwnReach * section.radius),
+                                       smooth_rims ? kShortestRimEdge * edge * section.radius : 0));
+      if (smooth_rims) move_onto_boundary(cutter, result.rims.back(), piece, kRimStep * section.radius);
     }
   }
   result.patch.faces = cutter.rest();
   for (Index v = 0; v < cutter.vertices().size(); ++v) {
-    const Index cone = piece.binding[cutter.source(v)].segment;
-    result.patch.vertices.push_back({cutter.vertices()[v], original_cone(field, axes, junction, local, cone)});
+    result.patch.vertices.push_back({cutter.vertices()[v], original_cone(piece.binding[cutter.source(v)].segment)});
   }
   return result;
+}
+
+GenerateResult JunctionGrowth::onto_boundary(double finer) const {
+  BoundSurface surface(local_field_);
+  fill(surface, lattice_);
+  GenerateOptions options = options_;
+  options.sweeps = kSweeps;
+  options.around = std::max(3, static_cast<int>(finer * options_.around));
+  optimize(surface, options,
+           {std::min<double>(finer * kGrownAround, options.around), expected_vertices(centerline_, options.around)},
+           {});
+  GenerateResult piece;
+  surface.export_to(piece);
+  return piece;
+}
+
+void JunctionGrowth::move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& piece,
+                                        double longest) const {
+  for (const Index v : rim) {
+    const Vec3 p = cutter.vertices()[v];
+    const Vec3 target = project_to_boundary(local_field_, p, piece.binding[cutter.source(v)].segment).position;
+    if ((target - p).norm() < longest) cutter.move(v, target);
+  }
+}
+
+// The cone of the whole field that a cone of the junction's field is part of.
+Index JunctionGrowth::original_cone(Index cone) const {
+  if (local_.origins.empty()) {
+    Index ball = static_cast<Index>(field_.centerline().segments().size());
+    while (field_.first_node(ball) != junction_.nodes.front()) ++ball;
+    return ball;
+  }
+  const auto& origin = local_.origins[cone];
+  const BranchAxis& axis = axes_[junction_.gaps[origin.gap].branch];
+  return axis.branch().segments[axis.at(0.5 * (origin.begin + origin.end)).piece];
+}
+
+// The vertices bound to a gap, near one of its ends and nearer than to the other.
+std::vector<Index> JunctionGrowth::vertices_near_end(const GenerateResult& piece, Index gap, bool at_end,
+                                                     double reach) const {
+  const double begin = junction_.gaps[gap].begin, end = junction_.gaps[gap].end;
+  std::vector<Index> near;
+  for (Index v = 0; v < piece.binding.size(); ++v) {
+    const auto& [segment, t] = piece.binding[v];
+    const auto& origin = local_.origins[segment];
+    const double place = origin.begin + t * (origin.end - origin.begin);
+    const double away = at_end ? end - place : place - begin;
+    if (origin.gap == gap && away < reach && away < 0.5 * (end - begin)) near.push_back(v);
+  }
+  return near;
 }
 
 }  // namespace vmesh

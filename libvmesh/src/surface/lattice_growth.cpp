@@ -118,8 +118,8 @@ class LatticeGrowth {
   Vec3 position(const Offset& at) const { return seed_ + half_step_ * Vec3(at[0], at[1], at[2]); }
   static Offset plus(const Offset& a, const Offset& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
-  // The number of the neighbour `at` of a point; it is made where it is not known yet. Far inside, an upper bound of its
-  // distance will do, which a step from the point gives.
+  // The number of the neighbour `at` of a point; it is made where it is not known yet. Far inside, an upper bound of
+  // its distance will do, which a step from the point gives.
   Index find(const Offset& at, const Point& from) {
     const auto [it, is_new] = number_.emplace(key(at), static_cast<Index>(points_.size()));
     if (is_new) {

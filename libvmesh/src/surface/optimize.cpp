@@ -7,7 +7,6 @@
 namespace vmesh {
 namespace {
 
-constexpr double kGrownAround = 6;        // a resolution at which a grown mesh becomes even
 constexpr double kSizingShare = 0.7;      // of the sweeps that work towards the size field; the rest for shape alone
 constexpr double kRegularityShare = 0.8;  // of the sweeps that flip towards valence 6 as well
 constexpr double kVerticesPerRadius = 7;  // and unit of length, at kGrownAround
@@ -20,23 +19,20 @@ class Optimizer {
   Optimizer(BoundSurface& surface, const GenerateOptions& options, const Progress& progress)
       : state_(surface), remesher_(state_), options_(options), progress_(progress) {}
 
-  // From the resolution of the grown mesh to the one asked for, doubling at most: an even mesh is refined or
-  // coarsened safely, a grown one is not.
-  OptimizeReport run() {
-    const double grown = state_.mesh.number_of_vertices();
-    double around = options_.growth == GrowthMethod::guided ? options_.around : kGrownAround;
-    optimize_at(around, grown);
+  OptimizeReport run(const GrownMesh& grown) {
+    remesher_.limit_vertices(
+        static_cast<std::size_t>(kMaxExcess * (state_.mesh.number_of_vertices() + grown.expected_vertices)));
+    double around = grown.around;
+    optimize_at(around);
     while (around != options_.around) {
       around = std::min<double>(2 * around, options_.around);
-      optimize_at(around, grown);
+      optimize_at(around);
     }
-    return {tangled_, remesher_.limited()};
+    return {tangles_, remesher_.limited()};
   }
 
  private:
-  void optimize_at(double around, double grown) {
-    const double expected = expected_vertices(state_.field.centerline(), around);
-    remesher_.limit_vertices(static_cast<std::size_t>(kMaxExcess * (grown + expected)));
+  void optimize_at(double around) {
     edge_per_radius_ = edge_length_per_radius(around);
     state_.stir_all();
     sweep_from(0);
@@ -48,7 +44,7 @@ class Optimizer {
       tangles = find_tangles(state_);
       if (tangles.size() >= before) break;
     }
-    tangled_ = !tangles.empty();
+    tangles_ = tangles.size();
   }
 
   bool hopeless(const std::vector<Vertex>& tangles) const {
@@ -89,18 +85,23 @@ class Optimizer {
   const GenerateOptions& options_;
   const Progress& progress_;
   double edge_per_radius_ = 0;
-  bool tangled_ = false;
+  std::size_t tangles_ = 0;
 };
 
 }  // namespace
 
 double expected_vertices(const Centerline& centerline, double around) {
-  const double finer = around / kGrownAround;
-  return kVerticesPerRadius * finer * finer * centerline.length_in_radii();
+  return expected_vertices(centerline.length_in_radii(), around);
 }
 
-OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const Progress& progress) {
-  return Optimizer(surface, options, progress).run();
+double expected_vertices(double length_in_radii, double around) {
+  const double finer = around / kGrownAround;
+  return kVerticesPerRadius * finer * finer * length_in_radii;
+}
+
+OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const GrownMesh& grown,
+                        const Progress& progress) {
+  return Optimizer(surface, options, progress).run(grown);
 }
 
 }  // namespace vmesh

@@ -8,18 +8,30 @@
 namespace vmesh {
 
 struct OptimizeReport {
-  bool tangled = false;  ///< faces still intersect within the volume's own neighbourhood
-  bool limited = false;  ///< refinement stopped at the bound on the number of vertices
+  std::size_t tangles = 0;  ///< vertices where faces still intersect within the volume's own neighbourhood
+  bool limited = false;     ///< refinement stopped at the bound on the number of vertices
 };
 
 /// Vertices that the size field asks for, about, as measured on trees.
 double expected_vertices(const Centerline& centerline, double around);
+double expected_vertices(double length_in_radii, double around);
+
+/// A resolution, in vertices around a vessel, at which any grown mesh becomes even.
+constexpr double kGrownAround = 6;
+
+/// What optimisation starts from.
+struct GrownMesh {
+  double around;             ///< its resolution, in vertices around a vessel
+  double expected_vertices;  ///< at the resolution asked for
+};
 
 /// Turns a grown surface into a good one: edges are split, collapsed and flipped towards a size field proportional
 /// to the local radius and towards regular valence, faces whose centre is too far from the boundary are split
 /// edge-centrically, vertices move in their tangent plane to where their triangles' shape energy is least and are
 /// reprojected. Topology is kept. The number of vertices is bounded: folded surfaces could be refined for ever. Uses
-/// around, max_center_distance and sweeps of the options.
-OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const Progress& progress);
+/// around, max_center_distance and sweeps of the options. Works from the resolution of the grown mesh to the one asked
+/// for, doubling at most: an even mesh is refined or coarsened safely, a grown one is not.
+OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const GrownMesh& grown,
+                        const Progress& progress);
 
 }  // namespace vmesh

@@ -69,7 +69,7 @@ class Relocator {
 void relocate_vertices(SweepState& state) {
   Relocator relocator(state);
   for (const Vertex v : state.mesh.vertices()) {
-    if (state.active(v)) relocator.relocate(v);
+    if (state.active(v) && !state.surface.held(v)) relocator.relocate(v);
   }
 }
 

@@ -20,6 +20,7 @@ constexpr double kBadEnergy = 1.8;    // of a face: skewness about 0.4
 void Remesher::split_long_edges() {
   std::priority_queue<std::pair<double, Index>> queue;
   const auto push = [&](Edge e, double limit = std::numeric_limits<double>::infinity()) {
+    if (held(e)) return;
     const double excess = state_.length(e) / state_.target_length(e);
     if (excess > kSplitLength && excess < limit && upright(e)) queue.emplace(excess, e.idx());
   };
@@ -39,6 +40,8 @@ void Remesher::split_long_edges() {
     }
   }
 }
+
+bool Remesher::held(Edge e) const { return surface_.held(mesh_.vertex(e, 0)) && surface_.held(mesh_.vertex(e, 1)); }
 
 bool Remesher::upright(Edge e) const {
   for (const Halfedge h : {mesh_.halfedge(e), mesh_.opposite(mesh_.halfedge(e))}) {
@@ -83,6 +86,7 @@ void Remesher::collapse_short_edges() {
 
 bool Remesher::collapse(Edge e) {
   const Vertex a = mesh_.vertex(e, 0), b = mesh_.vertex(e, 1);
+  if (surface_.held(a) || surface_.held(b)) return false;
   const BoundaryPoint target = project_to_boundary(field_, 0.5 * (state_.point(a) + state_.point(b)), surface_.cone[a]);
   if (!collapsible_to(a, b, target) || !collapsible_to(b, a, target)) return false;
   if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return false;
@@ -131,7 +135,7 @@ bool Remesher::collapsible_to(Vertex v, Vertex other, const BoundaryPoint& targe
     if (reach > kSplitLength * size || !state_.stays_upright(v, b, c, target)) return false;
     if (reach > kCannotStray * size &&
         std::abs(field_.sample(0.5 * (state_.point(c) + target.position), target.sample.cone).distance) >
-        kMaxBulge * reach) {
+            kMaxBulge * reach) {
       return false;
     }
   }
@@ -144,6 +148,7 @@ void Remesher::split_far_faces(double max_distance) {
     const Face f(i);
     if (mesh_.is_removed(f)) continue;
     const std::array<Vertex, 3> corner = state_.corners(f);
+    if (std::count_if(corner.begin(), corner.end(), [&](Vertex v) { return surface_.held(v); }) > 1) continue;
     const Vec3 center = (state_.point(corner[0]) + state_.point(corner[1]) + state_.point(corner[2])) / 3;
     const FieldSample s = field_.sample(center, surface_.cone[corner[0]]);
     if (std::abs(s.distance) <= max_distance * field_.radius_at(s.cone, s.t)) continue;
@@ -186,8 +191,10 @@ void Remesher::repair_strays() {
 
 bool Remesher::can_flip(Halfedge h) const {
   const Halfedge o = mesh_.opposite(h);
+  const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
+  if (held(mesh_.edge(h)) || (surface_.held(c) && surface_.held(d))) return false;
   if (mesh_.degree(mesh_.source(h)) <= 3 || mesh_.degree(mesh_.target(h)) <= 3) return false;
-  return mesh_.halfedge(mesh_.target(mesh_.next(h)), mesh_.target(mesh_.next(o))) == SurfaceMesh::null_halfedge();
+  return mesh_.halfedge(c, d) == SurfaceMesh::null_halfedge();
 }
 
 bool Remesher::flip_stays_upright(Vertex a, Vertex b, Vertex c, Vertex d) const {
@@ -196,7 +203,7 @@ bool Remesher::flip_stays_upright(Vertex a, Vertex b, Vertex c, Vertex d) const 
 }
 
 int Remesher::valence_gain(Vertex a, Vertex b, Vertex c, Vertex d) const {
-  const auto valence = [&](Vertex v) { return static_cast<int>(mesh_.degree(v)); };
+  const auto valence = [&](Vertex v) { return static_cast<int>(mesh_.degree(v)) + surface_.held(v); };  // by a lid
   return 2 * (valence(a) + valence(b) - valence(c) - valence(d)) - 4;
 }
 

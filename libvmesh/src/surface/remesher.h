@@ -39,6 +39,7 @@ class Remesher {
   }
   // Folded faces are not refined: there is no telling where their new vertices belong.
   bool upright(Edge e) const;
+  bool held(Edge e) const;
   Vertex split(Edge e);
   // Projects a new vertex; stays at the edge's midpoint when that would fold a face.
   void move_to_boundary(Vertex v);

@@ -27,6 +27,7 @@ TriMesh indexed_mesh(const SweepState& state) {
   TriMesh mesh;
   mesh.vertices.assign(state.mesh.points().begin(), state.mesh.points().end());
   for (const Face f : state.mesh.faces()) {
+    if (state.surface.is_lid(f)) continue;
     const auto [a, b, c] = state.corners(f);
     mesh.faces.push_back({a.idx(), b.idx(), c.idx()});
   }
@@ -46,7 +47,7 @@ void add_ring(const SurfaceMesh& mesh, std::vector<Vertex>& region) {
 std::vector<Vertex> find_tangles(const SweepState& state) {
   std::vector<Vertex> vertices;
   for (const Vertex v : state.mesh.vertices()) {
-    if (state.off_boundary(v)) vertices.push_back(v);
+    if (state.off_boundary(v) && !state.surface.held(v)) vertices.push_back(v);
   }
   const TriMesh mesh = indexed_mesh(state);
   for (const auto& [f, g] : self_intersections(mesh)) {
@@ -65,6 +66,7 @@ void loosen(SweepState& state, const std::vector<Vertex>& tangles) {
   for (int ring = 0; ring < kRings; ++ring) add_ring(mesh, region);
   for (int pass = 0; pass < kPasses; ++pass) {
     for (const Vertex v : region) {
+      if (state.surface.held(v)) continue;
       Vec3 center = Vec3::Zero();
       for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) center += state.point(mesh.source(h));
       center /= static_cast<double>(mesh.degree(v));

@@ -37,13 +37,15 @@ bool apart(const Ring& ring, const Ring& next, double gap) {
 
 }  // namespace
 
+double ring_pitch(int around) { return kPitch * equilateral_height(around); }
+
 RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes,
                      const std::vector<SegmentPlace>& places, int around)
     : field_(field), axes_(axes), places_(places), around_(around) {}
 
 std::vector<Ring> RingLayer::lay(Index branch) const {
   const BranchAxis& axis = axes_[branch];
-  const double pitch = kPitch * equilateral_height(around_);
+  const double pitch = ring_pitch(around_);
   const double total = axis.length_in_radii();
   const auto bands = static_cast<std::size_t>(std::max(1.0, std::round(total / pitch)));
   const double step = total / static_cast<double>(bands);

@@ -24,6 +24,9 @@ struct Ring : CrossSection {
   bool free = false;
 };
 
+/// Distance in radii between rings of `around` vertices whose band consists of nearly equilateral triangles.
+double ring_pitch(int around);
+
 /// Where every segment lies: its branch and its number there.
 struct SegmentPlace {
   Index branch = kNone;

@@ -1,0 +1,153 @@
+#include "surface/junction_piece.h"
+
+#include "surface/docking.h"
+#include "surface/junction_growth.h"
+#include "surface/optimize.h"
+#include "surface/untangle.h"
+
+namespace vmesh {
+namespace {
+
+constexpr std::size_t kRingsGivenAway = 2;  // at most, at an end of a tube
+
+// How a junction's surface is made; tried in this order.
+struct Variant {
+  double finer;
+  bool smooth_rims;
+};
+constexpr Variant kVariants[] = {{1, true}, {1.5, true}, {1, false}, {2, true}, {1.5, false}, {2, false}};
+
+class PieceMaker {
+ public:
+  PieceMaker(const VesselField& field, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
+             const std::vector<Opening>& openings, const GenerateOptions& options)
+      : skeleton_(skeleton), growth_(growth), openings_(openings), options_(options), surface_(field) {}
+
+  JunctionPiece make(const Variant& variant) {
+    const JunctionSurface junction = growth_.make(variant.finer, variant.smooth_rims);
+    add(junction.patch);
+    for (std::size_t i = 0; i < openings_.size(); ++i) dock(openings_[i], junction.rims[i]);
+    JunctionPiece piece;
+    piece.handles = growth_.handles();
+    piece.tangles = finish();
+    export_to(piece);
+    return piece;
+  }
+
+ private:
+  void add(const SurfacePatch& patch) {
+    vertex_.assign(patch.vertices.size(), SurfaceMesh::null_vertex());
+    for (const Triangle& face : patch.faces) {
+      for (const Index v : face) {
+        if (vertex_[v] == SurfaceMesh::null_vertex())
+          vertex_[v] = add_vertex(patch.vertices[v].position, patch.vertices[v].cone);
+      }
+    }
+    for (const auto& [a, b, c] : patch.faces) add_face(vertex_[a], vertex_[b], vertex_[c]);
+  }
+
+  // Joins the rim to the first ring of the tube's end, that to the next one, up to the ring that is kept.
+  void dock(const Opening& opening, const std::vector<Index>& rim) {
+    const Tube& tube = skeleton_.tubes[opening.tube];
+    std::vector<Vertex> last;
+    for (const Index v : rim) last.push_back(vertex_[v]);
+    const std::size_t count = rings_given_away(tube) + 1;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t number = opening.at_end ? tube.rings.size() - 1 - k : k;
+      std::vector<Vertex> ring;
+      for (const BoundaryPoint& p : tube.rings[number].points) ring.push_back(add_vertex(p.position, p.sample.cone));
+      if (k + 1 == count) kept_.push_back({opening, static_cast<Index>(number), ring});
+      if (opening.at_end) std::reverse(ring.begin(), ring.end());
+      band(last, ring);
+      last = std::move(ring);
+      if (k + 1 == count) surface_.close_with_lid(last, tube.rings[number].center);
+    }
+  }
+
+  Vertex add_vertex(const Vec3& position, Index cone) {
+    const Vertex v = surface_.mesh.add_vertex(position);
+    surface_.place(v, position, surface_.field.sample(position, cone));
+    return v;
+  }
+
+  void add_face(Vertex a, Vertex b, Vertex c) {
+    if (surface_.mesh.add_face(a, b, c) == SurfaceMesh::null_face())
+      throw std::logic_error("the pieces of a junction do not fit together");
+  }
+
+  void band(const std::vector<Vertex>& bottom, const std::vector<Vertex>& top) {
+    const auto vertex = [&](Index i) { return i < bottom.size() ? bottom[i] : top[i - bottom.size()]; };
+    for (const auto& [a, b, c] : stitch(positions(bottom), positions(top))) add_face(vertex(a), vertex(b), vertex(c));
+  }
+
+  std::vector<Vec3> positions(const std::vector<Vertex>& loop) const {
+    std::vector<Vec3> result;
+    for (const Vertex v : loop) result.push_back(surface_.position(v));
+    return result;
+  }
+
+  std::size_t finish() {
+    if (options_.sweeps == 0) return find_tangles(SweepState(surface_)).size();
+    const double radii = growth_.length_in_radii() + static_cast<double>(openings_.size() * (kRingsGivenAway + 1));
+    return optimize(surface_, options_, {double(options_.around), expected_vertices(radii, options_.around)}, {})
+        .tangles;
+  }
+
+  void export_to(JunctionPiece& piece) const {
+    const SurfaceMesh& mesh = surface_.mesh;
+    std::vector<Index> number(mesh.num_vertices() + mesh.number_of_removed_vertices(), kNone);
+    for (const Vertex v : mesh.vertices()) {
+      if (surface_.role[v] == BoundSurface::Role::lid) continue;
+      number[v.idx()] = static_cast<Index>(piece.vertices.size());
+      piece.vertices.push_back({surface_.position(v), surface_.cone[v], {}, 0, 0});
+    }
+    for (const auto& [opening, ring, vertices] : kept_) {
+      for (Index j = 0; j < vertices.size(); ++j) {
+        PieceVertex& v = piece.vertices[number[vertices[j].idx()]];
+        v.tube = opening;
+        v.ring = ring;
+        v.number = j;
+      }
+    }
+    for (const Face f : mesh.faces()) {
+      if (surface_.is_lid(f)) continue;
+      const Halfedge h = mesh.halfedge(f);
+      piece.faces.push_back(
+          {number[mesh.source(h).idx()], number[mesh.target(h).idx()], number[mesh.target(mesh.next(h)).idx()]});
+    }
+  }
+
+  struct KeptRing {
+    Opening opening;
+    Index ring;
+    std::vector<Vertex> vertices;  // in the order of the ring
+  };
+
+  const GrowthSkeleton& skeleton_;
+  const JunctionGrowth& growth_;
+  const std::vector<Opening>& openings_;
+  const GenerateOptions& options_;
+  BoundSurface surface_;
+  std::vector<Vertex> vertex_;  // of the junction's vertices
+  std::vector<KeptRing> kept_;
+};
+
+}  // namespace
+
+std::size_t rings_given_away(const Tube& tube) { return std::min(kRingsGivenAway, (tube.rings.size() - 1) / 2); }
+
+JunctionPiece make_junction_piece(const VesselField& field, const std::vector<BranchAxis>& axes,
+                                  const GrowthSkeleton& skeleton, const Junction& junction,
+                                  const GenerateOptions& options) {
+  const JunctionGrowth growth(field, axes, skeleton, junction, options);
+  const std::vector<Opening> openings = openings_of(junction);
+  JunctionPiece best;
+  for (const Variant& variant : kVariants) {
+    JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options).make(variant);
+    if (&variant == kVariants || piece.tangles < best.tangles) best = std::move(piece);
+    if (best.tangles == 0) break;
+  }
+  return best;
+}
+
+}  // namespace vmesh
