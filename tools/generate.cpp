@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "vmesh/io/sha256.h"
 #include "vmesh/volume/vessel_field.h"
 
@@ -96,10 +98,13 @@ std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, Conso
                 percent(separation.mean_taken_relative) + " of the radius in the mean, " +
                 percent(separation.max_taken_relative) + " (" + number(separation.max_taken) + " mm) at most");
   }
-  if (!separation.left.empty()) {
-    warn("vessels still touch in " + places(separation.left) + ", the deepest " + describe(separation.left.front()) +
+  constexpr std::size_t kNamed = 5;
+  for (std::size_t c = 0; c < std::min(kNamed, separation.left.size()); ++c) {
+    warn("vessels still touch " + describe(separation.left[c]) +
          "; narrowing cannot part them: move the nodes of one, or join them if they are one vessel");
   }
+  if (separation.left.size() > kNamed)
+    warn("vessels still touch in " + places(separation.left) + "; the summary lists them");
   report.separation = separation;
   return separated;
 }

@@ -157,25 +157,23 @@ class PairFinder {
 
   void examine(Index i, Index j) {
     if (out_of_reach(i, j) || is_local(i, j)) return;
-    const double gap = parting_.contains(i, j) ? kForkGap : gap_;
+    const double gap = parting_.contains(i, j) ? std::min(gap_, kForkGap) : gap_;
     ContactPair pair{i, j, gap, closest_approach(cones_[i], cones_[j], gap), kNone};
-    const double smaller = std::min(cones_[i].radius(pair.closest.s), cones_[j].radius(pair.closest.t));
+    const double r = cones_[i].radius(pair.closest.s), q = cones_[j].radius(pair.closest.t);
+    const double smaller = std::min(r, q);
     if (pair.closest.excess >= field_.blend() * smaller) return;
-    if (field_.blend() > 0) {
-      pair.gap = std::min(gap + rounding(pair) / smaller, std::max(gap, kForkGap));
-      if (pair.gap > gap) pair.closest = closest_approach(cones_[i], cones_[j], pair.gap);
+    if (pair.closest.excess >= 0 && field_.blend() > 0) {
+      pair.gap = std::min(gap + rounding(pair) / smaller, std::max(gap, kForkGap / 2 * (r + q) / smaller));
+      pair.closest = closest_approach(cones_[i], cones_[j], pair.gap);
     }
     if (pair.closest.excess < 0) pairs_.push_back(pair);
   }
 
-  // How far the walls come out towards each other because vessels branch there, mm.
+  // How far the walls come out towards each other because vessels branch there, mm. Seen from the axes: no wall comes
+  // closer to the other than its blended distance from the other's axis tells.
   double rounding(const ContactPair& pair) const {
-    const Vec3 p = cones_[pair.i].point(pair.closest.s), q = cones_[pair.j].point(pair.closest.t);
-    if (pair.closest.distance == 0) return 0;
-    const Vec3 way = (q - p) / pair.closest.distance;
-    const Vec3 wall_i = p + cones_[pair.i].radius(pair.closest.s) * way;
-    const Vec3 wall_j = q - cones_[pair.j].radius(pair.closest.t) * way;
-    return rounding_at(wall_j, pair.i, pair.j) + rounding_at(wall_i, pair.j, pair.i);
+    return rounding_at(cones_[pair.j].point(pair.closest.t), pair.i, pair.j) +
+           rounding_at(cones_[pair.i].point(pair.closest.s), pair.j, pair.i);
   }
 
   // By how much the blend of cone `c` with others that are apart from `other` lowers the distance at `p`.

@@ -21,7 +21,7 @@ struct ContactSide {
 /// A place where two vessels come close in space that are not neighbours along the graph: their cones are not local to
 /// each other (VesselField::local_cones), so that each gets a wall of its own and the walls meet.
 struct Contact {
-  Vec3 position = Vec3::Zero();  ///< halfway between the two walls where they come closest, mm
+  Vec3 position = Vec3::Zero();  ///< halfway between the two walls where they come closest in smaller radii, mm
   double depth = 0;              ///< sum of the radii less the distance of the axes, mm; negative where there is a gap
   std::array<ContactSide, 2> sides;
   std::size_t cone_pairs = 0;  ///< pairs of cones in this region, each sharing a node with the next on either side
@@ -30,9 +30,9 @@ struct Contact {
 /// All regions where vessels that are not neighbours come closer than `gap` times the smaller of their radii. Each is
 /// described at the pair of cones that is deepest. Deepest first, ties by segments. Time near linear in the cones, and
 /// linear in the pairs of cones whose boxes meet.
-/// The walls of a fork part by more than half a smaller radius before they count as two vessels; a gap above that
-/// is not asked of them while they part. Rounding at branches (the field's blend) counts where it narrows the gap.
-/// Throws InvalidInput unless `gap` is in [0, 1].
+/// The walls of a fork part by a quarter of the sum of the radii before they count as two vessels; where they part, no
+/// more than a gap of 0.4 is asked of them. Rounding at branches (the field's blend) counts where it narrows the gap,
+/// up to a fifth of the sum of the radii. Throws InvalidInput unless `gap` is in [0, 1].
 std::vector<Contact> find_contacts(const VesselField& field, double gap);
 
 struct SeparationOptions {
