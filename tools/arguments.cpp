@@ -160,7 +160,8 @@ void add_render_look(CLI::App& verb, RenderArguments& arguments) {
   verb.add_option("--occlusion", options.occlusion, "darkening where little light gets in")
       ->check(in_range(0.0, 1.0))
       ->capture_default_str();
-  verb.add_option("--color", arguments.color, "colour by this attribute of the file, or by skewness");
+  verb.add_option("--color", arguments.color,
+                  "colour by this attribute of the file, or by skewness; branch: a colour for each");
   verb.add_option_function<std::pair<double, double>>(
       "--range", [&options](const std::pair<double, double>& range) { options.range = range; },
       "attribute values at the ends of the colour scale");

@@ -16,7 +16,7 @@ using Kind = PlannedOutput::Kind;
 std::optional<Kind> kind_of(const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
   if (extension == ".vtp") return std::nullopt;
-  for (const char* centerline : {".swc", ".json", ".csv"})
+  for (const char* centerline : {".swc", ".json", ".csv", ".vmv", ".vtk"})
     if (extension == centerline) return Kind::centerline;
   surface_format(path);  // throws Unsupported
   return Kind::surface;

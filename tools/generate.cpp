@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "vmesh/io/sha256.h"
+#include "vmesh/surface/branch_labels.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "exit_code.h"
@@ -21,15 +22,21 @@ std::string number(double value, int digits = 3) {
 
 std::string percent(double share) { return number(100 * share, 0) + " %"; }
 
-MeshAttributes attributes_of(const GenerateResult& result) {
+MeshAttribute branch_attribute(const std::vector<Index>& labels) {
+  return {"branch", {labels.begin(), labels.end()}, true};
+}
+
+MeshAttributes attributes_of(const GenerateResult& result, const Centerline& centerline) {
   MeshAttributes attributes;
+  const BranchLabels branch = label_branches(result.mesh, result.binding, centerline);
   MeshAttribute segment{"segment", {}, true}, parameter{"parameter", {}};
   for (const CenterlineBinding& binding : result.binding) {
     segment.values.push_back(binding.segment);
     parameter.values.push_back(binding.t);
   }
-  attributes.vertex = {{"radius", result.radius}, std::move(segment), std::move(parameter)};
-  attributes.face = {{"EquiangleSkewness", equiangle_skewness(result.mesh)}};
+  attributes.vertex = {
+      {"radius", result.radius}, std::move(segment), std::move(parameter), branch_attribute(branch.vertex)};
+  attributes.face = {{"EquiangleSkewness", equiangle_skewness(result.mesh)}, branch_attribute(branch.face)};
   return attributes;
 }
 
@@ -151,7 +158,7 @@ void measure(GenerateReport& report, const Centerline& grown, Console& console) 
 
 void write(const GenerateReport& report) {
   const GenerateArguments& arguments = *report.arguments;
-  write_surface(arguments.output, report.result->mesh, attributes_of(*report.result),
+  write_surface(arguments.output, report.result->mesh, attributes_of(*report.result, report.cleaned->centerline),
                 {generator_name(), describe(arguments), arguments.input.path.filename().string(), report.input_sha256});
 }
 

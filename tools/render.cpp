@@ -1,5 +1,8 @@
 #include "vmesh/render/render.h"
 
+#include <array>
+#include <utility>
+
 #include "vmesh/mesh/triangle_quality.h"
 
 #include "exit_code.h"
@@ -16,10 +19,15 @@ struct FoundAttribute {
   AttributeDomain domain;
 };
 
+bool is_label(const std::string& name) { return name == "branch" || name == "group"; }
+
+/// Values of vertices are preferred, as they run smoothly; labels of faces are, as they have crisp borders.
 FoundAttribute find_attribute(const LoadedSurface& surface, const std::string& name) {
   std::string known;
-  for (const auto& [list, domain] : {std::pair{&surface.attributes.vertex, AttributeDomain::vertex},
-                                     std::pair{&surface.attributes.face, AttributeDomain::face}})
+  std::array lists = {std::pair{&surface.attributes.vertex, AttributeDomain::vertex},
+                      std::pair{&surface.attributes.face, AttributeDomain::face}};
+  if (is_label(name)) std::swap(lists[0], lists[1]);
+  for (const auto& [list, domain] : lists)
     for (const MeshAttribute& attribute : *list) {
       if (attribute.name == name) return {&attribute, domain};
       known += (known.empty() ? "" : ", ") + attribute.name;
@@ -35,7 +43,9 @@ Image draw(const LoadedSurface& surface, const RenderArguments& arguments) {
   if (arguments.color == "skewness")
     return render(surface.mesh, skewness_of(surface.mesh), AttributeDomain::face, arguments.options);
   const auto [attribute, domain] = find_attribute(surface, arguments.color);
-  return render(surface.mesh, *attribute, domain, arguments.options);
+  RenderOptions options = arguments.options;
+  options.categories = is_label(arguments.color);
+  return render(surface.mesh, *attribute, domain, options);
 }
 
 }  // namespace

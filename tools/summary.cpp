@@ -4,6 +4,7 @@
 #include <map>
 #include <sstream>
 
+#include "vmesh/centerline/branches.h"
 #include "vmesh/core/version.h"
 
 #include "outputs.h"
@@ -97,19 +98,20 @@ Json to_json(const Centerline& centerline) {
   for (Index s = 0; s < centerline.segments().size(); ++s) length += centerline.length(s);
   const auto [thin, thick] = std::minmax_element(centerline.nodes().begin(), centerline.nodes().end(),
                                                  [](const auto& a, const auto& b) { return a.radius < b.radius; });
-  std::size_t isolated = 0, ends = 0, branches = 0;
+  std::size_t isolated = 0, ends = 0, branch_nodes = 0;
   for (Index n = 0; n < centerline.nodes().size(); ++n) {
     const std::size_t degree = centerline.degree(n);
     isolated += degree == 0;
     ends += degree == 1;
-    branches += degree > 2;
+    branch_nodes += degree > 2;
   }
   return {{"nodes", centerline.nodes().size()},
           {"segments", centerline.segments().size()},
           {"components", centerline.component_count()},
           {"loops", centerline.cycle_rank()},
           {"ends", ends},
-          {"branch_nodes", branches},
+          {"branches", find_branches(centerline).size()},
+          {"branch_nodes", branch_nodes},
           {"isolated_nodes", isolated},
           {"radius_min_mm", thin->radius},
           {"radius_max_mm", thick->radius},

@@ -42,6 +42,19 @@ TEST(LegendColours, GrowLighterFromEndToEnd) {
   }
 }
 
+TEST(LegendColours, OfCategoriesNearInNumberAreFarApart) {
+  for (int label = -3; label < 300; ++label) {
+    const Color a = srgb_from_linear(category_color(label));
+    for (int other = label + 1; other < label + 10; ++other) {
+      const Color b = srgb_from_linear(category_color(other));
+      int difference = 0;
+      for (std::size_t i = 0; i < 3; ++i) difference = std::max(difference, std::abs(a[i] - b[i]));
+      EXPECT_GT(difference, 30) << label << " and " << other;
+    }
+  }
+  EXPECT_EQ(category_color(7), category_color(7.2));
+}
+
 TEST(LegendText, DrawsEveryCharacter) {
   for (char c = '!'; c <= '~'; ++c) {
     Canvas canvas(40, 40, Vec3::Ones());

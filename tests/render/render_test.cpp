@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -197,6 +198,46 @@ TEST(Render, ColoursByFaceAttributesAndDrawsNanGrey) {
   const Image image = render(make_square(), {"quality", {1, kNan}}, AttributeDomain::face, options);
   EXPECT_TRUE(is_yellow(image.at(105, 80)));
   EXPECT_TRUE(is_grey(image.at(55, 40)));
+}
+
+TEST(Render, ColoursCategoriesWithoutMixingThem) {
+  RenderOptions options = small();
+  options.legend = false;
+  options.categories = true;
+  options.occlusion = 0;
+  const TriMesh square = make_square();
+  const auto colors_of = [&](const MeshAttribute& attribute, AttributeDomain domain) {
+    const Image image = render(square, attribute, domain, options);
+    std::map<Color, int> counts;
+    for (int y = 20; y < 100; ++y) {
+      for (int x = 40; x < 120; ++x) ++counts[image.at(x, y)];
+    }
+    std::erase_if(counts, [](const auto& entry) { return entry.second < 300; });  // mixed along the borders
+    return counts.size();
+  };
+  EXPECT_EQ(colors_of({"branch", {4, 5}, true}, AttributeDomain::face), 2u);
+  EXPECT_EQ(colors_of({"branch", {4, 4}, true}, AttributeDomain::face), 1u);
+  EXPECT_EQ(colors_of({"branch", {1, 2, 3, 4}, true}, AttributeDomain::vertex), 4u);
+  EXPECT_EQ(colors_of({"branch", {1, kNan, 1, 1}, true}, AttributeDomain::vertex), 2u);
+}
+
+TEST(Render, DrawsALegendOfCategories) {
+  RenderOptions options = small();
+  options.width = 320;
+  options.height = 240;
+  options.categories = true;
+  const auto column = [&](std::vector<double> labels) {
+    return render(make_square(), {"branch", std::move(labels), true}, AttributeDomain::vertex, options);
+  };
+  const Image two = column({1, 1, 2, 2}), four = column({1, 2, 3, 4});
+  EXPECT_GT(different_pixels(two, four, 280), 20u);  // two rows more
+  std::vector<double> many;
+  TriMesh squares;
+  for (int i = 0; i < 200; ++i) {
+    append(squares, make_square());
+    many.insert(many.end(), {i + 0.0, i + 0.0});
+  }
+  EXPECT_NO_THROW(render(squares, {"branch", many, true}, AttributeDomain::face, options));
 }
 
 TEST(Render, DrawsALegendBesideTheMesh) {

@@ -36,6 +36,23 @@ TEST_F(Convert, CenterlinesGoThroughEveryFormatUnchanged) {
   }
 }
 
+TEST_F(Convert, VmvIsReadAndNotWritten) {
+  write("y.vmv",
+        "$VERT_LIST_BEGIN\n1 0 0 0 3000\n2 0 0 9000 2500\n3 0 5000 15000 2000\n4 0 -5000 15000 2000\n$VERT_LIST_END\n"
+        "$STRANDS_LIST_BEGIN\n1 1 2\n2 2 3 4 2\n$STRANDS_LIST_END\n");
+  const Outcome assumed = vmesh({"convert", "@y.vmv", "-o", "@mm.json"});
+  ASSERT_EQ(assumed.exit_code, 0) << assumed.err;
+  EXPECT_NE(assumed.err.find("does not say its unit; taken as mm"), std::string::npos) << assumed.err;
+  ASSERT_EQ(vmesh({"convert", "@y.vmv", "-o", "@um.json", "--unit", "um"}).exit_code, 0);
+  const Centerline um = centerline("um.json");
+  EXPECT_EQ(um.node(0).radius, 3);
+  EXPECT_EQ(um.cycle_rank(), 1u);
+  EXPECT_EQ(centerline("mm.json").node(0).radius, 3000);
+  EXPECT_EQ(vmesh({"generate", "@y.vmv", "-o", "@y.ply", "--unit", "um"}).exit_code, 0);
+  EXPECT_EQ(vmesh({"convert", "@y.swc", "-o", "@z.vmv"}).exit_code, 4);
+  EXPECT_EQ(vmesh({"convert", "@y.vmv", "-o", "@y.stl"}).exit_code, 2);
+}
+
 TEST_F(Convert, CenterlineUnitsAndFrameBecomeMillimetresAndLps) {
   ASSERT_EQ(vmesh({"convert", "@y.swc", "-o", "@cm.json", "--unit", "cm", "--space", "RAS"}).exit_code, 0);
   const Centerline before = centerline("y.swc"), after = centerline("cm.json");

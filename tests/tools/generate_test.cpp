@@ -37,14 +37,33 @@ TEST_F(Generate, VerticesKeepTheirPlaceOnTheCenterline) {
     names.push_back(attribute.name);
     ASSERT_EQ(attribute.values.size(), surface.mesh.vertices.size());
     const auto [low, high] = std::minmax_element(attribute.values.begin(), attribute.values.end());
-    const double most = attribute.name == "segment" ? 2 : attribute.name == "parameter" ? 1 : 3 + 1e-9;
+    const double most = attribute.name == "segment" || attribute.name == "branch" ? 2
+                        : attribute.name == "parameter"                           ? 1
+                                                                                  : 3 + 1e-9;
     EXPECT_GE(*low, attribute.name == "radius" ? 2.1 - 1e-9 : 0) << attribute.name;
     EXPECT_LE(*high, most) << attribute.name;
   }
-  for (const char* name : {"radius", "segment", "parameter"})
+  for (const char* name : {"radius", "segment", "parameter", "branch"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
-  ASSERT_EQ(surface.attributes.face.size(), 1u);
+  ASSERT_EQ(surface.attributes.face.size(), 2u);
   EXPECT_EQ(surface.attributes.face[0].name, "EquiangleSkewness");
+}
+
+TEST_F(Generate, FacesKnowTheirBranch) {
+  std::vector<std::string> names = {"y.ply"};
+  if (VMESH_TEST_WITH_VTK) names.push_back("y.vtp");
+  for (const std::string& name : names) {
+    SCOPED_TRACE(name);
+    ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@" + name}).exit_code, 0);
+    const LoadedSurface surface = read_surface(path(name));
+    ASSERT_EQ(surface.attributes.face.size(), 2u);
+    const MeshAttribute& branch = surface.attributes.face[1];
+    EXPECT_EQ(branch.name, "branch");
+    EXPECT_TRUE(branch.integer);
+    ASSERT_EQ(branch.values.size(), surface.mesh.faces.size());
+    for (const double label : {0, 1, 2}) EXPECT_GT(std::count(branch.values.begin(), branch.values.end(), label), 10);
+    EXPECT_EQ(*std::max_element(branch.values.begin(), branch.values.end()), 2);
+  }
 }
 
 TEST_F(Generate, SummaryTellsWhatCameOut) {
@@ -65,6 +84,7 @@ TEST_F(Generate, SummaryTellsWhatCameOut) {
   EXPECT_EQ(summary.at("self_intersections"), 0);
   EXPECT_EQ(summary.at("nodes_inside"), 4);
   EXPECT_EQ(summary.at("centerline").at("nodes"), 4);
+  EXPECT_EQ(summary.at("centerline").at("branches"), 3);
   EXPECT_GT(summary.at("distance").at("mean_relative"), 0.01);  // no polygon is a circle
   EXPECT_LT(summary.at("distance").at("mean_relative"), 0.2);
   EXPECT_GE(summary.at("distance").at("max_mm"), summary.at("distance").at("mean_mm"));

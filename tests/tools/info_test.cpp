@@ -27,6 +27,7 @@ TEST_F(Info, DescribesACenterline) {
   EXPECT_EQ(centerline.at("components"), 1);
   EXPECT_EQ(centerline.at("loops"), 0);
   EXPECT_EQ(centerline.at("ends"), 3);
+  EXPECT_EQ(centerline.at("branches"), 3);
   EXPECT_EQ(centerline.at("branch_nodes"), 1);
   EXPECT_EQ(centerline.at("radius_min_mm"), 2.1);
   EXPECT_EQ(centerline.at("radius_max_mm"), 3.0);

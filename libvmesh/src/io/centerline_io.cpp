@@ -17,9 +17,19 @@ CenterlineFormat centerline_format(const std::filesystem::path& path) {
   if (extension == ".vtp") return CenterlineFormat::vtp;
   if (extension == ".json") return CenterlineFormat::json;
   if (extension == ".csv") return CenterlineFormat::csv;
-  const std::string advice = extension == ".vtk" ? " (save it as .vtp with ParaView or VMTK)" : "";
-  throw Unsupported(path.string() + ": centerlines are .swc, .vtp, .json or .csv; \"" + extension +
-                    "\" is not supported" + advice);
+  if (extension == ".vmv") return CenterlineFormat::vmv;
+  if (extension == ".vtk") return CenterlineFormat::vtk;
+  throw Unsupported(path.string() + ": centerlines are .swc, .vtp, .json, .csv, .vmv or .vtk; \"" + extension +
+                    "\" is not supported");
+}
+
+CenterlineFormat centerline_output_format(const std::filesystem::path& path) {
+  const CenterlineFormat format = centerline_format(path);
+  if (format == CenterlineFormat::vmv || format == CenterlineFormat::vtk) {
+    throw Unsupported(path.string() +
+                      ": files of this kind are read, not written; write the centerline as .json, .csv or .vtp");
+  }
+  return format;
 }
 
 std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path) {
@@ -48,6 +58,10 @@ RawCenterline parse_centerline(std::string_view content, CenterlineFormat format
       return io::parse_centerline_json(content, source);
     case CenterlineFormat::csv:
       return io::parse_centerline_csv(content, csv_segments, source);
+    case CenterlineFormat::vmv:
+      return io::parse_vmv(content, source);
+    case CenterlineFormat::vtk:
+      return io::parse_centerline_vtk(content, source, options.radius_array);
   }
   throw Unsupported(source + ": unknown centerline format");
 }
@@ -81,7 +95,7 @@ LoadedCenterline load_centerline(const std::filesystem::path& path, const Center
 
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
                       const CenterlineMetadata& metadata) {
-  const CenterlineFormat format = centerline_format(path);
+  const CenterlineFormat format = centerline_output_format(path);
   if (format == CenterlineFormat::swc && centerline.cycle_rank() > 0) {
     throw Unsupported(path.string() + ": SWC holds trees only and this centerline has " +
                       std::to_string(centerline.cycle_rank()) + " independent loops; write it as .json, .csv or .vtp");
@@ -104,6 +118,9 @@ void write_centerline(const std::filesystem::path& path, const Centerline& cente
       segments.commit();
       break;
     }
+    case CenterlineFormat::vmv:
+    case CenterlineFormat::vtk:
+      break;  // refused above
   }
   file.commit();
 }

@@ -12,9 +12,12 @@
 namespace vmesh::io {
 
 RawCenterline parse_swc(std::string_view content, const std::string& source);
+RawCenterline parse_vmv(std::string_view content, const std::string& source);
 RawCenterline parse_centerline_json(std::string_view content, const std::string& source);
 RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source);
 RawCenterline parse_centerline_vtp(std::string_view content, const std::string& source,
+                                   const std::string& radius_array);
+RawCenterline parse_centerline_vtk(std::string_view content, const std::string& source,
                                    const std::string& radius_array);
 
 void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);

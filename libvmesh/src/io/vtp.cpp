@@ -23,6 +23,7 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include "formats.h"
+#include "poly_lines.h"
 #include "text.h"
 #include "triangulation.h"
 
@@ -151,6 +152,11 @@ class Cells {
   std::span<const Index> operator[](std::size_t c) const {
     return {ids_.data() + offsets_[c], ids_.data() + offsets_[c + 1]};
   }
+  std::vector<std::vector<Index>> lists() const {
+    std::vector<std::vector<Index>> result(size());
+    for (std::size_t c = 0; c < size(); ++c) result[c].assign((*this)[c].begin(), (*this)[c].end());
+    return result;
+  }
 
  private:
   std::vector<std::size_t> offsets_;
@@ -175,87 +181,19 @@ Vec3 point(vtkPolyData& data, vtkIdType i) {
 }
 
 vtkDataArray* find_radius(vtkPolyData& data, const std::string& wanted, const std::string& source) {
-  std::vector<std::string> names = {"MaximumInscribedSphereRadius", "Radius", "radius"};
-  if (!wanted.empty()) names = {wanted};
   vtkPointData* point_data = data.GetPointData();
-  for (const auto& name : names) {
+  for (const auto& name : radius_names(wanted)) {
     vtkDataArray* array = point_data->GetArray(name.c_str());
     if (!array) continue;
     if (array->GetNumberOfComponents() == 1 && array->GetNumberOfTuples() == data.GetNumberOfPoints()) return array;
     throw InvalidInput(source + ": the point array " + name + " must hold one number for every point");
   }
-  std::string present;
+  std::vector<std::string> present;
   for (int a = 0; a < point_data->GetNumberOfArrays(); ++a) {
-    if (const char* name = point_data->GetArrayName(a)) present.append(present.empty() ? "" : ", ").append(name);
+    if (const char* name = point_data->GetArrayName(a)) present.emplace_back(name);
   }
-  throw InvalidInput(source + ": there is no point array " +
-                     (wanted.empty() ? names[0] + ", Radius or radius" : wanted) + "; it has " +
-                     (present.empty() ? "none" : present) + "; name the one that holds the radius");
+  fail_without_radius(source, wanted, present);
 }
-
-class CenterlineReader {
- public:
-  CenterlineReader(std::string_view content, const std::string& source, const std::string& radius_array)
-      : data_(read_poly_data(content, source)), radius_(find_radius(*data_, radius_array, source)) {
-    raw_.source = source;
-    raw_.node_word = "point";
-    raw_.segment_word = "line cell";
-    raw_.loose_branches = true;
-    read_field_tags(*data_, raw_);
-  }
-
-  RawCenterline run() {
-    const Cells lines(data_->GetLines(), data_->GetNumberOfPoints(), raw_.source, "line cell");
-    // Cells of a vtkPolyData are numbered vertices first, then lines.
-    const auto first_number = static_cast<std::uint64_t>(data_->GetNumberOfVerts());
-    index_of_.assign(static_cast<std::size_t>(data_->GetNumberOfPoints()), kNone);
-    std::size_t empty = 0;
-    for (std::size_t c = 0; c < lines.size(); ++c) {
-      if (lines[c].size() < 2) ++empty;
-      read_line(lines[c], first_number + c);
-    }
-    const Cells vertices(data_->GetVerts(), data_->GetNumberOfPoints(), raw_.source, "vertex cell");
-    for (std::size_t c = 0; c < vertices.size(); ++c) {
-      for (const Index id : vertices[c]) node(id);
-    }
-    if (raw_.nodes.empty()) {
-      throw InvalidInput(raw_.source + ": there is no line in it; a centerline is made of lines or polylines");
-    }
-    const std::size_t unused = index_of_.size() - raw_.nodes.size();
-    warn(empty, "lines have fewer than two points");
-    warn(unused, "points belong to no line or vertex");
-    return std::move(raw_);
-  }
-
- private:
-  void warn(std::size_t count, const char* what) {
-    if (count > 0) raw_.warnings.push_back(raw_.source + ": " + std::to_string(count) + " " + what + "; left out");
-  }
-
-  void read_line(std::span<const Index> ids, std::uint64_t number) {
-    if (ids.size() < 2) return;
-    raw_.path_starts.push_back(static_cast<Index>(raw_.segments.size()));
-    for (std::size_t i = 0; i + 1 < ids.size(); ++i) {
-      const Index a = node(ids[i]);
-      raw_.segments.push_back({a, node(ids[i + 1])});
-      raw_.segment_numbers.push_back(number);
-    }
-  }
-
-  Index node(Index id) {
-    if (index_of_[id] == kNone) {
-      index_of_[id] = static_cast<Index>(raw_.nodes.size());
-      raw_.nodes.push_back({point(*data_, id), radius_->GetComponent(id, 0)});
-      raw_.node_numbers.push_back(id);
-    }
-    return index_of_[id];
-  }
-
-  vtkSmartPointer<vtkPolyData> data_;
-  vtkDataArray* radius_;
-  RawCenterline raw_;
-  std::vector<Index> index_of_;
-};
 
 constexpr std::array<std::pair<const char*, const char*>, 3> kPointNames = {
     {{"radius", "MaximumInscribedSphereRadius"}, {"distance", "Distance"}, {"group", "GroupIds"}}};
@@ -354,7 +292,17 @@ void write_poly_data(std::ostream& out, vtkPolyData& data) {
 
 RawCenterline parse_centerline_vtp(std::string_view content, const std::string& source,
                                    const std::string& radius_array) {
-  return CenterlineReader(content, source, radius_array).run();
+  const auto data = read_poly_data(content, source);
+  vtkDataArray* radius = find_radius(*data, radius_array, source);
+  PolyLines poly_lines;
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
+    poly_lines.points.push_back({point(*data, i), radius->GetComponent(i, 0)});
+  }
+  poly_lines.lines = Cells(data->GetLines(), data->GetNumberOfPoints(), source, "line cell").lists();
+  poly_lines.vertices = Cells(data->GetVerts(), data->GetNumberOfPoints(), source, "vertex cell").lists();
+  RawCenterline raw = to_raw_centerline(poly_lines, source);
+  read_field_tags(*data, raw);
+  return raw;
 }
 
 void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata) {

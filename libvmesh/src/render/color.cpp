@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace vmesh {
 namespace {
@@ -56,6 +57,16 @@ Vec3 color_scale(double t) {
   const auto mix = [f](double p, double q) { return p + f * (q - p); };
   return linear_from_oklab(0.30 + 0.62 * std::clamp(t, 0.0, 1.0), mix(kKnots[i].a, kKnots[i + 1].a),
                            mix(kKnots[i].b, kKnots[i + 1].b));
+}
+
+Vec3 category_color(double label) {
+  // The golden angle keeps the hues of near numbers apart, turning lightness those of numbers with near hues.
+  constexpr std::array<double, 3> kLightness{0.72, 0.56, 0.84};
+  constexpr double kChroma = 0.14;
+  const double number = std::round(label), turns = number * (3 - std::sqrt(5.0)) / 2;
+  const double hue = 2 * std::numbers::pi * (turns - std::floor(turns));
+  const auto level = static_cast<std::size_t>(number - 3 * std::floor(number / 3));
+  return linear_from_oklab(kLightness[level], kChroma * std::cos(hue), kChroma * std::sin(hue));
 }
 
 }  // namespace vmesh

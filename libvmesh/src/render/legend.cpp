@@ -21,7 +21,12 @@ double text_height(int width, int height) { return std::max(6.0, 0.0145 * std::m
 
 double step_of(const std::vector<double>& ticks) { return ticks.size() > 1 ? ticks[1] - ticks[0] : 0; }
 
+std::string category_label(double category) { return tick_label(category, 1); }
+
 std::vector<std::string> labels_of(const Legend& legend) {
+  if (!legend.categories.empty()) {
+    return {category_label(legend.categories.front()), category_label(legend.categories.back()), "..."};
+  }
   const auto ticks = legend_ticks(legend.low, legend.high, legend.integer, kTicks);
   std::vector<std::string> labels;
   for (const double tick : ticks) labels.push_back(tick_label(tick, step_of(ticks)));
@@ -37,6 +42,36 @@ Layout layout_of(const Legend& legend, int width, int height) {
   layout.bottom = 0.8 * height;
   layout.left = width - legend_width(legend, width, height) + layout.margin;
   return layout;
+}
+
+void draw_scale(Canvas& canvas, const Legend& legend, const Layout& at, const Vec3& ink) {
+  const double x = at.left, label_x = x + at.bar_width + at.text;
+  const bool constant = !(legend.high > legend.low);
+  for (int y = static_cast<int>(at.top); y < at.bottom; ++y) {
+    const double t = constant ? 0.5 : 1 - (y + 0.5 - at.top) / (at.bottom - at.top);
+    const double from = std::max<double>(y, at.top), to = std::min<double>(y + 1, at.bottom);
+    canvas.fill({x, from}, {x + at.bar_width, to}, color_scale(t));
+  }
+  const auto ticks = legend_ticks(legend.low, legend.high, legend.integer, kTicks);
+  for (const double tick : ticks) {
+    const double t = constant ? 0.5 : (tick - legend.low) / (legend.high - legend.low);
+    const double y = at.bottom + t * (at.top - at.bottom);
+    canvas.stroke({x + at.bar_width, y}, {x + at.bar_width + 0.4 * at.text, y}, std::max(1.0, 0.08 * at.text), ink);
+    draw_text(canvas, tick_label(tick, step_of(ticks)), {label_x, y + 0.5 * at.text}, at.text, ink);
+  }
+}
+
+void draw_categories(Canvas& canvas, const Legend& legend, const Layout& at, const Vec3& ink) {
+  const double row = 1.7 * at.text, label_x = at.left + at.bar_width + at.text;
+  const auto rows = std::max<std::size_t>(1, static_cast<std::size_t>((at.bottom - at.top) / row));
+  const bool all = legend.categories.size() <= rows;
+  const std::size_t shown = all ? legend.categories.size() : rows - 1;
+  double y = at.top;
+  for (std::size_t i = 0; i < shown; ++i, y += row) {
+    canvas.fill({at.left, y}, {at.left + at.bar_width, y + 1.3 * at.text}, category_color(legend.categories[i]));
+    draw_text(canvas, category_label(legend.categories[i]), {label_x, y + 1.15 * at.text}, at.text, ink);
+  }
+  if (!all) draw_text(canvas, "...", {label_x, y + 1.15 * at.text}, at.text, ink);
 }
 
 }  // namespace
@@ -92,19 +127,7 @@ void draw_legend(Canvas& canvas, const Legend& legend, const Vec3& background) {
   const double name_size = at.text * std::min(1.0, room / std::max(text_width(legend.name, at.text), 1.0));
   draw_text(canvas, legend.name, {x, at.top - 1.6 * at.text}, name_size, ink);
 
-  const bool constant = !(legend.high > legend.low);
-  for (int y = static_cast<int>(at.top); y < at.bottom; ++y) {
-    const double t = constant ? 0.5 : 1 - (y + 0.5 - at.top) / (at.bottom - at.top);
-    const double from = std::max<double>(y, at.top), to = std::min<double>(y + 1, at.bottom);
-    canvas.fill({x, from}, {x + at.bar_width, to}, color_scale(t));
-  }
-  const auto ticks = legend_ticks(legend.low, legend.high, legend.integer, kTicks);
-  for (const double tick : ticks) {
-    const double t = constant ? 0.5 : (tick - legend.low) / (legend.high - legend.low);
-    const double y = at.bottom + t * (at.top - at.bottom);
-    canvas.stroke({x + at.bar_width, y}, {x + at.bar_width + 0.4 * at.text, y}, std::max(1.0, 0.08 * at.text), ink);
-    draw_text(canvas, tick_label(tick, step_of(ticks)), {label_x, y + 0.5 * at.text}, at.text, ink);
-  }
+  legend.categories.empty() ? draw_scale(canvas, legend, at, ink) : draw_categories(canvas, legend, at, ink);
   if (legend.has_missing) {
     const double y = at.bottom + 1.5 * at.text;
     canvas.fill({x, y}, {x + at.bar_width, y + at.bar_width}, kNoValue);

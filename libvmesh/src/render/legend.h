@@ -7,13 +7,14 @@
 
 namespace vmesh {
 
-/// What a legend tells: the attribute's name, the values at both ends of the colour scale, and whether some elements
-/// have no value.
+/// What a legend tells: the attribute's name, the values at both ends of the colour scale or else the labels, and
+/// whether some elements have no value.
 struct Legend {
   std::string name;
   double low = 0, high = 1;
   bool integer = false;
   bool has_missing = false;
+  std::vector<double> categories;  ///< ascending; empty: a scale from `low` to `high`
 };
 
 /// Round numbers in [low, high], about `wanted` of them; the value itself when low equals high.
@@ -25,6 +26,7 @@ std::string tick_label(double value, double step);
 /// Columns at the right side of a picture of this size that the legend takes.
 int legend_width(const Legend& legend, int width, int height);
 
+/// Draws the scale with its ticks, or the first categories, as many as there is room for.
 void draw_legend(Canvas& canvas, const Legend& legend, const Vec3& background);
 
 }  // namespace vmesh

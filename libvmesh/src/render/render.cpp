@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -55,22 +56,25 @@ void check_mesh(const TriMesh& mesh) {
   }
 }
 
-// The attribute as the shader needs it: legend and positions on the colour scale.
+// The attribute as legend and shader need it.
 struct Coloring {
   Legend legend;
-  std::vector<double> scale_positions;
-  bool per_face = false;
+  AttributeColors colors;
 };
 
-Coloring make_coloring(const TriMesh& mesh, const MeshAttribute& attribute, AttributeDomain domain,
-                       const RenderOptions& options) {
+void check_attribute(const TriMesh& mesh, const MeshAttribute& attribute, AttributeDomain domain) {
   const bool per_face = domain == AttributeDomain::face;
   const std::size_t expected = per_face ? mesh.faces.size() : mesh.vertices.size();
   require(attribute.values.size() == expected, "attribute \"" + attribute.name + "\" has " +
                                                    std::to_string(attribute.values.size()) + " values for " +
                                                    std::to_string(expected) + (per_face ? " faces" : " vertices"));
-  Coloring coloring;
-  coloring.per_face = per_face;
+}
+
+bool has_missing(const MeshAttribute& attribute) {
+  return std::any_of(attribute.values.begin(), attribute.values.end(), [](double x) { return std::isnan(x); });
+}
+
+Coloring color_by_scale(const MeshAttribute& attribute, const RenderOptions& options) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double value : attribute.values) {
     if (!std::isfinite(value)) continue;
@@ -79,14 +83,39 @@ Coloring make_coloring(const TriMesh& mesh, const MeshAttribute& attribute, Attr
   }
   if (options.range) std::tie(low, high) = *options.range;
   require(low <= high, "attribute \"" + attribute.name + "\" has no finite value");
-  bool missing = false;
+  Coloring coloring;
   for (const double value : attribute.values) {
-    missing = missing || std::isnan(value);
     // Halves: the difference of two finite doubles may be infinite.
     const double t = high > low ? (value / 2 - low / 2) / (high / 2 - low / 2) : 0.5;
-    coloring.scale_positions.push_back(std::isnan(value) ? value : std::clamp(t, 0.0, 1.0));
+    coloring.colors.values.push_back(std::isnan(value) ? value : std::clamp(t, 0.0, 1.0));
   }
-  coloring.legend = {attribute.name, low, high, attribute.integer, missing};
+  coloring.legend = {attribute.name, low, high, attribute.integer, has_missing(attribute), {}};
+  return coloring;
+}
+
+Coloring color_by_category(const MeshAttribute& attribute) {
+  constexpr double kMostLabel = 0x1p53;
+  std::set<double> labels;
+  for (const double value : attribute.values) {
+    require(std::isnan(value) || std::abs(value) <= kMostLabel,
+            "attribute \"" + attribute.name + "\" has values too large for labels");
+    if (!std::isnan(value)) labels.insert(std::round(value));
+  }
+  require(!labels.empty(), "attribute \"" + attribute.name + "\" has no finite value");
+  Coloring coloring;
+  coloring.colors.values = attribute.values;
+  coloring.colors.categories = true;
+  coloring.legend.name = attribute.name;
+  coloring.legend.has_missing = has_missing(attribute);
+  coloring.legend.categories.assign(labels.begin(), labels.end());
+  return coloring;
+}
+
+Coloring make_coloring(const TriMesh& mesh, const MeshAttribute& attribute, AttributeDomain domain,
+                       const RenderOptions& options) {
+  check_attribute(mesh, attribute, domain);
+  Coloring coloring = options.categories ? color_by_category(attribute) : color_by_scale(attribute, options);
+  coloring.colors.per_face = domain == AttributeDomain::face;
   return coloring;
 }
 
@@ -150,7 +179,7 @@ Image draw(const TriMesh& mesh, const RenderOptions& options, Coloring coloring,
   const int reserved = with_legend ? legend_width(coloring.legend, options.width, options.height) : 0;
   const Camera camera(mesh, options, reserved);
   const RayScene scene(mesh);
-  const SurfaceShader shader(mesh, options, camera, scene, std::move(coloring.scale_positions), coloring.per_face);
+  const SurfaceShader shader(mesh, options, camera, scene, std::move(coloring.colors));
   const Vec3 background = linear_from_srgb(options.background);
   const PixelSampler sampler(camera, scene, shader, background);
   const Coverage coverage(mesh, camera, options.width, options.height);

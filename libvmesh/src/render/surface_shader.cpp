@@ -45,12 +45,11 @@ double diagonal_of(const TriMesh& mesh) {
 }  // namespace
 
 SurfaceShader::SurfaceShader(const TriMesh& mesh, const RenderOptions& options, const Camera& camera,
-                             const RayScene& scene, std::vector<double> scale_positions, bool per_face)
+                             const RayScene& scene, AttributeColors attribute)
     : mesh_(mesh),
       options_(options),
       camera_(camera),
-      scale_positions_(std::move(scale_positions)),
-      per_face_(per_face),
+      attribute_(std::move(attribute)),
       material_(linear_from_srgb(options.material)),
       background_(linear_from_srgb(options.background)),
       normals_(vertex_normals(mesh)) {
@@ -94,14 +93,21 @@ void SurfaceShader::measure_occlusion(const RayScene& scene) {
 }
 
 Vec3 SurfaceShader::base_color(const RayHit& hit, const Vec3& weights) const {
-  if (scale_positions_.empty()) return material_;
-  double t = 0;
-  if (per_face_) {
-    t = scale_positions_[hit.face];
+  const auto& [values, per_face, categories] = attribute_;
+  if (values.empty()) return material_;
+  const auto& face = mesh_.faces[hit.face];
+  double value = 0;
+  if (per_face) {
+    value = values[hit.face];
+  } else if (categories) {
+    Eigen::Index nearest = 0;
+    weights.maxCoeff(&nearest);
+    value = values[face[static_cast<std::size_t>(nearest)]];
   } else {
-    for (int i = 0; i < 3; ++i) t += weights[i] * scale_positions_[mesh_.faces[hit.face][static_cast<std::size_t>(i)]];
+    for (int i = 0; i < 3; ++i) value += weights[i] * values[face[static_cast<std::size_t>(i)]];
   }
-  return std::isnan(t) ? kNoValue : color_scale(t);
+  if (std::isnan(value)) return kNoValue;
+  return categories ? category_color(value) : color_scale(value);
 }
 
 // Edges are as wide everywhere in the picture; where triangles are hardly wider than the lines, the lines fade.
@@ -137,7 +143,7 @@ Vec3 SurfaceShader::shade(const RayHit& hit, const Ray& ray, const Vec2& pixel) 
   if (const double away = normal.dot(eye); away < 0) normal = (normal - away * eye).normalized();
 
   const bool marked = back && options_.highlight_back_faces;
-  const bool coloured = !scale_positions_.empty();
+  const bool coloured = !attribute_.values.empty();
   Vec3 color = marked ? kBackFace : base_color(hit, weights);
 
   double open = 1;

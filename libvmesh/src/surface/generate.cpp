@@ -4,9 +4,12 @@
 #include <optional>
 #include <sstream>
 
+#include <tbb/task_arena.h>
+
 #include "vmesh/core/error.h"
 
 #include "surface/bound_surface.h"
+#include "surface/buried_branches.h"
 #include "surface/guided_growth.h"
 #include "surface/optimize.h"
 #include "surface/paper_growth.h"
@@ -36,6 +39,7 @@ void check_options(const GenerateOptions& o) {
   if (!(o.max_center_distance > 0)) throw InvalidInput("max_center_distance must be > 0");
   if (o.sweeps < 0) throw InvalidInput("sweeps must be >= 0");
   if (o.max_vertices < 1) throw InvalidInput("max_vertices must be > 0");
+  if (o.threads < 0) throw InvalidInput("threads must be >= 0");
 }
 
 void check_size(const Centerline& centerline, const GenerateOptions& options) {
@@ -81,6 +85,10 @@ void add_warnings(const GuidedGrowthReport& growth, std::vector<std::string>& wa
     warnings.push_back("growth: " + std::to_string(growth.filled_loops) +
                        " loops of the centerline are too short to have a hole; the surface is filled there");
   }
+  if (growth.tangled_junctions > 0) {
+    warnings.push_back("growth: at " + std::to_string(growth.tangled_junctions) +
+                       " junctions faces intersect each other; more vertices around may help");
+  }
 }
 
 void add_warnings(const OptimizeReport& optimized, std::vector<std::string>& warnings) {
@@ -95,6 +103,18 @@ void add_warnings(const OptimizeReport& optimized, std::vector<std::string>& war
 
 std::string_view to_string(GrowthMethod method) { return method == GrowthMethod::paper ? "paper" : "guided"; }
 
+std::string_view to_string(GrowthSimplification::Kind kind) {
+  switch (kind) {
+    case GrowthSimplification::Kind::merged_nodes:
+      return "merged_nodes";
+    case GrowthSimplification::Kind::buried_branch:
+      return "buried_branch";
+    case GrowthSimplification::Kind::filled_loop:
+      break;
+  }
+  return "filled_loop";
+}
+
 GrowthMethod parse_growth_method(std::string_view text) {
   for (const GrowthMethod method : {GrowthMethod::guided, GrowthMethod::paper}) {
     if (text == to_string(method)) return method;
@@ -102,29 +122,84 @@ GrowthMethod parse_growth_method(std::string_view text) {
   throw InvalidInput("growth method \"" + std::string(text) + "\": must be guided or paper");
 }
 
+namespace {
+
+void optimize_grown(BoundSurface& surface, const GenerateOptions& options, double grown_around,
+                    const Progress& progress, GenerateResult& result) {
+  if (options.sweeps == 0) return;
+  const GrownMesh grown{grown_around, expected_vertices(surface.field.centerline(), options.around)};
+  add_warnings(optimize(surface, options, grown, progress), result.warnings);
+}
+
+void generate_paper(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
+                    GenerateResult& result) {
+  StageClock clock(result.stages);
+  std::optional<VesselField> field;
+  clock.time("volume", [&] { field.emplace(centerline, options.blend); });
+  BoundSurface surface(*field);
+  clock.time("grow", [&] { add_warnings(grow_from_single_seeds(surface, options.beta, progress), result.warnings); });
+  clock.time("optimize", [&] { optimize_grown(surface, options, kGrownAround, progress, result); });
+  surface.export_to(result);
+}
+
+// From numbers of the growth centerline to those of the full one.
+void renumber(const GrowthCenterline& growth, const Centerline& full, GenerateResult& result) {
+  if (growth.buried.empty()) return;
+  for (CenterlineBinding& binding : result.binding) binding.segment = growth.cone[binding.segment];
+  for (GrowthSimplification& note : result.growth.simplifications) {
+    for (Index& s : note.segments) s = growth.segment[s];
+    for (Index& n : note.nodes) n = growth.node[n];
+  }
+  for (const BuriedBranch& buried : growth.buried) {
+    const Index middle = buried.segments[buried.segments.size() / 2];
+    GrowthSimplification note{
+        GrowthSimplification::Kind::buried_branch, full.point_at(middle, 0.5), {}, buried.segments, {}};
+    std::ostringstream text;
+    text << "the branch of " << buried.segments.size() << " segments around segment " << middle << " at ("
+         << note.position.x() << ", " << note.position.y() << ", " << note.position.z()
+         << ") was left out: the other vessels cover it";
+    if (buried.closes_loop) text << ", and the loop that it closes";
+    note.message = text.str();
+    result.growth.simplifications.push_back(std::move(note));
+  }
+}
+
+void generate_guided(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
+                     GenerateResult& result) {
+  StageClock clock(result.stages);
+  std::optional<GrowthCenterline> growth;
+  std::optional<VesselField> field;
+  clock.time("volume", [&] {
+    field.emplace(centerline, options.blend);
+    growth.emplace(without_buried_branches(*field));
+    if (!growth->buried.empty()) field.emplace(growth->centerline, options.blend);
+  });
+  BoundSurface surface(*field);
+  clock.time("grow", [&] {
+    GuidedGrowthReport report = grow_guided(surface, options, progress);
+    add_warnings(report, result.warnings);
+    result.growth = std::move(report.summary);
+  });
+  clock.time("optimize", [&] { optimize_grown(surface, options, options.around, progress, result); });
+  surface.export_to(result);
+  renumber(*growth, centerline, result);
+}
+
+}  // namespace
+
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options,
                                 const Progress& progress) {
   check_options(options);
   check_size(centerline, options);
   GenerateResult result;
-  StageClock clock(result.stages);
-  std::optional<VesselField> field;
-  clock.time("volume", [&] { field.emplace(centerline, options.blend); });
-  BoundSurface surface(*field);
-  clock.time("grow", [&] {
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
     if (options.growth == GrowthMethod::paper) {
-      add_warnings(grow_from_single_seeds(surface, options.beta, progress), result.warnings);
+      generate_paper(centerline, options, progress, result);
     } else {
-      add_warnings(grow_guided(surface, options, progress), result.warnings);
+      generate_guided(centerline, options, progress, result);
     }
   });
-  clock.time("optimize", [&] {
-    if (options.sweeps == 0) return;
-    const GrownMesh grown{options.growth == GrowthMethod::paper ? kGrownAround : options.around,
-                          expected_vertices(centerline, options.around)};
-    add_warnings(optimize(surface, options, grown, progress), result.warnings);
-  });
-  surface.export_to(result);
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <mutex>
 #include <numbers>
+#include <sstream>
 
 #include <tbb/parallel_for.h>
 
@@ -143,6 +144,46 @@ std::vector<JunctionPiece> make_pieces(const VesselField& field, const std::vect
   return pieces;
 }
 
+std::string at(const Vec3& p) {
+  std::ostringstream text;
+  text << "(" << p.x() << ", " << p.y() << ", " << p.z() << ")";
+  return text.str();
+}
+
+// What growing this junction as one piece leaves out of the centerline's graph.
+void note_simplifications(const Centerline& centerline, const std::vector<BranchAxis>& axes, const Junction& junction,
+                          std::size_t filled_loops, std::vector<GrowthSimplification>& notes) {
+  GrowthSimplification note;
+  std::size_t inner_branches = 0;
+  note.nodes = junction.nodes;
+  for (const Gap& gap : junction.gaps) {
+    if (gap.openings[0].tube != kNone || gap.openings[1].tube != kNone) continue;
+    const auto& segments = axes[gap.branch].branch().segments;
+    note.segments.insert(note.segments.end(), segments.begin(), segments.end());
+    ++inner_branches;
+  }
+  double widest = 0;
+  for (const Index n : junction.nodes) {
+    if (centerline.node(n).radius <= widest) continue;
+    widest = centerline.node(n).radius;
+    note.position = centerline.node(n).position;
+  }
+  if (junction.nodes.empty()) note.position = axes[junction.gaps[0].branch].at(junction.gaps[0].begin).position;
+  if (junction.nodes.size() > 1) {
+    note.kind = GrowthSimplification::Kind::merged_nodes;
+    note.message = std::to_string(junction.nodes.size()) + " nodes around " + at(note.position) +
+                   " grew as one junction: nowhere between them does a vessel have a cross-section of its own; " +
+                   std::to_string(inner_branches) + " branches lie wholly within it";
+    notes.push_back(note);
+  }
+  if (filled_loops > 0) {
+    note.kind = GrowthSimplification::Kind::filled_loop;
+    note.message = std::to_string(filled_loops) + " loops around " + at(note.position) +
+                   " are too short to have a hole; the surface is filled there";
+    notes.push_back(note);
+  }
+}
+
 }  // namespace
 
 GuidedGrowthReport grow_guided(BoundSurface& surface, const GenerateOptions& options, const Progress& progress) {
@@ -153,20 +194,24 @@ GuidedGrowthReport grow_guided(BoundSurface& surface, const GenerateOptions& opt
   const GrowthSkeleton skeleton = make_growth_skeleton(field, axes, options.around);
 
   GuidedGrowthReport report;
+  GrowthSummary& summary = report.summary;
+  summary.junctions = skeleton.junctions.size();
+  summary.tubes = skeleton.tubes.size();
+  summary.components = skeleton.component_count();
+  summary.cycle_rank = skeleton.cycle_rank();
+
   Assembly assembly(skeleton);
   for (Index t = 0; t < skeleton.tubes.size(); ++t) assembly.add_tube(t);
-  for (const JunctionPiece& piece : make_pieces(field, axes, skeleton, options, progress)) {
-    report.cycle_rank += piece.handles;
-    report.tangled_junctions += piece.tangles > 0;
-    assembly.add_junction(piece);
+  const std::vector<JunctionPiece> pieces = make_pieces(field, axes, skeleton, options, progress);
+  for (std::size_t j = 0; j < pieces.size(); ++j) {
+    assembly.add_junction(pieces[j]);
+    summary.cycle_rank += pieces[j].handles;
+    report.filled_loops += pieces[j].filled_loops;
+    report.tangled_junctions += pieces[j].tangles > 0;
+    note_simplifications(field.centerline(), axes, skeleton.junctions[j], pieces[j].filled_loops,
+                         summary.simplifications);
   }
   assembly.build(surface);
-
-  report.junctions = skeleton.junctions.size();
-  report.tubes = skeleton.tubes.size();
-  report.components = skeleton.component_count();
-  report.cycle_rank += skeleton.cycle_rank();
-  report.filled_loops = field.centerline().cycle_rank() - report.cycle_rank;
   return report;
 }
 

@@ -7,10 +7,9 @@
 namespace vmesh {
 
 struct GuidedGrowthReport {
-  std::size_t junctions = 0, tubes = 0;
-  std::size_t components = 0, cycle_rank = 0;  ///< of the growth skeleton, and so of the surface
-  std::size_t filled_loops = 0;                ///< loops of the centerline too short to have a hole
-  std::size_t tangled_junctions = 0;           ///< with faces that intersect each other
+  GrowthSummary summary;         ///< with the numbers of the surface's own centerline; buried branches are not in it
+  std::size_t filled_loops = 0;  ///< loops of the centerline too short to have a hole
+  std::size_t tangled_junctions = 0;  ///< with faces that intersect each other
 };
 
 /// Grows a surface whose topology is that of the growth skeleton: tubes ring by ring where a vessel's cross-section is

@@ -1,6 +1,7 @@
 #include "surface/junction_growth.h"
 
 #include <map>
+#include <numbers>
 
 #include "surface/node_frame.h"
 #include "surface/optimize.h"
@@ -10,7 +11,7 @@ namespace vmesh {
 namespace {
 
 constexpr double kSpacing = 1;            // of the lattice, in the smallest radii ...
-constexpr double kFinestSpacing = 0.08;   // ... but at least in the largest
+constexpr double kMostPoints = 300'000;   // in the lattice, about
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
 constexpr double kShortestPiece = 0.3;    // radii between nodes of a junction's centerline: finer ones do not matter
 constexpr double kShortestRimEdge = 0.4;  // intended edges of the surface
@@ -84,13 +85,17 @@ Index widest_node(const Centerline& centerline) {
   return widest;
 }
 
+// As fine as the thinnest vessel asks for and the number of points allows.
 double lattice_spacing(const Centerline& centerline) {
-  double thinnest = std::numeric_limits<double>::infinity(), widest = 0;
+  double thinnest = std::numeric_limits<double>::infinity(), volume = 0;
   for (const auto& node : centerline.nodes()) {
     thinnest = std::min(thinnest, node.radius);
-    widest = std::max(widest, node.radius);
+    volume += 4.0 / 3 * std::numbers::pi * std::pow(node.radius, 3);
   }
-  return std::max(kSpacing * thinnest, kFinestSpacing * widest);
+  for (Index s = 0; s < centerline.segments().size(); ++s) {
+    volume += std::numbers::pi * std::pow(centerline.radius_at(s, 0.5), 2) * centerline.length(s);
+  }
+  return std::max(kSpacing * thinnest, std::cbrt(2 * volume / kMostPoints));  // two points to a cube
 }
 
 // The lattice's surface in a mesh that is bound to the field.

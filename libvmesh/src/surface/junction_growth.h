@@ -52,6 +52,8 @@ class JunctionGrowth {
 
   /// Loops of the centerline that the junction closes itself.
   std::size_t handles() const { return lattice_.handles; }
+  /// Loops that are too short to have a hole.
+  std::size_t filled_loops() const { return centerline_.cycle_rank() - lattice_.handles; }
   double length_in_radii() const { return centerline_.length_in_radii(); }
 
  private:

@@ -29,6 +29,7 @@ class PieceMaker {
     for (std::size_t i = 0; i < openings_.size(); ++i) dock(openings_[i], junction.rims[i]);
     JunctionPiece piece;
     piece.handles = growth_.handles();
+    piece.filled_loops = growth_.filled_loops();
     piece.tangles = finish();
     export_to(piece);
     return piece;

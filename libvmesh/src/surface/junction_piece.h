@@ -17,8 +17,9 @@ struct PieceVertex {
 struct JunctionPiece {
   std::vector<PieceVertex> vertices;
   std::vector<Triangle> faces;
-  std::size_t handles = 0;
-  std::size_t tangles = 0;  ///< vertices of faces that intersect each other within the piece
+  std::size_t handles = 0;       ///< loops of the centerline that the junction closes itself
+  std::size_t filled_loops = 0;  ///< loops that it does not
+  std::size_t tangles = 0;       ///< vertices of faces that intersect each other within the piece
 };
 
 /// Rings at the end of a tube that belong to the piece of the junction there and are replaced by it. The next one joins

@@ -12,11 +12,18 @@ constexpr double kOnBoundary = 1e-3;  // radii
 constexpr double kNearest = 0.5, kFarthest = 2;  // radii at which the boundary may lie
 constexpr double kFacing = 0.5;                  // cosine between ray and boundary normal
 constexpr double kOwnReach = 1.5;                // radii along the branch from which the boundary may come
-constexpr double kClearance = 1.35;              // radii around the axis at which no other vessel may be ...
-constexpr double kFreeSpace = 0.15;              // ... within this many radii
-constexpr int kDirections = 24;                  // in which that is looked at
-constexpr double kStraight = 1e-3;               // sine of an angle below which directions count as equal
-constexpr double kMinGap = 0.2;                  // pitches between two rings anywhere
+// Nothing else may come as close as `space` to the points `far` from the axis, both in radii, in kDirections
+// directions.
+struct Clearance {
+  double far, space;
+};
+constexpr Clearance kClearances[] = {{0, 0}, {0.5, 0}, {1, 0}, {1.35, 0.15}};
+constexpr double kNeighbourhood = 1.5;  // radii around the axis where that may fail
+constexpr int kDirections = 24;
+constexpr double kStraight = 1e-3;      // sine of an angle below which directions count as equal
+constexpr double kLongestSkip = 2.5;    // radii along the branch
+constexpr double kStraightSkip = 0.95;  // cosine
+constexpr double kMinGap = 0.2;         // pitches between two rings anywhere
 
 // Height of the band of triangles between two rings, in ring radii, when all its edges are as long as the ring's.
 double equilateral_height(int around) {
@@ -33,6 +40,14 @@ bool apart(const Ring& ring, const Ring& next, double gap) {
     if ((next.center - p.position).dot(next.normal) < gap * next.radius) return false;
   }
   return true;
+}
+
+// A short way along which the vessel hardly bends.
+bool is_straight_between(const Ring& ring, const Ring& next) {
+  const double along = next.place - ring.place;
+  const Vec3 chord = next.center - ring.center;
+  return along < kLongestSkip * std::max(ring.radius, next.radius) && chord.dot(ring.normal) > kStraightSkip * along &&
+         chord.dot(next.normal) > kStraightSkip * along;
 }
 
 }  // namespace
@@ -68,6 +83,7 @@ std::vector<Ring> RingLayer::lay(Index branch) const {
     collides[k] = collides[next] = 1;
   }
   for (std::size_t k = 0; k < rings.size(); ++k) rings[k].free = rings[k].free && !collides[k];
+  leave_out_steps(rings, kMinGap * pitch);
   clear_ends(branch, rings);
   return rings;
 }
@@ -78,6 +94,19 @@ CrossSection RingLayer::section(Index branch, double radii) const {
   const double place = axis.place_at_radii(radii);
   const auto point = axis.at(place);
   return {place, point.position, axis.direction(place, kSmoothing * point.radius), point.radius};
+}
+
+void RingLayer::leave_out_steps(std::vector<Ring>& rings, double least_gap) {
+  std::vector<Ring> kept;
+  for (std::size_t k = 0; k < rings.size();) {
+    kept.push_back(rings[k]);
+    std::size_t next = k + 1;
+    while (next < rings.size() && rings[next].clear && !rings[next].free) ++next;
+    const bool skip = rings[k].free && next < rings.size() && rings[next].free && next > k + 1 &&
+                      is_straight_between(rings[k], rings[next]) && apart(rings[k], rings[next], least_gap);
+    k = skip ? next : k + 1;
+  }
+  rings = std::move(kept);
 }
 
 void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings) const {
@@ -124,9 +153,10 @@ Vec3 RingLayer::reference(Index branch, const Vec3& normal) const {
 
 Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase) const {
   const BranchAxis::Point axis = axes_[branch].at(section.place);
-  Ring ring{section, {}, {}, false};
+  Ring ring{section, {}, {}, false, false};
   const Vec3 up = section.normal.cross(side);
-  if (!is_clear(branch, section, axis, side, up)) return ring;
+  ring.clear = is_clear(branch, section, axis, side, up);
+  if (!ring.clear) return ring;
   for (int j = 0; j < around_; ++j) {
     const double angle = 2 * std::numbers::pi * (j + phase) / around_;
     BoundaryPoint seen;
@@ -167,13 +197,16 @@ bool RingLayer::is_clear(Index branch, const CrossSection& section, const Branch
   std::vector<Index> others;
   for (const Index cone : field_.local_cones(axes_[branch].branch().segments[axis.piece])) {
     const FieldSample s = field_.sample_cone(section.center, cone);
-    if (s.distance < (kClearance + kFreeSpace) * section.radius && !is_own(branch, section, s)) others.push_back(cone);
+    if (s.distance < kNeighbourhood * section.radius && !is_own(branch, section, s)) others.push_back(cone);
   }
   for (int j = 0; j < kDirections && !others.empty(); ++j) {
     const double angle = 2 * std::numbers::pi * j / kDirections;
-    const Vec3 p = section.center + kClearance * section.radius * (std::cos(angle) * side + std::sin(angle) * up);
-    for (const Index cone : others) {
-      if (field_.sample_cone(p, cone).distance < kFreeSpace * section.radius) return false;
+    const Vec3 way = std::cos(angle) * side + std::sin(angle) * up;
+    for (const auto& [far, space] : kClearances) {
+      const Vec3 p = section.center + far * section.radius * way;
+      for (const Index cone : others) {
+        if (field_.sample_cone(p, cone).distance < space * section.radius) return false;
+      }
     }
   }
   return true;

@@ -20,8 +20,8 @@ struct CrossSection {
 struct Ring : CrossSection {
   std::vector<BoundaryPoint> points;
   std::array<CrossSection, 2> beside;  ///< half a step before and after it
-  /// The cross-section there belongs to this branch alone: nothing else covers it or comes close.
-  bool free = false;
+  bool clear = false;  ///< no other vessel, nor a far part of this one, covers the cross-section or comes close
+  bool free = false;   ///< clear, and the boundary is seen from the axis all around
 };
 
 /// Distance in radii between rings of `around` vertices whose band consists of nearly equilateral triangles.
@@ -35,7 +35,9 @@ struct SegmentPlace {
 
 /// Lays rings of `around` vertices along branches, evenly in units of the local radius, each turned half a step
 /// against the one before: bands of nearly equilateral triangles. The first and the last ring lie at the branch's ends.
-/// Where free rings begin or end off a tip, the cross-section half a step further is free as well.
+/// Rings that are clear but not free, for a step in the radius or a sharp bend, are left out where the band between
+/// their neighbours stays short. Where free rings begin or end off a tip, the cross-section half a step further is free
+/// as well.
 class RingLayer {
  public:
   RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes, const std::vector<SegmentPlace>& places,
@@ -47,6 +49,7 @@ class RingLayer {
   CrossSection section(Index branch, double radii) const;
   Vec3 reference(Index branch, const Vec3& normal) const;
   Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase) const;
+  static void leave_out_steps(std::vector<Ring>& rings, double least_gap);
   void clear_ends(Index branch, std::vector<Ring>& rings) const;
   // Whether no other vessel, nor a far part of this one, covers the cross-section or comes close.
   bool is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,

@@ -17,17 +17,22 @@ enum class CenterlineFormat {
   vtp,   ///< .vtp; lines with a radius per point; needs a build with VTK
   json,  ///< .json; schema "vmesh.centerline/1"
   csv,   ///< .csv; a pair of files, see csv_segments_path()
+  vmv,   ///< .vmv; VessMorphoVis: vertices `id x y z radius`, strands `id vertex vertex ...`; read only
+  vtk,   ///< .vtk; legacy VTK in text: POLYDATA with lines and a radius per point; read only
 };
 
 /// By the file's extension, upper or lower case. Throws Unsupported, with the extensions that are.
 CenterlineFormat centerline_format(const std::filesystem::path& path);
+
+/// The same for a file to be written; also throws Unsupported for formats that are read only.
+CenterlineFormat centerline_output_format(const std::filesystem::path& path);
 
 /// The second file of a CSV pair: tree.csv or tree.nodes.csv (header `id,x,y,z,radius`) goes with
 /// tree.segments.csv (header `a,b`, the ids of the nodes it joins).
 std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path);
 
 struct CenterlineReadOptions {
-  /// VTP: name of the point array that holds the radius. Empty: MaximumInscribedSphereRadius, Radius or radius.
+  /// VTP and VTK: name of the point array that holds the radius. Empty: MaximumInscribedSphereRadius, Radius or radius.
   std::string radius_array;
 };
 
@@ -66,8 +71,8 @@ struct CenterlineMetadata {
 
 /// Writes a centerline, in mm and LPS and saying so, by extension: JSON, SWC, VTP, CSV pair. Numbers round-trip
 /// exactly, the bytes depend on the arguments alone, and the file appears complete or not at all. Node order is kept.
-/// Throws Unsupported for a centerline with loops in SWC (a tree format), for an unknown extension, and for VTP without
-/// VTK; WriteError when the file cannot be written.
+/// Throws Unsupported for a centerline with loops in SWC (a tree format), see centerline_output_format(), and for VTP
+/// without VTK; WriteError when the file cannot be written.
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
                       const CenterlineMetadata& metadata = {});
 

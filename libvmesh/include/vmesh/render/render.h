@@ -46,6 +46,9 @@ struct RenderOptions {
 
   /// Attribute values at the ends of the colour scale; without it the smallest and the largest value.
   std::optional<std::pair<double, double>> range;
+  /// The values are labels without an order: each has a colour of its own, far from those of the next numbers. Labels
+  /// of vertices are not interpolated, and `range` does not matter. Colours come again after many labels.
+  bool categories = false;
 };
 
 /// Draws a mesh without a display, by casting rays. The same input gives the same picture.
@@ -56,8 +59,9 @@ Image render(const TriMesh& mesh, const RenderOptions& options = {});
 /// What an attribute has one value for.
 enum class AttributeDomain { vertex, face };
 
-/// The same, coloured by an attribute, from dark blue (low) to yellow (high), with a legend. NaN is drawn grey. Throws
-/// InvalidInput also when there is not one value per vertex or face, or when none is finite and no range is given.
+/// The same, coloured by an attribute, from dark blue (low) to yellow (high) or by category, with a legend. NaN is
+/// drawn grey. Throws InvalidInput also when there is not one value per vertex or face, or when none is finite and no
+/// range is given.
 Image render(const TriMesh& mesh, const MeshAttribute& attribute, AttributeDomain domain,
              const RenderOptions& options = {});
 

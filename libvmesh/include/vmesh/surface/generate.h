@@ -33,6 +33,8 @@ struct GenerateOptions {
   /// A centerline whose length and radii ask for more vertices than this is refused.
   int max_vertices = 20'000'000;
   GrowthMethod growth = GrowthMethod::guided;
+  /// Threads to work on; 0: as many as the machine has. The result does not depend on it.
+  int threads = 0;
 };
 
 /// Where on the centerline a surface vertex belongs: segment and parameter in [0, 1] from its node a to its node b.
@@ -48,11 +50,39 @@ struct StageTime {
   double seconds = 0;
 };
 
+/// Something that guided growth did to the graph that steers it. The volume keeps the centerline as it is.
+struct GrowthSimplification {
+  enum class Kind {
+    merged_nodes,   ///< branching nodes whose surroundings overlap grew as one junction
+    buried_branch,  ///< a branch that never leaves the volume of the others was left out
+    filled_loop     ///< a loop too short to have a hole was filled
+  };
+
+  Kind kind;
+  Vec3 position = Vec3::Zero();  ///< of the widest node, or in the middle of the branch
+  std::vector<Index> nodes;      ///< of the centerline
+  std::vector<Index> segments;   ///< of the centerline; for merged_nodes those of branches wholly within the junction
+  std::string message;           ///< what was done, where and why
+};
+
+/// "merged_nodes", "buried_branch", "filled_loop".
+std::string_view to_string(GrowthSimplification::Kind kind);
+
+/// The graph that steered guided growth: junctions joined by tubes. The surface has its topology.
+struct GrowthSummary {
+  std::size_t junctions = 0;
+  std::size_t tubes = 0;
+  std::size_t components = 0;
+  std::size_t cycle_rank = 0;  ///< the genus of the surface
+  std::vector<GrowthSimplification> simplifications;
+};
+
 /// A generated surface. What went wrong is data, never hidden: see `warnings`.
 struct GenerateResult {
   TriMesh mesh;
   std::vector<CenterlineBinding> binding;  ///< one per vertex
   std::vector<double> radius;              ///< local vessel radius at every vertex's binding (mm)
+  GrowthSummary growth;                    ///< of guided growth; empty after paper growth
   std::vector<StageTime> stages;
   std::vector<std::string> warnings;
 };

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "vmesh/centerline/centerline.h"
+#include "vmesh/mesh/tri_mesh.h"
+#include "vmesh/surface/generate.h"
+
+namespace vmesh {
+
+/// Which branch of a centerline the parts of its surface belong to. A label is an index into find_branches(); isolated
+/// node i of the centerline (a sphere, which is no branch) has the label find_branches().size() + its rank among
+/// isolated nodes, as CenterlineBinding counts segments.
+struct BranchLabels {
+  std::vector<Index> vertex;  ///< one per vertex: the branch of the segment it is bound to
+  std::vector<Index> face;    ///< one per face: the label that most of its corners have
+};
+
+/// Labels a surface that was grown around `centerline`; `binding` has one entry per vertex of `mesh`. A face whose
+/// three corners differ gets the lowest of their labels, which in canonical order (see CleaningOptions) is the branch
+/// nearest to the root. Throws InvalidInput when `binding` is not as long as the vertices or names a segment that does
+/// not exist.
+BranchLabels label_branches(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
+                            const Centerline& centerline);
+
+}  // namespace vmesh

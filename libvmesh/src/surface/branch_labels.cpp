@@ -1,0 +1,50 @@
+#include "vmesh/surface/branch_labels.h"
+
+#include <algorithm>
+
+#include "vmesh/centerline/branches.h"
+#include "vmesh/core/error.h"
+
+namespace vmesh {
+namespace {
+
+/// The label of every segment, and of every isolated node behind them.
+std::vector<Index> labels_of_bindings(const Centerline& centerline) {
+  const std::vector<Branch> branches = find_branches(centerline);
+  std::vector<Index> labels(centerline.segments().size(), kNone);
+  for (Index b = 0; b < branches.size(); ++b) {
+    for (const Index s : branches[b].segments) labels[s] = b;
+  }
+  auto next = static_cast<Index>(branches.size());
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    if (centerline.degree(n) == 0) labels.push_back(next++);
+  }
+  return labels;
+}
+
+Index most_frequent(Index a, Index b, Index c) { return b == c ? b : a == b || a == c ? a : std::min({a, b, c}); }
+
+}  // namespace
+
+BranchLabels label_branches(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
+                            const Centerline& centerline) {
+  if (binding.size() != mesh.vertices.size()) {
+    throw InvalidInput("branch labels: there are " + std::to_string(mesh.vertices.size()) + " vertices and " +
+                       std::to_string(binding.size()) + " bindings; every vertex needs one");
+  }
+  const std::vector<Index> label_of = labels_of_bindings(centerline);
+  BranchLabels labels;
+  for (std::size_t v = 0; v < binding.size(); ++v) {
+    if (binding[v].segment >= label_of.size()) {
+      throw InvalidInput("branch labels: vertex " + std::to_string(v) + " is bound to segment " +
+                         std::to_string(binding[v].segment) + ", which the centerline does not have");
+    }
+    labels.vertex.push_back(label_of[binding[v].segment]);
+  }
+  for (const auto& [a, b, c] : mesh.faces) {
+    labels.face.push_back(most_frequent(labels.vertex[a], labels.vertex[b], labels.vertex[c]));
+  }
+  return labels;
+}
+
+}  // namespace vmesh

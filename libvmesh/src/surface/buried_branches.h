@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "vmesh/volume/vessel_field.h"
+
+namespace vmesh {
+
+/// A branch that was left out of growth because the other vessels cover it.
+struct BuriedBranch {
+  std::vector<Index> segments;  ///< of the full centerline
+  bool closes_loop = false;     ///< it joined two places that are joined without it
+};
+
+/// What is left of a centerline without its buried branches.
+struct GrowthCenterline {
+  Centerline centerline;
+  std::vector<Index> node;     ///< of the full centerline, for every node
+  std::vector<Index> segment;  ///< of the full centerline, for every segment
+  std::vector<Index> cone;     ///< of the full field, for every cone of the new one
+  std::vector<BuriedBranch> buried;
+};
+
+/// Leaves out branches that the others cover, thinnest first: a branch with an end, or one that closes a loop. It is
+/// covered if every piece of it lies in a single round cone of what is left, apart from a tenth of its radius: round
+/// cones are convex, so two spheres within one have all that is between them within it. The volume is the same up to
+/// that tenth; components never change.
+GrowthCenterline without_buried_branches(const VesselField& field);
+
+}  // namespace vmesh
