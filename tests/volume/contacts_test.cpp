@@ -414,20 +414,25 @@ TEST(Separation, OfRandomForestsLeavesNothingUnsaid) {
 // A thin vessel lies in the crotch of a fork, which the blend fills.
 TEST(Separation, MindsTheRoundingAtBranches) {
   const Centerline y = fork(60, 1, 30);
-  CenterlineBuilder builder{y.nodes(), y.segments()};
-  add_vessel(builder, {0, -12, 2.55}, {0, 12, 2.55}, 0.2, 12);
-  const Centerline centerline = builder.build();
-  for (const double blend : {0.0, 0.5}) {
-    SeparationOptions options;
-    options.blend = blend;
-    const SeparatedCenterline separated = separate_contacts(centerline, options);
-    EXPECT_TRUE(separated.report.left.empty());
-    EXPECT_EQ(separated.report.before.empty(), blend == 0);
-    const VesselField field(separated.centerline, blend);
-    for (Index s = 0; s < separated.pieces.size(); ++s) {
-      if (separated.pieces[s].segment < y.segments().size()) continue;
-      for (const double t : {0.0, 0.5, 1.0}) {  // a local query from the fork does not see the thin vessel
-        EXPECT_GT(field.sample(field.axis_point(s, t), 0).distance, 1.05 * field.radius_at(s, t));
+  for (const double radius : {0.4, 0.2, 0.05}) {
+    // Leaves 0.3 of its radius to either daughter.
+    const double z = 2 * (1 + 1.3 * radius);
+    CenterlineBuilder builder{y.nodes(), y.segments()};
+    add_vessel(builder, {0, -12, z}, {0, 12, z}, radius, 12);
+    const Centerline centerline = builder.build();
+    for (const double blend : {0.0, 0.5}) {
+      SeparationOptions options;
+      options.blend = blend;
+      const SeparatedCenterline separated = separate_contacts(centerline, options);
+      EXPECT_TRUE(separated.report.left.empty());
+      EXPECT_EQ(separated.report.before.empty(), blend == 0);
+      const VesselField field(separated.centerline, blend);
+      for (Index s = 0; s < separated.pieces.size(); ++s) {
+        if (separated.pieces[s].segment < y.segments().size()) continue;
+        for (const double t : {0.0, 0.5, 1.0}) {  // a local query from the fork does not see the thin vessel
+          EXPECT_GT(field.sample(field.axis_point(s, t), 0).distance, 1.05 * field.radius_at(s, t))
+              << radius << ", " << blend;
+        }
       }
     }
   }

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kSectionSteps = 48;  // 0.618^48 = 1e-10 of the axis
 // Vessels that part have a wall of their own from 1.25 times the sum of their radii on (kTouch). Spheres half a radius
-// apart stand for them there, which costs a little of that: this much is always left, in smaller radii.
-constexpr double kForkGap = 0.4;
+// apart stand for them there, which costs a little of the quarter: this much is always left, in sums of radii.
+constexpr double kForkGap = 0.2;
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
 // The sphere of a cone that is closest to a point, for radii that count `weight` times.
@@ -99,27 +99,29 @@ struct Box {
   Vec3 low, high;
 };
 
-Box box_of(const AxisStretch& cone) {
+// Of the cone and what is within `margin` larger radii around it.
+Box box_of(const AxisStretch& cone, double margin) {
   const Vec3 end = cone.origin + cone.axis;
   Box box{(cone.origin.array() - cone.r0).min(end.array() - cone.r1),
           (cone.origin.array() + cone.r0).max(end.array() + cone.r1)};
-  const double margin = kRounding * box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
-  box.low.array() -= margin;
-  box.high.array() += margin;
+  const double size = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
+  const double around = margin * std::max(cone.r0, cone.r1) + kRounding * size;
+  box.low.array() -= around;
+  box.high.array() += around;
   return box;
 }
 
+// Besides the gap, vessels must leave room for what the blend adds to either: at most half of it in radii of the
+// vessel.
 class PairFinder {
  public:
-  PairFinder(const VesselField& field, double gap) : field_(field), gap_(gap) {
-    // A wall comes out by at most a quarter of the blend's width, and that is at most 2 blend smaller radii, on either
-    // side.
-    reach_ = gap + field.blend();
-    if (gap > kForkGap) parting_ = local_pairs(field.centerline(), 1.05 + gap / 2);
+  PairFinder(const VesselField& field, double gap)
+      : field_(field), gap_(gap), most_rounding_(std::min(field.blend() / 2, kForkGap)) {
+    if (gap > 2 * kForkGap) parting_ = local_pairs(field.centerline(), 1.05 + gap / 2);
     for (Index c = 0; c < field.cone_count(); ++c) cones_.push_back(stretch_of(field, c));
     std::vector<Vec3> low, high;
     for (const AxisStretch& cone : cones_) {
-      const Box box = box_of(cone);
+      const Box box = box_of(cone, most_rounding_);
       low.push_back(box.low);
       high.push_back(box.high);
     }
@@ -128,10 +130,7 @@ class PairFinder {
 
   std::vector<ContactPair> run() {
     for (Index i = 0; i < cones_.size(); ++i) {
-      Box box = box_of(cones_[i]);
-      const double margin = reach_ * std::max(cones_[i].r0, cones_[i].r1);
-      box.low.array() -= margin;
-      box.high.array() += margin;
+      const Box box = box_of(cones_[i], gap_ + most_rounding_);
       near_.clear();
       tree_.visit_overlapping(box.low, box.high, [&](Index j) {
         if (j > i) near_.push_back(j);
@@ -151,19 +150,20 @@ class PairFinder {
   bool out_of_reach(Index i, Index j) const {
     const AxisStretch &a = cones_[i], &b = cones_[j];
     const double ra = std::max(a.r0, a.r1), rb = std::max(b.r0, b.r1);
-    const double reach = (a.axis.norm() + b.axis.norm()) / 2 + ra + rb + reach_ * std::min(ra, rb);
+    const double reach =
+        (a.axis.norm() + b.axis.norm()) / 2 + (1 + most_rounding_) * (ra + rb) + gap_ * std::min(ra, rb);
     return (a.point(0.5) - b.point(0.5)).squaredNorm() > reach * reach * (1 + kRounding);
   }
 
   void examine(Index i, Index j) {
     if (out_of_reach(i, j) || is_local(i, j)) return;
-    const double gap = parting_.contains(i, j) ? std::min(gap_, kForkGap) : gap_;
+    const double gap = parting_.contains(i, j) ? std::min(gap_, 2 * kForkGap) : gap_;
     ContactPair pair{i, j, gap, closest_approach(cones_[i], cones_[j], gap), kNone};
-    const double r = cones_[i].radius(pair.closest.s), q = cones_[j].radius(pair.closest.t);
-    const double smaller = std::min(r, q);
-    if (pair.closest.excess >= field_.blend() * smaller) return;
-    if (pair.closest.excess >= 0 && field_.blend() > 0) {
-      pair.gap = std::min(gap + rounding(pair) / smaller, std::max(gap, kForkGap / 2 * (r + q) / smaller));
+    if (pair.closest.excess >= 0) {
+      const double r = cones_[i].radius(pair.closest.s), q = cones_[j].radius(pair.closest.t);
+      if (pair.closest.excess >= most_rounding_ * (r + q)) return;
+      const double most = std::max(gap, kForkGap * (r + q) / std::min(r, q));
+      pair.gap = std::min(gap + rounding(pair) / std::min(r, q), most);
       pair.closest = closest_approach(cones_[i], cones_[j], pair.gap);
     }
     if (pair.closest.excess < 0) pairs_.push_back(pair);
@@ -195,7 +195,7 @@ class PairFinder {
   }
 
   const VesselField& field_;
-  double gap_, reach_;
+  double gap_, most_rounding_;
   PairSet parting_;  // close along the graph in a wider sense: at a fork that a wide gap finds still open
   std::vector<AxisStretch> cones_;
   BoxTree tree_;

@@ -116,6 +116,29 @@ void Narrowing::let_shares_return(Posts& posts) const {
   }
 }
 
+std::vector<Narrowing::InnerNode> Narrowing::inner_nodes(Index segment, const Posts& posts) const {
+  std::vector<InnerNode> inner;
+  const auto& line = posts.on_segment[segment];
+  for (std::size_t n = 1; n < line.size(); ++n) {
+    const Post &p = line[n - 1], &q = line[n];
+    const double shares[2] = {posts.shares[p.place], posts.shares[q.place]};
+    if (std::min(shares[0], shares[1]) < 1 && !is_held_leaf(segment, p, q)) {
+      const Stretch stretch{
+          length_between(segment, p, q), {radius_at(segment, p), radius_at(segment, q)}, {shares[0], shares[1]}};
+      for (const auto& [fraction, radius] : bends_of(stretch, taper_))
+        inner.push_back({p.t + fraction * (q.t - p.t), radius});
+    }
+    if (n + 1 < line.size()) inner.push_back({q.t, shares[1] * radius_at(segment, q)});
+  }
+  return inner;
+}
+
+bool Narrowing::is_held_leaf(Index segment, const Post& p, const Post& q) const {
+  const auto first = static_cast<Index>(std::lround(p.t * leaf_counts_[segment]));
+  const auto last = static_cast<Index>(std::lround(q.t * leaf_counts_[segment]));
+  return last == first + 1 && held_leaves_.contains({segment, first});
+}
+
 NarrowedCenterline Narrowing::apply() const {
   Posts posts = plant_posts();
   let_shares_return(posts);
@@ -124,34 +147,20 @@ NarrowedCenterline Narrowing::apply() const {
   std::vector<CenterlineSegment> segments;
   std::vector<SegmentPiece> pieces;
   for (Index s = 0; s < posts.on_segment.size(); ++s) {
-    const auto& line = posts.on_segment[s];
-    Index last = line.front().place;
-    double last_t = 0;
+    const auto& [a, b] = original_->segment(s);
+    SegmentPiece piece{s, 0, 0};
+    Index last = a;
     const auto join = [&](Index node, double t) {
+      piece = {s, piece.t_last, t};
+      pieces.push_back(piece);
       segments.push_back({last, node});
-      pieces.push_back({s, last_t, t});
       last = node;
-      last_t = t;
     };
-    const auto add = [&](double t, double radius) {
-      nodes.push_back({original_->point_at(s, t), radius});
-      join(static_cast<Index>(nodes.size() - 1), t);
-    };
-    for (std::size_t n = 1; n < line.size(); ++n) {
-      const Post &p = line[n - 1], &q = line[n];
-      const double shares[2] = {posts.shares[p.place], posts.shares[q.place]};
-      const auto leaf = static_cast<Index>(std::lround(p.t * leaf_counts_[s]));
-      const bool is_leaf = std::lround(q.t * leaf_counts_[s]) == leaf + 1;
-      if (std::min(shares[0], shares[1]) < 1 && !(is_leaf && held_leaves_.contains({s, leaf}))) {
-        const Stretch stretch{length_between(s, p, q), {radius_at(s, p), radius_at(s, q)}, {shares[0], shares[1]}};
-        for (const auto& [fraction, radius] : bends_of(stretch, taper_)) add(p.t + fraction * (q.t - p.t), radius);
-      }
-      if (n + 1 == line.size()) {
-        join(original_->segment(s).b, 1);
-      } else {
-        add(q.t, shares[1] * radius_at(s, q));
-      }
+    for (const InnerNode& inner : inner_nodes(s, posts)) {
+      nodes.push_back({original_->point_at(s, inner.t), inner.radius});
+      join(static_cast<Index>(nodes.size() - 1), inner.t);
     }
+    join(b, 1);
   }
   return {Centerline(std::move(nodes), std::move(segments)), std::move(pieces)};
 }

@@ -40,8 +40,15 @@ class Narrowing {
     std::vector<double> shares;                 // of all nodes, then of the leaf ends
   };
 
+  struct InnerNode {
+    double t, radius;
+  };
+
   Posts plant_posts() const;
   void let_shares_return(Posts& posts) const;
+  // The nodes between the ends of a segment, in order.
+  std::vector<InnerNode> inner_nodes(Index segment, const Posts& posts) const;
+  bool is_held_leaf(Index segment, const Post& p, const Post& q) const;
   double radius_at(Index segment, const Post& post) const { return original_->radius_at(segment, post.t); }
   double length_between(Index segment, const Post& p, const Post& q) const {
     return (q.t - p.t) * original_->length(segment);
