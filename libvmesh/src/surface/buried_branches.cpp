@@ -8,9 +8,11 @@
 namespace vmesh {
 namespace {
 
-constexpr double kPiece = 0.5;    // radii: length of the pieces that have to lie in one cone each
-constexpr double kSlack = 0.1;    // radii that a piece may stand out
-constexpr int kMaxPieces = 2000;  // per segment; a hair that long is not buried, or not worth finding out
+constexpr double kPiece = 0.5;         // radii: length of the pieces that have to lie in one cone each
+constexpr double kSlack = 0.1;         // radii that a piece may stand out
+constexpr double kNeedle = 0.5;        // of a sphere's radius: thinner spheres may stand out of it ...
+constexpr double kNeedleSlack = 0.05;  // ... by this part of it where a branch ends
+constexpr int kMaxPieces = 2000;       // per segment; a hair that long is not buried, or not worth finding out
 
 class Burial {
  public:
@@ -53,7 +55,8 @@ class Burial {
 
   bool sphere_within(Index inner, Index outer) const {
     const auto &a = centerline_.node(inner), &b = centerline_.node(outer);
-    return (a.position - b.position).norm() + a.radius <= b.radius;
+    const double slack = a.radius < kNeedle * b.radius ? kNeedleSlack * b.radius : 0;
+    return (a.position - b.position).norm() + a.radius <= b.radius + slack;
   }
 
   Index first_left(Index node, Index other_than) const {

@@ -20,6 +20,8 @@ struct Clearance {
 constexpr Clearance kClearances[] = {{0, 0}, {0.5, 0}, {1, 0}, {1.35, 0.15}};
 constexpr double kNeighbourhood = 1.5;  // radii around the axis where that may fail
 constexpr int kDirections = 24;
+constexpr int kPlacesThrough = 6;
+constexpr double kThrough = 0.3;        // cosine between the vessel's way and the normal of its cross-section
 constexpr double kStraight = 1e-3;      // sine of an angle below which directions count as equal
 constexpr double kLongestSkip = 2.5;    // radii along the branch
 constexpr double kStraightSkip = 0.95;  // cosine
@@ -155,7 +157,7 @@ Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& s
   const BranchAxis::Point axis = axes_[branch].at(section.place);
   Ring ring{section, {}, {}, false, false};
   const Vec3 up = section.normal.cross(side);
-  ring.clear = is_clear(branch, section, axis, side, up);
+  ring.clear = goes_through(branch, section) && is_clear(branch, section, axis, side, up);
   if (!ring.clear) return ring;
   for (int j = 0; j < around_; ++j) {
     const double angle = 2 * std::numbers::pi * (j + phase) / around_;
@@ -192,12 +194,32 @@ bool RingLayer::is_own(Index branch, const CrossSection& section, const FieldSam
   return axis.apart(axis.place_of(at.piece, sample.t), section.place) <= kOwnReach * section.radius;
 }
 
+// Whether the vessel comes from behind the plane and goes on before it, as far as it counts as the section's own.
+bool RingLayer::goes_through(Index branch, const CrossSection& section) const {
+  const BranchAxis& axis = axes_[branch];
+  for (int k = 1; k <= kPlacesThrough; ++k) {
+    const double reach = kOwnReach * section.radius * k / kPlacesThrough;
+    for (const double way : {-1.0, 1.0}) {
+      const double place = section.place + way * reach;
+      if (!axis.periodic() && (place < 0 || place > axis.length())) continue;
+      if (way * (axis.at(place).position - section.center).dot(section.normal) < kThrough * reach) return false;
+    }
+  }
+  return true;
+}
+
+// Whether `cone` reaches beyond what counts as the section's own part of the branch.
+bool RingLayer::may_be_foreign(Index branch, const CrossSection& section, Index cone) const {
+  return !is_own(branch, section, {0, {}, cone, 0}) || !is_own(branch, section, {0, {}, cone, 1});
+}
+
 bool RingLayer::is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
                          const Vec3& up) const {
+  const Index segment = axes_[branch].branch().segments[axis.piece];
   std::vector<Index> others;
-  for (const Index cone : field_.local_cones(axes_[branch].branch().segments[axis.piece])) {
-    const FieldSample s = field_.sample_cone(section.center, cone);
-    if (s.distance < kNeighbourhood * section.radius && !is_own(branch, section, s)) others.push_back(cone);
+  for (const Index cone : field_.local_cones(segment)) {
+    if (cone == segment || !may_be_foreign(branch, section, cone)) continue;
+    if (field_.sample_cone(section.center, cone).distance < kNeighbourhood * section.radius) others.push_back(cone);
   }
   for (int j = 0; j < kDirections && !others.empty(); ++j) {
     const double angle = 2 * std::numbers::pi * j / kDirections;
@@ -205,7 +227,8 @@ bool RingLayer::is_clear(Index branch, const CrossSection& section, const Branch
     for (const auto& [far, space] : kClearances) {
       const Vec3 p = section.center + far * section.radius * way;
       for (const Index cone : others) {
-        if (field_.sample_cone(p, cone).distance < space * section.radius) return false;
+        const FieldSample s = field_.sample_cone(p, cone);
+        if (s.distance < space * section.radius && !is_own(branch, section, s)) return false;
       }
     }
   }

@@ -54,6 +54,8 @@ class RingLayer {
   // Whether no other vessel, nor a far part of this one, covers the cross-section or comes close.
   bool is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
                 const Vec3& up) const;
+  bool goes_through(Index branch, const CrossSection& section) const;
+  bool may_be_foreign(Index branch, const CrossSection& section, Index cone) const;
   bool is_own(Index branch, const CrossSection& section, const FieldSample& sample) const;
   // The boundary point seen from `center` in direction `way`; false if it does not belong to the place alone.
   bool see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way, BoundaryPoint& seen) const;
