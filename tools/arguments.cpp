@@ -16,7 +16,8 @@ namespace {
 constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate tree.swc -o tree.ply
   vmesh generate tree.vtp -o tree.vtp --around 8 --blend 0.8 --json summary.json
-  vmesh generate network.csv -o network.stl --unit um --check)";
+  vmesh generate network.csv -o network.stl --unit um --check
+  vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
   vmesh info tree.ply --json -
@@ -102,6 +103,17 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
       ->type_name("all|N,N,...");
   verb.add_option("--threads", arguments.options.threads, "to work on; 0: as many as there are; the result is the same")
       ->check(in_range(0, 4096))
+      ->capture_default_str();
+  verb.add_option_function<std::string>(
+          "--overlap",
+          [&arguments](const std::string& text) {
+            arguments.overlap = text == "separate" ? OverlapHandling::separate : OverlapHandling::keep;
+          },
+          "where vessels touch that are not neighbours: keep their radii, or separate them by narrowing")
+      ->check(CLI::IsMember({"keep", "separate"}))
+      ->default_str("keep");
+  verb.add_option("--gap", arguments.gap, "free space between vessels below which they touch, in smaller radii")
+      ->check(in_range(0.001, 1.0))
       ->capture_default_str();
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
@@ -191,6 +203,10 @@ void add_render(CLI::App& app, RenderArguments& arguments) {
 }
 
 }  // namespace
+
+std::string_view to_string(OverlapHandling overlap) {
+  return overlap == OverlapHandling::separate ? "separate" : "keep";
+}
 
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int& exit_code) {
   CLI::App app("vmesh turns vessel centerlines into surfaces.", "vmesh");

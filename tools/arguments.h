@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 
 #include "vmesh/centerline/raw_centerline.h"
@@ -26,11 +27,18 @@ struct InputArguments {
   std::optional<Space> space;
 };
 
+/// What is done about vessels that touch without being neighbours: nothing, or they are narrowed until they do not.
+enum class OverlapHandling { keep, separate };
+
+std::string_view to_string(OverlapHandling overlap);
+
 struct GenerateArguments {
   CommonArguments common;
   InputArguments input;
   std::filesystem::path output;
   GenerateOptions options;
+  OverlapHandling overlap = OverlapHandling::keep;
+  double gap = 0.1;    ///< vessels closer than this times the smaller radius count as touching
   bool check = false;  ///< exit code 1 unless the surface is flawless
 };
 

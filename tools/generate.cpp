@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "vmesh/io/sha256.h"
 #include "vmesh/surface/branch_labels.h"
 #include "vmesh/volume/vessel_field.h"
@@ -17,6 +19,8 @@ std::string number(double value, int digits = 3) {
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
 }
+
+std::string percent(double share) { return number(100 * share, 0) + " %"; }
 
 MeshAttribute branch_attribute(const std::vector<Index>& labels) {
   return {"branch", {labels.begin(), labels.end()}, true};
@@ -61,6 +65,10 @@ void log_result(const GenerateReport& report, Console& console) {
   console.log("wrote " + report.arguments->output.string() + " after " + number(total, 2) + " s");
 }
 
+std::string places(const std::vector<Contact>& contacts) {
+  return std::to_string(contacts.size()) + (contacts.size() == 1 ? " place" : " places");
+}
+
 void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
   list.insert(list.end(), more.begin(), more.end());
 }
@@ -79,6 +87,71 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
   return loaded;
 }
 
+/// Finds where vessels touch and, when asked to, narrows them. Without a value the vessels stay as they are.
+std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, Console& console) {
+  const GenerateArguments& arguments = *report.arguments;
+  const Centerline& centerline = report.cleaned->centerline;
+  const auto warn = [&](const std::string& line) {
+    console.warn(line);
+    report.warnings.push_back(line);
+  };
+  if (arguments.overlap == OverlapHandling::keep) {
+    report.contacts = find_contacts(VesselField(centerline, arguments.options.blend), arguments.gap);
+    if (report.contacts.empty()) return std::nullopt;
+    warn("vessels that are not neighbours touch in " + places(report.contacts) + ", the deepest " +
+         describe(report.contacts.front()) +
+         "; there the surface may intersect itself (--overlap separate narrows them)");
+    return std::nullopt;
+  }
+  SeparationOptions options;
+  options.gap = arguments.gap;
+  options.blend = arguments.options.blend;
+  SeparatedCenterline separated = separate_contacts(centerline, options, console.progress());
+  const SeparationReport& separation = separated.report;
+  report.contacts = separation.before;
+  if (separation.nodes_narrowed > 0) {
+    console.log("vessels that are not neighbours touched in " + places(separation.before) + "; " +
+                std::to_string(separation.nodes_narrowed) + " nodes were narrowed, by " +
+                percent(separation.mean_taken_relative) + " of the radius in the mean, " +
+                percent(separation.max_taken_relative) + " (" + number(separation.max_taken) + " mm) at most");
+  }
+  constexpr std::size_t kNamed = 5;
+  for (std::size_t c = 0; c < std::min(kNamed, separation.left.size()); ++c) {
+    warn("vessels still touch " + describe(separation.left[c]) +
+         "; narrowing cannot part them: move the nodes of one, or join them if they are one vessel");
+  }
+  if (separation.left.size() > kNamed)
+    warn("vessels still touch in " + places(separation.left) + "; the summary lists them");
+  report.separation = separation;
+  return separated;
+}
+
+/// A binding to segments of a narrowed centerline, as one to those of the original.
+std::vector<CenterlineBinding> original_binding(const std::vector<CenterlineBinding>& binding,
+                                                const SeparatedCenterline& separated, const Centerline& original) {
+  std::vector<CenterlineBinding> result;
+  result.reserve(binding.size());
+  for (const auto& [segment, t] : binding) {
+    if (segment < separated.pieces.size()) {
+      const SegmentPiece& piece = separated.pieces[segment];
+      result.push_back({piece.segment, piece.original_t(t)});
+    } else {  // an isolated node
+      result.push_back({static_cast<Index>(segment - separated.pieces.size() + original.segments().size()), t});
+    }
+  }
+  return result;
+}
+
+/// Nodes and segments of a narrowed centerline, as those of the original; nodes that were added are left out.
+void renumber(GrowthSummary& growth, const SeparatedCenterline& separated, const Centerline& original) {
+  for (GrowthSimplification& note : growth.simplifications) {
+    std::erase_if(note.nodes, [&](Index n) { return n >= original.nodes().size(); });
+    for (Index& s : note.segments) s = separated.pieces[s].segment;
+    std::sort(note.segments.begin(), note.segments.end());
+    note.segments.erase(std::unique(note.segments.begin(), note.segments.end()), note.segments.end());
+  }
+}
+
 GenerateResult grow(const Centerline& centerline, const GenerateArguments& arguments, Console& console) {
   try {
     return generate_surface(centerline, arguments.options, console.progress());
@@ -87,13 +160,13 @@ GenerateResult grow(const Centerline& centerline, const GenerateArguments& argum
   }
 }
 
-/// Fills in what is measured of the surface and what is wrong with it.
-void measure(GenerateReport& report, Console& console) {
+/// Fills in what is measured of the surface around `grown` and what is wrong with it.
+void measure(GenerateReport& report, const Centerline& grown, Console& console) {
   const Centerline& centerline = report.cleaned->centerline;
   const GenerateResult& result = *report.result;
   report.measurement = measure_surface(result);
   stop_if_interrupted();
-  const VesselField field(centerline, report.arguments->options.blend);
+  const VesselField field(grown, report.arguments->options.blend);
   report.deviation = measure_deviation(result.mesh, result.binding, field);
   stop_if_interrupted();
   report.nodes_inside = count_nodes_inside(centerline, result);
@@ -105,9 +178,8 @@ void measure(GenerateReport& report, Console& console) {
 
 void write(const GenerateReport& report) {
   const GenerateArguments& arguments = *report.arguments;
-  write_surface(
-      arguments.output, report.result->mesh, attributes_of(*report.result, report.cleaned->centerline),
-      {generator_name(), describe(arguments.options), arguments.input.path.filename().string(), report.input_sha256});
+  write_surface(arguments.output, report.result->mesh, attributes_of(*report.result, report.cleaned->centerline),
+                {generator_name(), describe(arguments), arguments.input.path.filename().string(), report.input_sha256});
 }
 
 }  // namespace
@@ -126,15 +198,24 @@ int run(const GenerateArguments& arguments, Console& console) {
   report.stages.push_back({"read", watch.lap()});
   stop_if_interrupted();
 
-  const GenerateResult result = grow(loaded.cleaned.centerline, arguments, console);
+  append(report.warnings, loaded.warnings);
+  const std::optional<SeparatedCenterline> separated = handle_contacts(report, console);
+  const Centerline& centerline = separated ? separated->centerline : loaded.cleaned.centerline;
+  report.stages.push_back({separated ? "separate" : "contacts", watch.lap()});
+  stop_if_interrupted();
+
+  GenerateResult result = grow(centerline, arguments, console);
   console.warn(result.warnings);
   report.result = &result;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
-  append(report.warnings, loaded.warnings);
   append(report.warnings, result.warnings);
 
   watch.lap();
-  measure(report, console);
+  measure(report, centerline, console);
+  if (separated) {
+    result.binding = original_binding(result.binding, *separated, loaded.cleaned.centerline);
+    renumber(result.growth, *separated, loaded.cleaned.centerline);
+  }
   report.stages.push_back({"measure", watch.lap()});
 
   write(report);

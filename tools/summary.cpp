@@ -12,6 +12,8 @@
 namespace vmesh::tool {
 namespace {
 
+constexpr std::size_t kListedContacts = 1000;
+
 /// "--max-center-distance" -> "max_center_distance"
 std::string key_of(const char* flag) {
   std::string key = flag;
@@ -26,17 +28,54 @@ Json options_json(const GenerateArguments& arguments) {
     json[key_of(flag)] = value;
   });
   json["growth"] = to_string(arguments.options.growth);
+  json["overlap"] = to_string(arguments.overlap);
+  json["gap"] = arguments.gap;
   json["unit"] = arguments.input.unit ? Json(to_string(*arguments.input.unit)) : Json();
   json["space"] = arguments.input.space ? Json(to_string(*arguments.input.space)) : Json();
   return json;
 }
+
+Json to_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 Json to_json(const Deviation& deviation) {
   return {{"mean_mm", deviation.mean_mm},
           {"max_mm", deviation.max_mm},
           {"mean_relative", deviation.mean_relative},
           {"max_relative", deviation.max_relative},
-          {"max_at", {deviation.max_at.x(), deviation.max_at.y(), deviation.max_at.z()}}};
+          {"max_at", to_json(deviation.max_at)}};
+}
+
+Json to_json(const Contact& contact) {
+  Json sides = Json::array();
+  for (const ContactSide& side : contact.sides) {
+    sides.push_back({{"segment", side.segment},
+                     {"parameter", side.t},
+                     {"branch", side.branch == kNone ? Json() : Json(side.branch)},
+                     {"radius_mm", side.radius}});
+  }
+  const double smaller = std::min(contact.sides[0].radius, contact.sides[1].radius);
+  return {{"at", to_json(contact.position)},
+          {"depth_mm", contact.depth},
+          {"depth_relative", contact.depth / smaller},
+          {"vessels", std::move(sides)}};
+}
+
+/// The deepest contacts, and how many there are in all.
+Json to_json(const std::vector<Contact>& contacts) {
+  Json list = Json::array();
+  for (std::size_t c = 0; c < std::min(contacts.size(), kListedContacts); ++c) list.push_back(to_json(contacts[c]));
+  return {{"count", contacts.size()}, {"list", std::move(list)}};
+}
+
+Json to_json(const SeparationReport& separation) {
+  return {{"rounds", separation.rounds},
+          {"nodes_narrowed", separation.nodes_narrowed},
+          {"nodes_added", separation.nodes_added},
+          {"max_taken_mm", separation.max_taken},
+          {"max_taken_relative", separation.max_taken_relative},
+          {"mean_taken_relative", separation.mean_taken_relative},
+          {"max_taken_at", to_json(separation.max_taken_at)},
+          {"contacts_left", to_json(separation.left)}};
 }
 
 Json stages_json(const std::vector<StageTime>& stages) {
@@ -126,6 +165,9 @@ Json to_json(const GenerateReport& report) {
   json["growth"] = arguments.options.growth == GrowthMethod::guided ? to_json(report.result->growth) : Json();
   json["nodes_inside"] = report.nodes_inside ? Json(*report.nodes_inside) : Json();
   json["distance"] = to_json(report.deviation);
+  json["distance"]["to"] = report.separation ? "the narrowed vessels" : "the vessels";
+  json["contacts"] = to_json(report.contacts);
+  if (report.separation) json["separation"] = to_json(*report.separation);
   json["seconds"] = stages_json(report.stages);
   json["warnings"] = report.warnings;
   json["problems"] = report.problems;
@@ -166,15 +208,17 @@ void write_json(const std::filesystem::path& path, const Json& json) {
   write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-std::string describe(const GenerateOptions& options) {
+std::string describe(const GenerateArguments& arguments) {
   std::ostringstream text;
-  for_each_generate_option(options, [&text](const char* flag, const auto& value, auto, auto, const char*) {
+  for_each_generate_option(arguments.options, [&text](const char* flag, const auto& value, auto, auto, const char*) {
     text << (text.tellp() > 0 ? " " : "") << flag << " " << value;
   });
+  const GenerateOptions& options = arguments.options;
   text << " --growth " << to_string(options.growth);
   if (options.open_ends.all) text << " --open-ends all";
   for (std::size_t i = 0; i < options.open_ends.nodes.size(); ++i)
     text << (i == 0 ? " --open-ends " : ",") << options.open_ends.nodes[i];
+  text << " --overlap " << to_string(arguments.overlap) << " --gap " << arguments.gap;
   return text.str();
 }
 

@@ -6,6 +6,7 @@
 
 #include "vmesh/centerline/cleaning.h"
 #include "vmesh/surface/deviation.h"
+#include "vmesh/volume/contacts.h"
 
 #include "arguments.h"
 #include "measure.h"
@@ -20,10 +21,12 @@ struct GenerateReport {
   const GenerateArguments* arguments = nullptr;
   std::string input_sha256;
   const CleanedCenterline* cleaned = nullptr;
+  std::vector<Contact> contacts;               ///< of the cleaned centerline
+  std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed
   const GenerateResult* result = nullptr;
   SurfaceMeasurement measurement;
   std::optional<std::size_t> nodes_inside;
-  Deviation deviation;
+  Deviation deviation;            ///< from the vessels that were grown: the narrowed ones after a separation
   std::vector<StageTime> stages;  ///< of the whole run
   std::vector<std::string> warnings, problems;
 };
@@ -42,6 +45,6 @@ Json generator_json();
 void write_json(const std::filesystem::path& path, const Json& json);
 
 /// "--beta 0.3 --blend 0.5 ...": how a surface was made.
-std::string describe(const GenerateOptions& options);
+std::string describe(const GenerateArguments& arguments);
 
 }  // namespace vmesh::tool

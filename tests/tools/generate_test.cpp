@@ -141,5 +141,111 @@ TEST_F(Generate, UnitScalesTheSurface) {
   EXPECT_NEAR(height("cm.ply"), 10 * height("mm.ply"), 0.5);
 }
 
+// Two vessels across each other, their axes `distance` apart where the third and the fourth node of each meet.
+class Overlap : public CommandTest {
+ protected:
+  void write_crossing(const std::string& distance) const {
+    write("x.swc", "# SPACE=LPS\n# UNIT=mm\n1 0 -12 0 0 1 -1\n2 0 0 0 0 1 1\n3 0 12 0 0 1 2\n4 0 0 -12 " + distance +
+                       " 0.9 -1\n5 0 0 1 " + distance + " 0.9 4\n6 0 0 12 " + distance + " 0.9 5\n");
+  }
+  json summary_of(const std::vector<std::string>& options, std::string* err = nullptr) const {
+    std::vector<std::string> arguments = {"generate", "@x.swc", "-o", "@x.ply", "--json", "@x.json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome run = vmesh(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    if (err) *err = run.err;
+    return json::parse(read("x.json"));
+  }
+};
+
+TEST_F(Overlap, IsToldAndKept) {
+  write_crossing("1.2");
+  std::string err;
+  const json summary = summary_of({}, &err);
+  EXPECT_EQ(summary.at("options").at("overlap"), "keep");
+  EXPECT_EQ(summary.at("options").at("gap"), 0.1);
+  const json& contacts = summary.at("contacts");
+  EXPECT_EQ(contacts.at("count"), 1);
+  const json& contact = contacts.at("list").at(0);
+  EXPECT_NEAR(contact.at("depth_mm"), 0.7, 1e-6);
+  EXPECT_NEAR(contact.at("depth_relative"), 0.7 / 0.9, 1e-6);
+  EXPECT_NEAR(contact.at("at").at(2), (1 + 0.3) / 2, 1e-6);
+  EXPECT_NE(contact.at("vessels").at(0).at("branch"), contact.at("vessels").at(1).at("branch"));
+  EXPECT_FALSE(summary.contains("separation"));
+  EXPECT_GT(summary.at("self_intersections"), 0);
+  EXPECT_NE(err.find("touch in 1 place"), std::string::npos) << err;
+  EXPECT_NE(err.find("--overlap separate"), std::string::npos) << err;
+}
+
+TEST_F(Overlap, IsSeparated) {
+  for (const char* distance : {"0.5", "1.2", "1.95"}) {
+    for (const char* gap : {"0.1", "0.3"}) {
+      write_crossing(distance);
+      std::string err;
+      const json summary = summary_of({"--overlap", "separate", "--gap", gap, "--check"}, &err);
+      EXPECT_EQ(summary.at("self_intersections"), 0);
+      EXPECT_EQ(summary.at("contacts").at("count"), 1);
+      const json& separation = summary.at("separation");
+      EXPECT_EQ(separation.at("contacts_left").at("count"), 0);
+      EXPECT_GT(separation.at("nodes_added"), 0);
+      const double kept = std::atof(distance) / (1.9 + std::atof(gap) * 0.9);
+      EXPECT_NEAR(separation.at("max_taken_relative"), 1 - kept, 0.03);
+      EXPECT_NE(err.find("nodes were narrowed"), std::string::npos) << err;
+      EXPECT_LT(summary.at("distance").at("max_relative"), 0.3);
+      EXPECT_EQ(summary.at("nodes_inside"), 6);
+    }
+  }
+}
+
+TEST_F(Overlap, SeparatedVerticesKeepTheirPlaceOnTheOriginalCenterline) {
+  write_crossing("1.2");
+  const json summary = summary_of({"--overlap", "separate"});
+  EXPECT_EQ(summary.at("centerline").at("segments"), 4);
+  const LoadedSurface surface = read_surface(path("x.ply"));
+  const auto values = [&surface](const std::string& name) {
+    for (const MeshAttribute& attribute : surface.attributes.vertex)
+      if (attribute.name == name) return attribute.values;
+    return std::vector<double>();
+  };
+  const auto segment = values("segment"), parameter = values("parameter"), radius = values("radius");
+  ASSERT_EQ(segment.size(), surface.mesh.vertices.size());
+  ASSERT_EQ(parameter.size(), surface.mesh.vertices.size());
+  double least = 1;
+  for (std::size_t v = 0; v < segment.size(); ++v) {
+    EXPECT_LE(segment[v], 3);
+    EXPECT_LE(parameter[v], 1);
+    const Vec3& p = surface.mesh.vertices[v];
+    const bool along_x = std::abs(p.y()) < 1.1 && p.z() < 1 - 0.35;  // not near the other vessel
+    const double place = along_x ? p.x() : p.y();
+    if (std::abs(place) < 5 || std::abs(place) > 11) continue;
+    // Both vessels lie along their axes from -12 to 12, with a node near the middle.
+    const double node = along_x ? 0 : 1;
+    const double expected = place < node ? (place + 12) / (12 + node) : (place - node) / (12 - node);
+    EXPECT_NEAR(std::min(std::abs(parameter[v] - expected), std::abs(1 - parameter[v] - expected)), 0, 0.06);
+    least = std::min(least, radius[v]);
+  }
+  EXPECT_GT(least, 0.5);
+}
+
+TEST_F(Overlap, OfAxesThatCrossIsNamed) {
+  write_crossing("0");
+  std::string err;
+  const json summary = summary_of({"--overlap", "separate"}, &err);
+  EXPECT_EQ(summary.at("separation").at("contacts_left").at("count"), 1);
+  EXPECT_EQ(summary.at("separation").at("nodes_narrowed"), 0);
+  EXPECT_NE(err.find("narrowing cannot part them"), std::string::npos) << err;
+  EXPECT_GT(summary.at("self_intersections"), 0);
+}
+
+TEST_F(Overlap, ValuesOutOfRangeAreRefused) {
+  write_crossing("1.2");
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"--overlap", "merge"}, {"--gap", "0"}, {"--gap", "1.1"}, {"--gap", "nan"}}) {
+    std::vector<std::string> arguments = {"generate", "@x.swc", "-o", "@x.ply"};
+    arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+    EXPECT_EQ(vmesh(arguments).exit_code, 2) << wrong[0];
+  }
+}
+
 }  // namespace
 }  // namespace vmesh::testing

@@ -34,6 +34,7 @@ class VesselField {
   explicit VesselField(const Centerline& centerline, double blend = 0);
 
   const Centerline& centerline() const { return *centerline_; }
+  double blend() const { return blend_; }
   std::size_t cone_count() const { return cones_.size(); }
 
   /// Signed distance at `p` from the cones near `hint` along the graph. The closest cone found becomes the next
@@ -69,8 +70,8 @@ class VesselField {
     double t_low = 0, t_high = 1;  // equal where one end sphere contains the other
     Index a = kNone, b = kNone;
   };
-  // Cones that follow each other along the graph form a run. From sphere to sphere along it, neither a distance nor that
-  // less the widest blend changes by more than `travel` does.
+  // Cones that follow each other along the graph form a run. From sphere to sphere along it, neither a distance nor
+  // that less the widest blend changes by more than `travel` does.
   struct Run {
     Index number = kNone;
     double travel = 0;  // from the run's begin to the cone's end, mm

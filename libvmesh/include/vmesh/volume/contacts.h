@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "vmesh/centerline/centerline.h"
+#include "vmesh/core/progress.h"
+#include "vmesh/volume/vessel_field.h"
+
+namespace vmesh {
+
+/// One of the two vessels at a contact.
+struct ContactSide {
+  Index segment = kNone;  ///< cone of the field: a segment, or segments().size() + the rank of an isolated node
+  double t = 0;           ///< parameter on its axis, in [0, 1]
+  Index branch = kNone;   ///< in find_branches(); kNone for an isolated node
+  double radius = 0;      ///< of the vessel there, mm
+};
+
+/// A place where two vessels come close in space that are not neighbours along the graph: their cones are not local to
+/// each other (VesselField::local_cones), so that each gets a wall of its own and the walls meet.
+struct Contact {
+  Vec3 position = Vec3::Zero();  ///< halfway between the two walls where they come closest in smaller radii, mm
+  double depth = 0;              ///< sum of the radii less the distance of the axes, mm; negative where there is a gap
+  std::array<ContactSide, 2> sides;
+  std::size_t cone_pairs = 0;  ///< pairs of cones in this region, each sharing a node with the next on either side
+};
+
+/// All regions where vessels that are not neighbours come closer than `gap` times the smaller of their radii. Each is
+/// described at the pair of cones that is deepest. Deepest first, ties by segments. Time near linear in the cones, and
+/// linear in the pairs of cones whose boxes meet.
+/// The walls of a fork part by a quarter of the sum of the radii before they count as two vessels; where they part, no
+/// more than a gap of 0.4 is asked of them. Rounding at branches (the field's blend) counts where it narrows the gap,
+/// up to a fifth of the sum of the radii. Throws InvalidInput unless `gap` is in [0, 1].
+std::vector<Contact> find_contacts(const VesselField& field, double gap);
+
+struct SeparationOptions {
+  double gap = 0.1;         ///< free space to be left between two vessels, in smaller (narrowed) radii; in (0, 1]
+  double blend = 0.5;       ///< rounding at branches of the field that the surface will be grown in
+  double taper = 0.25;      ///< how fast the radius may return: narrowed share of the radius lost per radius of length
+  double most_taken = 0.9;  ///< a contact that needs a larger share of a radius is left as it is; in (0, 1)
+  int max_rounds = 40;      ///< of looking for contacts and narrowing at them
+};
+
+/// The part of an original segment that a segment of the narrowed centerline covers.
+struct SegmentPiece {
+  Index segment = kNone;
+  double t_first = 0, t_last = 1;  ///< parameters on it of the piece's nodes a and b
+
+  double original_t(double t) const { return t_first + t * (t_last - t_first); }
+};
+
+/// What separating vessels took. Segments are those of the original centerline.
+struct SeparationReport {
+  std::vector<Contact> before;  ///< contacts of the original centerline
+  /// Contacts that are left as they are: the axes are so close that no radius, or too little of it, would remain, or
+  /// the rounds ran out.
+  std::vector<Contact> left;
+  double max_taken = 0;                                    ///< the most that a node's radius lost, mm
+  double max_taken_relative = 0, mean_taken_relative = 0;  ///< of the original radius; the mean is over changed nodes
+  Vec3 max_taken_at = Vec3::Zero();                        ///< where max_taken_relative was taken
+  std::size_t nodes_narrowed = 0;  ///< nodes of the result that are narrower than the original vessel there
+  std::size_t nodes_added = 0;
+  int rounds = 0;
+};
+
+struct SeparatedCenterline {
+  /// The original nodes in their order and at their places, then those added on segments. Isolated nodes keep theirs.
+  Centerline centerline;
+  std::vector<SegmentPiece> pieces;  ///< one per segment of `centerline`
+  SeparationReport report;
+};
+
+/// Narrows the vessels of `centerline` where they touch without being neighbours, both by the same share, until
+/// `options.gap` is free between them. From there the radius returns along the graph, across branching nodes too, with
+/// a bounded slope: over a stretch of length l it grows by at most taper * l more than it did before. Nodes are added
+/// so that this stays local. The result has no contacts at that gap but those reported as left. Deterministic. Throws
+/// InvalidInput for options out of range, Cancelled when `progress` asks to stop.
+SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options = {},
+                                      const Progress& progress = {});
+
+/// "at (x, y, z): segments i and j (branches k and l) overlap by 0.4 mm, 32 % of the radius".
+std::string describe(const Contact& contact);
+
+}  // namespace vmesh

@@ -1,0 +1,250 @@
+#include "volume/contact_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+
+#include "volume/local_pairs.h"
+
+namespace vmesh {
+namespace {
+
+constexpr int kSectionSteps = 48;  // 0.618^48 = 1e-10 of the axis
+// Vessels that part have a wall of their own from 1.25 times the sum of their radii on (kTouch). Spheres half a radius
+// apart stand for them there, which costs a little of the quarter: this much is always left, in sums of radii.
+constexpr double kForkGap = 0.2;
+constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
+
+// The sphere of a cone that is closest to a point, for radii that count `weight` times.
+class NearestSphere {
+ public:
+  NearestSphere(const AxisStretch& cone, double weight) : cone_(cone) {
+    const double length = cone.axis.norm(), taper = weight * (cone.r0 - cone.r1);
+    if (std::abs(taper) >= length) {
+      low_ = high_ = taper >= 0 ? 0 : 1;
+      return;
+    }
+    inv_length2_ = 1 / (length * length);
+    const double sine = taper / length;
+    lag_ = sine / std::sqrt(1 - sine * sine) / length;
+  }
+  double operator()(const Vec3& p) const {
+    const Vec3 q = p - cone_.origin;
+    const double foot = q.dot(cone_.axis) * inv_length2_;
+    const double off_axis = (q - foot * cone_.axis).norm();
+    return std::clamp(foot - off_axis * lag_, low_, high_);
+  }
+
+ private:
+  const AxisStretch& cone_;
+  double inv_length2_ = 0, lag_ = 0, low_ = 0, high_ = 1;
+};
+
+// The excess is convex on the two axes together: a norm of a linear map, less linear radii, less the gap times a
+// minimum of linear functions. So its minimum over the second axis is convex on the first.
+class Approach {
+ public:
+  Approach(const AxisStretch& first, const AxisStretch& second, double gap)
+      : first_(first), second_(second), gap_(gap), plain_(second, 1), widened_(second, 1 + gap) {}
+
+  ClosestApproach at(double s) const {
+    const Vec3 p = first_.point(s);
+    const double radius = first_.radius(s);
+    // Where the second vessel is the wider one, where it is the smaller one, and where they are equal.
+    ClosestApproach best = between(s, plain_(p));
+    keep_closer(best, between(s, widened_(p)));
+    const double taper = second_.r1 - second_.r0;
+    if (taper != 0) keep_closer(best, between(s, std::clamp((radius - second_.r0) / taper, 0.0, 1.0)));
+    return best;
+  }
+
+  ClosestApproach closest() const {
+    constexpr double kGolden = 0.61803398874989485;
+    double low = 0, high = 1;
+    ClosestApproach left = at(1 - kGolden), right = at(kGolden);
+    for (int step = 0; step < kSectionSteps; ++step) {
+      if (left.excess <= right.excess) {
+        high = right.s;
+        right = left;
+        left = at(high - kGolden * (high - low));
+      } else {
+        low = left.s;
+        left = right;
+        right = at(low + kGolden * (high - low));
+      }
+    }
+    ClosestApproach best = at(0);
+    for (const ClosestApproach& other : {at(1), left, right}) keep_closer(best, other);
+    return best;
+  }
+
+ private:
+  ClosestApproach between(double s, double t) const {
+    const double r = first_.radius(s), q = second_.radius(t);
+    const double distance = (first_.point(s) - second_.point(t)).norm();
+    return {distance - r - q - gap_ * std::min(r, q), s, t, distance};
+  }
+  static void keep_closer(ClosestApproach& best, const ClosestApproach& other) {
+    if (other.excess < best.excess) best = other;
+  }
+
+  const AxisStretch &first_, &second_;
+  double gap_;
+  NearestSphere plain_, widened_;
+};
+
+struct Box {
+  Vec3 low, high;
+};
+
+// Of the cone and what is within `margin` larger radii around it.
+Box box_of(const AxisStretch& cone, double margin) {
+  const Vec3 end = cone.origin + cone.axis;
+  Box box{(cone.origin.array() - cone.r0).min(end.array() - cone.r1),
+          (cone.origin.array() + cone.r0).max(end.array() + cone.r1)};
+  const double size = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
+  const double around = margin * std::max(cone.r0, cone.r1) + kRounding * size;
+  box.low.array() -= around;
+  box.high.array() += around;
+  return box;
+}
+
+// Besides the gap, vessels must leave room for what the blend adds to either: at most half of it in radii of the
+// vessel.
+class PairFinder {
+ public:
+  PairFinder(const VesselField& field, double gap)
+      : field_(field), gap_(gap), most_rounding_(std::min(field.blend() / 2, kForkGap)) {
+    if (gap > 2 * kForkGap) parting_ = local_pairs(field.centerline(), 1.05 + gap / 2);
+    for (Index c = 0; c < field.cone_count(); ++c) cones_.push_back(stretch_of(field, c));
+    std::vector<Vec3> low, high;
+    for (const AxisStretch& cone : cones_) {
+      const Box box = box_of(cone, most_rounding_);
+      low.push_back(box.low);
+      high.push_back(box.high);
+    }
+    tree_ = BoxTree(low, high);
+  }
+
+  std::vector<ContactPair> run() {
+    for (Index i = 0; i < cones_.size(); ++i) {
+      const Box box = box_of(cones_[i], gap_ + most_rounding_);
+      near_.clear();
+      tree_.visit_overlapping(box.low, box.high, [&](Index j) {
+        if (j > i) near_.push_back(j);
+      });
+      std::sort(near_.begin(), near_.end());
+      for (const Index j : near_) examine(i, j);
+    }
+    return std::move(pairs_);
+  }
+
+ private:
+  bool is_local(Index i, Index j) const {
+    const auto cones = field_.local_cones(i);
+    return std::binary_search(cones.begin(), cones.end(), j);
+  }
+
+  bool out_of_reach(Index i, Index j) const {
+    const AxisStretch &a = cones_[i], &b = cones_[j];
+    const double ra = std::max(a.r0, a.r1), rb = std::max(b.r0, b.r1);
+    const double reach =
+        (a.axis.norm() + b.axis.norm()) / 2 + (1 + most_rounding_) * (ra + rb) + gap_ * std::min(ra, rb);
+    return (a.point(0.5) - b.point(0.5)).squaredNorm() > reach * reach * (1 + kRounding);
+  }
+
+  void examine(Index i, Index j) {
+    if (out_of_reach(i, j) || is_local(i, j)) return;
+    const double gap = parting_.contains(i, j) ? std::min(gap_, 2 * kForkGap) : gap_;
+    ContactPair pair{i, j, gap, closest_approach(cones_[i], cones_[j], gap), kNone};
+    if (pair.closest.excess >= 0) {
+      const double r = cones_[i].radius(pair.closest.s), q = cones_[j].radius(pair.closest.t);
+      if (pair.closest.excess >= most_rounding_ * (r + q)) return;
+      const double most = std::max(gap, kForkGap * (r + q) / std::min(r, q));
+      pair.gap = std::min(gap + rounding(pair) / std::min(r, q), most);
+      pair.closest = closest_approach(cones_[i], cones_[j], pair.gap);
+    }
+    if (pair.closest.excess < 0) pairs_.push_back(pair);
+  }
+
+  // How far the walls come out towards each other because vessels branch there, mm. Seen from the axes: no wall comes
+  // closer to the other than its blended distance from the other's axis tells.
+  double rounding(const ContactPair& pair) const {
+    return rounding_at(cones_[pair.j].point(pair.closest.t), pair.i, pair.j) +
+           rounding_at(cones_[pair.i].point(pair.closest.s), pair.j, pair.i);
+  }
+
+  // By how much the blend of cone `c` with others that are apart from `other` lowers the distance at `p`.
+  double rounding_at(const Vec3& p, Index c, Index other) const {
+    const FieldSample own = field_.sample_cone(p, c);
+    const double radius = field_.radius_at(c, own.t);
+    double most = 0;
+    for (const Index k : field_.local_cones(c)) {
+      if (k == c || is_local(k, other)) continue;
+      const FieldSample next = field_.sample_cone(p, k);
+      const double thinner = field_.blend() * std::min(radius, field_.radius_at(k, next.t));
+      const double width = thinner * (1 - own.gradient.dot(next.gradient));
+      const double apart = std::abs(next.distance - own.distance);
+      if (apart >= width) continue;
+      const double h = 1 - apart / width;
+      most = std::max(most, h * h * width / 4);
+    }
+    return most;
+  }
+
+  const VesselField& field_;
+  double gap_, most_rounding_;
+  PairSet parting_;  // close along the graph in a wider sense: at a fork that a wide gap finds still open
+  std::vector<AxisStretch> cones_;
+  BoxTree tree_;
+  std::vector<Index> near_;
+  std::vector<ContactPair> pairs_;
+};
+
+// Pairs whose cones share a node on either side belong to one region.
+void number_regions(const VesselField& field, std::vector<ContactPair>& pairs) {
+  std::vector<std::size_t> parent(pairs.size());
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  const auto root = [&parent](std::size_t n) {
+    while (parent[n] != n) n = parent[n] = parent[parent[n]];
+    return n;
+  };
+  std::unordered_map<std::uint64_t, std::size_t> first_with;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    for (const Index a : {field.first_node(pairs[n].i), field.last_node(pairs[n].i)}) {
+      for (const Index b : {field.first_node(pairs[n].j), field.last_node(pairs[n].j)}) {
+        const auto [low, high] = std::minmax(a, b);
+        const auto [known, is_new] = first_with.try_emplace(std::uint64_t{low} << 32 | high, n);
+        if (is_new) continue;
+        const std::size_t first = root(known->second), second = root(n);
+        parent[std::max(first, second)] = std::min(first, second);
+      }
+    }
+  }
+  Index count = 0;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    const std::size_t first = root(n);
+    pairs[n].region = first == n ? count++ : pairs[first].region;
+  }
+}
+
+}  // namespace
+
+AxisStretch stretch_of(const VesselField& field, Index cone, double first, double last) {
+  const Vec3 origin = field.axis_point(cone, first);
+  return {origin, field.axis_point(cone, last) - origin, field.radius_at(cone, first), field.radius_at(cone, last)};
+}
+
+ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& second, double gap) {
+  return Approach(first, second, gap).closest();
+}
+
+std::vector<ContactPair> find_contact_pairs(const VesselField& field, double gap) {
+  std::vector<ContactPair> pairs = PairFinder(field, gap).run();
+  number_regions(field, pairs);
+  return pairs;
+}
+
+}  // namespace vmesh

@@ -1,0 +1,73 @@
+#include "vmesh/volume/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <tuple>
+
+#include "vmesh/centerline/branches.h"
+#include "vmesh/core/error.h"
+
+#include "volume/contact_pairs.h"
+
+namespace vmesh {
+namespace {
+
+std::vector<Index> branch_of_cones(const VesselField& field) {
+  std::vector<Index> branch_of(field.cone_count(), kNone);
+  const std::vector<Branch> branches = find_branches(field.centerline());
+  for (Index b = 0; b < branches.size(); ++b) {
+    for (const Index s : branches[b].segments) branch_of[s] = b;
+  }
+  return branch_of;
+}
+
+Contact contact_at(const VesselField& field, const ContactPair& pair) {
+  const double r = field.radius_at(pair.i, pair.closest.s), q = field.radius_at(pair.j, pair.closest.t);
+  const Vec3 from = field.axis_point(pair.i, pair.closest.s), to = field.axis_point(pair.j, pair.closest.t);
+  const double distance = pair.closest.distance;
+  Contact contact;
+  contact.depth = r + q - distance;
+  contact.position = distance > 0 ? Vec3(from + (distance + r - q) / (2 * distance) * (to - from)) : from;
+  contact.sides[0] = {pair.i, pair.closest.s, kNone, r};
+  contact.sides[1] = {pair.j, pair.closest.t, kNone, q};
+  return contact;
+}
+
+}  // namespace
+
+std::vector<Contact> find_contacts(const VesselField& field, double gap) {
+  if (!(gap >= 0 && gap <= 1)) throw InvalidInput("gap must be in [0, 1]");
+  std::vector<Contact> contacts;
+  for (const ContactPair& pair : find_contact_pairs(field, gap)) {
+    Contact contact = contact_at(field, pair);
+    if (pair.region == contacts.size()) {
+      contacts.push_back(contact);
+    } else if (contact.depth > contacts[pair.region].depth) {
+      contact.cone_pairs = contacts[pair.region].cone_pairs;
+      contacts[pair.region] = contact;
+    }
+    ++contacts[pair.region].cone_pairs;
+  }
+  const std::vector<Index> branch_of = branch_of_cones(field);
+  for (Contact& contact : contacts) {
+    for (ContactSide& side : contact.sides) side.branch = branch_of[side.segment];
+  }
+  std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
+    if (a.depth != b.depth) return a.depth > b.depth;
+    return std::tie(a.sides[0].segment, a.sides[1].segment) < std::tie(b.sides[0].segment, b.sides[1].segment);
+  });
+  return contacts;
+}
+
+std::string describe(const Contact& contact) {
+  const auto& [first, second] = contact.sides;
+  char text[240];
+  std::snprintf(text, sizeof text, "at (%.3f, %.3f, %.3f): segments %u and %u %s %.3g mm, %.0f %% of the radius",
+                contact.position.x(), contact.position.y(), contact.position.z(), first.segment, second.segment,
+                contact.depth >= 0 ? "overlap by" : "leave a gap of", std::abs(contact.depth),
+                100 * std::abs(contact.depth) / std::min(first.radius, second.radius));
+  return text;
+}
+
+}  // namespace vmesh
