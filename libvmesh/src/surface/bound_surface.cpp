@@ -28,6 +28,7 @@ BoundSurface::BoundSurface(const VesselField& vessel_field)
       t(mesh.add_property_map<Vertex, double>("v:t", 0.0).first),
       gradient(mesh.add_property_map<Vertex, Vec3>("v:gradient", Vec3::Zero()).first),
       distance(mesh.add_property_map<Vertex, double>("v:distance", 0.0).first),
+      fineness(mesh.add_property_map<Vertex, double>("v:fineness", 1.0).first),
       role(mesh.add_property_map<Vertex, Role>("v:role", Role::free).first) {}
 
 bool BoundSurface::is_lid(Face f) const {
@@ -80,6 +81,7 @@ Vertex BoundSurface::halve(Halfedge h) {
   mesh.point(v) = middle;
   cone[v] = cone[a];
   t[v] = t[a];
+  fineness[v] = 0.5 * (fineness[a] + fineness[b]);
   gradient[v] = (gradient[a] + gradient[b]).normalized();
   return v;
 }

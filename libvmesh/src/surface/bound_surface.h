@@ -30,6 +30,9 @@ class BoundSurface {
 
   SurfaceMesh::Property_map<Vertex, double> distance;  ///< signed distance to the boundary, mm
 
+  /// Factor on the target edge length, 1 as a rule: less where narrow places do not bear the triangles asked for.
+  SurfaceMesh::Property_map<Vertex, double> fineness;
+
   /// What may happen to a vertex. Edges between two held ones stay as they are as well. A lid is the middle of the
   /// faces that close an open end as long as the surface is worked on; it is never exported.
   enum class Role : char { free, held, lid };

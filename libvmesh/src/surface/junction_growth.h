@@ -10,6 +10,7 @@ namespace vmesh {
 struct SurfacePoint {
   Vec3 position;
   Index cone;
+  double fineness = 1;  ///< factor on the target edge length
 };
 
 /// A piece of surface.

@@ -12,10 +12,12 @@ constexpr std::size_t kRingsGivenAway = 2;  // at most, at an end of a tube
 
 // How a junction's surface is made; tried in this order.
 struct Variant {
-  double finer;
-  bool smooth_rims;
+  double finer;         ///< resolution at which the junction's surface is made, in that asked for
+  bool smooth_rims;     ///< see JunctionGrowth::make()
+  double fineness = 1;  ///< factor on the target edge length from then on
 };
-constexpr Variant kVariants[] = {{1, true}, {1.5, true}, {1, false}, {2, true}, {1.5, false}, {2, false}};
+constexpr Variant kVariants[] = {{1, true},         {1.5, true},    {1, false},
+                                 {1.5, true, 0.67}, {2, true, 0.5}, {3, true, 0.33}};
 
 class PieceMaker {
  public:
@@ -26,11 +28,12 @@ class PieceMaker {
   JunctionPiece make(const Variant& variant) {
     const JunctionSurface junction = growth_.make(variant.finer, variant.smooth_rims);
     add(junction.patch);
+    for (const Vertex v : surface_.mesh.vertices()) surface_.fineness[v] = variant.fineness;
     for (std::size_t i = 0; i < openings_.size(); ++i) dock(openings_[i], junction.rims[i]);
     JunctionPiece piece;
     piece.handles = growth_.handles();
     piece.filled_loops = growth_.filled_loops();
-    piece.tangles = finish();
+    piece.tangles = finish(variant.fineness);
     export_to(piece);
     return piece;
   }
@@ -87,10 +90,11 @@ class PieceMaker {
     return result;
   }
 
-  std::size_t finish() {
+  std::size_t finish(double fineness) {
     if (options_.sweeps == 0) return find_tangles(SweepState(surface_)).size();
     const double radii = growth_.length_in_radii() + static_cast<double>(openings_.size() * (kRingsGivenAway + 1));
-    return optimize(surface_, options_, {double(options_.around), expected_vertices(radii, options_.around)}, {})
+    return optimize(surface_, options_, {double(options_.around), expected_vertices(radii, options_.around / fineness)},
+                    {})
         .tangles;
   }
 
@@ -100,7 +104,7 @@ class PieceMaker {
     for (const Vertex v : mesh.vertices()) {
       if (surface_.role[v] == BoundSurface::Role::lid) continue;
       number[v.idx()] = static_cast<Index>(piece.vertices.size());
-      piece.vertices.push_back({surface_.position(v), surface_.cone[v], {}, 0, 0});
+      piece.vertices.push_back({surface_.position(v), surface_.cone[v], surface_.fineness[v], {}, 0, 0});
     }
     for (const auto& [opening, ring, vertices] : kept_) {
       for (Index j = 0; j < vertices.size(); ++j) {

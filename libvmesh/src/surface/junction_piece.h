@@ -8,6 +8,7 @@ namespace vmesh {
 struct PieceVertex {
   Vec3 position;
   Index cone;
+  double fineness;
   TubeEnd tube;    ///< tube.tube == kNone: none
   Index ring = 0;  ///< number of the ring in the tube
   Index number = 0;

@@ -91,7 +91,9 @@ bool Remesher::collapse(Edge e) {
   if (!collapsible_to(a, b, target) || !collapsible_to(b, a, target)) return false;
   if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return false;
   const double size = std::min(state_.size[a], state_.size[b]);
+  const double fineness = std::min(surface_.fineness[a], surface_.fineness[b]);
   const Vertex v = CGAL::Euler::collapse_edge(e, mesh_);
+  surface_.fineness[v] = fineness;
   surface_.place(v, target.position, target.sample);
   state_.size[v] = size;
   state_.stir(v);

@@ -27,9 +27,8 @@ SweepState::~SweepState() {
   mesh.remove_property_map(stirred_);
 }
 
-void SweepState::update_sizes(double edge_per_radius, const std::vector<std::pair<Vertex, double>>& limits) {
-  for (const Vertex v : mesh.vertices()) size[v] = edge_per_radius * surface.radius(v);
-  for (const auto& [v, limit] : limits) size[v] = std::min(size[v], limit);
+void SweepState::update_sizes(double edge_per_radius) {
+  for (const Vertex v : mesh.vertices()) size[v] = edge_per_radius * surface.radius(v) * surface.fineness[v];
   for (int pass = 0; pass < kGradationPasses; ++pass) {
     for (const Edge e : mesh.edges()) {
       const Vertex a = mesh.vertex(e, 0), b = mesh.vertex(e, 1);

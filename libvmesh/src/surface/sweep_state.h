@@ -32,9 +32,9 @@ class SweepState {
     return {mesh.source(h), mesh.target(h), mesh.target(mesh.next(h))};
   }
 
-  /// Sets the size field: `edge_per_radius` times the local radius, at most the `limits` given for single vertices, its
-  /// slope along the surface bounded.
-  void update_sizes(double edge_per_radius, const std::vector<std::pair<Vertex, double>>& limits = {});
+  /// Sets the size field: `edge_per_radius` times the local radius, times the vertex's fineness, its slope along the
+  /// surface bounded.
+  void update_sizes(double edge_per_radius);
 
   // Only what changed in the last sweep, and its neighbours, is looked at in the next one.
   bool active(Vertex v) const { return stirred_[v] & kActive; }
