@@ -2,8 +2,12 @@
 
 #include <numeric>
 
+#include <tbb/parallel_for.h>
+
 namespace vmesh {
 namespace {
+
+constexpr std::size_t kShortHandle = 3;  // rings
 
 class UnionFind {
  public:
@@ -29,12 +33,15 @@ class SkeletonMaker {
       : centerline_(field.centerline()),
         axes_(axes),
         places_(places_of(field.centerline(), axes)),
-        layer_(field, axes, places_, around),
-        capped_(centerline_.nodes().size(), 0) {}
+        layer_(field, axes, places_, around) {}
 
   GrowthSkeleton run() {
-    for (Index b = 0; b < axes_.size(); ++b) divide(b);
-    collect_junctions();
+    rings_.resize(axes_.size());
+    tbb::parallel_for(std::size_t{0}, axes_.size(),
+                      [&](std::size_t b) { rings_[b] = layer_.lay(static_cast<Index>(b)); });
+    do {
+      divide_all();
+    } while (dissolve_handles());
     return std::move(skeleton_);
   }
 
@@ -48,10 +55,44 @@ class SkeletonMaker {
     return places;
   }
 
+  void divide_all() {
+    skeleton_ = {};
+    gaps_.clear();
+    capped_.assign(centerline_.nodes().size(), 0);
+    for (Index b = 0; b < axes_.size(); ++b) divide(b);
+    collect_junctions();
+  }
+
+  // A short tube with both ends at one junction cannot be grown apart from it: the ends of the junction's vessels would
+  // overlap there.
+  bool dissolve_handles() {
+    bool some = false;
+    std::vector<Index> first(skeleton_.tubes.size(), kNone);
+    for (Index j = 0; j < skeleton_.junctions.size(); ++j) {
+      for (const TubeEnd& end : openings_of(skeleton_.junctions[j])) {
+        if (first[end.tube] == kNone) {
+          first[end.tube] = j;
+        } else if (first[end.tube] == j && skeleton_.tubes[end.tube].rings.size() <= kShortHandle) {
+          cover(skeleton_.tubes[end.tube]);
+          some = true;
+        }
+      }
+    }
+    return some;
+  }
+
+  void cover(const Tube& tube) {
+    for (Ring& ring : rings_[tube.branch]) {
+      for (const Ring& gone : tube.rings) {
+        if (ring.place == gone.place) ring.free = false;
+      }
+    }
+  }
+
   // Runs of free rings become tubes; what lies between them, gaps.
   void divide(Index b) {
     const BranchAxis& axis = axes_[b];
-    std::vector<Ring> rings = layer_.lay(b);
+    std::vector<Ring> rings = rings_[b];
     if (axis.periodic()) {
       divide_loop(b, std::move(rings));
       return;
@@ -149,12 +190,23 @@ class SkeletonMaker {
   const std::vector<BranchAxis>& axes_;
   std::vector<SegmentPlace> places_;
   RingLayer layer_;
-  std::vector<char> capped_;  // tips that a tube's cap closes
+  std::vector<std::vector<Ring>> rings_;  // of every branch
+  std::vector<char> capped_;              // tips that a tube's cap closes
   std::vector<Gap> gaps_;
   GrowthSkeleton skeleton_;
 };
 
 }  // namespace
+
+std::vector<TubeEnd> openings_of(const Junction& junction) {
+  std::vector<TubeEnd> openings;
+  for (const Gap& gap : junction.gaps) {
+    for (const TubeEnd& opening : gap.openings) {
+      if (opening.tube != kNone) openings.push_back(opening);
+    }
+  }
+  return openings;
+}
 
 std::size_t GrowthSkeleton::component_count() const {
   std::size_t count = junctions.size();

@@ -33,6 +33,9 @@ struct Junction {
   std::vector<Gap> gaps;
 };
 
+/// The ends of a junction's gaps at tubes, in the order of the gaps.
+std::vector<TubeEnd> openings_of(const Junction& junction);
+
 /// The graph that steers growth: junctions joined by tubes. Crowded branching nodes fall into one junction, siblings
 /// part into tubes of their own where their cross-sections do, and a branch without a cross-section of its own is part
 /// of a junction.

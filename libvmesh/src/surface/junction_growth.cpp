@@ -117,16 +117,6 @@ LatticeSurface grow_lattice(const VesselField& field) {
 
 }  // namespace
 
-std::vector<TubeEnd> openings_of(const Junction& junction) {
-  std::vector<TubeEnd> openings;
-  for (const Gap& gap : junction.gaps) {
-    for (const TubeEnd& opening : gap.openings) {
-      if (opening.tube != kNone) openings.push_back(opening);
-    }
-  }
-  return openings;
-}
-
 JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes,
                                const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options)
     : field_(field),

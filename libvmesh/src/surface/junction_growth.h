@@ -37,9 +37,6 @@ struct JunctionCenterline {
   std::vector<Origin> origins;  // of the segments
 };
 
-/// The ends of a junction's gaps at tubes, in the order of the gaps.
-std::vector<TubeEnd> openings_of(const Junction& junction);
-
 /// Grows the surface of a junction from its widest place, in a lattice as fine as its thinnest vessel
 /// (grow_in_lattice), brings it onto the boundary and to a size field, and cuts its openings.
 class JunctionGrowth {
