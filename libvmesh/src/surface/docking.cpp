@@ -224,13 +224,11 @@ std::vector<Index> DiscCutter::cut_off(const std::vector<Index>& region, const P
 void DiscCutter::collapse_short_edges(std::vector<Index>& rim, double shortest) {
   for (std::size_t i = 0; i < rim.size() && rim.size() > kShortestRim;) {
     const std::size_t next = (i + 1) % rim.size();
-    const Vec3 a = vertices_[rim[i]], b = vertices_[rim[next]];
-    if ((a - b).norm() >= shortest || !collapsible(rim[next], rim[i])) {
+    if ((vertices_[rim[i]] - vertices_[rim[next]]).norm() >= shortest || !collapsible(rim[next], rim[i])) {
       ++i;
       continue;
     }
     collapse(rim[next], rim[i]);
-    vertices_[rim[i]] = 0.5 * (a + b);
     rim.erase(rim.begin() + static_cast<std::ptrdiff_t>(next));
   }
 }

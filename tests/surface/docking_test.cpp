@@ -1,0 +1,142 @@
+#include "surface/docking.h"
+
+#include <algorithm>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "vmesh/mesh/topology.h"
+
+namespace vmesh {
+namespace {
+
+std::vector<Vec3> ring(int count, double radius, double height, double turn = 0) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * M_PI * (i + turn) / count;
+    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), height);
+  }
+  return points;
+}
+
+// A cylinder around z from -5 to 5, closed by poles.
+TriMesh closed_cylinder(int around, int rings) {
+  TriMesh mesh;
+  for (int k = 0; k < rings; ++k) {
+    const auto points = ring(around, 1, -5 + 10.0 * k / (rings - 1), 0.5 * (k % 2));
+    mesh.vertices.insert(mesh.vertices.end(), points.begin(), points.end());
+  }
+  const auto at = [&](int k, int i) { return static_cast<Index>(k * around + i % around); };
+  for (int k = 0; k + 1 < rings; ++k) {
+    for (int i = 0; i < around; ++i) {
+      mesh.faces.push_back({at(k, i), at(k, i + 1), at(k + 1, i)});
+      mesh.faces.push_back({at(k, i + 1), at(k + 1, i + 1), at(k + 1, i)});
+    }
+  }
+  const auto south = static_cast<Index>(mesh.vertices.size()), north = south + 1;
+  mesh.vertices.emplace_back(0, 0, -5.5);
+  mesh.vertices.emplace_back(0, 0, 5.5);
+  for (int i = 0; i < around; ++i) {
+    mesh.faces.push_back({at(0, i + 1), at(0, i), south});
+    mesh.faces.push_back({at(rings - 1, i), at(rings - 1, i + 1), north});
+  }
+  return mesh;
+}
+
+std::vector<Index> all_vertices(const TriMesh& mesh) {
+  std::vector<Index> all(mesh.vertices.size());
+  for (Index v = 0; v < all.size(); ++v) all[v] = v;
+  return all;
+}
+
+TEST(Stitch, UsesEveryEdgeOfBothLoopsOnceAndNoneTwice) {
+  for (const auto& [n, m] : {std::pair(3, 3), {6, 6}, {6, 9}, {15, 6}, {40, 7}, {3, 30}}) {
+    SCOPED_TRACE(std::to_string(n) + " to " + std::to_string(m));
+    const auto bottom = ring(n, 1, 0), top = ring(m, 1.3, 1, 0.37);
+    const auto faces = stitch(bottom, top);
+    EXPECT_EQ(faces.size(), bottom.size() + top.size());
+    TriMesh mesh{bottom, faces};
+    mesh.vertices.insert(mesh.vertices.end(), top.begin(), top.end());
+    const Topology topology = measure_topology(mesh);
+    EXPECT_TRUE(topology.manifold && topology.oriented);
+    EXPECT_EQ(topology.boundary_edges, bottom.size() + top.size());
+    EXPECT_EQ(topology.euler_characteristic, 0);  // an annulus
+    EXPECT_TRUE(self_intersections(mesh).empty());
+    for (const auto& [a, b, c] : faces) {  // outwards
+      const Vec3 normal = (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+      const Vec3 middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+      EXPECT_GT(normal.dot(Vec3(middle.x(), middle.y(), 0)), 0);
+    }
+  }
+}
+
+TEST(Stitch, MakesEquilateralTrianglesBetweenRingsTurnedHalfAStep) {
+  const auto bottom = ring(6, 1, 0), top = ring(6, 1, 0.9, 0.5);
+  for (const auto& face : stitch(bottom, top)) {
+    const auto at = [&](Index i) { return i < 6 ? bottom[i] : top[i - 6]; };
+    for (int i = 0; i < 3; ++i) EXPECT_LT((at(face[i]) - at(face[(i + 1) % 3])).norm(), 1.05);
+  }
+}
+
+TEST(DiscCutter, CutsATipOffAtThePlane) {
+  const TriMesh mesh = closed_cylinder(8, 11);
+  DiscCutter cutter(mesh.vertices, mesh.faces);
+  const auto rim = cutter.cut({0, 0, 2.6}, Vec3::UnitZ(), all_vertices(mesh), 0);
+  ASSERT_GE(rim.size(), 8u);
+  double turn = 0;
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const Vec3 &p = cutter.vertices()[rim[i]], &q = cutter.vertices()[rim[(i + 1) % rim.size()]];
+    EXPECT_NEAR(p.z(), 2.6, 1e-12);
+    turn += std::atan2(p.x() * q.y() - p.y() * q.x(), p.x() * q.x() + p.y() * q.y());
+  }
+  EXPECT_NEAR(turn, 2 * M_PI, 1e-9);  // once, counter-clockwise about the normal
+  const TriMesh rest{cutter.vertices(), cutter.rest()};
+  const Topology topology = measure_topology(rest);
+  EXPECT_TRUE(topology.manifold && topology.oriented);
+  EXPECT_EQ(topology.boundary_edges, rim.size());
+  EXPECT_EQ(topology.euler_characteristic, 1);  // a disc is left
+  for (const Triangle& face : rest.faces) {
+    for (const Index v : face) EXPECT_LE(rest.vertices[v].z(), 2.6 + 1e-12);
+  }
+}
+
+TEST(DiscCutter, CollapsesShortEdgesOfTheRim) {
+  const TriMesh mesh = closed_cylinder(24, 31);
+  DiscCutter cutter(mesh.vertices, mesh.faces);
+  const auto rim = cutter.cut({0, 0, 2.6}, Vec3::UnitZ(), all_vertices(mesh), 0.4);
+  // Cut as it is, the rim has an edge for each of the 48 edges that cross the plane. Where two vertices of the rim have
+  // more than one neighbour in common, their edge stays.
+  EXPECT_LE(rim.size(), 24u);
+  EXPECT_GE(rim.size(), 12u);  // 2 pi / 0.5: none longer than needed on average
+  const Topology topology = measure_topology({cutter.vertices(), cutter.rest()});
+  EXPECT_TRUE(topology.manifold && topology.oriented);
+  EXPECT_EQ(topology.boundary_edges, rim.size());
+  EXPECT_EQ(topology.euler_characteristic, 1);
+}
+
+TEST(DiscCutter, CutsBothEndsWithoutTheRimsTouching) {
+  const TriMesh mesh = closed_cylinder(6, 5);
+  DiscCutter cutter(mesh.vertices, mesh.faces);
+  std::vector<Index> upper, lower;
+  for (const Index v : all_vertices(mesh)) (mesh.vertices[v].z() > 0 ? upper : lower).push_back(v);
+  const auto first = cutter.cut({0, 0, 0.1}, Vec3::UnitZ(), upper, 0);
+  const auto second = cutter.cut({0, 0, -0.1}, -Vec3::UnitZ(), lower, 0);
+  for (const Index v : second) EXPECT_EQ(std::count(first.begin(), first.end(), v), 0);
+  const Topology topology = measure_topology({cutter.vertices(), cutter.rest()});
+  EXPECT_TRUE(topology.manifold && topology.oriented);
+  EXPECT_EQ(topology.boundary_edges, first.size() + second.size());
+  EXPECT_EQ(topology.euler_characteristic, 0);
+}
+
+TEST(DiscCutter, OpensAWindowWhereTheTipHasNoVertex) {
+  const TriMesh mesh = closed_cylinder(6, 5);
+  DiscCutter cutter(mesh.vertices, mesh.faces);
+  const auto rim = cutter.cut({1, 0, 0.3}, Vec3::UnitX(), {}, 0);
+  EXPECT_EQ(rim.size(), 3u);
+  const Topology topology = measure_topology({cutter.vertices(), cutter.rest()});
+  EXPECT_TRUE(topology.manifold && topology.oriented);
+  EXPECT_EQ(topology.boundary_edges, 3u);
+}
+
+}  // namespace
+}  // namespace vmesh

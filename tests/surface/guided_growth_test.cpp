@@ -1,0 +1,244 @@
+// Guided growth on graphs of every shape that its construction tells apart.
+#include <gtest/gtest.h>
+
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/generate.h"
+
+#include "centerlines.h"
+
+namespace vmesh {
+namespace {
+
+using namespace testing;
+using Kind = GrowthSimplification::Kind;
+
+GenerateResult expect_surface(const Centerline& centerline, std::size_t components, int genus) {
+  GenerateResult result = generate_surface(centerline);
+  const Topology topology = measure_topology(result.mesh);
+  EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented && topology.outward);
+  EXPECT_EQ(topology.components, components);
+  EXPECT_EQ(topology.genus, genus);
+  EXPECT_EQ(result.growth.components, components);
+  EXPECT_EQ(result.growth.cycle_rank, static_cast<std::size_t>(genus));
+  EXPECT_EQ(self_intersections(result.mesh).size(), 0u);
+  EXPECT_LE(summarize_skewness(result.mesh).max, 0.70);  // the paper's low-resolution row
+  std::vector<Vec3> positions;
+  for (const auto& node : centerline.nodes()) positions.push_back(node.position);
+  const auto inside = points_inside(result.mesh, positions);
+  EXPECT_EQ(std::count(inside.begin(), inside.end(), false), 0);
+  return result;
+}
+
+std::size_t count(const GenerateResult& result, Kind kind) {
+  const auto& notes = result.growth.simplifications;
+  return static_cast<std::size_t>(
+      std::count_if(notes.begin(), notes.end(), [&](const GrowthSimplification& note) { return note.kind == kind; }));
+}
+
+// Nodes on a circle of radius `size`, joined to a ring.
+Centerline circle(int nodes, double size, double radius) {
+  std::vector<CenterlineNode> list;
+  std::vector<CenterlineSegment> segments;
+  for (int i = 0; i < nodes; ++i) {
+    const double angle = 2 * M_PI * i / nodes;
+    list.push_back({size * Vec3(std::cos(angle), std::sin(angle), 0), radius});
+    segments.push_back({static_cast<Index>(i), static_cast<Index>((i + 1) % nodes)});
+  }
+  return {std::move(list), std::move(segments)};
+}
+
+TEST(GuidedGrowth, MakesASphereOfANode) {
+  const auto result = expect_surface(single_node(), 1, 0);
+  EXPECT_EQ(result.growth.junctions, 1u);
+  EXPECT_EQ(result.growth.tubes, 0u);
+}
+
+TEST(GuidedGrowth, MakesATubeOfASegment) {
+  const auto result = expect_surface({{{{0, 0, 0}, 1}, {{8, 0, 0}, 1}}, {{0, 1}}}, 1, 0);
+  EXPECT_EQ(result.growth.junctions, 0u);
+  EXPECT_EQ(result.growth.tubes, 1u);
+}
+
+TEST(GuidedGrowth, MakesASegmentShorterThanItsRadius) {
+  expect_surface({{{{0, 0, 0}, 1}, {{0.3, 0, 0}, 0.9}}, {{0, 1}}}, 1, 0);
+}
+
+TEST(GuidedGrowth, MakesARingWithoutABranchingNode) {
+  const auto result = expect_surface(circle(24, 10, 1), 1, 1);
+  EXPECT_EQ(result.growth.junctions, 0u);
+}
+
+TEST(GuidedGrowth, FillsALoopTooShortToHaveAHole) {
+  const auto result = expect_surface(circle(5, 0.5, 0.6), 1, 0);
+  EXPECT_GE(count(result, Kind::filled_loop) + count(result, Kind::buried_branch), 1u);
+}
+
+TEST(GuidedGrowth, JoinsTwoJunctionsByTwoParallelBranches) {
+  const Centerline centerline({{{-6, 0, 0}, 1},
+                               {{0, 0, 0}, 1},
+                               {{4, 3, 0}, 0.8},
+                               {{8, 3, 0}, 0.8},
+                               {{4, -3, 0}, 0.8},
+                               {{8, -3, 0}, 0.8},
+                               {{12, 0, 0}, 1},
+                               {{18, 0, 0}, 1}},
+                              {{0, 1}, {1, 2}, {2, 3}, {3, 6}, {1, 4}, {4, 5}, {5, 6}, {6, 7}});
+  const auto result = expect_surface(centerline, 1, 1);
+  EXPECT_EQ(result.growth.junctions, 2u);
+}
+
+TEST(GuidedGrowth, ClosesALoopWhoseHoleIsSmallerThanTheVessel) {
+  // Its tube is so short that it grows with the junction; a hole of 0.8 radii is left.
+  expect_surface(circle(12, 1.8, 1), 1, 1);
+}
+
+TEST(GuidedGrowth, GrowsTwentyBranchesFromOneNode) { expect_surface(star(20), 1, 0); }
+
+TEST(GuidedGrowth, GrowsCrowdedBranchingNodesAsOneJunction) {
+  const Centerline centerline({{{0, 0, 0}, 1},
+                               {{0.5, 0, 0}, 1},
+                               {{1.0, 0.1, 0}, 1},
+                               {{-7, 0, 0}, 1},
+                               {{0, 7, 0}, 0.7},
+                               {{0.5, -7, 0}, 0.7},
+                               {{8, 3, 0}, 0.8},
+                               {{8, -3, 0}, 0.8}},
+                              {{0, 1}, {1, 2}, {0, 3}, {0, 4}, {1, 5}, {2, 6}, {2, 7}});
+  const auto result = expect_surface(centerline, 1, 0);
+  EXPECT_EQ(result.growth.junctions, 1u);
+  ASSERT_EQ(count(result, Kind::merged_nodes), 1u);
+  const GrowthSimplification& note = result.growth.simplifications[0];
+  EXPECT_EQ(note.nodes, (std::vector<Index>{0, 1, 2}));
+  EXPECT_EQ(note.segments, (std::vector<Index>{0, 1}));
+  EXPECT_NE(note.message.find("3 nodes"), std::string::npos) << note.message;
+}
+
+TEST(GuidedGrowth, LeavesOutABranchThatNeverLeavesTheVolume) {
+  const Centerline centerline({{{0, 0, 0}, 2}, {{10, 0, 0}, 2}, {{-10, 0, 0}, 2}, {{4, 0.5, 0}, 0.5}},
+                              {{0, 1}, {0, 2}, {0, 3}});
+  const auto result = expect_surface(centerline, 1, 0);
+  ASSERT_EQ(count(result, Kind::buried_branch), 1u);
+  EXPECT_EQ(result.growth.simplifications[0].segments, (std::vector<Index>{2}));
+  for (const auto& binding : result.binding) EXPECT_NE(binding.segment, 2u);
+}
+
+TEST(GuidedGrowth, KeepsABranchThatHardlyLeavesTheVolume) {
+  const Centerline centerline({{{0, 0, 0}, 2}, {{10, 0, 0}, 2}, {{-10, 0, 0}, 2}, {{4, 2.6, 0}, 0.5}},
+                              {{0, 1}, {0, 2}, {0, 3}});
+  EXPECT_EQ(count(expect_surface(centerline, 1, 0), Kind::buried_branch), 0u);
+}
+
+TEST(GuidedGrowth, TrimsAnEndThatLiesWithinASphere) {
+  const Centerline centerline({{{0, 0, 0}, 1}, {{8, 0, 0}, 2}, {{9, 0, 0}, 0.4}, {{9.4, 0, 0}, 0.1}},
+                              {{0, 1}, {1, 2}, {2, 3}});
+  const auto result = expect_surface(centerline, 1, 0);
+  EXPECT_EQ(count(result, Kind::buried_branch), 1u);
+}
+
+TEST(GuidedGrowth, GrowsAHairpin) {
+  expect_surface({{{{0, 0, 0}, 1.41}, {{-1.84, -1.02, -1.06}, 1.43}, {{-1.74, -1.35, -0.75}, 1.06}}, {{0, 1}, {0, 2}}},
+                 1, 0);
+}
+
+// Found at random, and minimised.
+TEST(GuidedGrowth, GrowsAHairpinThatOpensSlowly) {
+  expect_surface({{{{0, 0, 0}, 1.4},
+                   {{2.01, -1.43, -1.72}, 1.13},
+                   {{9.39, -5.57, -3.56}, 1.18},
+                   {{5.79, -7.69, -5.4}, 1.39},
+                   {{7.24, -10.21, -9.09}, 1.24}},
+                  {{0, 1}, {1, 2}, {0, 3}, {3, 4}}},
+                 1, 0);
+}
+
+TEST(GuidedGrowth, FillsALoopThatLeavesAndReturnsAlongOneWay) {
+  const auto result = expect_surface({{{{0, 0, 0}, 1.93},
+                                       {{3.78, 2.81, -3.2}, 1.86},
+                                       {{5.07, 5.13, -7.67}, 2},
+                                       {{4.85, 5.89, -11.21}, 1.74},
+                                       {{5.88, 10.42, -10.87}, 2},
+                                       {{3.45, 18.4, -16.3}, 2}},
+                                      {{0, 1}, {1, 2}, {2, 3}, {2, 4}, {4, 5}, {3, 5}}},
+                                     1, 0);
+  EXPECT_EQ(count(result, Kind::filled_loop), 1u);
+}
+
+TEST(GuidedGrowth, DoesNotDependOnTheNumberOfThreads) {
+  const Centerline centerline = two_forks();
+  GenerateOptions one, four;
+  one.threads = 1;
+  four.threads = 4;
+  const GenerateResult a = generate_surface(centerline, one), b = generate_surface(centerline, four);
+  EXPECT_EQ(a.mesh.vertices, b.mesh.vertices);
+  EXPECT_EQ(a.mesh.faces, b.mesh.faces);
+}
+
+class OpenEndsOf : public ::testing::TestWithParam<int> {};
+
+TEST_P(OpenEndsOf, AForkAreFlatRoundAndTheOnlyHoles) {
+  const Centerline centerline = fork();
+  GenerateOptions options;
+  options.around = GetParam();
+  options.open_ends.all = true;
+  const GenerateResult result = generate_surface(centerline, options);
+  ASSERT_EQ(result.openings.size(), 3u);
+  std::size_t rings = 0;
+  for (const Opening& opening : result.openings) {
+    EXPECT_EQ(centerline.degree(opening.node), 1u);
+    EXPECT_EQ(opening.center, centerline.node(opening.node).position);
+    EXPECT_GE(opening.ring.size(), static_cast<std::size_t>(options.around));
+    const Index inner = centerline.other_node(centerline.incident_segments(opening.node)[0], opening.node);
+    const Vec3 out = (opening.center - centerline.node(inner).position).normalized();
+    EXPECT_GT(opening.normal.dot(out), 0.999);
+    for (const Index v : opening.ring) {
+      const Vec3 off = result.mesh.vertices[v] - opening.center;
+      EXPECT_NEAR(off.dot(out), 0, 1e-9);
+      // On the wall to 1e-3 radii; the wall of a cone that narrows by 0.1 over 5 is that much off a circle as well.
+      EXPECT_NEAR(off.norm(), opening.radius, 3e-3 * opening.radius);
+    }
+    rings += opening.ring.size();
+  }
+  EXPECT_EQ(measure_topology(result.mesh).boundary_edges, rings);
+  const Topology closed = measure_topology(with_lids(result));
+  EXPECT_TRUE(closed.closed && closed.manifold && closed.oriented && closed.outward);
+  EXPECT_EQ(closed.genus, 0);
+  EXPECT_TRUE(self_intersections(result.mesh).empty());
+  EXPECT_LE(summarize_skewness(result.mesh).max, 0.70);
+}
+
+INSTANTIATE_TEST_SUITE_P(Resolutions, OpenEndsOf, ::testing::Values(4, 6, 9, 16));
+
+TEST(OpenEnds, AreThoseChosen) {
+  GenerateOptions options;
+  options.open_ends.nodes = {3};
+  const GenerateResult result = generate_surface(fork(), options);
+  ASSERT_EQ(result.openings.size(), 1u);
+  EXPECT_EQ(result.openings[0].node, 3u);
+}
+
+TEST(OpenEnds, AreRefusedWhereThereIsNoEnd) {
+  GenerateOptions options;
+  for (const Index node : {1u, 77u}) {
+    options.open_ends.nodes = {node};
+    EXPECT_THROW(generate_surface(fork(), options), InvalidInput);
+  }
+  options.open_ends.nodes = {0};
+  options.growth = GrowthMethod::paper;
+  EXPECT_THROW(generate_surface(fork(), options), InvalidInput);
+}
+
+TEST(OpenEnds, StayClosedWhereOtherVesselsCoverThem) {
+  // The twig ends beside the trunk's wall.
+  const Centerline centerline({{{0, 0, 0}, 2}, {{10, 0, 0}, 2}, {{-10, 0, 0}, 2}, {{4, 2.3, 0}, 0.5}},
+                              {{0, 1}, {0, 2}, {0, 3}});
+  GenerateOptions options;
+  options.open_ends.all = true;
+  const GenerateResult result = generate_surface(centerline, options);
+  EXPECT_EQ(result.openings.size(), 2u);
+  ASSERT_FALSE(result.warnings.empty());
+  EXPECT_NE(result.warnings[0].find("node 3"), std::string::npos) << result.warnings[0];
+}
+
+}  // namespace
+}  // namespace vmesh

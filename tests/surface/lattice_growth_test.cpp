@@ -1,0 +1,93 @@
+#include "surface/lattice_growth.h"
+
+#include <gtest/gtest.h>
+
+#include "vmesh/mesh/topology.h"
+
+#include "draw.h"
+
+namespace vmesh {
+namespace {
+
+using testing::Draw;
+
+TriMesh mesh_of(const LatticeSurface& surface) { return {surface.vertices, surface.faces}; }
+
+Eigen::Matrix3d any_frame() { return Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix(); }
+
+void expect_surface_of_genus(const LatticeSurface& surface, std::int64_t genus) {
+  const TriMesh mesh = mesh_of(surface);
+  const Topology topology = measure_topology(mesh);
+  EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented && topology.outward);
+  EXPECT_EQ(topology.components, 1u);
+  EXPECT_EQ(topology.genus, genus);
+  EXPECT_TRUE(self_intersections(mesh).empty());
+  EXPECT_EQ(surface.cones.size(), surface.vertices.size());
+}
+
+TEST(LatticeGrowth, FillsABallToHalfASpacing) {
+  const Centerline centerline({{{1, 2, 3}, 2}}, {});
+  const VesselField field(centerline);
+  const double spacing = 0.4;
+  const auto surface = grow_in_lattice(field, {1, 2, 3}, 0, spacing, any_frame(), 0);
+  expect_surface_of_genus(surface, 0);
+  // A vertex lies on an edge (at most one spacing) between a point inside and one outside, off both by a quarter of it.
+  for (const Vec3& v : surface.vertices) EXPECT_LT(std::abs((v - Vec3(1, 2, 3)).norm() - 2), 0.75 * spacing);
+  const double volume = 4.0 / 3 * M_PI * 8;
+  EXPECT_NEAR(enclosed_volume(mesh_of(surface)), volume, 0.1 * volume);
+}
+
+TEST(LatticeGrowth, HoldsTheSeedInAVesselThinnerThanTheLattice) {
+  const Centerline centerline({{{0, 0, 0}, 0.1}, {{5, 0, 0}, 0.1}}, {{0, 1}});
+  const VesselField field(centerline);
+  const auto surface = grow_in_lattice(field, {0, 0, 0}, 0, 1, any_frame(), 0);
+  expect_surface_of_genus(surface, 0);
+  EXPECT_TRUE(points_inside(mesh_of(surface), {{0, 0, 0}})[0]);
+}
+
+// A ring's two fronts meet: they stay apart, or are joined where a handle is allowed.
+TEST(LatticeGrowth, ClosesARingOnlyWhenAllowed) {
+  std::vector<CenterlineNode> nodes;
+  std::vector<CenterlineSegment> segments;
+  for (Index i = 0; i < 12; ++i) {
+    const double angle = 2 * M_PI * i / 12;
+    nodes.push_back({4 * Vec3(std::cos(angle), std::sin(angle), 0), 1});
+    segments.push_back({i, (i + 1) % 12});
+  }
+  const Centerline centerline(nodes, segments);
+  const VesselField field(centerline);
+  for (const std::size_t allowed : {0u, 1u, 5u}) {
+    const auto surface = grow_in_lattice(field, nodes[0].position, 0, 0.5, any_frame(), allowed);
+    EXPECT_EQ(surface.handles, std::min<std::size_t>(allowed, 1));
+    expect_surface_of_genus(surface, static_cast<std::int64_t>(surface.handles));
+  }
+}
+
+// Whatever the volume, the surface is a sphere.
+TEST(LatticeGrowth, MakesASphereOfAnyTangle) {
+  Draw draw(5);
+  for (int trial = 0; trial < 40; ++trial) {
+    std::vector<CenterlineNode> nodes = {{Vec3::Zero(), draw.uniform(0.3, 1)}};
+    std::vector<CenterlineSegment> segments;
+    for (Index i = 1; i < 12; ++i) {
+      const Vec3 place = draw.in_cube(2);
+      nodes.push_back({place, draw.uniform(0.3, 1)});
+      segments.push_back({draw.below(i), i});
+    }
+    const Centerline centerline(nodes, segments);
+    const VesselField field(centerline, 0.5);
+    expect_surface_of_genus(grow_in_lattice(field, Vec3::Zero(), 0, 0.4, any_frame(), 0), 0);
+  }
+}
+
+TEST(LatticeGrowth, ScalesBitForBitByPowersOfTwo) {
+  const Centerline centerline({{{0, 0, 0}, 1}, {{3, 1, 0}, 0.7}, {{-2, 2, 1}, 0.8}}, {{0, 1}, {0, 2}});
+  const Centerline large({{{0, 0, 0}, 64}, {{192, 64, 0}, 0.7 * 64}, {{-128, 128, 64}, 0.8 * 64}}, {{0, 1}, {0, 2}});
+  const auto a = grow_in_lattice(VesselField(centerline, 0.5), Vec3::Zero(), 0, 0.3, any_frame(), 0);
+  const auto b = grow_in_lattice(VesselField(large, 0.5), Vec3::Zero(), 0, 0.3 * 64, any_frame(), 0);
+  ASSERT_EQ(a.faces, b.faces);
+  for (std::size_t v = 0; v < a.vertices.size(); ++v) EXPECT_EQ(64 * a.vertices[v], b.vertices[v]);
+}
+
+}  // namespace
+}  // namespace vmesh
