@@ -62,7 +62,16 @@ class Optimizer {
       end_sweep(sweep);
     }
     remesher_.split_far_faces(options_.max_center_distance);
-    for (int sweep = std::max(first, shape_begin); sweep < options_.sweeps && begin_sweep(sweep); ++sweep) {
+    // What had come to rest is looked at again where the rules change.
+    const int irregular_begin = static_cast<int>(kRegularityShare * options_.sweeps);
+    state_.stir_all();
+    shape_sweeps(std::max(first, shape_begin), irregular_begin);
+    state_.stir_all();
+    shape_sweeps(std::max(first, irregular_begin), options_.sweeps);
+  }
+
+  void shape_sweeps(int begin, int end) {
+    for (int sweep = begin; sweep < end && begin_sweep(sweep); ++sweep) {
       remesher_.collapse_bad_faces();
       end_sweep(sweep);
     }
