@@ -7,7 +7,7 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kShortHandle = 3;  // rings
+constexpr std::size_t kShortHandle = 6;  // rings
 
 class UnionFind {
  public:
