@@ -1,0 +1,199 @@
+#include "volume/moving.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <utility>
+
+namespace vmesh {
+namespace {
+
+// A shift fades out over at least so many radii, however short it is.
+constexpr double kShortestFading = 2;
+
+// From 1 at x = 0 to 0 at x = 1, level at both ends; its slope is at most 1.5.
+double faded(double x) { return x >= 1 ? 0 : 1 - x * x * (3 - 2 * x); }
+constexpr double kSteepestFading = 1.5;
+
+}  // namespace
+
+Moving::Moving(const Centerline& original, double slope) : original_(&original), slope_(slope) {
+  auto offset = static_cast<Index>(original.nodes().size());
+  for (Index s = 0; s < original.segments().size(); ++s) {
+    leaf_counts_.push_back(leaf_count_of(original, s));
+    offsets_.push_back(offset);
+    offset += leaf_counts_[s] - 1;
+    segments_.resize(offset - original.nodes().size(), s);
+  }
+}
+
+Index Moving::add(Shift shift) {
+  const auto number = static_cast<Index>(shifts_.size());
+  shifts_.push_back(std::move(shift));
+  parts_.emplace_back();
+  fade(number);
+  return number;
+}
+
+void Moving::extend(Index shift, double distance, const std::vector<MovedStretch>& more) {
+  shifts_[shift].distance = std::max(shifts_[shift].distance, distance);
+  shifts_[shift].stretches.insert(shifts_[shift].stretches.end(), more.begin(), more.end());
+  fade(shift);
+}
+
+double Moving::part_at(Index shift, const MovedStretch& place) const {
+  double most = 0;
+  for (const Index p : places_of(place)) {
+    const auto part = parts_[shift].find(p);
+    if (part != parts_[shift].end()) most = std::max(most, part->second);
+  }
+  return most;
+}
+
+bool Moving::is_moved(const MovedStretch& place) const {
+  for (Index shift = 0; shift < shifts_.size(); ++shift) {
+    if (part_at(shift, place) > 0) return true;
+  }
+  return false;
+}
+
+Index Moving::place_of(Index segment, Index leaf_end) const {
+  if (leaf_end == 0) return original_->segment(segment).a;
+  if (leaf_end == leaf_counts_[segment]) return original_->segment(segment).b;
+  return offsets_[segment] + leaf_end - 1;
+}
+
+// The ends of all leaves that the stretch covers a part of.
+std::vector<Index> Moving::places_of(const MovedStretch& stretch) const {
+  if (stretch.segment == kNone) return {stretch.node};
+  const double count = leaf_counts_[stretch.segment];
+  std::vector<Index> places;
+  const auto last = static_cast<Index>(std::min(count, std::ceil(stretch.t_last * count)));
+  for (auto end = static_cast<Index>(stretch.t_first * count); end <= last; ++end)
+    places.push_back(place_of(stretch.segment, end));
+  return places;
+}
+
+std::vector<Moving::Step> Moving::steps_from(Index place) const {
+  std::vector<Step> steps;
+  if (is_node(place)) {
+    for (const Index s : original_->incident_segments(place)) {
+      const Index next = original_->segment(s).a == place ? 1 : leaf_counts_[s] - 1;
+      steps.push_back({place_of(s, next), original_->length(s) / leaf_counts_[s]});
+    }
+    return steps;
+  }
+  const Index s = segment_of(place), end = leaf_end_of(place);
+  const double length = original_->length(s) / leaf_counts_[s];
+  return {{place_of(s, end - 1), length}, {place_of(s, end + 1), length}};
+}
+
+double Moving::radius_of(Index place) const {
+  if (is_node(place)) return original_->node(place).radius;
+  const Index s = segment_of(place);
+  return original_->radius_at(s, static_cast<double>(leaf_end_of(place)) / leaf_counts_[s]);
+}
+
+double Moving::fading_length(const Shift& shift) const {
+  double radius = 0;
+  for (const MovedStretch& stretch : shift.stretches) {
+    for (const Index p : places_of(stretch)) radius = std::max(radius, radius_of(p));
+  }
+  return std::max(kSteepestFading * shift.distance / slope_, kShortestFading * radius);
+}
+
+// Dijkstra's algorithm from all places that are moved the whole way.
+void Moving::fade(Index shift) {
+  const double length = fading_length(shifts_[shift]);
+  std::map<Index, double> away;
+  using Entry = std::pair<double, Index>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  const auto reach = [&](Index place, double distance) {
+    if (distance >= length) return;
+    const auto [known, is_new] = away.try_emplace(place, distance);
+    if (!is_new && known->second <= distance) return;
+    known->second = distance;
+    open.emplace(distance, place);
+  };
+  for (const MovedStretch& stretch : shifts_[shift].stretches) {
+    for (const Index p : places_of(stretch)) reach(p, 0);
+  }
+  while (!open.empty()) {
+    const auto [distance, place] = open.top();
+    open.pop();
+    if (distance > away.at(place)) continue;
+    for (const Step& step : steps_from(place)) reach(step.place, distance + step.length);
+  }
+  parts_[shift].clear();
+  for (const auto& [place, distance] : away) parts_[shift][place] = faded(distance / length);
+}
+
+Vec3 Moving::displacement_at(Index place) const {
+  Vec3 sum = Vec3::Zero();
+  for (Index shift = 0; shift < shifts_.size(); ++shift) {
+    const auto part = parts_[shift].find(place);
+    if (part != parts_[shift].end()) sum += part->second * shifts_[shift].distance * shifts_[shift].direction;
+  }
+  return sum;
+}
+
+double Moving::steepest() const {
+  double most = 0;
+  for (const auto& parts : parts_) {
+    for (const auto& [place, part] : parts) {
+      const Vec3 here = displacement_at(place);
+      for (const Step& step : steps_from(place))
+        most = std::max(most, (displacement_at(step.place) - here).norm() / step.length);
+    }
+  }
+  return most;
+}
+
+DividedCenterline Moving::apply() const {
+  std::map<Index, Vec3> displaced;
+  std::map<Index, std::vector<Index>> ends;  // per segment, the inner leaf ends that become nodes
+  const auto divide_at = [&](Index place) {
+    if (!is_node(place)) ends[segment_of(place)].push_back(leaf_end_of(place));
+  };
+  for (const auto& parts : parts_) {
+    for (const auto& [place, part] : parts) {
+      if (!displaced.try_emplace(place, displacement_at(place)).second) continue;
+      divide_at(place);
+      for (const Step& step : steps_from(place)) divide_at(step.place);
+    }
+  }
+  std::vector<CenterlineNode> nodes = original_->nodes();
+  for (const auto& [place, displacement] : displaced) {
+    if (is_node(place)) nodes[place].position += displacement;
+  }
+  std::vector<CenterlineSegment> segments;
+  std::vector<SegmentPiece> pieces;
+  for (Index s = 0; s < leaf_counts_.size(); ++s) {
+    const auto& [a, b] = original_->segment(s);
+    Index last = a;
+    double t_last = 0;
+    const auto join = [&](Index node, double t) {
+      pieces.push_back({s, t_last, t});
+      segments.push_back({last, node});
+      last = node;
+      t_last = t;
+    };
+    if (const auto found = ends.find(s); found != ends.end()) {
+      auto& inner = found->second;
+      std::sort(inner.begin(), inner.end());
+      inner.erase(std::unique(inner.begin(), inner.end()), inner.end());
+      for (const Index end : inner) {
+        const double t = static_cast<double>(end) / leaf_counts_[s];
+        const auto displacement = displaced.find(place_of(s, end));
+        Vec3 position = original_->point_at(s, t);
+        if (displacement != displaced.end()) position += displacement->second;
+        nodes.push_back({position, original_->radius_at(s, t)});
+        join(static_cast<Index>(nodes.size() - 1), t);
+      }
+    }
+    join(b, 1);
+  }
+  return {Centerline(std::move(nodes), std::move(segments)), std::move(pieces)};
+}
+
+}  // namespace vmesh
