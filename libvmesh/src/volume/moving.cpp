@@ -11,6 +11,9 @@ namespace {
 // A shift fades out over at least so many radii, however short it is.
 constexpr double kShortestFading = 2;
 
+// Of all shifts together, per length: less than 1, so that an axis does not fold.
+constexpr double kSteepest = 0.8;
+
 // From 1 at x = 0 to 0 at x = 1, level at both ends; its slope is at most 1.5.
 double faded(double x) { return x >= 1 ? 0 : 1 - x * x * (3 - 2 * x); }
 constexpr double kSteepestFading = 1.5;
@@ -32,13 +35,26 @@ Index Moving::add(Shift shift) {
   shifts_.push_back(std::move(shift));
   parts_.emplace_back();
   fade(number);
-  return number;
+  if (steepest_along(number) <= kSteepest) return number;
+  remove(number);
+  return kNone;
 }
 
-void Moving::extend(Index shift, double distance, const std::vector<MovedStretch>& more) {
+bool Moving::extend(Index shift, double distance, const std::vector<MovedStretch>& more) {
+  const Shift shift_before = shifts_[shift];
+  const std::map<Index, double> parts_before = parts_[shift];
   shifts_[shift].distance = std::max(shifts_[shift].distance, distance);
   shifts_[shift].stretches.insert(shifts_[shift].stretches.end(), more.begin(), more.end());
   fade(shift);
+  if (steepest_along(shift) <= kSteepest) return true;
+  shifts_[shift] = shift_before;
+  parts_[shift] = parts_before;
+  return false;
+}
+
+void Moving::remove(Index shift) {
+  shifts_.erase(shifts_.begin() + shift);
+  parts_.erase(parts_.begin() + shift);
 }
 
 double Moving::part_at(Index shift, const MovedStretch& place) const {
@@ -48,13 +64,6 @@ double Moving::part_at(Index shift, const MovedStretch& place) const {
     if (part != parts_[shift].end()) most = std::max(most, part->second);
   }
   return most;
-}
-
-bool Moving::is_moved(const MovedStretch& place) const {
-  for (Index shift = 0; shift < shifts_.size(); ++shift) {
-    if (part_at(shift, place) > 0) return true;
-  }
-  return false;
 }
 
 Index Moving::place_of(Index segment, Index leaf_end) const {
@@ -137,31 +146,53 @@ Vec3 Moving::displacement_at(Index place) const {
   return sum;
 }
 
-double Moving::steepest() const {
-  double most = 0;
-  for (const auto& parts : parts_) {
-    for (const auto& [place, part] : parts) {
-      const Vec3 here = displacement_at(place);
-      for (const Step& step : steps_from(place))
-        most = std::max(most, (displacement_at(step.place) - here).norm() / step.length);
+std::map<Index, Vec3> Moving::displacements() const {
+  std::map<Index, Vec3> displacements;
+  for (Index shift = 0; shift < shifts_.size(); ++shift) {
+    const Vec3 whole = shifts_[shift].distance * shifts_[shift].direction;
+    for (const auto& [place, part] : parts_[shift]) {
+      displacements.try_emplace(place, Vec3::Zero()).first->second += part * whole;
     }
+  }
+  return displacements;
+}
+
+double Moving::steepest_along(Index shift) const {
+  double most = 0;
+  for (const auto& [place, part] : parts_[shift]) {
+    const Vec3 here = displacement_at(place);
+    for (const Step& step : steps_from(place))
+      most = std::max(most, (displacement_at(step.place) - here).norm() / step.length);
   }
   return most;
 }
 
-DividedCenterline Moving::apply() const {
-  std::map<Index, Vec3> displaced;
-  std::map<Index, std::vector<Index>> ends;  // per segment, the inner leaf ends that become nodes
+double Moving::steepest() const {
+  double most = 0;
+  for (Index shift = 0; shift < shifts_.size(); ++shift) most = std::max(most, steepest_along(shift));
+  return most;
+}
+
+// The leaf ends that become nodes, ascending, by segments: those that are displaced and those next to them.
+std::map<Index, std::vector<Index>> Moving::divisions(const std::map<Index, Vec3>& displaced) const {
+  std::map<Index, std::vector<Index>> ends;
   const auto divide_at = [&](Index place) {
     if (!is_node(place)) ends[segment_of(place)].push_back(leaf_end_of(place));
   };
-  for (const auto& parts : parts_) {
-    for (const auto& [place, part] : parts) {
-      if (!displaced.try_emplace(place, displacement_at(place)).second) continue;
-      divide_at(place);
-      for (const Step& step : steps_from(place)) divide_at(step.place);
-    }
+  for (const auto& [place, displacement] : displaced) {
+    divide_at(place);
+    for (const Step& step : steps_from(place)) divide_at(step.place);
   }
+  for (auto& [segment, inner] : ends) {
+    std::sort(inner.begin(), inner.end());
+    inner.erase(std::unique(inner.begin(), inner.end()), inner.end());
+  }
+  return ends;
+}
+
+DividedCenterline Moving::apply() const {
+  const std::map<Index, Vec3> displaced = displacements();
+  const std::map<Index, std::vector<Index>> ends = divisions(displaced);
   std::vector<CenterlineNode> nodes = original_->nodes();
   for (const auto& [place, displacement] : displaced) {
     if (is_node(place)) nodes[place].position += displacement;
@@ -178,18 +209,13 @@ DividedCenterline Moving::apply() const {
       last = node;
       t_last = t;
     };
-    if (const auto found = ends.find(s); found != ends.end()) {
-      auto& inner = found->second;
-      std::sort(inner.begin(), inner.end());
-      inner.erase(std::unique(inner.begin(), inner.end()), inner.end());
-      for (const Index end : inner) {
-        const double t = static_cast<double>(end) / leaf_counts_[s];
-        const auto displacement = displaced.find(place_of(s, end));
-        Vec3 position = original_->point_at(s, t);
-        if (displacement != displaced.end()) position += displacement->second;
-        nodes.push_back({position, original_->radius_at(s, t)});
-        join(static_cast<Index>(nodes.size() - 1), t);
-      }
+    const auto inner = ends.find(s);
+    for (const Index end : inner == ends.end() ? std::vector<Index>() : inner->second) {
+      const double t = static_cast<double>(end) / leaf_counts_[s];
+      const auto displacement = displaced.find(place_of(s, end));
+      const Vec3 aside = displacement == displaced.end() ? Vec3(Vec3::Zero()) : displacement->second;
+      nodes.push_back({original_->point_at(s, t) + aside, original_->radius_at(s, t)});
+      join(static_cast<Index>(nodes.size() - 1), t);
     }
     join(b, 1);
   }

@@ -30,15 +30,16 @@ class Moving {
   Moving(const Centerline& original, double slope);
 
   const std::vector<Shift>& shifts() const { return shifts_; }
+  /// Adds a shift, and returns its number. Where the axis would go aside too steeply, all shifts together, nothing is
+  /// changed and kNone returned.
   Index add(Shift shift);
-  /// Moves further, or more: the shift's distance becomes at least `distance`.
-  void extend(Index shift, double distance, const std::vector<MovedStretch>& more);
+  /// Moves further, or more: the shift's distance becomes at least `distance`. Returns false and changes nothing where
+  /// that is too steep.
+  bool extend(Index shift, double distance, const std::vector<MovedStretch>& more);
+  void remove(Index shift);
 
   /// By how much of its distance a shift moves a place of the original, in [0, 1].
   double part_at(Index shift, const MovedStretch& place) const;
-  /// Whether any shift moves a place.
-  bool is_moved(const MovedStretch& place) const;
-
   /// The most that the displacement, of all shifts together, changes per length of the original.
   double steepest() const;
   DividedCenterline apply() const;
@@ -57,6 +58,9 @@ class Moving {
   std::vector<Index> places_of(const MovedStretch& stretch) const;
   std::vector<Step> steps_from(Index place) const;
   Vec3 displacement_at(Index place) const;
+  std::map<Index, Vec3> displacements() const;
+  double steepest_along(Index shift) const;
+  std::map<Index, std::vector<Index>> divisions(const std::map<Index, Vec3>& displaced) const;
   double radius_of(Index place) const;
 
   const Centerline* original_;

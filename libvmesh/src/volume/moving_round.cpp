@@ -158,11 +158,10 @@ class MovingRound {
     }
     shift.distance += further;
     if (shift.stretches.empty() || shift.distance > kFarthest * (anchor.side.radius + anchor.other_side.radius)) return;
-    if (known == kNone) {
-      changed_.push_back(moving_.add(std::move(shift)));
-    } else {
-      moving_.extend(known, shift.distance, shift.stretches);
-      changed_.push_back(known);
+    if (known != kNone) {
+      if (moving_.extend(known, shift.distance, shift.stretches)) changed_.push_back(known);
+    } else if (const Index added = moving_.add(std::move(shift)); added != kNone) {
+      changed_.push_back(added);
     }
   }
 

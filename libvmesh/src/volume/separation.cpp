@@ -15,8 +15,6 @@ namespace {
 
 // More than the gap is aimed for, so that rounds of narrowing end.
 constexpr double kSpare = 0.02;
-// Of all moves together, per length: less than 1, so that an axis does not fold.
-constexpr double kSteepest = 0.8;
 constexpr double kMoved = 1e-9;  // radii: what counts as moved
 
 void check(const SeparationOptions& options) {
@@ -279,16 +277,29 @@ Moving moved_apart(const Centerline& original, const SeparationOptions& options,
   };
   for (int round = 0; round < options.max_moves; ++round) {
     report_progress(progress, "move", static_cast<double>(round) / options.max_moves);
-    const Moving before = moving;
     const DividedCenterline moved = moving.apply();
     if (!look(moved)) {
       Narrower narrower(moved.centerline, options, progress);
       narrower.narrow(options.move_beyond);
       if (!look(composed(moved, narrower.narrowed()))) break;
     }
-    if (moving.steepest() > kSteepest) return before;
   }
   return moving;
+}
+
+// Moves of vessels that still touch where they were moved. Returns whether there were any.
+bool take_back_moves_in_vain(const Centerline& original, Moving& moving, const std::vector<Contact>& left) {
+  const std::size_t count = moving.shifts().size();
+  for (const Contact& contact : left) {
+    for (const ContactSide& side : contact.sides) {
+      if (side.segment >= original.segments().size()) continue;
+      const MovedStretch place{side.segment, side.t, side.t, kNone};
+      for (auto shift = static_cast<Index>(moving.shifts().size()); shift-- > 0;) {
+        if (moving.part_at(shift, place) > 0) moving.remove(shift);
+      }
+    }
+  }
+  return moving.shifts().size() < count;
 }
 
 }  // namespace
@@ -300,10 +311,14 @@ SeparatedCenterline separate_contacts(const Centerline& centerline, const Separa
   SeparatedCenterline separated = narrow_moved(centerline, Moving(centerline, options.slope), options, progress);
   const bool enough = separated.report.left.empty() && separated.report.max_taken_relative <= options.move_beyond;
   if (!enough && options.move_beyond < options.most_taken && options.max_moves > 0) {
-    const Moving moving = moved_apart(centerline, options, progress);
-    SeparatedCenterline other = narrow_moved(centerline, moving, options, progress);
-    const std::size_t left = other.report.left.size();
-    if (left == 0 || left < separated.report.left.size()) separated = std::move(other);
+    Moving moving = moved_apart(centerline, options, progress);
+    SeparatedCenterline moved = narrow_moved(centerline, moving, options, progress);
+    if (take_back_moves_in_vain(centerline, moving, moved.report.left)) {
+      SeparatedCenterline fewer = narrow_moved(centerline, moving, options, progress);
+      if (fewer.report.left.size() <= moved.report.left.size()) moved = std::move(fewer);
+    }
+    const std::size_t left = moved.report.left.size();
+    if (left == 0 || left < separated.report.left.size()) separated = std::move(moved);
   }
   separated.report.before = std::move(before);
   return separated;
