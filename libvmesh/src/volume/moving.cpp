@@ -14,6 +14,9 @@ constexpr double kShortestFading = 2;
 // Of all shifts together, per length: less than 1, so that an axis does not fold.
 constexpr double kSteepest = 0.8;
 
+constexpr double kLeastMore = 0.01;  // of a shift's distance: less is not worth another look
+constexpr int kMostExtensions = 8;   // of one shift
+
 // From 1 at x = 0 to 0 at x = 1, level at both ends; its slope is at most 1.5.
 double faded(double x) { return x >= 1 ? 0 : 1 - x * x * (3 - 2 * x); }
 constexpr double kSteepestFading = 1.5;
@@ -40,8 +43,16 @@ Index Moving::add(Shift shift) {
   return kNone;
 }
 
+bool Moving::is_more(Index shift, double distance, const std::vector<MovedStretch>& stretches) const {
+  if (distance > (1 + kLeastMore) * shifts_[shift].distance) return true;
+  return std::ranges::any_of(stretches,
+                             [&](const MovedStretch& stretch) { return part_at(shift, stretch) < 1 - kLeastMore; });
+}
+
 bool Moving::extend(Index shift, double distance, const std::vector<MovedStretch>& more) {
+  if (shifts_[shift].extensions >= kMostExtensions || !is_more(shift, distance, more)) return false;
   const Shift shift_before = shifts_[shift];
+  ++shifts_[shift].extensions;
   const std::map<Index, double> parts_before = parts_[shift];
   shifts_[shift].distance = std::max(shifts_[shift].distance, distance);
   shifts_[shift].stretches.insert(shifts_[shift].stretches.end(), more.begin(), more.end());

@@ -24,6 +24,7 @@ class Moving {
     double distance = 0;            // mm
     std::vector<MovedStretch> stretches;
     ContactSide moved, other;  // where it was first asked for, on the original
+    int extensions = 0;
   };
 
   /// `slope`: the most that the distance of a shift changes per length of the original.
@@ -34,7 +35,7 @@ class Moving {
   /// changed and kNone returned.
   Index add(Shift shift);
   /// Moves further, or more: the shift's distance becomes at least `distance`. Returns false and changes nothing where
-  /// that is too steep.
+  /// that is too steep, hardly any more, or has been done too often.
   bool extend(Index shift, double distance, const std::vector<MovedStretch>& more);
   void remove(Index shift);
 
@@ -60,6 +61,7 @@ class Moving {
   Vec3 displacement_at(Index place) const;
   std::map<Index, Vec3> displacements() const;
   double steepest_along(Index shift) const;
+  bool is_more(Index shift, double distance, const std::vector<MovedStretch>& stretches) const;
   std::map<Index, std::vector<Index>> divisions(const std::map<Index, Vec3>& displaced) const;
   double radius_of(Index place) const;
 
