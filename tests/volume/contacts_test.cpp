@@ -493,6 +493,15 @@ TEST(Separation, MovesVesselsOfOneAxis) {
   EXPECT_TRUE(separated.report.left.empty());
 }
 
+TEST(Separation, MovesSpheresOfOneCenter) {
+  const Centerline balls({{{0, 0, 0}, 1}, {{0, 0, 0}, 0.5}, {{9, 0, 0}, 1}}, {});
+  const SeparatedCenterline separated = separate_contacts(balls);
+  EXPECT_TRUE(separated.report.left.empty());
+  ASSERT_EQ(separated.report.moves.size(), 1u);
+  EXPECT_NEAR(separated.centerline.node(1).position.norm(), separated.report.max_moved, 1e-12);
+  EXPECT_EQ(separated.report.nodes_moved, 1u);
+}
+
 // Two branches of a fork that cross again after `length`.
 Centerline crossing_branches(double length) {
   CenterlineBuilder builder;
@@ -544,6 +553,7 @@ TEST(Separation, TapersAcrossBranchingNodes) {
 TEST(Separation, OfRandomForestsLeavesNothingUnsaid) {
   Draw draw(84);
   int separated_places = 0, left = 0;
+  std::size_t moves = 0;
   for (int trial = 0; trial < 25; ++trial) {
     const Centerline centerline = random_forest(draw, 4, 40, trial % 5 == 0 ? 3 : 6);
     SeparationOptions options;
@@ -552,6 +562,10 @@ TEST(Separation, OfRandomForestsLeavesNothingUnsaid) {
     const SeparatedCenterline separated = separate_contacts(centerline, options);
     const SeparationReport& report = separated.report;
     expect_sound(centerline, separated, options.taper);
+    SeparationOptions narrowing_only = options;
+    narrowing_only.max_moves = 0;
+    EXPECT_LE(report.left.size(), separate_contacts(centerline, narrowing_only).report.left.size());
+    moves += report.moves.size();
     EXPECT_LT(report.rounds, options.max_rounds) << trial;
     EXPECT_LE(report.max_taken_relative, options.most_taken + 1e-12);
     EXPECT_EQ(contacts_of(separated.centerline, options.gap, options.blend).size(), report.left.size());
@@ -559,6 +573,7 @@ TEST(Separation, OfRandomForestsLeavesNothingUnsaid) {
     left += static_cast<int>(report.left.size());
   }
   EXPECT_GT(separated_places, 50);
+  EXPECT_GT(moves, 10u);
   EXPECT_LT(left, separated_places / 20);
 }
 
