@@ -109,7 +109,8 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           [&arguments](const std::string& text) {
             arguments.overlap = text == "separate" ? OverlapHandling::separate : OverlapHandling::keep;
           },
-          "where vessels touch that are not neighbours: keep their radii, or separate them by narrowing")
+          "where vessels touch that are not neighbours: keep their radii, or separate them by narrowing, and by moving "
+          "those that cross")
       ->check(CLI::IsMember({"keep", "separate"}))
       ->default_str("keep");
   verb.add_option("--gap", arguments.gap, "free space between vessels below which they touch, in smaller radii")

@@ -65,6 +65,8 @@ void log_result(const GenerateReport& report, Console& console) {
   console.log("wrote " + report.arguments->output.string() + " after " + number(total, 2) + " s");
 }
 
+std::string text_of(const Vec3& p) { return "(" + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()) + ")"; }
+
 std::string places(const std::vector<Contact>& contacts) {
   return std::to_string(contacts.size()) + (contacts.size() == 1 ? " place" : " places");
 }
@@ -87,7 +89,7 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
   return loaded;
 }
 
-/// Finds where vessels touch and, when asked to, narrows them. Without a value the vessels stay as they are.
+/// Finds where vessels touch and, when asked to, narrows or moves them. Without a value the vessels stay as they are.
 std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, Console& console) {
   const GenerateArguments& arguments = *report.arguments;
   const Centerline& centerline = report.cleaned->centerline;
@@ -100,7 +102,7 @@ std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, Conso
     if (report.contacts.empty()) return std::nullopt;
     warn("vessels that are not neighbours touch in " + places(report.contacts) + ", the deepest " +
          describe(report.contacts.front()) +
-         "; there the surface may intersect itself (--overlap separate narrows them)");
+         "; there the surface may intersect itself (--overlap separate narrows them, and moves those that cross)");
     return std::nullopt;
   }
   SeparationOptions options;
@@ -115,10 +117,18 @@ std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, Conso
                 percent(separation.mean_taken_relative) + " of the radius in the mean, " +
                 percent(separation.max_taken_relative) + " (" + number(separation.max_taken) + " mm) at most");
   }
+  if (separation.nodes_moved > 0) {
+    const std::size_t moves = separation.moves.size();
+    console.log("vessels were moved aside in " + std::to_string(moves) + (moves == 1 ? " place" : " places") +
+                " where they cross or nearly do: " + std::to_string(separation.nodes_moved) + " nodes, by " +
+                number(separation.max_moved) + " mm, " + number(separation.max_moved_relative, 2) +
+                " radii at most, the farthest at " + text_of(separation.max_moved_at));
+  }
   constexpr std::size_t kNamed = 5;
   for (std::size_t c = 0; c < std::min(kNamed, separation.left.size()); ++c) {
     warn("vessels still touch " + describe(separation.left[c]) +
-         "; narrowing cannot part them: move the nodes of one, or join them if they are one vessel");
+         "; neither narrowing nor a small move can part them: move the nodes of one, or join them if they are one "
+         "vessel");
   }
   if (separation.left.size() > kNamed)
     warn("vessels still touch in " + places(separation.left) + "; the summary lists them");
@@ -126,7 +136,7 @@ std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, Conso
   return separated;
 }
 
-/// A binding to segments of a narrowed centerline, as one to those of the original.
+/// A binding to segments of a separated centerline, as one to those of the original.
 std::vector<CenterlineBinding> original_binding(const std::vector<CenterlineBinding>& binding,
                                                 const SeparatedCenterline& separated, const Centerline& original) {
   std::vector<CenterlineBinding> result;
@@ -142,7 +152,7 @@ std::vector<CenterlineBinding> original_binding(const std::vector<CenterlineBind
   return result;
 }
 
-/// Nodes and segments of a narrowed centerline, as those of the original; nodes that were added are left out.
+/// Nodes and segments of a separated centerline, as those of the original; nodes that were added are left out.
 void renumber(GrowthSummary& growth, const SeparatedCenterline& separated, const Centerline& original) {
   for (GrowthSimplification& note : growth.simplifications) {
     std::erase_if(note.nodes, [&](Index n) { return n >= original.nodes().size(); });
@@ -162,17 +172,17 @@ GenerateResult grow(const Centerline& centerline, const GenerateArguments& argum
 
 /// Fills in what is measured of the surface around `grown` and what is wrong with it.
 void measure(GenerateReport& report, const Centerline& grown, Console& console) {
-  const Centerline& centerline = report.cleaned->centerline;
   const GenerateResult& result = *report.result;
   report.measurement = measure_surface(result);
   stop_if_interrupted();
   const VesselField field(grown, report.arguments->options.blend);
   report.deviation = measure_deviation(result.mesh, result.binding, field);
   stop_if_interrupted();
-  report.nodes_inside = count_nodes_inside(centerline, result);
+  report.grown_nodes = grown.nodes().size();
+  report.nodes_inside = count_nodes_inside(grown, result);
   stop_if_interrupted();
-  report.problems = problems_of(report.measurement, expected_surface(centerline, result), report.nodes_inside,
-                                centerline.nodes().size());
+  report.problems =
+      problems_of(report.measurement, expected_surface(grown, result), report.nodes_inside, report.grown_nodes);
   for (const std::string& problem : report.problems) console.warn("surface: " + problem);
 }
 

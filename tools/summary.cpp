@@ -45,14 +45,16 @@ Json to_json(const Deviation& deviation) {
           {"max_at", to_json(deviation.max_at)}};
 }
 
+Json to_json(const ContactSide& side) {
+  return {{"segment", side.segment},
+          {"parameter", side.t},
+          {"branch", side.branch == kNone ? Json() : Json(side.branch)},
+          {"radius_mm", side.radius}};
+}
+
 Json to_json(const Contact& contact) {
   Json sides = Json::array();
-  for (const ContactSide& side : contact.sides) {
-    sides.push_back({{"segment", side.segment},
-                     {"parameter", side.t},
-                     {"branch", side.branch == kNone ? Json() : Json(side.branch)},
-                     {"radius_mm", side.radius}});
-  }
+  for (const ContactSide& side : contact.sides) sides.push_back(to_json(side));
   const double smaller = std::min(contact.sides[0].radius, contact.sides[1].radius);
   return {{"at", to_json(contact.position)},
           {"depth_mm", contact.depth},
@@ -67,6 +69,20 @@ Json to_json(const std::vector<Contact>& contacts) {
   return {{"count", contacts.size()}, {"list", std::move(list)}};
 }
 
+Json to_json(const VesselMove& move) {
+  const double distance = move.displacement.norm();
+  return {{"at", to_json(move.position)},  {"displacement_mm", to_json(move.displacement)},
+          {"moved_mm", distance},          {"moved_relative", distance / move.moved.radius},
+          {"vessel", to_json(move.moved)}, {"away_from", to_json(move.other)}};
+}
+
+/// The farthest moves, and how many there are in all.
+Json to_json(const std::vector<VesselMove>& moves) {
+  Json list = Json::array();
+  for (std::size_t m = 0; m < std::min(moves.size(), kListedContacts); ++m) list.push_back(to_json(moves[m]));
+  return {{"count", moves.size()}, {"list", std::move(list)}};
+}
+
 Json to_json(const SeparationReport& separation) {
   return {{"rounds", separation.rounds},
           {"nodes_narrowed", separation.nodes_narrowed},
@@ -75,7 +91,19 @@ Json to_json(const SeparationReport& separation) {
           {"max_taken_relative", separation.max_taken_relative},
           {"mean_taken_relative", separation.mean_taken_relative},
           {"max_taken_at", to_json(separation.max_taken_at)},
+          {"nodes_moved", separation.nodes_moved},
+          {"max_moved_mm", separation.max_moved},
+          {"max_moved_relative", separation.max_moved_relative},
+          {"max_moved_at", to_json(separation.max_moved_at)},
+          {"steepest_move", separation.steepest_move},
+          {"moves", to_json(separation.moves)},
           {"contacts_left", to_json(separation.left)}};
+}
+
+/// What the surface was grown around and is compared with.
+std::string measured_centerline(const GenerateReport& report) {
+  if (!report.separation) return "the vessels";
+  return report.separation->nodes_moved > 0 ? "the narrowed and moved vessels" : "the narrowed vessels";
 }
 
 Json stages_json(const std::vector<StageTime>& stages) {
@@ -164,8 +192,9 @@ Json to_json(const GenerateReport& report) {
   json["openings"] = openings_json(*report.result);
   json["growth"] = arguments.options.growth == GrowthMethod::guided ? to_json(report.result->growth) : Json();
   json["nodes_inside"] = report.nodes_inside ? Json(*report.nodes_inside) : Json();
+  json["nodes_inside_of"] = {{"centerline", measured_centerline(report)}, {"nodes", report.grown_nodes}};
   json["distance"] = to_json(report.deviation);
-  json["distance"]["to"] = report.separation ? "the narrowed vessels" : "the vessels";
+  json["distance"]["to"] = measured_centerline(report);
   json["contacts"] = to_json(report.contacts);
   if (report.separation) json["separation"] = to_json(*report.separation);
   json["seconds"] = stages_json(report.stages);

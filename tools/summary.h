@@ -22,11 +22,12 @@ struct GenerateReport {
   std::string input_sha256;
   const CleanedCenterline* cleaned = nullptr;
   std::vector<Contact> contacts;               ///< of the cleaned centerline
-  std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed
+  std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed or moved
   const GenerateResult* result = nullptr;
   SurfaceMeasurement measurement;
-  std::optional<std::size_t> nodes_inside;
-  Deviation deviation;            ///< from the vessels that were grown: the narrowed ones after a separation
+  std::size_t grown_nodes = 0;              ///< of the centerline that was grown: with those a separation added
+  std::optional<std::size_t> nodes_inside;  ///< of them
+  Deviation deviation;            ///< from the vessels that were grown: the narrowed and moved ones after a separation
   std::vector<StageTime> stages;  ///< of the whole run
   std::vector<std::string> warnings, problems;
 };

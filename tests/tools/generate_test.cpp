@@ -178,7 +178,7 @@ TEST_F(Overlap, IsToldAndKept) {
 }
 
 TEST_F(Overlap, IsSeparated) {
-  for (const char* distance : {"0.5", "1.2", "1.95"}) {
+  for (const char* distance : {"1.1", "1.2", "1.95"}) {
     for (const char* gap : {"0.1", "0.3"}) {
       write_crossing(distance);
       std::string err;
@@ -192,7 +192,9 @@ TEST_F(Overlap, IsSeparated) {
       EXPECT_NEAR(separation.at("max_taken_relative"), 1 - kept, 0.03);
       EXPECT_NE(err.find("nodes were narrowed"), std::string::npos) << err;
       EXPECT_LT(summary.at("distance").at("max_relative"), 0.3);
-      EXPECT_EQ(summary.at("nodes_inside"), 6);
+      EXPECT_EQ(summary.at("distance").at("to"), "the narrowed vessels");
+      EXPECT_EQ(summary.at("nodes_inside"), 6 + separation.at("nodes_added").get<int>());
+      EXPECT_EQ(summary.at("nodes_inside"), summary.at("nodes_inside_of").at("nodes"));
     }
   }
 }
@@ -227,14 +229,44 @@ TEST_F(Overlap, SeparatedVerticesKeepTheirPlaceOnTheOriginalCenterline) {
   EXPECT_GT(least, 0.5);
 }
 
-TEST_F(Overlap, OfAxesThatCrossIsNamed) {
-  write_crossing("0");
+TEST_F(Overlap, OfAxesThatCrossIsMovedApart) {
+  for (const char* distance : {"0", "0.4"}) {
+    write_crossing(distance);
+    std::string err;
+    const json summary = summary_of({"--overlap", "separate", "--check"}, &err);
+    EXPECT_EQ(summary.at("self_intersections"), 0);
+    const json& separation = summary.at("separation");
+    EXPECT_EQ(separation.at("contacts_left").at("count"), 0);
+    EXPECT_LE(separation.at("max_taken_relative"), 0.5);
+    EXPECT_GT(separation.at("nodes_moved"), 3);
+    EXPECT_LE(separation.at("steepest_move"), 0.5 + 1e-9);
+    EXPECT_EQ(separation.at("moves").at("count"), 1);
+    const json& move = separation.at("moves").at("list").at(0);
+    EXPECT_NEAR(move.at("moved_mm"), 0.525 * 1.99 - std::atof(distance), 0.02);
+    EXPECT_EQ(move.at("moved_mm"), separation.at("max_moved_mm"));
+    EXPECT_NEAR(move.at("moved_relative"), move.at("moved_mm").get<double>() / 0.9, 1e-9);
+    EXPECT_NEAR(move.at("vessel").at("radius_mm"), 0.9, 1e-12);
+    EXPECT_EQ(summary.at("nodes_inside_of").at("centerline"), "the narrowed and moved vessels");
+    EXPECT_EQ(summary.at("nodes_inside"), summary.at("nodes_inside_of").at("nodes"));
+    EXPECT_NE(err.find("moved aside in 1 place"), std::string::npos) << err;
+  }
+}
+
+// Eight vessels on nearly one axis.
+TEST_F(Overlap, OfVesselsThatCannotBePartedIsNamed) {
+  std::string swc = "# SPACE=LPS\n# UNIT=mm\n";
+  for (int k = 0; k < 8; ++k) {
+    const std::string aside = " 0 0.0" + std::to_string(k) + " 0.9 ";
+    const int first = 3 * k + 1;
+    swc += std::to_string(first) + " 0 -12" + aside + "-1\n";
+    swc += std::to_string(first + 1) + " 0 0" + aside + std::to_string(first) + "\n";
+    swc += std::to_string(first + 2) + " 0 12" + aside + std::to_string(first + 1) + "\n";
+  }
+  write("x.swc", swc);
   std::string err;
   const json summary = summary_of({"--overlap", "separate"}, &err);
-  EXPECT_EQ(summary.at("separation").at("contacts_left").at("count"), 1);
-  EXPECT_EQ(summary.at("separation").at("nodes_narrowed"), 0);
-  EXPECT_NE(err.find("narrowing cannot part them"), std::string::npos) << err;
-  EXPECT_GT(summary.at("self_intersections"), 0);
+  EXPECT_GT(summary.at("separation").at("contacts_left").at("count"), 0);
+  EXPECT_NE(err.find("neither narrowing nor a small move can part them"), std::string::npos) << err;
 }
 
 TEST_F(Overlap, ValuesOutOfRangeAreRefused) {

@@ -7,15 +7,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kLeaf = 0.5;        // smaller radii
-constexpr Index kMostLeaves = 4096;  // per segment
-constexpr double kShortest = 0.1;    // radii: a node is not added closer than this to another
-
-Index leaves_of(const Centerline& centerline, Index s) {
-  const double smaller = std::min(centerline.radius_at(s, 0), centerline.radius_at(s, 1));
-  const double count = std::ceil(centerline.length(s) / (kLeaf * smaller));
-  return static_cast<Index>(std::clamp(count, 1.0, double{kMostLeaves}));
-}
+constexpr double kShortest = 0.1;  // radii: a node is not added closer than this to another
 
 // A stretch between two places where shares are known, with the original radii and the shares at its ends.
 struct Stretch {
@@ -46,7 +38,7 @@ std::vector<std::pair<double, double>> bends_of(const Stretch& s, double taper) 
 
 Narrowing::Narrowing(const Centerline& original, double taper)
     : original_(&original), taper_(taper), node_shares_(original.nodes().size(), 1) {
-  for (Index s = 0; s < original.segments().size(); ++s) leaf_counts_.push_back(leaves_of(original, s));
+  for (Index s = 0; s < original.segments().size(); ++s) leaf_counts_.push_back(leaf_count_of(original, s));
 }
 
 void Narrowing::hold_node(Index node, double share) { node_shares_[node] = std::min(node_shares_[node], share); }
@@ -139,7 +131,7 @@ bool Narrowing::is_held_leaf(Index segment, const Post& p, const Post& q) const 
   return last == first + 1 && held_leaves_.contains({segment, first});
 }
 
-NarrowedCenterline Narrowing::apply() const {
+DividedCenterline Narrowing::apply() const {
   Posts posts = plant_posts();
   let_shares_return(posts);
   std::vector<CenterlineNode> nodes = original_->nodes();

@@ -5,15 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "vmesh/volume/contacts.h"
+#include "volume/divided_centerline.h"
 
 namespace vmesh {
-
-/// A centerline with narrowed radii, and where its segments lie on the original.
-struct NarrowedCenterline {
-  Centerline centerline;
-  std::vector<SegmentPiece> pieces;
-};
 
 /// Which share of its radius a vessel keeps: 1, or less at places where it was held. From there the share returns to 1
 /// along the graph by `taper` per radius of length. Every segment is divided evenly into leaves of at most half its
@@ -27,7 +21,7 @@ class Narrowing {
   void hold(Index segment, Index leaf, double share);
   void hold_node(Index node, double share);
 
-  NarrowedCenterline apply() const;
+  DividedCenterline apply() const;
 
  private:
   /// A place where the share is held: the end of a leaf inside a segment, or a node.

@@ -7,6 +7,7 @@
 #include "vmesh/volume/contacts.h"
 
 #include "volume/contact_pairs.h"
+#include "volume/moving_round.h"
 #include "volume/narrowing.h"
 
 namespace vmesh {
@@ -14,12 +15,16 @@ namespace {
 
 // More than the gap is aimed for, so that rounds of narrowing end.
 constexpr double kSpare = 0.02;
+constexpr double kMoved = 1e-9;  // radii: what counts as moved
 
 void check(const SeparationOptions& options) {
   if (!(options.gap > 0 && options.gap <= 1)) throw InvalidInput("gap must be in (0, 1]");
   if (!(options.taper > 0 && options.taper <= 1)) throw InvalidInput("taper must be in (0, 1]");
   if (!(options.most_taken > 0 && options.most_taken < 1)) throw InvalidInput("most_taken must be in (0, 1)");
   if (options.max_rounds < 1) throw InvalidInput("max_rounds must be at least 1");
+  if (!(options.move_beyond > 0 && options.move_beyond <= 1)) throw InvalidInput("move_beyond must be in (0, 1]");
+  if (!(options.slope > 0 && options.slope <= 0.5)) throw InvalidInput("slope must be in (0, 0.5]");
+  if (options.max_moves < 0) throw InvalidInput("max_moves must not be negative");
 }
 
 // What one vessel has to give up at a contact.
@@ -31,12 +36,13 @@ struct Hold {
 // One look at the narrowed vessels: which shares must be held so that they come apart.
 class Round {
  public:
-  Round(const Centerline& original, const Narrowing& narrowing, const NarrowedCenterline& narrowed,
-        const SeparationOptions& options)
+  Round(const Centerline& original, const Narrowing& narrowing, const DividedCenterline& narrowed,
+        const SeparationOptions& options, double most_taken)
       : original_(original),
         narrowing_(narrowing),
         narrowed_(narrowed),
         options_(options),
+        most_taken_(most_taken),
         field_(narrowed.centerline, options.blend) {
     for (Index n = 0; n < original.nodes().size(); ++n) {
       if (original.degree(n) == 0) isolated_.push_back(n);
@@ -57,7 +63,7 @@ class Round {
     std::vector<Hold> all;
     for (const auto& region : per_region) {
       const bool possible =
-          std::ranges::all_of(region, [this](const Hold& hold) { return hold.share >= 1 - options_.most_taken; });
+          std::ranges::all_of(region, [this](const Hold& hold) { return hold.share >= 1 - most_taken_; });
       if (possible) all.insert(all.end(), region.begin(), region.end());
     }
     return all;
@@ -98,8 +104,9 @@ class Round {
 
   const Centerline& original_;
   const Narrowing& narrowing_;
-  const NarrowedCenterline& narrowed_;
+  const DividedCenterline& narrowed_;
   const SeparationOptions& options_;
+  double most_taken_;
   VesselField field_;
   std::vector<Index> isolated_;
 };
@@ -114,14 +121,19 @@ void hold_all(Narrowing& narrowing, const std::vector<Hold>& holds) {
   }
 }
 
-// Contacts of the narrowed centerline, named by segments and branches of the original.
-std::vector<Contact> contacts_left(const Centerline& original, const NarrowedCenterline& narrowed,
-                                   const SeparationOptions& options) {
-  std::vector<Index> branch_of(original.segments().size(), kNone);
-  const std::vector<Branch> branches = find_branches(original);
+std::vector<Index> branch_of_segments(const Centerline& centerline) {
+  std::vector<Index> branch_of(centerline.segments().size(), kNone);
+  const std::vector<Branch> branches = find_branches(centerline);
   for (Index b = 0; b < branches.size(); ++b) {
     for (const Index s : branches[b].segments) branch_of[s] = b;
   }
+  return branch_of;
+}
+
+// Contacts of the narrowed centerline, named by segments and branches of the original.
+std::vector<Contact> contacts_left(const Centerline& original, const DividedCenterline& narrowed,
+                                   const SeparationOptions& options) {
+  const std::vector<Index> branch_of = branch_of_segments(original);
   std::vector<Contact> contacts = find_contacts(VesselField(narrowed.centerline, options.blend), options.gap);
   for (Contact& contact : contacts) {
     for (ContactSide& side : contact.sides) {
@@ -138,7 +150,7 @@ std::vector<Contact> contacts_left(const Centerline& original, const NarrowedCen
   return contacts;
 }
 
-void tell_taken(const Centerline& original, const NarrowedCenterline& narrowed, SeparationReport& report) {
+void tell_taken(const Centerline& original, const DividedCenterline& narrowed, SeparationReport& report) {
   std::vector<double> radii;  // of the original vessel at every node
   for (const CenterlineNode& node : original.nodes()) radii.push_back(node.radius);
   radii.resize(narrowed.centerline.nodes().size());
@@ -163,25 +175,153 @@ void tell_taken(const Centerline& original, const NarrowedCenterline& narrowed, 
   if (report.nodes_narrowed > 0) report.mean_taken_relative = sum / static_cast<double>(report.nodes_narrowed);
 }
 
+// Farthest first, in radii.
+std::vector<VesselMove> moves_of(const Centerline& original, const Moving& moving) {
+  const std::vector<Index> branch_of = branch_of_segments(original);
+  std::vector<VesselMove> moves;
+  for (const Moving::Shift& shift : moving.shifts()) {
+    VesselMove move;
+    move.displacement = shift.distance * shift.direction;
+    move.moved = shift.moved;
+    move.other = shift.other;
+    const MovedStretch& first = shift.stretches.front();
+    move.position = first.segment == kNone ? original.node(first.node).position
+                                           : original.point_at(shift.moved.segment, shift.moved.t);
+    for (ContactSide* side : {&move.moved, &move.other}) {
+      if (side->segment < branch_of.size()) side->branch = branch_of[side->segment];
+    }
+    moves.push_back(move);
+  }
+  std::stable_sort(moves.begin(), moves.end(), [](const VesselMove& a, const VesselMove& b) {
+    return a.displacement.norm() / a.moved.radius > b.displacement.norm() / b.moved.radius;
+  });
+  return moves;
+}
+
+void tell_moved(const Centerline& original, const Moving& moving, const SeparatedCenterline& separated,
+                SeparationReport& report) {
+  const auto note = [&](Index node, const Vec3& place, double radius) {
+    const double moved = (separated.centerline.node(node).position - place).norm();
+    if (moved <= kMoved * radius) return;
+    ++report.nodes_moved;
+    report.max_moved = std::max(report.max_moved, moved);
+    if (moved / radius <= report.max_moved_relative) return;
+    report.max_moved_relative = moved / radius;
+    report.max_moved_at = place;
+  };
+  if (moving.shifts().empty()) return;
+  for (Index n = 0; n < original.nodes().size(); ++n) note(n, original.node(n).position, original.node(n).radius);
+  for (Index s = 0; s < separated.pieces.size(); ++s) {
+    const Index last = separated.centerline.segment(s).b;
+    const auto& [segment, first, t] = separated.pieces[s];
+    if (last >= original.nodes().size()) note(last, original.point_at(segment, t), original.radius_at(segment, t));
+  }
+  report.steepest_move = moving.steepest();
+  report.moves = moves_of(original, moving);
+}
+
+// Narrows vessels until those contacts are gone that can be.
+class Narrower {
+ public:
+  Narrower(const Centerline& vessels, const SeparationOptions& options, const Progress& progress)
+      : vessels_(vessels),
+        options_(options),
+        progress_(progress),
+        narrowing_(vessels, options.taper),
+        narrowed_(undivided(vessels)) {}
+
+  /// At contacts that need at most this share.
+  void narrow(double most_taken) {
+    for (; rounds_ < options_.max_rounds; ++rounds_) {
+      report_progress(progress_, "separate", static_cast<double>(rounds_) / options_.max_rounds);
+      const std::vector<Hold> holds = Round(vessels_, narrowing_, narrowed_, options_, most_taken).holds();
+      if (holds.empty()) return;
+      hold_all(narrowing_, holds);
+      narrowed_ = narrowing_.apply();
+    }
+  }
+  const DividedCenterline& narrowed() const { return narrowed_; }
+  int rounds() const { return rounds_; }
+
+ private:
+  const Centerline& vessels_;
+  const SeparationOptions& options_;
+  const Progress& progress_;
+  Narrowing narrowing_;
+  DividedCenterline narrowed_;
+  int rounds_ = 0;
+};
+
+SeparatedCenterline narrow_moved(const Centerline& original, const Moving& moving, const SeparationOptions& options,
+                                 const Progress& progress) {
+  const DividedCenterline moved = moving.apply();
+  Narrower narrower(moved.centerline, options, progress);
+  narrower.narrow(std::min(options.move_beyond, options.most_taken));
+  narrower.narrow(options.most_taken);
+  DividedCenterline narrowed = composed(moved, narrower.narrowed());
+  SeparationReport report;
+  report.rounds = narrower.rounds();
+  report.left = contacts_left(original, narrowed, options);
+  tell_taken(original, narrowed, report);
+  SeparatedCenterline separated{std::move(narrowed.centerline), std::move(narrowed.pieces), {}};
+  tell_moved(original, moving, separated, report);
+  separated.report = std::move(report);
+  return separated;
+}
+
+// Moves vessels apart until narrowing by a moderate share can do the rest, or the rounds run out.
+Moving moved_apart(const Centerline& original, const SeparationOptions& options, const Progress& progress) {
+  Moving moving(original, options.slope);
+  const auto look = [&](const DividedCenterline& vessels) {
+    return move_apart({original, vessels, options.gap, options.blend, options.move_beyond}, moving) > 0;
+  };
+  for (int round = 0; round < options.max_moves; ++round) {
+    report_progress(progress, "move", static_cast<double>(round) / options.max_moves);
+    const DividedCenterline moved = moving.apply();
+    if (!look(moved)) {
+      Narrower narrower(moved.centerline, options, progress);
+      narrower.narrow(options.move_beyond);
+      if (!look(composed(moved, narrower.narrowed()))) break;
+    }
+  }
+  return moving;
+}
+
+// Moves of vessels that still touch where they were moved. Returns whether there were any.
+bool take_back_moves_in_vain(const Centerline& original, Moving& moving, const std::vector<Contact>& left) {
+  const std::size_t count = moving.shifts().size();
+  for (const Contact& contact : left) {
+    for (const ContactSide& side : contact.sides) {
+      if (side.segment >= original.segments().size()) continue;
+      const MovedStretch place{side.segment, side.t, side.t, kNone};
+      for (auto shift = static_cast<Index>(moving.shifts().size()); shift-- > 0;) {
+        if (moving.part_at(shift, place) > 0) moving.remove(shift);
+      }
+    }
+  }
+  return moving.shifts().size() < count;
+}
+
 }  // namespace
 
 SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options,
                                       const Progress& progress) {
   check(options);
-  Narrowing narrowing(centerline, options.taper);
-  NarrowedCenterline narrowed = narrowing.apply();
-  SeparationReport report;
-  report.before = find_contacts(VesselField(centerline, options.blend), options.gap);
-  for (; report.rounds < options.max_rounds; ++report.rounds) {
-    report_progress(progress, "separate", static_cast<double>(report.rounds) / options.max_rounds);
-    const std::vector<Hold> holds = Round(centerline, narrowing, narrowed, options).holds();
-    if (holds.empty()) break;
-    hold_all(narrowing, holds);
-    narrowed = narrowing.apply();
+  std::vector<Contact> before = find_contacts(VesselField(centerline, options.blend), options.gap);
+  SeparatedCenterline separated = narrow_moved(centerline, Moving(centerline, options.slope), options, progress);
+  const bool enough = separated.report.left.empty() && separated.report.max_taken_relative <= options.move_beyond;
+  if (!enough && options.move_beyond < options.most_taken && options.max_moves > 0) {
+    Moving moving = moved_apart(centerline, options, progress);
+    SeparatedCenterline moved = narrow_moved(centerline, moving, options, progress);
+    if (take_back_moves_in_vain(centerline, moving, moved.report.left)) {
+      SeparatedCenterline fewer = narrow_moved(centerline, moving, options, progress);
+      if (fewer.report.left.size() <= moved.report.left.size()) moved = std::move(fewer);
+    }
+    const std::size_t left = moved.report.left.size();
+    if (left == 0 || left < separated.report.left.size()) separated = std::move(moved);
   }
-  report.left = contacts_left(centerline, narrowed, options);
-  tell_taken(centerline, narrowed, report);
-  return {std::move(narrowed.centerline), std::move(narrowed.pieces), std::move(report)};
+  separated.report.before = std::move(before);
+  return separated;
 }
 
 }  // namespace vmesh

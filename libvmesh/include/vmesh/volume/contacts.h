@@ -41,6 +41,18 @@ struct SeparationOptions {
   double taper = 0.25;      ///< how fast the radius may return: narrowed share of the radius lost per radius of length
   double most_taken = 0.9;  ///< a contact that needs a larger share of a radius is left as it is; in (0, 1)
   int max_rounds = 40;      ///< of looking for contacts and narrowing at them
+  /// A contact that would take a larger share of a radius is moved apart first, until no more than this is taken; in
+  /// (0, 1]. From most_taken on, or with max_moves 0, no vessel is moved.
+  double move_beyond = 0.5;
+  double slope = 0.5;  ///< how fast an axis may go aside, per length of it; in (0, 0.5]
+  int max_moves = 16;  ///< rounds of looking for contacts and moving vessels
+};
+
+/// One vessel that was moved away from another at a contact.
+struct VesselMove {
+  Vec3 position = Vec3::Zero();      ///< on the axis of the original vessel
+  Vec3 displacement = Vec3::Zero();  ///< the most that this move displaces the axis, mm
+  ContactSide moved, other;          ///< of the original centerline
 };
 
 /// The part of an original segment that a segment of the narrowed centerline covers.
@@ -54,19 +66,25 @@ struct SegmentPiece {
 /// What separating vessels took. Segments are those of the original centerline.
 struct SeparationReport {
   std::vector<Contact> before;  ///< contacts of the original centerline
-  /// Contacts that are left as they are: the axes are so close that no radius, or too little of it, would remain, or
-  /// the rounds ran out.
+  /// Contacts that are left: the axes are so close that no radius, or too little of it, would remain, and could not be
+  /// moved apart, or the rounds ran out.
   std::vector<Contact> left;
   double max_taken = 0;                                    ///< the most that a node's radius lost, mm
   double max_taken_relative = 0, mean_taken_relative = 0;  ///< of the original radius; the mean is over changed nodes
   Vec3 max_taken_at = Vec3::Zero();                        ///< where max_taken_relative was taken
   std::size_t nodes_narrowed = 0;  ///< nodes of the result that are narrower than the original vessel there
+  std::vector<VesselMove> moves;   ///< farthest first, in radii; a vessel may be moved more than once
+  /// The farthest that an axis was displaced, by all moves together, mm and in original radii there.
+  double max_moved = 0, max_moved_relative = 0;
+  Vec3 max_moved_at = Vec3::Zero();  ///< where max_moved_relative was reached, on the original axis
+  double steepest_move = 0;          ///< the most that the displacement changes per length of an axis
+  std::size_t nodes_moved = 0;       ///< nodes of the result that are beside the original axis
   std::size_t nodes_added = 0;
   int rounds = 0;
 };
 
 struct SeparatedCenterline {
-  /// The original nodes in their order and at their places, then those added on segments. Isolated nodes keep theirs.
+  /// The original nodes in their order, then those added on segments. Those that were not moved are at their places.
   Centerline centerline;
   std::vector<SegmentPiece> pieces;  ///< one per segment of `centerline`
   SeparationReport report;
@@ -75,8 +93,14 @@ struct SeparatedCenterline {
 /// Narrows the vessels of `centerline` where they touch without being neighbours, both by the same share, until
 /// `options.gap` is free between them. From there the radius returns along the graph, across branching nodes too, with
 /// a bounded slope: over a stretch of length l it grows by at most taper * l more than it did before. Nodes are added
-/// so that this stays local. The result has no contacts at that gap but those reported as left. Deterministic. Throws
-/// InvalidInput for options out of range, Cancelled when `progress` asks to stop.
+/// so that this stays local.
+/// Where that would take more than options.move_beyond of a radius, the thinner vessel is moved aside before: away from
+/// the other's axis, or square to both where they cross, by as much as then needs no more than this share, at most 2.2
+/// times the sum of the radii. Along the graph, across branching nodes too, a move fades out with at most
+/// options.slope; where several moves meet, the axis goes aside by at most 0.8 of a length for a length. Moves are kept
+/// only if they leave fewer contacts, or none. The result has no contacts at that gap but those reported as left: axes
+/// that cross close to a common node or coincide over a long way may stay. Deterministic. Throws InvalidInput for
+/// options out of range, Cancelled when `progress` asks to stop.
 SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options = {},
                                       const Progress& progress = {});
 

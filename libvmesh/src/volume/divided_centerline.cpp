@@ -1,0 +1,37 @@
+#include "volume/divided_centerline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vmesh {
+namespace {
+
+constexpr double kLeaf = 0.5;        // smaller radii
+constexpr Index kMostLeaves = 4096;  // per segment
+
+}  // namespace
+
+DividedCenterline undivided(const Centerline& centerline) {
+  std::vector<SegmentPiece> pieces;
+  for (Index s = 0; s < centerline.segments().size(); ++s) pieces.push_back({s, 0, 1});
+  return {centerline, std::move(pieces)};
+}
+
+DividedCenterline composed(const DividedCenterline& outer, DividedCenterline inner) {
+  for (SegmentPiece& piece : inner.pieces) {
+    const SegmentPiece& whole = outer.pieces[piece.segment];
+    // lerp: exact at the ends.
+    piece = {whole.segment, std::lerp(whole.t_first, whole.t_last, piece.t_first),
+             std::lerp(whole.t_first, whole.t_last, piece.t_last)};
+  }
+  return inner;
+}
+
+Index leaf_count_of(const Centerline& centerline, Index segment) {
+  const double smaller = std::min(centerline.radius_at(segment, 0), centerline.radius_at(segment, 1));
+  const double count = std::ceil(centerline.length(segment) / (kLeaf * smaller));
+  return static_cast<Index>(std::clamp(count, 1.0, double{kMostLeaves}));
+}
+
+}  // namespace vmesh

@@ -1,0 +1,269 @@
+#include "volume/moving_round.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <queue>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "volume/contact_pairs.h"
+
+namespace vmesh {
+namespace {
+
+constexpr double kSpare = 0.05;           // of the share that may be taken, so that rounds of moving end
+constexpr double kFarApart = 0.25;        // of the distance wanted: axes further apart than that tell the direction
+constexpr double kCrossing = 0.2;         // sine of the angle between axes from which on they cross
+constexpr double kNearlyTouching = 1e-3;  // radii: axes closer than that tell no direction
+constexpr double kSideways = 0.5;         // cosine: more aslant to its axis, a vessel is not moved
+constexpr double kSameDirection = 0.7;    // cosine
+constexpr double kSamePart = 0.3;         // of a shift: where it moves less, another is added
+constexpr double kFarthest = 2.2;         // sums of radii that a vessel is moved
+constexpr double kAlong = 12;             // sums of radii along the graph that one shift answers for
+
+// A leaf of one vessel that is too close to another.
+struct CloseLeaf {
+  Index cone = kNone, other = kNone;
+  MovedStretch stretch;
+  Vec3 from_other = Vec3::Zero();  // to the axis from that of the other, mm
+  double wanted = 0;               // distance of the axes
+  double share = 1;                // of its radius that would remain
+  ContactSide side, other_side;    // on the original
+};
+
+Vec3 tangent_of(const VesselField& field, Index cone) {
+  const Vec3 axis = field.axis_point(cone, 1) - field.axis_point(cone, 0);
+  const double length = axis.norm();
+  return length > 0 ? Vec3(axis / length) : Vec3(Vec3::Zero());
+}
+
+Vec3 some_perpendicular(const Vec3& direction) {
+  if (direction.isZero()) return Vec3::UnitX();
+  Index least = 0;
+  direction.cwiseAbs().minCoeff(&least);
+  return direction.cross(Vec3::Unit(least)).normalized();
+}
+
+class MovingRound {
+ public:
+  MovingRound(const MovingTask& task, Moving& moving)
+      : task_(task), moving_(moving), field_(task.narrowed.centerline, task.blend) {
+    for (Index n = 0; n < task.original.nodes().size(); ++n) {
+      if (task.original.degree(n) == 0) isolated_.push_back(n);
+    }
+  }
+
+  int run() {
+    for (const auto& [region, leaves] : close_regions()) answer(leaves);
+    return static_cast<int>(changed_.size());
+  }
+
+ private:
+  using Region = std::vector<CloseLeaf>;
+
+  // The leaves that would lose too much, by regions that have some.
+  std::map<Index, Region> close_regions() const {
+    std::map<Index, Region> regions;
+    for (const ContactPair& pair : find_contact_pairs(field_, task_.gap)) {
+      for (const auto& [cone, other] : {std::pair{pair.i, pair.j}, std::pair{pair.j, pair.i}}) {
+        for (CloseLeaf& leaf : close_leaves(cone, other, pair.gap)) regions[pair.region].push_back(std::move(leaf));
+      }
+    }
+    return regions;
+  }
+
+  Region close_leaves(Index cone, Index other, double gap) const {
+    Region leaves;
+    const AxisStretch across = stretch_of(field_, other);
+    const Index count = cone < task_.narrowed.pieces.size() ? leaf_count_of(task_.narrowed.centerline, cone) : 1;
+    for (Index n = 0; n < count; ++n) {
+      const double first = static_cast<double>(n) / count, last = static_cast<double>(n + 1) / count;
+      const AxisStretch part = stretch_of(field_, cone, first, last);
+      const ClosestApproach closest = closest_approach(part, across, gap);
+      if (closest.excess >= 0) continue;
+      CloseLeaf leaf;
+      leaf.cone = cone;
+      leaf.other = other;
+      leaf.side = original_side(cone, std::lerp(first, last, closest.s));
+      leaf.other_side = original_side(other, closest.t);
+      leaf.stretch = original_stretch(cone, first, last);
+      leaf.from_other = part.point(closest.s) - across.point(closest.t);
+      const double r = leaf.side.radius, q = leaf.other_side.radius;
+      const double free = r + q + gap * std::min(r, q);
+      leaf.wanted = (1 - (1 - kSpare) * task_.most_narrowed) * free;
+      leaf.share = share_left(part.radius(closest.s), across.radius(closest.t), closest.distance, gap, r);
+      if (leaf.share < 1 - task_.most_narrowed) leaves.push_back(leaf);
+    }
+    return leaves;
+  }
+
+  // Of the original radius, when both radii give up the same share of what they are now.
+  static double share_left(double radius, double other, double distance, double gap, double original_radius) {
+    return radius * distance / (radius + other + gap * std::min(radius, other)) / original_radius;
+  }
+
+  ContactSide original_side(Index cone, double t) const {
+    if (cone >= task_.narrowed.pieces.size()) {
+      const auto rank = static_cast<Index>(cone - task_.narrowed.pieces.size());
+      const auto segment = static_cast<Index>(task_.original.segments().size() + rank);
+      return {segment, 0, kNone, task_.original.node(isolated_[rank]).radius};
+    }
+    const SegmentPiece& piece = task_.narrowed.pieces[cone];
+    const double original_t = piece.original_t(t);
+    return {piece.segment, original_t, kNone, task_.original.radius_at(piece.segment, original_t)};
+  }
+
+  MovedStretch original_stretch(Index cone, double first, double last) const {
+    if (cone >= task_.narrowed.pieces.size()) return {kNone, 0, 0, isolated_[cone - task_.narrowed.pieces.size()]};
+    const SegmentPiece& piece = task_.narrowed.pieces[cone];
+    return {piece.segment, piece.original_t(first), piece.original_t(last), kNone};
+  }
+
+  // The leaf of the thinner vessel at the closest place of a region.
+  static const CloseLeaf& anchor_of(const Region& region) {
+    const auto is_less = [](const CloseLeaf& a, const CloseLeaf& b) { return a.share < b.share; };
+    const CloseLeaf& worst = *std::min_element(region.begin(), region.end(), is_less);
+    const double own = worst.side.radius, other = worst.other_side.radius;
+    const Index thinner = own != other ? (own < other ? worst.cone : worst.other) : std::max(worst.cone, worst.other);
+    const CloseLeaf* anchor = nullptr;
+    for (const CloseLeaf& leaf : region) {
+      if (leaf.cone == thinner && (!anchor || is_less(leaf, *anchor))) anchor = &leaf;
+    }
+    return anchor ? *anchor : worst;
+  }
+
+  void answer(const Region& region) {
+    const CloseLeaf& anchor = anchor_of(region);
+    const MovedStretch across = original_stretch(anchor.other, 0, 1);
+    for (const Index shift : changed_) {
+      if (moving_.part_at(shift, anchor.stretch) > 0 || moving_.part_at(shift, across) > 0) return;
+    }
+    Moving::Shift shift;
+    shift.moved = anchor.side;
+    shift.other = anchor.other_side;
+    shift.direction = direction_away(anchor);
+    const Index known = shift_there(anchor.stretch, shift.direction);
+    if (known != kNone) {
+      shift.direction = moving_.shifts()[known].direction;
+      shift.distance = moving_.part_at(known, anchor.stretch) * moving_.shifts()[known].distance;
+    }
+    double further = 0;
+    for (const CloseLeaf& leaf : along_the_same_vessel(region, anchor)) {
+      if (std::abs(shift.direction.dot(tangent_of(field_, leaf.cone))) > kSideways) continue;
+      further = std::max(further, distance_to_go(leaf, shift.direction));
+      shift.stretches.push_back(leaf.stretch);
+    }
+    shift.distance += further;
+    if (shift.stretches.empty() || shift.distance > kFarthest * (anchor.side.radius + anchor.other_side.radius)) return;
+    if (known != kNone) {
+      if (moving_.extend(known, shift.distance, shift.stretches)) changed_.push_back(known);
+    } else if (const Index added = moving_.add(std::move(shift)); added != kNone) {
+      changed_.push_back(added);
+    }
+  }
+
+  static double distance_to_go(const CloseLeaf& leaf, const Vec3& direction) {
+    const double gone = leaf.from_other.dot(direction);
+    const double missing = leaf.wanted * leaf.wanted - leaf.from_other.squaredNorm();
+    return std::sqrt(std::max(0.0, gone * gone + missing)) - gone;
+  }
+
+  Index shift_there(const MovedStretch& place, const Vec3& direction) const {
+    for (Index shift = 0; shift < moving_.shifts().size(); ++shift) {
+      if (moving_.shifts()[shift].direction.dot(direction) > kSameDirection &&
+          moving_.part_at(shift, place) > kSamePart)
+        return shift;
+    }
+    return kNone;
+  }
+
+  Vec3 direction_away(const CloseLeaf& leaf) const {
+    const Vec3 own = tangent_of(field_, leaf.cone), other = tangent_of(field_, leaf.other);
+    const double apart = leaf.from_other.norm();
+    const Vec3 sideways = leaf.from_other - leaf.from_other.dot(own) * own;
+    if (apart > kFarApart * leaf.wanted && sideways.norm() > apart / 2) return sideways.normalized();
+    Vec3 direction = own.cross(other);
+    if (direction.norm() > kCrossing) {
+      direction.normalize();
+    } else if (sideways.norm() > kNearlyTouching * leaf.side.radius) {
+      return sideways.normalized();
+    } else {
+      direction = some_perpendicular(own.isZero() ? other : own);
+    }
+    const double gone = leaf.from_other.dot(direction);
+    if (std::abs(gone) > kFarApart * leaf.wanted) return gone > 0 ? direction : Vec3(-direction);
+    const double free[2] = {room(leaf, direction), room(leaf, -direction)};
+    if (free[0] == free[1]) return gone >= 0 ? direction : Vec3(-direction);
+    return free[0] > free[1] ? direction : Vec3(-direction);
+  }
+
+  // How far the walls of other vessels would be from the leaf's axis after it moved, mm.
+  double room(const CloseLeaf& leaf, const Vec3& direction) const {
+    const double t = task_.narrowed.pieces.size() > leaf.cone ? 0.5 : 0;
+    const Vec3 place = field_.axis_point(leaf.cone, t) + distance_to_go(leaf, direction) * direction;
+    const auto local = field_.local_cones(leaf.cone);
+    double least = leaf.wanted;
+    for (Index cone = 0; cone < field_.cone_count(); ++cone) {
+      if (std::binary_search(local.begin(), local.end(), cone)) continue;
+      least = std::min(least, field_.sample_cone(place, cone).distance);
+    }
+    return least;
+  }
+
+  // The leaves of a region that are on the anchor's side of it.
+  Region along_the_same_vessel(const Region& region, const CloseLeaf& anchor) const {
+    const std::map<Index, double> away = walk(anchor, kAlong * (anchor.side.radius + anchor.other_side.radius));
+    const auto distance = [&](Index cone) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const Index n : {field_.first_node(cone), field_.last_node(cone)}) {
+        const auto found = away.find(n);
+        if (found != away.end()) least = std::min(least, found->second);
+      }
+      return least;
+    };
+    Region same;
+    for (const CloseLeaf& leaf : region) {
+      if (leaf.cone == anchor.cone || distance(leaf.cone) < distance(leaf.other)) same.push_back(leaf);
+    }
+    return same;
+  }
+
+  // Nodes within a distance from the anchor along the graph.
+  std::map<Index, double> walk(const CloseLeaf& anchor, double farthest) const {
+    const Centerline& centerline = task_.narrowed.centerline;
+    std::map<Index, double> away;
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    const auto reach = [&](Index node, double distance) {
+      if (distance > farthest) return;
+      const auto [known, is_new] = away.try_emplace(node, distance);
+      if (!is_new && known->second <= distance) return;
+      known->second = distance;
+      open.emplace(distance, node);
+    };
+    reach(field_.first_node(anchor.cone), 0);
+    reach(field_.last_node(anchor.cone), 0);
+    while (!open.empty()) {
+      const auto [distance, node] = open.top();
+      open.pop();
+      if (distance > away.at(node)) continue;
+      for (const Index s : centerline.incident_segments(node))
+        reach(centerline.other_node(s, node), distance + centerline.length(s));
+    }
+    return away;
+  }
+
+  const MovingTask& task_;
+  Moving& moving_;
+  VesselField field_;
+  std::vector<Index> isolated_, changed_;
+};
+
+}  // namespace
+
+int move_apart(const MovingTask& task, Moving& moving) { return MovingRound(task, moving).run(); }
+
+}  // namespace vmesh
