@@ -50,7 +50,7 @@ class Burial {
     if (trimmed == 0) return;
     segments.resize(trimmed);
     for (const Index s : segments) left_[s] = 0;
-    buried_.push_back({std::move(segments), false});
+    buried_.push_back({std::move(segments)});
   }
 
   bool sphere_within(Index inner, Index outer) const {
@@ -72,9 +72,9 @@ class Burial {
     for (const Branch& branch : branches_left()) {
       if (!is_covered(branch)) continue;
       const bool has_tip = degree_left(branch.nodes.front()) == 1 || degree_left(branch.nodes.back()) == 1;
-      if (!has_tip && !closes_loop(branch)) continue;
+      if (!has_tip) continue;  // what closes a loop joins vessels that overlap there, and has to stay
       for (const Index s : branch.segments) left_[s] = 0;
-      buried_.push_back({branch.segments, !has_tip});
+      buried_.push_back({branch.segments});
       some = true;
     }
     return some;
@@ -102,26 +102,6 @@ class Burial {
     const auto incident = centerline_.incident_segments(n);
     return static_cast<std::size_t>(
         std::count_if(incident.begin(), incident.end(), [&](Index s) { return left_[s] != 0; }));
-  }
-
-  // Whether its ends are joined without it.
-  bool closes_loop(const Branch& branch) const {
-    const Index from = branch.nodes.front(), to = branch.nodes.back();
-    if (from == to) return degree_left(from) > 2;
-    std::vector<char> blocked(left_.size(), 0), seen(centerline_.nodes().size(), 0);
-    for (const Index s : branch.segments) blocked[s] = 1;
-    std::vector<Index> front = {from};
-    seen[from] = 1;
-    for (std::size_t i = 0; i < front.size(); ++i) {
-      for (const Index s : centerline_.incident_segments(front[i])) {
-        const Index next = centerline_.other_node(s, front[i]);
-        if (!left_[s] || blocked[s] || seen[next]) continue;
-        if (next == to) return true;
-        seen[next] = 1;
-        front.push_back(next);
-      }
-    }
-    return false;
   }
 
   double mean_radius(const Branch& branch) const {

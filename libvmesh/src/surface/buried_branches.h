@@ -9,7 +9,6 @@ namespace vmesh {
 /// A branch that was left out of growth because the other vessels cover it.
 struct BuriedBranch {
   std::vector<Index> segments;  ///< of the full centerline
-  bool closes_loop = false;     ///< it joined two places that are joined without it
 };
 
 /// What is left of a centerline without its buried branches.
@@ -21,10 +20,10 @@ struct GrowthCenterline {
   std::vector<BuriedBranch> buried;
 };
 
-/// Leaves out branches that the others cover, thinnest first: a branch with an end, or one that closes a loop. It is
-/// covered if every piece of it lies in a single round cone of what is left, apart from a tenth of its radius: round
-/// cones are convex, so two spheres within one have all that is between them within it. The volume is the same up to
-/// that tenth; components never change.
+/// Leaves out branches with an end that the others cover, thinnest first. Such a branch is covered if every piece of it
+/// lies in a single round cone of what is left, apart from a tenth of its radius: round cones are convex, so two
+/// spheres within one have all that is between them within it. The volume is the same up to that tenth; components
+/// never change.
 GrowthCenterline without_buried_branches(const VesselField& field);
 
 }  // namespace vmesh

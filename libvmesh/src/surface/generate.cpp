@@ -209,7 +209,6 @@ void renumber(const GrowthCenterline& growth, const Centerline& full, GenerateRe
     text << "the branch of " << buried.segments.size() << " segments around segment " << middle << " at ("
          << note.position.x() << ", " << note.position.y() << ", " << note.position.z()
          << ") was left out: the other vessels cover it";
-    if (buried.closes_loop) text << ", and the loop that it closes";
     note.message = text.str();
     result.growth.simplifications.push_back(std::move(note));
   }
