@@ -11,7 +11,7 @@ namespace {
 constexpr double kPiece = 0.5;         // radii: length of the pieces that have to lie in one cone each
 constexpr double kSlack = 0.1;         // radii that a piece may stand out
 constexpr double kNeedle = 0.5;        // of a sphere's radius: thinner spheres may stand out of it ...
-constexpr double kNeedleSlack = 0.05;  // ... by this part of it where a branch ends
+constexpr double kNeedleSlack = 0.25;  // ... by this part of it where a branch ends
 constexpr int kMaxPieces = 2000;       // per segment; a hair that long is not buried, or not worth finding out
 
 class Burial {

@@ -191,7 +191,8 @@ bool RingLayer::is_own(Index branch, const CrossSection& section, const FieldSam
   const SegmentPlace at = places_[sample.cone];
   if (at.branch != branch) return false;
   const BranchAxis& axis = axes_[branch];
-  return axis.apart(axis.place_of(at.piece, sample.t), section.place) <= kOwnReach * section.radius;
+  const double radius = std::max(section.radius, field_.radius_at(sample.cone, sample.t));
+  return axis.apart(axis.place_of(at.piece, sample.t), section.place) <= kOwnReach * radius;
 }
 
 // Whether the vessel comes from behind the plane and goes on before it, as far as it counts as the section's own.
