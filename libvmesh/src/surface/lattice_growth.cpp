@@ -63,29 +63,23 @@ int part_count(Mask mask, const std::array<Mask, kNeighbours>& link) {
   return count;
 }
 
+// For every set of neighbours, whether it falls into so many parts, and the rest of the link into one.
+std::vector<char> make_table(int parts_inside) {
+  const auto link = make_link();
+  std::vector<char> table(1 << kNeighbours);
+  for (Mask m = 0; m <= kAll; ++m) table[m] = part_count(m, link) == parts_inside && part_count(kAll & ~m, link) == 1;
+  return table;
+}
+
 // Whether a point with these neighbours in the set may join it: its link falls into one disc inside and one outside.
 const std::vector<char>& simple_table() {
-  static const std::vector<char> table = [] {
-    const auto link = make_link();
-    std::vector<char> simple(1 << kNeighbours);
-    for (Mask m = 0; m <= kAll; ++m) {
-      simple[m] = part_count(m, link) == 1 && part_count(kAll & ~m, link) == 1;
-    }
-    return simple;
-  }();
+  static const std::vector<char> table = make_table(1);
   return table;
 }
 
 // Whether a point with these neighbours in the set joins two parts of it and nothing else: one handle more.
 const std::vector<char>& bridge_table() {
-  static const std::vector<char> table = [] {
-    const auto link = make_link();
-    std::vector<char> bridge(1 << kNeighbours);
-    for (Mask m = 0; m <= kAll; ++m) {
-      bridge[m] = part_count(m, link) == 2 && part_count(kAll & ~m, link) == 1;
-    }
-    return bridge;
-  }();
+  static const std::vector<char> table = make_table(2);
   return table;
 }
 
