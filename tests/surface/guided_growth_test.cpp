@@ -136,6 +136,10 @@ TEST(GuidedGrowth, TrimsAnEndThatLiesWithinASphere) {
   EXPECT_EQ(count(result, Kind::buried_branch), 1u);
 }
 
+TEST(GuidedGrowth, MakesABallOfAVesselThatLiesWithinItsOwnEnd) {
+  expect_surface({{{{0, 0, 0}, 3}, {{0, 2, 0}, 0.5}, {{0, 9, 0}, 13}}, {{0, 1}, {1, 2}}}, 1, 0);
+}
+
 TEST(GuidedGrowth, GrowsAHairpin) {
   expect_surface({{{{0, 0, 0}, 1.41}, {{-1.84, -1.02, -1.06}, 1.43}, {{-1.74, -1.35, -0.75}, 1.06}}, {{0, 1}, {0, 2}}},
                  1, 0);

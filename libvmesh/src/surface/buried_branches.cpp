@@ -45,7 +45,8 @@ class Burial {
       along += centerline_.length(s);
       const bool holds_all =
           std::all_of(nodes.rbegin() + 1, nodes.rend(), [&](Index n) { return sphere_within(n, nodes.back()); });
-      if (holds_all) trimmed = segments.size();
+      const bool goes_on = degree_left(nodes.back()) > 1;  // something has to be left of the vessel
+      if (holds_all && goes_on) trimmed = segments.size();
     }
     if (trimmed == 0) return;
     segments.resize(trimmed);
