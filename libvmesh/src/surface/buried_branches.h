@@ -22,9 +22,9 @@ struct GrowthCenterline {
 
 /// Leaves out branches with an end that the others cover, thinnest first. Such a branch is covered if every piece of it
 /// lies in a single round cone of what is left, apart from a tenth of its radius: round cones are convex, so two
-/// spheres within one have all that is between them within it. Of an end, what lies within the sphere of one node of its
-/// branch goes as well; needles there, thinner than half of that sphere, may stand out of it by a quarter of its radius.
-/// The volume is the same up to these; components never change.
+/// spheres within one have all that is between them within it. Of an end, what lies within the sphere of one node of
+/// its branch goes as well; needles there, thinner than half of that sphere, may stand out of it by a quarter of its
+/// radius. The volume is the same up to these; components never change.
 GrowthCenterline without_buried_branches(const VesselField& field);
 
 }  // namespace vmesh
