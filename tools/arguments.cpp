@@ -97,6 +97,12 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
       ->check(CLI::IsMember({"guided", "paper"}))
       ->default_str("guided");
   verb.add_option_function<std::string>(
+          "--placement",
+          [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },
+          "inscribed: vertices on the boundary; balanced: lifted off it, so that volume is kept")
+      ->check(CLI::IsMember({"inscribed", "balanced"}))
+      ->default_str("balanced");
+  verb.add_option_function<std::string>(
           "--open-ends", [&arguments](const std::string& text) { arguments.options.open_ends = parse_open_ends(text); },
           "leave the surface open at these ends of the centerline: all, or node numbers as in the summary, "
           "separated by commas")

@@ -243,7 +243,7 @@ std::string describe(const GenerateArguments& arguments) {
     text << (text.tellp() > 0 ? " " : "") << flag << " " << value;
   });
   const GenerateOptions& options = arguments.options;
-  text << " --growth " << to_string(options.growth);
+  text << " --growth " << to_string(options.growth) << " --placement " << to_string(options.placement);
   if (options.open_ends.all) text << " --open-ends all";
   for (std::size_t i = 0; i < options.open_ends.nodes.size(); ++i)
     text << (i == 0 ? " --open-ends " : ",") << options.open_ends.nodes[i];

@@ -9,14 +9,15 @@ constexpr int kMaxProjectionSteps = 12;
 
 }  // namespace
 
-BoundaryPoint project_to_boundary(const VesselField& field, const Vec3& p, Index hint, double tolerance) {
+BoundaryPoint project_to_boundary(const VesselField& field, const Vec3& p, Index hint, double tolerance, double lift) {
   BoundaryPoint point{p, field.sample(p, hint)};
   for (int step = 0; step < kMaxProjectionSteps; ++step) {
     const FieldSample& s = point.sample;
-    if (std::abs(s.distance) <= tolerance * field.radius_at(s.cone, s.t)) break;
+    const double off = s.distance - lift;
+    if (std::abs(off) <= tolerance * field.radius_at(s.cone, s.t)) break;
     const double slope2 = s.gradient.squaredNorm();
     if (slope2 < 0.01) break;  // on an axis, or in the valley between two blended cones: no direction to follow
-    point.position -= s.distance / slope2 * s.gradient;
+    point.position -= off / slope2 * s.gradient;
     point.sample = field.sample(point.position, s.cone);
   }
   return point;
@@ -28,6 +29,7 @@ BoundSurface::BoundSurface(const VesselField& vessel_field)
       t(mesh.add_property_map<Vertex, double>("v:t", 0.0).first),
       gradient(mesh.add_property_map<Vertex, Vec3>("v:gradient", Vec3::Zero()).first),
       distance(mesh.add_property_map<Vertex, double>("v:distance", 0.0).first),
+      lift(mesh.add_property_map<Vertex, double>("v:lift", 0.0).first),
       fineness(mesh.add_property_map<Vertex, double>("v:fineness", 1.0).first),
       role(mesh.add_property_map<Vertex, Role>("v:role", Role::free).first) {}
 
@@ -57,7 +59,7 @@ void BoundSurface::place(Vertex v, const Vec3& p, const FieldSample& sample) {
 }
 
 void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {
-  const BoundaryPoint point = project_to_boundary(field, p, hint);
+  const BoundaryPoint point = project_to_boundary(field, p, hint, 1e-6, lift[v]);
   place(v, point.position, point.sample);
 }
 
@@ -82,6 +84,7 @@ Vertex BoundSurface::halve(Halfedge h) {
   cone[v] = cone[a];
   t[v] = t[a];
   fineness[v] = 0.5 * (fineness[a] + fineness[b]);
+  lift[v] = 0.5 * (lift[a] + lift[b]);
   gradient[v] = (gradient[a] + gradient[b]).normalized();
   return v;
 }

@@ -30,6 +30,9 @@ class BoundSurface {
 
   SurfaceMesh::Property_map<Vertex, double> distance;  ///< signed distance to the boundary, mm
 
+  /// Where the vertex belongs: at this signed distance to the boundary, mm. 0 but for balanced placement.
+  SurfaceMesh::Property_map<Vertex, double> lift;
+
   /// Factor on the target edge length, 1 as a rule: less where narrow places do not bear the triangles asked for.
   SurfaceMesh::Property_map<Vertex, double> fineness;
 
@@ -50,7 +53,7 @@ class BoundSurface {
   /// Places `v` at `p` and binds it to what `sample` says.
   void place(Vertex v, const Vec3& p, const FieldSample& sample);
 
-  /// Places `v` at the boundary point that follows from `p` (project_to_boundary).
+  /// Places `v` at its lift from the boundary, where that follows from `p` (project_to_boundary).
   void place_on_boundary(Vertex v, const Vec3& p, Index hint);
 
   Vec3 face_area_normal(Face f) const;
@@ -77,8 +80,9 @@ struct BoundaryPoint {
   FieldSample sample;
 };
 
-/// Follows the field from `p` to the boundary (Newton steps along the gradient) until |distance| is at most
-/// `tolerance` local radii, or no longer shrinks.
-BoundaryPoint project_to_boundary(const VesselField& field, const Vec3& p, Index hint, double tolerance = 1e-6);
+/// Follows the field from `p` (Newton steps along the gradient) to where the distance is `lift`, until it differs by at
+/// most `tolerance` local radii, or no longer comes closer.
+BoundaryPoint project_to_boundary(const VesselField& field, const Vec3& p, Index hint, double tolerance = 1e-6,
+                                  double lift = 0);
 
 }  // namespace vmesh

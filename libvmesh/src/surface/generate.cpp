@@ -123,12 +123,24 @@ GrowthMethod parse_growth_method(std::string_view text) {
   throw InvalidInput("growth method \"" + std::string(text) + "\": must be guided or paper");
 }
 
+std::string_view to_string(Placement placement) {
+  return placement == Placement::inscribed ? "inscribed" : "balanced";
+}
+
+Placement parse_placement(std::string_view text) {
+  for (const Placement placement : {Placement::inscribed, Placement::balanced}) {
+    if (text == to_string(placement)) return placement;
+  }
+  throw InvalidInput("placement \"" + std::string(text) + "\": must be inscribed or balanced");
+}
+
 namespace {
 
 void optimize_grown(BoundSurface& surface, const GenerateOptions& options, double grown_around,
                     const Progress& progress, GenerateResult& result) {
   if (options.sweeps == 0) return;
-  const GrownMesh grown{grown_around, expected_vertices(surface.field.centerline(), options.around)};
+  const GrownMesh grown{grown_around, expected_vertices(surface.field.centerline(), options.around), !getenv("NOPOLISH"),
+                        options.placement == Placement::balanced};
   add_warnings(optimize(surface, options, grown, progress), result.warnings);
 }
 

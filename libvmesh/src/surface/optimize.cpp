@@ -1,5 +1,6 @@
 #include "surface/optimize.h"
 
+#include "surface/balance.h"
 #include "surface/relocation.h"
 #include "surface/remesher.h"
 #include "surface/untangle.h"
@@ -13,6 +14,10 @@ constexpr double kVerticesPerRadius = 7;  // and unit of length, at kGrownAround
 constexpr double kMaxExcess = 1.5;  // vertices against those grown plus those expected; well-grown trees reach 0.6
 constexpr int kStrayInterval = 4;
 constexpr double kHopeless = 0.02;  // share of the vertices in tangles: growth covered vessels twice
+constexpr int kBalanceRounds = 2, kBalanceSweeps = 6;
+constexpr int kPolishRounds = 20, kPolishPower = 16;
+constexpr double kPolishEnergy = 1.15;  // of a face: skewness 0.28
+constexpr int kSinkRounds = 4;
 
 class Optimizer {
  public:
@@ -28,10 +33,41 @@ class Optimizer {
       around = std::min<double>(2 * around, options_.around);
       optimize_at(around);
     }
+    if (grown.polish) finish(grown.balance);
     return {tangles_, remesher_.limited()};
   }
 
  private:
+  void finish(bool balanced) {
+    for (int round = 0; balanced && round < kBalanceRounds; ++round) {
+      balance(state_);
+      balance(state_);
+      state_.stir_all();
+      shape_sweeps(options_.sweeps - kBalanceSweeps, options_.sweeps);
+    }
+    if (balanced) balance(state_);
+    polish();
+    for (int round = 0; balanced && round < kSinkRounds; ++round) {
+      const std::vector<Vertex> crossing = find_crossing_walls(state_);
+      if (crossing.empty()) break;
+      sink(state_, crossing);
+    }
+  }
+
+  // The worst triangles, and what is around them, at the cost of the rest.
+  void polish() {
+    for (int round = 0; round < kPolishRounds; ++round) {
+      for (const Face f : state_.mesh.faces()) {
+        const auto [a, b, c] = state_.corners(f);
+        if (state_.energy(a, b, c) < kPolishEnergy) continue;
+        for (const Vertex v : {a, b, c}) state_.stir(v);
+      }
+      if (state_.next_sweep() == 0) break;
+      remesher_.flip_edges(0);
+      relocate_vertices(state_, kPolishPower);
+    }
+  }
+
   void optimize_at(double around) {
     edge_per_radius_ = edge_length_per_radius(around);
     state_.stir_all();

@@ -23,6 +23,8 @@ constexpr double kGrownAround = 6;
 struct GrownMesh {
   double around;             ///< its resolution, in vertices around a vessel
   double expected_vertices;  ///< at the resolution asked for
+  bool polish = false;
+  bool balance = false;      ///< whether vertices are lifted off the boundary, see balance()
 };
 
 /// Turns a grown surface into a good one: edges are split, collapsed and flipped towards a size field proportional

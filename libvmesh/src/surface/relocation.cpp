@@ -12,15 +12,15 @@ constexpr int kAttempts = 3;
 
 class Relocator {
  public:
-  explicit Relocator(SweepState& state)
-      : state_(state), surface_(state.surface), mesh_(state.mesh), field_(state.field) {}
+  Relocator(SweepState& state, int power)
+      : state_(state), surface_(state.surface), mesh_(state.mesh), power_(power) {}
 
   // One Newton step of the shape energy in the tangent plane, reprojected; halved until it is an improvement.
   void relocate(Vertex v) {
     const Vec3 x = state_.point(v);
     const Vec3 n = surface_.gradient[v];
     const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
-    PlanarEnergy energy;
+    PlanarEnergy energy{power_};
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       energy.add(x, state_.point(mesh_.target(mesh_.next(h))), state_.point(mesh_.source(h)), u, w);
     }
@@ -37,7 +37,7 @@ class Relocator {
     if (!std::isfinite(norm)) return;
     if (norm > longest) step *= longest / norm;
     for (int attempt = 0; attempt < kAttempts; ++attempt, step *= 0.5) {
-      const BoundaryPoint target = project_to_boundary(field_, x + step, surface_.cone[v], kProjectionTolerance);
+      const BoundaryPoint target = state_.project(v, x + step, kProjectionTolerance);
       if ((target.position - x).norm() > state_.size[v] || !improves(v, target, energy.value)) continue;
       if (state_.off_boundary(v) || (target.position - x).norm() > kNoticeableMove * state_.size[v]) state_.stir(v);
       surface_.place(v, target.position, target.sample);
@@ -53,7 +53,7 @@ class Relocator {
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
       if (!state_.stays_upright(v, b, c, target)) return false;
-      sum += SweepState::energy(target.position, state_.point(b), state_.point(c));
+      sum += std::pow(SweepState::energy(target.position, state_.point(b), state_.point(c)), power_);
     }
     return sum < old_energy;
   }
@@ -61,13 +61,13 @@ class Relocator {
   SweepState& state_;
   BoundSurface& surface_;
   SurfaceMesh& mesh_;
-  const VesselField& field_;
+  int power_;
 };
 
 }  // namespace
 
-void relocate_vertices(SweepState& state) {
-  Relocator relocator(state);
+void relocate_vertices(SweepState& state, int power) {
+  Relocator relocator(state, power);
   for (const Vertex v : state.mesh.vertices()) {
     if (state.active(v) && !state.surface.held(v)) relocator.relocate(v);
   }

@@ -62,7 +62,7 @@ Vertex Remesher::split(Edge e) {
 }
 
 void Remesher::move_to_boundary(Vertex v) {
-  const BoundaryPoint target = project_to_boundary(field_, state_.point(v), surface_.cone[v]);
+  const BoundaryPoint target = state_.project(v, state_.point(v));
   const bool far = (target.position - state_.point(v)).norm() > state_.size[v];
   for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
     const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
@@ -87,13 +87,15 @@ void Remesher::collapse_short_edges() {
 bool Remesher::collapse(Edge e) {
   const Vertex a = mesh_.vertex(e, 0), b = mesh_.vertex(e, 1);
   if (surface_.held(a) || surface_.held(b)) return false;
-  const BoundaryPoint target = project_to_boundary(field_, 0.5 * (state_.point(a) + state_.point(b)), surface_.cone[a]);
+  const BoundaryPoint target = state_.project_middle(a, b);
   if (!collapsible_to(a, b, target) || !collapsible_to(b, a, target)) return false;
   if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return false;
   const double size = std::min(state_.size[a], state_.size[b]);
   const double fineness = std::min(surface_.fineness[a], surface_.fineness[b]);
+  const double lift = 0.5 * (surface_.lift[a] + surface_.lift[b]);
   const Vertex v = CGAL::Euler::collapse_edge(e, mesh_);
   surface_.fineness[v] = fineness;
+  surface_.lift[v] = lift;
   surface_.place(v, target.position, target.sample);
   state_.size[v] = size;
   state_.stir(v);
@@ -112,8 +114,7 @@ void Remesher::collapse_bad_faces() {
       if (state_.length(mesh_.edge(h)) < state_.length(mesh_.edge(shortest))) shortest = h;
     }
     const Vertex u = mesh_.source(shortest), v = mesh_.target(shortest);
-    const BoundaryPoint target =
-        project_to_boundary(field_, 0.5 * (state_.point(u) + state_.point(v)), surface_.cone[u]);
+    const BoundaryPoint target = state_.project_middle(u, v);
     const double worst = std::max(worst_energy(u, v, target.position), worst_energy(v, u, target.position));
     if (worst < state_.energy(a, b, c)) collapse(mesh_.edge(shortest));
   }

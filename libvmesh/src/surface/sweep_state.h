@@ -72,8 +72,20 @@ class SweepState {
     return ratio * ratio;
   }
 
-  /// Whether `v` is not on the boundary yet.
-  bool off_boundary(Vertex v) const { return std::abs(surface.distance[v]) > kOffBoundary * surface.radius(v); }
+  /// Whether `v` is not yet where it belongs, at its lift from the boundary.
+  bool off_boundary(Vertex v) const {
+    return std::abs(surface.distance[v] - surface.lift[v]) > kOffBoundary * surface.radius(v);
+  }
+
+  /// Where `v` belongs when it goes to `p`.
+  BoundaryPoint project(Vertex v, const Vec3& p, double tolerance = 1e-6) const {
+    return project_to_boundary(field, p, surface.cone[v], tolerance, surface.lift[v]);
+  }
+  /// Where the vertex belongs that `a` and `b` become.
+  BoundaryPoint project_middle(Vertex a, Vertex b) const {
+    return project_to_boundary(field, 0.5 * (point(a) + point(b)), surface.cone[a], 1e-6,
+                               0.5 * (surface.lift[a] + surface.lift[b]));
+  }
 
  private:
   static constexpr char kActive = 1, kStirred = 2;

@@ -13,9 +13,11 @@ inline double inverse_mean_ratio(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (ab.squaredNorm() + ac.squaredNorm() + (c - b).squaredNorm()) / (2 * std::sqrt(3.0) * area2);
 }
 
-/// Value, gradient and Hessian of the squared inverse mean ratio of (x, b, c) as x moves in the plane
-/// spanned by the orthonormal u, w. The triangle's normal is held fixed, which makes the Hessian positive.
+/// Value, gradient and Hessian of the sum over triangles (x, b, c) of the inverse mean ratio to the power of 2 `power`,
+/// as x moves in the plane spanned by the orthonormal u, w. The triangles' normals are held fixed, which makes the
+/// Hessian positive. A high power is for the worst triangle.
 struct PlanarEnergy {
+  int power = 1;
   double value = 0;
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
   Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
@@ -35,9 +37,11 @@ struct PlanarEnergy {
     const double f = n / area2;
     const Eigen::Vector2d df = (dn - f * dd) / area2;
     Eigen::Matrix2d hf = (4 * scale * Eigen::Matrix2d::Identity() - dd * df.transpose() - df * dd.transpose()) / area2;
-    value += f * f;
-    gradient += 2 * f * df;
-    hessian += 2 * (df * df.transpose() + f * hf);
+    const int q = 2 * power;
+    const double below = std::pow(f, q - 2);  // exact for power 1
+    value += below * f * f;
+    gradient += q * below * f * df;
+    hessian += q * below * ((q - 1) * df * df.transpose() + f * hf);
   }
 };
 

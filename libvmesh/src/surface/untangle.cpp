@@ -44,6 +44,18 @@ void add_ring(const SurfaceMesh& mesh, std::vector<Vertex>& region) {
 
 }  // namespace
 
+std::vector<Vertex> find_crossing_walls(const SweepState& state) {
+  const TriMesh mesh = indexed_mesh(state);
+  std::vector<Vertex> vertices;
+  for (const auto& [f, g] : self_intersections(mesh)) {
+    for (const Index face : {f, g}) {
+      for (const Index v : mesh.faces[face]) vertices.emplace_back(v);
+    }
+  }
+  sort_unique(vertices);
+  return vertices;
+}
+
 std::vector<Vertex> find_tangles(const SweepState& state) {
   std::vector<Vertex> vertices;
   for (const Vertex v : state.mesh.vertices()) {
@@ -70,7 +82,7 @@ void loosen(SweepState& state, const std::vector<Vertex>& tangles) {
       Vec3 center = Vec3::Zero();
       for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) center += state.point(mesh.source(h));
       center /= static_cast<double>(mesh.degree(v));
-      const BoundaryPoint target = project_to_boundary(state.field, center, state.surface.cone[v]);
+      const BoundaryPoint target = state.project(v, center);
       const bool near = (target.position - center).norm() < state.size[v];
       if (near) state.surface.place(v, target.position, target.sample);
     }

@@ -11,4 +11,7 @@ std::vector<Vertex> find_tangles(const SweepState& state);
 /// Lets the surroundings of `tangles` relax on the boundary like a rubber sheet, which pulls folds flat.
 void loosen(SweepState& state, const std::vector<Vertex>& tangles);
 
+/// Vertices of all faces that intersect others, be it of vessels that are no neighbours; ascending.
+std::vector<Vertex> find_crossing_walls(const SweepState& state);
+
 }  // namespace vmesh

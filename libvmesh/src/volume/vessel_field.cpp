@@ -155,6 +155,14 @@ void VesselField::blend_candidates(const Vec3& p, std::span<const Index> near, F
   }
 }
 
+double VesselField::distance_to_others(const Vec3& p, Index cone, double limit) const {
+  const std::span<const Index> local = local_cones(cone);
+  tree_.visit(p, limit, [&](Index c) {
+    if (!std::binary_search(local.begin(), local.end(), c)) limit = std::min(limit, distance_to(cones_[c], p).value);
+  });
+  return limit;
+}
+
 FieldSample VesselField::sample_global(const Vec3& p) const {
   const double rounding = kRounding * p.norm();
   Index best = 0;

@@ -18,6 +18,14 @@ std::string_view to_string(GrowthMethod method);
 /// Throws InvalidInput unless `text` is "guided" or "paper".
 GrowthMethod parse_growth_method(std::string_view text);
 
+/// Where vertices lie. inscribed: on the boundary, so that the faces cut off what bulges between them. balanced: lifted
+/// off it so that the signed distance to the boundary averages to zero around every vertex; volume is kept.
+enum class Placement { inscribed, balanced };
+
+std::string_view to_string(Placement placement);
+/// Throws InvalidInput unless `text` is "inscribed" or "balanced".
+Placement parse_placement(std::string_view text);
+
 /// Ends of a centerline (nodes with one segment) at which the surface is left open.
 struct OpenEnds {
   bool all = false;
@@ -34,6 +42,7 @@ struct GenerateOptions {
   int around = 6;
   /// A grown face is split edge-centrically when its centre is farther than this from the boundary.
   double max_center_distance = 0.35;
+  Placement placement = Placement::balanced;
   /// Sweeps of the final optimisation; 0 leaves the surface as it was grown.
   int sweeps = 30;
   /// A centerline whose length and radii ask for more vertices than this is refused.

@@ -44,6 +44,10 @@ class VesselField {
   /// Signed distance of the union of all cones at `p`.
   FieldSample sample_global(const Vec3& p) const;
 
+  /// Signed distance at `p` to the nearest cone that a local query with hint `cone` does not see, if that is less than
+  /// `limit`, else `limit`.
+  double distance_to_others(const Vec3& p, Index cone, double limit) const;
+
   /// Exact signed distance to one cone.
   FieldSample sample_cone(const Vec3& p, Index cone) const;
 
