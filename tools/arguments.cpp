@@ -1,6 +1,7 @@
 #include "arguments.h"
 
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <sstream>
 
@@ -83,6 +84,20 @@ OpenEnds parse_open_ends(const std::string& text) {
   return ends;
 }
 
+ErrorLimit parse_error_limit(const std::string& text) {
+  ErrorLimit limit;
+  std::istringstream list(text);
+  for (std::string item; std::getline(list, item, ',');) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), value);
+    const std::string unit = item.substr(static_cast<std::size_t>(end - item.data()));
+    if (error != std::errc() || !(value > 0) || !std::isfinite(value) || (unit != "mm" && unit != "%"))
+      throw CLI::ValidationError("--max-error", "\"" + item + "\" is no limit; give one such as 0.3mm or 10%");
+    (unit == "mm" ? limit.mm : limit.relative) = unit == "mm" ? value : value / 100;
+  }
+  return limit;
+}
+
 void add_generate(CLI::App& app, GenerateArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
   add_input(verb, arguments.input, "centerline");
@@ -96,6 +111,11 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "guided: topology as the centerline's; paper: a single seed, as published")
       ->check(CLI::IsMember({"guided", "paper"}))
       ->default_str("guided");
+  verb.add_option_function<std::string>(
+          "--max-error", [&arguments](const std::string& text) { arguments.options.max_error = parse_error_limit(text); },
+          "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
+          "0.3mm, 10% (of the local radius), or both, separated by a comma")
+      ->type_name("Xmm|X%");
   verb.add_option_function<std::string>(
           "--placement",
           [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },

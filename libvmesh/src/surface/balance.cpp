@@ -7,24 +7,25 @@ namespace {
 
 constexpr double kMostLift = 0.15;  // in target lengths; a sphere with six vertices around asks for 0.13
 
+constexpr double kBalanced = 0.003;    // mean signed distance in radii, around a vertex, that may stay
+constexpr double kShareOfLimit = 0.95;  // of the error that is allowed
 constexpr double kShareOfGap = 0.35;  // of the free space before another vessel that a vertex may be lifted into
 
-// Area and mean signed distance of every face, by a rule that is exact for quadratic functions.
+// Area of every face and signed distance at its centroid.
 struct FaceErrors {
-  std::vector<double> area, mean;
+  std::vector<double> area, at_center;
 };
 
 FaceErrors face_errors(const SweepState& state) {
   const BoundSurface& surface = state.surface;
   FaceErrors errors;
   errors.area.resize(state.mesh.num_faces());
-  errors.mean.resize(state.mesh.num_faces());
+  errors.at_center.resize(state.mesh.num_faces());
   for (const Face f : state.mesh.faces()) {
     if (surface.is_lid(f)) continue;
     const auto [a, b, c] = state.corners(f);
     const Vec3 center = (state.point(a) + state.point(b) + state.point(c)) / 3;
-    const double at_corners = (surface.distance[a] + surface.distance[b] + surface.distance[c]) / 3;
-    errors.mean[f.idx()] = 0.75 * state.field.sample(center, surface.cone[a]).distance + 0.25 * at_corners;
+    errors.at_center[f.idx()] = state.field.sample(center, surface.cone[a]).distance;
     errors.area[f.idx()] = surface.face_area_normal(f).norm();
   }
   return errors;
@@ -38,17 +39,19 @@ double most_outwards(const SweepState& state, Vertex v, double most) {
   return kShareOfGap * std::max(0.0, gap);
 }
 
-void update_lifts(SweepState& state) {
+void update_lifts(SweepState& state, const ErrorLimit& limit) {
   const FaceErrors errors = face_errors(state);
   for (const Vertex v : state.mesh.vertices()) {
     if (state.surface.held(v)) continue;
     double area = 0, sum = 0;
     for (const Face f : state.mesh.faces_around_target(state.mesh.halfedge(v))) {
       area += errors.area[f.idx()];
-      sum += errors.area[f.idx()] * errors.mean[f.idx()];
+      sum += errors.area[f.idx()] * (0.75 * errors.at_center[f.idx()] + 0.25 * state.surface.distance[v]);
     }
-    const double most = kMostLift * state.size[v];
-    if (area > 0) state.surface.lift[v] = std::clamp(state.surface.lift[v] - sum / area, -most, most_outwards(state, v, most));
+    if (std::abs(sum) <= kBalanced * state.surface.radius(v) * area) continue;
+    const double radius = state.surface.radius(v), size = state.size[v];
+    const double most = std::min(kMostLift * size * std::min(1.0, size / radius), kShareOfLimit * limit.at(radius));
+    state.surface.lift[v] = std::clamp(state.surface.lift[v] - sum / area, -most, most_outwards(state, v, most));
   }
 }
 
@@ -62,10 +65,10 @@ bool may_move(const SweepState& state, Vertex v, const BoundaryPoint& target) {
 
 }  // namespace
 
-void balance(SweepState& state) {
+void balance(SweepState& state, const ErrorLimit& limit) {
   std::vector<char> strays(state.mesh.num_vertices());
   for (const Vertex v : state.mesh.vertices()) strays[v.idx()] = state.off_boundary(v);
-  update_lifts(state);
+  update_lifts(state, limit);
   for (const Vertex v : state.mesh.vertices()) {
     if (state.surface.held(v) || strays[v.idx()]) continue;
     const BoundaryPoint target = state.project(v, state.point(v), 1e-3);

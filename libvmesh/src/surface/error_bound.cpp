@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <tbb/parallel_for.h>
 
@@ -11,6 +10,7 @@ namespace {
 
 constexpr int kPieces = 2;    // along an edge of a face: the shell follows the normals that much closer
 constexpr int kMaxDepth = 5;  // of further subdivision, into four each
+constexpr double kLowerShell = 0.6, kLowestShell = 0.04;  // of the limit
 
 using Points = std::array<Vec3, 3>;
 
@@ -30,143 +30,171 @@ std::array<Points, 4> quarters(const Points& q) {
 
 // What is known of a cone over a triangle.
 struct ConeBounds {
-  double low = 0, high = 0;                // of the signed distance
-  double at_center = 0;                    // the signed distance at the centroid
-  double least_radius = 0, most_radius = 0;  // of the sphere that touches the boundary, over the triangle
-  double turn = 0;                         // how far the gradient turns from where it points at the centroid, radians
-  Vec3 gradient = Vec3::Zero();            // at the centroid
+  Index cone = kNone;
+  double low = 0, high = 0;                  // of the signed distance
+  double at_center = 0;                      // the signed distance at the centroid
+  double least_radius = 0, most_radius = 0;  // of the sphere that touches the boundary
+  double turn = 0;                           // how far the gradient can be from that at the centroid, at most 2
+  Vec3 gradient = Vec3::Zero();              // at the centroid
 };
 
-// The sine and cosine of a cone's half angle, as its radius per length and what goes with it.
-double radius_slope(const VesselField& field, Index cone) {
-  const double length = (field.axis_point(cone, 1) - field.axis_point(cone, 0)).norm();
-  const double change = std::abs(field.radius_at(cone, 1) - field.radius_at(cone, 0));
+// How much the radius of the touching sphere changes with the way, at most: the tangent of the cone's half angle.
+double radius_slope(double first, double last, double length) {
+  const double change = std::abs(last - first);
   if (change >= length) return std::numeric_limits<double>::infinity();
   const double sine = change / length;
   return sine / std::sqrt(1 - sine * sine);
 }
 
+double smooth_minimum(double a, double b, double width) {
+  const double low = std::min(a, b), gap = std::abs(a - b);
+  if (gap >= width) return low;
+  const double h = 1 - gap / width;
+  return low - h * h * width / 4;
+}
+
+// Decides for triangles whether they are inside or outside the volume of a few cones.
 class TriangleTest {
  public:
-  TriangleTest(const VesselField& field, const std::vector<Index>& cones) : field_(field), cones_(cones) {}
+  explicit TriangleTest(const VesselField& field) : field_(field) {}
 
-  bool outside(const Points& q, int depth) {
-    measure(q);
-    if (lower_bound() >= 0) return true;
-    if (depth == 0 || value_at_center() < 0) return false;
-    for (const Points& part : quarters(q)) {
-      if (!outside(part, depth - 1)) return false;
-    }
-    return true;
-  }
-
-  bool inside(const Points& q, int depth) {
-    measure(q);
-    if (upper_bound() <= 0) return true;
-    if (depth == 0 || value_at_center() > 0) return false;
-    for (const Points& part : quarters(q)) {
-      if (!inside(part, depth - 1)) return false;
-    }
-    return true;
-  }
+  bool outside(const Points& q, const std::vector<Index>& cones) { return starting_with(cones, q, &TriangleTest::is_outside); }
+  bool inside(const Points& q, const std::vector<Index>& cones) { return starting_with(cones, q, &TriangleTest::is_inside); }
 
  private:
-  void measure(const Points& q) {
+  // The bounds for a triangle and all it is part of lie on a stack; a part looks at the cones that its whole kept.
+  struct Range {
+    std::size_t begin, end;
+  };
+
+  bool starting_with(const std::vector<Index>& cones, const Points& q,
+                     bool (TriangleTest::*test)(const Points&, Range, int)) {
+    stack_.clear();
+    for (const Index cone : cones) stack_.push_back({.cone = cone});
+    return (this->*test)(q, {0, stack_.size()}, kMaxDepth);
+  }
+
+  bool is_outside(const Points& q, Range whole, int depth) {
+    const Range range = measure(q, whole);
+    bool result = lower_bound(range) >= 0;
+    if (!result && depth > 0 && value_at_center(range) >= 0) {
+      const auto parts = quarters(q);
+      result = std::all_of(parts.begin(), parts.end(), [&](const Points& p) { return is_outside(p, range, depth - 1); });
+    }
+    stack_.resize(range.begin);
+    return result;
+  }
+
+  bool is_inside(const Points& q, Range whole, int depth) {
+    for (std::size_t i = whole.begin; i < whole.end; ++i) {
+      if (highest(q, stack_[i].cone) <= 0) return true;
+    }
+    const Range range = measure(q, whole);
+    bool result = upper_bound(range) <= 0;
+    if (!result && depth > 0 && value_at_center(range) <= 0) {
+      const auto parts = quarters(q);
+      result = std::all_of(parts.begin(), parts.end(), [&](const Points& p) { return is_inside(p, range, depth - 1); });
+    }
+    stack_.resize(range.begin);
+    return result;
+  }
+
+  // Convex: highest at a corner.
+  double highest(const Points& q, Index cone) const {
+    double high = field_.sample_cone(q[0], cone).distance;
+    for (int k = 1; k < 3; ++k) high = std::max(high, field_.sample_cone(q[k], cone).distance);
+    return high;
+  }
+
+  // Bounds for the cones of `whole` that can matter on the triangle, on the stack.
+  Range measure(const Points& q, Range whole) {
     const Vec3 center = centroid(q);
     reach_ = reach(q, center);
-    bounds_.clear();
-    for (const Index cone : cones_) {
-      const FieldSample s = field_.sample_cone(center, cone);
-      ConeBounds b;
-      b.at_center = s.distance;
-      b.gradient = s.gradient;
-      b.low = b.high = s.distance;
-      for (const Vec3& p : q) {
-        b.low = std::min(b.low, s.distance + s.gradient.dot(p - center));
-        b.high = std::max(b.high, field_.sample_cone(p, cone).distance);
-      }
-      const auto [thin, wide] = std::minmax(field_.radius_at(cone, 0), field_.radius_at(cone, 1));
-      const double radius = field_.radius_at(cone, s.t), change = radius_slope(field_, cone) * reach_;
-      b.least_radius = std::max(thin, radius - change);
-      b.most_radius = std::min(wide, radius + change);
-      const double from_axis = radius + s.distance - reach_ - std::min(change, wide - thin);
-      b.turn = from_axis > 0 ? std::min(std::numbers::pi, reach_ / from_axis) : std::numbers::pi;
-      bounds_.push_back(b);
+    const std::size_t begin = stack_.size();
+    double least_high = std::numeric_limits<double>::infinity();
+    for (std::size_t i = whole.begin; i < whole.end; ++i) {
+      stack_.push_back(bounds_of(stack_[i].cone, q, center));
+      least_high = std::min(least_high, stack_.back().high);
     }
+    const auto too_far = [&](const ConeBounds& b) { return b.low > least_high + 2 * field_.blend() * b.most_radius; };
+    stack_.erase(std::remove_if(stack_.begin() + begin, stack_.end(), too_far), stack_.end());
+    return {begin, stack_.size()};
   }
 
-  // Width over which two cones are blended, if their gradients are `angle` apart.
-  double width(double radius, double angle) const {
-    return field_.blend() * radius * (1 - std::cos(std::clamp(angle, 0.0, std::numbers::pi)));
+  ConeBounds bounds_of(Index cone, const Points& q, const Vec3& center) const {
+    const FieldSample s = field_.sample_cone(center, cone);
+    ConeBounds b;
+    b.cone = cone;
+    b.at_center = b.low = s.distance;
+    b.gradient = s.gradient;
+    for (const Vec3& p : q) b.low = std::min(b.low, s.distance + s.gradient.dot(p - center));
+    b.high = highest(q, cone);
+    if (field_.blend() == 0) return b;
+    const double first = field_.radius_at(cone, 0), last = field_.radius_at(cone, 1), radius = field_.radius_at(cone, s.t);
+    const double length = (field_.axis_point(cone, 1) - field_.axis_point(cone, 0)).norm();
+    const double change = std::min(radius_slope(first, last, length) * reach_, std::abs(last - first));
+    b.least_radius = std::max(std::min(first, last), radius - change);
+    b.most_radius = std::min(std::max(first, last), radius + change);
+    // The gradient turns by the way divided by the distance from the touching sphere's centre.
+    const double from_center = radius + s.distance - reach_ - change;
+    b.turn = from_center > 0.5 * reach_ ? reach_ / from_center : 2;
+    return b;
   }
 
-  static double angle_between(const ConeBounds& a, const ConeBounds& b) {
-    return 2 * std::asin(std::min(1.0, 0.5 * (a.gradient - b.gradient).norm()));
+  // Width over which two cones are blended when their gradients differ by `difference`: 1 - cos = difference^2 / 2.
+  double width(double radius, double difference) const {
+    const double d = std::clamp(difference, 0.0, 2.0);
+    return field_.blend() * radius * d * d / 2;
   }
 
-  static double smooth_minimum(double low, double high, double width) {
-    if (high < low) std::swap(low, high);
-    if (high - low >= width) return low;
-    const double h = 1 - (high - low) / width;
-    return low - h * h * width / 4;
-  }
-
-  double lower_bound() const {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < bounds_.size(); ++i) {
-      least = std::min(least, bounds_[i].low);
+  // Calls visit for every cone and combine for every pair that may be blended; returns the least of what they return.
+  template <class Visit, class Combine>
+  double least(Range range, Visit&& visit, Combine&& combine) const {
+    double result = std::numeric_limits<double>::infinity();
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      result = std::min(result, visit(stack_[i]));
       if (field_.blend() == 0) continue;
-      for (std::size_t j = 0; j < i; ++j) least = std::min(least, pair_lower_bound(bounds_[i], bounds_[j]));
+      for (std::size_t j = range.begin; j < i; ++j) result = std::min(result, combine(stack_[i], stack_[j]));
     }
-    return least;
+    return result;
   }
 
   // The smooth minimum grows with either distance and falls with the width.
-  double pair_lower_bound(const ConeBounds& a, const ConeBounds& b) const {
-    const double radius = std::min(a.most_radius, b.most_radius);
-    const double widest = width(radius, angle_between(a, b) + a.turn + b.turn);
-    const double low = std::min(a.low, b.low);
-    const double gap = std::max(0.0, std::abs(a.at_center - b.at_center) - 2 * reach_);
-    if (gap >= widest) return low;
-    const double h = 1 - gap / widest;
-    return std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+  double lower_bound(Range range) const {
+    return least(
+        range, [](const ConeBounds& b) { return b.low; },
+        [this](const ConeBounds& a, const ConeBounds& b) {
+          const double difference = (a.gradient - b.gradient).norm() + a.turn + b.turn;
+          const double widest = width(std::min(a.most_radius, b.most_radius), difference);
+          const double gap = std::max(0.0, std::abs(a.at_center - b.at_center) - 2 * reach_);
+          const double low = std::min(a.low, b.low);
+          if (gap >= widest) return low;
+          const double h = 1 - gap / widest;
+          return std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+        });
   }
 
-  double upper_bound() const {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < bounds_.size(); ++i) {
-      least = std::min(least, bounds_[i].high);
-      if (field_.blend() == 0) continue;
-      for (std::size_t j = 0; j < i; ++j) {
-        const ConeBounds &a = bounds_[i], &b = bounds_[j];
-        const double narrowest =
-            width(std::min(a.least_radius, b.least_radius), angle_between(a, b) - a.turn - b.turn);
-        if (narrowest > 0) least = std::min(least, smooth_minimum(a.high, b.high, narrowest));
-      }
-    }
-    return least;
+  double upper_bound(Range range) const {
+    return least(
+        range, [](const ConeBounds& b) { return b.high; },
+        [this](const ConeBounds& a, const ConeBounds& b) {
+          const double difference = (a.gradient - b.gradient).norm() - a.turn - b.turn;
+          return smooth_minimum(a.high, b.high, width(std::min(a.least_radius, b.least_radius), difference));
+        });
   }
 
-  // Neither bound can be on the other side of this.
-  double value_at_center() const {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < bounds_.size(); ++i) {
-      least = std::min(least, bounds_[i].at_center);
-      if (field_.blend() == 0) continue;
-      for (std::size_t j = 0; j < i; ++j) {
-        const ConeBounds &a = bounds_[i], &b = bounds_[j];
-        const double w = width(std::min(middle_radius(a), middle_radius(b)), angle_between(a, b));
-        if (w > 0) least = std::min(least, smooth_minimum(a.at_center, b.at_center, w));
-      }
-    }
-    return least;
+  // About the field at the centroid: where it has the wrong sign already, parts need not be looked at.
+  double value_at_center(Range range) const {
+    return least(
+        range, [](const ConeBounds& b) { return b.at_center; },
+        [this](const ConeBounds& a, const ConeBounds& b) {
+          const double radius = 0.5 * std::min(a.least_radius + a.most_radius, b.least_radius + b.most_radius);
+          return smooth_minimum(a.at_center, b.at_center, width(radius, (a.gradient - b.gradient).norm()));
+        });
   }
-
-  static double middle_radius(const ConeBounds& b) { return 0.5 * (b.least_radius + b.most_radius); }
 
   const VesselField& field_;
-  const std::vector<Index>& cones_;
-  std::vector<ConeBounds> bounds_;
+  std::vector<ConeBounds> stack_;
   double reach_ = 0;
 };
 
@@ -191,77 +219,110 @@ void find_cones(const VesselField& field, const Vec3& center, double radius, Ind
   }
 }
 
-// A face's shell, on a grid of kPieces along each edge. What lies on an edge follows from its ends alone.
-struct Shell {
-  struct Point {
-    Vec3 position, offset;
+// One side of a face's shell, on a grid of kPieces along each edge. What lies on an edge follows from its ends alone.
+std::vector<Points> shell(const ErrorProof::Face& face, const std::array<double, 3>& heights, double side) {
+  const auto point = [&](int i, int j) {
+    const double w[3] = {1 - double(i + j) / kPieces, double(i) / kPieces, double(j) / kPieces};
+    Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
+    double height = 0;
+    for (int k = 0; k < 3; ++k) {
+      position += w[k] * face[k].position;
+      normal += w[k] * face[k].normal;
+      height += w[k] * heights[k];
+    }
+    return Vec3(position + side * height * normal.normalized());
   };
-  std::vector<std::array<Point, 3>> parts;
-
-  explicit Shell(const std::array<ErrorProof::Corner, 3>& face) {
-    const auto point = [&](int i, int j) {
-      const double w[3] = {1 - double(i + j) / kPieces, double(i) / kPieces, double(j) / kPieces};
-      Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
-      double limit = 0;
-      for (int k = 0; k < 3; ++k) {
-        position += w[k] * face[k].position;
-        normal += w[k] * face[k].normal;
-        limit += w[k] * face[k].limit;
-      }
-      return Point{position, limit * normal.normalized()};
-    };
-    for (int i = 0; i < kPieces; ++i) {
-      for (int j = 0; i + j < kPieces; ++j) {
-        parts.push_back({point(i, j), point(i + 1, j), point(i, j + 1)});
-        if (i + j + 2 <= kPieces) parts.push_back({point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)});
-      }
+  std::vector<Points> parts;
+  for (int i = 0; i < kPieces; ++i) {
+    for (int j = 0; i + j < kPieces; ++j) {
+      parts.push_back({point(i, j), point(i + 1, j), point(i, j + 1)});
+      if (i + j + 2 <= kPieces) parts.push_back({point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)});
     }
   }
-};
+  return parts;
+}
+
+std::array<double, 3> heights_of(const ErrorProof::Face& face, double share) {
+  return {share * face[0].limit, share * face[1].limit, share * face[2].limit};
+}
+
+double& share(ErrorProof::Shares& shares, ErrorProof::Side side) {
+  return side == ErrorProof::Side::inner ? shares.inner : shares.outer;
+}
+
+ErrorProof::Face face_of(const std::vector<ErrorProof::Corner>& vertices, const Triangle& f) {
+  return {vertices[f[0]], vertices[f[1]], vertices[f[2]]};
+}
 
 }  // namespace
 
-bool ErrorProof::holds(const std::array<Corner, 3>& face) const {
+bool ErrorProof::holds(const Face& face, const std::array<double, 3>& heights, Side side) const {
   const Points corners = {face[0].position, face[1].position, face[2].position};
   const Vec3 center = centroid(corners);
-  double limit = 0;
-  for (const Corner& c : face) limit = std::max(limit, c.limit);
   thread_local std::vector<Index> cones;
-  find_cones(field_, center, reach(corners, center) + limit, face[0].cone, cones);
-  TriangleTest test(field_, cones);
-  for (const auto& part : Shell(face).parts) {
-    Points inner, outer;
-    for (int k = 0; k < 3; ++k) {
-      inner[k] = part[k].position - part[k].offset;
-      outer[k] = part[k].position + part[k].offset;
+  find_cones(field_, center, reach(corners, center) + *std::max_element(heights.begin(), heights.end()), face[0].cone,
+             cones);
+  TriangleTest test(field_);
+  const std::vector<Points> parts = shell(face, heights, side == Side::inner ? -1 : 1);
+  return std::all_of(parts.begin(), parts.end(), [&](const Points& part) {
+    return side == Side::inner ? test.inside(part, cones) : test.outside(part, cones);
+  });
+}
+
+ErrorProof::Shares ErrorProof::shares(const Face& face) const {
+  Shares result;
+  for (const Side side : {Side::inner, Side::outer}) {
+    for (double s = 1; s > kLowestShell && share(result, side) == 0; s *= kLowerShell) {
+      if (holds(face, heights_of(face, s), side)) share(result, side) = s;
     }
-    if (!test.inside(inner, kMaxDepth) || !test.outside(outer, kMaxDepth)) return false;
   }
-  return true;
+  return result;
+}
+
+std::vector<Index> ErrorProof::unproven(const std::vector<Corner>& vertices, const std::vector<Triangle>& faces,
+                                        const std::vector<Shares>& shares) const {
+  std::vector<char> proven(faces.size(), 1);
+  for (const Side side : {Side::inner, Side::outer}) {
+    std::vector<double> height(vertices.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v) height[v] = vertices[v].limit;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      Shares own = shares[f];
+      if (share(own, side) == 0) proven[f] = 0;
+      for (const Index v : faces[f]) {
+        if (proven[f]) height[v] = std::min(height[v], share(own, side) * vertices[v].limit);
+      }
+    }
+    tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t f) {
+      if (!proven[f]) return;
+      Shares own = shares[f];
+      const Face face = face_of(vertices, faces[f]);
+      const std::array<double, 3> heights = {height[faces[f][0]], height[faces[f][1]], height[faces[f][2]]};
+      if (heights != heights_of(face, share(own, side))) proven[f] = holds(face, heights, side);
+    });
+  }
+  std::vector<Index> result;
+  for (Index f = 0; f < proven.size(); ++f) {
+    if (!proven[f]) result.push_back(f);
+  }
+  return result;
 }
 
 std::vector<Index> unproven_faces(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
                                   const VesselField& field, const ErrorLimit& limit) {
-  std::vector<Vec3> normal(mesh.vertices.size(), Vec3::Zero());
+  std::vector<ErrorProof::Corner> vertices(mesh.vertices.size());
+  for (Index v = 0; v < vertices.size(); ++v) {
+    const auto& [cone, t] = binding[v];
+    vertices[v] = {mesh.vertices[v], Vec3::Zero(), limit.at(field.radius_at(cone, t)), cone};
+  }
   for (Index f = 0; f < mesh.faces.size(); ++f) {
-    for (const Index v : mesh.faces[f]) normal[v] += area_normal(mesh, f);
+    for (const Index v : mesh.faces[f]) vertices[v].normal += area_normal(mesh, f);
   }
-  std::vector<char> proven(mesh.faces.size(), 0);
+  for (ErrorProof::Corner& v : vertices) v.normal.normalize();
   const ErrorProof proof(field);
-  tbb::parallel_for(std::size_t{0}, mesh.faces.size(), [&](std::size_t f) {
-    std::array<ErrorProof::Corner, 3> face;
-    for (int k = 0; k < 3; ++k) {
-      const Index v = mesh.faces[f][k];
-      const auto& [cone, t] = binding[v];
-      face[k] = {mesh.vertices[v], normal[v].normalized(), limit.at(field.radius_at(cone, t)), cone};
-    }
-    proven[f] = proof.holds(face);
-  });
-  std::vector<Index> unproven;
-  for (Index f = 0; f < proven.size(); ++f) {
-    if (!proven[f]) unproven.push_back(f);
-  }
-  return unproven;
+  std::vector<ErrorProof::Shares> shares(mesh.faces.size());
+  tbb::parallel_for(std::size_t{0}, mesh.faces.size(),
+                    [&](std::size_t f) { shares[f] = proof.shares(face_of(vertices, mesh.faces[f])); });
+  return proof.unproven(vertices, mesh.faces, shares);
 }
 
 }  // namespace vmesh

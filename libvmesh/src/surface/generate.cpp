@@ -139,9 +139,11 @@ namespace {
 void optimize_grown(BoundSurface& surface, const GenerateOptions& options, double grown_around,
                     const Progress& progress, GenerateResult& result) {
   if (options.sweeps == 0) return;
-  const GrownMesh grown{grown_around, expected_vertices(surface.field.centerline(), options.around), !getenv("NOPOLISH"),
-                        options.placement == Placement::balanced};
-  add_warnings(optimize(surface, options, grown, progress), result.warnings);
+  const GrownMesh grown{grown_around, expected_vertices(surface.field.centerline(), options.around), true};
+  const OptimizeReport report = optimize(surface, options, grown, progress);
+  add_warnings(report, result.warnings);
+  result.error.unproven_faces = report.unproven.size();
+  for (const Face f : report.unproven) result.error.unproven_places.push_back(surface.position(surface.mesh.target(surface.mesh.halfedge(f))));
 }
 
 void generate_paper(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
@@ -265,8 +267,9 @@ TriMesh with_lids(const GenerateResult& result) {
   return mesh;
 }
 
-GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options,
-                                const Progress& progress) {
+GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& given, const Progress& progress) {
+  GenerateOptions options = given;
+  if (given.max_error.is_set()) options.around = std::max(options.around, around_for(given.max_error));
   check_options(options);
   check_size(centerline, options);
   check_open_ends(centerline, options);

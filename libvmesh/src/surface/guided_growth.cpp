@@ -46,7 +46,7 @@ class Assembly {
     for (const PieceVertex& v : piece.vertices) {
       if (v.tube.tube == kNone) {
         number.push_back(size());
-        vertices_.push_back({v.position, v.cone, v.fineness});
+        vertices_.push_back({v.position, v.cone, v.fineness, v.lift});
       } else {
         number.push_back(first_[v.tube.tube][v.ring] + v.number);
       }
@@ -63,6 +63,7 @@ class Assembly {
         vertex[v] = surface.mesh.add_vertex(vertices_[v].position);
         surface.place(vertex[v], vertices_[v].position, surface.field.sample(vertices_[v].position, vertices_[v].cone));
         surface.fineness[vertex[v]] = vertices_[v].fineness;
+        surface.lift[vertex[v]] = vertices_[v].lift;
       }
     }
     for (const auto& [a, b, c] : faces_) {

@@ -11,6 +11,7 @@ struct SurfacePoint {
   Vec3 position;
   Index cone;
   double fineness = 1;  ///< factor on the target edge length
+  double lift = 0;      ///< signed distance to the boundary at which it belongs, mm
 };
 
 /// A piece of surface.

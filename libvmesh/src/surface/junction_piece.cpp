@@ -33,7 +33,7 @@ class PieceMaker {
     JunctionPiece piece;
     piece.handles = growth_.handles();
     piece.filled_loops = growth_.filled_loops();
-    piece.tangles = finish(variant.fineness);
+    finish(variant.fineness, piece);
     export_to(piece);
     return piece;
   }
@@ -90,12 +90,16 @@ class PieceMaker {
     return result;
   }
 
-  std::size_t finish(double fineness) {
-    if (options_.sweeps == 0) return find_tangles(SweepState(surface_)).size();
+  void finish(double fineness, JunctionPiece& piece) {
+    if (options_.sweeps == 0) {
+      piece.tangles = find_tangles(SweepState(surface_)).size();
+      return;
+    }
     const double radii = growth_.length_in_radii() + static_cast<double>(openings_.size() * (kRingsGivenAway + 1));
-    return optimize(surface_, options_, {double(options_.around), expected_vertices(radii, options_.around / fineness)},
-                    {})
-        .tangles;
+    const OptimizeReport report = optimize(
+        surface_, options_, {double(options_.around), expected_vertices(radii, options_.around / fineness)}, {});
+    piece.tangles = report.tangles;
+    piece.unproven = report.unproven.size();
   }
 
   void export_to(JunctionPiece& piece) const {
@@ -104,7 +108,8 @@ class PieceMaker {
     for (const Vertex v : mesh.vertices()) {
       if (surface_.role[v] == BoundSurface::Role::lid) continue;
       number[v.idx()] = static_cast<Index>(piece.vertices.size());
-      piece.vertices.push_back({surface_.position(v), surface_.cone[v], surface_.fineness[v], {}, 0, 0});
+      piece.vertices.push_back({surface_.position(v), surface_.cone[v], surface_.fineness[v],
+                                surface_.lift[v], {}, 0, 0});
     }
     for (const auto& [opening, ring, vertices] : kept_) {
       for (Index j = 0; j < vertices.size(); ++j) {
@@ -149,8 +154,10 @@ JunctionPiece make_junction_piece(const VesselField& field, const std::vector<Br
   JunctionPiece best;
   for (const Variant& variant : kVariants) {
     JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options).make(variant);
-    if (&variant == kVariants || piece.tangles < best.tangles) best = std::move(piece);
-    if (best.tangles == 0) break;
+    const auto flaws = [](const JunctionPiece& p) { return std::pair(p.tangles, p.unproven); };
+    if (getenv("DBG")) fprintf(stderr, "variant %d: %zu tangles %zu unproven %zu faces\n", int(&variant - kVariants), piece.tangles, piece.unproven, piece.faces.size());
+    if (&variant == kVariants || flaws(piece) < flaws(best)) best = std::move(piece);
+    if (best.tangles == 0 && best.unproven == 0) break;
   }
   return best;
 }

@@ -8,7 +8,7 @@ namespace vmesh {
 struct PieceVertex {
   Vec3 position;
   Index cone;
-  double fineness;
+  double fineness, lift;
   TubeEnd tube;    ///< tube.tube == kNone: none
   Index ring = 0;  ///< number of the ring in the tube
   Index number = 0;
@@ -20,6 +20,7 @@ struct JunctionPiece {
   std::vector<Triangle> faces;
   std::size_t handles = 0;       ///< loops of the centerline that the junction closes itself
   std::size_t filled_loops = 0;  ///< loops that it does not
+  std::size_t unproven = 0;      ///< faces for which the limit on the error is not proven
   std::size_t tangles = 0;       ///< vertices of faces that intersect each other within the piece
 };
 

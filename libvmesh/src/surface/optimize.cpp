@@ -1,6 +1,7 @@
 #include "surface/optimize.h"
 
 #include "surface/balance.h"
+#include "surface/error_limit.h"
 #include "surface/relocation.h"
 #include "surface/remesher.h"
 #include "surface/untangle.h"
@@ -18,11 +19,14 @@ constexpr int kBalanceRounds = 2, kBalanceSweeps = 6;
 constexpr int kPolishRounds = 20, kPolishPower = 16;
 constexpr double kPolishEnergy = 1.15;  // of a face: skewness 0.28
 constexpr int kSinkRounds = 4;
+constexpr int kErrorRounds = 6;  // without fewer faces over the limit
+constexpr int kErrorSweeps = 4;
+constexpr double kFiner = 0.87, kFinest = 0.05;  // of the target edge length, where the error is too large
 
 class Optimizer {
  public:
   Optimizer(BoundSurface& surface, const GenerateOptions& options, const Progress& progress)
-      : state_(surface), remesher_(state_), options_(options), progress_(progress) {}
+      : state_(surface), remesher_(state_), options_(options), progress_(progress), check_(options.max_error) {}
 
   OptimizeReport run(const GrownMesh& grown) {
     remesher_.limit_vertices(
@@ -33,25 +37,95 @@ class Optimizer {
       around = std::min<double>(2 * around, options_.around);
       optimize_at(around);
     }
-    if (grown.polish) finish(grown.balance);
-    return {tangles_, remesher_.limited()};
+    whole_ = grown.whole;
+    if (whole_) {
+      finish();
+    } else if (options_.max_error.is_set()) {
+      if (balanced()) balance_with_sweeps(kBalanceRounds);
+      meet_error_limit();
+      tangles_ = find_tangles(state_).size();
+    }
+    return {tangles_, remesher_.limited(), std::move(unproven_)};
   }
 
  private:
-  void finish(bool balanced) {
-    for (int round = 0; balanced && round < kBalanceRounds; ++round) {
-      balance(state_);
-      balance(state_);
+  void finish() {
+    if (balanced()) balance_with_sweeps(kBalanceRounds);
+    polish();
+    if (balanced()) sink_crossing_walls();
+    if (options_.max_error.is_set()) meet_error_limit();
+  }
+
+  bool balanced() const { return options_.placement == Placement::balanced; }
+
+  void balance_with_sweeps(int rounds) {
+    for (int round = 0; round < rounds; ++round) {
+      balance(state_, options_.max_error);
+      balance(state_, options_.max_error);
       state_.stir_all();
       shape_sweeps(options_.sweeps - kBalanceSweeps, options_.sweeps);
     }
-    if (balanced) balance(state_);
-    polish();
-    for (int round = 0; balanced && round < kSinkRounds; ++round) {
+    balance(state_, options_.max_error);
+  }
+
+  void sink_crossing_walls() {
+    for (int round = 0; round < kSinkRounds; ++round) {
       const std::vector<Vertex> crossing = find_crossing_walls(state_);
       if (crossing.empty()) break;
       sink(state_, crossing);
     }
+  }
+
+  // Refines where the limit is not proven, until it is or triangles get too small.
+  void meet_error_limit() {
+    unproven_ = check_.unproven_faces(state_);
+    std::size_t fewest = unproven_.size() + 1;
+    for (int round = 0, best = 0; !unproven_.empty() && round < best + kErrorRounds; ++round) {
+      if (unproven_.size() < fewest) {
+        fewest = unproven_.size();
+        best = round;
+      }
+      if (getenv("DBG")) fprintf(stderr, "%s %d: %zu/%zu\n", whole_ ? "round" : "piece", round, unproven_.size(), (size_t)state_.mesh.number_of_faces());
+      if (!make_finer(unproven_)) break;
+      refine();
+      unproven_ = check_.unproven_faces(state_);
+      if (!whole_ || !unproven_.empty()) continue;
+      polish();
+      if (balanced()) sink_crossing_walls();
+      unproven_ = check_.unproven_faces(state_);
+    }
+  }
+
+  void refine() {
+    for (int sweep = 0; sweep < kErrorSweeps && state_.next_sweep() > 0; ++sweep) {
+      state_.update_sizes(edge_per_radius_, options_.max_error);
+      if (sweep == 0) remesher_.repair_strays();
+      remesher_.split_long_edges();
+      remesher_.collapse_short_edges();
+      end_sweep(0);
+    }
+    if (balanced()) balance(state_, options_.max_error);
+    state_.next_sweep();
+    end_sweep(options_.sweeps);
+    if (balanced()) balance(state_, options_.max_error);
+  }
+
+  bool make_finer(const std::vector<Face>& faces) {
+    std::vector<Vertex> vertices;
+    for (const Face f : faces) {
+      for (const Vertex v : state_.corners(f)) vertices.push_back(v);
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    bool any = false;
+    for (const Vertex v : vertices) {
+      double& fineness = state_.surface.fineness[v];
+      if (fineness * kFiner < kFinest) continue;
+      fineness *= kFiner;
+      state_.stir(v);
+      any = true;
+    }
+    return any;
   }
 
   // The worst triangles, and what is around them, at the cost of the rest.
@@ -91,7 +165,7 @@ class Optimizer {
   void sweep_from(int first) {
     const int shape_begin = static_cast<int>(kSizingShare * options_.sweeps);
     for (int sweep = first; sweep < shape_begin && begin_sweep(sweep); ++sweep) {
-      state_.update_sizes(edge_per_radius_);
+      state_.update_sizes(edge_per_radius_, options_.max_error);
       if (sweep % kStrayInterval == 0) remesher_.repair_strays();
       remesher_.split_long_edges();
       remesher_.collapse_short_edges();
@@ -129,11 +203,21 @@ class Optimizer {
   Remesher remesher_;
   const GenerateOptions& options_;
   const Progress& progress_;
+  ErrorLimitCheck check_;
   double edge_per_radius_ = 0;
   std::size_t tangles_ = 0;
+  std::vector<Face> unproven_;
+  bool whole_ = false;
 };
 
 }  // namespace
+
+int around_for(const ErrorLimit& limit) {
+  if (!std::isfinite(limit.relative)) return 3;
+  int around = 3;
+  while (edge_length_per_radius(around) > edge_length_for(limit.relative, 1) && around < 200) ++around;
+  return around;
+}
 
 double expected_vertices(const Centerline& centerline, double around) {
   return expected_vertices(centerline.length_in_radii(), around);

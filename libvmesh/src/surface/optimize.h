@@ -10,7 +10,11 @@ namespace vmesh {
 struct OptimizeReport {
   std::size_t tangles = 0;  ///< vertices where faces still intersect within the volume's own neighbourhood
   bool limited = false;     ///< refinement stopped at the bound on the number of vertices
+  std::vector<Face> unproven;  ///< faces for which options.max_error is not proven
 };
+
+/// Vertices around a vessel that a relative limit on the error asks for.
+int around_for(const ErrorLimit& limit);
 
 /// Vertices that the size field asks for, about, as measured on trees.
 double expected_vertices(const Centerline& centerline, double around);
@@ -23,15 +27,15 @@ constexpr double kGrownAround = 6;
 struct GrownMesh {
   double around;             ///< its resolution, in vertices around a vessel
   double expected_vertices;  ///< at the resolution asked for
-  bool polish = false;
-  bool balance = false;      ///< whether vertices are lifted off the boundary, see balance()
+  bool whole = false;        ///< the whole surface, to be finished, not a piece of it
 };
 
 /// Turns a grown surface into a good one: edges are split, collapsed and flipped towards a size field proportional
 /// to the local radius and towards regular valence, faces whose centre is too far from the boundary are split
 /// edge-centrically, vertices move in their tangent plane to where their triangles' shape energy is least and are
-/// reprojected. Topology is kept. The number of vertices is bounded: folded surfaces could be refined for ever. Uses
-/// around, max_center_distance and sweeps of the options. Works from the resolution of the grown mesh to the one asked
+/// reprojected. The whole surface is finished then: vertices are lifted off the boundary for balanced placement, the worst
+/// triangles mended, and places refined where the limit on the error is not proven. Topology is kept. The number of vertices is bounded: folded surfaces could be refined for ever. Uses
+/// around, max_center_distance, placement, max_error and sweeps of the options. Works from the resolution of the grown mesh to the one asked
 /// for, doubling at most: an even mesh is refined or coarsened safely, a grown one is not.
 OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const GrownMesh& grown,
                         const Progress& progress);

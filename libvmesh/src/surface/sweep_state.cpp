@@ -6,6 +6,7 @@ namespace vmesh {
 namespace {
 
 constexpr double kEdgeFactor = 1.08;  // target length in edges of a regular polygon around the vessel
+constexpr double kErrorMargin = 0.87;
 constexpr double kGradation = 0.5;    // largest slope of the size field along the surface
 constexpr int kGradationPasses = 3;
 constexpr double kMaxTurn = 0.5;     // cosine of the angle a face may turn in one move ...
@@ -14,6 +15,9 @@ constexpr double kFreeToTurn = 0.8;  // ... unless it agrees so well with the bo
 }  // namespace
 
 double edge_length_per_radius(double around) { return kEdgeFactor * 2 * std::sin(std::numbers::pi / around); }
+
+// An edge of length h across a vessel of radius r cuts off h^2 / (8 r); balanced, half of that is outside.
+double edge_length_for(double limit, double radius) { return kErrorMargin * std::sqrt(16 * limit * radius); }
 
 SweepState::SweepState(BoundSurface& bound_surface)
     : surface(bound_surface),
@@ -27,8 +31,13 @@ SweepState::~SweepState() {
   mesh.remove_property_map(stirred_);
 }
 
-void SweepState::update_sizes(double edge_per_radius) {
-  for (const Vertex v : mesh.vertices()) size[v] = edge_per_radius * surface.radius(v) * surface.fineness[v];
+void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
+  for (const Vertex v : mesh.vertices()) {
+    const double radius = surface.radius(v);
+    double edge = edge_per_radius * radius;
+    if (limit.is_set()) edge = std::min(edge, edge_length_for(limit.at(radius), radius));
+    size[v] = edge * surface.fineness[v];
+  }
   for (int pass = 0; pass < kGradationPasses; ++pass) {
     for (const Edge e : mesh.edges()) {
       const Vertex a = mesh.vertex(e, 0), b = mesh.vertex(e, 1);

@@ -11,6 +11,9 @@ namespace vmesh {
 /// Target edge length in vessel radii at `around` vertices around a vessel.
 double edge_length_per_radius(double around);
 
+/// Longest edge, mm, with which a surface in balanced placement keeps within `limit` (mm) of a vessel of `radius`.
+double edge_length_for(double limit, double radius);
+
 /// What the steps of a sweep share: the surface, its size field, and which vertices are worth looking at.
 class SweepState {
  public:
@@ -32,9 +35,9 @@ class SweepState {
     return {mesh.source(h), mesh.target(h), mesh.target(mesh.next(h))};
   }
 
-  /// Sets the size field: `edge_per_radius` times the local radius, times the vertex's fineness, its slope along the
-  /// surface bounded.
-  void update_sizes(double edge_per_radius);
+  /// Sets the size field: `edge_per_radius` times the local radius but no more than `limit` allows on a vessel, times
+  /// the vertex's fineness, its slope along the surface bounded.
+  void update_sizes(double edge_per_radius, const ErrorLimit& limit = {});
 
   // Only what changed in the last sweep, and its neighbours, is looked at in the next one.
   bool active(Vertex v) const { return stirred_[v] & kActive; }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +29,16 @@ std::string_view to_string(Placement placement);
 /// Throws InvalidInput unless `text` is "inscribed" or "balanced".
 Placement parse_placement(std::string_view text);
 
+/// How far the surface may be from the boundary of the volume, and the boundary from the surface: the smaller of two
+/// limits.
+struct ErrorLimit {
+  double mm = std::numeric_limits<double>::infinity();
+  double relative = std::numeric_limits<double>::infinity();  ///< in local vessel radii
+
+  double at(double radius) const { return std::min(mm, relative * radius); }
+  bool is_set() const { return std::isfinite(mm) || std::isfinite(relative); }
+};
+
 /// Ends of a centerline (nodes with one segment) at which the surface is left open.
 struct OpenEnds {
   bool all = false;
@@ -43,6 +56,8 @@ struct GenerateOptions {
   /// A grown face is split edge-centrically when its centre is farther than this from the boundary.
   double max_center_distance = 0.35;
   Placement placement = Placement::balanced;
+  /// Where the surface would be farther off, it is refined until it is not. A relative limit may raise `around`.
+  ErrorLimit max_error;
   /// Sweeps of the final optimisation; 0 leaves the surface as it was grown.
   int sweeps = 30;
   /// A centerline whose length and radii ask for more vertices than this is refused.
@@ -103,12 +118,20 @@ struct Opening {
   std::vector<Index> ring;     ///< vertices, counter-clockwise about `normal`
 };
 
+/// What is known of the distance between a surface and the boundary, both ways (see ErrorProof). Where the surface was
+/// left open there is no boundary to compare with.
+struct ErrorSummary {
+  std::size_t unproven_faces = 0;    ///< faces for which the limit is not proven
+  std::vector<Vec3> unproven_places; ///< one a region of them, the largest region first
+};
+
 /// A generated surface. What went wrong is data, never hidden: see `warnings`.
 struct GenerateResult {
   TriMesh mesh;
   std::vector<CenterlineBinding> binding;  ///< one per vertex
   std::vector<double> radius;              ///< local vessel radius at every vertex's binding (mm)
   std::vector<Opening> openings;           ///< ascending in the nodes
+  ErrorSummary error;                      ///< with max_error
   GrowthSummary growth;                    ///< of guided growth; empty after paper growth
   std::vector<StageTime> stages;
   std::vector<std::string> warnings;
