@@ -40,4 +40,33 @@ std::vector<Face> ErrorLimitCheck::unproven_faces(const SweepState& state) {
   return unproven;
 }
 
+std::vector<UnprovenPlace> places_of(const BoundSurface& surface, const std::vector<Face>& faces) {
+  const SurfaceMesh& mesh = surface.mesh;
+  std::vector<char> waiting(mesh.num_faces(), 0);
+  for (const Face f : faces) waiting[f.idx()] = 1;
+  std::vector<UnprovenPlace> places;
+  for (const Face first : faces) {
+    if (!waiting[first.idx()]) continue;
+    UnprovenPlace place{surface.position(mesh.target(mesh.halfedge(first))), 0};
+    std::vector<Face> stack = {first};
+    waiting[first.idx()] = 0;
+    while (!stack.empty()) {
+      const Face f = stack.back();
+      stack.pop_back();
+      ++place.faces;
+      for (const Vertex v : mesh.vertices_around_face(mesh.halfedge(f))) {
+        for (const Face next : mesh.faces_around_target(mesh.halfedge(v))) {
+          if (next == SurfaceMesh::null_face() || !waiting[next.idx()]) continue;
+          waiting[next.idx()] = 0;
+          stack.push_back(next);
+        }
+      }
+    }
+    places.push_back(place);
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const UnprovenPlace& a, const UnprovenPlace& b) { return a.faces > b.faces; });
+  return places;
+}
+
 }  // namespace vmesh

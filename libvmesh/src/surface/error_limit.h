@@ -28,4 +28,7 @@ class ErrorLimitCheck {
   std::vector<Known> known_;  // by face
 };
 
+/// Groups faces that share vertices.
+std::vector<UnprovenPlace> places_of(const BoundSurface& surface, const std::vector<Face>& faces);
+
 }  // namespace vmesh

@@ -11,6 +11,7 @@
 
 #include "surface/bound_surface.h"
 #include "surface/buried_branches.h"
+#include "surface/error_limit.h"
 #include "surface/guided_growth.h"
 #include "surface/optimize.h"
 #include "surface/paper_growth.h"
@@ -39,12 +40,14 @@ void check_options(const GenerateOptions& o) {
   if (!(o.around >= 3 && o.around <= 200)) throw InvalidInput("around must be in [3, 200]");
   if (!(o.max_center_distance > 0)) throw InvalidInput("max_center_distance must be > 0");
   if (o.sweeps < 0) throw InvalidInput("sweeps must be >= 0");
+  if (!(o.max_error.mm > 0 && o.max_error.relative > 0)) throw InvalidInput("max_error must be > 0");
+  if (o.max_error.is_set() && o.sweeps == 0) throw InvalidInput("max_error needs sweeps to refine in");
   if (o.max_vertices < 1) throw InvalidInput("max_vertices must be > 0");
   if (o.threads < 0) throw InvalidInput("threads must be >= 0");
 }
 
 void check_size(const Centerline& centerline, const GenerateOptions& options) {
-  const double expected = expected_vertices(centerline, options.around);
+  const double expected = expected_vertices(centerline, options.around, options.max_error);
   if (expected <= options.max_vertices) return;
   Index longest = 0;
   double most = 0;
@@ -136,14 +139,13 @@ Placement parse_placement(std::string_view text) {
 
 namespace {
 
-void optimize_grown(BoundSurface& surface, const GenerateOptions& options, double grown_around,
+void optimize_grown(BoundSurface& surface, const GenerateOptions& options, const GrownMesh& grown,
                     const Progress& progress, GenerateResult& result) {
   if (options.sweeps == 0) return;
-  const GrownMesh grown{grown_around, expected_vertices(surface.field.centerline(), options.around), true};
   const OptimizeReport report = optimize(surface, options, grown, progress);
   add_warnings(report, result.warnings);
   result.error.unproven_faces = report.unproven.size();
-  for (const Face f : report.unproven) result.error.unproven_places.push_back(surface.position(surface.mesh.target(surface.mesh.halfedge(f))));
+  result.error.unproven_places = places_of(surface, report.unproven);
 }
 
 void generate_paper(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
@@ -153,7 +155,10 @@ void generate_paper(const Centerline& centerline, const GenerateOptions& options
   clock.time("volume", [&] { field.emplace(centerline, options.blend); });
   BoundSurface surface(*field);
   clock.time("grow", [&] { add_warnings(grow_from_single_seeds(surface, options.beta, progress), result.warnings); });
-  clock.time("optimize", [&] { optimize_grown(surface, options, kGrownAround, progress, result); });
+  clock.time("optimize", [&] { 
+    const GrownMesh grown{kGrownAround, expected_vertices(centerline, options.around), GrownMesh::Stage::grown};
+    optimize_grown(surface, options, grown, progress, result);
+  });
   surface.export_to(result);
 }
 
@@ -246,7 +251,11 @@ void generate_guided(const Centerline& centerline, const GenerateOptions& option
     add_warnings(report, result.warnings);
     result.growth = std::move(report.summary);
   });
-  clock.time("optimize", [&] { optimize_grown(surface, options, options.around, progress, result); });
+  clock.time("optimize", [&] { 
+    const GrownMesh grown{double(options.around), expected_vertices(centerline, options.around),
+                          GrownMesh::Stage::assembled};
+    optimize_grown(surface, options, grown, progress, result);
+  });
   const std::vector<Index> number = surface.export_to(result);
   for (const OpenLoop& loop : report.open_loops)
     result.openings.push_back(opening_at(growth->centerline, loop, number));
@@ -268,9 +277,9 @@ TriMesh with_lids(const GenerateResult& result) {
 }
 
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& given, const Progress& progress) {
+  check_options(given);
   GenerateOptions options = given;
-  if (given.max_error.is_set()) options.around = std::max(options.around, around_for(given.max_error));
-  check_options(options);
+  options.around = std::max(options.around, around_for(options.max_error));
   check_size(centerline, options);
   check_open_ends(centerline, options);
   GenerateResult result;

@@ -158,9 +158,11 @@ GenerateResult JunctionGrowth::onto_boundary(double finer) const {
   fill(surface, lattice_);
   GenerateOptions options = options_;
   options.sweeps = kSweeps;
+  options.max_error = {};
   options.around = std::max(3, static_cast<int>(finer * options_.around));
   optimize(surface, options,
-           {std::min<double>(finer * kGrownAround, options.around), expected_vertices(centerline_, options.around)},
+           {std::min<double>(finer * kGrownAround, options.around), expected_vertices(centerline_, options.around),
+            GrownMesh::Stage::piece},
            {});
   GenerateResult piece;
   surface.export_to(piece);

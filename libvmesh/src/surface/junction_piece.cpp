@@ -96,8 +96,9 @@ class PieceMaker {
       return;
     }
     const double radii = growth_.length_in_radii() + static_cast<double>(openings_.size() * (kRingsGivenAway + 1));
-    const OptimizeReport report = optimize(
-        surface_, options_, {double(options_.around), expected_vertices(radii, options_.around / fineness)}, {});
+    const GrownMesh grown{double(options_.around), expected_vertices(radii, options_.around / fineness),
+                          GrownMesh::Stage::piece};
+    const OptimizeReport report = optimize(surface_, options_, grown, {});
     piece.tangles = report.tangles;
     piece.unproven = report.unproven.size();
   }
@@ -155,7 +156,6 @@ JunctionPiece make_junction_piece(const VesselField& field, const std::vector<Br
   for (const Variant& variant : kVariants) {
     JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options).make(variant);
     const auto flaws = [](const JunctionPiece& p) { return std::pair(p.tangles, p.unproven); };
-    if (getenv("DBG")) fprintf(stderr, "variant %d: %zu tangles %zu unproven %zu faces\n", int(&variant - kVariants), piece.tangles, piece.unproven, piece.faces.size());
     if (&variant == kVariants || flaws(piece) < flaws(best)) best = std::move(piece);
     if (best.tangles == 0 && best.unproven == 0) break;
   }

@@ -29,44 +29,61 @@ class Optimizer {
       : state_(surface), remesher_(state_), options_(options), progress_(progress), check_(options.max_error) {}
 
   OptimizeReport run(const GrownMesh& grown) {
-    remesher_.limit_vertices(
-        static_cast<std::size_t>(kMaxExcess * (state_.mesh.number_of_vertices() + grown.expected_vertices)));
-    double around = grown.around;
-    optimize_at(around);
-    while (around != options_.around) {
-      around = std::min<double>(2 * around, options_.around);
-      optimize_at(around);
+    remesher_.limit_vertices(options_.max_error.is_set()
+                                 ? options_.max_vertices
+                                 : static_cast<std::size_t>(kMaxExcess * (state_.mesh.number_of_vertices() +
+                                                                          grown.expected_vertices)));
+    if (grown.stage == GrownMesh::Stage::assembled) {
+      edge_per_radius_ = edge_length_per_radius(options_.around);
+      state_.update_sizes(edge_per_radius_, options_.max_error);
+    } else {
+      even_out(grown.around);
     }
-    whole_ = grown.whole;
-    if (whole_) {
+    if (grown.stage == GrownMesh::Stage::piece) {
+      if (options_.max_error.is_set()) finish_piece();
+    } else {
       finish();
-    } else if (options_.max_error.is_set()) {
-      if (balanced()) balance_with_sweeps(kBalanceRounds);
-      meet_error_limit();
-      tangles_ = find_tangles(state_).size();
     }
     return {tangles_, remesher_.limited(), std::move(unproven_)};
   }
 
  private:
-  void finish() {
-    if (balanced()) balance_with_sweeps(kBalanceRounds);
-    polish();
-    if (balanced()) sink_crossing_walls();
-    if (options_.max_error.is_set()) meet_error_limit();
+  void even_out(double around) {
+    optimize_at(around);
+    while (around != options_.around) {
+      around = std::min<double>(2 * around, options_.around);
+      optimize_at(around);
+    }
   }
 
-  bool balanced() const { return options_.placement == Placement::balanced; }
+  void finish() {
+    settle();
+    polish();
+    if (balanced()) sink_crossing_walls();
+    if (options_.max_error.is_set()) meet_error_limit(true);
+  }
 
-  void balance_with_sweeps(int rounds) {
-    for (int round = 0; round < rounds; ++round) {
-      balance(state_, options_.max_error);
-      balance(state_, options_.max_error);
+  // The rest of the surface is not there yet: only what can fail here for good is looked at.
+  void finish_piece() {
+    settle();
+    meet_error_limit(false);
+    tangles_ = find_tangles(state_).size();
+  }
+
+  // Brings vertices to where the placement asks for, and what was joined to rest.
+  void settle() {
+    for (int round = 0; round < kBalanceRounds; ++round) {
+      if (balanced()) {
+        balance(state_, options_.max_error);
+        balance(state_, options_.max_error);
+      }
       state_.stir_all();
       shape_sweeps(options_.sweeps - kBalanceSweeps, options_.sweeps);
     }
-    balance(state_, options_.max_error);
+    if (balanced()) balance(state_, options_.max_error);
   }
+
+  bool balanced() const { return options_.placement == Placement::balanced; }
 
   void sink_crossing_walls() {
     for (int round = 0; round < kSinkRounds; ++round) {
@@ -77,7 +94,7 @@ class Optimizer {
   }
 
   // Refines where the limit is not proven, until it is or triangles get too small.
-  void meet_error_limit() {
+  void meet_error_limit(bool polished) {
     unproven_ = check_.unproven_faces(state_);
     std::size_t fewest = unproven_.size() + 1;
     for (int round = 0, best = 0; !unproven_.empty() && round < best + kErrorRounds; ++round) {
@@ -85,11 +102,10 @@ class Optimizer {
         fewest = unproven_.size();
         best = round;
       }
-      if (getenv("DBG")) fprintf(stderr, "%s %d: %zu/%zu\n", whole_ ? "round" : "piece", round, unproven_.size(), (size_t)state_.mesh.number_of_faces());
       if (!make_finer(unproven_)) break;
       refine();
       unproven_ = check_.unproven_faces(state_);
-      if (!whole_ || !unproven_.empty()) continue;
+      if (!polished || !unproven_.empty()) continue;
       polish();
       if (balanced()) sink_crossing_walls();
       unproven_ = check_.unproven_faces(state_);
@@ -207,7 +223,6 @@ class Optimizer {
   double edge_per_radius_ = 0;
   std::size_t tangles_ = 0;
   std::vector<Face> unproven_;
-  bool whole_ = false;
 };
 
 }  // namespace
@@ -219,8 +234,16 @@ int around_for(const ErrorLimit& limit) {
   return around;
 }
 
-double expected_vertices(const Centerline& centerline, double around) {
-  return expected_vertices(centerline.length_in_radii(), around);
+double expected_vertices(const Centerline& centerline, double around, const ErrorLimit& limit) {
+  if (!limit.is_set()) return expected_vertices(centerline.length_in_radii(), around);
+  double vertices = 0;
+  for (Index s = 0; s < centerline.segments().size(); ++s) {
+    const double radius = centerline.radius_at(s, 0.5);
+    const double coarse = edge_length_per_radius(around) * radius;
+    const double finer = std::max(1.0, coarse / edge_length_for(limit.at(radius), radius));
+    vertices += finer * finer * expected_vertices(centerline.length(s) / radius, around);
+  }
+  return vertices;
 }
 
 double expected_vertices(double length_in_radii, double around) {

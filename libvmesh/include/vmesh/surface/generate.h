@@ -118,11 +118,17 @@ struct Opening {
   std::vector<Index> ring;     ///< vertices, counter-clockwise about `normal`
 };
 
-/// What is known of the distance between a surface and the boundary, both ways (see ErrorProof). Where the surface was
-/// left open there is no boundary to compare with.
+/// Faces next to each other for which the limit on the error is not proven.
+struct UnprovenPlace {
+  Vec3 position = Vec3::Zero();  ///< of one of them, mm
+  std::size_t faces = 0;
+};
+
+/// What is known of the distance between a surface and the boundary, both ways (see ErrorProof), when there is a limit.
+/// Where the surface was left open there is no boundary to compare with.
 struct ErrorSummary {
-  std::size_t unproven_faces = 0;    ///< faces for which the limit is not proven
-  std::vector<Vec3> unproven_places; ///< one a region of them, the largest region first
+  std::size_t unproven_faces = 0;              ///< 0: the limit holds everywhere
+  std::vector<UnprovenPlace> unproven_places;  ///< largest first
 };
 
 /// A generated surface. What went wrong is data, never hidden: see `warnings`.
