@@ -5,7 +5,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kEdgeFactor = 1.08;  // target length in edges of a regular polygon around the vessel
+constexpr double kEdgeFactor = 1.09;  // target length in edges of a regular polygon around the vessel
 constexpr double kErrorMargin = 0.87;
 constexpr double kGradation = 0.5;    // largest slope of the size field along the surface
 constexpr int kGradationPasses = 3;

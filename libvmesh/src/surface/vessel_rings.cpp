@@ -5,7 +5,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kPitch = 1.08;       // of rings, in heights of the equilateral band
+constexpr double kPitch = 1.12;       // of rings, in heights of the equilateral band
 constexpr double kSmoothing = 0.6;    // radii before and behind over which the direction of the vessel is taken
 constexpr int kSteps = 8;             // of the search for the boundary along a ray
 constexpr double kOnBoundary = 1e-3;  // radii
