@@ -1,8 +1,10 @@
 #include "surface/junction_piece.h"
 
-#include "surface/docking.h"
+#include <optional>
+
 #include "surface/junction_growth.h"
 #include "surface/optimize.h"
+#include "surface/stitch.h"
 #include "surface/untangle.h"
 
 namespace vmesh {
@@ -144,15 +146,18 @@ std::size_t rings_given_away(const Tube& tube) { return std::min(kRingsGivenAway
 JunctionPiece make_junction_piece(const VesselField& field, const std::vector<BranchAxis>& axes,
                                   const GrowthSkeleton& skeleton, const Junction& junction,
                                   const GenerateOptions& options) {
-  const JunctionGrowth growth(field, axes, skeleton, junction, options);
   const std::vector<TubeEnd> openings = openings_of(junction);
-  JunctionPiece best;
-  for (const Variant& variant : kVariants) {
-    JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options).make(variant);
-    if (&variant == kVariants || piece.tangles < best.tangles) best = std::move(piece);
-    if (best.tangles == 0) break;
+  std::optional<JunctionPiece> best;
+  for (const bool leave_out_threads : {true, false}) {
+    const JunctionGrowth growth(field, axes, skeleton, junction, options, leave_out_threads);
+    for (const Variant& variant : kVariants) {
+      JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options).make(variant);
+      if (!best || piece.tangles < best->tangles) best = std::move(piece);
+      if (best->tangles == 0) return *std::move(best);
+    }
+    if (!growth.has_threads()) break;
   }
-  return best;
+  return *std::move(best);
 }
 
 }  // namespace vmesh

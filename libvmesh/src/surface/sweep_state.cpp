@@ -28,7 +28,11 @@ SweepState::~SweepState() {
 }
 
 void SweepState::update_sizes(double edge_per_radius) {
-  for (const Vertex v : mesh.vertices()) size[v] = edge_per_radius * surface.radius(v) * surface.fineness[v];
+  for (const Vertex v : mesh.vertices()) {
+    size[v] = edge_per_radius * surface.radius(v) * surface.fineness[v];
+    for (const auto& [spot, radius] : surface.fine_spots)
+      size[v] = std::min(size[v], edge_per_radius * radius + kGradation * (point(v) - spot).norm());
+  }
   for (int pass = 0; pass < kGradationPasses; ++pass) {
     for (const Edge e : mesh.edges()) {
       const Vertex a = mesh.vertex(e, 0), b = mesh.vertex(e, 1);
