@@ -36,6 +36,13 @@ class BoundSurface {
   /// Factor on the target edge length, 1 as a rule: less where narrow places do not bear the triangles asked for.
   SurfaceMesh::Property_map<Vertex, double> fineness;
 
+  /// A place that a vessel of that radius is to leave from: the target edge length grows with the distance from it.
+  struct FineSpot {
+    Vec3 position;
+    double radius;
+  };
+  std::vector<FineSpot> fine_spots;
+
   /// What may happen to a vertex. Edges between two held ones stay as they are as well. A lid is the middle of the
   /// faces that close an open end as long as the surface is worked on; it is never exported.
   enum class Role : char { free, held, lid };

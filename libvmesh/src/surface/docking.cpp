@@ -1,9 +1,7 @@
 #include "surface/docking.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -12,106 +10,11 @@ namespace vmesh {
 namespace {
 
 constexpr std::size_t kShortestRim = 5;  // vertices
-constexpr std::size_t kStarts = 6;       // places from which a band is tried
-constexpr double kTie = 1 - 1e-9;        // of a value: what is not less than that is equal
+constexpr double kAround = 4;            // radii from where a vessel leaves in which it may make a hole
+constexpr double kCloseToAxis = 0.7;     // radii
 constexpr double kNearestCut = 0.1;      // of an edge: cuts keep that far from its ends
 
-// Shortest way through the grid of pairs (bottom i, top j) from (0, start) once around both loops.
-class BandSearch {
- public:
-  BandSearch(std::span<const Vec3> bottom, std::span<const Vec3> top)
-      : bottom_(bottom), top_(top), cost_((bottom.size() + 1) * (top.size() + 1)), from_bottom_(cost_.size()) {}
-
-  double run(std::size_t first, std::size_t start) {
-    first_ = first;
-    start_ = start;
-    for (std::size_t i = 0; i <= bottom_.size(); ++i) {
-      for (std::size_t j = 0; j <= top_.size(); ++j) {
-        const double edge = i + j == 0 ? 0 : in_step(i, j) ? (low(i) - high(j)).squaredNorm() : kInfinite;
-        const double via_bottom = i > 0 ? cost(i - 1, j) : kInfinite, via_top = j > 0 ? cost(i, j - 1) : kInfinite;
-        from_bottom_[at(i, j)] = via_bottom < kTie * via_top;
-        cost_[at(i, j)] = i + j == 0 ? 0 : std::min(via_bottom, via_top) + edge;
-      }
-    }
-    return cost_.back();
-  }
-
-  std::vector<Triangle> faces() const {
-    std::vector<Triangle> result;
-    for (std::size_t i = bottom_.size(), j = top_.size(); i + j > 0;) {
-      if (from_bottom_[at(i, j)]) {
-        result.push_back({index_low(i - 1), index_low(i), index_high(j)});
-        --i;
-      } else {
-        result.push_back({index_low(i), index_high(j), index_high(j - 1)});
-        --j;
-      }
-    }
-    return result;
-  }
-
- private:
-  static constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-  // Neither loop may be walked around while the other stands still: an edge would come back.
-  bool in_step(std::size_t i, std::size_t j) const {
-    const auto n = static_cast<double>(bottom_.size()), m = static_cast<double>(top_.size());
-    return std::abs(static_cast<double>(i) / n - static_cast<double>(j) / m) < 0.5;
-  }
-
-  std::size_t at(std::size_t i, std::size_t j) const { return i * (top_.size() + 1) + j; }
-  double cost(std::size_t i, std::size_t j) const { return cost_[at(i, j)]; }
-  Index index_low(std::size_t i) const { return static_cast<Index>((first_ + i) % bottom_.size()); }
-  Index index_high(std::size_t j) const { return static_cast<Index>(bottom_.size() + (start_ + j) % top_.size()); }
-  const Vec3& low(std::size_t i) const { return bottom_[index_low(i)]; }
-  const Vec3& high(std::size_t j) const { return top_[index_high(j) - bottom_.size()]; }
-
-  std::span<const Vec3> bottom_, top_;
-  std::size_t first_ = 0, start_ = 0;
-  std::vector<double> cost_;
-  std::vector<char> from_bottom_;
-};
-
-double distance2_to(std::span<const Vec3> loop, const Vec3& p) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Vec3& q : loop) least = std::min(least, (q - p).squaredNorm());
-  return least;
-}
-
-// The numbers of the kStarts nearest points, nearest first; ties, rounding apart, by number.
-std::vector<std::size_t> nearest_of(std::span<const Vec3> points, const Vec3& p) {
-  double farthest = 0;
-  for (const Vec3& q : points) farthest = std::max(farthest, (q - p).squaredNorm());
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    order.emplace_back(std::round((points[i] - p).squaredNorm() / ((1 - kTie) * farthest)), i);
-  }
-  std::sort(order.begin(), order.end());
-  std::vector<std::size_t> nearest;
-  for (std::size_t i = 0; i < std::min(order.size(), kStarts); ++i) nearest.push_back(order[i].second);
-  return nearest;
-}
-
 }  // namespace
-
-std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3> top) {
-  std::size_t first = 0;
-  for (std::size_t i = 1; i < bottom.size(); ++i) {
-    if (distance2_to(top, bottom[i]) < kTie * distance2_to(top, bottom[first])) first = i;
-  }
-  BandSearch search(bottom, top);
-  std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::size_t start : nearest_of(top, bottom[first])) {
-    const double cost = search.run(first, start);
-    if (cost < kTie * least) {
-      least = cost;
-      best = start;
-    }
-  }
-  search.run(first, best);
-  return search.faces();
-}
 
 DiscCutter::DiscCutter(std::vector<Vec3> vertices, std::vector<Triangle> faces)
     : source_(vertices.size()), faces_of_(vertices.size()), removed_vertex_(vertices.size(), 0) {
@@ -124,11 +27,65 @@ std::vector<Index> DiscCutter::cut(const Vec3& center, const Vec3& normal, const
                                    double shortest) {
   const Index apex = farthest(normal, own);
   if (apex == kNone) return open_window(center);
-  const Plane plane{normal, center.dot(normal)};
-  const auto region = tip_region(apex, plane, own);
-  std::vector<Index> rim = is_disc(region) ? cut_off(region, plane) : cut_off({apex}, plane);
+  const double height = center.dot(normal);
+  return cut_off(
+      apex, [&](const Vec3& p) { return p.dot(normal) - height; }, own, shortest);
+}
+
+std::vector<Index> DiscCutter::cut_around(const Vec3& point, const Vec3& direction, double radius, double shortest) {
+  std::vector<Index> near;
+  for (Index v = 0; v < vertices_.size(); ++v) {
+    if (source_[v] == v && (vertices_[v] - point).norm() < kAround * radius) near.push_back(v);
+  }
+  const Index apex = pierce(point, direction, radius);
+  if (apex == kNone) return open_window(point);
+  const auto within = [&](const Vec3& p) { return radius - (p - point).cross(direction).norm(); };
+  return cut_off(apex, within, near, shortest);
+}
+
+std::vector<Index> DiscCutter::cut_off(Index apex, const Height& height, const std::vector<Index>& own,
+                                       double shortest) {
+  const auto region = region_above(apex, height, own);
+  std::vector<Index> rim = is_disc(region) ? cut_off(region, height) : cut_off(std::vector<Index>{apex}, height);
   collapse_short_edges(rim, shortest);
   return rim;
+}
+
+// The vertex at which the line leaves the piece, nearest to `point`: one close to the line, or a new one in a face.
+Index DiscCutter::pierce(const Vec3& point, const Vec3& direction, double radius) {
+  Index best = kNone;
+  double along = 0;
+  for (Index f = 0; f < faces_.size(); ++f) {
+    if (removed_face_[f]) continue;
+    const auto place = leaves_at(f, point, direction);
+    if (!place || (best != kNone && std::abs(*place) >= std::abs(along))) continue;
+    best = f;
+    along = *place;
+  }
+  if (best == kNone) return kNone;
+  for (const Index v : faces_[best]) {
+    if (source_[v] == v && (vertices_[v] - point).cross(direction).norm() < kCloseToAxis * radius) return v;
+  }
+  return divide(best, point + along * direction);
+}
+
+// How far from `point` the line leaves the piece through the face, if it does.
+std::optional<double> DiscCutter::leaves_at(Index f, const Vec3& point, const Vec3& direction) const {
+  const auto& [a, b, c] = faces_[f];
+  const Vec3 u = vertices_[a] - point, v = vertices_[b] - point, w = vertices_[c] - point;
+  const double over_a = v.cross(w).dot(direction), over_b = w.cross(u).dot(direction),
+               over_c = u.cross(v).dot(direction);
+  if (over_a < 0 || over_b < 0 || over_c < 0 || !(over_a + over_b + over_c > 0)) return std::nullopt;
+  return u.cross(v).dot(w) / (over_a + over_b + over_c);
+}
+
+// The new vertex in a face.
+Index DiscCutter::divide(Index f, const Vec3& position) {
+  const Triangle face = faces_[f];
+  const Index middle = add_vertex(position, source_[face[0]]);
+  removed_face_[f] = 1;
+  for (int i = 0; i < 3; ++i) add_face({face[i], face[(i + 1) % 3], middle});
+  return middle;
 }
 
 Index DiscCutter::farthest(const Vec3& normal, const std::vector<Index>& own) const {
@@ -140,9 +97,9 @@ Index DiscCutter::farthest(const Vec3& normal, const std::vector<Index>& own) co
   return apex;
 }
 
-std::vector<Index> DiscCutter::tip_region(Index apex, const Plane& plane, const std::vector<Index>& own) const {
+std::vector<Index> DiscCutter::region_above(Index apex, const Height& height, const std::vector<Index>& own) const {
   std::vector<char> open(vertices_.size(), 0);  // may join and has not yet
-  for (const Index v : own) open[v] = !removed_vertex_[v] && plane.above(vertices_[v]) > 0;
+  for (const Index v : own) open[v] = !removed_vertex_[v] && height(vertices_[v]) > 0;
   std::vector<Index> region = {apex};
   open[apex] = 0;
   for (std::size_t i = 0; i < region.size(); ++i) {
@@ -183,13 +140,13 @@ bool DiscCutter::is_disc(const std::vector<Index>& region) const {
   return region.size() + faces == half_edges / 2 + 1;
 }
 
-std::vector<Index> DiscCutter::cut_off(const std::vector<Index>& region, const Plane& plane) {
+std::vector<Index> DiscCutter::cut_off(const std::vector<Index>& region, const Height& height) {
   const std::set<Index> inside(region.begin(), region.end());
   std::map<std::pair<Index, Index>, Index> cuts;  // by the edge's end inside and its end outside
   const auto cut = [&](Index in, Index out) {
     const auto [it, is_new] = cuts.try_emplace({in, out}, kNone);
     if (is_new) {
-      const double high = plane.above(vertices_[in]), low = plane.above(vertices_[out]);
+      const double high = height(vertices_[in]), low = height(vertices_[out]);
       const double t = low < 0 ? std::clamp(high / (high - low), kNearestCut, 1 - kNearestCut) : 0.5;
       it->second = add_vertex((1 - t) * vertices_[in] + t * vertices_[out], source_[t < 0.5 ? in : out]);
     }

@@ -1,17 +1,13 @@
 #pragma once
 
-#include <span>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "vmesh/core/types.h"
 #include "vmesh/mesh/tri_mesh.h"
 
 namespace vmesh {
-
-/// Faces that join a loop of vertices to the next one along `direction of growth`: both counter-clockwise about it. Of
-/// all bands that start at the bottom's vertex closest to the top, the one with the least sum of squared edges.
-/// Indices are into `bottom` and, from bottom.size() on, into `top`. Each loop needs at least three vertices.
-std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3> top);
 
 /// A closed piece of surface from which discs are cut.
 class DiscCutter {
@@ -25,6 +21,10 @@ class DiscCutter {
   /// that keeps the surface's topology.
   std::vector<Index> cut(const Vec3& center, const Vec3& normal, const std::vector<Index>& own, double shortest);
 
+  /// Opens a hole where a vessel of that radius leaves the piece: `point` lies on its axis, about where that crosses
+  /// the surface in `direction`. What lies within the radius around the axis goes. Otherwise like cut().
+  std::vector<Index> cut_around(const Vec3& point, const Vec3& direction, double radius, double shortest);
+
   void move(Index v, const Vec3& position) { vertices_[v] = position; }
 
   const std::vector<Vec3>& vertices() const { return vertices_; }
@@ -34,16 +34,16 @@ class DiscCutter {
   std::vector<Triangle> rest() const;
 
  private:
-  struct Plane {
-    Vec3 normal;
-    double height;
-    double above(const Vec3& p) const { return p.dot(normal) - height; }
-  };
+  using Height = std::function<double(const Vec3&)>;  // over the surface at which is cut
 
   Index farthest(const Vec3& normal, const std::vector<Index>& own) const;
-  std::vector<Index> tip_region(Index apex, const Plane& plane, const std::vector<Index>& own) const;
+  std::vector<Index> region_above(Index apex, const Height& height, const std::vector<Index>& own) const;
   bool is_disc(const std::vector<Index>& region) const;
-  std::vector<Index> cut_off(const std::vector<Index>& region, const Plane& plane);
+  std::vector<Index> cut_off(Index apex, const Height& height, const std::vector<Index>& own, double shortest);
+  std::vector<Index> cut_off(const std::vector<Index>& region, const Height& height);
+  std::optional<double> leaves_at(Index f, const Vec3& point, const Vec3& direction) const;
+  Index divide(Index f, const Vec3& position);
+  Index pierce(const Vec3& point, const Vec3& direction, double radius);
   std::vector<Index> open_window(const Vec3& near);
   void collapse_short_edges(std::vector<Index>& rim, double shortest);
   bool collapsible(Index v, Index into) const;

@@ -8,9 +8,9 @@
 
 #include "vmesh/core/error.h"
 
-#include "surface/docking.h"
 #include "surface/junction_growth.h"
 #include "surface/junction_piece.h"
+#include "surface/stitch.h"
 
 namespace vmesh {
 namespace {

@@ -1,6 +1,5 @@
 #include "surface/junction_growth.h"
 
-#include <map>
 #include <numbers>
 
 #include "surface/node_frame.h"
@@ -13,69 +12,12 @@ namespace {
 constexpr double kSpacing = 1;            // of the lattice, in the smallest radii ...
 constexpr double kMostPoints = 300'000;   // in the lattice, about
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
-constexpr double kShortestPiece = 0.3;    // radii between nodes of a junction's centerline: finer ones do not matter
+constexpr double kHoleRadius = 1.6;       // of the hole for a thread, in radii
+constexpr int kSpotSweeps = 20;           // towards a size field with fine spots: about a halving each
+constexpr double kVerticesPerSpot = 300;  // for 1:1000, about
 constexpr double kShortestRimEdge = 0.4;  // intended edges of the surface
 constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move onto the boundary
 constexpr double kOwnReach = 1.5;         // radii along the branch from which a tip's vertices come
-
-class JunctionCenterlineMaker {
- public:
-  JunctionCenterlineMaker(const Centerline& centerline, const std::vector<BranchAxis>& axes)
-      : centerline_(centerline), axes_(axes) {}
-
-  JunctionCenterline make(const Junction& junction) {
-    for (const Index n : junction.nodes) node_of(n);
-    for (Index g = 0; g < junction.gaps.size(); ++g) add(junction.gaps[g], g);
-    return std::move(result_);
-  }
-
- private:
-  Index add_node(const Vec3& position, double radius) {
-    result_.nodes.push_back({position, radius});
-    return static_cast<Index>(result_.nodes.size() - 1);
-  }
-
-  Index node_of(Index n) {
-    const auto [it, is_new] = nodes_.emplace(n, kNone);
-    if (is_new) it->second = add_node(centerline_.node(n).position, centerline_.node(n).radius);
-    return it->second;
-  }
-
-  Index end_node(const Gap& gap, int end) {
-    const BranchAxis& axis = axes_[gap.branch];
-    if (gap.openings[end].tube == kNone) return node_of(end ? axis.branch().nodes.back() : axis.branch().nodes.front());
-    const auto point = axis.at(end ? gap.end : gap.begin);
-    return add_node(point.position, point.radius);
-  }
-
-  void add(const Gap& gap, Index number) {
-    const BranchAxis& axis = axes_[gap.branch];
-    std::vector<double> places = {gap.begin};
-    const auto pass = [&](double place) {
-      const double shortest = kShortestPiece * axis.at(place).radius;
-      if (place > gap.begin + shortest && place < gap.end - shortest && place > places.back() + shortest)
-        places.push_back(place);
-    };
-    for (double lap = 0; lap <= (axis.periodic() ? axis.length() : 0); lap += axis.length()) {
-      for (std::size_t i = 0; i < axis.branch().nodes.size(); ++i) pass(lap + axis.node_place(i));
-    }
-    places.push_back(gap.end);
-    Index last = end_node(gap, 0);
-    const Index end = end_node(gap, 1);
-    for (std::size_t i = 1; i < places.size(); ++i) {
-      const auto point = axis.at(places[i]);
-      const Index next = i + 1 == places.size() ? end : add_node(point.position, point.radius);
-      result_.segments.push_back({last, next});
-      result_.origins.push_back({number, places[i - 1], places[i]});
-      last = next;
-    }
-  }
-
-  const Centerline& centerline_;
-  const std::vector<BranchAxis>& axes_;
-  JunctionCenterline result_;
-  std::map<Index, Index> nodes_;
-};
 
 Index widest_node(const Centerline& centerline) {
   Index widest = 0;
@@ -107,6 +49,15 @@ void fill(BoundSurface& surface, const LatticeSurface& lattice) {
   for (const auto& [a, b, c] : lattice.faces) surface.mesh.add_face(Vertex(a), Vertex(b), Vertex(c));
 }
 
+std::vector<Thread> threads_of(const VesselField& field, const std::vector<BranchAxis>& axes,
+                               const Junction& junction) {
+  const JunctionCenterline local = make_junction_centerline(field.centerline(), axes, junction);
+  const Centerline centerline(local.nodes, local.segments);
+  const std::vector<Thread> narrow = narrow_openings(axes, junction, lattice_spacing(centerline));
+  if (narrow.empty()) return narrow;
+  return find_threads(narrow, VesselField(centerline, field.blend()), local, axes, junction);
+}
+
 LatticeSurface grow_lattice(const VesselField& field) {
   const Centerline& centerline = field.centerline();
   const Index start = widest_node(centerline);
@@ -118,32 +69,32 @@ LatticeSurface grow_lattice(const VesselField& field) {
 }  // namespace
 
 JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes,
-                               const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options)
+                               const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options,
+                               bool leave_out_threads)
     : field_(field),
       axes_(axes),
       skeleton_(skeleton),
       junction_(junction),
       options_(options),
-      local_(JunctionCenterlineMaker(field.centerline(), axes).make(junction)),
+      threads_(leave_out_threads ? threads_of(field, axes, junction) : std::vector<Thread>{}),
+      local_(make_junction_centerline(field.centerline(), axes, without_threads(junction, threads_))),
       centerline_(local_.nodes, local_.segments),
       local_field_(centerline_, options.blend),
-      lattice_(grow_lattice(local_field_)) {}
+      lattice_(grow_lattice(local_field_)) {
+  for (Thread& thread : threads_) {
+    const Gap& gap = junction.gaps[thread.gap];
+    thread.exit = find_exit(thread, axes[gap.branch], gap, local_field_, local_.end_segment(thread.gap, thread.at_end));
+  }
+}
 
 JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims) const {
   const GenerateResult piece = onto_boundary(finer);
-  const double edge = edge_length_per_radius(options_.around);
   JunctionSurface result;
   DiscCutter cutter(piece.mesh.vertices, piece.mesh.faces);
   for (Index g = 0; g < junction_.gaps.size(); ++g) {
     for (const bool at_end : {false, true}) {
-      const TubeEnd& opening = junction_.gaps[g].openings[at_end];
-      if (opening.tube == kNone) continue;
-      const Tube& tube = skeleton_.tubes[opening.tube];
-      const CrossSection& section = (opening.at_end ? tube.rings.back() : tube.rings.front()).beside[opening.at_end];
-      result.rims.push_back(cutter.cut(section.center, opening.at_end ? Vec3(-section.normal) : section.normal,
-                                       vertices_near_end(piece, g, at_end, kOwnReach * section.radius),
-                                       smooth_rims ? kShortestRimEdge * edge * section.radius : 0));
-      if (smooth_rims) move_onto_boundary(cutter, result.rims.back(), piece, kRimStep * section.radius);
+      if (junction_.gaps[g].openings[at_end].tube != kNone)
+        result.rims.push_back(cut_opening(cutter, piece, g, at_end, smooth_rims));
     }
   }
   result.patch.faces = cutter.rest();
@@ -153,6 +104,12 @@ JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims) const {
   return result;
 }
 
+const Thread* JunctionGrowth::thread_at(Index gap, bool at_end) const {
+  const auto it = std::find_if(threads_.begin(), threads_.end(),
+                               [&](const Thread& thread) { return thread.gap == gap && thread.at_end == at_end; });
+  return it == threads_.end() ? nullptr : &*it;
+}
+
 GenerateResult JunctionGrowth::onto_boundary(double finer) const {
   BoundSurface surface(local_field_);
   fill(surface, lattice_);
@@ -160,13 +117,40 @@ GenerateResult JunctionGrowth::onto_boundary(double finer) const {
   options.sweeps = kSweeps;
   options.max_error = {};
   options.around = std::max(3, static_cast<int>(finer * options_.around));
+  const double expected = expected_vertices(centerline_, options.around);
   optimize(surface, options,
-           {std::min<double>(finer * kGrownAround, options.around), expected_vertices(centerline_, options.around),
-            GrownMesh::Stage::piece},
-           {});
+           {std::min<double>(finer * kGrownAround, options.around), expected, GrownMesh::Stage::piece}, {});
+  if (!threads_.empty()) {
+    for (const Thread& thread : threads_) surface.fine_spots.push_back({thread.exit.center, thread.exit.radius});
+    options.sweeps = kSpotSweeps;
+    const double around_spots = kVerticesPerSpot * static_cast<double>(threads_.size());
+    optimize(surface, options,
+             {static_cast<double>(options.around), expected + around_spots, GrownMesh::Stage::piece}, {});
+  }
   GenerateResult piece;
   surface.export_to(piece);
   return piece;
+}
+
+// The cross-section at which the junction ends, half a step before its tube.
+CrossSection JunctionGrowth::way_out(const TubeEnd& opening) const {
+  const Tube& tube = skeleton_.tubes[opening.tube];
+  CrossSection section = (opening.at_end ? tube.rings.back() : tube.rings.front()).beside[opening.at_end];
+  if (opening.at_end) section.normal = -section.normal;
+  return section;
+}
+
+// Returns the rim; moved onto the boundary and rid of short edges, or as it was cut.
+std::vector<Index> JunctionGrowth::cut_opening(DiscCutter& cutter, const GenerateResult& piece, Index gap, bool at_end,
+                                               bool smooth) const {
+  const Thread* thread = thread_at(gap, at_end);
+  const auto [place, center, normal, radius] = thread ? thread->exit : way_out(junction_.gaps[gap].openings[at_end]);
+  const double shortest = smooth ? kShortestRimEdge * edge_length_per_radius(options_.around) * radius : 0;
+  std::vector<Index> rim =
+      thread ? cutter.cut_around(center, normal, kHoleRadius * radius, shortest)
+             : cutter.cut(center, normal, vertices_near_end(piece, gap, at_end, kOwnReach * radius), shortest);
+  if (smooth) move_onto_boundary(cutter, rim, piece, kRimStep * radius);
+  return rim;
 }
 
 void JunctionGrowth::move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& piece,

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "surface/docking.h"
-#include "surface/growth_skeleton.h"
+#include "surface/junction_threads.h"
 #include "surface/lattice_growth.h"
 
 namespace vmesh {
@@ -26,24 +26,16 @@ struct JunctionSurface {
   std::vector<std::vector<Index>> rims;  ///< counter-clockwise about the direction away from the junction
 };
 
-/// The part of a centerline that belongs to a junction, cut at its openings. Segments know the place they come from.
-struct JunctionCenterline {
-  struct Origin {
-    Index gap;
-    double begin, end;  // places
-  };
-
-  std::vector<CenterlineNode> nodes;
-  std::vector<CenterlineSegment> segments;
-  std::vector<Origin> origins;  // of the segments
-};
-
 /// Grows the surface of a junction from its widest place, in a lattice as fine as its thinnest vessel
-/// (grow_in_lattice), brings it onto the boundary and to a size field, and cuts its openings.
+/// (grow_in_lattice), brings it onto the boundary and to a size field, and cuts its openings. Threads, vessels too thin
+/// for a lattice that holds the whole junction, can be left out of it: the finished wall is refined towards their width
+/// where they leave it, and cut there.
 class JunctionGrowth {
  public:
   JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes, const GrowthSkeleton& skeleton,
-                 const Junction& junction, const GenerateOptions& options);
+                 const Junction& junction, const GenerateOptions& options, bool leave_out_threads);
+
+  bool has_threads() const { return !threads_.empty(); }
 
   /// The surface, made at `finer` times the resolution asked for; with rims moved onto the boundary and rid of short
   /// edges, or as they were cut.
@@ -56,7 +48,11 @@ class JunctionGrowth {
   double length_in_radii() const { return centerline_.length_in_radii(); }
 
  private:
+  const Thread* thread_at(Index gap, bool at_end) const;
   GenerateResult onto_boundary(double finer) const;
+  CrossSection way_out(const TubeEnd& opening) const;
+  std::vector<Index> cut_opening(DiscCutter& cutter, const GenerateResult& piece, Index gap, bool at_end,
+                                 bool smooth) const;
   Index original_cone(Index cone) const;
   std::vector<Index> vertices_near_end(const GenerateResult& piece, Index gap, bool at_end, double reach) const;
   void move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& piece,
@@ -67,6 +63,7 @@ class JunctionGrowth {
   const GrowthSkeleton& skeleton_;
   const Junction& junction_;
   const GenerateOptions& options_;
+  std::vector<Thread> threads_;  // left out of what follows
   JunctionCenterline local_;
   Centerline centerline_;
   VesselField local_field_;

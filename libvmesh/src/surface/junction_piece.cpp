@@ -1,8 +1,10 @@
 #include "surface/junction_piece.h"
 
-#include "surface/docking.h"
+#include <optional>
+
 #include "surface/junction_growth.h"
 #include "surface/optimize.h"
+#include "surface/stitch.h"
 #include "surface/untangle.h"
 
 namespace vmesh {
@@ -150,16 +152,19 @@ std::size_t rings_given_away(const Tube& tube) { return std::min(kRingsGivenAway
 JunctionPiece make_junction_piece(const VesselField& field, const std::vector<BranchAxis>& axes,
                                   const GrowthSkeleton& skeleton, const Junction& junction,
                                   const GenerateOptions& options) {
-  const JunctionGrowth growth(field, axes, skeleton, junction, options);
   const std::vector<TubeEnd> openings = openings_of(junction);
-  JunctionPiece best;
-  for (const Variant& variant : kVariants) {
-    JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options).make(variant);
-    const auto flaws = [](const JunctionPiece& p) { return std::pair(p.tangles, p.unproven); };
-    if (&variant == kVariants || flaws(piece) < flaws(best)) best = std::move(piece);
-    if (best.tangles == 0 && best.unproven == 0) break;
+  const auto flaws = [](const JunctionPiece& p) { return std::pair(p.tangles, p.unproven); };
+  std::optional<JunctionPiece> best;
+  for (const bool leave_out_threads : {true, false}) {
+    const JunctionGrowth growth(field, axes, skeleton, junction, options, leave_out_threads);
+    for (const Variant& variant : kVariants) {
+      JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options).make(variant);
+      if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);
+      if (best->tangles == 0 && best->unproven == 0) return *std::move(best);
+    }
+    if (!growth.has_threads()) break;
   }
-  return best;
+  return *std::move(best);
 }
 
 }  // namespace vmesh

@@ -37,6 +37,8 @@ void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
     double edge = edge_per_radius * radius;
     if (limit.is_set()) edge = std::min(edge, edge_length_for(limit.at(radius), radius));
     size[v] = edge * surface.fineness[v];
+    for (const auto& [spot, spot_radius] : surface.fine_spots)
+      size[v] = std::min(size[v], edge_per_radius * spot_radius + kGradation * (point(v) - spot).norm());
   }
   for (int pass = 0; pass < kGradationPasses; ++pass) {
     for (const Edge e : mesh.edges()) {
