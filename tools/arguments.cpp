@@ -1,12 +1,12 @@
 #include "arguments.h"
 
 #include <charconv>
-#include <cmath>
 #include <iostream>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
 
+#include "vmesh/core/error.h"
 #include "vmesh/core/version.h"
 
 #include "exit_code.h"
@@ -18,6 +18,8 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate tree.swc -o tree.ply
   vmesh generate tree.vtp -o tree.vtp --around 8 --blend 0.8 --json summary.json
   vmesh generate network.csv -o network.stl --unit um --check
+  vmesh generate tree.swc -o fine.ply --preset high
+  vmesh generate tree.swc -o exact.ply --max-error 5%
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
@@ -84,18 +86,15 @@ OpenEnds parse_open_ends(const std::string& text) {
   return ends;
 }
 
-ErrorLimit parse_error_limit(const std::string& text) {
-  ErrorLimit limit;
-  std::istringstream list(text);
-  for (std::string item; std::getline(list, item, ',');) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), value);
-    const std::string unit = item.substr(static_cast<std::size_t>(end - item.data()));
-    if (error != std::errc() || !(value > 0) || !std::isfinite(value) || (unit != "mm" && unit != "%"))
-      throw CLI::ValidationError("--max-error", "\"" + item + "\" is no limit; give one such as 0.3mm or 10%");
-    (unit == "mm" ? limit.mm : limit.relative) = unit == "mm" ? value : value / 100;
-  }
-  return limit;
+// What the presets stand for can be overridden by its own option, wherever that is on the line.
+void add_preset(CLI::App& verb, GenerateOptions& options) {
+  CLI::Option* preset = verb.add_option("--preset", "low: 6 vertices around; high: 12, about four times as many in all")
+                            ->check(CLI::IsMember({"low", "high"}))
+                            ->default_str("low");
+  verb.parse_complete_callback([&verb, &options, preset] {
+    if (preset->count() == 0 || verb.get_option("--around")->count() > 0) return;
+    options.around = vertices_around(preset->as<std::string>() == "high" ? Preset::high : Preset::low);
+  });
 }
 
 void add_generate(CLI::App& app, GenerateArguments& arguments) {
@@ -106,13 +105,21 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
                            [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
                              verb.add_option(flag, member, help)->check(in_range(low, high))->capture_default_str();
                            });
+  add_preset(verb, arguments.options);
   verb.add_option_function<std::string>(
           "--growth", [&arguments](const std::string& text) { arguments.options.growth = parse_growth_method(text); },
           "guided: topology as the centerline's; paper: a single seed, as published")
       ->check(CLI::IsMember({"guided", "paper"}))
       ->default_str("guided");
   verb.add_option_function<std::string>(
-          "--max-error", [&arguments](const std::string& text) { arguments.options.max_error = parse_error_limit(text); },
+          "--max-error",
+          [&arguments](const std::string& text) {
+            try {
+              arguments.options.max_error = parse_error_limit(text);
+            } catch (const InvalidInput& error) {
+              throw CLI::ValidationError("--max-error", error.what());
+            }
+          },
           "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
           "0.3mm, 10% (of the local radius), or both, separated by a comma")
       ->type_name("Xmm|X%");

@@ -60,6 +60,9 @@ void log_result(const GenerateReport& report, Console& console) {
               number(report.measurement.skewness.mean) + " mean, " + number(report.measurement.skewness.max) + " max");
   console.log("distance to the volume " + number(report.deviation.mean_relative) + " mean, " +
               number(report.deviation.max_relative) + " max, in local radii");
+  const ErrorLimit& limit = report.arguments->options.max_error;
+  if (limit.is_set() && report.result->error.unproven_faces == 0)
+    console.log("proven: nowhere farther than " + to_string(limit) + " from the boundary, nor the boundary from it");
   double total = 0;
   for (const StageTime& stage : report.stages) total += stage.seconds;
   console.log("wrote " + report.arguments->output.string() + " after " + number(total, 2) + " s");
@@ -73,6 +76,20 @@ std::string places(const std::vector<Contact>& contacts) {
 
 void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
   list.insert(list.end(), more.begin(), more.end());
+}
+
+void warn_of_error(GenerateReport& report, Console& console) {
+  const ErrorSummary& error = report.result->error;
+  if (error.unproven_faces == 0) return;
+  constexpr std::size_t kNamed = 5;
+  std::string text = "the surface may be farther than " + to_string(report.arguments->options.max_error) +
+                     " from the boundary, or the boundary from it, at " + std::to_string(error.unproven_faces) +
+                     " faces in " + std::to_string(error.unproven_places.size()) + " places, the largest at ";
+  for (std::size_t i = 0; i < std::min(kNamed, error.unproven_places.size()); ++i)
+    text += (i > 0 ? ", " : "") + text_of(error.unproven_places[i].position);
+  text += ": triangles became as small as they may; allow more there, or look at the radii";
+  console.warn(text);
+  report.warnings.push_back(text);
 }
 
 LoadedCenterline load(const InputArguments& input, Console& console) {
@@ -177,6 +194,7 @@ void measure(GenerateReport& report, const Centerline& grown, Console& console) 
   stop_if_interrupted();
   const VesselField field(grown, report.arguments->options.blend);
   report.deviation = measure_deviation(result.mesh, result.binding, field);
+  report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown));
   stop_if_interrupted();
   report.grown_nodes = grown.nodes().size();
   report.nodes_inside = count_nodes_inside(grown, result);
@@ -219,6 +237,7 @@ int run(const GenerateArguments& arguments, Console& console) {
   report.result = &result;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
   append(report.warnings, result.warnings);
+  warn_of_error(report, console);
 
   watch.lap();
   measure(report, centerline, console);
@@ -232,7 +251,8 @@ int run(const GenerateArguments& arguments, Console& console) {
   report.stages.push_back({"write", watch.lap()});
   log_result(report, console);
   if (!arguments.common.json.empty()) write_json(arguments.common.json, to_json(report));
-  return arguments.check && !report.problems.empty() ? kCheckFailed : kOk;
+  if (arguments.check && !report.problems.empty()) return kCheckFailed;
+  return result.error.unproven_faces > 0 ? kNotConverged : kOk;
 }
 
 }  // namespace vmesh::tool

@@ -1,6 +1,7 @@
 #include "summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -22,12 +23,20 @@ std::string key_of(const char* flag) {
   return key;
 }
 
+/// Null where there is no limit.
+Json to_json(const ErrorLimit& limit) {
+  return {{"mm", std::isfinite(limit.mm) ? Json(limit.mm) : Json()},
+          {"relative", std::isfinite(limit.relative) ? Json(limit.relative) : Json()}};
+}
+
 Json options_json(const GenerateArguments& arguments) {
   Json json = Json::object();
   for_each_generate_option(arguments.options, [&json](const char* flag, const auto& value, auto, auto, const char*) {
     json[key_of(flag)] = value;
   });
   json["growth"] = to_string(arguments.options.growth);
+  json["placement"] = to_string(arguments.options.placement);
+  json["max_error"] = to_json(arguments.options.max_error);
   json["overlap"] = to_string(arguments.overlap);
   json["gap"] = arguments.gap;
   json["unit"] = arguments.input.unit ? Json(to_string(*arguments.input.unit)) : Json();
@@ -169,6 +178,18 @@ Json to_json(const SurfaceMeasurement& measurement) {
           {"self_intersections", measurement.self_intersections}};
 }
 
+// What is proven of the distance between the surface and the boundary, both ways.
+Json error_bound_json(const GenerateArguments& arguments, const GenerateResult& result) {
+  Json json = to_json(arguments.options.max_error);
+  json["proven"] = result.error.unproven_faces == 0;
+  json["unproven_faces"] = result.error.unproven_faces;
+  Json places = Json::array();
+  for (const UnprovenPlace& place : result.error.unproven_places)
+    places.push_back({{"at", to_json(place.position)}, {"faces", place.faces}});
+  json["unproven_places"] = std::move(places);
+  return json;
+}
+
 Json to_json(const GenerateReport& report) {
   const GenerateArguments& arguments = *report.arguments;
   const Centerline& centerline = report.cleaned->centerline;
@@ -195,6 +216,8 @@ Json to_json(const GenerateReport& report) {
   json["nodes_inside_of"] = {{"centerline", measured_centerline(report)}, {"nodes", report.grown_nodes}};
   json["distance"] = to_json(report.deviation);
   json["distance"]["to"] = measured_centerline(report);
+  json["rounding"] = to_json(report.rounding);
+  if (arguments.options.max_error.is_set()) json["error_bound"] = error_bound_json(arguments, *report.result);
   json["contacts"] = to_json(report.contacts);
   if (report.separation) json["separation"] = to_json(*report.separation);
   json["seconds"] = stages_json(report.stages);
@@ -244,6 +267,7 @@ std::string describe(const GenerateArguments& arguments) {
   });
   const GenerateOptions& options = arguments.options;
   text << " --growth " << to_string(options.growth) << " --placement " << to_string(options.placement);
+  if (options.max_error.is_set()) text << " --max-error " << to_string(options.max_error);
   if (options.open_ends.all) text << " --open-ends all";
   for (std::size_t i = 0; i < options.open_ends.nodes.size(); ++i)
     text << (i == 0 ? " --open-ends " : ",") << options.open_ends.nodes[i];

@@ -2,16 +2,18 @@
 
 #include <cmath>
 
+#include "surface/bound_surface.h"
+
 namespace vmesh {
 namespace {
 
 constexpr double kSampleWeights[4][3] = {
     {1.0 / 3, 1.0 / 3, 1.0 / 3}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}};
 
-}  // namespace
-
-Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
-                            const VesselField& field) {
+// Gathers what distance_at(point, hint) says at the sample points, with a sign or without.
+template <class DistanceAt>
+Deviation gather(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding, const VesselField& field,
+                 DistanceAt&& distance_at) {
   Deviation deviation;
   double total_area = 0;
   for (Index f = 0; f < mesh.faces.size(); ++f) {
@@ -20,7 +22,7 @@ Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBin
     for (const auto& weight : kSampleWeights) {
       Vec3 p = Vec3::Zero();
       for (int i = 0; i < 3; ++i) p += weight[i] * mesh.vertices[mesh.faces[f][i]];
-      const FieldSample sample = field.sample(p, binding[mesh.faces[f][0]].segment);
+      const FieldSample sample = distance_at(p, binding[mesh.faces[f][0]].segment);
       const double distance = std::abs(sample.distance);
       const double relative = distance / field.radius_at(sample.cone, sample.t);
       deviation.mean_mm += area * distance;
@@ -37,6 +39,21 @@ Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBin
     deviation.mean_relative /= total_area;
   }
   return deviation;
+}
+
+}  // namespace
+
+Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
+                            const VesselField& field) {
+  return gather(mesh, binding, field, [&field](const Vec3& p, Index hint) { return field.sample(p, hint); });
+}
+
+Deviation measure_rounding(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
+                           const VesselField& rounded, const VesselField& plain) {
+  return gather(mesh, binding, plain, [&](const Vec3& p, Index hint) {
+    const BoundaryPoint point = project_to_boundary(rounded, p, hint);
+    return plain.sample(point.position, point.sample.cone);
+  });
 }
 
 }  // namespace vmesh

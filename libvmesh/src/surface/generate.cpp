@@ -1,6 +1,7 @@
 #include "vmesh/surface/generate.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <optional>
 #include <sstream>
@@ -135,6 +136,33 @@ Placement parse_placement(std::string_view text) {
     if (text == to_string(placement)) return placement;
   }
   throw InvalidInput("placement \"" + std::string(text) + "\": must be inscribed or balanced");
+}
+
+std::string to_string(const ErrorLimit& limit) {
+  std::ostringstream text;
+  if (std::isfinite(limit.mm)) text << limit.mm << "mm";
+  if (std::isfinite(limit.relative)) text << (std::isfinite(limit.mm) ? "," : "") << 100 * limit.relative << "%";
+  return text.str();
+}
+
+ErrorLimit parse_error_limit(std::string_view text) {
+  ErrorLimit limit;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view item = rest.substr(0, rest.find(','));
+    rest.remove_prefix(std::min(rest.size(), item.size() + 1));
+    double value = 0;
+    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), value);
+    const std::string_view unit = item.substr(static_cast<std::size_t>(end - item.data()));
+    if (error != std::errc() || !(value > 0) || !std::isfinite(value) || (unit != "mm" && unit != "%"))
+      throw InvalidInput("error limit \"" + std::string(item) + "\": must be such as 0.3mm or 10%");
+    if (unit == "mm") {
+      limit.mm = value;
+    } else {
+      limit.relative = value / 100;
+    }
+  }
+  if (!limit.is_set()) throw InvalidInput("the error limit is empty: must be such as 0.3mm or 10%");
+  return limit;
 }
 
 namespace {

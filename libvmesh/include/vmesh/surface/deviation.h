@@ -23,4 +23,9 @@ struct Deviation {
 Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
                             const VesselField& field);
 
+/// How far the rounding at branches moves the boundary: |signed distance| to the plain union `plain` at points of the
+/// boundary of `rounded` near the same sample points of `mesh`. Both fields are of the same centerline.
+Deviation measure_rounding(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
+                           const VesselField& rounded, const VesselField& plain);
+
 }  // namespace vmesh

@@ -21,6 +21,11 @@ std::string_view to_string(GrowthMethod method);
 /// Throws InvalidInput unless `text` is "guided" or "paper".
 GrowthMethod parse_growth_method(std::string_view text);
 
+/// Resolutions to choose from.
+enum class Preset { low, high };
+/// GenerateOptions::around of a preset: 6 or 12.
+constexpr int vertices_around(Preset preset) { return preset == Preset::high ? 12 : 6; }
+
 /// Where vertices lie. inscribed: on the boundary, so that the faces cut off what bulges between them. balanced: lifted
 /// off it so that the signed distance to the boundary averages to zero around every vertex; volume is kept.
 enum class Placement { inscribed, balanced };
@@ -39,6 +44,11 @@ struct ErrorLimit {
   bool is_set() const { return std::isfinite(mm) || std::isfinite(relative); }
 };
 
+/// "0.3mm", "10%" or "0.3mm,10%"; empty without a limit.
+std::string to_string(const ErrorLimit& limit);
+/// Throws InvalidInput unless `text` is one of these.
+ErrorLimit parse_error_limit(std::string_view text);
+
 /// Ends of a centerline (nodes with one segment) at which the surface is left open.
 struct OpenEnds {
   bool all = false;
@@ -52,7 +62,7 @@ struct GenerateOptions {
   /// Width of the rounding at branches, in units of the smaller of the two radii; 0 = plain union of round cones.
   double blend = 0.5;
   /// Intended number of vertices around a vessel, 3 to 200: the size field is proportional to radius / around.
-  int around = 6;
+  int around = vertices_around(Preset::low);
   /// A grown face is split edge-centrically when its centre is farther than this from the boundary.
   double max_center_distance = 0.35;
   Placement placement = Placement::balanced;
