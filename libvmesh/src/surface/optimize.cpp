@@ -36,6 +36,7 @@ class Optimizer {
     if (grown.stage == GrownMesh::Stage::assembled) {
       edge_per_radius_ = edge_length_per_radius(options_.around);
       state_.update_sizes(edge_per_radius_, options_.max_error);
+      untangle();
     } else {
       even_out(grown.around);
     }
@@ -96,12 +97,14 @@ class Optimizer {
   // Refines where the limit is not proven, until it is or triangles get too small.
   void meet_error_limit(bool polished) {
     unproven_ = check_.unproven_faces(state_);
+    const double at_first = static_cast<double>(unproven_.size());
     std::size_t fewest = unproven_.size() + 1;
     for (int round = 0, best = 0; !unproven_.empty() && round < best + kErrorRounds; ++round) {
       if (unproven_.size() < fewest) {
         fewest = unproven_.size();
         best = round;
       }
+      report_progress(progress_, "refine", 1 - static_cast<double>(unproven_.size()) / at_first);
       if (!make_finer(unproven_)) break;
       refine();
       unproven_ = check_.unproven_faces(state_);
@@ -162,6 +165,10 @@ class Optimizer {
     edge_per_radius_ = edge_length_per_radius(around);
     state_.stir_all();
     sweep_from(0);
+    untangle();
+  }
+
+  void untangle() {
     std::vector<Vertex> tangles = find_tangles(state_);
     while (!tangles.empty() && !hopeless(tangles)) {
       loosen(state_, tangles);
