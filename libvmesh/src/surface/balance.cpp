@@ -71,7 +71,7 @@ void balance(SweepState& state, const ErrorLimit& limit) {
   update_lifts(state, limit);
   for (const Vertex v : state.mesh.vertices()) {
     if (state.surface.held(v) || strays[v.idx()]) continue;
-    const BoundaryPoint target = state.project(v, state.point(v), 1e-3);
+    const BoundaryPoint target = state.project(v, state.point(v));
     if (may_move(state, v, target)) state.surface.place(v, target.position, target.sample);
     state.surface.lift[v] = state.surface.distance[v];
   }

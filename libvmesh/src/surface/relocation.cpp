@@ -7,7 +7,6 @@ namespace {
 
 constexpr double kLongestMove = 0.3;           // in target lengths
 constexpr double kNoticeableMove = 0.02;       // in target lengths, for the neighbours to be looked at again
-constexpr double kProjectionTolerance = 1e-3;  // in vessel radii
 constexpr int kAttempts = 3;
 
 class Relocator {
@@ -37,7 +36,7 @@ class Relocator {
     if (!std::isfinite(norm)) return;
     if (norm > longest) step *= longest / norm;
     for (int attempt = 0; attempt < kAttempts; ++attempt, step *= 0.5) {
-      const BoundaryPoint target = state_.project(v, x + step, kProjectionTolerance);
+      const BoundaryPoint target = state_.project(v, x + step);
       if ((target.position - x).norm() > state_.size[v] || !improves(v, target, energy.value)) continue;
       if (state_.off_boundary(v) || (target.position - x).norm() > kNoticeableMove * state_.size[v]) state_.stir(v);
       surface_.place(v, target.position, target.sample);

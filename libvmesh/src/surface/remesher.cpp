@@ -180,7 +180,7 @@ void Remesher::repair_strays() {
   const auto count = static_cast<Index>(mesh_.num_edges());
   for (Index i = 0; i < count; ++i) {
     const Edge e(i);
-    if (mesh_.is_removed(e) || !state_.active(e)) continue;
+    if (mesh_.is_removed(e) || !state_.active(e) || state_.length(e) < kCannotStray * state_.target_length(e)) continue;
     const Vertex a = mesh_.vertex(e, 0), b = mesh_.vertex(e, 1);
     const double stray = bulge(a, b);
     if (stray < kMaxBulge) continue;

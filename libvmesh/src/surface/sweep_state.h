@@ -81,18 +81,19 @@ class SweepState {
   }
 
   /// Where `v` belongs when it goes to `p`.
-  BoundaryPoint project(Vertex v, const Vec3& p, double tolerance = 1e-6) const {
+  BoundaryPoint project(Vertex v, const Vec3& p, double tolerance = kProjectionTolerance) const {
     return project_to_boundary(field, p, surface.cone[v], tolerance, surface.lift[v]);
   }
   /// Where the vertex belongs that `a` and `b` become.
   BoundaryPoint project_middle(Vertex a, Vertex b) const {
-    return project_to_boundary(field, 0.5 * (point(a) + point(b)), surface.cone[a], 1e-6,
+    return project_to_boundary(field, 0.5 * (point(a) + point(b)), surface.cone[a], kProjectionTolerance,
                                0.5 * (surface.lift[a] + surface.lift[b]));
   }
 
  private:
   static constexpr char kActive = 1, kStirred = 2;
   static constexpr double kOffBoundary = 0.01;  // vessel radii
+  static constexpr double kProjectionTolerance = 1e-3;
 
   static double agreement(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& gradient_sum);
 

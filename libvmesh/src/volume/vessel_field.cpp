@@ -21,6 +21,7 @@ VesselField::VesselField(const Centerline& centerline, double blend) : centerlin
     if (centerline.degree(n) == 0) cones_.push_back(make_cone(centerline, n, n));
   }
   measure_runs();
+  measure_spheres();
   find_local_cones();
   build_tree();
 }
@@ -33,6 +34,17 @@ void VesselField::measure_runs() {
     const double travel = cone.axis.norm() + (1 + 2 * blend_) * std::abs(cone.r1 - cone.r0);
     runs_[c].travel = (continues ? runs_[c - 1].travel : 0) + travel;
     runs_[c].number = c == 0 ? 0 : runs_[c - 1].number + !continues;
+  }
+}
+
+void VesselField::measure_spheres() {
+  spheres_.resize(cones_.size());
+  for (Index c = 0; c < cones_.size(); ++c) {
+    const Cone& cone = cones_[c];
+    const Vec3 center = cone.origin + 0.5 * cone.axis;
+    const double radius = 0.5 * cone.axis.norm() + max_radius(c);
+    const double rounding = kRounding * (center.norm() + radius);
+    spheres_[c] = {center, radius + 2 * blend_ * max_radius(c) + rounding};
   }
 }
 
@@ -79,63 +91,53 @@ FieldSample VesselField::sample_cone(const Vec3& p, Index cone) const {
 }
 
 FieldSample VesselField::sample(const Vec3& p, Index hint) const {
-  FieldSample sample = blended(p, local_cones(hint));
+  FieldSample sample = blended(p, local_cones(hint), hint);
   while (sample.cone != hint) {  // ends: every step is to a closer cone, or to an equally close one of lower number
     hint = sample.cone;
-    sample = blended(p, local_cones(hint));
+    sample = blended(p, local_cones(hint), hint);
   }
   return sample;
 }
 
-FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones) const {
-  FieldSample sample;
-  sample.distance = std::numeric_limits<double>::infinity();
+FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, Index first) const {
   // Kept from call to call, so that a query allocates nothing.
-  thread_local std::vector<Index> near;
-  thread_local std::vector<double> values;
-  near.clear();
-  values.clear();
+  thread_local std::vector<Candidate> candidates;
+  candidates.clear();
+  const Distance nearby = distance_to(cones_[first], p);
+  candidates.push_back({nearby.value, nearby.t, first});
+  double least = nearby.value;
   // One pass keeps the cones within the widest possible blend of the best so far. After a cone out of reach it passes
-  // over those of its run that cannot be within reach.
+  // over those of its run that cannot be within reach; what is far by its bounding sphere is not looked at closely.
   Run out_of_reach;
   for (const Index c : cones) {
-    if (runs_[c].number == out_of_reach.number && runs_[c].travel < out_of_reach.travel) continue;
+    if (c == first || (runs_[c].number == out_of_reach.number && runs_[c].travel < out_of_reach.travel)) continue;
+    const double reach = least + spheres_[c].reach;
+    if (reach <= 0 || (p - spheres_[c].center).squaredNorm() >= reach * reach) continue;
     const Distance d = distance_to(cones_[c], p);
-    const double excess = d.value - sample.distance - 2 * blend_ * max_radius(c);
+    const double excess = d.value - least - 2 * blend_ * max_radius(c);
     if (excess >= 0) {
       out_of_reach = {runs_[c].number, runs_[c].travel + excess};
       continue;
     }
-    if (d.value < sample.distance) {
-      sample = {d.value, sample.gradient, c, d.t};
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < near.size(); ++i) {
-        if (values[i] >= d.value + 2 * blend_ * max_radius(near[i])) continue;
-        near[kept] = near[i];
-        values[kept++] = values[i];
-      }
-      near.resize(kept);
-      values.resize(kept);
-    }
-    near.push_back(c);
-    values.push_back(d.value);
+    least = std::min(least, d.value);
+    candidates.push_back({d.value, d.t, c});
   }
-  sample.gradient = gradient_of(cones_[sample.cone], p, sample.t);
-  if (near.size() > 1) blend_candidates(p, near, sample);
+  std::erase_if(candidates,
+                [&](const Candidate& c) { return c.value > least && c.value >= least + 2 * blend_ * max_radius(c.cone); });
+  FieldSample sample;
+  const auto best = std::min_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.value != b.value ? a.value < b.value : a.cone < b.cone;
+  });
+  sample = {best->value, gradient_of(cones_[best->cone], p, best->t), best->cone, best->t};
+  if (blend_ > 0 && candidates.size() > 1) blend_candidates(p, candidates, sample);
   return sample;
 }
 
 // The least of the pairwise smooth minima: continuous, and the plain minimum where gradients agree.
-void VesselField::blend_candidates(const Vec3& p, std::span<const Index> near, FieldSample& sample) const {
-  struct Candidate {
-    double value, radius;
-    Vec3 gradient;
-  };
-  thread_local std::vector<Candidate> candidates;
-  candidates.clear();
-  for (const Index c : near) {
-    const Distance d = distance_to(cones_[c], p);
-    candidates.push_back({d.value, radius_at(c, d.t), gradient_of(cones_[c], p, d.t)});
+void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidates, FieldSample& sample) const {
+  for (Candidate& c : candidates) {
+    c.radius = radius_at(c.cone, c.t);
+    c.gradient = gradient_of(cones_[c.cone], p, c.t);
   }
   for (const Candidate& low : candidates) {
     if (low.value - blend_ * low.radius / 2 >= sample.distance) continue;
@@ -179,7 +181,7 @@ FieldSample VesselField::sample_global(const Vec3& p) const {
   std::vector<Index> near;
   tree_.visit(p, limit, [&](Index c) { near.push_back(c); });
   std::sort(near.begin(), near.end());
-  return blended(p, near);
+  return blended(p, near, best);
 }
 
 }  // namespace vmesh

@@ -84,14 +84,27 @@ class VesselField {
     double value;
     double t;
   };
+  // Farther from `center` than `reach` plus the distance of the nearest cone, a cone can neither be nearest nor blended.
+  struct Sphere {
+    Vec3 center = Vec3::Zero();
+    double reach = 0;
+  };
+  struct Candidate {
+    double value, t;
+    Index cone;
+    double radius = 0;
+    Vec3 gradient = Vec3::Zero();
+  };
 
   static Cone make_cone(const Centerline& centerline, Index a, Index b);
   static Distance distance_to(const Cone& cone, const Vec3& p);
   static Vec3 gradient_of(const Cone& cone, const Vec3& p, double t);
   double max_radius(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
-  FieldSample blended(const Vec3& p, std::span<const Index> cones) const;
-  void blend_candidates(const Vec3& p, std::span<const Index> near, FieldSample& sample) const;
+  // `first`: one of the cones, likely to be near.
+  FieldSample blended(const Vec3& p, std::span<const Index> cones, Index first) const;
+  void blend_candidates(const Vec3& p, std::span<Candidate> candidates, FieldSample& sample) const;
   void measure_runs();
+  void measure_spheres();
   void find_local_cones();
   void build_tree();
 
@@ -99,6 +112,7 @@ class VesselField {
   double blend_;
   std::vector<Cone> cones_;
   std::vector<Run> runs_;
+  std::vector<Sphere> spheres_;
   std::vector<Index> local_offsets_, local_;
   BoxTree tree_;
 };
