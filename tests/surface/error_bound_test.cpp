@@ -1,0 +1,149 @@
+#include "vmesh/surface/error_bound.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "vmesh/core/error.h"
+
+#include "centerlines.h"
+
+namespace vmesh {
+namespace {
+
+using Face = ErrorProof::Face;
+using Side = ErrorProof::Side;
+
+// A face across a tube of radius 1 along x, at `height` above the axis: `half` to either side of the plane y = 0.
+Face face_over_tube(double height, double half) {
+  const Vec3 up(0, 0, 1);
+  return {{{{3.5, -half, height}, up, 1, 0}, {{4.5, -half, height}, up, 1, 0}, {{4, half, height}, up, 1, 0}}};
+}
+
+Centerline long_tube() { return {{{{0, 0, 0}, 1}, {{8, 0, 0}, 1}}, {{0, 1}}}; }
+
+TEST(ErrorProof, KnowsWhereACopyOfAFaceLeavesATube) {
+  const Centerline tube = long_tube();
+  const VesselField field(tube);
+  const ErrorProof proof(field);
+  const Face face = face_over_tube(0.9, 0.3);
+  // The nearest point of the copy to the axis lies at y = 0: it is outside from a height of 1 on.
+  EXPECT_TRUE(proof.holds(face, {0.101, 0.101, 0.101}, Side::outer));
+  EXPECT_FALSE(proof.holds(face, {0.099, 0.099, 0.099}, Side::outer));
+  // The farthest points are the corners, at sqrt(0.9^2 + 0.3^2) = 0.949 < 1.
+  EXPECT_TRUE(proof.holds(face, {0, 0, 0}, Side::inner));
+  const Face high = face_over_tube(0.97, 0.3);  // corners at 1.015; down by 0.021 they are at 0.9954
+  EXPECT_FALSE(proof.holds(high, {0.015, 0.015, 0.015}, Side::inner));
+  EXPECT_TRUE(proof.holds(high, {0.021, 0.021, 0.021}, Side::inner));
+}
+
+TEST(ErrorProof, TriesLowerShellsWhereTheNextWallIsNear) {
+  // Two tubes from one node, 0.35 apart above the fork: a shell as high as the limit of 0.5 reaches into the other one.
+  const Centerline fork({{{-5, 0, 0}, 1}, {{0, 0, 0}, 1}, {{8, 1.6, 0}, 0.7}, {{8, -1.6, 0}, 0.7}},
+                        {{0, 1}, {1, 2}, {1, 3}});
+  const VesselField field(fork);
+  const ErrorProof proof(field);
+  const Vec3 along = Vec3(8, 1.6, 0).normalized(), inward = Vec3(1.6, -8, 0).normalized();
+  const Vec3 wall = Vec3(0, 0, 0) + 0.8 * Vec3(8, 1.6, 0) + 0.76 * inward;
+  const Vec3 up(0, 0, 1);
+  const Face face = {{{wall - 0.1 * up, inward, 0.9, 1}, {wall + 0.1 * along, inward, 0.9, 1}, {wall + 0.1 * up, inward, 0.9, 1}}};
+  EXPECT_FALSE(proof.holds(face, {0.9, 0.9, 0.9}, Side::outer));
+  const ErrorProof::Shares shares = proof.shares(face);
+  EXPECT_GT(shares.outer, 0);
+  EXPECT_LT(shares.outer, 1);
+}
+
+// What is proven must be true: dense points of the copies are on their sides of the boundary. What is true by a margin
+// should be proven.
+TEST(ErrorProof, HoldsOnlyWhatDensePointsConfirm) {
+  const Centerline centerline = testing::fork(50);
+  for (const double blend : {0.0, 0.5}) {
+    const VesselField field(centerline, blend);
+    const ErrorProof proof(field);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto direction = [&] { return Vec3(uniform(random), uniform(random), uniform(random)).normalized(); };
+    int proven = 0, clear = 0, clear_and_proven = 0;
+    for (int trial = 0; trial < 3000; ++trial) {
+      const Index cone = static_cast<Index>(random() % field.cone_count());
+      const Vec3 on_axis = field.axis_point(cone, 0.5 * (1 + uniform(random)));
+      const Vec3 out = direction(), middle = on_axis + field.radius_at(cone, 0.5) * (1 + 0.4 * uniform(random)) * out;
+      const double size = 0.1 + 0.5 * std::abs(uniform(random));
+      Face face;
+      for (auto& corner : face) corner = {middle + size * direction(), out, 1, cone};
+      for (const Side side : {Side::inner, Side::outer}) {
+        const bool holds = proof.holds(face, {0, 0, 0}, side);
+        double worst = -1;  // on the wrong side, mm
+        for (int i = 0; i <= 10; ++i) {
+          for (int j = 0; i + j <= 10; ++j) {
+            const Vec3 p = (i * face[0].position + j * face[1].position + (10 - i - j) * face[2].position) / 10;
+            const double distance = field.sample(p, cone).distance;
+            worst = std::max(worst, side == Side::inner ? distance : -distance);
+          }
+        }
+        if (holds) {
+          EXPECT_LE(worst, 1e-12) << "trial " << trial;
+        }
+        proven += holds;
+        clear += worst < -0.05;
+        clear_and_proven += holds && worst < -0.05;
+      }
+    }
+    EXPECT_GT(proven, 500);
+    EXPECT_GT(clear_and_proven, 0.95 * clear) << "of " << clear;
+  }
+}
+
+TEST(ErrorLimit, IsReadAndWritten) {
+  EXPECT_EQ(parse_error_limit("0.3mm").mm, 0.3);
+  EXPECT_EQ(parse_error_limit("10%").relative, 0.1);
+  EXPECT_EQ(to_string(parse_error_limit("0.25mm,5%")), "0.25mm,5%");
+  for (const char* wrong : {"", "10", "-1mm", "0%", "nan%", "1 mm", "5%mm"})
+    EXPECT_THROW(parse_error_limit(wrong), InvalidInput) << wrong;
+}
+
+TEST(ErrorLimit, IsProvenOnAFork) {
+  const Centerline centerline = testing::fork();
+  GenerateOptions options;
+  options.max_error.relative = 0.1;
+  const GenerateResult result = generate_surface(centerline, options);
+  EXPECT_EQ(result.error.unproven_faces, 0u);
+  const VesselField field(centerline, options.blend);
+  EXPECT_TRUE(unproven_faces(result.mesh, result.binding, field, options.max_error).empty());
+  // The same surface is nowhere near a hundredth of that.
+  EXPECT_FALSE(unproven_faces(result.mesh, result.binding, field, parse_error_limit("0.1%")).empty());
+}
+
+TEST(ErrorLimit, IsSaidNotToHoldWhereItCannot) {
+  const Centerline centerline = testing::fork();
+  GenerateOptions options;
+  options.max_error.relative = 0.1;
+  options.max_vertices = 400;  // a fork at 6 around has about 200
+  const GenerateResult result = generate_surface(centerline, options);
+  if (result.mesh.vertices.size() < 400) {
+    EXPECT_EQ(result.error.unproven_faces, 0u);
+  }
+  options.max_error.relative = 0.02;
+  options.max_vertices = 3000;
+  const GenerateResult coarse = generate_surface(centerline, options);
+  ASSERT_GT(coarse.error.unproven_faces, 0u);
+  ASSERT_FALSE(coarse.error.unproven_places.empty());
+  std::size_t faces = 0;
+  for (const UnprovenPlace& place : coarse.error.unproven_places) faces += place.faces;
+  EXPECT_EQ(faces, coarse.error.unproven_faces);
+}
+
+TEST(ErrorLimit, GivesTheSameSurfaceWhateverTheThreads) {
+  const Centerline centerline = testing::fork(40);
+  GenerateOptions options;
+  options.max_error.relative = 0.08;
+  options.threads = 1;
+  const TriMesh one = generate_surface(centerline, options).mesh;
+  options.threads = 4;
+  const TriMesh four = generate_surface(centerline, options).mesh;
+  EXPECT_EQ(one.vertices, four.vertices);
+  EXPECT_EQ(one.faces, four.faces);
+}
+
+}  // namespace
+}  // namespace vmesh

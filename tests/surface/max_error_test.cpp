@@ -1,0 +1,136 @@
+// Whether --max-error holds on real trees, by an independent measurement: dense points of the surface against the volume,
+// and dense points of the volume's boundary against the surface.
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/mesh/topology.h"
+#include "vmesh/surface/generate.h"
+#include "vmesh/volume/box_tree.h"
+#include "vmesh/volume/vessel_field.h"
+
+#include "shared_data.h"
+
+namespace vmesh {
+namespace {
+
+constexpr int kAround = 24;     // sample points around a vessel, and four times closer than faces are wide along it
+constexpr double kStep = 0.15;  // radii
+
+double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double t = std::clamp((p - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
+  return (p - a - t * ab).norm();
+}
+
+double distance_to_face(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 n = (b - a).cross(c - a).normalized();
+  const auto left_of = [&](const Vec3& from, const Vec3& to) { return (to - from).cross(p - from).dot(n) >= 0; };
+  if (left_of(a, b) && left_of(b, c) && left_of(c, a)) return std::abs((p - a).dot(n));
+  return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
+}
+
+class SurfaceDistance {
+ public:
+  explicit SurfaceDistance(const TriMesh& mesh) : mesh_(mesh) {
+    std::vector<Vec3> low, high;
+    for (const auto& [a, b, c] : mesh.faces) {
+      const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+      low.push_back(p.cwiseMin(q).cwiseMin(r));
+      high.push_back(p.cwiseMax(q).cwiseMax(r));
+    }
+    tree_ = BoxTree(low, high);
+  }
+
+  double operator()(const Vec3& p) const {
+    double least = std::numeric_limits<double>::infinity();
+    tree_.visit(p, least, [&](Index f) {
+      const auto& [a, b, c] = mesh_.faces[f];
+      least = std::min(least, distance_to_face(p, mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]));
+    });
+    return least;
+  }
+
+ private:
+  const TriMesh& mesh_;
+  BoxTree tree_;
+};
+
+// The largest distance from the surface to the boundary, in limits, at 28 points a face.
+double worst_of_surface(const GenerateResult& result, const VesselField& field, const ErrorLimit& limit) {
+  double worst = 0;
+  for (const auto& [a, b, c] : result.mesh.faces) {
+    const Vec3 &p = result.mesh.vertices[a], &q = result.mesh.vertices[b], &r = result.mesh.vertices[c];
+    const double allowed = limit.at(std::max({result.radius[a], result.radius[b], result.radius[c]}));
+    for (int i = 0; i <= 6; ++i) {
+      for (int j = 0; i + j <= 6; ++j) {
+        const Vec3 x = (i * p + j * q + (6 - i - j) * r) / 6;
+        worst = std::max(worst, std::abs(field.sample(x, result.binding[a].segment).distance) / allowed);
+      }
+    }
+  }
+  return worst;
+}
+
+// Points of the boundary around every cone and over both its ends, mapped onto the boundary where they are next to it.
+template <class Visit>
+void for_boundary_points(const VesselField& field, Visit&& visit) {
+  for (Index cone = 0; cone < field.cone_count(); ++cone) {
+    const Vec3 axis = field.axis_point(cone, 1) - field.axis_point(cone, 0);
+    const Vec3 along = axis.normalized(), side = along.unitOrthogonal(), up = along.cross(side);
+    const double radius = field.radius_at(cone, 0.5), reach = radius / axis.norm();
+    for (double t = -reach; t <= 1 + reach; t += kStep * reach) {
+      for (int k = 0; k < kAround; ++k) {
+        const double angle = 2 * std::numbers::pi * k / kAround, beyond = std::max({0.0, -t, t - 1}) / reach;
+        const double r = field.radius_at(cone, std::clamp(t, 0.0, 1.0)) * std::sqrt(std::max(0.0, 1 - beyond * beyond));
+        Vec3 p = field.axis_point(cone, t) + r * (std::cos(angle) * side + std::sin(angle) * up);
+        FieldSample s = field.sample(p, cone);
+        if (s.distance < -0.3 * radius) continue;  // within another vessel
+        for (int step = 0; step < 20 && s.gradient.squaredNorm() > 0.01; ++step) {
+          p -= s.distance / s.gradient.squaredNorm() * s.gradient;
+          s = field.sample(p, s.cone);
+        }
+        if (std::abs(s.distance) < 1e-9 * radius) visit(p, field.radius_at(s.cone, s.t));
+      }
+    }
+  }
+}
+
+class MaxError : public ::testing::TestWithParam<std::tuple<const char*, double>> {};
+
+TEST_P(MaxError, HoldsBothWaysAtDensePoints) {
+  const auto& [name, relative] = GetParam();
+  const std::string file = name;
+  VMESH_NEED_SHARED_DATA(file);
+  const Centerline centerline = load_centerline(testing::shared_data(file)).cleaned.centerline;
+  GenerateOptions options;
+  options.max_error.relative = relative;
+  const GenerateResult result = generate_surface(centerline, options);
+  EXPECT_EQ(result.error.unproven_faces, 0u);
+  EXPECT_TRUE(self_intersections(result.mesh).empty());
+  EXPECT_EQ(measure_topology(result.mesh).genus, 0);
+  const VesselField field(centerline, options.blend);
+  EXPECT_LE(worst_of_surface(result, field, options.max_error), 1);
+  const SurfaceDistance distance(result.mesh);
+  double worst = 0;
+  std::size_t points = 0;
+  for_boundary_points(field, [&](const Vec3& p, double radius) {
+    // The radius a face is judged by is that at its corners, up to 0.6 r away: it may be a little larger there.
+    worst = std::max(worst, distance(p) / options.max_error.at(1.1 * radius));
+    ++points;
+  });
+  EXPECT_GT(points, 10 * result.mesh.vertices.size());
+  EXPECT_LE(worst, 1);
+}
+
+#define TREE(name) "liver_portal_centerlines/liverModelPatient1__" name "_1.swc"
+INSTANTIATE_TEST_SUITE_P(TenPercent, MaxError,
+                         ::testing::Combine(::testing::Values(TREE("portal1"), TREE("portal3"), TREE("portal15"),
+                                                              TREE("hepatic1"), TREE("hepatic3"), TREE("hepatic15"),
+                                                              TREE("arterial15"), TREE("vessel_portal"),
+                                                              TREE("vessel_hepatic"), TREE("vessel_arterial")),
+                                            ::testing::Values(0.1, 0.05)));
+
+}  // namespace
+}  // namespace vmesh
