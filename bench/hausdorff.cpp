@@ -1,0 +1,146 @@
+// The guaranteed Hausdorff distance against CGAL's bounded-error one, and against VTK's distance at vertices, on the
+// same pairs in one run, one thread each. Prints a table in Markdown. Pairs come from the shared test data; each
+// surface is paired with its own decimation to 13 % of the edges.
+//
+//   bench_hausdorff [--runs N] [--ours]
+#include "vmesh/quality/hausdorff.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <functional>
+
+#include <sys/resource.h>
+
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
+#include "vmesh/volume/vessel_field.h"
+
+#include "peers.h"
+
+namespace {
+
+using namespace vmesh;
+
+constexpr double kTolerance = 1e-4;  // mm
+constexpr double kKept = 0.13;       // of the edges
+constexpr double kGridSpacing = 0.71;  // mm; gives the liver-like tree about 178,000 faces
+
+struct Pair {
+  std::string name;
+  TriMesh fine, coarse;
+};
+
+double cpu_seconds() {
+  timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double median_ms(int runs, const std::function<void()>& work) {
+  std::vector<double> times;
+  for (int i = 0; i < runs; ++i) {
+    const double start = cpu_seconds();
+    work();
+    times.push_back(1e3 * (cpu_seconds() - start));
+  }
+  std::nth_element(times.begin(), times.begin() + runs / 2, times.end());
+  return times[static_cast<std::size_t>(runs / 2)];
+}
+
+Pair decimated_pair(const std::string& name, const TriMesh& surface) {
+  const bench::CgalMesh fine(surface);
+  return {name, fine.mesh(), fine.decimated(kKept)};
+}
+
+TriMesh isosurface(const std::filesystem::path& centerline_file) {
+  const LoadedCenterline loaded = load_centerline(centerline_file);
+  const Centerline& centerline = loaded.cleaned.centerline;
+  const VesselField field(centerline);
+  Vec3 low = Vec3::Constant(1e300), high = -low;
+  for (const CenterlineNode& node : centerline.nodes()) {
+    low = low.cwiseMin(node.position - Vec3::Constant(node.radius + 2 * kGridSpacing));
+    high = high.cwiseMax(node.position + Vec3::Constant(node.radius + 2 * kGridSpacing));
+  }
+  const auto value = [](const Vec3& p, const void* context) {
+    return static_cast<const VesselField*>(context)->sample_global(p).distance;
+  };
+  return bench::vtk_isosurface(low, high, kGridSpacing, value, &field);
+}
+
+std::vector<Pair> load_pairs(const std::filesystem::path& data) {
+  std::vector<Pair> pairs;
+  const auto tree = data / "synthetic_trees/tree1560.swc";
+  if (bench::have_vtk() && std::filesystem::exists(tree)) {
+    pairs.push_back(decimated_pair("marching cubes of tree1560", isosurface(tree)));
+  } else {
+    std::fprintf(stderr, "skipped, VTK or data are missing: %s\n", tree.c_str());
+  }
+  for (const auto& [name, file] : {std::pair{"SPL portal vein", "liver_spl_atlas/spl_portal_vein_combined.ply"},
+                                   std::pair{"aorta", "pairs_centerline_surface/aorta-surface.stl"},
+                                   std::pair{"coronary tree", "surfaces_other/extract-faces_python_coronarytree.stl"}}) {
+    if (std::filesystem::exists(data / file)) {
+      pairs.push_back(decimated_pair(name, read_surface(data / file).mesh));
+    } else {
+      std::fprintf(stderr, "skipped, data are missing: %s\n", (data / file).c_str());
+    }
+  }
+  return pairs;
+}
+
+struct Settings {
+  int runs = 3;
+  bool peers = true;
+};
+
+void measure_direction(const std::string& name, const TriMesh& from, const TriMesh& to, const Settings& settings) {
+  HausdorffOptions options;
+  options.tolerance = kTolerance;
+  OneSidedHausdorff found;
+  const double ours = median_ms(settings.runs, [&] { found = one_sided_hausdorff(from, to, options); });
+  std::printf("| %s | %zu | %zu | %.5f - %.5f | %.1f |", name.c_str(), from.faces.size(), to.faces.size(), found.lower,
+              found.upper, ours);
+  if (settings.peers) {
+    const bench::CgalMesh cgal_from(from), cgal_to(to);
+    double distance = 0;
+    const double cgal = median_ms(settings.runs,
+                                  [&] { distance = cgal_from.bounded_error_hausdorff(cgal_to, kTolerance); });
+    std::printf(" %.5f | %.1f | %.1f |", distance, cgal, cgal / ours);
+    if (bench::have_vtk()) {
+      const double vtk = median_ms(settings.runs, [&] { distance = bench::vtk_vertex_distance(from, to); });
+      std::printf(" %.5f | %.1f | %.1f |", distance, vtk, vtk / ours);
+    }
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+void print_header(const Settings& settings) {
+  const bool vtk = settings.peers && bench::have_vtk();
+  std::printf("| from -> to | faces | faces | interval, mm | ms |%s%s\n",
+              settings.peers ? " CGAL, mm | ms | ratio |" : "", vtk ? " VTK at vertices, mm | ms | ratio |" : "");
+  std::printf("|---|---|---|---|---|%s%s\n", settings.peers ? "---|---|---|" : "", vtk ? "---|---|---|" : "");
+}
+
+Settings parse(int argc, char** argv) {
+  Settings settings;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--ours") == 0) settings.peers = false;
+    if (std::strcmp(argv[i], "--runs") == 0 && i + 1 < argc) settings.runs = std::max(1, std::atoi(argv[++i]));
+  }
+  return settings;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Settings settings = parse(argc, argv);
+  const std::vector<Pair> pairs = load_pairs(VMESH_SHARED_DATA);
+  print_header(settings);
+  for (const Pair& pair : pairs) {
+    measure_direction(pair.name + " -> decimated", pair.fine, pair.coarse, settings);
+    measure_direction("decimated -> " + pair.name, pair.coarse, pair.fine, settings);
+  }
+}

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "vmesh/quality/hausdorff.h"
+
+#include "quality/distance_bounds.h"
+#include "quality/face_blocks.h"
+#include "quality/sandwich.h"
+
+namespace vmesh {
+
+/// The search for the point of a mesh that is farthest from another mesh.
+class HausdorffSearch {
+ public:
+  struct Goal {
+    double tolerance = 0;           ///< mm
+    double start = -1;              ///< distances up to this do not matter; below 0 some point is found in any case
+    bool stop_above_start = false;  ///< the first larger distance ends the search
+  };
+
+  /// Keeps references. `tree` is over the faces of `to`.
+  HausdorffSearch(const TriMesh& from, const TriMesh& to, const TriangleTree& tree, const Goal& goal);
+
+  void run(const Progress& progress);
+
+  /// Bounds of the search, without room for rounding. `lower` is the start when nothing larger was found.
+  double lower() const { return lower_; }
+  double upper() const { return std::max(upper_, lower_); }
+  /// A point at the distance `lower`; nothing when nothing larger than the start was found.
+  const std::optional<MeasuredPoint>& farthest() const { return farthest_; }
+  Index farthest_face() const { return farthest_face_; }
+
+ private:
+  struct RankedFace {
+    double bound;
+    Index face;
+  };
+
+  bool done() const { return goal_.stop_above_start && farthest_; }
+  double good_enough() const { return lower_ + goal_.tolerance; }
+  bool settle(double bound);
+  MeasuredPoint measure(const Vec3& p, Index near, Index face);
+  const NearestFace& measure_vertex(Index v, Index face);
+  Piece whole_face(Index face) const;
+  std::vector<Index> measure_blocks(const Progress& progress);
+  void measure_block(const FaceBlock& block, std::vector<Index>& faces);
+  std::vector<RankedFace> keep_unsettled(const std::vector<Index>& faces);
+  bool sandwiched(const Piece& piece);
+  void bisect(const Piece& piece, Index face);
+
+  const TriMesh& from_;
+  const TriMesh& to_;
+  const TriangleTree& tree_;
+  Goal goal_;
+  FaceBlocks blocks_;
+  std::vector<NearestFace> vertices_;
+  std::optional<Sandwich> sandwich_;
+  double lower_, upper_ = 0;
+  std::optional<MeasuredPoint> farthest_;
+  Index farthest_face_ = kNone;
+  Index last_found_ = kNone;
+};
+
+}  // namespace vmesh
