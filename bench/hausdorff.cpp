@@ -24,8 +24,8 @@ namespace {
 
 using namespace vmesh;
 
-constexpr double kTolerance = 1e-4;  // mm
-constexpr double kKept = 0.13;       // of the edges
+constexpr double kTolerance = 1e-4;    // mm
+constexpr double kKept = 0.13;         // of the edges
 constexpr double kGridSpacing = 0.71;  // mm; gives the liver-like tree about 178,000 faces
 
 struct Pair {
@@ -78,9 +78,10 @@ std::vector<Pair> load_pairs(const std::filesystem::path& data) {
   } else {
     std::fprintf(stderr, "skipped, VTK or data are missing: %s\n", tree.c_str());
   }
-  for (const auto& [name, file] : {std::pair{"SPL portal vein", "liver_spl_atlas/spl_portal_vein_combined.ply"},
-                                   std::pair{"aorta", "pairs_centerline_surface/aorta-surface.stl"},
-                                   std::pair{"coronary tree", "surfaces_other/extract-faces_python_coronarytree.stl"}}) {
+  for (const auto& [name, file] :
+       {std::pair{"SPL portal vein", "liver_spl_atlas/spl_portal_vein_combined.ply"},
+        std::pair{"aorta", "pairs_centerline_surface/aorta-surface.stl"},
+        std::pair{"coronary tree", "surfaces_other/extract-faces_python_coronarytree.stl"}}) {
     if (std::filesystem::exists(data / file)) {
       pairs.push_back(decimated_pair(name, read_surface(data / file).mesh));
     } else {
@@ -105,8 +106,8 @@ void measure_direction(const std::string& name, const TriMesh& from, const TriMe
   if (settings.peers) {
     const bench::CgalMesh cgal_from(from), cgal_to(to);
     double distance = 0;
-    const double cgal = median_ms(settings.runs,
-                                  [&] { distance = cgal_from.bounded_error_hausdorff(cgal_to, kTolerance); });
+    const double cgal =
+        median_ms(settings.runs, [&] { distance = cgal_from.bounded_error_hausdorff(cgal_to, kTolerance); });
     std::printf(" %.5f | %.1f | %.1f |", distance, cgal, cgal / ours);
     if (bench::have_vtk()) {
       const double vtk = median_ms(settings.runs, [&] { distance = bench::vtk_vertex_distance(from, to); });

@@ -32,7 +32,8 @@ double vtk_vertex_distance(const TriMesh& from, const TriMesh& to) {
   vtkNew<vtkImplicitPolyDataDistance> distance;
   distance->SetInput(data);
   double largest = 0;
-  for (const Vec3& v : from.vertices) largest = std::max(largest, std::abs(distance->EvaluateFunction(v.x(), v.y(), v.z())));
+  for (const Vec3& v : from.vertices)
+    largest = std::max(largest, std::abs(distance->EvaluateFunction(v.x(), v.y(), v.z())));
   return largest;
 }
 
@@ -47,7 +48,8 @@ TriMesh vtk_isosurface(const Vec3& low, const Vec3& high, double spacing, double
   auto* scalar = static_cast<float*>(image->GetScalarPointer());
   for (int k = 0; k <= cells.z(); ++k)
     for (int j = 0; j <= cells.y(); ++j)
-      for (int i = 0; i <= cells.x(); ++i) *scalar++ = static_cast<float>(value(low + spacing * Vec3(i, j, k), context));
+      for (int i = 0; i <= cells.x(); ++i)
+        *scalar++ = static_cast<float>(value(low + spacing * Vec3(i, j, k), context));
   vtkNew<vtkFlyingEdges3D> contour;
   contour->SetInputData(image);
   contour->SetValue(0, 0);

@@ -12,7 +12,8 @@ ClosestPointIndex::ClosestPointIndex(ClosestPointIndex&&) noexcept = default;
 ClosestPointIndex& ClosestPointIndex::operator=(ClosestPointIndex&&) noexcept = default;
 
 ClosestPoint ClosestPointIndex::closest(const Vec3& p, Index near) const {
-  if (!within_reach(p)) throw InvalidInput("the closest point of a point that is not finite or farther than 1e15 mm is not defined");
+  if (!within_reach(p))
+    throw InvalidInput("the closest point of a point that is not finite or farther than 1e15 mm is not defined");
   const NearestFace found = tree_->nearest(p, near);
   return {tree_->frame(found.face).closest(p), found.face, found.distance};
 }

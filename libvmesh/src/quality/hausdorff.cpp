@@ -14,13 +14,6 @@ namespace {
 constexpr double kRounding = 0x1p-46;
 constexpr double kFinestTolerance = 0x1p-40;
 
-// One mesh with what is needed to measure distances to it.
-struct Side {
-  explicit Side(const TriMesh& m) : mesh(m), tree(m) {}
-  const TriMesh& mesh;
-  TriangleTree tree;
-};
-
 double size_of(const Extent& a, const Extent& b) {
   return std::max(a.magnitude(), b.magnitude()) + a.diagonal() + b.diagonal();
 }
@@ -37,14 +30,14 @@ constexpr double kNoStart = -1;
 
 class Measurement {
  public:
-  Measurement(const TriMesh& from, const Extent& from_extent, const Side& to, const HausdorffOptions& options)
-      : from_(from), to_(to), options_(options), room_(kRounding * size_of(from_extent, to.tree.extent())) {
+  Measurement(const TriMesh& from, const Extent& from_extent, const TriangleTree& to, const HausdorffOptions& options)
+      : from_(from), to_(to), options_(options), room_(kRounding * size_of(from_extent, to.extent())) {
     check_tolerance(options.tolerance, room_ / kRounding);
   }
 
   HausdorffSearch search(double start, bool stop_above_start) const {
-    HausdorffSearch search(from_, to_.mesh, to_.tree, {options_.tolerance - 2 * room_, start, stop_above_start});
-    search.run(options_.progress);
+    HausdorffSearch search(from_, to_, {options_.tolerance - 2 * room_, start, stop_above_start}, options_.progress);
+    search.run();
     return search;
   }
 
@@ -58,12 +51,12 @@ class Measurement {
   std::optional<DistanceWitness> witness(const HausdorffSearch& found) const {
     if (!found.farthest()) return std::nullopt;
     const auto& [position, nearest] = *found.farthest();
-    return DistanceWitness{position, found.farthest_face(), to_.tree.frame(nearest.face).closest(position), nearest.face};
+    return DistanceWitness{position, found.farthest_face(), to_.frame(nearest.face).closest(position), nearest.face};
   }
 
  private:
   const TriMesh& from_;
-  const Side& to_;
+  const TriangleTree& to_;
   const HausdorffOptions& options_;
   double room_;  // for rounding, mm
 };
@@ -72,19 +65,19 @@ class Measurement {
 
 OneSidedHausdorff one_sided_hausdorff(const TriMesh& from, const TriMesh& to, const HausdorffOptions& options) {
   const Extent extent = measure_extent(from);
-  return Measurement(from, extent, Side(to), options).distance();
+  return Measurement(from, extent, TriangleTree(to), options).distance();
 }
 
 Hausdorff hausdorff(const TriMesh& a, const TriMesh& b, const HausdorffOptions& options) {
-  const Side first(a), second(b);
-  return {Measurement(a, first.tree.extent(), second, options).distance(),
-          Measurement(b, second.tree.extent(), first, options).distance()};
+  const TriangleTree first(a), second(b);
+  return {Measurement(a, first.extent(), second, options).distance(),
+          Measurement(b, second.extent(), first, options).distance()};
 }
 
 SymmetricHausdorff symmetric_hausdorff(const TriMesh& a, const TriMesh& b, const HausdorffOptions& options) {
-  const Side first(a), second(b);
-  const OneSidedHausdorff forward = Measurement(a, first.tree.extent(), second, options).distance();
-  const Measurement backward(b, second.tree.extent(), first, options);
+  const TriangleTree first(a), second(b);
+  const OneSidedHausdorff forward = Measurement(a, first.extent(), second, options).distance();
+  const Measurement backward(b, second.extent(), first, options);
   const HausdorffSearch found = backward.search(forward.lower, false);
   const double upper = std::max(forward.upper, found.upper() + backward.room());
   const std::optional<DistanceWitness> witness = backward.witness(found);
@@ -94,10 +87,11 @@ SymmetricHausdorff symmetric_hausdorff(const TriMesh& a, const TriMesh& b, const
 
 std::optional<DistanceWitness> hausdorff_exceeds(const TriMesh& from, const TriMesh& to, double limit,
                                                  const HausdorffOptions& options) {
-  if (!(limit >= 0) || std::isinf(limit)) throw InvalidInput("a distance to compare with must be finite and at least 0");
+  if (!(limit >= 0) || std::isinf(limit))
+    throw InvalidInput("a distance to compare with must be finite and at least 0");
   const Extent extent = measure_extent(from);
-  const Side side(to);
-  const Measurement measurement(from, extent, side, options);
+  const TriangleTree tree(to);
+  const Measurement measurement(from, extent, tree, options);
   return measurement.witness(measurement.search(limit + measurement.room(), true));
 }
 

@@ -7,32 +7,81 @@ namespace vmesh {
 namespace {
 
 constexpr Index kFacesPerBlock = 32;
-constexpr Index kReportEvery = 256;  // blocks or faces
+constexpr std::size_t kPromisingBlocks = 16;
+constexpr std::size_t kPromisingFaces = 64;
+constexpr int kCutsAtFaces = 16;  // of a piece; then its longest edge is halved, which is sure to come to an end
+constexpr std::size_t kReportEvery = 4096;  // points
 
-int longest_edge(const Piece& piece) {
+// Where to cut a piece: the edge from corner `first` to the next one, and the place on it.
+struct Cut {
+  int first = 0;
+  double share = 0.5;
+};
+
+// Where the closest face of one corner takes over from that of the next, if all distances were linear: among coplanar
+// faces that is where one ends and the other begins, and the parts lie on one face each. The middle where corners share
+// their closest face.
+double change_of_face(const MeasuredPoint& a, const MeasuredPoint& b, const TriangleTree& other) {
+  constexpr double kAtEnds = 1.0 / 16;
+  if (a.nearest.face == b.nearest.face) return 0.5;
+  const double beyond_a = std::sqrt(other.frame(b.nearest.face).squared_distance(a.position)) - a.nearest.distance;
+  const double beyond_b = std::sqrt(other.frame(a.nearest.face).squared_distance(b.position)) - b.nearest.distance;
+  const double sum = beyond_a + beyond_b;
+  return sum > 0 ? std::clamp(beyond_a / sum, kAtEnds, 1 - kAtEnds) : 0.5;
+}
+
+Cut longest_edge(const Piece& piece) {
   double length[3];
   for (int i = 0; i < 3; ++i) length[i] = (piece[i].position - piece[(i + 1) % 3].position).squaredNorm();
-  return static_cast<int>(std::max_element(length, length + 3) - length);
+  return {static_cast<int>(std::max_element(length, length + 3) - length), 0.5};
+}
+
+Cut choose_cut(const Piece& piece, const TriangleTree& other) {
+  Cut cut = longest_edge(piece);
+  double longest = 0;
+  for (int i = 0; i < 3; ++i) {
+    const MeasuredPoint &a = piece[i], &b = piece[(i + 1) % 3];
+    const double length = (a.position - b.position).squaredNorm();
+    if (a.nearest.face == b.nearest.face || length <= longest) continue;
+    longest = length;
+    cut = {i, change_of_face(a, b, other)};
+  }
+  return cut;
 }
 
 double largest_distance(const Piece& piece) {
   return std::max({piece[0].nearest.distance, piece[1].nearest.distance, piece[2].nearest.distance});
 }
 
+// Moves the `count` items of the highest rank to the front; the others keep their order.
+template <class Ranked>
+void bring_forward(std::vector<Ranked>& items, std::size_t count) {
+  if (items.size() <= count) return;
+  const auto higher = [](const Ranked& x, const Ranked& y) {
+    return std::tie(y.rank, x.item) < std::tie(x.rank, y.item);
+  };
+  std::vector<Ranked> ordered = items;
+  const auto first_left = ordered.begin() + static_cast<std::ptrdiff_t>(count);
+  std::nth_element(ordered.begin(), first_left, ordered.end(), higher);
+  const auto others =
+      std::stable_partition(items.begin(), items.end(), [&](const Ranked& item) { return higher(item, *first_left); });
+  std::sort(items.begin(), others, higher);
+}
+
 }  // namespace
 
-HausdorffSearch::HausdorffSearch(const TriMesh& from, const TriMesh& to, const TriangleTree& tree, const Goal& goal)
-    : from_(from), to_(to), tree_(tree), goal_(goal), vertices_(from.vertices.size()), lower_(goal.start) {}
+HausdorffSearch::HausdorffSearch(const TriMesh& from, const TriangleTree& tree, const Goal& goal,
+                                 const Progress& progress)
+    : from_(from), tree_(tree), goal_(goal), progress_(progress), vertices_(from.vertices.size()), lower_(goal.start) {}
 
-void HausdorffSearch::run(const Progress& progress) {
-  const std::vector<RankedFace> unsettled = keep_unsettled(measure_blocks(progress));
-  for (std::size_t i = 0; i < unsettled.size() && !done(); ++i) {
-    if (i % kReportEvery == 0) {
-      report_progress(progress, "distance", static_cast<double>(i) / static_cast<double>(unsettled.size()));
-    }
-    if (settle(unsettled[i].bound)) continue;
-    const Piece piece = whole_face(unsettled[i].face);
-    if (!sandwiched(piece)) bisect(piece, unsettled[i].face);
+void HausdorffSearch::run() {
+  look_at_blocks();
+  // The most promising faces raise the lower bound; the others then go by in the order of the curve, so that neighbours
+  // find the same boxes in the cache.
+  bring_forward(unsettled_, kPromisingFaces);
+  for (std::size_t i = 0; i < unsettled_.size() && !done(); ++i) {
+    done_fraction_ = 0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(unsettled_.size());
+    if (!settle(unsettled_[i].rank)) divide(whole_face(unsettled_[i].item), unsettled_[i].item);
   }
 }
 
@@ -44,6 +93,7 @@ bool HausdorffSearch::settle(double bound) {
 }
 
 MeasuredPoint HausdorffSearch::measure(const Vec3& p, Index near, Index face) {
+  if (++measured_ % kReportEvery == 0) report_progress(progress_, "distance", done_fraction_);
   const MeasuredPoint point{p, tree_.nearest(p, near)};
   last_found_ = point.nearest.face;
   if (point.nearest.distance > lower_) {
@@ -68,72 +118,52 @@ Piece HausdorffSearch::whole_face(Index face) const {
   return piece;
 }
 
-// Measures the corners of all faces but those in blocks that cannot hold a larger distance; returns the former.
-std::vector<Index> HausdorffSearch::measure_blocks(const Progress& progress) {
+// Settles the blocks that cannot hold a larger distance, and the faces of the others as far as their corners do.
+void HausdorffSearch::look_at_blocks() {
   blocks_ = cut_into_blocks(from_, measure_extent(from_), kFacesPerBlock);
-  std::vector<RankedFace> ranked;
-  ranked.reserve(blocks_.blocks.size());
-  Index near = kNone;
-  for (Index b = 0; b < blocks_.blocks.size(); ++b) {
-    const FaceBlock& block = blocks_.blocks[b];
-    const NearestFace nearest = tree_.nearest(block.center, near);
-    near = nearest.face;
-    ranked.push_back({nearest.distance + block.radius, b});
+  std::vector<Ranked> ranked;
+  std::vector<NearestFace> nearest;
+  for (const FaceBlock& block : blocks_.blocks) {
+    nearest.push_back(tree_.nearest(block.center, nearest.empty() ? kNone : nearest.back().face));
+    ranked.push_back({nearest.back().distance, static_cast<Index>(ranked.size())});
   }
-  std::sort(ranked.begin(), ranked.end(), [](const RankedFace& x, const RankedFace& y) {
-    return std::tie(y.bound, x.face) < std::tie(x.bound, y.face);
-  });
-  std::vector<Index> faces;
+  bring_forward(ranked, kPromisingBlocks);
   for (std::size_t i = 0; i < ranked.size() && !done(); ++i) {
-    if (i % kReportEvery == 0) report_progress(progress, "corners", static_cast<double>(i) / static_cast<double>(ranked.size()));
-    if (!settle(ranked[i].bound)) measure_block(blocks_.blocks[ranked[i].face], faces);
+    done_fraction_ = 0.5 * static_cast<double>(i) / static_cast<double>(ranked.size());
+    const FaceBlock& block = blocks_.blocks[ranked[i].item];
+    if (!settle(ranked[i].rank + block.radius)) look_at_faces(block, nearest[ranked[i].item].face);
   }
-  return faces;
 }
 
-void HausdorffSearch::measure_block(const FaceBlock& block, std::vector<Index>& faces) {
+void HausdorffSearch::look_at_faces(const FaceBlock& block, Index near) {
+  last_found_ = near;
   for (Index i = block.first; i < block.last; ++i) {
     const Index face = blocks_.order[i];
     for (const Index v : from_.faces[face]) measure_vertex(v, face);
-    faces.push_back(face);
-  }
-}
-
-// The faces whose corners do not settle them, those with the largest bounds first.
-std::vector<HausdorffSearch::RankedFace> HausdorffSearch::keep_unsettled(const std::vector<Index>& faces) {
-  std::vector<RankedFace> unsettled;
-  for (const Index face : faces) {
     const double bound = upper_bound(whole_face(face), tree_, good_enough());
-    if (!settle(bound)) unsettled.push_back({bound, face});
+    if (!settle(bound)) unsettled_.push_back({bound, face});
   }
-  std::sort(unsettled.begin(), unsettled.end(), [](const RankedFace& x, const RankedFace& y) {
-    return std::tie(y.bound, x.face) < std::tie(x.bound, y.face);
-  });
-  return unsettled;
 }
 
-bool HausdorffSearch::sandwiched(const Piece& piece) {
-  if (!sandwich_) sandwich_.emplace(to_, tree_);
-  if (!sandwich_->available()) return false;
-  const double s = good_enough();
-  return sandwich_->within({piece[0].position, piece[1].position, piece[2].position}, s) && settle(s);
-}
-
-void HausdorffSearch::bisect(const Piece& piece, Index face) {
-  std::vector<Piece> open = {piece};
+void HausdorffSearch::divide(const Piece& piece, Index face) {
+  struct OpenPiece {
+    Piece piece;
+    int cuts;
+  };
+  std::vector<OpenPiece> open = {{piece, 0}};
   while (!open.empty() && !done()) {
-    const Piece whole = open.back();
+    const auto [whole, cuts] = open.back();
     open.pop_back();
     if (settle(upper_bound(whole, tree_, good_enough()))) continue;
-    const int a = longest_edge(whole), b = (a + 1) % 3;
-    const MeasuredPoint& closer = whole[a].nearest.distance < whole[b].nearest.distance ? whole[a] : whole[b];
-    const MeasuredPoint middle =
-        measure(0.5 * (whole[a].position + whole[b].position), closer.nearest.face, face);
-    Piece halves[2] = {whole, whole};
-    halves[0][a] = halves[1][b] = middle;
-    const bool second_farther = largest_distance(halves[1]) > largest_distance(halves[0]);
-    open.push_back(halves[second_farther ? 0 : 1]);
-    open.push_back(halves[second_farther ? 1 : 0]);
+    const Cut cut = cuts < kCutsAtFaces ? choose_cut(whole, tree_) : longest_edge(whole);
+    const MeasuredPoint &a = whole[cut.first], &b = whole[(cut.first + 1) % 3];
+    const MeasuredPoint& closer = a.nearest.distance < b.nearest.distance ? a : b;
+    const MeasuredPoint middle = measure(a.position + cut.share * (b.position - a.position), closer.nearest.face, face);
+    Piece parts[2] = {whole, whole};
+    parts[0][cut.first] = parts[1][(cut.first + 1) % 3] = middle;
+    const bool second_farther = largest_distance(parts[1]) > largest_distance(parts[0]);
+    open.push_back({parts[second_farther ? 0 : 1], cuts + 1});
+    open.push_back({parts[second_farther ? 1 : 0], cuts + 1});
   }
 }
 

@@ -7,7 +7,6 @@
 
 #include "quality/distance_bounds.h"
 #include "quality/face_blocks.h"
-#include "quality/sandwich.h"
 
 namespace vmesh {
 
@@ -20,10 +19,10 @@ class HausdorffSearch {
     bool stop_above_start = false;  ///< the first larger distance ends the search
   };
 
-  /// Keeps references. `tree` is over the faces of `to`.
-  HausdorffSearch(const TriMesh& from, const TriMesh& to, const TriangleTree& tree, const Goal& goal);
+  /// Keeps references. `to` holds the faces of the other mesh.
+  HausdorffSearch(const TriMesh& from, const TriangleTree& to, const Goal& goal, const Progress& progress);
 
-  void run(const Progress& progress);
+  void run();
 
   /// Bounds of the search, without room for rounding. `lower` is the start when nothing larger was found.
   double lower() const { return lower_; }
@@ -33,9 +32,9 @@ class HausdorffSearch {
   Index farthest_face() const { return farthest_face_; }
 
  private:
-  struct RankedFace {
-    double bound;
-    Index face;
+  struct Ranked {
+    double rank;
+    Index item;
   };
 
   bool done() const { return goal_.stop_above_start && farthest_; }
@@ -44,19 +43,19 @@ class HausdorffSearch {
   MeasuredPoint measure(const Vec3& p, Index near, Index face);
   const NearestFace& measure_vertex(Index v, Index face);
   Piece whole_face(Index face) const;
-  std::vector<Index> measure_blocks(const Progress& progress);
-  void measure_block(const FaceBlock& block, std::vector<Index>& faces);
-  std::vector<RankedFace> keep_unsettled(const std::vector<Index>& faces);
-  bool sandwiched(const Piece& piece);
-  void bisect(const Piece& piece, Index face);
+  void look_at_blocks();
+  void look_at_faces(const FaceBlock& block, Index near);
+  void divide(const Piece& piece, Index face);
 
   const TriMesh& from_;
-  const TriMesh& to_;
   const TriangleTree& tree_;
   Goal goal_;
+  const Progress& progress_;
+  double done_fraction_ = 0;
+  std::size_t measured_ = 0;
   FaceBlocks blocks_;
   std::vector<NearestFace> vertices_;
-  std::optional<Sandwich> sandwich_;
+  std::vector<Ranked> unsettled_;  // faces by upper bound
   double lower_, upper_ = 0;
   std::optional<MeasuredPoint> farthest_;
   Index farthest_face_ = kNone;

@@ -37,6 +37,8 @@ class TriangleFrame {
   }
 
  private:
+  static constexpr double kNothing = 1e-100;  // mm; squares of less vanish
+
   void set(const Vec3& first, const Vec3& last, const Vec3& top) {
     origin_ = first;
     base_ = (last - first).norm();
@@ -45,6 +47,7 @@ class TriangleFrame {
     Vec3 rise = top - first;
     for (int i = 0; i < 2; ++i) rise -= rise.dot(along_) * along_;  // once is not square enough for a thin triangle
     height_ = rise.norm();
+    if (height_ < kNothing) height_ = 0;
     up_ = height_ > 0 ? Vec3(rise / height_) : Vec3(Vec3::Zero());
   }
 

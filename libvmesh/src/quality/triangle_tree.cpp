@@ -99,11 +99,13 @@ struct TriangleTree::Embree {
     device = rtcNewDevice(kDeviceConfig);
     if (!device) fail(nullptr);
     scene = rtcNewScene(device);
+    // Built three times as fast, searched hardly slower.
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_LOW);
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.faces.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), mesh.faces.size()));
     if (!positions || !indices) {
       rtcReleaseGeometry(geometry);
       fail(device);
@@ -113,6 +115,7 @@ struct TriangleTree::Embree {
       for (int d = 0; d < 3; ++d) *positions++ = used ? static_cast<float>(p[d] - center[d]) : 0;
     }
     for (const Triangle& face : mesh.faces) indices = std::copy(face.begin(), face.end(), indices);
+    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -135,9 +138,7 @@ TriangleTree::TriangleTree(const TriMesh& mesh)
 
 TriangleTree::~TriangleTree() = default;
 
-double TriangleTree::float_slack(const Vec3& local) const {
-  return kFloatSlack * (half_diagonal_ + local.lpNorm<1>());
-}
+double TriangleTree::float_slack(const Vec3& local) const { return kFloatSlack * (half_diagonal_ + local.lpNorm<1>()); }
 
 NearestFace TriangleTree::nearest(const Vec3& p, Index near) const {
   const Vec3 local = p - center_;

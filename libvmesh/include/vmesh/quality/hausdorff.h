@@ -47,8 +47,8 @@ struct HausdorffOptions {
 /// size of the meshes (2^-40 of their coordinates and extents); Cancelled when the progress asks to stop.
 ///
 /// Branch and bound over the faces of `from`: distances at corners bound a triangle's from both sides; what remains is
-/// bisected. Bounds after Tang, Lee, Kim, "Interactive Hausdorff distance computation for general polygonal models",
-/// 2009, and a test that a copy of the face on either side misses a closed mesh that passes between them.
+/// bisected. After Tang, Lee, Kim, "Interactive Hausdorff distance computation for general polygonal models", 2009; the
+/// upper bounds use that the distance from one face is convex, and so are weighted means of the distances from several.
 OneSidedHausdorff one_sided_hausdorff(const TriMesh& from, const TriMesh& to, const HausdorffOptions& options = {});
 
 /// Both directions, each to the tolerance.
