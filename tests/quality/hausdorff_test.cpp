@@ -81,6 +81,27 @@ TEST(Hausdorff, OfAMeshFromItselfAndItsSubdivisionIsZero) {
   }
 }
 
+TEST(Hausdorff, OfCoplanarAndParallelGridsIsFoundAlthoughNoCornersMeet) {
+  const auto grid = [](Index n, double z) {
+    TriMesh mesh;
+    for (Index i = 0; i <= n; ++i) {
+      for (Index j = 0; j <= n; ++j) mesh.vertices.emplace_back(4.0 * i / n, 4.0 * j / n, z);
+    }
+    for (Index i = 0; i < n; ++i) {
+      for (Index j = 0; j < n; ++j) {
+        const Index a = i * (n + 1) + j, b = a + n + 1;
+        mesh.faces.insert(mesh.faces.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
+      }
+    }
+    return mesh;
+  };
+  for (const double apart : {0.0, 1e-3, 1.0}) {
+    const Hausdorff found = hausdorff(grid(12, 0), grid(17, apart), to(1e-6));
+    expect_interval(found.forward, apart, 1e-6);
+    expect_interval(found.backward, apart, 1e-6);
+  }
+}
+
 TEST(Hausdorff, OfShiftedBoxesIsTheShift) {
   for (const Vec3& by : {Vec3(0.25, 0, 0), Vec3(3, 4, 0), Vec3(-7, 0, 0)}) {
     for (const double tolerance : {1e-2, 1e-4, 1e-8}) {

@@ -82,6 +82,12 @@ double three_face_bound(const DistanceTable& table, double worse) {
 
 }  // namespace
 
+double single_face_bound(const Piece& piece, const TriangleFrame& face) {
+  double squared = 0;
+  for (const MeasuredPoint& corner : piece) squared = std::max(squared, face.squared_distance(corner.position));
+  return std::sqrt(squared);
+}
+
 double upper_bound(const Piece& piece, const TriangleTree& other, double good_enough) {
   double best = lipschitz_bound(piece);
   if (best <= good_enough) return best;

@@ -19,4 +19,7 @@ using Piece = std::array<MeasuredPoint, 3>;
 /// until one is at most `good_enough`.
 double upper_bound(const Piece& piece, const TriangleTree& other, double good_enough);
 
+/// The largest distance of a corner from one face. As that distance is convex, no other point of `piece` is farther.
+double single_face_bound(const Piece& piece, const TriangleFrame& face);
+
 }  // namespace vmesh

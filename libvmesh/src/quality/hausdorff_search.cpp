@@ -9,45 +9,45 @@ namespace {
 constexpr Index kFacesPerBlock = 32;
 constexpr std::size_t kPromisingBlocks = 16;
 constexpr std::size_t kPromisingFaces = 64;
-constexpr int kCutsAtFaces = 16;  // of a piece; then its longest edge is halved, which is sure to come to an end
+// Pieces are halved at first, which is cheaper where
+// meshes are apart; then cut at the edges of the other mesh, without which two meshes that
+// coincide would never part; at last halved, which is sure to come to an end.
+constexpr int kFirstCutAtEdge = 5;
+constexpr int kLastCutAtEdge = 24;
+constexpr double kLeastDepth = 0.25;        // of a part that is cut off at an edge, in tolerances
 constexpr std::size_t kReportEvery = 4096;  // points
 
-// Where to cut a piece: the edge from corner `first` to the next one, and the place on it.
-struct Cut {
-  int first = 0;
-  double share = 0.5;
-};
-
-// Where the closest face of one corner takes over from that of the next, if all distances were linear: among coplanar
-// faces that is where one ends and the other begins, and the parts lie on one face each. The middle where corners share
-// their closest face.
-double change_of_face(const MeasuredPoint& a, const MeasuredPoint& b, const TriangleTree& other) {
-  constexpr double kAtEnds = 1.0 / 16;
-  if (a.nearest.face == b.nearest.face) return 0.5;
-  const double beyond_a = std::sqrt(other.frame(b.nearest.face).squared_distance(a.position)) - a.nearest.distance;
-  const double beyond_b = std::sqrt(other.frame(a.nearest.face).squared_distance(b.position)) - b.nearest.distance;
-  const double sum = beyond_a + beyond_b;
-  return sum > 0 ? std::clamp(beyond_a / sum, kAtEnds, 1 - kAtEnds) : 0.5;
-}
-
-Cut longest_edge(const Piece& piece) {
+PieceCut halve_longest_edge(const Piece& piece) {
   double length[3];
   for (int i = 0; i < 3; ++i) length[i] = (piece[i].position - piece[(i + 1) % 3].position).squaredNorm();
-  return {static_cast<int>(std::max_element(length, length + 3) - length), 0.5};
+  return {static_cast<int>(std::max_element(length, length + 3) - length), 0.5, 1};
 }
 
-Cut choose_cut(const Piece& piece, const TriangleTree& other) {
-  Cut cut = longest_edge(piece);
-  double longest = 0;
-  for (int i = 0; i < 3; ++i) {
-    const MeasuredPoint &a = piece[i], &b = piece[(i + 1) % 3];
-    const double length = (a.position - b.position).squaredNorm();
-    if (a.nearest.face == b.nearest.face || length <= longest) continue;
-    longest = length;
-    cut = {i, change_of_face(a, b, other)};
+// Along the edge of `face` that divides the piece best: parts that lie above one face alone have their largest distance
+// from it at a corner. Nothing when no part would be deeper than `least`.
+std::optional<PieceCut> cut_at_edge(const Piece& piece, const TriangleFrame& face, double least) {
+  std::array<double, 3> inside[3];
+  for (int i = 0; i < 3; ++i) inside[i] = face.distances_from_edges(piece[i].position);
+  int edge = -1;
+  for (int e = 0; e < 3; ++e) {
+    const auto [low, high] = std::minmax({inside[0][e], inside[1][e], inside[2][e]});
+    const double depth = std::min(-low, high);
+    if (depth > least) edge = e, least = depth;
   }
-  return cut;
+  if (edge < 0) return std::nullopt;
+  // The corner that is alone on its side.
+  int apex = 0;
+  for (int i = 1; i < 3; ++i) {
+    const bool positive = inside[i][edge] > 0;
+    if (positive != (inside[(i + 1) % 3][edge] > 0) && positive != (inside[(i + 2) % 3][edge] > 0)) apex = i;
+  }
+  const auto share = [&](int other) {
+    return std::clamp(inside[apex][edge] / (inside[apex][edge] - inside[other][edge]), 0.0, 1.0);
+  };
+  return PieceCut{apex, share((apex + 1) % 3), share((apex + 2) % 3)};
 }
+
+Vec3 middle_of(const Piece& piece) { return (piece[0].position + piece[1].position + piece[2].position) / 3; }
 
 double largest_distance(const Piece& piece) {
   return std::max({piece[0].nearest.distance, piece[1].nearest.distance, piece[2].nearest.distance});
@@ -81,7 +81,7 @@ void HausdorffSearch::run() {
   bring_forward(unsettled_, kPromisingFaces);
   for (std::size_t i = 0; i < unsettled_.size() && !done(); ++i) {
     done_fraction_ = 0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(unsettled_.size());
-    if (!settle(unsettled_[i].rank)) divide(whole_face(unsettled_[i].item), unsettled_[i].item);
+    if (!settle(unsettled_[i].rank)) divide(unsettled_[i].item);
   }
 }
 
@@ -145,26 +145,43 @@ void HausdorffSearch::look_at_faces(const FaceBlock& block, Index near) {
   }
 }
 
-void HausdorffSearch::divide(const Piece& piece, Index face) {
-  struct OpenPiece {
-    Piece piece;
-    int cuts;
-  };
-  std::vector<OpenPiece> open = {{piece, 0}};
+// Divides a face until every part is settled.
+void HausdorffSearch::divide(Index face) {
+  std::vector<OpenPiece> open = {{whole_face(face), 0}};
   while (!open.empty() && !done()) {
-    const auto [whole, cuts] = open.back();
+    const auto [piece, cuts] = open.back();
     open.pop_back();
-    if (settle(upper_bound(whole, tree_, good_enough()))) continue;
-    const Cut cut = cuts < kCutsAtFaces ? choose_cut(whole, tree_) : longest_edge(whole);
-    const MeasuredPoint &a = whole[cut.first], &b = whole[(cut.first + 1) % 3];
-    const MeasuredPoint& closer = a.nearest.distance < b.nearest.distance ? a : b;
-    const MeasuredPoint middle = measure(a.position + cut.share * (b.position - a.position), closer.nearest.face, face);
-    Piece parts[2] = {whole, whole};
-    parts[0][cut.first] = parts[1][(cut.first + 1) % 3] = middle;
-    const bool second_farther = largest_distance(parts[1]) > largest_distance(parts[0]);
-    open.push_back({parts[second_farther ? 0 : 1], cuts + 1});
-    open.push_back({parts[second_farther ? 1 : 0], cuts + 1});
+    if (settle(upper_bound(piece, tree_, good_enough()))) continue;
+    std::optional<PieceCut> cut;
+    const bool touching = largest_distance(piece) <= goal_.tolerance;
+    if ((touching || cuts >= kFirstCutAtEdge) && cuts < kLastCutAtEdge) {
+      const Index below = measure(middle_of(piece), piece[0].nearest.face, face).nearest.face;
+      if (settle(single_face_bound(piece, tree_.frame(below)))) continue;
+      cut = cut_at_edge(piece, tree_.frame(below), kLeastDepth * goal_.tolerance);
+    }
+    push_parts(piece, cut ? *cut : halve_longest_edge(piece), cuts + 1, face, open);
   }
+}
+
+// Appends the two or three triangles that a cut makes, the one with the largest distance last.
+void HausdorffSearch::push_parts(const Piece& piece, const PieceCut& cut, int cuts, Index face,
+                                 std::vector<OpenPiece>& open) {
+  const MeasuredPoint &a = piece[cut.apex], &b = piece[(cut.apex + 1) % 3], &c = piece[(cut.apex + 2) % 3];
+  const MeasuredPoint ab = measure_between(a, b, cut.next, face), ac = measure_between(a, c, cut.after_next, face);
+  const auto first = static_cast<std::ptrdiff_t>(open.size());
+  open.push_back({{a, ab, ac}, cuts});
+  if (cut.next < 1) open.push_back({{ab, b, c}, cuts});
+  if (cut.after_next < 1) open.push_back({{ab, c, ac}, cuts});
+  std::sort(open.begin() + first, open.end(), [](const OpenPiece& x, const OpenPiece& y) {
+    return largest_distance(x.piece) < largest_distance(y.piece);
+  });
+}
+
+MeasuredPoint HausdorffSearch::measure_between(const MeasuredPoint& a, const MeasuredPoint& b, double share,
+                                               Index face) {
+  if (share == 1) return b;
+  const MeasuredPoint& closer = a.nearest.distance < b.nearest.distance ? a : b;
+  return measure(a.position + share * (b.position - a.position), closer.nearest.face, face);
 }
 
 }  // namespace vmesh

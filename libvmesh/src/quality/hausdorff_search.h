@@ -10,6 +10,13 @@
 
 namespace vmesh {
 
+/// How a piece is cut in two: its corner `apex` on one side, the others on the other; the places where the edges to the
+/// next two corners are cut, 1 at a corner.
+struct PieceCut {
+  int apex = 0;
+  double next = 1, after_next = 1;
+};
+
 /// The search for the point of a mesh that is farthest from another mesh.
 class HausdorffSearch {
  public:
@@ -37,6 +44,11 @@ class HausdorffSearch {
     Index item;
   };
 
+  struct OpenPiece {
+    Piece piece;
+    int cuts;  // that led to it
+  };
+
   bool done() const { return goal_.stop_above_start && farthest_; }
   double good_enough() const { return lower_ + goal_.tolerance; }
   bool settle(double bound);
@@ -45,7 +57,9 @@ class HausdorffSearch {
   Piece whole_face(Index face) const;
   void look_at_blocks();
   void look_at_faces(const FaceBlock& block, Index near);
-  void divide(const Piece& piece, Index face);
+  void divide(Index face);
+  void push_parts(const Piece& piece, const PieceCut& cut, int cuts, Index face, std::vector<OpenPiece>& open);
+  MeasuredPoint measure_between(const MeasuredPoint& a, const MeasuredPoint& b, double share, Index face);
 
   const TriMesh& from_;
   const TriangleTree& tree_;

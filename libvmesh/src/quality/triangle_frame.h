@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "vmesh/mesh/tri_mesh.h"
 
@@ -34,6 +36,15 @@ class TriangleFrame {
     double x = r.dot(along_), y = r.dot(up_);
     clamp(x, y);
     return (r - x * along_ - y * up_).squaredNorm();
+  }
+
+  /// How far the foot of `p` on the triangle's plane is from its edges, positive on the inner side.
+  std::array<double, 3> distances_from_edges(const Vec3& p) const {
+    const Vec3 r = p - origin_;
+    const double x = r.dot(along_), y = r.dot(up_), rest = base_ - apex_;
+    if (height_ == 0) return {0, 0, 0};
+    return {y, (height_ * x - apex_ * y) / std::hypot(height_, apex_),
+            (height_ * (base_ - x) - rest * y) / std::hypot(height_, rest)};
   }
 
  private:
