@@ -25,11 +25,6 @@ class FacePairTest {
     for (const Vec3& v : mesh.vertices) points_.push_back(to_point(v));
   }
 
-  bool degenerate(Index face) const {
-    const auto& [a, b, c] = mesh_.faces[face];
-    return CGAL::collinear(points_[a], points_[b], points_[c]);
-  }
-
   bool intersect(Index f, Index g) const {
     const Triangle& x = mesh_.faces[f];
     const Triangle& y = mesh_.faces[g];
@@ -72,8 +67,13 @@ std::vector<std::pair<Index, Index>> self_intersections(const TriMesh& mesh) {
   const FacePairTest test(mesh);
   std::vector<Box> boxes;
   boxes.reserve(mesh.faces.size());
+  const std::vector<Index> degenerate = degenerate_faces(mesh);
+  auto skipped = degenerate.begin();
   for (Index f = 0; f < mesh.faces.size(); ++f) {
-    if (test.degenerate(f)) continue;
+    if (skipped != degenerate.end() && *skipped == f) {
+      ++skipped;
+      continue;
+    }
     CGAL::Bbox_3 box;
     for (const Index v : mesh.faces[f]) box += to_point(mesh.vertices[v]).bbox();
     boxes.emplace_back(box, f);
