@@ -1,6 +1,6 @@
 // The guaranteed Hausdorff distance against CGAL's bounded-error one, and against VTK's distance at vertices, on the
-// same pairs in one run, one thread each. Prints a table in Markdown. Pairs come from the shared test data; each
-// surface is paired with its own decimation to 13 % of the edges.
+// same pairs in one run, one thread each, CPU time and memory. Prints a table in Markdown. Pairs come from the shared
+// test data; each surface is paired with its own decimation to 13 % of the edges.
 //
 //   bench_hausdorff [--runs N] [--ours]
 #include "vmesh/quality/hausdorff.h"
@@ -12,7 +12,10 @@
 #include <filesystem>
 #include <functional>
 
+#include <malloc.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
@@ -39,7 +42,25 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-double median_ms(int runs, const std::function<void()>& work) {
+struct Cost {
+  double ms = 0;  // median
+  double mb = 0;  // most memory above what was there before
+};
+
+// Most memory that a child process of ours had in use, MB.
+double peak_mb(const std::function<void()>& work) {
+  malloc_trim(0);
+  const pid_t child = fork();
+  if (child == 0) {
+    work();
+    _exit(0);
+  }
+  rusage usage{};
+  wait4(child, nullptr, 0, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+Cost measure(int runs, const std::function<void()>& work) {
   std::vector<double> times;
   for (int i = 0; i < runs; ++i) {
     const double start = cpu_seconds();
@@ -47,7 +68,7 @@ double median_ms(int runs, const std::function<void()>& work) {
     times.push_back(1e3 * (cpu_seconds() - start));
   }
   std::nth_element(times.begin(), times.begin() + runs / 2, times.end());
-  return times[static_cast<std::size_t>(runs / 2)];
+  return {times[static_cast<std::size_t>(runs / 2)], peak_mb(work) - peak_mb([] {})};
 }
 
 Pair decimated_pair(const std::string& name, const TriMesh& surface) {
@@ -96,22 +117,26 @@ struct Settings {
   bool peers = true;
 };
 
+void print_peer(double distance, const Cost& cost, const Cost& ours) {
+  std::printf(" %.5f | %.1f | %.1f | %.1f |", distance, cost.ms, cost.mb, cost.ms / ours.ms);
+}
+
 void measure_direction(const std::string& name, const TriMesh& from, const TriMesh& to, const Settings& settings) {
   HausdorffOptions options;
   options.tolerance = kTolerance;
   OneSidedHausdorff found;
-  const double ours = median_ms(settings.runs, [&] { found = one_sided_hausdorff(from, to, options); });
-  std::printf("| %s | %zu | %zu | %.5f - %.5f | %.1f |", name.c_str(), from.faces.size(), to.faces.size(), found.lower,
-              found.upper, ours);
+  const Cost ours = measure(settings.runs, [&] { found = one_sided_hausdorff(from, to, options); });
+  std::printf("| %s | %zu | %zu | %.6f - %.6f | %.1f | %.1f |", name.c_str(), from.faces.size(), to.faces.size(),
+              found.lower, found.upper, ours.ms, ours.mb);
   if (settings.peers) {
     const bench::CgalMesh cgal_from(from), cgal_to(to);
     double distance = 0;
-    const double cgal =
-        median_ms(settings.runs, [&] { distance = cgal_from.bounded_error_hausdorff(cgal_to, kTolerance); });
-    std::printf(" %.5f | %.1f | %.1f |", distance, cgal, cgal / ours);
+    const Cost cgal =
+        measure(settings.runs, [&] { distance = cgal_from.bounded_error_hausdorff(cgal_to, kTolerance); });
+    print_peer(distance, cgal, ours);
     if (bench::have_vtk()) {
-      const double vtk = median_ms(settings.runs, [&] { distance = bench::vtk_vertex_distance(from, to); });
-      std::printf(" %.5f | %.1f | %.1f |", distance, vtk, vtk / ours);
+      const Cost vtk = measure(settings.runs, [&] { distance = bench::vtk_vertex_distance(from, to); });
+      print_peer(distance, vtk, ours);
     }
   }
   std::printf("\n");
@@ -120,9 +145,11 @@ void measure_direction(const std::string& name, const TriMesh& from, const TriMe
 
 void print_header(const Settings& settings) {
   const bool vtk = settings.peers && bench::have_vtk();
-  std::printf("| from -> to | faces | faces | interval, mm | ms |%s%s\n",
-              settings.peers ? " CGAL, mm | ms | ratio |" : "", vtk ? " VTK at vertices, mm | ms | ratio |" : "");
-  std::printf("|---|---|---|---|---|%s%s\n", settings.peers ? "---|---|---|" : "", vtk ? "---|---|---|" : "");
+  std::printf("| from -> to | faces | faces | interval, mm | ms | MB |%s%s\n",
+              settings.peers ? " CGAL, mm | ms | MB | times ours |" : "",
+              vtk ? " VTK at vertices, mm | ms | MB | times ours |" : "");
+  std::printf("|---|---|---|---|---|---|%s%s\n", settings.peers ? "---|---|---|---|" : "",
+              vtk ? "---|---|---|---|" : "");
 }
 
 Settings parse(int argc, char** argv) {

@@ -1,10 +1,10 @@
 // What it costs to measure all faces of a surface of 178,000 faces, to summarize the measures, and to find defects.
-#include "vmesh/quality/quality_report.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <benchmark/benchmark.h>
+
+#include "vmesh/quality/quality_report.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 #include "vmesh/quality/hausdorff.h"
 
 #include <cmath>
-#include <string>
+#include <sstream>
 
 #include "vmesh/core/error.h"
 
@@ -21,8 +21,10 @@ double size_of(const Extent& a, const Extent& b) {
 void check_tolerance(double tolerance, double size) {
   if (!(tolerance > 0)) throw InvalidInput("the tolerance of a Hausdorff distance must be larger than 0");
   if (tolerance < kFinestTolerance * size) {
-    throw InvalidInput("a tolerance of " + std::to_string(tolerance) + " mm is finer than double precision can tell " +
-                       "for meshes of this size and distance from the origin");
+    std::ostringstream text;
+    text << "a tolerance of " << tolerance << " mm is finer than double precision can tell for meshes of this size and "
+         << "distance from the origin; ask for " << kFinestTolerance * size << " mm or more";
+    throw InvalidInput(text.str());
   }
 }
 
