@@ -9,9 +9,8 @@ namespace {
 constexpr Index kFacesPerBlock = 32;
 constexpr std::size_t kPromisingBlocks = 16;
 constexpr std::size_t kPromisingFaces = 64;
-// Pieces are halved at first, which is cheaper where
-// meshes are apart; then cut at the edges of the other mesh, without which two meshes that
-// coincide would never part; at last halved, which is sure to come to an end.
+// Pieces are halved at first, which is cheaper where meshes are apart; then cut at the edges of the other mesh, without
+// which two meshes that coincide would never part; at last halved, which is sure to come to an end.
 constexpr int kFirstCutAtEdge = 5;
 constexpr int kLastCutAtEdge = 24;
 constexpr double kLeastDepth = 0.25;        // of a part that is cut off at an edge, in tolerances

@@ -30,9 +30,8 @@ Vec3 center_of(const TriMesh& mesh, Index face) {
 FaceMeasures measure_faces(const TriMesh& mesh) {
   check_faces(mesh);
   FaceMeasures all;
-  for_each_face_measure(all, [&](const char*, std::vector<double>& values, double, double) {
-    values.resize(mesh.faces.size());
-  });
+  for_each_face_measure(
+      all, [&](const char*, std::vector<double>& values, double, double) { values.resize(mesh.faces.size()); });
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const auto& [a, b, c] = mesh.faces[f];
     const TriangleMeasures one = measure_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
