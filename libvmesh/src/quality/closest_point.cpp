@@ -14,7 +14,7 @@ ClosestPointIndex& ClosestPointIndex::operator=(ClosestPointIndex&&) noexcept = 
 ClosestPoint ClosestPointIndex::closest(const Vec3& p, Index near) const {
   if (!within_reach(p))
     throw InvalidInput("the closest point of a point that is not finite or farther than 1e15 mm is not defined");
-  const NearestFace found = tree_->nearest(p, near);
+  const NearestFace found = tree_->nearest(p, near < tree_->face_count() ? near : kNone);
   return {tree_->frame(found.face).closest(p), found.face, found.distance};
 }
 

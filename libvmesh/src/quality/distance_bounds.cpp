@@ -55,13 +55,19 @@ double single_face_bound(const DistanceTable& table) {
   return best;
 }
 
+// No weights do better than this: the weighted mean's largest value is at least its average over the corners.
+double limit_of_means(const DistanceTable& table) {
+  double least = table.d.col(0).sum();
+  for (int t = 1; t < table.faces; ++t) least = std::min(least, table.d.col(t).sum());
+  return least / 3;
+}
+
 double mean_bound(const DistanceTable& table, int s, int t, double weight) {
   return (weight * table.d.col(s) + (1 - weight) * table.d.col(t)).maxCoeff();
 }
 
-// The least over all weights of two faces: where two corners' means are equal, or at one face alone.
-double two_face_bound(const DistanceTable& table, int s, int t) {
-  double best = std::min(mean_bound(table, s, t, 0), mean_bound(table, s, t, 1));
+// The least over all weights of two faces: where two corners' means are equal, unless one face alone does better.
+double two_face_bound(const DistanceTable& table, int s, int t, double best) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
     const double gain = (table.d(i, s) - table.d(j, s)) - (table.d(i, t) - table.d(j, t));
@@ -93,9 +99,9 @@ double upper_bound(const Piece& piece, const TriangleTree& other, double good_en
   if (best <= good_enough) return best;
   const DistanceTable table = make_table(piece, other);
   best = std::min(best, single_face_bound(table));
-  if (best <= good_enough || table.faces == 1) return best;
+  if (best <= good_enough || table.faces == 1 || limit_of_means(table) > good_enough) return best;
   for (int s = 0; s < table.faces && best > good_enough; ++s) {
-    for (int t = s + 1; t < table.faces; ++t) best = std::min(best, two_face_bound(table, s, t));
+    for (int t = s + 1; t < table.faces; ++t) best = two_face_bound(table, s, t, best);
   }
   return best > good_enough && table.faces == 3 ? three_face_bound(table, best) : best;
 }

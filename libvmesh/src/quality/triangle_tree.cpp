@@ -65,11 +65,6 @@ struct NearestSearch {
   }
 };
 
-bool collect(RTCPointQueryFunctionArguments* arguments) {
-  static_cast<std::vector<Index>*>(arguments->userPtr)->push_back(arguments->primID);
-  return false;
-}
-
 }  // namespace
 
 Extent measure_extent(const TriMesh& mesh) {
@@ -149,14 +144,6 @@ NearestFace TriangleTree::nearest(const Vec3& p, Index near) const {
   rtcInitPointQueryContext(&context);
   rtcPointQuery(embree_->scene, &query, &context, NearestSearch::visit, &search);
   return {search.face, std::sqrt(search.squared)};
-}
-
-void TriangleTree::faces_in_ball(const Vec3& center, double radius, std::vector<Index>& faces) const {
-  const Vec3 local = center - center_;
-  RTCPointQuery query = point_query(local, radius + float_slack(local));
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(embree_->scene, &query, &context, collect, &faces);
 }
 
 }  // namespace vmesh

@@ -30,7 +30,7 @@ struct Extent {
 };
 Extent measure_extent(const TriMesh& mesh);
 
-/// The faces of a mesh in a tree of boxes, for closest points and for what is in a ball.
+/// The faces of a mesh in a tree of boxes, for closest points.
 class TriangleTree {
  public:
   explicit TriangleTree(const TriMesh& mesh);
@@ -41,9 +41,7 @@ class TriangleTree {
   /// The face closest to `p`. `near`: a face that bounds the search.
   NearestFace nearest(const Vec3& p, Index near = kNone) const;
 
-  /// The faces that may come within `radius` of `center`, some farther ones among them, in no particular order.
-  void faces_in_ball(const Vec3& center, double radius, std::vector<Index>& faces) const;
-
+  std::size_t face_count() const { return frames_.size(); }
   const TriangleFrame& frame(Index face) const { return frames_[face]; }
   const Extent& extent() const { return extent_; }
 
