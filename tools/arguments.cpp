@@ -235,7 +235,7 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
       ->check(in_range(1e-12, 1e6))
       ->capture_default_str();
   verb.add_option("--samples", arguments.samples, "points on each surface for mean, RMS and percentiles")
-      ->check(in_range<std::size_t>(1, 1'000'000'000))
+      ->check(in_range<std::size_t>(1, 10'000'000))
       ->capture_default_str();
   verb.add_option("--require", arguments.require,
                   "exit with 1 unless all of these hold, separated by commas: " + describe_requirements())

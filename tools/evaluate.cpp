@@ -56,9 +56,8 @@ ReferenceComparison compare(const TriMesh& mesh, const ClosestPointIndex& index,
   result.faces = reference.faces.size();
   result.tolerance_mm = arguments.tolerance_mm;
   result.hausdorff = hausdorff(mesh, reference, {arguments.tolerance_mm, progress});
-  stop_if_interrupted();
-  result.forward = sample_distance(mesh, reference_index, arguments.samples);
-  result.backward = sample_distance(reference, index, arguments.samples);
+  result.forward = sample_distance(mesh, reference_index, arguments.samples, progress);
+  result.backward = sample_distance(reference, index, arguments.samples, progress);
   return result;
 }
 

@@ -87,6 +87,11 @@ TEST(SampledDistance, RefusesBadInput) {
   EXPECT_THROW(sample_surface(bad, 10), InvalidInput);
 }
 
+TEST(SampledDistance, StopsWhenAsked) {
+  const auto stop = [](std::string_view, double) { return false; };
+  EXPECT_THROW(sample_distance(cube(), ClosestPointIndex(cube()), 10, stop), Cancelled);
+}
+
 TEST(VertexDistances, AreOnePerVertex) {
   TriMesh mesh = moved(cube(), {3, 0, 0});
   mesh.vertices.emplace_back(NAN, 0, 0);

@@ -13,6 +13,7 @@ namespace {
 
 // The plastic number: what the golden ratio is in two dimensions.
 constexpr double kPlastic = 1.32471795724474602596;
+constexpr std::size_t kReportEvery = 4096;  // samples
 
 // A point of the unit square, folded along its diagonal onto the triangle.
 Vec3 place_in(const TriMesh& mesh, Index face, double number) {
@@ -49,10 +50,16 @@ std::vector<SurfaceSample> sample_surface(const TriMesh& mesh, std::size_t count
   return samples;
 }
 
-SampledDistance sample_distance(const TriMesh& from, const ClosestPointIndex& to, std::size_t samples) {
+SampledDistance sample_distance(const TriMesh& from, const ClosestPointIndex& to, std::size_t samples,
+                                const Progress& progress) {
+  const std::vector<SurfaceSample> points = sample_surface(from, samples);
   std::vector<double> distances;
+  distances.reserve(points.size());
   Index near = kNone;
-  for (const SurfaceSample& sample : sample_surface(from, samples)) {
+  for (const SurfaceSample& sample : points) {
+    if (distances.size() % kReportEvery == 0) {
+      report_progress(progress, "samples", static_cast<double>(distances.size()) / static_cast<double>(points.size()));
+    }
     const ClosestPoint found = to.closest(sample.position, near);
     near = found.face;
     distances.push_back(found.distance);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vmesh/core/progress.h"
 #include "vmesh/quality/closest_point.h"
 #include "vmesh/quality/distribution.h"
 
@@ -20,12 +21,13 @@ std::vector<SurfaceSample> sample_surface(const TriMesh& mesh, std::size_t count
 double surface_area(const TriMesh& mesh);
 
 /// Distances of samples: area-weighted mean, RMS and percentiles. Their maximum is a lower bound of the one-sided
-/// Hausdorff distance and no more.
+/// Hausdorff distance and no more. Throws what sample_surface() throws, and Cancelled.
 struct SampledDistance {
   Distribution distance;       ///< mm
   double samples_per_mm2 = 0;  ///< of the area of the sampled surface
 };
-SampledDistance sample_distance(const TriMesh& from, const ClosestPointIndex& to, std::size_t samples);
+SampledDistance sample_distance(const TriMesh& from, const ClosestPointIndex& to, std::size_t samples,
+                                const Progress& progress = {});
 
 /// Distance of every vertex, mm; NaN for a vertex that has no finite position.
 std::vector<double> vertex_distances(const TriMesh& from, const ClosestPointIndex& to);
