@@ -10,6 +10,7 @@
 #include "vmesh/core/version.h"
 
 #include "exit_code.h"
+#include "requirements.h"
 
 namespace vmesh::tool {
 namespace {
@@ -36,6 +37,11 @@ constexpr const char* kRenderExamples = R"(Examples:
   vmesh render tree.ply -o tree.png
   vmesh render tree.ply -o tree.png --edges --color radius --view left --width 1200 --height 900)";
 
+constexpr const char* kEvaluateExamples = R"(Examples:
+  vmesh evaluate tree.ply
+  vmesh evaluate tree.ply --reference scan.stl --report report.md --json report.json -o colored.ply
+  vmesh evaluate tree.ply --centerline tree.swc --require closed,max-skewness=0.9,relative-volume-distance=0.5)";
+
 /// CLI::Range lets NaN pass.
 template <class Number>
 CLI::Validator in_range(Number low, Number high) {
@@ -58,16 +64,21 @@ void add_output(CLI::App& verb, std::filesystem::path& output, const std::string
   verb.add_option("-o,--output", output, help)->required();
 }
 
-void add_input(CLI::App& verb, InputArguments& input, const std::string& help) {
-  verb.add_option("IN", input.path, help)->required();
+/// Options that tell how to read a file; `of`: "" for the input, else "reference-" or the like.
+void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
   verb.add_option_function<std::string>(
-          "--unit", [&input](const std::string& text) { input.unit = parse_length_unit(text); },
+          "--" + of + "unit", [&input](const std::string& text) { input.unit = parse_length_unit(text); },
           "unit of the numbers in the file; overrides what the file says")
       ->check(CLI::IsMember({"um", "mm", "cm", "m"}));
   verb.add_option_function<std::string>(
-          "--space", [&input](const std::string& text) { input.space = parse_space(text); },
+          "--" + of + "space", [&input](const std::string& text) { input.space = parse_space(text); },
           "patient frame of the file; overrides what the file says")
       ->check(CLI::IsMember({"LPS", "RAS"}));
+}
+
+void add_input(CLI::App& verb, InputArguments& input, const std::string& help) {
+  verb.add_option("IN", input.path, help)->required();
+  add_reading(verb, input, "");
 }
 
 OpenEnds parse_open_ends(const std::string& text) {
@@ -236,6 +247,36 @@ void add_render(CLI::App& app, RenderArguments& arguments) {
   verb.footer(kRenderExamples);
 }
 
+void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand(
+      "evaluate", "Measure a surface: faces, defects, distance to a reference surface or to a centerline's vessels");
+  add_input(verb, arguments.input, "surface");
+  verb.add_option("--reference", arguments.reference.path,
+                  "surface to compare with: guaranteed Hausdorff distance, mean, RMS and percentiles, both ways");
+  add_reading(verb, arguments.reference, "reference-");
+  verb.add_option("--centerline", arguments.centerline.path,
+                  "compare with the exact volume of its round cones, both ways, in mm and in local radii");
+  add_reading(verb, arguments.centerline, "centerline-");
+  verb.add_option("-o,--output", arguments.output,
+                  "the surface with the skewness of its faces, and its vertices' distance to the reference and "
+                  "volume_distance (.ply, .vtp)");
+  verb.add_option("--report", arguments.report, "write the report to this file too (.txt, .md, .csv, .json)");
+  verb.add_option("--format", arguments.format, "of the report on stdout")
+      ->check(CLI::IsMember({"text", "markdown", "csv"}))
+      ->capture_default_str();
+  verb.add_option("--tolerance", arguments.tolerance_mm, "width of the interval that holds a Hausdorff distance, mm")
+      ->check(in_range(1e-12, 1e6))
+      ->capture_default_str();
+  verb.add_option("--samples", arguments.samples, "points on each surface for mean, RMS and percentiles")
+      ->check(in_range<std::size_t>(1, 10'000'000))
+      ->capture_default_str();
+  verb.add_option("--require", arguments.require,
+                  "exit with 1 unless all of these hold, separated by commas: " + describe_requirements())
+      ->type_name("LIST");
+  add_common(verb, arguments.common);
+  verb.footer(kEvaluateExamples);
+}
+
 }  // namespace
 
 std::string_view to_string(OverlapHandling overlap) {
@@ -256,11 +297,13 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   SynthArguments synth;
   ConvertArguments convert;
   RenderArguments render;
+  EvaluateArguments evaluate;
   add_generate(app, generate);
   add_info(app, info);
   add_synth(app, synth);
   add_convert(app, convert);
   add_render(app, render);
+  add_evaluate(app, evaluate);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -272,7 +315,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   if (app.got_subcommand("info")) return info;
   if (app.got_subcommand("synth")) return synth;
   if (app.got_subcommand("convert")) return convert;
-  return render;
+  if (app.got_subcommand("render")) return render;
+  return evaluate;
 }
 
 }  // namespace vmesh::tool

@@ -68,7 +68,21 @@ struct RenderArguments {
   std::string color;  ///< attribute to colour by, or "skewness"; empty: one colour
 };
 
-using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments>;
+struct EvaluateArguments {
+  CommonArguments common;
+  InputArguments input;
+  InputArguments reference;      ///< surface to compare with; empty path: none
+  InputArguments centerline;     ///< whose volume to compare with; empty path: none
+  std::filesystem::path output;  ///< the surface with distances and skewness; empty: none
+  std::filesystem::path report;  ///< by extension; empty: none
+  std::string format = "text";   ///< of stdout: text, markdown or csv
+  std::string require;           ///< see parse_requirements()
+  double tolerance_mm = 1e-4;    ///< of the Hausdorff distance
+  std::size_t samples = 100'000;
+};
+
+using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments,
+                               EvaluateArguments>;
 
 /// Calls `visit(flag, member, low, high, help)` for every option of the growth. The one list behind the command line
 /// and the summary.

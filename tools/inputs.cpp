@@ -14,7 +14,9 @@ bool has_surface_extension(const std::filesystem::path& path) {
   return extension == ".ply" || extension == ".stl" || extension == ".obj" || extension == ".off";
 }
 
-bool is_length(const std::string& attribute) { return attribute == "radius" || attribute == "distance"; }
+bool is_length(const std::string& attribute) {
+  return attribute == "radius" || attribute == "distance" || attribute == "volume_distance";
+}
 
 void scale(LoadedSurface& surface, double factor) {
   for (Vec3& p : surface.mesh.vertices) p *= factor;

@@ -28,6 +28,8 @@ const char* name_of(Kind kind) {
       return "picture";
     case Kind::summary:
       return "summary";
+    case Kind::report:
+      return "report";
   }
   return "";
 }
@@ -49,6 +51,9 @@ void check_format(const PlannedOutput& output) {
   if (output.kind == Kind::surface) surface_format(output.path);
   if (output.kind == Kind::centerline) centerline_output_format(output.path);
   const std::string extension = extension_of(output.path);
+  if (output.kind == Kind::report && extension != ".txt" && extension != ".md" && extension != ".csv" &&
+      extension != ".json")
+    throw Unsupported(output.path.string() + ": reports are written as .txt, .md, .csv or .json");
   if (output.kind == Kind::picture && extension != ".png")
     throw Unsupported(output.path.string() + ": pictures are written as .png only");
   if (extension == ".vtp" && !VMESH_TOOL_WITH_VTK)

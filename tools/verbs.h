@@ -11,5 +11,6 @@ int run(const InfoArguments& arguments, Console& console);
 int run(const SynthArguments& arguments, Console& console);
 int run(const ConvertArguments& arguments, Console& console);
 int run(const RenderArguments& arguments, Console& console);
+int run(const EvaluateArguments& arguments, Console& console);
 
 }  // namespace vmesh::tool

@@ -188,6 +188,48 @@ TEST(Topology, DoesNotDependOnTheOrderOfFacesAndVertices) {
   }
 }
 
+TEST(Topology, CountsLoopsOfTheBoundaryAndCrowdedEdges) {
+  EXPECT_EQ(measure_topology(cube()).boundary_loops, 0u);
+  TriMesh tube = cube();
+  tube.faces.erase(tube.faces.begin(), tube.faces.begin() + 4);  // bottom and top
+  auto t = measure_topology(tube);
+  EXPECT_EQ(t.boundary_edges, 8u);
+  EXPECT_EQ(t.boundary_loops, 2u);
+  EXPECT_EQ(t.crowded_edges, 0u);
+  TriMesh mesh = tetrahedron();
+  mesh.vertices.emplace_back(1, 1, 0);
+  mesh.faces.push_back({1, 2, 4});
+  t = measure_topology(mesh);
+  EXPECT_EQ(t.crowded_edges, 1u);
+  EXPECT_EQ(t.boundary_loops, 1u);
+}
+
+TEST(DegenerateFaces, AreThoseWithoutArea) {
+  TriMesh mesh = cube();
+  EXPECT_TRUE(degenerate_faces(mesh).empty());
+  mesh.vertices.emplace_back(0.5, 0, 0);
+  mesh.vertices.emplace_back(1, 0, 0);
+  mesh.faces.insert(mesh.faces.end(), {{0, 1, 8}, {0, 0, 3}, {1, 9, 3}, {0, 8, 3}});
+  EXPECT_EQ(degenerate_faces(mesh), (std::vector<Index>{12, 13, 14}));
+}
+
+TEST(DuplicateFaces, HaveTheSameVerticesInWhateverOrder) {
+  TriMesh mesh = cube();
+  EXPECT_TRUE(duplicate_faces(mesh).empty());
+  const auto [a, b, c] = mesh.faces[2];
+  mesh.faces.insert(mesh.faces.begin(), {c, b, a});
+  mesh.faces.push_back({b, c, a});
+  EXPECT_EQ(duplicate_faces(mesh), (std::vector<Index>{3, 13}));
+}
+
+TEST(Valence, IsTheNumberOfEdges) {
+  const auto sphere = valences(icosphere(2));
+  EXPECT_EQ(std::count(sphere.begin(), sphere.end(), 5u), 12);
+  EXPECT_EQ(std::count(sphere.begin(), sphere.end(), 6u), static_cast<std::ptrdiff_t>(sphere.size()) - 12);
+  const TriMesh open = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 9, 9}}, {{0, 1, 2}}};
+  EXPECT_EQ(valences(open), (std::vector<Index>{2, 2, 2, 0}));
+}
+
 TEST(EnclosedVolume, OfSimpleBodiesIsExact) {
   EXPECT_EQ(enclosed_volume({}), 0);
   // Products and sums of small whole numbers are exact, the division by 6 rounds once.

@@ -70,6 +70,65 @@ TEST(EquiangleSkewness, OfAMeshIsThatOfItsFacesInOrder) {
   EXPECT_EQ(summary.max, 1);
 }
 
+TEST(TriangleMeasures, OfKnownTriangles) {
+  const Vec3 o(0, 0, 0), x(1, 0, 0);
+  // Lengths, areas and ratios take a dozen roundings; angles in degrees are up to 180.
+  const double rounding = kRounding, degrees = 180 * kRounding;
+  TriangleMeasures m = measure_triangle(o, x, at_angle(60));
+  EXPECT_NEAR(m.area_mm2, std::sqrt(3) / 4, rounding);
+  EXPECT_NEAR(m.min_angle_deg, 60, degrees);
+  EXPECT_NEAR(m.max_angle_deg, 60, degrees);
+  EXPECT_NEAR(m.equiangle_skewness, 0, rounding);
+  EXPECT_NEAR(m.shortest_to_longest_edge, 1, rounding);
+  EXPECT_NEAR(m.double_inradius_to_circumradius, 1, rounding);
+  EXPECT_NEAR(m.scaled_inradius_to_longest_edge, 1, rounding);
+
+  m = measure_triangle({0, 4, 0}, o, {3, 0, 0});  // 3 4 5: r = 1, R = 2.5
+  EXPECT_NEAR(m.area_mm2, 6, 6 * rounding);
+  EXPECT_NEAR(m.min_angle_deg, std::atan2(3, 4) * 180 / std::numbers::pi, degrees);
+  EXPECT_NEAR(m.max_angle_deg, 90, degrees);
+  EXPECT_NEAR(m.shortest_to_longest_edge, 0.6, rounding);
+  EXPECT_NEAR(m.double_inradius_to_circumradius, 0.8, rounding);
+  EXPECT_NEAR(m.scaled_inradius_to_longest_edge, 2 * std::sqrt(3) / 5, rounding);
+
+  m = measure_triangle(o, x, at_angle(150));
+  EXPECT_NEAR(m.min_angle_deg, 15, degrees);
+  EXPECT_NEAR(m.max_angle_deg, 150, degrees);
+}
+
+TEST(TriangleMeasures, OfDegenerateTrianglesAreTheWorstThereIs) {
+  const Vec3 o(0, 0, 0), x(1, 0, 0);
+  for (const auto& [a, b, c] : {std::array{o, x, Vec3(3, 0, 0)}, std::array{o, o, x}, std::array{x, x, x}}) {
+    const TriangleMeasures m = measure_triangle(a, b, c);
+    EXPECT_EQ(m.area_mm2, 0);
+    EXPECT_EQ(m.min_angle_deg, 0);
+    EXPECT_EQ(m.max_angle_deg, 180);
+    EXPECT_EQ(m.equiangle_skewness, 1);
+    EXPECT_EQ(m.double_inradius_to_circumradius, 0);
+    EXPECT_EQ(m.scaled_inradius_to_longest_edge, 0);
+  }
+}
+
+TEST(TriangleMeasures, AgreeWithTheDefinitionsOnRandomTriangles) {
+  testing::Draw draw(4);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 a = draw.in_cube(1), b = draw.in_cube(1), c = draw.in_cube(1);
+    const auto angle = [](const Vec3& u, const Vec3& v) { return std::atan2(u.cross(v).norm(), u.dot(v)); };
+    const double angles[3] = {angle(b - a, c - a), angle(a - b, c - b), angle(a - c, b - c)};
+    const auto [least, most] = std::minmax({angles[0], angles[1], angles[2]});
+    const double third = std::numbers::pi / 3, lengths[3] = {(c - b).norm(), (a - c).norm(), (b - a).norm()};
+    const double area = (b - a).cross(c - a).norm() / 2, perimeter = lengths[0] + lengths[1] + lengths[2];
+    const double inradius = 2 * area / perimeter, circumradius = lengths[0] * lengths[1] * lengths[2] / (4 * area);
+    const TriangleMeasures m = measure_triangle(a, b, c);
+    // Areas of thin triangles lose digits: a millionth part of a square of edge 2 leaves ten.
+    const double loss = 1e-10;
+    EXPECT_NEAR(m.min_angle_deg, least * 180 / std::numbers::pi, 180 * loss);
+    EXPECT_NEAR(m.max_angle_deg, most * 180 / std::numbers::pi, 180 * loss);
+    EXPECT_NEAR(m.equiangle_skewness, std::max((most - third) / (2 * third), (third - least) / third), loss);
+    EXPECT_NEAR(m.double_inradius_to_circumradius, 2 * inradius / circumradius, loss);
+  }
+}
+
 TEST(EquiangleSkewness, OfAnEmptyMeshIsZero) {
   const auto summary = summarize_skewness({});
   EXPECT_EQ(summary.mean, 0);

@@ -32,11 +32,6 @@ class FacePairTest {
     }
   }
 
-  bool degenerate(Index face) const {
-    const auto& [a, b, c] = mesh_.faces[face];
-    return CGAL::collinear(points_[a], points_[b], points_[c]);
-  }
-
   bool intersect(Index f, Index g) const {
     const Triangle& x = mesh_.faces[f];
     const Triangle& y = mesh_.faces[g];
@@ -102,8 +97,13 @@ std::vector<std::pair<Index, Index>> self_intersections(const TriMesh& mesh) {
   const FacePairTest test(mesh);
   std::vector<Box> boxes;
   boxes.reserve(mesh.faces.size());
+  const std::vector<Index> degenerate = degenerate_faces(mesh);
+  auto skipped = degenerate.begin();
   for (Index f = 0; f < mesh.faces.size(); ++f) {
-    if (test.degenerate(f)) continue;
+    if (skipped != degenerate.end() && *skipped == f) {
+      ++skipped;
+      continue;
+    }
     CGAL::Bbox_3 box;
     for (const Index v : mesh.faces[f]) box += to_point(mesh.vertices[v]).bbox();
     boxes.emplace_back(box, f);

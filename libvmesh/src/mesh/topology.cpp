@@ -70,6 +70,16 @@ bool one_fan_each(const TriMesh& mesh, const std::vector<Side>& sides) {
   return true;
 }
 
+// Of a graph, isolated vertices not counted.
+std::size_t count_pieces(const std::vector<Side>& edges, std::size_t vertices) {
+  DisjointSets sets(edges.empty() ? 0 : vertices);
+  for (const Side& edge : edges) sets.unite(edge.low, edge.high);
+  std::vector<Index> roots;
+  for (const Side& edge : edges) roots.push_back(sets.find(edge.low));
+  std::sort(roots.begin(), roots.end());
+  return static_cast<std::size_t>(std::unique(roots.begin(), roots.end()) - roots.begin());
+}
+
 void check_indices(const TriMesh& mesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     for (const Index v : mesh.faces[f]) {
@@ -87,6 +97,7 @@ Topology measure_topology(const TriMesh& mesh) {
   check_indices(mesh);
   Topology topology;
   const std::vector<Side> sides = sorted_sides(mesh);
+  std::vector<Side> boundary;
   std::int64_t edges = 0;
   bool edge_manifold = true;
   topology.oriented = true;
@@ -94,12 +105,15 @@ Topology measure_topology(const TriMesh& mesh) {
     for (next = i + 1; next < sides.size() && sides[next].key() == sides[i].key(); ++next) {
     }
     ++edges;
-    if (next - i == 1) ++topology.boundary_edges;
+    if (next - i == 1) boundary.push_back(sides[i]);
+    if (next - i > 2) ++topology.crowded_edges;
     if (next - i > 2 || sides[i].low == sides[i].high) edge_manifold = false;
     if (next - i == 2 && sides[i].forward == sides[i + 1].forward) topology.oriented = false;
   }
   topology.oriented = topology.oriented && edge_manifold;
   topology.manifold = edge_manifold && one_fan_each(mesh, sides);
+  topology.boundary_edges = boundary.size();
+  topology.boundary_loops = count_pieces(boundary, mesh.vertices.size());
   topology.closed = !mesh.faces.empty() && topology.boundary_edges == 0;
 
   DisjointSets sets(mesh.vertices.size());
@@ -132,6 +146,18 @@ Topology measure_topology(const TriMesh& mesh) {
     }
   }
   return topology;
+}
+
+std::vector<Index> valences(const TriMesh& mesh) {
+  check_indices(mesh);
+  std::vector<Index> valence(mesh.vertices.size(), 0);
+  const std::vector<Side> sides = sorted_sides(mesh);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (sides[i].low == sides[i].high || (i > 0 && sides[i].key() == sides[i - 1].key())) continue;
+    ++valence[sides[i].low];
+    ++valence[sides[i].high];
+  }
+  return valence;
 }
 
 double enclosed_volume(const TriMesh& mesh) {

@@ -16,6 +16,8 @@ struct Topology {
   bool outward = false;                   ///< closed, oriented, and every component encloses a positive volume
   std::size_t components = 0;             ///< of faces, joined by common vertices
   std::size_t boundary_edges = 0;         ///< edges with one face
+  std::size_t boundary_loops = 0;         ///< connected pieces of the boundary; loops that touch count as one
+  std::size_t crowded_edges = 0;          ///< edges with three faces or more
   std::int64_t euler_characteristic = 0;  ///< vertices - edges + faces; vertices without a face do not count
   std::int64_t genus = 0;                 ///< sum over components; defined when closed, manifold and oriented, else 0
 };
@@ -29,6 +31,15 @@ double enclosed_volume(const TriMesh& mesh);
 /// Pairs of faces that intersect other than in their common vertices or edge, each pair in ascending order, the
 /// list sorted. Degenerate faces are not tested. Exact predicates (CGAL polygon mesh processing).
 std::vector<std::pair<Index, Index>> self_intersections(const TriMesh& mesh);
+
+/// Faces without area, ascending: corners in common, at one place or on one line. Exact predicates.
+std::vector<Index> degenerate_faces(const TriMesh& mesh);
+
+/// Faces with the same three vertices as an earlier face, in whatever order, ascending.
+std::vector<Index> duplicate_faces(const TriMesh& mesh);
+
+/// Number of edges at every vertex; 0 for a vertex without a face.
+std::vector<Index> valences(const TriMesh& mesh);
 
 /// For every point, whether it lies strictly inside the closed mesh (exact predicates). Throws InvalidInput when
 /// the mesh is not closed.

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+
+#include "vmesh/mesh/tri_mesh.h"
+
+namespace vmesh::bench {
+
+/// A mesh as CGAL wants it, so that conversion is not part of a measurement.
+class CgalMesh {
+ public:
+  /// Faces that would make the surface non-manifold are repaired or left out.
+  explicit CgalMesh(const TriMesh& mesh);
+  ~CgalMesh();
+
+  /// Edges collapsed (Lindstrom and Turk) until this share of the edges is left.
+  TriMesh decimated(double share) const;
+  TriMesh mesh() const;
+  double bounded_error_hausdorff(const CgalMesh& to, double tolerance) const;
+
+ private:
+  struct Surface;
+  std::unique_ptr<Surface> surface_;
+};
+
+/// Whether the functions below are built in.
+bool have_vtk();
+/// Largest distance of the vertices of one mesh from another (vtkImplicitPolyDataDistance): no bound of the distance.
+double vtk_vertex_distance(const TriMesh& from, const TriMesh& to);
+/// The level set 0 of a distance on a grid (vtkFlyingEdges3D), `value` called for every grid point.
+TriMesh vtk_isosurface(const Vec3& low, const Vec3& high, double spacing, double (*value)(const Vec3&, const void*),
+                       const void* context);
+
+}  // namespace vmesh::bench

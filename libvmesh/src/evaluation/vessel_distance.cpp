@@ -1,0 +1,78 @@
+#include "vmesh/evaluation/vessel_distance.h"
+
+#include <cmath>
+
+#include "vmesh/quality/sampled_distance.h"
+
+namespace vmesh {
+namespace {
+
+constexpr std::size_t kReportEvery = 4096;  // samples
+
+// Collects the distances of samples.
+class SideCollector {
+ public:
+  SideCollector(std::size_t count, const Progress& progress) : count_(count), progress_(progress) {
+    mm_.reserve(count);
+    relative_.reserve(count);
+  }
+
+  void add(const Vec3& position, double distance, double radius) {
+    if (mm_.size() % kReportEvery == 0) {
+      report_progress(progress_, "distance from the volume",
+                      static_cast<double>(mm_.size()) / static_cast<double>(count_));
+    }
+    if (distance > max_) max_ = distance, side_.max_at = position;
+    if (distance / radius > max_relative_) max_relative_ = distance / radius, side_.max_relative_at = position;
+    mm_.push_back(distance);
+    relative_.push_back(distance / radius);
+  }
+
+  VesselDistanceSide finish(double samples_per_mm2) {
+    side_.samples_per_mm2 = samples_per_mm2;
+    side_.mm = summarize(std::move(mm_));
+    side_.relative = summarize(std::move(relative_));
+    return side_;
+  }
+
+ private:
+  std::size_t count_;
+  const Progress& progress_;
+  std::vector<double> mm_, relative_;
+  double max_ = -1, max_relative_ = -1;
+  VesselDistanceSide side_;
+};
+
+}  // namespace
+
+VesselDistance measure_vessel_distance(const TriMesh& mesh, const ClosestPointIndex& index, const VesselField& field,
+                                       std::size_t samples, const Progress& progress) {
+  VesselDistance result;
+  const std::vector<SurfaceSample> on_mesh = sample_surface(mesh, samples);
+  SideCollector from_mesh(on_mesh.size(), progress);
+  for (const SurfaceSample& sample : on_mesh) {
+    const FieldSample found = field.sample_global(sample.position);
+    from_mesh.add(sample.position, std::abs(found.distance), field.radius_at(found.cone, found.t));
+  }
+  result.from_mesh = from_mesh.finish(on_mesh.empty() ? 0 : static_cast<double>(on_mesh.size()) / surface_area(mesh));
+
+  const BoundarySamples on_volume = sample_boundary(field, samples);
+  SideCollector from_volume(on_volume.points.size(), progress);
+  Index near = kNone;
+  for (const BoundarySample& sample : on_volume.points) {
+    const ClosestPoint found = index.closest(sample.position, near);
+    near = found.face;
+    from_volume.add(sample.position, found.distance, sample.radius);
+  }
+  result.from_volume = from_volume.finish(on_volume.per_mm2);
+  return result;
+}
+
+std::vector<double> vertex_vessel_distances(const TriMesh& mesh, const VesselField& field) {
+  std::vector<double> distances;
+  distances.reserve(mesh.vertices.size());
+  for (const Vec3& v : mesh.vertices) distances.push_back(field.sample_global(v).distance);
+  return distances;
+}
+
+}  // namespace vmesh
