@@ -94,23 +94,28 @@ class Optimizer {
     }
   }
 
-  // Refines where the limit is not proven, until it is or triangles get too small.
+  // Refines where the limit is not proven, until it is or triangles get too small. What polishing breaks is mended once
+  // more, and left so.
   void meet_error_limit(bool polished) {
+    refine_unproven();
+    if (!polished || !unproven_.empty()) return;
+    polish();
+    if (balanced()) sink_crossing_walls();
+    refine_unproven();
+  }
+
+  void refine_unproven() {
     unproven_ = check_.unproven_faces(state_);
     const double at_first = static_cast<double>(unproven_.size());
     std::size_t fewest = unproven_.size() + 1;
     for (int round = 0, best = 0; !unproven_.empty() && round < best + kErrorRounds; ++round) {
+      report_progress(progress_, "refine", 1 - static_cast<double>(unproven_.size()) / at_first);
       if (unproven_.size() < fewest) {
         fewest = unproven_.size();
         best = round;
       }
-      report_progress(progress_, "refine", 1 - static_cast<double>(unproven_.size()) / at_first);
       if (!make_finer(unproven_)) break;
       refine();
-      unproven_ = check_.unproven_faces(state_);
-      if (!polished || !unproven_.empty()) continue;
-      polish();
-      if (balanced()) sink_crossing_walls();
       unproven_ = check_.unproven_faces(state_);
     }
   }
