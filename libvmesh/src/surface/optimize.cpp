@@ -86,11 +86,16 @@ class Optimizer {
 
   bool balanced() const { return options_.placement == Placement::balanced; }
 
+  // What crosses because of its lifts goes back onto the boundary; what still crosses its own neighbours is loosened.
   void sink_crossing_walls() {
-    for (int round = 0; round < kSinkRounds; ++round) {
-      const std::vector<Vertex> crossing = find_crossing_walls(state_);
-      if (crossing.empty()) break;
-      sink(state_, crossing);
+    for (const bool last : {false, true}) {
+      std::vector<Vertex> crossing = find_crossing_walls(state_);
+      for (int round = 0; round < kSinkRounds && !crossing.empty(); ++round) {
+        sink(state_, crossing);
+        crossing = find_crossing_walls(state_);
+      }
+      if (crossing.empty() || last) break;
+      untangle();
     }
   }
 

@@ -5,7 +5,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kEdgeFactor = 1.09;  // target length in edges of a regular polygon around the vessel
+constexpr double kEdgeFactor = 1.026;  // target length in edges of a regular polygon around the vessel
 constexpr double kErrorMargin = 0.87;
 constexpr double kGradation = 0.5;    // largest slope of the size field along the surface
 constexpr int kGradationPasses = 3;
@@ -14,7 +14,14 @@ constexpr double kFreeToTurn = 0.8;  // ... unless it agrees so well with the bo
 
 }  // namespace
 
-double edge_length_per_radius(double around) { return kEdgeFactor * 2 * std::sin(std::numbers::pi / around); }
+double balanced_ring_radius(double around) {
+  const double half_edge = std::sin(std::numbers::pi / around);
+  return 1 + half_edge * half_edge / 4;
+}
+
+double edge_length_per_radius(double around) {
+  return kEdgeFactor * balanced_ring_radius(around) * 2 * std::sin(std::numbers::pi / around);
+}
 
 // An edge of length h across a vessel of radius r cuts off h^2 / (8 r); balanced, half of that is outside.
 double edge_length_for(double limit, double radius) { return kErrorMargin * std::sqrt(16 * limit * radius); }

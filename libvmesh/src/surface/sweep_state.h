@@ -8,6 +8,10 @@
 
 namespace vmesh {
 
+/// Radius of a ring of `around` vertices in balanced placement, in vessel radii: an edge of length h cuts off h^2 / 8,
+/// faces half of that on average.
+double balanced_ring_radius(double around);
+
 /// Target edge length in vessel radii at `around` vertices around a vessel.
 double edge_length_per_radius(double around);
 

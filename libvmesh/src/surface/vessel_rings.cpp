@@ -2,10 +2,12 @@
 
 #include <numbers>
 
+#include "surface/sweep_state.h"
+
 namespace vmesh {
 namespace {
 
-constexpr double kPitch = 1.12;       // of rings, in heights of the equilateral band
+constexpr double kPitch = 1.055;      // of rings, in heights of the equilateral band at their final radius
 constexpr double kSmoothing = 0.6;    // radii before and behind over which the direction of the vessel is taken
 constexpr int kSteps = 8;             // of the search for the boundary along a ray
 constexpr double kOnBoundary = 1e-3;  // radii
@@ -54,7 +56,7 @@ bool is_straight_between(const Ring& ring, const Ring& next) {
 
 }  // namespace
 
-double ring_pitch(int around) { return kPitch * equilateral_height(around); }
+double ring_pitch(int around) { return kPitch * balanced_ring_radius(around) * equilateral_height(around); }
 
 RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes,
                      const std::vector<SegmentPlace>& places, int around)
