@@ -135,8 +135,7 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "0.3mm, 10% (of the local radius), or both, separated by a comma")
       ->type_name("Xmm|X%");
   verb.add_option_function<std::string>(
-          "--placement",
-          [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },
+          "--placement", [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },
           "inscribed: vertices on the boundary; balanced: lifted off it, so that volume is kept")
       ->check(CLI::IsMember({"inscribed", "balanced"}))
       ->default_str("balanced");

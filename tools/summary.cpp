@@ -48,8 +48,10 @@ Json to_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 Json to_json(const Deviation& deviation) {
   return {{"mean_mm", deviation.mean_mm},
+          {"rms_mm", deviation.rms_mm},
           {"max_mm", deviation.max_mm},
           {"mean_relative", deviation.mean_relative},
+          {"rms_relative", deviation.rms_relative},
           {"max_relative", deviation.max_relative},
           {"max_at", to_json(deviation.max_at)}};
 }

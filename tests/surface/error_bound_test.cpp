@@ -46,7 +46,8 @@ TEST(ErrorProof, TriesLowerShellsWhereTheNextWallIsNear) {
   const Vec3 along = Vec3(8, 1.6, 0).normalized(), inward = Vec3(1.6, -8, 0).normalized();
   const Vec3 wall = Vec3(0, 0, 0) + 0.8 * Vec3(8, 1.6, 0) + 0.76 * inward;
   const Vec3 up(0, 0, 1);
-  const Face face = {{{wall - 0.1 * up, inward, 1.3, 1}, {wall + 0.1 * along, inward, 1.3, 1}, {wall + 0.1 * up, inward, 1.3, 1}}};
+  const Face face = {
+      {{wall - 0.1 * up, inward, 1.3, 1}, {wall + 0.1 * along, inward, 1.3, 1}, {wall + 0.1 * up, inward, 1.3, 1}}};
   EXPECT_FALSE(proof.holds(face, {1.3, 1.3, 1.3}, Side::outer));
   const ErrorProof::Shares shares = proof.shares(face);
   EXPECT_GT(shares.outer, 0);

@@ -151,8 +151,7 @@ TEST(Generate, HalvesTheDeviationInBalancedPlacement) {
 
 double volume_of(const TriMesh& mesh) {
   double volume = 0;
-  for (const auto& [a, b, c] : mesh.faces)
-    volume += mesh.vertices[a].dot(mesh.vertices[b].cross(mesh.vertices[c])) / 6;
+  for (const auto& [a, b, c] : mesh.faces) volume += mesh.vertices[a].dot(mesh.vertices[b].cross(mesh.vertices[c])) / 6;
   return volume;
 }
 

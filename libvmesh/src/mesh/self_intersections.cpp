@@ -50,8 +50,8 @@ class FacePairTest {
  private:
   Kernel::Triangle_3 triangle(const Triangle& t) const { return {points_[t[0]], points_[t[1]], points_[t[2]]}; }
 
-  // Whether the corners of `other` that are not common lie beyond doubt on one side of the plane of `face`: the two then
-  // meet in common corners at most. The margin is far above the rounding of the determinant.
+  // Whether the corners of `other` that are not common lie beyond doubt on one side of the plane of `face`: the two
+  // then meet in common corners at most. The margin is far above the rounding of the determinant.
   bool on_one_side(Index face, const Triangle& other, const Index common[3], int count) const {
     const Vec3& base = mesh_.vertices[mesh_.faces[face][0]];
     const auto& [normal, margin] = planes_[face];

@@ -26,7 +26,9 @@ Deviation gather(const TriMesh& mesh, const std::vector<CenterlineBinding>& bind
       const double distance = std::abs(sample.distance);
       const double relative = distance / field.radius_at(sample.cone, sample.t);
       deviation.mean_mm += area * distance;
+      deviation.rms_mm += area * distance * distance;
       deviation.mean_relative += area * relative;
+      deviation.rms_relative += area * relative * relative;
       deviation.max_mm = std::max(deviation.max_mm, distance);
       if (relative > deviation.max_relative) {
         deviation.max_relative = relative;
@@ -36,7 +38,9 @@ Deviation gather(const TriMesh& mesh, const std::vector<CenterlineBinding>& bind
   }
   if (total_area > 0) {
     deviation.mean_mm /= total_area;
+    deviation.rms_mm = std::sqrt(deviation.rms_mm / total_area);
     deviation.mean_relative /= total_area;
+    deviation.rms_relative = std::sqrt(deviation.rms_relative / total_area);
   }
   return deviation;
 }

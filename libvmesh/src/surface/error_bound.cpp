@@ -58,8 +58,12 @@ class TriangleTest {
  public:
   explicit TriangleTest(const VesselField& field) : field_(field) {}
 
-  bool outside(const Points& q, const std::vector<Index>& cones) { return starting_with(cones, q, &TriangleTest::is_outside); }
-  bool inside(const Points& q, const std::vector<Index>& cones) { return starting_with(cones, q, &TriangleTest::is_inside); }
+  bool outside(const Points& q, const std::vector<Index>& cones) {
+    return starting_with(cones, q, &TriangleTest::is_outside);
+  }
+  bool inside(const Points& q, const std::vector<Index>& cones) {
+    return starting_with(cones, q, &TriangleTest::is_inside);
+  }
 
  private:
   // The bounds for a triangle and all it is part of lie on a stack; a part looks at the cones that its whole kept.
@@ -79,7 +83,8 @@ class TriangleTest {
     bool result = lower_bound(range) >= 0;
     if (!result && depth > 0 && value_at_center(range) >= 0) {
       const auto parts = quarters(q);
-      result = std::all_of(parts.begin(), parts.end(), [&](const Points& p) { return is_outside(p, range, depth - 1); });
+      result =
+          std::all_of(parts.begin(), parts.end(), [&](const Points& p) { return is_outside(p, range, depth - 1); });
     }
     stack_.resize(range.begin);
     return result;
@@ -130,7 +135,8 @@ class TriangleTest {
     for (const Vec3& p : q) b.low = std::min(b.low, s.distance + s.gradient.dot(p - center));
     b.high = highest(q, cone);
     if (field_.blend() == 0) return b;
-    const double first = field_.radius_at(cone, 0), last = field_.radius_at(cone, 1), radius = field_.radius_at(cone, s.t);
+    const double first = field_.radius_at(cone, 0), last = field_.radius_at(cone, 1),
+                 radius = field_.radius_at(cone, s.t);
     const double length = (field_.axis_point(cone, 1) - field_.axis_point(cone, 0)).norm();
     const double change = std::min(radius_slope(first, last, length) * reach_, std::abs(last - first));
     b.least_radius = std::max(std::min(first, last), radius - change);

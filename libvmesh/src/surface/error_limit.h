@@ -14,8 +14,8 @@ class ErrorLimitCheck {
   explicit ErrorLimitCheck(const ErrorLimit& limit) : limit_(limit) {}
 
   /// Faces for which the limit is not proven (see ErrorProof), ascending. What was proven before and has not changed is
-  /// not proven again. Faces at held vertices are passed over: they are proven when the surface is whole, or end where it is
-  /// left open.
+  /// not proven again. Faces at held vertices are passed over: they are proven when the surface is whole, or end where
+  /// it is left open.
   std::vector<Face> unproven_faces(const SweepState& state);
 
  private:

@@ -127,9 +127,7 @@ GrowthMethod parse_growth_method(std::string_view text) {
   throw InvalidInput("growth method \"" + std::string(text) + "\": must be guided or paper");
 }
 
-std::string_view to_string(Placement placement) {
-  return placement == Placement::inscribed ? "inscribed" : "balanced";
-}
+std::string_view to_string(Placement placement) { return placement == Placement::inscribed ? "inscribed" : "balanced"; }
 
 Placement parse_placement(std::string_view text) {
   for (const Placement placement : {Placement::inscribed, Placement::balanced}) {
@@ -183,7 +181,7 @@ void generate_paper(const Centerline& centerline, const GenerateOptions& options
   clock.time("volume", [&] { field.emplace(centerline, options.blend); });
   BoundSurface surface(*field);
   clock.time("grow", [&] { add_warnings(grow_from_single_seeds(surface, options.beta, progress), result.warnings); });
-  clock.time("optimize", [&] { 
+  clock.time("optimize", [&] {
     const GrownMesh grown{kGrownAround, expected_vertices(centerline, options.around), GrownMesh::Stage::grown};
     optimize_grown(surface, options, grown, progress, result);
   });
@@ -279,7 +277,7 @@ void generate_guided(const Centerline& centerline, const GenerateOptions& option
     add_warnings(report, result.warnings);
     result.growth = std::move(report.summary);
   });
-  clock.time("optimize", [&] { 
+  clock.time("optimize", [&] {
     const GrownMesh grown{double(options.around), expected_vertices(centerline, options.around),
                           GrownMesh::Stage::assembled};
     optimize_grown(surface, options, grown, progress, result);

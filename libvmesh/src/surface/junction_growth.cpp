@@ -124,8 +124,8 @@ GenerateResult JunctionGrowth::onto_boundary(double finer) const {
     for (const Thread& thread : threads_) surface.fine_spots.push_back({thread.exit.center, thread.exit.radius});
     options.sweeps = kSpotSweeps;
     const double around_spots = kVerticesPerSpot * static_cast<double>(threads_.size());
-    optimize(surface, options,
-             {static_cast<double>(options.around), expected + around_spots, GrownMesh::Stage::piece}, {});
+    optimize(surface, options, {static_cast<double>(options.around), expected + around_spots, GrownMesh::Stage::piece},
+             {});
   }
   GenerateResult piece;
   surface.export_to(piece);

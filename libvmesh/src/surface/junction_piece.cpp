@@ -111,8 +111,8 @@ class PieceMaker {
     for (const Vertex v : mesh.vertices()) {
       if (surface_.role[v] == BoundSurface::Role::lid) continue;
       number[v.idx()] = static_cast<Index>(piece.vertices.size());
-      piece.vertices.push_back({surface_.position(v), surface_.cone[v], surface_.fineness[v],
-                                surface_.lift[v], {}, 0, 0});
+      piece.vertices.push_back(
+          {surface_.position(v), surface_.cone[v], surface_.fineness[v], surface_.lift[v], {}, 0, 0});
     }
     for (const auto& [opening, ring, vertices] : kept_) {
       for (Index j = 0; j < vertices.size(); ++j) {

@@ -19,9 +19,9 @@ constexpr int kBalanceRounds = 2, kBalanceSweeps = 6;
 constexpr int kPolishRounds = 20, kPolishPower = 16;
 constexpr double kPolishEnergy = 1.15;  // of a face: skewness 0.28
 constexpr int kSinkRounds = 4;
-constexpr int kErrorRounds = 6;  // without fewer faces over the limit
+constexpr int kErrorRounds = 5;  // without fewer faces over the limit
 constexpr int kErrorSweeps = 4;
-constexpr double kFiner = 0.87, kFinest = 0.05;  // of the target edge length, where the error is too large
+constexpr double kFiner = 0.87, kFinest = 0.1;  // of the target edge length, where the error is too large
 
 class Optimizer {
  public:
@@ -29,10 +29,10 @@ class Optimizer {
       : state_(surface), remesher_(state_), options_(options), progress_(progress), check_(options.max_error) {}
 
   OptimizeReport run(const GrownMesh& grown) {
-    remesher_.limit_vertices(options_.max_error.is_set()
-                                 ? options_.max_vertices
-                                 : static_cast<std::size_t>(kMaxExcess * (state_.mesh.number_of_vertices() +
-                                                                          grown.expected_vertices)));
+    remesher_.limit_vertices(
+        options_.max_error.is_set()
+            ? options_.max_vertices
+            : static_cast<std::size_t>(kMaxExcess * (state_.mesh.number_of_vertices() + grown.expected_vertices)));
     if (grown.stage == GrownMesh::Stage::assembled) {
       edge_per_radius_ = edge_length_per_radius(options_.around);
       state_.update_sizes(edge_per_radius_, options_.max_error);

@@ -8,8 +8,8 @@
 namespace vmesh {
 
 struct OptimizeReport {
-  std::size_t tangles = 0;  ///< vertices where faces still intersect within the volume's own neighbourhood
-  bool limited = false;     ///< refinement stopped at the bound on the number of vertices
+  std::size_t tangles = 0;     ///< vertices where faces still intersect within the volume's own neighbourhood
+  bool limited = false;        ///< refinement stopped at the bound on the number of vertices
   std::vector<Face> unproven;  ///< faces for which options.max_error is not proven
 };
 
@@ -36,10 +36,11 @@ struct GrownMesh {
 /// Turns a grown surface into a good one: edges are split, collapsed and flipped towards a size field proportional
 /// to the local radius and towards regular valence, faces whose centre is too far from the boundary are split
 /// edge-centrically, vertices move in their tangent plane to where their triangles' shape energy is least and are
-/// reprojected. A surface that is whole is finished then: vertices are lifted off the boundary for balanced placement, the worst
-/// triangles mended, and places refined where the limit on the error is not proven. Topology is kept. The number of vertices is bounded: folded surfaces could be refined for ever. Uses
-/// around, max_center_distance, placement, max_error and sweeps of the options. Works from the resolution of the grown mesh to the one asked
-/// for, doubling at most: an even mesh is refined or coarsened safely, a grown one is not.
+/// reprojected. A surface that is whole is finished then: vertices are lifted off the boundary for balanced placement,
+/// the worst triangles mended, and places refined where the limit on the error is not proven. Topology is kept. The
+/// number of vertices is bounded: folded surfaces could be refined for ever. Uses around, max_center_distance,
+/// placement, max_error and sweeps of the options. Works from the resolution of the grown mesh to the one asked for,
+/// doubling at most: an even mesh is refined or coarsened safely, a grown one is not.
 OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const GrownMesh& grown,
                         const Progress& progress);
 

@@ -5,14 +5,13 @@
 namespace vmesh {
 namespace {
 
-constexpr double kLongestMove = 0.3;           // in target lengths
-constexpr double kNoticeableMove = 0.02;       // in target lengths, for the neighbours to be looked at again
+constexpr double kLongestMove = 0.3;      // in target lengths
+constexpr double kNoticeableMove = 0.02;  // in target lengths, for the neighbours to be looked at again
 constexpr int kAttempts = 3;
 
 class Relocator {
  public:
-  Relocator(SweepState& state, int power)
-      : state_(state), surface_(state.surface), mesh_(state.mesh), power_(power) {}
+  Relocator(SweepState& state, int power) : state_(state), surface_(state.surface), mesh_(state.mesh), power_(power) {}
 
   // One Newton step of the shape energy in the tangent plane, reprojected; halved until it is an improvement.
   void relocate(Vertex v) {

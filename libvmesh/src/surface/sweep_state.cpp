@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kEdgeFactor = 1.026;  // target length in edges of a regular polygon around the vessel
 constexpr double kErrorMargin = 0.87;
-constexpr double kGradation = 0.5;    // largest slope of the size field along the surface
+constexpr double kGradation = 0.5;  // largest slope of the size field along the surface
 constexpr int kGradationPasses = 3;
 constexpr double kMaxTurn = 0.5;     // cosine of the angle a face may turn in one move ...
 constexpr double kFreeToTurn = 0.8;  // ... unless it agrees so well with the boundary afterwards

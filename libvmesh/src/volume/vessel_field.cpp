@@ -122,8 +122,9 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, In
     least = std::min(least, d.value);
     candidates.push_back({d.value, d.t, c});
   }
-  std::erase_if(candidates,
-                [&](const Candidate& c) { return c.value > least && c.value >= least + 2 * blend_ * max_radius(c.cone); });
+  std::erase_if(candidates, [&](const Candidate& c) {
+    return c.value > least && c.value >= least + 2 * blend_ * max_radius(c.cone);
+  });
   FieldSample sample;
   const auto best = std::min_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.value != b.value ? a.value < b.value : a.cone < b.cone;

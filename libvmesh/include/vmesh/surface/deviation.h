@@ -12,8 +12,10 @@ namespace vmesh {
 /// faces. Samples are a lower bound of the true maximum.
 struct Deviation {
   double mean_mm = 0;  ///< area-weighted
+  double rms_mm = 0;   ///< area-weighted
   double max_mm = 0;
   double mean_relative = 0;  ///< the same in units of the local vessel radius
+  double rms_relative = 0;
   double max_relative = 0;
   Vec3 max_at = Vec3::Zero();  ///< where max_relative was found
 };

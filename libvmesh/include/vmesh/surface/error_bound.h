@@ -60,8 +60,8 @@ class ErrorProof {
   const VesselField& field_;
 };
 
-/// Faces of `mesh` for which the limit is not proven, ascending. `binding` has one entry per vertex. The local radius of
-/// a relative limit is that of the vertices' binding. Independent of the number of threads.
+/// Faces of `mesh` for which the limit is not proven, ascending. `binding` has one entry per vertex. The local radius
+/// of a relative limit is that of the vertices' binding. Independent of the number of threads.
 std::vector<Index> unproven_faces(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
                                   const VesselField& field, const ErrorLimit& limit);
 

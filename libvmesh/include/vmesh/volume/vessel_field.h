@@ -84,7 +84,8 @@ class VesselField {
     double value;
     double t;
   };
-  // Farther from `center` than `reach` plus the distance of the nearest cone, a cone can neither be nearest nor blended.
+  // Farther from `center` than `reach` plus the distance of the nearest cone, a cone can neither be nearest nor
+  // blended.
   struct Sphere {
     Vec3 center = Vec3::Zero();
     double reach = 0;
