@@ -79,7 +79,7 @@ class Optimizer {
         balance(state_, options_.max_error);
       }
       state_.stir_all();
-      shape_sweeps(options_.sweeps - kBalanceSweeps, options_.sweeps);
+      shape_sweeps(std::max(0, options_.sweeps - kBalanceSweeps), options_.sweeps);
     }
     if (balanced()) balance(state_, options_.max_error);
   }
