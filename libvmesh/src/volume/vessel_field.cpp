@@ -115,7 +115,7 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, In
     if (reach <= 0 || (p - spheres_[c].center).squaredNorm() >= reach * reach) continue;
     const Distance d = distance_to(cones_[c], p);
     const double excess = d.value - least - 2 * blend_ * max_radius(c);
-    if (excess >= 0) {
+    if (excess >= 0 && d.value > least) {  // of equally near cones the lowest number counts: they are all kept
       out_of_reach = {runs_[c].number, runs_[c].travel + excess};
       continue;
     }
