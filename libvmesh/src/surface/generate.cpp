@@ -97,6 +97,10 @@ void add_warnings(const GuidedGrowthReport& growth, std::vector<std::string>& wa
 }
 
 void add_warnings(const OptimizeReport& optimized, std::vector<std::string>& warnings) {
+  if (optimized.tangles > 0) {
+    warnings.push_back("optimize: around " + std::to_string(optimized.tangles) +
+                       " vertices faces of neighbouring vessels intersect each other; more vertices around may help");
+  }
   if (optimized.limited) {
     warnings.push_back(
         "optimize: refinement stopped early, the surface has far more vertices already than its length and radii ask "

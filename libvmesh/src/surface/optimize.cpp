@@ -62,6 +62,7 @@ class Optimizer {
     polish();
     if (balanced()) sink_crossing_walls();
     if (options_.max_error.is_set()) meet_error_limit(true);
+    tangles_ = find_crossing_walls(state_).empty() ? 0 : find_tangles(state_).size();
   }
 
   // The rest of the surface is not there yet: only what can fail here for good is looked at.
