@@ -4,26 +4,15 @@
 #include <limits>
 #include <string>
 
-#include <embree3/rtcore.h>
-
 #include "vmesh/core/error.h"
+
+#include "mesh/embree_device.h"
 
 namespace vmesh {
 namespace {
 
-// One thread and one instruction set: which of two equally close faces is found is the same every time and everywhere.
-#if defined(__x86_64__)
-constexpr const char* kDeviceConfig = "threads=1,set_affinity=0,isa=sse4.2";
-#else
-constexpr const char* kDeviceConfig = "threads=1,set_affinity=0";
-#endif
-
 // A handful of float roundings of a coordinate, of a box and of a distance, each 2^-24 of the largest number involved.
 constexpr double kFloatSlack = 0x1p-20;
-
-[[noreturn]] void fail(RTCDevice device) {
-  throw Error("Embree failed (error " + std::to_string(static_cast<int>(rtcGetDeviceError(device))) + ")");
-}
 
 [[noreturn]] void refuse(const TriMesh& mesh, std::size_t face, Index vertex) {
   const std::string name = "face " + std::to_string(face);
@@ -91,8 +80,8 @@ struct TriangleTree::Embree {
   }
 
   void build(const TriMesh& mesh, const Vec3& center) {
-    device = rtcNewDevice(kDeviceConfig);
-    if (!device) fail(nullptr);
+    device = rtcNewDevice(kEmbreeConfig);
+    if (!device) fail_with_embree(nullptr);
     scene = rtcNewScene(device);
     // Built three times as fast, searched hardly slower.
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_LOW);
@@ -103,7 +92,7 @@ struct TriangleTree::Embree {
                                                                    3 * sizeof(unsigned), mesh.faces.size()));
     if (!positions || !indices) {
       rtcReleaseGeometry(geometry);
-      fail(device);
+      fail_with_embree(device);
     }
     for (const Vec3& p : mesh.vertices) {
       const bool used = within_reach(p);  // a loose vertex may be anything
@@ -115,7 +104,7 @@ struct TriangleTree::Embree {
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(scene);
-    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) fail(device);
+    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) fail_with_embree(device);
   }
 };
 

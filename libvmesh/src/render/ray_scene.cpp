@@ -2,26 +2,11 @@
 
 #include <string>
 
-#include <embree3/rtcore.h>
-
 #include "vmesh/core/error.h"
 
+#include "mesh/embree_device.h"
+
 namespace vmesh {
-namespace {
-
-// One thread and one instruction set: the tree of boxes, and with it which of two faces an edge ray hits, is the same
-// every time and on every machine.
-#if defined(__x86_64__)
-constexpr const char* kDeviceConfig = "threads=1,set_affinity=0,isa=sse4.2";
-#else
-constexpr const char* kDeviceConfig = "threads=1,set_affinity=0";
-#endif
-
-[[noreturn]] void fail(RTCDevice device) {
-  throw Error("Embree failed (error " + std::to_string(static_cast<int>(rtcGetDeviceError(device))) + ")");
-}
-
-}  // namespace
 
 struct RayScene::Embree {
   RTCDevice device = nullptr;
@@ -35,8 +20,8 @@ struct RayScene::Embree {
 };
 
 RayScene::RayScene(const TriMesh& mesh) : embree_(std::make_unique<Embree>()) {
-  embree_->device = rtcNewDevice(kDeviceConfig);
-  if (!embree_->device) fail(nullptr);
+  embree_->device = rtcNewDevice(kEmbreeConfig);
+  if (!embree_->device) fail_with_embree(nullptr);
   const RTCDevice device = embree_->device;
   embree_->scene = rtcNewScene(device);
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
@@ -49,7 +34,7 @@ RayScene::RayScene(const TriMesh& mesh) : embree_(std::make_unique<Embree>()) {
                                                                  3 * sizeof(unsigned), mesh.faces.size()));
   if (!positions || !indices) {
     rtcReleaseGeometry(geometry);
-    fail(device);
+    fail_with_embree(device);
   }
   for (const Vec3& p : mesh.vertices) {
     for (int d = 0; d < 3; ++d) *positions++ = static_cast<float>(p[d] - embree_->origin[d]);
@@ -61,7 +46,7 @@ RayScene::RayScene(const TriMesh& mesh) : embree_(std::make_unique<Embree>()) {
   rtcAttachGeometry(embree_->scene, geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(embree_->scene);
-  if (rtcGetDeviceError(device) != RTC_ERROR_NONE) fail(device);
+  if (rtcGetDeviceError(device) != RTC_ERROR_NONE) fail_with_embree(device);
 }
 
 RayScene::~RayScene() = default;

@@ -10,7 +10,7 @@ namespace {
 constexpr double kSampleWeights[4][3] = {
     {1.0 / 3, 1.0 / 3, 1.0 / 3}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}};
 
-// Gathers what distance_at(point, hint) says at the sample points, with a sign or without.
+// Gathers the absolute value of what distance_at(point, hint) says at the sample points.
 template <class DistanceAt>
 Deviation gather(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding, const VesselField& field,
                  DistanceAt&& distance_at) {

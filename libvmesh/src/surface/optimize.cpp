@@ -60,9 +60,12 @@ class Optimizer {
   void finish() {
     settle();
     polish();
-    if (balanced()) sink_crossing_walls();
-    if (options_.max_error.is_set()) meet_error_limit(true);
-    tangles_ = find_crossing_walls(state_).empty() ? 0 : find_tangles(state_).size();
+    bool crossing = sink_crossing_walls();
+    if (options_.max_error.is_set()) {
+      meet_error_limit(true);
+      crossing = !find_crossing_walls(state_).empty();
+    }
+    tangles_ = crossing ? find_tangles(state_).size() : 0;
   }
 
   // The rest of the surface is not there yet: only what can fail here for good is looked at.
@@ -88,16 +91,19 @@ class Optimizer {
   bool balanced() const { return options_.placement == Placement::balanced; }
 
   // What crosses because of its lifts goes back onto the boundary; what still crosses its own neighbours is loosened.
-  void sink_crossing_walls() {
+  // Whether anything crosses in the end.
+  bool sink_crossing_walls() {
+    std::vector<Vertex> crossing = find_crossing_walls(state_);
     for (const bool last : {false, true}) {
-      std::vector<Vertex> crossing = find_crossing_walls(state_);
-      for (int round = 0; round < kSinkRounds && !crossing.empty(); ++round) {
+      for (int round = 0; balanced() && round < kSinkRounds && !crossing.empty(); ++round) {
         sink(state_, crossing);
         crossing = find_crossing_walls(state_);
       }
-      if (crossing.empty() || last) break;
+      if (crossing.empty() || last || !balanced()) break;
       untangle();
+      crossing = find_crossing_walls(state_);
     }
+    return !crossing.empty();
   }
 
   // Refines where the limit is not proven, until it is or triangles get too small. What polishing breaks is mended once
@@ -106,7 +112,7 @@ class Optimizer {
     refine_unproven();
     if (!polished || !unproven_.empty()) return;
     polish();
-    if (balanced()) sink_crossing_walls();
+    sink_crossing_walls();
     refine_unproven();
   }
 

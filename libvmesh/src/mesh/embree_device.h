@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include <embree3/rtcore.h>
+
+#include "vmesh/core/error.h"
+
+namespace vmesh {
+
+/// One thread and one instruction set: the tree of boxes, and with it which of two faces at the same distance is found,
+/// is the same every time and on every machine.
+#if defined(__x86_64__)
+constexpr const char* kEmbreeConfig = "threads=1,set_affinity=0,isa=sse4.2";
+#else
+constexpr const char* kEmbreeConfig = "threads=1,set_affinity=0";
+#endif
+
+[[noreturn]] inline void fail_with_embree(RTCDevice device) {
+  throw Error("Embree failed (error " + std::to_string(static_cast<int>(rtcGetDeviceError(device))) + ")");
+}
+
+}  // namespace vmesh
