@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <unordered_map>
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
@@ -23,6 +25,7 @@ constexpr double kDamping = 0.02;
 constexpr double kDampingAlong = 1;
 // Samples farther off than this count as if they were that far, in local radii.
 constexpr double kNear = 0.5;
+constexpr double kRadiusFactor = 2;
 
 /// Normal equations of one round, a 4 x 4 block per pair of nodes.
 class Equations {
@@ -130,15 +133,18 @@ void add_priors(Equations& equations, const Graph& graph) {
   }
 }
 
-/// Applies a step, cut to half a radius. Returns the largest change in relation to the radius.
-double apply(Graph& graph, const Eigen::VectorXd& step) {
+/// Applies a step, cut to half a radius; radii keep within a factor of what they were at first, so that nodes without
+/// samples of their own cannot vanish. Returns the largest change in relation to the radius.
+double apply(Graph& graph, const std::vector<Node>& first, const Eigen::VectorXd& step) {
   double most = 0;
   for (Index n = 0; n < graph.nodes.size(); ++n) {
     Node& node = graph.nodes[n];
     const double limit = 0.5 * node.radius;
     Vec3 move = step.segment<3>(4 * n);
     if (move.norm() > limit) move *= limit / move.norm();
-    const double change = std::clamp(step[4 * n + 3], -limit, limit);
+    const double wanted = node.radius + std::clamp(step[4 * n + 3], -limit, limit);
+    const double change =
+        std::clamp(wanted, first[n].radius / kRadiusFactor, first[n].radius * kRadiusFactor) - node.radius;
     most = std::max({most, move.norm() / node.radius, std::abs(change) / node.radius});
     node.position += move;
     node.radius += change;
@@ -149,13 +155,19 @@ double apply(Graph& graph, const Eigen::VectorXd& step) {
 }  // namespace
 
 SurfaceSamples samples_of(const TriMesh& mesh) {
-  SurfaceSamples samples{mesh.vertices, std::vector<double>(mesh.vertices.size(), 0)};
+  SurfaceSamples samples;
+  std::unordered_map<std::uint64_t, std::size_t> number;
   for (Index f = 0; f < mesh.faces.size(); ++f) {
-    const auto& [a, b, c] = mesh.faces[f];
-    const double share = 0.5 * area_normal(mesh, f).norm() / 4;
-    for (const Index v : mesh.faces[f]) samples.areas[v] += share;
-    samples.points.push_back((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3);
-    samples.areas.push_back(share);
+    const double share = 0.5 * area_normal(mesh, f).norm() / 3;
+    for (int c = 0; c < 3; ++c) {
+      const auto [a, b] = std::minmax(mesh.faces[f][c], mesh.faces[f][(c + 1) % 3]);
+      const auto [it, fresh] = number.try_emplace(std::uint64_t{a} << 32 | b, samples.points.size());
+      if (fresh) {
+        samples.points.push_back(0.5 * (mesh.vertices[a] + mesh.vertices[b]));
+        samples.areas.push_back(0);
+      }
+      samples.areas[it->second] += share;
+    }
   }
   return samples;
 }
@@ -170,13 +182,14 @@ Centerline to_centerline(const Graph& graph) {
 
 void fit_cones(Graph& graph, const SurfaceSamples& samples, int rounds) {
   constexpr double kSettled = 1e-3;
+  const std::vector<Node> first = graph.nodes;
   for (int round = 0; round < rounds; ++round) {
     const Centerline centerline = to_centerline(graph);
     const VesselField field(centerline);
     Equations equations(graph.nodes.size());
     add_samples(equations, field, samples);
     add_priors(equations, graph);
-    if (apply(graph, equations.solve()) < kSettled) return;
+    if (apply(graph, first, equations.solve()) < kSettled) return;
   }
 }
 

@@ -12,7 +12,8 @@ struct SurfaceSamples {
   std::vector<double> areas;  ///< mm^2
 };
 
-/// The vertices and the middles of the faces.
+/// The middles of the edges. Sums over them are exact for what varies quadratically over faces, as the distance of flat
+/// faces to a round vessel does: so a coarse surface keeps its mean radius.
 SurfaceSamples samples_of(const TriMesh& mesh);
 
 /// Moves the nodes of `graph` and changes their radii so that the boundary of the union of its round cones comes as

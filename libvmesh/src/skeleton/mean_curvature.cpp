@@ -5,6 +5,10 @@
 #include <map>
 #include <utility>
 
+#include "ordered_memory.h"
+// The allocator of the flow's own mesh.
+#define CGAL_ALLOCATOR(T) vmesh::skeleton::OrderedAllocator<T>
+
 #include <CGAL/Mean_curvature_flow_skeletonization.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
@@ -20,6 +24,8 @@ using Flow = CGAL::Mean_curvature_flow_skeletonization<Surface>;
 
 // The flow needs about this many vertices around a vessel to find its middle; grown meshes have 6.
 constexpr std::size_t kEnoughVertices = 20'000;
+// Of memory per vertex: the flow's mesh takes less than a kilobyte, its Delaunay triangulation two.
+constexpr std::size_t kBytesPerVertex = 16'384;
 
 TriMesh divided(const TriMesh& mesh) {
   TriMesh fine{mesh.vertices, {}};
@@ -83,6 +89,7 @@ Graph mean_curvature_skeleton(const TriMesh& coarse) {
   TriMesh mesh = coarse;
   while (mesh.vertices.size() < kEnoughVertices) mesh = divided(mesh);
   Surface surface = to_surface(mesh);
+  const OrderedMemory memory(kBytesPerVertex * mesh.vertices.size());
   Flow flow(surface);
   // CGAL's default depends on the extent of the whole, which says nothing of its thin vessels.
   flow.set_min_edge_length(std::min(flow.min_edge_length(), 0.5 * mean_edge_length(mesh)));
