@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <string_view>
 
 #include "vmesh/core/error.h"
 
@@ -35,7 +36,7 @@ std::string read_file(const std::filesystem::path& path) {
   return content;
 }
 
-ImageHeader parse_header(const std::string& content, const std::string& file_name, const std::string& name) {
+ImageHeader parse_header(std::string_view content, const std::string& file_name, const std::string& name) {
   if (file_name.ends_with(".nrrd")) return image::parse_nrrd_header(content, name);
   if (file_name.ends_with(".mha")) return image::parse_meta_header(content, name);
   const bool packed = content.starts_with("\x1f\x8b");
@@ -45,13 +46,13 @@ ImageHeader parse_header(const std::string& content, const std::string& file_nam
   return image::parse_nifti_header(packed ? image::unpacked(content, kLongestHeader) : content, name);
 }
 
-/// The bytes of all voxels. Throws InvalidInput when the file holds fewer.
-std::string voxel_bytes(std::string content, const ImageHeader& header, bool all_packed, const std::string& name) {
+/// The bytes of all voxels: part of `content`, or unpacked into `store`. Throws InvalidInput when there are fewer.
+std::string_view voxel_bytes(std::string_view content, const ImageHeader& header, bool all_packed, std::string& store,
+                             const std::string& name) {
   const std::uint64_t needed = header.voxels() * bytes_of(header.type);
-  const std::uint64_t begin = header.data_begin;
-  if (all_packed) content = image::unpacked(content, begin + needed);
-  content.erase(0, static_cast<std::size_t>(std::min<std::uint64_t>(begin, content.size())));
-  if (header.packed) content = image::unpacked(content, needed);
+  if (all_packed) content = store = image::unpacked(content, header.data_begin + needed);
+  content.remove_prefix(static_cast<std::size_t>(std::min<std::uint64_t>(header.data_begin, content.size())));
+  if (header.packed) content = store = image::unpacked(content, needed);
   if (content.size() < needed)
     throw InvalidInput(name + ": the header claims " + std::to_string(header.voxels()) + " voxels, " +
                        std::to_string(needed) + " bytes, but the file holds " + std::to_string(content.size()) +
@@ -75,7 +76,7 @@ void check_exact(double stored, float number, const std::string& name) {
 }
 
 template <class T>
-std::vector<float> to_float(const std::string& bytes, const ImageHeader& header, const std::string& name) {
+std::vector<float> to_float(std::string_view bytes, const ImageHeader& header, const std::string& name) {
   std::vector<float> values;
   values.reserve(header.voxels());
   const bool scaled = header.slope != 1 || header.intercept != 0;
@@ -91,7 +92,7 @@ std::vector<float> to_float(const std::string& bytes, const ImageHeader& header,
   return values;
 }
 
-std::vector<float> values_of(const std::string& bytes, const ImageHeader& header, const std::string& name) {
+std::vector<float> values_of(std::string_view bytes, const ImageHeader& header, const std::string& name) {
   switch (header.type) {
     case NumberType::u8:
       return to_float<std::uint8_t>(bytes, header, name);
@@ -126,21 +127,23 @@ bool is_image_path(const std::filesystem::path& path) {
   return false;
 }
 
-LoadedImage read_image(const std::filesystem::path& path) {
-  const std::string name = path.string(), file_name = image::folded(path.filename().string());
-  std::string content = read_file(path);
-  if (!is_image_path(path)) throw Unsupported(name + ": images are .nii, .nii.gz, .nrrd or .mha");
-  const ImageHeader header = parse_header(content, file_name, name);
-  check_place(header, name);
-  const std::string bytes = voxel_bytes(std::move(content), header, file_name.ends_with(".gz"), name);
+LoadedImage parse_image(std::string_view content, const std::string& source) {
+  if (!is_image_path(source)) throw Unsupported(source + ": images are .nii, .nii.gz, .nrrd or .mha");
+  const std::string file_name = image::folded(std::filesystem::path(source).filename().string());
+  const ImageHeader header = parse_header(content, file_name, source);
+  check_place(header, source);
+  std::string store;
+  const std::string_view bytes = voxel_bytes(content, header, file_name.ends_with(".gz"), store, source);
   LoadedImage loaded;
   loaded.image.size = {header.size[0], header.size[1], header.size[2]};
   loaded.image.origin = header.origin;
   loaded.image.steps = header.steps;
-  loaded.image.values = values_of(bytes, header, name);
+  loaded.image.values = values_of(bytes, header, source);
   loaded.integer = is_integer(header.type) && header.slope == 1 && header.intercept == 0;
   loaded.warnings = header.warnings;
   return loaded;
 }
+
+LoadedImage read_image(const std::filesystem::path& path) { return parse_image(read_file(path), path.string()); }
 
 }  // namespace vmesh

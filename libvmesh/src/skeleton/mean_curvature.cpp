@@ -14,6 +14,7 @@
 #include <CGAL/Surface_mesh.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/mesh/topology.h"
 
 namespace vmesh::skeleton {
 namespace {
@@ -22,8 +23,10 @@ using Kernel = CGAL::Simple_cartesian<double>;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Flow = CGAL::Mean_curvature_flow_skeletonization<Surface>;
 
-// The flow needs about this many vertices around a vessel to find its middle; grown meshes have 6.
+// Coarse meshes are divided until edges are shorter than this times the mean radius, as long as they are small.
+constexpr double kFine = 0.5;
 constexpr std::size_t kEnoughVertices = 20'000;
+constexpr int kMostDivisions = 2;
 // Of memory per vertex: the flow's mesh takes less than a kilobyte, its Delaunay triangulation two.
 constexpr std::size_t kBytesPerVertex = 16'384;
 
@@ -61,6 +64,20 @@ double mean_edge_length(const TriMesh& mesh) {
   return sum / static_cast<double>(3 * mesh.faces.size());
 }
 
+/// The radius of a long tube of that volume and area.
+double mean_radius(const TriMesh& mesh) {
+  double area = 0;
+  for (Index f = 0; f < mesh.faces.size(); ++f) area += 0.5 * area_normal(mesh, f).norm();
+  return 2 * enclosed_volume(mesh) / area;
+}
+
+TriMesh fine_enough(TriMesh mesh) {
+  const double wanted = kFine * mean_radius(mesh);
+  for (int i = 0; i < kMostDivisions && mesh.vertices.size() < kEnoughVertices && mean_edge_length(mesh) > wanted; ++i)
+    mesh = divided(mesh);
+  return mesh;
+}
+
 /// Gives radii to nodes in which no vertex ended, outwards from those in which one did.
 void fill_radii(Graph& graph) {
   const auto edges_at = incidence(graph);
@@ -86,8 +103,7 @@ void fill_radii(Graph& graph) {
 }  // namespace
 
 Graph mean_curvature_skeleton(const TriMesh& coarse) {
-  TriMesh mesh = coarse;
-  while (mesh.vertices.size() < kEnoughVertices) mesh = divided(mesh);
+  const TriMesh mesh = fine_enough(coarse);
   Surface surface = to_surface(mesh);
   const OrderedMemory memory(kBytesPerVertex * mesh.vertices.size());
   Flow flow(surface);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "vmesh/image/voxel_image.h"
@@ -24,5 +25,8 @@ struct LoadedImage {
 /// values that are not finite, axes that span no volume), Unsupported (extension, voxels in another file, several
 /// numbers per voxel, whole numbers that float cannot hold).
 LoadedImage read_image(const std::filesystem::path& path);
+
+/// The same from memory; `source` names the content in messages and tells its format by its ending.
+LoadedImage parse_image(std::string_view content, const std::string& source);
 
 }  // namespace vmesh
