@@ -78,7 +78,7 @@ TEST_F(ReadImage, NiftiWithoutAPlaceIsWarnedOf) {
   bytes.replace(254, 2, bytes_of(std::int16_t{0}, false));
   const LoadedImage loaded = read("a.nii", bytes);
   ASSERT_EQ(loaded.warnings.size(), 1u);
-  EXPECT_EQ(loaded.image.position(Vec3(1, 1, 1)), Vec3(-0.75, -1.25, 2.5));
+  EXPECT_EQ(loaded.image.position(Vec3(1, 1, 1)), Vec3(0.75, 1.25, 2.5));
 }
 
 TEST_F(ReadImage, AMirroredImageLiesAtOnePlaceInEveryFormat) {

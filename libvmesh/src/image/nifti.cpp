@@ -141,9 +141,10 @@ Place place_of(const Fields& fields, ImageHeader& header, const std::string& nam
   if (has_sform && !(has_qform && is_skewed(sform_of(fields)))) return sform_of(fields);
   if (has_qform) return qform_of(fields);
   header.warnings.push_back(name +
-                            ": gives no place in space (neither qform nor sform); its axes are taken to run to "
-                            "the right, front and top");
-  return {spacing_of(fields).asDiagonal(), Vec3::Zero()};
+                            ": gives no place in space (neither qform nor sform); its axes are taken to run to the "
+                            "left, back and top, as ITK takes them");
+  const Vec3 spacing = spacing_of(fields);
+  return {Vec3(-spacing.x(), -spacing.y(), spacing.z()).asDiagonal(), Vec3::Zero()};
 }
 
 Fields fields_of(std::string_view bytes, const std::string& name, bool& big_endian) {
