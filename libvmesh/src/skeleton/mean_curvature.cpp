@@ -27,8 +27,8 @@ using Flow = CGAL::Mean_curvature_flow_skeletonization<Surface>;
 constexpr double kFine = 0.5;
 constexpr std::size_t kEnoughVertices = 20'000;
 constexpr int kMostDivisions = 2;
-// Of memory per vertex: the flow's mesh takes less than a kilobyte, its Delaunay triangulation two.
-constexpr std::size_t kBytesPerVertex = 16'384;
+// Twice what the whole process was seen to take per vertex of contours and of grown surfaces.
+constexpr std::size_t kBytesPerVertex = 8'192;
 
 TriMesh divided(const TriMesh& mesh) {
   TriMesh fine{mesh.vertices, {}};
@@ -105,7 +105,7 @@ void fill_radii(Graph& graph) {
 Graph mean_curvature_skeleton(const TriMesh& coarse) {
   const TriMesh mesh = fine_enough(coarse);
   Surface surface = to_surface(mesh);
-  const OrderedMemory memory(kBytesPerVertex * mesh.vertices.size());
+  const OrderedMemory memory(kBytesPerVertex * (mesh.vertices.size() + 1000));
   Flow flow(surface);
   // CGAL's default depends on the extent of the whole, which says nothing of its thin vessels.
   flow.set_min_edge_length(std::min(flow.min_edge_length(), 0.5 * mean_edge_length(mesh)));
