@@ -124,6 +124,8 @@ Graph mean_curvature_skeleton(const TriMesh& coarse) {
     graph.edges.push_back({static_cast<Index>(source(e, skeleton)), static_cast<Index>(target(e, skeleton))});
   if (graph.nodes.empty()) throw InvalidInput("the flow left no skeleton; the surface is too small or too coarse");
   fill_radii(graph);
+  for (Node& node : graph.nodes)
+    if (!(node.radius > 0)) node.radius = mean_radius(mesh);  // all that ended there was there before
   return graph;
 }
 

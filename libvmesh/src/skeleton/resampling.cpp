@@ -51,6 +51,7 @@ std::vector<double> divisions(const Curve& curve, double spacing, std::size_t le
   std::vector<double> radii(curve.at.size(), 0);  // length in radii up to every node
   for (std::size_t i = 1; i < curve.at.size(); ++i)
     radii[i] = radii[i - 1] + 2 * (curve.at[i] - curve.at[i - 1]) / (curve.nodes[i - 1].radius + curve.nodes[i].radius);
+  if (!(radii.back() > 0)) return {0, curve.at.back()};
   const auto count = std::max(least, static_cast<std::size_t>(std::lround(radii.back() / spacing)));
   std::vector<double> places = {0};
   std::size_t i = 1;
