@@ -36,6 +36,16 @@ constexpr const char* kConvertExamples = R"(Examples:
 constexpr const char* kRenderExamples = R"(Examples:
   vmesh render tree.ply -o tree.png
   vmesh render tree.ply -o tree.png --edges --color radius --view left --width 1200 --height 900)";
+constexpr const char* kReferenceExamples = R"(Examples:
+  vmesh reference liver.nii.gz --label 2 --spacing 0.8 --smooth 0.8 -o portal.ply
+  vmesh reference ct.nrrd --threshold 150 --all-components -o bright.stl
+  vmesh reference tree.swc --voxel 0.5 -o tree_reference.ply)";
+constexpr const char* kConesExamples = R"(Examples:
+  vmesh cones tree.swc -o cones.ply
+  vmesh cones tree.swc -o cones.stl --sides 12)";
+constexpr const char* kCenterlineExamples = R"(Examples:
+  vmesh centerline portal.ply -o portal.json
+  vmesh centerline liver.nii.gz --label 2 --spacing 0.8 --smooth 0.8 -o portal.swc --tree)";
 
 constexpr const char* kEvaluateExamples = R"(Examples:
   vmesh evaluate tree.ply
@@ -276,6 +286,62 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
   verb.footer(kEvaluateExamples);
 }
 
+void add_image_options(CLI::App& verb, ReferenceOptions& options) {
+  CLI::Option* label = verb.add_option("--label", options.label, "image: voxels of this value are inside");
+  verb.add_option("--threshold", options.threshold, "image: voxels of at least this value are inside")->excludes(label);
+  verb.add_option("--spacing", options.spacing, "image: resample to cubic voxels of this side, mm; 0: as it is")
+      ->check(in_range(0.0, 1e6))
+      ->capture_default_str();
+  verb.add_option("--smooth", options.smooth, "smooth with a Gaussian of this standard deviation, mm; 0: not at all")
+      ->check(in_range(0.0, 1e6))
+      ->capture_default_str();
+}
+
+void add_reference(CLI::App& app, ReferenceArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand(
+      "reference", "Contour an image by marching cubes, or the vessel volume of a centerline sampled on voxels");
+  add_input(verb, arguments.input, "image (.nii, .nii.gz, .nrrd, .mha) or centerline");
+  add_output(verb, arguments.output, "surface");
+  add_image_options(verb, arguments.options);
+  verb.add_option("--voxel", arguments.voxel, "centerline: side of the voxels, mm")->check(in_range(1e-6, 1e6));
+  verb.add_flag("--binary", arguments.options.binary,
+                "contour inside and outside alone instead of grey values: a staircase of better triangles");
+  verb.add_flag("--all-components", arguments.options.all_components,
+                "keep all components and cavities, not only the component of the largest volume");
+  add_common(verb, arguments.common);
+  verb.footer(kReferenceExamples);
+}
+
+void add_cones(CLI::App& app, ConesArguments& arguments) {
+  CLI::App& verb =
+      *app.add_subcommand("cones", "Put a truncated cone around every segment of a centerline, not joined");
+  add_input(verb, arguments.input, "centerline");
+  add_output(verb, arguments.output, "surface");
+  verb.add_option("--sides", arguments.sides, "of a cone")->check(in_range(3, 1000))->capture_default_str();
+  add_common(verb, arguments.common);
+  verb.footer(kConesExamples);
+}
+
+void add_centerline(CLI::App& app, CenterlineArguments& arguments) {
+  CLI::App& verb =
+      *app.add_subcommand("centerline", "Extract the centerline with radii from a closed surface or an image");
+  add_input(verb, arguments.input, "surface, or image (.nii, .nii.gz, .nrrd, .mha)");
+  add_output(verb, arguments.output, "centerline");
+  add_image_options(verb, arguments.image);
+  verb.add_option("--step", arguments.options.spacing, "distance between nodes along a vessel, in local radii")
+      ->check(in_range(0.1, 10.0))
+      ->capture_default_str();
+  verb.add_option("--join", arguments.options.join,
+                  "join parts whose vessels are closer than this times the smaller of their radii")
+      ->check(in_range(0.0, 1e6))
+      ->capture_default_str();
+  verb.add_flag("--all-components", arguments.options.all_components,
+                "keep all parts that remain apart, not only the one of the largest volume");
+  verb.add_flag("--tree", arguments.options.tree, "break all loops");
+  add_common(verb, arguments.common);
+  verb.footer(kCenterlineExamples);
+}
+
 }  // namespace
 
 std::string_view to_string(OverlapHandling overlap) {
@@ -297,12 +363,18 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   ConvertArguments convert;
   RenderArguments render;
   EvaluateArguments evaluate;
+  ReferenceArguments reference;
+  ConesArguments cones;
+  CenterlineArguments centerline;
   add_generate(app, generate);
   add_info(app, info);
   add_synth(app, synth);
   add_convert(app, convert);
   add_render(app, render);
   add_evaluate(app, evaluate);
+  add_reference(app, reference);
+  add_cones(app, cones);
+  add_centerline(app, centerline);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -314,8 +386,11 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   if (app.got_subcommand("info")) return info;
   if (app.got_subcommand("synth")) return synth;
   if (app.got_subcommand("convert")) return convert;
-  if (app.got_subcommand("render")) return render;
-  return evaluate;
+  if (app.got_subcommand("reference")) return reference;
+  if (app.got_subcommand("cones")) return cones;
+  if (app.got_subcommand("centerline")) return centerline;
+  if (app.got_subcommand("evaluate")) return evaluate;
+  return render;
 }
 
 }  // namespace vmesh::tool

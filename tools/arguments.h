@@ -9,7 +9,9 @@
 
 #include "vmesh/centerline/raw_centerline.h"
 #include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/reference/reference_surface.h"
 #include "vmesh/render/render.h"
+#include "vmesh/skeleton/extract_centerline.h"
 #include "vmesh/surface/generate.h"
 
 namespace vmesh::tool {
@@ -81,8 +83,31 @@ struct EvaluateArguments {
   std::size_t samples = 100'000;
 };
 
+struct ReferenceArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+  ReferenceOptions options;
+  double voxel = 0;  ///< of a sampled centerline, mm; 0: not given
+};
+
+struct ConesArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+  int sides = 18;
+};
+
+struct CenterlineArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+  ExtractOptions options;
+  ReferenceOptions image;  ///< how an image becomes a surface first
+};
+
 using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments,
-                               EvaluateArguments>;
+                               EvaluateArguments, ReferenceArguments, ConesArguments, CenterlineArguments>;
 
 /// Calls `visit(flag, member, low, high, help)` for every option of the growth. The one list behind the command line
 /// and the summary.

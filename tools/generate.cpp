@@ -93,12 +93,7 @@ void warn_of_error(GenerateReport& report, Console& console) {
 }
 
 LoadedCenterline load(const InputArguments& input, Console& console) {
-  CenterlineLoadOptions options;
-  options.unit = input.unit;
-  options.space = input.space;
-  LoadedCenterline loaded = load_centerline(input.path, options);
-  console.warn(loaded.warnings);
-  for (const std::string& line : loaded.cleaned.report.summary()) console.log("cleaning: " + line);
+  LoadedCenterline loaded = load_clean_centerline(input, console);
   const Centerline& centerline = loaded.cleaned.centerline;
   console.log(std::to_string(centerline.nodes().size()) + " nodes, " + std::to_string(centerline.segments().size()) +
               " segments, " + std::to_string(centerline.component_count()) + " components, " +

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "outputs.h"
+#include "usage_error.h"
 
 namespace vmesh::tool {
 namespace {
@@ -57,6 +58,24 @@ LoadedSurface load_surface(const InputArguments& input) {
   LoadedSurface surface = read_surface(input.path);
   convert_to_internal(surface, input);
   return surface;
+}
+
+LoadedCenterline load_clean_centerline(const InputArguments& input, Console& console) {
+  CenterlineLoadOptions options;
+  options.unit = input.unit;
+  options.space = input.space;
+  LoadedCenterline loaded = load_centerline(input.path, options);
+  console.warn(loaded.warnings);
+  for (const std::string& line : loaded.cleaned.report.summary()) console.log("cleaning: " + line);
+  return loaded;
+}
+
+LoadedImage load_image(const InputArguments& input, Console& console) {
+  if (input.unit || input.space)
+    throw UsageError(input.path.string() + ": an image says where it lies; --unit and --space do not apply");
+  LoadedImage loaded = read_image(input.path);
+  console.warn(loaded.warnings);
+  return loaded;
 }
 
 AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings) {

@@ -4,10 +4,12 @@
 #include <variant>
 #include <vector>
 
+#include "vmesh/image/image_io.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 
 #include "arguments.h"
+#include "console.h"
 
 namespace vmesh::tool {
 
@@ -16,6 +18,12 @@ RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::
 
 /// A surface in mm and LPS. Attributes that are lengths are converted too.
 LoadedSurface load_surface(const InputArguments& input);
+
+/// The same, cleaned; warnings and what cleaning did are told.
+LoadedCenterline load_clean_centerline(const InputArguments& input, Console& console);
+
+/// An image; --unit and --space are refused, as images say where they lie. Throws UsageError.
+LoadedImage load_image(const InputArguments& input, Console& console);
 
 /// Either of the two, by extension; what a .vtp holds, its content decides.
 using AnyInput = std::variant<RawCenterline, LoadedSurface>;

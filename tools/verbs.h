@@ -12,5 +12,8 @@ int run(const SynthArguments& arguments, Console& console);
 int run(const ConvertArguments& arguments, Console& console);
 int run(const RenderArguments& arguments, Console& console);
 int run(const EvaluateArguments& arguments, Console& console);
+int run(const ReferenceArguments& arguments, Console& console);
+int run(const ConesArguments& arguments, Console& console);
+int run(const CenterlineArguments& arguments, Console& console);
 
 }  // namespace vmesh::tool

@@ -5,7 +5,7 @@
 namespace vmesh::testing {
 namespace {
 
-const char* const kVerbs[] = {"generate", "info", "synth", "convert", "render"};
+const char* const kVerbs[] = {"generate", "info", "synth", "convert", "render", "reference", "cones", "centerline"};
 
 using CommandLine = CommandTest;
 
@@ -47,6 +47,14 @@ TEST_F(CommandLine, UsageErrorsExitWithTwoAndKeepStdoutClean) {
       {"generate", "@y.swc", "-o", "@y.ply", "--unit", "parsec"},
       {"synth", "-o", "@t.swc", "--vertices", "1"},
       {"convert", "@y.swc", "-o", "@y.ply"},
+      {"reference", "@y.swc", "-o", "@y.ply"},
+      {"reference", "@y.swc", "-o", "@y.ply", "--voxel", "1", "--label", "2"},
+      {"reference", "@y.swc", "-o", "@y.ply", "--voxel", "nan"},
+      {"reference", "@y.nii", "-o", "@y.ply", "--voxel", "1"},
+      {"reference", "@y.nii", "-o", "@y.ply", "--label", "1", "--threshold", "1"},
+      {"cones", "@y.swc", "-o", "@y.ply", "--sides", "2"},
+      {"centerline", "@y.ply", "-o", "@y.json", "--label", "2"},
+      {"centerline", "@y.ply", "-o", "@y.json", "--step", "0"},
   };
   for (const auto& arguments : wrong) {
     const Outcome run = vmesh(arguments);

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmesh/image/voxel_image.h"
+
+namespace vmesh {
+
+/// Whether the name ends as an image's: .nii, .nii.gz, .nrrd or .mha, upper or lower case.
+bool is_image_path(const std::filesystem::path& path);
+
+struct LoadedImage {
+  VoxelImage image;
+  bool integer = false;               ///< the file stores whole numbers: labels, a mask or CT numbers
+  std::vector<std::string> warnings;  ///< what the file does not say and was assumed
+};
+
+/// Reads a scalar image of three dimensions (more, when they have one sample), lying in space where 3D Slicer shows it:
+/// NIfTI-1 and -2, NRRD, MetaImage, with header and voxels in one file, packed or not. In NIfTI, the sform wins over
+/// the qform unless it is skewed. Memory is bounded by what the file holds, unpacked. Throws ReadError (missing, a
+/// directory, unreadable), InvalidInput (content: not such a file, fewer voxels in the file than its header claims,
+/// values that are not finite, axes that span no volume), Unsupported (extension, voxels in another file, several
+/// numbers per voxel, whole numbers that float cannot hold).
+LoadedImage read_image(const std::filesystem::path& path);
+
+/// The same from memory; `source` names the content in messages and tells its format by its ending.
+LoadedImage parse_image(std::string_view content, const std::string& source);
+
+}  // namespace vmesh

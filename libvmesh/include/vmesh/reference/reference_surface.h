@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "vmesh/centerline/centerline.h"
+#include "vmesh/image/image_io.h"
+#include "vmesh/mesh/tri_mesh.h"
+
+namespace vmesh {
+
+/// How an image becomes a surface. Steps in this order: what is inside, resampling, smoothing, contouring, components.
+struct ReferenceOptions {
+  /// Voxels of this value are inside. Without label and threshold: those that are not 0, provided that the image holds
+  /// no second value besides 0.
+  std::optional<double> label;
+  /// Voxels of at least this value are inside; the image's own values are contoured. Not together with `label`.
+  std::optional<double> threshold;
+  /// Side of cubic voxels to resample to (mm); 0: the image's own voxels.
+  double spacing = 0;
+  /// Standard deviation of a Gaussian to smooth with (mm); 0: none.
+  double smooth = 0;
+  /// Contour inside and outside alone instead of values: a staircase of better triangles.
+  bool binary = false;
+  /// Keep all components, cavities included, instead of the one that encloses the largest volume.
+  bool all_components = false;
+};
+
+/// A marching-cubes surface: closed, manifold, oriented, in LPS and mm.
+struct ReferenceSurface {
+  TriMesh mesh;
+  bool binary = false;          ///< contour of inside and outside; else of grey values
+  std::size_t components = 0;   ///< that the contour had
+  Vec3 spacing = Vec3::Zero();  ///< of the voxels contoured (mm)
+};
+
+/// Throws InvalidInput for options out of range, an image with several labels and no choice, and when nothing is inside
+/// (it lists what labels there are); Unsupported without VTK.
+ReferenceSurface reference_surface(const LoadedImage& image, const ReferenceOptions& options = {});
+
+/// The vessel volume of a centerline (plain union of round cones), sampled on voxels of `voxel` mm and contoured the
+/// same way: the reference of a synthetic tree. `spacing`, `label` and `threshold` do not apply.
+ReferenceSurface reference_surface(const Centerline& centerline, double voxel, const ReferenceOptions& options = {});
+
+}  // namespace vmesh

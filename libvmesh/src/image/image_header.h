@@ -1,0 +1,53 @@
+// Headers of image files, internal to the module: one parser per format. Parsers take the file's first bytes and its
+// name for messages, and throw what read_image() throws.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmesh/core/types.h"
+
+namespace vmesh::image {
+
+enum class NumberType { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
+
+std::size_t bytes_of(NumberType type);
+bool is_integer(NumberType type);
+
+struct ImageHeader {
+  std::array<std::uint64_t, 3> size = {0, 0, 0};        ///< none is 0, their product fits
+  Vec3 origin = Vec3::Zero();                           ///< LPS, mm
+  Eigen::Matrix3d steps = Eigen::Matrix3d::Identity();  ///< as in VoxelImage
+  NumberType type = NumberType::u8;
+  bool big_endian = false;
+  double slope = 1, intercept = 0;  ///< value = slope * stored + intercept
+  std::uint64_t data_begin = 0;     ///< bytes before the voxels
+  bool packed = false;              ///< zlib or gzip from there on
+  std::vector<std::string> warnings;
+
+  std::uint64_t voxels() const { return size[0] * size[1] * size[2]; }
+};
+
+ImageHeader parse_nifti_header(std::string_view bytes, const std::string& name);
+ImageHeader parse_nrrd_header(std::string_view bytes, const std::string& name);
+ImageHeader parse_meta_header(std::string_view bytes, const std::string& name);
+
+/// Sets the size from a file's list of sizes: three, and more only when those are 1.
+void set_size(ImageHeader& header, const std::vector<double>& sizes, const std::string& name);
+
+/// Throws InvalidInput when the axes are not finite or span no volume.
+void check_place(const ImageHeader& header, const std::string& name);
+
+/// Numbers separated by blanks, commas and brackets. Throws InvalidInput that cites `key`.
+std::vector<double> numbers_in(std::string_view text, const std::string& name, std::string_view key);
+
+/// Without blanks at both ends, in lower case.
+std::string folded(std::string_view text);
+
+/// Takes the next line off `text`, without its end. False when there is no whole line.
+bool take_line(std::string_view& text, std::string_view& line);
+
+}  // namespace vmesh::image

@@ -1,0 +1,149 @@
+#include "vmesh/image/image_io.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <string_view>
+
+#include "vmesh/core/error.h"
+
+#include "image_header.h"
+#include "unpack.h"
+
+namespace vmesh {
+namespace {
+
+using image::ImageHeader;
+using image::NumberType;
+
+std::string read_file(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw ReadError(name + ": there is no such file; check the name");
+  if (std::filesystem::is_directory(status)) throw ReadError(name + ": this is a folder; give a file");
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw ReadError(name + ": cannot be opened: " + std::strerror(errno));
+  std::string content(std::istreambuf_iterator<char>(in), {});
+  if (in.bad()) throw ReadError(name + ": cannot be read: " + std::strerror(errno));
+  if (content.empty()) throw InvalidInput(name + ": the file is empty");
+  return content;
+}
+
+ImageHeader parse_header(std::string_view content, const std::string& file_name, const std::string& name) {
+  if (file_name.ends_with(".nrrd")) return image::parse_nrrd_header(content, name);
+  if (file_name.ends_with(".mha")) return image::parse_meta_header(content, name);
+  const bool packed = content.starts_with("\x1f\x8b");
+  if (packed != file_name.ends_with(".gz"))
+    throw InvalidInput(name + (packed ? ": is packed with gzip; name it .nii.gz" : ": is not packed with gzip"));
+  constexpr std::uint64_t kLongestHeader = 540;
+  return image::parse_nifti_header(packed ? image::unpacked(content, kLongestHeader) : content, name);
+}
+
+/// The bytes of all voxels: part of `content`, or unpacked into `store`. Throws InvalidInput when there are fewer.
+std::string_view voxel_bytes(std::string_view content, const ImageHeader& header, bool all_packed, std::string& store,
+                             const std::string& name) {
+  const std::uint64_t needed = header.voxels() * bytes_of(header.type);
+  if (all_packed) content = store = image::unpacked(content, header.data_begin + needed);
+  content.remove_prefix(static_cast<std::size_t>(std::min<std::uint64_t>(header.data_begin, content.size())));
+  if (header.packed) content = store = image::unpacked(content, needed);
+  if (content.size() < needed)
+    throw InvalidInput(name + ": the header claims " + std::to_string(header.voxels()) + " voxels, " +
+                       std::to_string(needed) + " bytes, but the file holds " + std::to_string(content.size()) +
+                       "; it is broken or incomplete");
+  return content;
+}
+
+template <class T>
+T number_at(const char* bytes, bool big_endian) {
+  std::array<char, sizeof(T)> buffer;
+  std::memcpy(buffer.data(), bytes, sizeof(T));
+  if (big_endian != (std::endian::native == std::endian::big)) std::reverse(buffer.begin(), buffer.end());
+  return std::bit_cast<T>(buffer);
+}
+
+/// Labels that become another number in float would be mixed up.
+void check_exact(double stored, float number, const std::string& name) {
+  if (static_cast<double>(number) != stored)
+    throw Unsupported(name + ": holds the whole number " + std::to_string(stored) +
+                      "; those above 16777216 are not told apart. Renumber the labels");
+}
+
+template <class T>
+std::vector<float> to_float(std::string_view bytes, const ImageHeader& header, const std::string& name) {
+  std::vector<float> values;
+  values.reserve(header.voxels());
+  const bool scaled = header.slope != 1 || header.intercept != 0;
+  for (std::uint64_t n = 0; n < header.voxels(); ++n) {
+    const auto stored = static_cast<double>(number_at<T>(bytes.data() + n * sizeof(T), header.big_endian));
+    const auto number = static_cast<float>(scaled ? header.slope * stored + header.intercept : stored);
+    if (!std::isfinite(number))
+      throw InvalidInput(name + ": voxel " + std::to_string(n) +
+                         ", counted from 0 as stored, has no finite value; repair or mask it");
+    if (std::numeric_limits<T>::is_integer && !scaled) check_exact(stored, number, name);
+    values.push_back(number);
+  }
+  return values;
+}
+
+std::vector<float> values_of(std::string_view bytes, const ImageHeader& header, const std::string& name) {
+  switch (header.type) {
+    case NumberType::u8:
+      return to_float<std::uint8_t>(bytes, header, name);
+    case NumberType::i8:
+      return to_float<std::int8_t>(bytes, header, name);
+    case NumberType::u16:
+      return to_float<std::uint16_t>(bytes, header, name);
+    case NumberType::i16:
+      return to_float<std::int16_t>(bytes, header, name);
+    case NumberType::u32:
+      return to_float<std::uint32_t>(bytes, header, name);
+    case NumberType::i32:
+      return to_float<std::int32_t>(bytes, header, name);
+    case NumberType::u64:
+      return to_float<std::uint64_t>(bytes, header, name);
+    case NumberType::i64:
+      return to_float<std::int64_t>(bytes, header, name);
+    case NumberType::f32:
+      return to_float<float>(bytes, header, name);
+    case NumberType::f64:
+      return to_float<double>(bytes, header, name);
+  }
+  return {};
+}
+
+}  // namespace
+
+bool is_image_path(const std::filesystem::path& path) {
+  const std::string name = image::folded(path.filename().string());
+  for (const char* ending : {".nii", ".nii.gz", ".nrrd", ".mha"})
+    if (name.ends_with(ending)) return true;
+  return false;
+}
+
+LoadedImage parse_image(std::string_view content, const std::string& source) {
+  if (!is_image_path(source)) throw Unsupported(source + ": images are .nii, .nii.gz, .nrrd or .mha");
+  const std::string file_name = image::folded(std::filesystem::path(source).filename().string());
+  const ImageHeader header = parse_header(content, file_name, source);
+  check_place(header, source);
+  std::string store;
+  const std::string_view bytes = voxel_bytes(content, header, file_name.ends_with(".gz"), store, source);
+  LoadedImage loaded;
+  loaded.image.size = {header.size[0], header.size[1], header.size[2]};
+  loaded.image.origin = header.origin;
+  loaded.image.steps = header.steps;
+  loaded.image.values = values_of(bytes, header, source);
+  loaded.integer = is_integer(header.type) && header.slope == 1 && header.intercept == 0;
+  loaded.warnings = header.warnings;
+  return loaded;
+}
+
+LoadedImage read_image(const std::filesystem::path& path) { return parse_image(read_file(path), path.string()); }
+
+}  // namespace vmesh

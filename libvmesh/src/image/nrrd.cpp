@@ -1,0 +1,156 @@
+// NRRD (https://teem.sourceforge.net/nrrd/format.html), header and voxels in one file, raw or gzip.
+#include <map>
+
+#include "vmesh/core/error.h"
+
+#include "image_header.h"
+
+namespace vmesh::image {
+namespace {
+
+using Entries = std::map<std::string, std::string>;
+
+NumberType number_type(const std::string& word, const std::string& name) {
+  static const std::map<std::string, NumberType> kTypes = {{"signed char", NumberType::i8},
+                                                           {"int8", NumberType::i8},
+                                                           {"int8_t", NumberType::i8},
+                                                           {"uchar", NumberType::u8},
+                                                           {"unsigned char", NumberType::u8},
+                                                           {"uint8", NumberType::u8},
+                                                           {"uint8_t", NumberType::u8},
+                                                           {"short", NumberType::i16},
+                                                           {"short int", NumberType::i16},
+                                                           {"signed short", NumberType::i16},
+                                                           {"signed short int", NumberType::i16},
+                                                           {"int16", NumberType::i16},
+                                                           {"int16_t", NumberType::i16},
+                                                           {"ushort", NumberType::u16},
+                                                           {"unsigned short", NumberType::u16},
+                                                           {"unsigned short int", NumberType::u16},
+                                                           {"uint16", NumberType::u16},
+                                                           {"uint16_t", NumberType::u16},
+                                                           {"int", NumberType::i32},
+                                                           {"signed int", NumberType::i32},
+                                                           {"int32", NumberType::i32},
+                                                           {"int32_t", NumberType::i32},
+                                                           {"uint", NumberType::u32},
+                                                           {"unsigned int", NumberType::u32},
+                                                           {"uint32", NumberType::u32},
+                                                           {"uint32_t", NumberType::u32},
+                                                           {"longlong", NumberType::i64},
+                                                           {"long long", NumberType::i64},
+                                                           {"long long int", NumberType::i64},
+                                                           {"signed long long", NumberType::i64},
+                                                           {"signed long long int", NumberType::i64},
+                                                           {"int64", NumberType::i64},
+                                                           {"int64_t", NumberType::i64},
+                                                           {"ulonglong", NumberType::u64},
+                                                           {"unsigned long long", NumberType::u64},
+                                                           {"unsigned long long int", NumberType::u64},
+                                                           {"uint64", NumberType::u64},
+                                                           {"uint64_t", NumberType::u64},
+                                                           {"float", NumberType::f32},
+                                                           {"double", NumberType::f64}};
+  const auto found = kTypes.find(word);
+  if (found == kTypes.end()) throw Unsupported(name + ": voxels of type \"" + word + "\" are not supported");
+  return found->second;
+}
+
+/// Lines up to the empty one; keys and values in lower case.
+Entries entries_of(std::string_view bytes, const std::string& name, std::uint64_t& data_begin) {
+  Entries entries;
+  std::string_view rest = bytes, line;
+  if (!bytes.starts_with("NRRD000") || !take_line(rest, line))
+    throw InvalidInput(name + ": this is no NRRD file: it does not begin with a line such as NRRD0004");
+  while (take_line(rest, line)) {
+    if (line.empty()) {
+      data_begin = bytes.size() - rest.size();
+      return entries;
+    }
+    const std::size_t colon = line.find(':');
+    if (line.front() == '#' || colon == std::string_view::npos || line.substr(colon).starts_with(":=")) continue;
+    entries[folded(line.substr(0, colon))] = folded(line.substr(colon + 1));
+  }
+  throw InvalidInput(name + ": the header has no end (an empty line)");
+}
+
+const std::string& required(const Entries& entries, const char* key, const std::string& name) {
+  const auto found = entries.find(key);
+  if (found == entries.end()) throw InvalidInput(name + ": the header has no line \"" + key + "\"");
+  return found->second;
+}
+
+std::string optional(const Entries& entries, const char* key) {
+  const auto found = entries.find(key);
+  return found == entries.end() ? std::string() : found->second;
+}
+
+void set_encoding(ImageHeader& header, const Entries& entries, const std::string& name) {
+  for (const char* key : {"data file", "datafile"})
+    if (entries.contains(key))
+      throw Unsupported(name + ": its voxels are in another file; store header and voxels in one");
+  for (const char* key : {"line skip", "lineskip", "byte skip", "byteskip"})
+    if (!optional(entries, key).empty() && optional(entries, key) != "0")
+      throw Unsupported(name + ": the header's \"" + key + "\" is not supported; store the image anew");
+  const std::string& encoding = required(entries, "encoding", name);
+  header.packed = encoding == "gzip" || encoding == "gz";
+  if (!header.packed && encoding != "raw")
+    throw Unsupported(name + ": encoding \"" + encoding + "\" is not supported; store the image raw or with gzip");
+  const std::string endian = optional(entries, "endian");
+  header.big_endian = endian == "big";
+  if (endian.empty() && bytes_of(header.type) > 1) throw InvalidInput(name + ": the header has no line \"endian\"");
+}
+
+/// From the file's frame to LPS.
+Eigen::DiagonalMatrix<double, 3> frame_of(ImageHeader& header, const std::string& space, const std::string& name) {
+  if (space == "left-posterior-superior" || space == "lps") return {1, 1, 1};
+  if (space == "right-anterior-superior" || space == "ras") return {-1, -1, 1};
+  if (space == "left-anterior-superior" || space == "las") return {1, -1, 1};
+  if (!space.empty() && space != "3")
+    throw Unsupported(name + ": the space \"" + space + "\" is not supported; use LPS");
+  header.warnings.push_back(name + ": names no patient frame (\"space\"); LPS is taken");
+  return {1, 1, 1};
+}
+
+void set_place(ImageHeader& header, const Entries& entries, const std::string& name) {
+  std::string space = optional(entries, "space");
+  if (space.empty()) space = optional(entries, "space dimension");
+  const auto to_lps = frame_of(header, space, name);
+  const std::string units = optional(entries, "space units");
+  if (!units.empty() && units != "\"mm\" \"mm\" \"mm\"")
+    throw Unsupported(name + ": space units " + units + " are not supported; store the image in mm");
+  std::string directions = optional(entries, "space directions");
+  while (directions.ends_with(" none")) directions.resize(directions.size() - 5);
+  if (!directions.empty()) {
+    const std::vector<double> numbers = numbers_in(directions, name, "space directions");
+    if (numbers.size() != 9) throw InvalidInput(name + ": the header's \"space directions\" are not three vectors");
+    for (int a = 0; a < 3; ++a)
+      header.steps.col(a) = to_lps * Vec3(numbers[3 * a], numbers[3 * a + 1], numbers[3 * a + 2]);
+  } else if (const std::vector<double> spacings = numbers_in(optional(entries, "spacings"), name, "spacings");
+             spacings.size() >= 3) {
+    header.steps = to_lps * Eigen::Matrix3d(Vec3(spacings[0], spacings[1], spacings[2]).asDiagonal());
+  } else {
+    header.warnings.push_back(name + ": gives no size of voxels (\"space directions\"); 1 mm is taken");
+  }
+  const std::vector<double> origin = numbers_in(optional(entries, "space origin"), name, "space origin");
+  if (!origin.empty() && origin.size() != 3) throw InvalidInput(name + ": the header's \"space origin\" is no point");
+  if (!origin.empty()) header.origin = to_lps * Vec3(origin[0], origin[1], origin[2]);
+}
+
+}  // namespace
+
+ImageHeader parse_nrrd_header(std::string_view bytes, const std::string& name) {
+  ImageHeader header;
+  const Entries entries = entries_of(bytes, name, header.data_begin);
+  const std::vector<double> sizes = numbers_in(required(entries, "sizes", name), name, "sizes");
+  const std::vector<double> dimension = numbers_in(required(entries, "dimension", name), name, "dimension");
+  if (dimension.size() != 1 || dimension[0] != static_cast<double>(sizes.size()))
+    throw InvalidInput(name + ": the header's \"dimension\" and \"sizes\" contradict each other");
+  set_size(header, sizes, name);
+  header.type = number_type(required(entries, "type", name), name);
+  set_encoding(header, entries, name);
+  set_place(header, entries, name);
+  return header;
+}
+
+}  // namespace vmesh::image

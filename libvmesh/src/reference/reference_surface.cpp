@@ -1,0 +1,147 @@
+#include "vmesh/reference/reference_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include "vmesh/core/error.h"
+#include "vmesh/image/contour.h"
+#include "vmesh/image/image_filters.h"
+#include "vmesh/mesh/components.h"
+#include "vmesh/mesh/topology.h"
+#include "vmesh/reference/sampled_field.h"
+
+namespace vmesh {
+namespace {
+
+constexpr std::size_t kListedLabels = 20;
+
+/// What is contoured, and at which value.
+struct Scene {
+  VoxelImage image;
+  double isovalue = 0;
+  bool binary = false;
+};
+
+/// The values other than 0, ascending; at most `most` of them.
+std::set<float> labels_of(const VoxelImage& image, std::size_t most) {
+  std::set<float> labels;
+  float last = 0;
+  for (const float value : image.values) {
+    if (value == 0 || value == last) continue;
+    last = value;
+    labels.insert(value);
+    if (labels.size() == most) break;
+  }
+  return labels;
+}
+
+std::string list_of(const VoxelImage& image) {
+  const std::set<float> labels = labels_of(image, kListedLabels + 1);
+  if (labels.empty()) return "all its voxels are 0";
+  std::ostringstream text;
+  text << "it holds ";
+  std::size_t count = 0;
+  for (const float label : labels) {
+    if (count == kListedLabels) {
+      text << " ...";
+      break;
+    }
+    text << (count++ ? ", " : "") << label;
+  }
+  return text.str();
+}
+
+void check(const ReferenceOptions& options) {
+  if (options.label && options.threshold) throw InvalidInput("a label and a threshold exclude each other; give one");
+  if (!(options.spacing >= 0) || !(options.smooth >= 0)) throw InvalidInput("spacing and smoothing are 0 or more mm");
+}
+
+Scene mask_scene(const VoxelImage& image, double low, double high) {
+  Scene scene{binary_mask(image, low, high), 0.5, true};
+  if (std::find(scene.image.values.begin(), scene.image.values.end(), 1.0f) == scene.image.values.end())
+    throw InvalidInput("no voxel is inside: " + list_of(image) + "; choose a label or a threshold that occurs");
+  return scene;
+}
+
+Scene scene_of(const LoadedImage& loaded, const ReferenceOptions& options) {
+  const VoxelImage& image = loaded.image;
+  if (options.label) return mask_scene(image, *options.label, *options.label);
+  if (options.threshold) {
+    const double highest = *std::max_element(image.values.begin(), image.values.end());
+    if (highest >= *options.threshold) return {image, *options.threshold, false};
+    throw InvalidInput("no voxel is inside: the highest value is " + std::to_string(highest) +
+                       "; choose a lower threshold");
+  }
+  const std::set<float> labels = labels_of(image, 2);
+  if (labels.size() > 1)
+    throw InvalidInput("there is more than one value besides 0 (" + list_of(image) +
+                       "); choose one with --label, or --threshold for grey values");
+  const double label = labels.empty() ? 1 : *labels.begin();
+  return mask_scene(image, label, label);
+}
+
+/// How far around the inside voxels values can matter (mm).
+double margin_of(const VoxelImage& image, const ReferenceOptions& options) {
+  return 2 * image.spacing().maxCoeff() + 2 * options.spacing + 4 * options.smooth;
+}
+
+TriMesh largest_component(TriMesh mesh, std::size_t& count) {
+  std::vector<TriMesh> parts = split_components(mesh);
+  count = parts.size();
+  if (count == 1) return mesh;
+  std::size_t best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const double volume = enclosed_volume(parts[p]);
+    if (volume <= most) continue;
+    most = volume;
+    best = p;
+  }
+  return std::move(parts[best]);
+}
+
+ReferenceSurface contour_scene(Scene scene, const ReferenceOptions& options) {
+  if (options.smooth > 0) {
+    scene.image = smoothed(scene.image, options.smooth);
+    scene.binary = false;
+  }
+  if (options.binary) {
+    scene.image = binary_mask(scene.image, scene.isovalue, std::numeric_limits<double>::infinity());
+    scene.isovalue = 0.5;
+    scene.binary = true;
+  }
+  ReferenceSurface result;
+  result.binary = scene.binary;
+  result.spacing = scene.image.spacing();
+  TriMesh mesh = contour(scene.image, scene.isovalue);
+  if (options.all_components) {
+    result.components = split_components(mesh).size();
+    result.mesh = std::move(mesh);
+  } else {
+    result.mesh = largest_component(std::move(mesh), result.components);
+  }
+  return result;
+}
+
+}  // namespace
+
+ReferenceSurface reference_surface(const LoadedImage& image, const ReferenceOptions& options) {
+  check(options);
+  Scene scene = scene_of(image, options);
+  scene.image = cropped_to(scene.image, scene.isovalue, margin_of(scene.image, options));
+  if (options.spacing > 0) {
+    scene.image = resampled(scene.image, options.spacing);
+    scene.binary = false;
+  }
+  return contour_scene(std::move(scene), options);
+}
+
+ReferenceSurface reference_surface(const Centerline& centerline, double voxel, const ReferenceOptions& options) {
+  check(options);
+  return contour_scene({sample_field(centerline, voxel), 0, false}, options);
+}
+
+}  // namespace vmesh

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "skeleton_graph.h"
+
+namespace vmesh::skeleton {
+
+/// The curve skeleton of a closed manifold mesh of one component by mean curvature flow (Tagliasacchi et al. 2012,
+/// CGAL). A node's radius is the mean distance of the surface's vertices that ended in it; where none did, that of its
+/// neighbours. Coarse meshes are divided first. Throws InvalidInput when the flow leaves nothing.
+Graph mean_curvature_skeleton(const TriMesh& mesh);
+
+}  // namespace vmesh::skeleton

@@ -1,0 +1,179 @@
+#include "skeleton_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <queue>
+
+namespace vmesh::skeleton {
+namespace {
+
+Index root_of(std::vector<Index>& parent, Index n) {
+  while (parent[n] != n) n = parent[n] = parent[parent[n]];
+  return n;
+}
+
+std::vector<Index> forest_of(const Graph& graph) {
+  std::vector<Index> parent(graph.nodes.size());
+  std::iota(parent.begin(), parent.end(), Index{0});
+  for (const auto& [a, b] : graph.edges) parent[root_of(parent, a)] = root_of(parent, b);
+  return parent;
+}
+
+void remove_edges(Graph& graph, const std::vector<bool>& removed) {
+  std::size_t kept = 0;
+  for (std::size_t e = 0; e < graph.edges.size(); ++e)
+    if (!removed[e]) graph.edges[kept++] = graph.edges[e];
+  graph.edges.resize(kept);
+}
+
+/// Edges in the order of their lengths.
+std::vector<Index> by_length(const Graph& graph) {
+  std::vector<Index> order(graph.edges.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return graph.length(a) < graph.length(b); });
+  return order;
+}
+
+/// Length of the shortest way from `from` to `to` that avoids edge `avoided`.
+double way_around(const Graph& graph, const std::vector<std::vector<Index>>& edges_at, Index avoided) {
+  const auto [from, to] = graph.edges[avoided];
+  std::vector<double> distance(graph.nodes.size(), std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, Index>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  queue.push({distance[from] = 0, from});
+  while (!queue.empty()) {
+    const auto [d, n] = queue.top();
+    queue.pop();
+    if (n == to) return d;
+    if (d > distance[n]) continue;
+    for (const Index e : edges_at[n]) {
+      if (e == avoided) continue;
+      const Index m = other_end(graph, e, n);
+      if (const double way = d + graph.length(e); way < distance[m]) queue.push({distance[m] = way, m});
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+/// Edges that are not in the spanning forest of the shortest ones.
+std::vector<Index> closing_edges(const Graph& graph) {
+  std::vector<Index> parent(graph.nodes.size()), closing;
+  std::iota(parent.begin(), parent.end(), Index{0});
+  for (const Index e : by_length(graph)) {
+    const Index a = root_of(parent, graph.edges[e][0]), b = root_of(parent, graph.edges[e][1]);
+    if (a == b) closing.push_back(e);
+    parent[a] = b;
+  }
+  return closing;
+}
+
+double length_of(const Graph& graph, const Chain& chain) {
+  double length = 0;
+  for (const Index e : chain.edges) length += graph.length(e);
+  return length;
+}
+
+}  // namespace
+
+std::vector<std::vector<Index>> incidence(const Graph& graph) {
+  std::vector<std::vector<Index>> edges_at(graph.nodes.size());
+  for (Index e = 0; e < graph.edges.size(); ++e)
+    for (const Index n : graph.edges[e]) edges_at[n].push_back(e);
+  return edges_at;
+}
+
+std::vector<Chain> chains_of(const Graph& graph) {
+  const auto edges_at = incidence(graph);
+  std::vector<bool> used(graph.edges.size(), false);
+  std::vector<Chain> chains;
+  const auto follow = [&](Index n, Index e) {
+    Chain chain{{n}, {}};
+    while (!used[e]) {
+      used[e] = true;
+      n = other_end(graph, e, n);
+      chain.nodes.push_back(n);
+      chain.edges.push_back(e);
+      if (edges_at[n].size() != 2) break;
+      e = edges_at[n][edges_at[n][0] == e ? 1 : 0];
+    }
+    chains.push_back(std::move(chain));
+  };
+  for (const bool loops : {false, true})
+    for (Index n = 0; n < graph.nodes.size(); ++n)
+      if (loops || edges_at[n].size() != 2)
+        for (const Index e : edges_at[n])
+          if (!used[e]) follow(n, e);
+  return chains;
+}
+
+void connect(Graph& graph) {
+  for (;;) {
+    std::vector<Index> parent = forest_of(graph);
+    const Index first = root_of(parent, 0);
+    double best = std::numeric_limits<double>::infinity();
+    std::array<Index, 2> edge{};
+    for (Index a = 0; a < graph.nodes.size(); ++a) {
+      if (root_of(parent, a) != first) continue;
+      for (Index b = 0; b < graph.nodes.size(); ++b) {
+        if (root_of(parent, b) == first) continue;
+        const double distance = (graph.nodes[a].position - graph.nodes[b].position).norm();
+        if (distance < best) best = distance, edge = {a, b};
+      }
+    }
+    if (best == std::numeric_limits<double>::infinity()) return;
+    graph.edges.push_back(edge);
+  }
+}
+
+std::size_t break_loops(Graph& graph, std::size_t loops) {
+  std::vector<Index> closing = closing_edges(graph);
+  if (closing.size() <= loops) return 0;
+  const auto edges_at = incidence(graph);
+  std::vector<std::pair<double, Index>> order;
+  for (const Index e : closing) order.emplace_back(graph.length(e) + way_around(graph, edges_at, e), e);
+  std::sort(order.begin(), order.end());
+  std::vector<bool> removed(graph.edges.size(), false);
+  const std::size_t count = closing.size() - loops;
+  for (std::size_t i = 0; i < count; ++i) removed[order[i].second] = true;
+  remove_edges(graph, removed);
+  return count;
+}
+
+std::size_t prune_spurs(Graph& graph) {
+  for (std::size_t count = 0;; ++count) {
+    const auto edges_at = incidence(graph);
+    const std::vector<Chain> chains = chains_of(graph);
+    const Chain* worst = nullptr;
+    double least = 1;
+    for (const Chain& chain : chains) {
+      const std::size_t first = edges_at[chain.nodes.front()].size(), last = edges_at[chain.nodes.back()].size();
+      if ((first == 1) == (last == 1)) continue;  // no end, or nothing else
+      const Index root = first == 1 ? chain.nodes.back() : chain.nodes.front();
+      const double relative = length_of(graph, chain) / graph.nodes[root].radius;
+      if (relative < least) least = relative, worst = &chain;
+    }
+    if (!worst) return count;
+    std::vector<bool> removed(graph.edges.size(), false);
+    for (const Index e : worst->edges) removed[e] = true;
+    remove_edges(graph, removed);
+  }
+}
+
+void compact(Graph& graph) {
+  const auto edges_at = incidence(graph);
+  std::vector<Index> number(graph.nodes.size(), kNone);
+  std::vector<Node> kept;
+  for (Index n = 0; n < graph.nodes.size(); ++n) {
+    if (edges_at[n].empty() && !graph.edges.empty()) continue;
+    if (graph.edges.empty() && !kept.empty()) break;
+    number[n] = static_cast<Index>(kept.size());
+    kept.push_back(graph.nodes[n]);
+  }
+  graph.nodes = std::move(kept);
+  for (auto& edge : graph.edges)
+    for (Index& n : edge) n = number[n];
+}
+
+}  // namespace vmesh::skeleton

@@ -1,0 +1,57 @@
+// The raw skeleton of a surface and its cleaning, internal to the module.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "vmesh/mesh/tri_mesh.h"
+
+namespace vmesh::skeleton {
+
+struct Node {
+  Vec3 position = Vec3::Zero();
+  double radius = 0;  ///< mm
+};
+
+/// A graph without multiple edges. After removals nodes may be left without an edge.
+struct Graph {
+  std::vector<Node> nodes;
+  std::vector<std::array<Index, 2>> edges;
+
+  double length(std::size_t e) const { return (nodes[edges[e][0]].position - nodes[edges[e][1]].position).norm(); }
+};
+
+/// Edges at every node.
+std::vector<std::vector<Index>> incidence(const Graph& graph);
+
+/// The other end of edge `e`.
+inline Index other_end(const Graph& graph, Index e, Index n) {
+  return graph.edges[e][0] == n ? graph.edges[e][1] : graph.edges[e][0];
+}
+
+/// A stretch between nodes that branch or end. A closed one without such a node begins and ends at the same one.
+struct Chain {
+  std::vector<Index> nodes;
+  std::vector<Index> edges;  ///< edges[i] joins nodes[i] and nodes[i + 1]
+};
+std::vector<Chain> chains_of(const Graph& graph);
+
+/// Joins components by the shortest edge between them, one by one. A surface of one component has a skeleton of one.
+void connect(Graph& graph);
+
+/// Removes edges until the graph has at most `loops` independent loops: those that close the shortest loops go. What
+/// closes a loop is the longest of its edges. Returns how many went.
+std::size_t break_loops(Graph& graph, std::size_t loops);
+
+/// Removes chains that end and are shorter than the radius at the node where they branch off, the shortest in relation
+/// first, until there is none. Returns how many went.
+std::size_t prune_spurs(Graph& graph);
+
+/// Drops nodes without an edge; keeps one when there is no edge at all.
+void compact(Graph& graph);
+
+/// The graph with every chain divided anew: points about `spacing` radii apart, the curve and its radii smoothed over
+/// about a radius before.
+Graph resampled(const Graph& graph, double spacing);
+
+}  // namespace vmesh::skeleton
