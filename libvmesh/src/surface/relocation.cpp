@@ -54,7 +54,7 @@ class Relocator {
       if (!state_.stays_upright(v, b, c, target)) return false;
       const double energy = SweepState::energy(target.position, state_.point(b), state_.point(c));
       if (energy > options_.highest && energy > state_.energy(v, b, c)) return false;
-      sum += std::pow(energy, options_.power);
+      sum += whole_power(energy, options_.power);
     }
     return sum < old_energy;
   }
