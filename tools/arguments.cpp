@@ -21,6 +21,7 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate network.csv -o network.stl --unit um --check
   vmesh generate tree.swc -o fine.ply --preset high
   vmesh generate tree.swc -o exact.ply --max-error 5%
+  vmesh generate tree.swc -o game.obj --budget vertices=5000
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
@@ -144,6 +145,21 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
           "0.3mm, 10% (of the local radius), or both, separated by a comma")
       ->type_name("Xmm|X%");
+  verb.add_option_function<std::string>(
+          "--budget",
+          [&arguments](const std::string& text) {
+            try {
+              arguments.budget = parse_budget(text);
+            } catch (const InvalidInput& error) {
+              throw CLI::ValidationError("--budget", error.what());
+            }
+          },
+          "choose the resolution: the finest surface with vertices=N at most, or grown within time=Xms, or the one "
+          "with the fewest vertices that keeps error=Xmm or error=X% everywhere")
+      ->type_name("vertices=N|time=Xms|error=X")
+      ->excludes("--around")
+      ->excludes("--preset")
+      ->excludes("--max-error");
   verb.add_option_function<std::string>(
           "--placement", [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },
           "inscribed: vertices on the boundary; balanced: lifted off it, so that volume is kept")

@@ -13,6 +13,7 @@
 #include "vmesh/render/render.h"
 #include "vmesh/skeleton/extract_centerline.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/tuning/budget.h"
 
 namespace vmesh::tool {
 
@@ -39,6 +40,7 @@ struct GenerateArguments {
   InputArguments input;
   std::filesystem::path output;
   GenerateOptions options;
+  std::optional<Budget> budget;  ///< chooses options.around, and max_error for a budget of error
   OverlapHandling overlap = OverlapHandling::keep;
   double gap = 0.1;    ///< vessels closer than this times the smaller radius count as touching
   bool check = false;  ///< exit code 1 unless the surface is flawless

@@ -24,6 +24,7 @@ struct GenerateReport {
   std::vector<Contact> contacts;               ///< of the cleaned centerline
   std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed or moved
   const GenerateResult* result = nullptr;
+  std::vector<OperatingPoint> tried;  ///< for a budget
   SurfaceMeasurement measurement;
   std::size_t grown_nodes = 0;              ///< of the centerline that was grown: with those a separation added
   std::optional<std::size_t> nodes_inside;  ///< of them
