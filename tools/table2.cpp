@@ -35,6 +35,8 @@ void check_options(const Table2Arguments& arguments) {
     throw UsageError("--label, --threshold and --spacing are for a --reference that is an image");
   if (has_reference && !has_image(arguments) && (image.smooth > 0 || image.binary))
     throw UsageError(arguments.reference.path.string() + ": --smooth and --binary do not apply to a surface");
+  if (!has_reference && arguments.all_components)
+    throw UsageError("--all-components is for --reference; of a sampled volume all are kept");
   if (has_reference && arguments.voxel)
     throw UsageError("--voxel is for the volume of a centerline; see --spacing for an image");
   const ExtractOptions plain;
@@ -76,19 +78,15 @@ struct Vessels {
   Table2Source source;
 };
 
-ReferenceOptions contour_options(const Table2Arguments& arguments) {
-  ReferenceOptions options = arguments.image;
-  options.all_components = arguments.all_components;
-  return options;
-}
-
 Vessels sampled_vessels(const Table2Arguments& arguments, Console& console) {
   const bool given = !arguments.centerline.path.empty();
   Centerline centerline =
       given ? load_clean_centerline(arguments.centerline, console).cleaned.centerline : synthetic_tree();
   stop_if_interrupted();
+  ReferenceOptions contour = arguments.image;
+  contour.all_components = true;  // a twig as thin as a voxel may come apart, but is still a vessel
   ReferenceSurface surface = naming(arguments.centerline.path, [&] {
-    return reference_surface(centerline, arguments.voxel.value_or(kVoxel), contour_options(arguments));
+    return reference_surface(centerline, arguments.voxel.value_or(kVoxel), contour);
   });
   Table2Source source;
   source.vessels = given ? "the volume of " + arguments.centerline.path.string()
@@ -103,9 +101,10 @@ TriMesh load_reference(const Table2Arguments& arguments, Table2Source& source, C
     console.warn(surface.warnings);
     return std::move(surface.mesh);
   }
-  ReferenceSurface surface = naming(arguments.reference.path, [&] {
-    return reference_surface(load_image(arguments.reference, console), contour_options(arguments));
-  });
+  ReferenceOptions contour = arguments.image;
+  contour.all_components = arguments.all_components;
+  ReferenceSurface surface = naming(
+      arguments.reference.path, [&] { return reference_surface(load_image(arguments.reference, console), contour); });
   describe_contour(surface, source);
   return std::move(surface.mesh);
 }

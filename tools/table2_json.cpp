@@ -39,11 +39,12 @@ Json to_json(const ReferenceDistance& distance) {
 
 Json to_json(const MethodRow& row) {
   return {{"surface", to_string(row.method)},
+          {"around", row.around > 0 ? Json(row.around) : Json()},
           {"vertices", row.mesh.vertices.size()},
           {"faces", row.mesh.faces.size()},
           {"skewness", {{"mean", row.skewness.mean}, {"max", row.skewness.max}}},
           {"distance", row.distance ? to_json(*row.distance) : Json()},
-          {"paper", to_json(paper_row(row.method))}};
+          {"paper", row.method <= SurfaceMethod::high_resolution ? to_json(paper_row(row.method)) : Json()}};
 }
 
 Json rows_json(const MethodComparison& comparison) {

@@ -13,6 +13,11 @@ std::string yes_no(bool value) { return value ? "yes" : "no"; }
 
 std::string name_of(SurfaceMethod method) { return std::string(to_string(method)); }
 
+/// With its resolution, of what vmesh grew.
+std::string name_of(const MethodRow& row) {
+  return name_of(row.method) + (row.around > 0 ? ", " + std::to_string(row.around) + " around" : "");
+}
+
 std::string point(const Vec3& p) {
   return "(" + format_number(p.x()) + ", " + format_number(p.y()) + ", " + format_number(p.z()) + ")";
 }
@@ -48,7 +53,7 @@ ReportTable source_table(const Table2Report& report) {
 }
 
 Row our_row(const MethodRow& row) {
-  Row cells = {name_of(row.method), std::to_string(row.mesh.vertices.size()), std::to_string(row.mesh.faces.size()),
+  Row cells = {name_of(row), std::to_string(row.mesh.vertices.size()), std::to_string(row.mesh.faces.size()),
                format_number(row.skewness.mean), format_number(row.skewness.max)};
   if (!row.distance) {
     cells.resize(9, "-");
@@ -84,7 +89,7 @@ ReportTable main_table(const MethodComparison& comparison) {
       {}};
   for (const MethodRow& row : comparison.rows) {
     table.rows.push_back(our_row(row));
-    table.rows.push_back(row_of_paper(row.method));
+    if (row.method <= SurfaceMethod::high_resolution) table.rows.push_back(row_of_paper(row.method));
   }
   return table;
 }
@@ -104,7 +109,7 @@ ReportTable directions_table(const MethodComparison& comparison) {
   for (const MethodRow& row : comparison.rows) {
     if (!row.distance) continue;
     const ReferenceDistance& distance = *row.distance;
-    const std::string name = name_of(row.method);
+    const std::string name = name_of(row);
     table.rows.push_back(direction_row(name + " to reference", distance.hausdorff.forward, distance.from_surface));
     table.rows.push_back(direction_row("reference to " + name, distance.hausdorff.backward, distance.from_reference));
   }

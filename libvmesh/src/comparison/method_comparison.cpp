@@ -1,21 +1,89 @@
 #include "vmesh/comparison/method_comparison.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vmesh/comparison/paper_table.h"
 #include "vmesh/reference/cones.h"
 #include "vmesh/surface/generate.h"
 
 namespace vmesh {
 namespace {
 
-TriMesh grow(const Centerline& centerline, Preset preset, std::vector<std::string>& warnings,
-             const Progress& progress) {
-  GenerateOptions options;
-  options.around = vertices_around(preset);
-  GenerateResult result = generate_surface(centerline, options, progress);
-  const SurfaceMethod method = preset == Preset::low ? SurfaceMethod::low_resolution : SurfaceMethod::high_resolution;
-  for (const std::string& warning : result.warnings)
-    warnings.push_back(std::string(to_string(method)).append(": ").append(warning));
-  return std::move(result.mesh);
+constexpr int kFewestAround = 3;
+
+SurfaceMethod resolution_of(Preset preset) {
+  return preset == Preset::low ? SurfaceMethod::low_resolution : SurfaceMethod::high_resolution;
 }
+
+SurfaceMethod row_of(Preset preset) {
+  return preset == Preset::low ? SurfaceMethod::low_preset : SurfaceMethod::high_preset;
+}
+
+/// Grows the rows of a comparison.
+class Grower {
+ public:
+  Grower(const Centerline& centerline, MethodComparison& comparison, const Progress& progress)
+      : centerline_(centerline), comparison_(comparison), progress_(progress) {}
+
+  /// A resolution of the paper's; keeps the preset's surface for preset() when that was too fine.
+  void add_resolution(Preset preset) {
+    const SurfaceMethod method = resolution_of(preset);
+    const double most = most_vertices(method);
+    MethodRow row = grow(method, {vertices_around(preset), GenerateOptions().max_center_distance});
+    if (too_fine(row, most)) too_fine_.push_back({row_of(preset), row.around, row.mesh, {}, {}});
+    while (too_fine(row, most)) row = grow(method, coarser(row, most));
+    comparison_.rows.push_back(std::move(row));
+  }
+
+  void add_presets() {
+    for (MethodRow& row : too_fine_) comparison_.rows.push_back(std::move(row));
+  }
+
+ private:
+  struct Resolution {
+    int around;
+    double max_center_distance;
+  };
+
+  double most_vertices(SurfaceMethod method) const {
+    double most = std::numeric_limits<double>::infinity();
+    for (const SurfaceMethod of : {SurfaceMethod::marching_cubes, SurfaceMethod::truncated_cones}) {
+      const double share =
+          static_cast<double>(paper_row(method).vertices) / static_cast<double>(paper_row(of).vertices);
+      most = std::min(most, share * static_cast<double>(comparison_.row(of).mesh.vertices.size()));
+    }
+    return most;
+  }
+
+  static bool too_fine(const MethodRow& row, double most) {
+    return row.around > kFewestAround && static_cast<double>(row.mesh.vertices.size()) > most;
+  }
+
+  // The number of vertices goes with the square of those around. The middles of faces are far from the wall at so few:
+  // to split them for that would undo the choice.
+  static Resolution coarser(const MethodRow& row, double most) {
+    const double scale = std::sqrt(most / static_cast<double>(row.mesh.vertices.size()));
+    const int around = static_cast<int>(std::ceil(scale * row.around));
+    return {std::clamp(around, kFewestAround, row.around - 1), 1};
+  }
+
+  MethodRow grow(SurfaceMethod method, const Resolution& resolution) {
+    GenerateOptions options;
+    options.around = resolution.around;
+    options.max_center_distance = resolution.max_center_distance;
+    GenerateResult result = generate_surface(centerline_, options, progress_);
+    const std::string what = std::string(to_string(method)) + ", " + std::to_string(options.around) + " around: ";
+    for (const std::string& warning : result.warnings) comparison_.warnings.push_back(what + warning);
+    return {method, options.around, std::move(result.mesh), {}, {}};
+  }
+
+  const Centerline& centerline_;
+  MethodComparison& comparison_;
+  const Progress& progress_;
+  std::vector<MethodRow> too_fine_;
+};
 
 ReferenceDistance measure_distance(const TriMesh& surface, const TriMesh& reference,
                                    const ClosestPointIndex& reference_index, const MethodOptions& options,
@@ -39,29 +107,29 @@ std::string_view to_string(SurfaceMethod method) {
       return "low resolution";
     case SurfaceMethod::high_resolution:
       return "high resolution";
+    case SurfaceMethod::low_preset:
+      return "preset low";
+    case SurfaceMethod::high_preset:
+      return "preset high";
   }
   return "";
 }
 
 MethodComparison compare_methods(TriMesh reference, const Centerline& centerline, const MethodOptions& options,
                                  const Progress& progress) {
-  using Method = SurfaceMethod;
-  MethodComparison comparison;
   const ClosestPointIndex reference_index(reference);
-  std::array meshes = {TriMesh(), truncated_cones(centerline, options.sides).mesh,
-                       grow(centerline, Preset::low, comparison.warnings, progress),
-                       grow(centerline, Preset::high, comparison.warnings, progress)};
-  meshes[0] = std::move(reference);
-  for (const Method method :
-       {Method::marching_cubes, Method::truncated_cones, Method::low_resolution, Method::high_resolution}) {
-    const TriMesh& mesh = meshes[static_cast<std::size_t>(method)];
-    MethodRow& row = comparison.rows[static_cast<std::size_t>(method)];
-    row.method = method;
-    row.skewness = summarize_skewness(mesh);
-    if (method != Method::marching_cubes)
-      row.distance = measure_distance(mesh, meshes[0], reference_index, options, progress);
+  MethodComparison comparison;
+  comparison.rows.push_back({SurfaceMethod::marching_cubes, 0, std::move(reference), {}, {}});
+  comparison.rows.push_back(
+      {SurfaceMethod::truncated_cones, 0, truncated_cones(centerline, options.sides).mesh, {}, {}});
+  Grower grower(centerline, comparison, progress);
+  for (const Preset preset : {Preset::low, Preset::high}) grower.add_resolution(preset);
+  grower.add_presets();
+  for (MethodRow& row : comparison.rows) {
+    row.skewness = summarize_skewness(row.mesh);
+    if (row.method == SurfaceMethod::marching_cubes) continue;
+    row.distance = measure_distance(row.mesh, comparison.rows[0].mesh, reference_index, options, progress);
   }
-  for (std::size_t m = 0; m < meshes.size(); ++m) comparison.rows[m].mesh = std::move(meshes[m]);
   return comparison;
 }
 

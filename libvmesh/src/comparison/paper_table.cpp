@@ -38,6 +38,7 @@ std::vector<PaperFigure> compare_with_paper(const MethodComparison& comparison) 
   using enum SurfaceMethod;
   std::vector<PaperFigure> figures;
   for (const MethodRow& row : comparison.rows) {
+    if (row.method > high_resolution) break;
     const PaperRow& paper = paper_row(row.method);
     if (row.method == low_resolution || row.method == high_resolution) add_shares(comparison, row.method, figures);
     figures.push_back({row.method, kMeanSkewness, row.skewness.mean, paper.skewness_mean});

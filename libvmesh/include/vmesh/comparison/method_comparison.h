@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,11 +14,11 @@
 
 namespace vmesh {
 
-/// The ways to a vessel surface that Table 2 of the paper compares, in its order: marching cubes, which is the
-/// reference; truncated cones; vmesh with the presets low and high.
-enum class SurfaceMethod { marching_cubes, truncated_cones, low_resolution, high_resolution };
+/// The surfaces of a comparison: those of the paper's Table 2 in its order, that is marching cubes, which is the
+/// reference, truncated cones and the paper's two resolutions; then vmesh's presets where they are finer than these.
+enum class SurfaceMethod { marching_cubes, truncated_cones, low_resolution, high_resolution, low_preset, high_preset };
 
-/// "marching cubes", "truncated cones", "low resolution", "high resolution".
+/// "marching cubes", "truncated cones", "low resolution", "high resolution", "preset low", "preset high".
 std::string_view to_string(SurfaceMethod method);
 
 /// A surface against the reference, both ways.
@@ -31,16 +30,18 @@ struct ReferenceDistance {
 /// What one method made and how good it is.
 struct MethodRow {
   SurfaceMethod method = SurfaceMethod::marching_cubes;
+  int around = 0;  ///< vertices around a vessel; 0 for what vmesh did not grow
   TriMesh mesh;
   SkewnessSummary skewness;
   std::optional<ReferenceDistance> distance;  ///< none for the reference itself
 };
 
 struct MethodComparison {
-  std::array<MethodRow, 4> rows;      ///< in the order of SurfaceMethod
+  std::vector<MethodRow> rows;        ///< in the order of SurfaceMethod: the first four, then presets as needed
   std::vector<std::string> warnings;  ///< of the methods
 
-  const MethodRow& row(SurfaceMethod method) const { return rows[static_cast<std::size_t>(method)]; }
+  /// One of the first four.
+  const MethodRow& row(SurfaceMethod method) const { return rows.at(static_cast<std::size_t>(method)); }
 };
 
 struct MethodOptions {
@@ -49,9 +50,12 @@ struct MethodOptions {
   std::size_t samples = 100'000;  ///< on each surface
 };
 
-/// Puts truncated cones and the surfaces of both presets around `centerline` and measures all of them against
-/// `reference`, which becomes the first row. The reference need not be closed. Deterministic. Throws InvalidInput for
-/// what truncated_cones(), generate_surface() and hausdorff() refuse; Cancelled.
+/// Puts truncated cones and vmesh's surfaces around `centerline` and measures all of them against `reference`, which
+/// becomes the first row. The low resolution is the preset low, unless its vertices were a larger share of those of
+/// marching cubes or of the cones than the paper's low resolution has; then the finest that is not, or 3 vertices
+/// around a vessel. Likewise the high one. The presets themselves then follow as rows of their own. The reference need
+/// not be closed. Deterministic. Throws InvalidInput for what truncated_cones(), generate_surface() and hausdorff()
+/// refuse; Cancelled.
 MethodComparison compare_methods(TriMesh reference, const Centerline& centerline, const MethodOptions& options = {},
                                  const Progress& progress = {});
 

@@ -14,6 +14,7 @@ struct PaperRow {
   double skewness_mean = 0, skewness_max = 0;
   std::optional<double> hausdorff_mm;  ///< none for marching cubes, its reference
 };
+/// Of one of the first four methods; the presets are not in the paper.
 const PaperRow& paper_row(SurfaceMethod method);
 
 /// A number of ours beside the paper's. Of all of them, less is better.
@@ -25,8 +26,8 @@ struct PaperFigure {
   bool worse() const { return ours > paper; }
 };
 
-/// For every method the mean and maximum skewness and the Hausdorff distance; of vmesh's surfaces the number of
-/// vertices as a share of those of marching cubes and of truncated cones, too.
+/// For every row that the paper has: the mean and maximum skewness and the Hausdorff distance; of vmesh's surfaces the
+/// number of vertices as a share of those of marching cubes and of truncated cones, too.
 std::vector<PaperFigure> compare_with_paper(const MethodComparison& comparison);
 
 /// Something demanded of the low-resolution surface.
