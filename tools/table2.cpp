@@ -132,7 +132,9 @@ Vessels vessels_of(const Table2Arguments& arguments, Console& console) {
 }
 
 std::vector<std::string> warnings_of(const Table2Report& report) {
-  std::vector<std::string> warnings = report.comparison.warnings;
+  std::vector<std::string> warnings;
+  for (const MethodRow& row : report.comparison.rows)
+    for (const std::string& warning : row.warnings) warnings.push_back(name_of(row) + ": " + warning);
   const std::optional<ExtractionReport>& extraction = report.source.extraction;
   if (extraction && extraction->left_out > 0)
     warnings.push_back(std::to_string(extraction->left_out) + " of " + std::to_string(extraction->parts) +

@@ -37,6 +37,13 @@ Json to_json(const ReferenceDistance& distance) {
           {"from_reference", side_json(h.backward, distance.from_reference)}};
 }
 
+Json to_json(const SurfaceSoundness& soundness) {
+  const Topology& topology = soundness.topology;
+  return {{"closed", topology.closed},     {"manifold", topology.manifold},
+          {"oriented", topology.oriented}, {"components", topology.components},
+          {"genus", topology.genus},       {"self_intersections", soundness.self_intersections}};
+}
+
 Json to_json(const MethodRow& row) {
   return {{"surface", to_string(row.method)},
           {"around", row.around > 0 ? Json(row.around) : Json()},
@@ -44,6 +51,7 @@ Json to_json(const MethodRow& row) {
           {"faces", row.mesh.faces.size()},
           {"skewness", {{"mean", row.skewness.mean}, {"max", row.skewness.max}}},
           {"distance", row.distance ? to_json(*row.distance) : Json()},
+          {"soundness", row.soundness ? to_json(*row.soundness) : Json()},
           {"paper", row.method <= SurfaceMethod::high_resolution ? to_json(paper_row(row.method)) : Json()}};
 }
 

@@ -11,13 +11,6 @@ using Row = std::vector<std::string>;
 
 std::string yes_no(bool value) { return value ? "yes" : "no"; }
 
-std::string name_of(SurfaceMethod method) { return std::string(to_string(method)); }
-
-/// With its resolution, of what vmesh grew.
-std::string name_of(const MethodRow& row) {
-  return name_of(row.method) + (row.around > 0 ? ", " + std::to_string(row.around) + " around" : "");
-}
-
 std::string point(const Vec3& p) {
   return "(" + format_number(p.x()) + ", " + format_number(p.y()) + ", " + format_number(p.z()) + ")";
 }
@@ -116,6 +109,21 @@ ReportTable directions_table(const MethodComparison& comparison) {
   return table;
 }
 
+ReportTable soundness_table(const MethodComparison& comparison) {
+  ReportTable table{"soundness",
+                    "Whether the surfaces are sound",
+                    {"surface", "closed", "manifold", "components", "genus", "intersecting pairs of faces"},
+                    {}};
+  for (const MethodRow& row : comparison.rows) {
+    if (!row.soundness) continue;
+    const Topology& topology = row.soundness->topology;
+    table.rows.push_back({name_of(row), yes_no(topology.closed), yes_no(topology.manifold),
+                          std::to_string(topology.components), std::to_string(topology.genus),
+                          std::to_string(row.soundness->self_intersections)});
+  }
+  return table;
+}
+
 ReportTable demands_table(const MethodComparison& comparison) {
   ReportTable table{"demands", "Demanded of the low resolution", {"what", "found", "demanded", "met"}, {}};
   for (const TableDemand& demand : check_demands(comparison)) {
@@ -128,29 +136,33 @@ ReportTable demands_table(const MethodComparison& comparison) {
 ReportTable paper_table(const MethodComparison& comparison) {
   ReportTable table{"paper", worse_than_paper(comparison), {"what", "here", "paper", "worse"}, {}};
   for (const PaperFigure& figure : compare_with_paper(comparison)) {
-    table.rows.push_back({name_of(figure.method).append(": ").append(figure.what), format_number(figure.ours),
-                          format_number(figure.paper), yes_no(figure.worse())});
+    table.rows.push_back({std::string(to_string(figure.method)).append(": ").append(figure.what),
+                          format_number(figure.ours), format_number(figure.paper), yes_no(figure.worse())});
   }
   return table;
 }
 
 }  // namespace
 
+std::string name_of(const MethodRow& row) {
+  return std::string(to_string(row.method)) + (row.around > 0 ? ", " + std::to_string(row.around) + " around" : "");
+}
+
 std::string worse_than_paper(const MethodComparison& comparison) {
   std::string text;
   for (const PaperFigure& figure : compare_with_paper(comparison)) {
     if (!figure.worse()) continue;
     if (!text.empty()) text += "; ";
-    text += name_of(figure.method).append(", ").append(figure.what).append(": ") + format_number(figure.ours) +
-            " against " + format_number(figure.paper);
+    text += std::string(to_string(figure.method)).append(", ").append(figure.what).append(": ") +
+            format_number(figure.ours) + " against " + format_number(figure.paper);
   }
   return text.empty() ? "No figure is worse than the paper's" : "Worse than the paper's: " + text;
 }
 
 std::vector<ReportTable> to_tables(const Table2Report& report) {
   const MethodComparison& comparison = report.comparison;
-  return {source_table(report), main_table(comparison), directions_table(comparison), demands_table(comparison),
-          paper_table(comparison)};
+  return {source_table(report),        main_table(comparison),    directions_table(comparison),
+          soundness_table(comparison), demands_table(comparison), paper_table(comparison)};
 }
 
 }  // namespace vmesh::tool

@@ -37,6 +37,9 @@ struct Table2Report {
 Json to_json(const Table2Report& report);
 std::vector<ReportTable> to_tables(const Table2Report& report);
 
+/// With its resolution, of what vmesh grew: "low resolution, 6 around".
+std::string name_of(const MethodRow& row);
+
 /// The figures that are worse than the paper's, in one line.
 std::string worse_than_paper(const MethodComparison& comparison);
 

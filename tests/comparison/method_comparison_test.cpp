@@ -100,6 +100,8 @@ TEST_F(ComparedMethods, AreMeasuredAgainstTheReferenceBothWays) {
   EXPECT_FALSE(comparison().row(SurfaceMethod::marching_cubes).distance);
   const TriMesh reference = fine_surface();
   for (const MethodRow& row : comparison().rows) {
+    EXPECT_EQ(row.soundness.has_value(), row.around > 0);
+    EXPECT_TRUE(!row.soundness || (row.soundness->topology.closed && row.soundness->topology.manifold));
     EXPECT_EQ(row.skewness.max, summarize_skewness(row.mesh).max);
     if (row.method == SurfaceMethod::marching_cubes) continue;
     ASSERT_TRUE(row.distance);

@@ -32,7 +32,10 @@ class Grower {
     const SurfaceMethod method = resolution_of(preset);
     const double most = most_vertices(method);
     MethodRow row = grow(method, {vertices_around(preset), GenerateOptions().max_center_distance});
-    if (too_fine(row, most)) too_fine_.push_back({row_of(preset), row.around, row.mesh, {}, {}});
+    if (too_fine(row, most)) {
+      too_fine_.push_back(row);
+      too_fine_.back().method = row_of(preset);
+    }
     while (too_fine(row, most)) row = grow(method, coarser(row, most));
     comparison_.rows.push_back(std::move(row));
   }
@@ -74,9 +77,12 @@ class Grower {
     options.around = resolution.around;
     options.max_center_distance = resolution.max_center_distance;
     GenerateResult result = generate_surface(centerline_, options, progress_);
-    const std::string what = std::string(to_string(method)) + ", " + std::to_string(options.around) + " around: ";
-    for (const std::string& warning : result.warnings) comparison_.warnings.push_back(what + warning);
-    return {method, options.around, std::move(result.mesh), {}, {}};
+    MethodRow row;
+    row.method = method;
+    row.around = options.around;
+    row.mesh = std::move(result.mesh);
+    row.warnings = std::move(result.warnings);
+    return row;
   }
 
   const Centerline& centerline_;
@@ -119,15 +125,17 @@ MethodComparison compare_methods(TriMesh reference, const Centerline& centerline
                                  const Progress& progress) {
   const ClosestPointIndex reference_index(reference);
   MethodComparison comparison;
-  comparison.rows.push_back({SurfaceMethod::marching_cubes, 0, std::move(reference), {}, {}});
-  comparison.rows.push_back(
-      {SurfaceMethod::truncated_cones, 0, truncated_cones(centerline, options.sides).mesh, {}, {}});
+  comparison.rows.resize(2);
+  comparison.rows[0].mesh = std::move(reference);
+  comparison.rows[1].method = SurfaceMethod::truncated_cones;
+  comparison.rows[1].mesh = truncated_cones(centerline, options.sides).mesh;
   Grower grower(centerline, comparison, progress);
   for (const Preset preset : {Preset::low, Preset::high}) grower.add_resolution(preset);
   grower.add_presets();
   for (MethodRow& row : comparison.rows) {
     row.skewness = summarize_skewness(row.mesh);
     if (row.method == SurfaceMethod::marching_cubes) continue;
+    if (row.around > 0) row.soundness = {measure_topology(row.mesh), self_intersections(row.mesh).size()};
     row.distance = measure_distance(row.mesh, comparison.rows[0].mesh, reference_index, options, progress);
   }
   return comparison;

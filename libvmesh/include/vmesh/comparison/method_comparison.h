@@ -7,6 +7,7 @@
 
 #include "vmesh/centerline/centerline.h"
 #include "vmesh/core/progress.h"
+#include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/tri_mesh.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/quality/hausdorff.h"
@@ -27,6 +28,12 @@ struct ReferenceDistance {
   SampledDistance from_surface, from_reference;
 };
 
+/// Whether a surface is one.
+struct SurfaceSoundness {
+  Topology topology;
+  std::size_t self_intersections = 0;  ///< pairs of faces
+};
+
 /// What one method made and how good it is.
 struct MethodRow {
   SurfaceMethod method = SurfaceMethod::marching_cubes;
@@ -34,11 +41,12 @@ struct MethodRow {
   TriMesh mesh;
   SkewnessSummary skewness;
   std::optional<ReferenceDistance> distance;  ///< none for the reference itself
+  std::optional<SurfaceSoundness> soundness;  ///< of what vmesh grew
+  std::vector<std::string> warnings;          ///< of its growth
 };
 
 struct MethodComparison {
-  std::vector<MethodRow> rows;        ///< in the order of SurfaceMethod: the first four, then presets as needed
-  std::vector<std::string> warnings;  ///< of the methods
+  std::vector<MethodRow> rows;  ///< in the order of SurfaceMethod: the first four, then presets as needed
 
   /// One of the first four.
   const MethodRow& row(SurfaceMethod method) const { return rows.at(static_cast<std::size_t>(method)); }
