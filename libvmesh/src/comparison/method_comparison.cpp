@@ -1,7 +1,6 @@
 #include "vmesh/comparison/method_comparison.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "vmesh/comparison/paper_table.h"
@@ -27,29 +26,31 @@ class Grower {
   Grower(const Centerline& centerline, MethodComparison& comparison, const Progress& progress)
       : centerline_(centerline), comparison_(comparison), progress_(progress) {}
 
-  /// A resolution of the paper's; keeps the preset's surface for preset() when that was too fine.
+  /// A resolution of the paper's; keeps the preset's surface for add_presets() when that was too fine.
   void add_resolution(Preset preset) {
     const SurfaceMethod method = resolution_of(preset);
     const double most = most_vertices(method);
-    MethodRow row = grow(method, {vertices_around(preset), GenerateOptions().max_center_distance});
+    GenerateOptions options;
+    options.around = vertices_around(preset);
+    MethodRow row = grow(method, options);
     if (too_fine(row, most)) {
-      too_fine_.push_back(row);
-      too_fine_.back().method = row_of(preset);
+      presets_.push_back(row);
+      presets_.back().method = row_of(preset);
     }
-    while (too_fine(row, most)) row = grow(method, coarser(row, most));
+    // The middles of faces are far from the wall at so few: to split them for that would undo the choice.
+    options.max_center_distance = 1;
+    while (too_fine(row, most)) {
+      --options.around;
+      row = grow(method, options);
+    }
     comparison_.rows.push_back(std::move(row));
   }
 
   void add_presets() {
-    for (MethodRow& row : too_fine_) comparison_.rows.push_back(std::move(row));
+    for (MethodRow& row : presets_) comparison_.rows.push_back(std::move(row));
   }
 
  private:
-  struct Resolution {
-    int around;
-    double max_center_distance;
-  };
-
   double most_vertices(SurfaceMethod method) const {
     double most = std::numeric_limits<double>::infinity();
     for (const SurfaceMethod of : {SurfaceMethod::marching_cubes, SurfaceMethod::truncated_cones}) {
@@ -64,18 +65,7 @@ class Grower {
     return row.around > kFewestAround && static_cast<double>(row.mesh.vertices.size()) > most;
   }
 
-  // The number of vertices goes with the square of those around. The middles of faces are far from the wall at so few:
-  // to split them for that would undo the choice.
-  static Resolution coarser(const MethodRow& row, double most) {
-    const double scale = std::sqrt(most / static_cast<double>(row.mesh.vertices.size()));
-    const int around = static_cast<int>(std::ceil(scale * row.around));
-    return {std::clamp(around, kFewestAround, row.around - 1), 1};
-  }
-
-  MethodRow grow(SurfaceMethod method, const Resolution& resolution) {
-    GenerateOptions options;
-    options.around = resolution.around;
-    options.max_center_distance = resolution.max_center_distance;
+  MethodRow grow(SurfaceMethod method, const GenerateOptions& options) const {
     GenerateResult result = generate_surface(centerline_, options, progress_);
     MethodRow row;
     row.method = method;
@@ -88,7 +78,7 @@ class Grower {
   const Centerline& centerline_;
   MethodComparison& comparison_;
   const Progress& progress_;
-  std::vector<MethodRow> too_fine_;
+  std::vector<MethodRow> presets_;
 };
 
 ReferenceDistance measure_distance(const TriMesh& surface, const TriMesh& reference,
