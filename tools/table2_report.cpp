@@ -61,7 +61,7 @@ Row our_row(const MethodRow& row) {
 
 Row row_of_paper(SurfaceMethod method) {
   const PaperRow& row = paper_row(method);
-  return {"  in the paper",
+  return {std::string(to_string(method)) + ", paper",
           std::to_string(row.vertices),
           std::to_string(row.faces),
           format_number(row.skewness_mean),

@@ -102,6 +102,7 @@ TEST_F(Table2, IsWrittenInEveryFormat) {
   EXPECT_NE(read("y.md").find("| low resolution"), std::string::npos);
   const Outcome csv = vmesh({"table2", "--reference", "@y.ply", "--centerline", "@y.swc", "--format", "csv"});
   EXPECT_NE(csv.out.find("\ntable2,truncated cones,vertices,111\n"), std::string::npos) << csv.out;
+  EXPECT_NE(csv.out.find("\ntable2,\"low resolution, paper\",vertices,11571\n"), std::string::npos) << csv.out;
 }
 
 TEST_F(Table2, WritesItsSurfacesWithDistances) {
