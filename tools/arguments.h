@@ -9,11 +9,13 @@
 
 #include "vmesh/centerline/raw_centerline.h"
 #include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/comparison/method_comparison.h"
 #include "vmesh/reference/reference_surface.h"
 #include "vmesh/render/render.h"
 #include "vmesh/skeleton/extract_centerline.h"
 #include "vmesh/surface/generate.h"
 #include "vmesh/tuning/budget.h"
+#include "vmesh/tuning/tradeoff.h"
 
 namespace vmesh::tool {
 
@@ -108,8 +110,33 @@ struct CenterlineArguments {
   ReferenceOptions image;  ///< how an image becomes a surface first
 };
 
-using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments,
-                               EvaluateArguments, ReferenceArguments, ConesArguments, CenterlineArguments>;
+struct Table2Arguments {
+  CommonArguments common;
+  InputArguments reference;     ///< image or surface; empty path: the sampled volume of the centerline
+  InputArguments centerline;    ///< empty path: extracted from the reference; without one, the synthetic tree
+  ReferenceOptions image;       ///< how an image becomes the reference
+  bool all_components = false;  ///< of the reference
+  std::optional<double> voxel;  ///< of the sampled volume, mm; not given: as many vertices as the paper has
+  ExtractOptions extraction;
+  MethodOptions methods;
+  std::filesystem::path surfaces;  ///< folder for them; empty: none
+  std::filesystem::path report;    ///< by extension; empty: none
+  std::string format = "text";     ///< of stdout: text, markdown or csv
+  bool check = false;              ///< exit code 1 unless all demands are met
+};
+
+struct TradeoffArguments {
+  CommonArguments common;
+  InputArguments input;
+  TradeoffOptions options;
+  std::filesystem::path report;  ///< by extension; empty: none
+  std::filesystem::path plot;    ///< SVG; empty: none
+  std::string format = "text";   ///< of stdout: text, markdown or csv
+};
+
+using Arguments =
+    std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments, EvaluateArguments,
+                 ReferenceArguments, ConesArguments, CenterlineArguments, Table2Arguments, TradeoffArguments>;
 
 /// Calls `visit(flag, member, low, high, help)` for every option of the growth. The one list behind the command line
 /// and the summary.

@@ -256,6 +256,17 @@ Json to_json(const GenerateReport& report) {
   return json;
 }
 
+Json to_json(const ExtractionReport& report) {
+  return {{"parts", report.parts},
+          {"joined", report.joined},
+          {"left_out", report.left_out},
+          {"spurs_removed", report.spurs},
+          {"loops_broken", report.loops_broken},
+          {"mean_distance_mm", report.mean_distance},
+          {"distance_95_mm", report.distance_95},
+          {"max_distance_mm", report.max_distance}};
+}
+
 Json openings_json(const GenerateResult& result) {
   Json json = Json::array();
   for (std::size_t i = 0; i < result.openings.size(); ++i) {

@@ -41,6 +41,7 @@ Json to_json(const GenerateReport& report);
 Json to_json(const Centerline& centerline);
 Json to_json(const CleaningReport& report);
 Json to_json(const GrowthSummary& growth);
+Json to_json(const ExtractionReport& report);
 Json openings_json(const GenerateResult& result);
 Json to_json(const SurfaceMeasurement& measurement);
 Json generator_json();

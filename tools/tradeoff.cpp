@@ -6,7 +6,7 @@
 #include "exit_code.h"
 #include "inputs.h"
 #include "outputs.h"
-#include "report_table.h"
+#include "report_output.h"
 #include "summary.h"
 #include "verbs.h"
 
@@ -74,7 +74,7 @@ std::string picture_of(const std::vector<TradeoffPoint>& points) {
                          [](const TradeoffPoint& p) { return static_cast<double>(p.vertices); })});
 }
 
-Json to_json(const TradeoffPoint& p) {
+Json point_json(const TradeoffPoint& p) {
   return {{"curve", p.curve},
           {"setting", p.setting},
           {"seconds", p.seconds},
@@ -88,25 +88,16 @@ Json to_json(const TradeoffPoint& p) {
           {"best_for_vertices", p.best_for_vertices}};
 }
 
-void write(const TradeoffArguments& arguments, const Centerline& centerline, const std::vector<TradeoffPoint>& points) {
-  const std::vector<ReportTable> tables = {points_table(points), peers_table(points)};
-  if (arguments.common.json != "-") write_text("-", format_report(tables, ReportFormat::text));
-  if (!arguments.report.empty()) {
-    const bool markdown = extension_of(arguments.report) == ".md", csv = extension_of(arguments.report) == ".csv";
-    write_text(arguments.report, format_report(tables, markdown ? ReportFormat::markdown
-                                                       : csv    ? ReportFormat::csv
-                                                                : ReportFormat::text));
-  }
-  if (!arguments.plot.empty()) write_text(arguments.plot, picture_of(points));
-  if (arguments.common.json.empty()) return;
+Json report_json(const TradeoffArguments& arguments, const Centerline& centerline,
+                 const std::vector<TradeoffPoint>& points) {
   Json list = Json::array();
-  for (const TradeoffPoint& point : points) list.push_back(to_json(point));
+  for (const TradeoffPoint& point : points) list.push_back(point_json(point));
   const std::filesystem::path& path = arguments.input.path;
-  write_json(arguments.common.json, {{"schema", "vmesh.tradeoff/1"},
-                                     {"generator", generator_json()},
-                                     {"input", {{"file", path.string()}, {"sha256", sha256_of_file(path)}}},
-                                     {"centerline", to_json(centerline)},
-                                     {"points", std::move(list)}});
+  return {{"schema", "vmesh.tradeoff/1"},
+          {"generator", generator_json()},
+          {"input", {{"file", path.string()}, {"sha256", sha256_of_file(path)}}},
+          {"centerline", to_json(centerline)},
+          {"points", std::move(list)}};
 }
 
 }  // namespace
@@ -118,7 +109,9 @@ int run(const TradeoffArguments& arguments, Console& console) {
       files_of(arguments.input.path));
   const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
   const std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, arguments.options, console.progress());
-  write(arguments, centerline, points);
+  write_report({points_table(points), peers_table(points)}, report_json(arguments, centerline, points),
+               {arguments.format, arguments.common.json, arguments.report});
+  if (!arguments.plot.empty()) write_text(arguments.plot, picture_of(points));
   return kOk;
 }
 
