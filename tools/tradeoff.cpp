@@ -14,6 +14,7 @@ namespace vmesh::tool {
 namespace {
 
 constexpr const char* kPeers[] = {"marching cubes, decimated", "marching cubes"};
+constexpr double kNoSurface = 0.5;  // mean error in radii beyond which nothing is left to plot
 constexpr const char* kOurs[] = {"max-error", "around, blend 0"};
 
 std::string text_or_dash(double value) { return std::isfinite(value) ? format_number(value) : "-"; }
@@ -62,6 +63,7 @@ LogPlot plot_of(const std::vector<TradeoffPoint>& points, const std::string& tit
                 Cost&& cost) {
   LogPlot plot{title, label, "mean error, mm", {}};
   for (const TradeoffPoint& point : points) {
+    if (point.error_mean_relative > kNoSurface) continue;
     if (plot.curves.empty() || plot.curves.back().name != point.curve) plot.curves.push_back({point.curve, {}});
     plot.curves.back().points.emplace_back(cost(point), point.error_mean_mm);
   }

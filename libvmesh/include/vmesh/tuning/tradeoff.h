@@ -15,7 +15,7 @@ namespace vmesh {
 struct TradeoffPoint {
   std::string curve;    ///< what made it and what varies: "around", "marching cubes", ...
   std::string setting;  ///< the option or number that varies
-  double seconds = 0;   ///< to make the surface, from the centerline on
+  double seconds = 0;   ///< to make the surface, from the centerline on: the median of a few runs if they are short
   std::size_t vertices = 0;
   double skewness_mean = 0, skewness_max = 0;
   double error_mean_mm = 0, error_rms_mm = 0, error_max_mm = 0;
