@@ -1,7 +1,6 @@
 #include "vmesh/tuning/tradeoff.h"
 
 #include "vmesh/io/sha256.h"
-#include "vmesh/tuning/plot.h"
 
 #include "exit_code.h"
 #include "inputs.h"
@@ -14,7 +13,6 @@ namespace vmesh::tool {
 namespace {
 
 constexpr const char* kPeers[] = {"marching cubes, decimated", "marching cubes"};
-constexpr double kNoSurface = 0.5;  // mean error in radii beyond which nothing is left to plot
 constexpr const char* kOurs[] = {"max-error", "around, blend 0"};
 
 std::string text_or_dash(double value) { return std::isfinite(value) ? format_number(value) : "-"; }
@@ -58,24 +56,6 @@ ReportTable peers_table(const std::vector<TradeoffPoint>& points) {
   return table;
 }
 
-template <class Cost>
-LogPlot plot_of(const std::vector<TradeoffPoint>& points, const std::string& title, const std::string& label,
-                Cost&& cost) {
-  LogPlot plot{title, label, "mean error, mm", {}};
-  for (const TradeoffPoint& point : points) {
-    if (point.error_mean_relative > kNoSurface) continue;
-    if (plot.curves.empty() || plot.curves.back().name != point.curve) plot.curves.push_back({point.curve, {}});
-    plot.curves.back().points.emplace_back(cost(point), point.error_mean_mm);
-  }
-  return plot;
-}
-
-std::string picture_of(const std::vector<TradeoffPoint>& points) {
-  return svg_of({plot_of(points, "Error against time", "time, s", [](const TradeoffPoint& p) { return p.seconds; }),
-                 plot_of(points, "Error against vertices", "vertices",
-                         [](const TradeoffPoint& p) { return static_cast<double>(p.vertices); })});
-}
-
 Json point_json(const TradeoffPoint& p) {
   return {{"curve", p.curve},
           {"setting", p.setting},
@@ -113,7 +93,7 @@ int run(const TradeoffArguments& arguments, Console& console) {
   const std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, arguments.options, console.progress());
   write_report({points_table(points), peers_table(points)}, report_json(arguments, centerline, points),
                {arguments.format, arguments.common.json, arguments.report});
-  if (!arguments.plot.empty()) write_text(arguments.plot, picture_of(points));
+  if (!arguments.plot.empty()) write_text(arguments.plot, plot_tradeoff(points));
   return kOk;
 }
 

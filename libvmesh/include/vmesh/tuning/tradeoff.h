@@ -45,6 +45,10 @@ void measure_tradeoff_point(TradeoffPoint& point, const TriMesh& mesh, const Cen
 /// Marks the points that no other one is better than.
 void mark_best(std::vector<TradeoffPoint>& points);
 
+/// Mean error against time and against vertices, as an SVG image. Points that are no surface of the vessels, farther
+/// than half a radius in the mean, are left out.
+std::string plot_tradeoff(const std::vector<TradeoffPoint>& points);
+
 /// A point of one curve against the other curve where that has as many vertices, or the same maximum error: read
 /// between its points, on logarithmic scales. NaN beyond its ends.
 struct CurveComparison {
