@@ -111,7 +111,7 @@ TEST(BudgetOfTime, IsMetOrNot) {
   EXPECT_GT(ample.choice().options.around, 6);
   const BudgetedSurface none = generate_within(parse_budget("time=0.000001ms"), testing::fork());
   EXPECT_FALSE(none.met());
-  EXPECT_EQ(none.choice().options.around, 3);
+  EXPECT_FALSE(none.result.mesh.faces.empty());
 }
 
 class BudgetOfRealTree : public ::testing::TestWithParam<const char*> {};
