@@ -106,11 +106,15 @@ class Optimizer {
   }
 
   // Refines where the limit is not proven, until it is or triangles get too small. What polishing breaks is mended once
-  // more, and left so.
+  // more, and if that fails from a surface come to rest; then it is left so.
   void meet_error_limit(bool polished) {
     refine_unproven();
     if (!polished || !unproven_.empty()) return;
     polish(state_, remesher_);
+    sink_crossing_walls();
+    refine_unproven();
+    if (unproven_.empty()) return;
+    settle();
     sink_crossing_walls();
     refine_unproven();
   }
