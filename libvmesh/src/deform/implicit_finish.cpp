@@ -1,0 +1,86 @@
+// ImplicitRods: velocities, the energy's governor and rest, at the end of a step.
+#include <algorithm>
+#include <cmath>
+
+#include "deform/implicit_rods.h"
+
+namespace vmesh {
+
+void ImplicitRods::finish(RodScene& scene, StepReport& report) {
+  set_velocities(scene);
+  const double done = work(scene);
+  govern(scene, done);
+  report.work_J = 1e-6 * done;
+  for (Index j = 0; j < scene.size(); ++j)
+    if (visited_[j]) settle(scene, j);
+  report.awake = awake_count_;
+}
+
+void ImplicitRods::set_velocities(RodScene& scene) {
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (!visited_[j]) continue;
+    sharpen(scene.pose.frame[j]);
+    scene.velocity[j] = (scene.pose.position[j] - start_position_[j]) / step_s_;
+    scene.spin[j] = turned_[j] / step_s_;
+  }
+}
+
+/// Of forces, gravity and dragged slots, uJ.
+double ImplicitRods::work(const RodScene& scene) const {
+  double sum = 0;
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (!visited_[j]) continue;
+    const Rod& rod = scene.rods[j];
+    const Vec3 moved = scene.pose.position[j] - start_position_[j];
+    sum += scene.torque[j].dot(turned_[j]);
+    if (scene.hold[j] == Hold::free) {
+      sum += (scene.force[j] + rod.mass * scene.options.gravity_mm_s2).dot(moved);
+    } else if (moved != Vec3::Zero()) {
+      Vec3 hand = rod.mass / step_s_ * (scene.velocity[j] - start_velocity_[j]) + equations_[j].spring_gradient.linear;
+      for (Index c = rod.first_child; c != kNone; c = scene.rods[c].next_sibling)
+        hand -= equations_[c].spring_gradient.linear;
+      sum += hand.dot(moved);
+    }
+  }
+  return sum;
+}
+
+/// Scales the velocities of what is free down where there is more energy than there may be. Exactly minimised and with
+/// convex springs there never is.
+void ImplicitRods::govern(RodScene& scene, double work) {
+  double before = work + start_tie_energy_, elastic = tie_energy(scene), free = 0, held = 0;
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (!visited_[j]) continue;
+    before += start_kinetic_[j] + start_elastic_[j];
+    elastic += elastic_[j];
+    (scene.hold[j] == Hold::free ? free : held) += kinetic_energy(scene, j);
+  }
+  const double allowed = std::max(0.0, std::min(before - held, energy_bound_) - elastic);
+  if (free <= allowed) return;
+  const double factor = std::sqrt(allowed / free);
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (!visited_[j] || scene.hold[j] != Hold::free) continue;
+    scene.velocity[j] *= factor;
+    scene.spin[j] *= factor;
+  }
+}
+
+/// Counts quiet steps; brings slot j to rest after enough, and leaves it alone after a step more, which has seen it so.
+void ImplicitRods::settle(RodScene& scene, Index j) {
+  const Vec3 moved = scene.pose.position[j] - start_position_[j];
+  if (moved != Vec3::Zero() || turned_[j] != Vec3::Zero()) scene.moved[j] = 1;
+  if (!awake_[j]) return;
+  const double tolerance = scene.options.rest_tolerance;
+  const bool quiet = moved.norm() <= tolerance * scene.rods[j].radius && turned_[j].norm() <= tolerance;
+  const char enough = static_cast<char>(scene.options.rest_steps);
+  quiet_steps_[j] = quiet && tolerance > 0 ? static_cast<char>(quiet_steps_[j] + 1) : char{0};
+  if (quiet_steps_[j] == enough) {
+    scene.velocity[j].setZero();
+    scene.spin[j].setZero();
+  } else if (quiet_steps_[j] > enough) {
+    awake_[j] = 0;
+    --awake_count_;
+  }
+}
+
+}  // namespace vmesh

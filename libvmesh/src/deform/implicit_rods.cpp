@@ -1,0 +1,228 @@
+#include "deform/implicit_rods.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vmesh {
+namespace {
+
+/// Rounding of a sum of the terms of the energy.
+constexpr double kEnergyTolerance = 1e-12;
+constexpr int kMostHalvings = 30;
+
+}  // namespace
+
+ImplicitRods::ImplicitRods(const RodScene& scene) : step_s_(scene.options.step_s) {
+  const std::size_t n = scene.size();
+  equations_.resize(n);
+  for (Index j = 0; j < n; ++j) {
+    const Rod& rod = scene.rods[j];
+    RodEquation& e = equations_[j];
+    const double drag = 1 + scene.options.drag_per_s * step_s_, damping = 1 + rod.damping_s / step_s_;
+    e.mass = drag * rod.mass / (step_s_ * step_s_);
+    e.inertia = drag * rod.inertia / (step_s_ * step_s_);
+    if (rod.parent == kNone) continue;
+    e.stretch_compliance = 1 / (rod.stretch * damping);
+    e.bend_compliance = 1 / ((rod.tip_xy + rod.tip_z) * damping);
+    e.twist_compliance = 1 / (2 * rod.tip_xy * damping);
+  }
+  start_position_ = start_velocity_ = base_position_ = predicted_position_ = scene.pose.position;
+  predicted_x_ = predicted_y_ = turned_ = predicted_position_;
+  start_frame_ = base_frame_ = scene.pose.frame;
+  value_.assign(n, 0);
+  elastic_ = start_elastic_ = start_kinetic_ = value_;
+  visited_.assign(n, 0);
+  awake_ = quiet_steps_ = visited_;
+  tie_load_.resize(scene.tree.ties.size());
+  tie_residual_ = tie_direction_ = tie_image_ = tie_opening_ = tie_load_;
+  wake_all();
+}
+
+void ImplicitRods::wake(Index slot) {
+  awake_count_ += !awake_[slot];
+  awake_[slot] = 1;
+  quiet_steps_[slot] = 0;
+}
+
+void ImplicitRods::wake_all() {
+  for (Index j = 0; j < awake_.size(); ++j) wake(j);
+}
+
+StepReport ImplicitRods::step(RodScene& scene) noexcept {
+  StepReport report;
+  if (awake_count_ == 0) return report;
+  if (!scene.tree.ties.empty() && awake_count_ < awake_.size()) wake_all();
+  choose_visited(scene);
+  stirred_ = false;
+  for (Index j = 0; j < scene.size(); ++j)
+    if (visited_[j]) begin(scene, j);
+  evaluate_all(scene);
+  for (Index j = 0; j < scene.size(); ++j)
+    if (visited_[j]) start_elastic_[j] = elastic_[j];
+  start_tie_energy_ = tie_energy(scene);
+  for (int i = 0; i < scene.options.iterations; ++i) {
+    report.movement_mm = iterate(scene, i == 0, report);
+    ++report.iterations;
+    if (report.movement_mm == 0) break;
+  }
+  finish(scene, report);
+  return report;
+}
+
+void ImplicitRods::choose_visited(const RodScene& scene) {
+  std::fill(visited_.begin(), visited_.end(), char{0});
+  for (Index j = static_cast<Index>(scene.size()); j-- > 0;) {
+    const Index parent = scene.rods[j].parent;
+    if (awake_[j] || (parent != kNone && awake_[parent])) visited_[j] = 1;
+    if (visited_[j] && parent != kNone) visited_[parent] = 1;
+  }
+}
+
+void ImplicitRods::begin(const RodScene& scene, Index j) {
+  const Rod& rod = scene.rods[j];
+  const Vec3& p = scene.pose.position[j];
+  const Mat3& frame = scene.pose.frame[j];
+  start_position_[j] = base_position_[j] = p;
+  start_frame_[j] = base_frame_[j] = frame;
+  start_velocity_[j] = scene.velocity[j];
+  start_elastic_[j] = elastic_[j];
+  start_kinetic_[j] = kinetic_energy(scene, j);
+  turned_[j].setZero();
+
+  const double reach = step_s_ / (1 + scene.options.drag_per_s * step_s_);
+  const Vec3 z = frame.col(2), torque = scene.torque[j];
+  const Vec3 velocity = scene.velocity[j] + step_s_ * (scene.options.gravity_mm_s2 + scene.force[j] / rod.mass);
+  const Vec3 spin = scene.spin[j] + step_s_ / rod.inertia * (torque - 0.5 * z.dot(torque) * z);
+  predicted_position_[j] = p + reach * velocity;
+  predicted_x_[j] = frame.col(0) + reach * spin.cross(Vec3(frame.col(0)));
+  predicted_y_[j] = frame.col(1) + reach * spin.cross(Vec3(frame.col(1)));
+}
+
+void ImplicitRods::evaluate_all(RodScene& scene) {
+  for (Index j = 0; j < scene.size(); ++j)
+    if (visited_[j]) evaluate(scene, j);
+}
+
+void ImplicitRods::evaluate(RodScene& scene, Index j) {
+  RodEquation& e = equations_[j];
+  e.z = scene.pose.frame[j].col(2);
+  e.hold = scene.hold[j];
+  e.prescribed = e.hold == Hold::free ? Vec3(Vec3::Zero()) : Vec3(scene.target[j] - scene.pose.position[j]);
+  value_[j] = evaluate_inertia(scene, j);
+  elastic_[j] = 0;
+  if (scene.is_root(j)) {
+    if (stirred_) turned_[j] = turned_by(start_frame_[j], scene.pose.frame[j]);
+    return;
+  }
+  e.lever = scene.rods[j].length * e.z;
+  elastic_[j] = evaluate_springs(scene, j);
+  value_[j] += elastic_[j];
+  if (stirred_) value_[j] += evaluate_damping(scene, j);
+}
+
+double ImplicitRods::evaluate_inertia(const RodScene& scene, Index j) {
+  RodEquation& e = equations_[j];
+  const Mat3& frame = scene.pose.frame[j];
+  const Vec3 x = frame.col(0), y = frame.col(1);
+  const Vec3 off = scene.pose.position[j] - predicted_position_[j];
+  e.gradient.linear = e.mass * off;
+  e.gradient.angular = -e.inertia * (x.cross(predicted_x_[j]) + y.cross(predicted_y_[j]));
+  // A held slot goes where it is told: its inertia is no part of the sum to minimise.
+  const double linear = e.hold == Hold::free ? e.mass * off.squaredNorm() : 0;
+  return 0.5 * (linear + e.inertia * ((x - predicted_x_[j]).squaredNorm() + (y - predicted_y_[j]).squaredNorm()));
+}
+
+double ImplicitRods::evaluate_springs(const RodScene& scene, Index j) {
+  const Rod& rod = scene.rods[j];
+  const Mat3& own = scene.pose.frame[j];
+  const Mat3 wanted = scene.pose.frame[rod.parent] * rod.turn;
+  const Vec3 stretch = misfit(scene, j);
+  const Vec3 x = own.col(0), y = own.col(1), z = own.col(2);
+  equations_[j].spring_gradient.linear = rod.stretch * stretch;
+  equations_[j].spring_gradient.angular = -rod.tip_xy * (x.cross(Vec3(wanted.col(0))) + y.cross(Vec3(wanted.col(1)))) -
+                                          rod.tip_z * z.cross(Vec3(wanted.col(2)));
+  const Mat3 apart = wanted - own;
+  return 0.5 *
+         (rod.stretch * stretch.squaredNorm() + rod.tip_xy * (apart.col(0).squaredNorm() + apart.col(1).squaredNorm()) +
+          rod.tip_z * apart.col(2).squaredNorm());
+}
+
+/// v times the derivative of turned_[j] by a rotation of slot j's frame.
+Vec3 ImplicitRods::damped_gradient(const RodScene& scene, Index j, const Vec3& v) const {
+  const Mat3 &now = scene.pose.frame[j], &start = start_frame_[j];
+  const double trace = (now.array() * start.array()).sum();
+  return 0.5 * (trace * v - start * (now.transpose() * v));
+}
+
+/// Springs are damped against stretch and against turning with respect to the parent since the step's start, not
+/// against turning as a whole.
+double ImplicitRods::evaluate_damping(const RodScene& scene, Index j) {
+  const Rod& rod = scene.rods[j];
+  turned_[j] = turned_by(start_frame_[j], scene.pose.frame[j]);
+  if (rod.damping_s == 0) return 0;
+  const double rate = rod.damping_s / step_s_;
+  const Vec3 stretch =
+      misfit(scene, j) - (start_position_[j] - start_position_[rod.parent] - rod.length * start_frame_[j].col(2));
+  const Vec3 z = start_frame_[j].col(2), turn = turned_[j] - turned_[rod.parent];
+  const Vec3 torque = rate * ((rod.tip_xy + rod.tip_z) * turn + (rod.tip_xy - rod.tip_z) * z.dot(turn) * z);
+  const Vec3 own = damped_gradient(scene, j, torque);
+  equations_[j].spring_gradient.linear += rate * rod.stretch * stretch;
+  equations_[j].spring_gradient.angular += own;
+  equations_[rod.parent].gradient.angular += own - damped_gradient(scene, rod.parent, torque);
+  return 0.5 * (rate * rod.stretch * stretch.squaredNorm() + turn.dot(torque));
+}
+
+bool ImplicitRods::dragged(const RodScene& scene, Index j) const {
+  return scene.hold[j] != Hold::free && scene.target[j] != scene.pose.position[j];
+}
+
+/// One Gauss-Newton iteration. Returns the largest displacement.
+double ImplicitRods::iterate(RodScene& scene, bool first, StepReport& report) {
+  bool any_dragged = false;
+  for (Index j = 0; first && j < scene.size(); ++j) any_dragged = any_dragged || (visited_[j] && dragged(scene, j));
+  solve(scene);
+  double largest = 0;
+  for (Index j = 0; j < scene.size(); ++j)
+    if (visited_[j]) largest = std::max(largest, equations_[j].x.linear.squaredNorm());
+  if (any_dragged) {
+    move(scene, 0);
+    evaluate_all(scene);
+  }
+  const double before = potential(scene);
+  if (first) energy_bound_ = before;
+  double part = 1;
+  for (int halvings = 0;; ++halvings, ++report.halvings, part /= 2) {
+    if (halvings == kMostHalvings) part = 0;
+    move(scene, part);
+    stirred_ = true;
+    evaluate_all(scene);
+    if (part == 0 || potential(scene) <= before * (1 + kEnergyTolerance)) break;
+  }
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (!visited_[j]) continue;
+    base_position_[j] = scene.pose.position[j];
+    base_frame_[j] = scene.pose.frame[j];
+  }
+  return part * std::sqrt(largest);
+}
+
+/// From the base by a part of the solution; held slots go all the way.
+void ImplicitRods::move(RodScene& scene, double part) {
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (!visited_[j]) continue;
+    const Spatial& x = equations_[j].x;
+    if (scene.hold[j] == Hold::free)
+      scene.pose.position[j] = base_position_[j] + part * x.linear;
+    else
+      scene.pose.position[j] = scene.target[j];
+    if (scene.hold[j] != Hold::clamped) scene.pose.frame[j].noalias() = cayley(part * x.angular) * base_frame_[j];
+  }
+}
+
+double ImplicitRods::potential(const RodScene& scene) const {
+  double sum = 0;
+  for (Index j = 0; j < scene.size(); ++j) sum += visited_[j] ? value_[j] : 0;
+  return sum + tie_energy(scene);
+}
+
+}  // namespace vmesh
