@@ -103,7 +103,7 @@ TEST(Physics, RigidMotionMakesNoForce) {
 
 TEST(Physics, EnergyNeverGrowsWithoutDampingAndLoad) {
   SyntheticTreeOptions shape;
-  shape.vertices = 40;
+  shape.vertices = 20;
   const Centerline tree = synthetic_tree(shape);
   SimulationOptions options;
   options.step_s = 1e-3;

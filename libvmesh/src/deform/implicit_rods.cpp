@@ -8,7 +8,7 @@ namespace {
 
 /// Rounding of a sum of the terms of the energy.
 constexpr double kEnergyTolerance = 1e-12;
-constexpr int kMostHalvings = 30;
+constexpr int kMostAttempts = 40;
 
 }  // namespace
 
@@ -22,12 +22,13 @@ ImplicitRods::ImplicitRods(const RodScene& scene) : step_s_(scene.options.step_s
     e.mass = drag * rod.mass / (step_s_ * step_s_);
     e.inertia = drag * rod.inertia / (step_s_ * step_s_);
     if (rod.parent == kNone) continue;
-    e.stretch_compliance = 1 / (rod.stretch * damping);
-    e.bend_compliance = 1 / ((rod.tip_xy + rod.tip_z) * damping);
-    e.twist_compliance = 1 / (2 * rod.tip_xy * damping);
+    e.stretch = rod.stretch * damping;
+    e.bend = (rod.tip_xy + rod.tip_z) * damping;
+    e.twist = 2 * rod.tip_xy * damping;
   }
   start_position_ = start_velocity_ = base_position_ = predicted_position_ = scene.pose.position;
-  predicted_x_ = predicted_y_ = turned_ = predicted_position_;
+  predicted_x_ = predicted_y_ = turn_ = base_turn_ = start_misfit_ = predicted_position_;
+  base_misfit_ = misfit_change_ = predicted_position_;
   start_frame_ = base_frame_ = scene.pose.frame;
   value_.assign(n, 0);
   elastic_ = start_elastic_ = start_kinetic_ = value_;
@@ -35,6 +36,8 @@ ImplicitRods::ImplicitRods(const RodScene& scene) : step_s_(scene.options.step_s
   awake_ = quiet_steps_ = visited_;
   tie_load_.resize(scene.tree.ties.size());
   tie_residual_ = tie_direction_ = tie_image_ = tie_opening_ = tie_load_;
+  for (Index j = 0; j < n; ++j)
+    if (!scene.is_root(j)) elastic_[j] = evaluate_springs(scene, j);
   wake_all();
 }
 
@@ -53,12 +56,8 @@ StepReport ImplicitRods::step(RodScene& scene) noexcept {
   if (awake_count_ == 0) return report;
   if (!scene.tree.ties.empty() && awake_count_ < awake_.size()) wake_all();
   choose_visited(scene);
-  stirred_ = false;
   for (Index j = 0; j < scene.size(); ++j)
     if (visited_[j]) begin(scene, j);
-  evaluate_all(scene);
-  for (Index j = 0; j < scene.size(); ++j)
-    if (visited_[j]) start_elastic_[j] = elastic_[j];
   start_tie_energy_ = tie_energy(scene);
   for (int i = 0; i < scene.options.iterations; ++i) {
     report.movement_mm = iterate(scene, i == 0, report);
@@ -87,7 +86,8 @@ void ImplicitRods::begin(const RodScene& scene, Index j) {
   start_velocity_[j] = scene.velocity[j];
   start_elastic_[j] = elastic_[j];
   start_kinetic_[j] = kinetic_energy(scene, j);
-  turned_[j].setZero();
+  base_turn_[j] = turn_[j] = Vec3::Zero();
+  start_misfit_[j] = equations_[j].elastic_gradient.linear * (scene.is_root(j) ? 0 : 1 / rod.stretch);
 
   const double reach = step_s_ / (1 + scene.options.drag_per_s * step_s_);
   const Vec3 z = frame.col(2), torque = scene.torque[j];
@@ -96,34 +96,25 @@ void ImplicitRods::begin(const RodScene& scene, Index j) {
   predicted_position_[j] = p + reach * velocity;
   predicted_x_[j] = frame.col(0) + reach * spin.cross(Vec3(frame.col(0)));
   predicted_y_[j] = frame.col(1) + reach * spin.cross(Vec3(frame.col(1)));
+  equations_[j].spring_gradient = equations_[j].elastic_gradient;
+  value_[j] = evaluate_inertia(scene, j) + elastic_[j];
 }
 
-void ImplicitRods::evaluate_all(RodScene& scene) {
-  for (Index j = 0; j < scene.size(); ++j)
-    if (visited_[j]) evaluate(scene, j);
-}
-
-void ImplicitRods::evaluate(RodScene& scene, Index j) {
-  RodEquation& e = equations_[j];
-  e.z = scene.pose.frame[j].col(2);
-  e.hold = scene.hold[j];
-  e.prescribed = e.hold == Hold::free ? Vec3(Vec3::Zero()) : Vec3(scene.target[j] - scene.pose.position[j]);
+void ImplicitRods::evaluate(const RodScene& scene, Index j) {
   value_[j] = evaluate_inertia(scene, j);
-  elastic_[j] = 0;
-  if (scene.is_root(j)) {
-    if (stirred_) turned_[j] = turned_by(start_frame_[j], scene.pose.frame[j]);
-    return;
-  }
-  e.lever = scene.rods[j].length * e.z;
+  if (scene.is_root(j)) return;
   elastic_[j] = evaluate_springs(scene, j);
-  value_[j] += elastic_[j];
-  if (stirred_) value_[j] += evaluate_damping(scene, j);
+  value_[j] += elastic_[j] + evaluate_damping(scene, j);
 }
 
 double ImplicitRods::evaluate_inertia(const RodScene& scene, Index j) {
   RodEquation& e = equations_[j];
   const Mat3& frame = scene.pose.frame[j];
   const Vec3 x = frame.col(0), y = frame.col(1);
+  e.z = frame.col(2);
+  e.lever = scene.rods[j].length * e.z;
+  e.hold = scene.hold[j];
+  e.prescribed = e.hold == Hold::free ? Vec3(Vec3::Zero()) : Vec3(scene.target[j] - scene.pose.position[j]);
   const Vec3 off = scene.pose.position[j] - predicted_position_[j];
   e.gradient.linear = e.mass * off;
   e.gradient.angular = -e.inertia * (x.cross(predicted_x_[j]) + y.cross(predicted_y_[j]));
@@ -138,38 +129,30 @@ double ImplicitRods::evaluate_springs(const RodScene& scene, Index j) {
   const Mat3 wanted = scene.pose.frame[rod.parent] * rod.turn;
   const Vec3 stretch = misfit(scene, j);
   const Vec3 x = own.col(0), y = own.col(1), z = own.col(2);
-  equations_[j].spring_gradient.linear = rod.stretch * stretch;
-  equations_[j].spring_gradient.angular = -rod.tip_xy * (x.cross(Vec3(wanted.col(0))) + y.cross(Vec3(wanted.col(1)))) -
-                                          rod.tip_z * z.cross(Vec3(wanted.col(2)));
+  Spatial& gradient = equations_[j].elastic_gradient;
+  gradient.linear = rod.stretch * stretch;
+  gradient.angular = -rod.tip_xy * (x.cross(Vec3(wanted.col(0))) + y.cross(Vec3(wanted.col(1)))) -
+                     rod.tip_z * z.cross(Vec3(wanted.col(2)));
   const Mat3 apart = wanted - own;
   return 0.5 *
          (rod.stretch * stretch.squaredNorm() + rod.tip_xy * (apart.col(0).squaredNorm() + apart.col(1).squaredNorm()) +
           rod.tip_z * apart.col(2).squaredNorm());
 }
 
-/// v times the derivative of turned_[j] by a rotation of slot j's frame.
-Vec3 ImplicitRods::damped_gradient(const RodScene& scene, Index j, const Vec3& v) const {
-  const Mat3 &now = scene.pose.frame[j], &start = start_frame_[j];
-  const double trace = (now.array() * start.array()).sum();
-  return 0.5 * (trace * v - start * (now.transpose() * v));
-}
-
 /// Springs are damped against stretch and against turning with respect to the parent since the step's start, not
 /// against turning as a whole.
 double ImplicitRods::evaluate_damping(const RodScene& scene, Index j) {
   const Rod& rod = scene.rods[j];
-  turned_[j] = turned_by(start_frame_[j], scene.pose.frame[j]);
+  RodEquation& e = equations_[j];
+  e.spring_gradient = e.elastic_gradient;
   if (rod.damping_s == 0) return 0;
   const double rate = rod.damping_s / step_s_;
-  const Vec3 stretch =
-      misfit(scene, j) - (start_position_[j] - start_position_[rod.parent] - rod.length * start_frame_[j].col(2));
-  const Vec3 z = start_frame_[j].col(2), turn = turned_[j] - turned_[rod.parent];
+  const Vec3 pull = rate * (e.elastic_gradient.linear - rod.stretch * start_misfit_[j]);
+  const Vec3 z = start_frame_[j].col(2), turn = turn_[j] - turn_[rod.parent];
   const Vec3 torque = rate * ((rod.tip_xy + rod.tip_z) * turn + (rod.tip_xy - rod.tip_z) * z.dot(turn) * z);
-  const Vec3 own = damped_gradient(scene, j, torque);
-  equations_[j].spring_gradient.linear += rate * rod.stretch * stretch;
-  equations_[j].spring_gradient.angular += own;
-  equations_[rod.parent].gradient.angular += own - damped_gradient(scene, rod.parent, torque);
-  return 0.5 * (rate * rod.stretch * stretch.squaredNorm() + turn.dot(torque));
+  e.spring_gradient.linear += pull;
+  e.spring_gradient.angular += torque;
+  return 0.5 * (pull.squaredNorm() / (rate * rod.stretch) + turn.dot(torque));
 }
 
 bool ImplicitRods::dragged(const RodScene& scene, Index j) const {
@@ -178,50 +161,68 @@ bool ImplicitRods::dragged(const RodScene& scene, Index j) const {
 
 /// One Gauss-Newton iteration. Returns the largest displacement.
 double ImplicitRods::iterate(RodScene& scene, bool first, StepReport& report) {
-  bool any_dragged = false;
-  for (Index j = 0; first && j < scene.size(); ++j) any_dragged = any_dragged || (visited_[j] && dragged(scene, j));
   solve(scene);
-  double largest = 0;
-  for (Index j = 0; j < scene.size(); ++j)
-    if (visited_[j]) largest = std::max(largest, equations_[j].x.linear.squaredNorm());
-  if (any_dragged) {
-    move(scene, 0);
-    evaluate_all(scene);
+  bool drags = false;
+  double before = tie_energy(scene), largest = 0;
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (!visited_[j]) continue;
+    before += value_[j];
+    largest = std::max(largest, equations_[j].x.linear.squaredNorm());
+    set_misfits(scene, j);
+    drags = drags || dragged(scene, j);
   }
-  const double before = potential(scene);
+  if (drags) before = move(scene, 0, false);
   if (first) energy_bound_ = before;
   double part = 1;
-  for (int halvings = 0;; ++halvings, ++report.halvings, part /= 2) {
-    if (halvings == kMostHalvings) part = 0;
-    move(scene, part);
-    stirred_ = true;
-    evaluate_all(scene);
-    if (part == 0 || potential(scene) <= before * (1 + kEnergyTolerance)) break;
+  for (int attempt = 0;; ++attempt) {
+    if (attempt == kMostAttempts) part = 0;
+    const bool chained = attempt % 2 == 0;
+    const double now = move(scene, part, chained);
+    if (part == 0 || now <= before * (1 + kEnergyTolerance)) break;
+    if (!chained) part /= 2;
+    ++report.rejections;
   }
   for (Index j = 0; j < scene.size(); ++j) {
     if (!visited_[j]) continue;
     base_position_[j] = scene.pose.position[j];
     base_frame_[j] = scene.pose.frame[j];
+    base_turn_[j] = turn_[j];
   }
   return part * std::sqrt(largest);
 }
 
-/// From the base by a part of the solution; held slots go all the way.
-void ImplicitRods::move(RodScene& scene, double part) {
-  for (Index j = 0; j < scene.size(); ++j) {
-    if (!visited_[j]) continue;
-    const Spatial& x = equations_[j].x;
-    if (scene.hold[j] == Hold::free)
-      scene.pose.position[j] = base_position_[j] + part * x.linear;
-    else
-      scene.pose.position[j] = scene.target[j];
-    if (scene.hold[j] != Hold::clamped) scene.pose.frame[j].noalias() = cayley(part * x.angular) * base_frame_[j];
-  }
+/// Where the solution would have slot j's segment against its axis if turning by an angle did not lengthen it.
+void ImplicitRods::set_misfits(const RodScene& scene, Index j) {
+  const RodEquation& e = equations_[j];
+  if (scene.is_root(j)) return;
+  base_misfit_[j] = e.elastic_gradient.linear / scene.rods[j].stretch;
+  misfit_change_[j] = e.x.linear + e.lever.cross(e.x.angular) - equations_[scene.rods[j].parent].x.linear;
 }
 
-double ImplicitRods::potential(const RodScene& scene) const {
+/// From the base by a part of the solution; held slots go all the way. Chained, segments turn with their frames, and
+/// what hangs on them follows; otherwise nodes move straight. Returns the sum to minimise there.
+double ImplicitRods::move(RodScene& scene, double part, bool chained) {
   double sum = 0;
-  for (Index j = 0; j < scene.size(); ++j) sum += visited_[j] ? value_[j] : 0;
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (!visited_[j]) continue;
+    const Rod& rod = scene.rods[j];
+    const Spatial& x = equations_[j].x;
+    if (scene.hold[j] != Hold::clamped) {
+      scene.pose.frame[j].noalias() = cayley(part * x.angular) * base_frame_[j];
+      turn_[j] = base_turn_[j] + part * x.angular;
+    }
+    Vec3& p = scene.pose.position[j];
+    if (scene.hold[j] != Hold::free) {
+      p = scene.target[j];
+    } else if (chained && rod.parent != kNone && x.linear != Vec3::Zero()) {
+      p = scene.pose.position[rod.parent] + rod.length * scene.pose.frame[j].col(2) + base_misfit_[j] +
+          part * misfit_change_[j];
+    } else {
+      p = base_position_[j] + part * x.linear;
+    }
+    evaluate(scene, j);
+    sum += value_[j];
+  }
   return sum + tie_energy(scene);
 }
 

@@ -24,12 +24,10 @@ class ImplicitRods {
  private:
   void choose_visited(const RodScene& scene);
   void begin(const RodScene& scene, Index j);
-  void evaluate_all(RodScene& scene);
-  void evaluate(RodScene& scene, Index j);
+  void evaluate(const RodScene& scene, Index j);
   double evaluate_inertia(const RodScene& scene, Index j);
   double evaluate_springs(const RodScene& scene, Index j);
   double evaluate_damping(const RodScene& scene, Index j);
-  Vec3 damped_gradient(const RodScene& scene, Index j, const Vec3& v) const;
 
   void solve(const RodScene& scene);
   void solve_tree(const RodScene& scene);
@@ -40,24 +38,25 @@ class ImplicitRods {
 
   bool dragged(const RodScene& scene, Index j) const;
   double iterate(RodScene& scene, bool first, StepReport& report);
-  void move(RodScene& scene, double part);
-  double potential(const RodScene& scene) const;
+  void set_misfits(const RodScene& scene, Index j);
+  double move(RodScene& scene, double part, bool chained);
 
   void finish(RodScene& scene, StepReport& report);
   void set_velocities(RodScene& scene);
   double work(const RodScene& scene) const;
-  void govern(RodScene& scene, double work);
+  double govern(RodScene& scene, double work);
   void settle(RodScene& scene, Index j);
 
   double step_s_;
   std::vector<RodEquation> equations_;
   std::vector<char> visited_, awake_, quiet_steps_;
   std::size_t awake_count_ = 0;
-  bool stirred_ = false;  // frames differ from those at the step's start
 
   std::vector<Vec3> start_position_, start_velocity_, base_position_, predicted_position_, predicted_x_, predicted_y_;
   std::vector<Mat3> start_frame_, base_frame_;
-  std::vector<Vec3> turned_;  // since the step's start: axis times sine
+  std::vector<Vec3> turn_, base_turn_;  // since the step's start: sum of the iterations' rotation vectors
+  std::vector<Vec3> start_misfit_, base_misfit_, misfit_change_;
+  std::size_t steps_ = 0;
   std::vector<double> value_, elastic_, start_elastic_, start_kinetic_;
   double energy_bound_ = 0;  // of the step: what standing still has
   double start_tie_energy_ = 0;

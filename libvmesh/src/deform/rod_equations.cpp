@@ -3,42 +3,89 @@
 namespace vmesh {
 namespace {
 
-/// Minimises 1/2 u^T D u + b u under the hold; `inverse` is how u follows a force.
-struct HeldMinimum {
-  SpatialMatrix inverse;
-  Spatial u;
+Vec3 angular_compliance(const RodEquation& e, const Vec3& t) {
+  return t / e.bend + (1 / e.twist - 1 / e.bend) * e.z.dot(t) * e.z;
+}
+
+/// The spring's W seen from the slot: J^T W J, with J x = y.
+SpatialMatrix stiffness(const RodEquation& e) {
+  const double sideways = e.stretch * e.lever.squaredNorm();
+  SpatialMatrix w;
+  w.ll.diagonal().setConstant(e.stretch);
+  w.la = cross_columns(e.stretch * e.lever, Mat3::Identity());
+  w.aa = (e.twist - e.bend - sideways) * e.z * e.z.transpose();
+  w.aa.diagonal().array() += e.bend + sideways;
+  return w;
+}
+
+/// The inverse of that.
+SpatialMatrix compliance(const RodEquation& e) {
+  const double bend = 1 / e.bend, sideways = bend * e.lever.squaredNorm();
+  const Mat3 zz = e.z * e.z.transpose();
+  SpatialMatrix c;
+  c.ll = -sideways * zz;
+  c.ll.diagonal().array() += 1 / e.stretch + sideways;
+  c.la = cross_columns(-bend * e.lever, Mat3::Identity());
+  c.aa = (1 / e.twist - bend) * zz;
+  c.aa.diagonal().array() += bend;
+  return c;
+}
+
+/// What a slot means to its parent, but seen from the slot.
+struct Reduced {
+  SpatialMatrix stiffness;
+  Spatial gradient;
 };
 
-HeldMinimum held_minimum(const SpatialMatrix& d, const Spatial& b, Hold hold, const Vec3& prescribed) {
-  HeldMinimum m;
-  if (hold == Hold::free) {
-    m.inverse = inverse(d);
-    m.u = m.inverse * Spatial{-b.linear, -b.angular};
-    return m;
-  }
-  m.u.linear = prescribed;
-  if (hold == Hold::fixed) {
-    m.inverse.aa = inverse(d.aa);
-    m.u.angular = -(m.inverse.aa * (b.angular + d.la.transpose() * prescribed));
-  }
-  return m;
+/// D and b in series with the spring. Subtracts from D, which is what matters when it is small beside the spring: a
+/// light vessel on stiff springs; D is not inverted, as it may be stiff one way and next to nothing another.
+Reduced reduce_free(const RodEquation& e, const SpatialMatrix& d, const Spatial& b) {
+  SpatialMatrix sum = stiffness(e);
+  sum += d;
+  const SpatialMatrix g = inverse(sum);
+  const Mat3 h_ll = d.ll * g.ll + d.la * g.la.transpose(), h_la = d.ll * g.la + d.la * g.aa;
+  const Mat3 h_al = d.la.transpose() * g.ll + d.aa * g.la.transpose();
+  const Mat3 h_aa = d.la.transpose() * g.la + d.aa * g.aa;
+  Reduced r;
+  r.stiffness.ll = d.ll - h_ll * d.ll - h_la * d.la.transpose();
+  r.stiffness.la = d.la - h_ll * d.la - h_la * d.aa;
+  r.stiffness.aa = d.aa - h_al * d.la - h_aa * d.aa;
+  const Spatial& f = e.spring_gradient;
+  const Spatial all = b + Spatial{f.linear, f.angular - e.lever.cross(f.linear)};
+  r.gradient = {b.linear - h_ll * all.linear - h_la * all.angular, b.angular - h_al * all.linear - h_aa * all.angular};
+  return r;
 }
 
-Vec3 angular_compliance(const RodEquation& e, const Vec3& t) {
-  return e.bend_compliance * t + (e.twist_compliance - e.bend_compliance) * e.z.dot(t) * e.z;
+/// The same with the slot's position given, and its frame too when clamped.
+Reduced reduce_held(const RodEquation& e, const SpatialMatrix& d, const Spatial& b) {
+  SpatialMatrix follows = compliance(e);
+  Vec3 turn = Vec3::Zero();
+  if (e.hold == Hold::fixed) {
+    const Mat3 turns = inverse(d.aa);
+    turn = -(turns * (b.angular + d.la.transpose() * e.prescribed));
+    follows.aa += turns;
+  }
+  Reduced r;
+  r.stiffness = inverse(follows);
+  const Vec3 spring_turn = angular_compliance(e, e.spring_gradient.angular);
+  r.gradient = r.stiffness * Spatial{e.lever.cross(spring_turn) - e.spring_gradient.linear / e.stretch - e.prescribed,
+                                     -spring_turn - turn};
+  return r;
 }
 
-/// W^-1 + J D^-1 J^T, with J x = y.
-SpatialMatrix compliance(const RodEquation& e, const SpatialMatrix& inverse) {
-  SpatialMatrix c;
-  c.aa = inverse.aa;
-  c.la = inverse.la + cross_columns(e.lever, inverse.aa);
-  c.ll = inverse.ll + cross_columns(e.lever, inverse.la.transpose()) +
-         cross_columns(e.lever, c.la.transpose()).transpose();
-  c.ll.diagonal().array() += e.stretch_compliance;
-  c.aa.diagonal().array() += e.bend_compliance;
-  c.aa += (e.twist_compliance - e.bend_compliance) * e.z * e.z.transpose();
-  return c;
+/// J^-T m J^-1 and J^-T f: seen from the parent.
+void set_reduced(RodEquation& e, const Reduced& r) {
+  const auto& [m, f] = r;
+  e.reduced.ll = m.ll;
+  e.reduced.la = m.la + cross_columns(e.lever, m.ll).transpose();
+  e.reduced.aa = m.aa + cross_columns(e.lever, e.reduced.la) + cross_columns(e.lever, m.la).transpose();
+  e.reduced_gradient = {f.linear, f.angular + e.lever.cross(f.linear)};
+}
+
+Spatial minimum(const SpatialMatrix& d, const Spatial& b, const RodEquation& e) {
+  if (e.hold == Hold::clamped) return {e.prescribed, Vec3::Zero()};
+  if (e.hold == Hold::free) return inverse(d) * Spatial{-b.linear, -b.angular};
+  return {e.prescribed, -(inverse(d.aa) * (b.angular + d.la.transpose() * e.prescribed))};
 }
 
 }  // namespace
@@ -54,15 +101,10 @@ void eliminate(std::vector<RodEquation>& equations, const std::vector<Rod>& rods
     d += equations[c].reduced;
     b = b + equations[c].reduced_gradient;
   }
-  const HeldMinimum minimum = held_minimum(d, b, e.hold, e.prescribed);
-  e.x = minimum.u;
-  if (rods[j].parent == kNone) return;
-  e.reduced = inverse(compliance(e, minimum.inverse));
-  const Spatial& f = e.spring_gradient;
-  const Spatial& u = minimum.u;
-  const Spatial g = e.reduced * Spatial{e.stretch_compliance * f.linear + u.linear + e.lever.cross(u.angular),
-                                        angular_compliance(e, f.angular) + u.angular};
-  e.reduced_gradient = {-g.linear, -g.angular};
+  if (rods[j].parent == kNone)
+    e.x = minimum(d, b, e);
+  else
+    set_reduced(e, e.hold == Hold::free ? reduce_free(e, d, b) : reduce_held(e, d, b));
 }
 
 void substitute(std::vector<RodEquation>& equations, Index j, Index parent) {
@@ -70,7 +112,7 @@ void substitute(std::vector<RodEquation>& equations, Index j, Index parent) {
   const Spatial& at_parent = equations[parent].x;
   const Spatial pull = e.spring_gradient + e.reduced_gradient + e.reduced * at_parent;
   e.x.angular = at_parent.angular - angular_compliance(e, pull.angular);
-  e.x.linear = at_parent.linear - e.stretch_compliance * pull.linear - e.lever.cross(e.x.angular);
+  e.x.linear = at_parent.linear - pull.linear / e.stretch - e.lever.cross(e.x.angular);
   if (e.hold != Hold::free) e.x.linear = e.prescribed;
   if (e.hold == Hold::clamped) e.x.angular.setZero();
 }

@@ -15,8 +15,9 @@ struct RodEquation {
   double mass = 0, inertia = 0;  ///< inertia about the transverse axes, half of that about z
   Vec3 z = Vec3::UnitZ();
   Vec3 lever = Vec3::Zero();
-  double stretch_compliance = 0, bend_compliance = 0, twist_compliance = 0;
+  double stretch = 0, bend = 0, twist = 0;  ///< W
   Spatial gradient, spring_gradient;
+  Spatial elastic_gradient;  ///< spring_gradient without damping
   Hold hold = Hold::free;
   Vec3 prescribed = Vec3::Zero();  ///< displacement of a held slot
 
@@ -26,8 +27,7 @@ struct RodEquation {
   Spatial x;
 };
 
-/// Eliminates slot j, whose children are: computes `reduced`, or for a root x. Cancellation-free: neither stiffness nor
-/// lightness harms it.
+/// Eliminates slot j, whose children are: computes `reduced`, or for a root x.
 void eliminate(std::vector<RodEquation>& equations, const std::vector<Rod>& rods, Index j);
 
 /// x of slot j from its parent's.

@@ -29,23 +29,21 @@ struct SpatialMatrix {
   }
 };
 
+/// Where a difference that must be positive is all rounding, what stands for it: this times the minuend.
+constexpr double kRounding = 1e-15;
+
 /// Inverse of a symmetric positive definite 3x3 matrix by L D L^T. A pivot that rounding made too small or negative is
 /// raised, which makes the inverse smaller: safe for a matrix of stiffness.
 inline Mat3 inverse(const Mat3& m) {
-  constexpr double kTiny = 1e-15;
   const double d0 = m(0, 0), i0 = 1 / d0;
   const double l10 = m(0, 1) * i0, l20 = m(0, 2) * i0;
-  const double d1 = std::max(m(1, 1) - l10 * m(0, 1), kTiny * m(1, 1)), i1 = 1 / d1;
+  const double d1 = std::max(m(1, 1) - l10 * m(0, 1), kRounding * m(1, 1)), i1 = 1 / d1;
   const double u12 = m(1, 2) - l10 * m(0, 2), l21 = u12 * i1;
-  const double d2 = std::max(m(2, 2) - l20 * m(0, 2) - l21 * u12, kTiny * m(2, 2)), i2 = 1 / d2;
-  const double m20 = l10 * l21 - l20;  // row 2 of L^-1 is (m20, -l21, 1)
+  const double d2 = std::max(m(2, 2) - l20 * m(0, 2) - l21 * u12, kRounding * m(2, 2)), i2 = 1 / d2;
+  const double m20 = l10 * l21 - l20;  // the last row of L^-1 is (m20, -l21, 1)
+  const double r01 = -l10 * i1 - l21 * m20 * i2, r02 = m20 * i2, r12 = -l21 * i2;
   Mat3 r;
-  r(2, 2) = i2;
-  r(1, 2) = r(2, 1) = -l21 * i2;
-  r(0, 2) = r(2, 0) = m20 * i2;
-  r(1, 1) = i1 + l21 * l21 * i2;
-  r(0, 1) = r(1, 0) = -l10 * i1 - l21 * m20 * i2;
-  r(0, 0) = i0 + l10 * l10 * i1 + m20 * m20 * i2;
+  r << i0 + l10 * l10 * i1 + m20 * m20 * i2, r01, r02, r01, i1 + l21 * l21 * i2, r12, r02, r12, i2;
   return r;
 }
 
@@ -53,8 +51,10 @@ inline Mat3 inverse(const Mat3& m) {
 inline SpatialMatrix inverse(const SpatialMatrix& m) {
   const Mat3 ll = inverse(m.ll);
   const Mat3 t = ll * m.la;
+  Mat3 rest = m.aa - m.la.transpose() * t;
+  rest.diagonal() = rest.diagonal().cwiseMax(kRounding * m.aa.diagonal());
   SpatialMatrix r;
-  r.aa = inverse(Mat3(m.aa - m.la.transpose() * t));
+  r.aa = inverse(rest);
   r.la = -t * r.aa;
   r.ll = ll - r.la * t.transpose();
   return r;

@@ -43,7 +43,7 @@ struct SimulationOptions {
 /// What a step did.
 struct StepReport {
   int iterations = 0;      ///< Gauss-Newton iterations, or substeps
-  int halvings = 0;        ///< of Gauss-Newton steps that would have raised the energy
+  int rejections = 0;      ///< Gauss-Newton steps, or parts of them, that would have raised the energy
   double work_J = 0;       ///< by forces, gravity and dragged nodes
   double movement_mm = 0;  ///< of the last iteration, the largest of all nodes: how far from converged
   std::size_t awake = 0;   ///< slots that are not at rest
