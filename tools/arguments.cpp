@@ -47,6 +47,12 @@ constexpr const char* kCenterlineExamples = R"(Examples:
   vmesh centerline portal.ply -o portal.json
   vmesh centerline liver.nii.gz --label 2 --spacing 0.8 --smooth 0.8 -o portal.swc --tree)";
 
+constexpr const char* kDeformExamples = R"(Examples:
+  vmesh deform tree.json tree.ply --script scene.json -o frames/
+  vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj)";
+constexpr const char* kTable1Examples = R"(Examples:
+  vmesh table1
+  vmesh table1 --format markdown)";
 constexpr const char* kEvaluateExamples = R"(Examples:
   vmesh evaluate tree.ply
   vmesh evaluate tree.ply --reference scan.stl --report report.md --json report.json -o colored.ply
@@ -342,6 +348,31 @@ void add_centerline(CLI::App& app, CenterlineArguments& arguments) {
   verb.footer(kCenterlineExamples);
 }
 
+void add_deform(CLI::App& app, DeformArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand("deform", "Move a centerline under forces, its surface with it");
+  add_input(verb, arguments.input, "centerline");
+  verb.add_option("SURFACE", arguments.surface.path, "surface around it: grown by vmesh, or any other")->required();
+  add_reading(verb, arguments.surface, "surface-");
+  verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (README.md, The scene)")
+      ->required();
+  verb.add_option("-o,--output", arguments.output, "new or empty folder for the frames")->required();
+  verb.add_option("--format", arguments.format, "of the frames")
+      ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off"}))
+      ->capture_default_str();
+  add_common(verb, arguments.common);
+  verb.footer(kDeformExamples);
+}
+
+void add_table1(CLI::App& app, Table1Arguments& arguments) {
+  CLI::App& verb = *app.add_subcommand(
+      "table1", "Measure deformation and synchronisation as in the paper's Table 1, on synthetic trees of its sizes");
+  verb.add_option("--format", arguments.format, "of the tables on stdout")
+      ->check(CLI::IsMember({"text", "markdown", "csv"}))
+      ->capture_default_str();
+  add_common(verb, arguments.common);
+  verb.footer(kTable1Examples);
+}
+
 }  // namespace
 
 std::string_view to_string(OverlapHandling overlap) {
@@ -366,6 +397,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   ReferenceArguments reference;
   ConesArguments cones;
   CenterlineArguments centerline;
+  DeformArguments deform;
+  Table1Arguments table1;
   add_generate(app, generate);
   add_info(app, info);
   add_synth(app, synth);
@@ -375,6 +408,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   add_reference(app, reference);
   add_cones(app, cones);
   add_centerline(app, centerline);
+  add_deform(app, deform);
+  add_table1(app, table1);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -389,6 +424,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   if (app.got_subcommand("reference")) return reference;
   if (app.got_subcommand("cones")) return cones;
   if (app.got_subcommand("centerline")) return centerline;
+  if (app.got_subcommand("deform")) return deform;
+  if (app.got_subcommand("table1")) return table1;
   if (app.got_subcommand("evaluate")) return evaluate;
   return render;
 }

@@ -106,8 +106,23 @@ struct CenterlineArguments {
   ReferenceOptions image;  ///< how an image becomes a surface first
 };
 
-using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments,
-                               EvaluateArguments, ReferenceArguments, ConesArguments, CenterlineArguments>;
+struct DeformArguments {
+  CommonArguments common;
+  InputArguments input;
+  InputArguments surface;
+  std::filesystem::path script;
+  std::filesystem::path output;  ///< folder
+  std::string format = "vtp";    ///< extension of the frames
+};
+
+struct Table1Arguments {
+  CommonArguments common;
+  std::string format = "text";  ///< text, markdown or csv
+};
+
+using Arguments =
+    std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments, EvaluateArguments,
+                 ReferenceArguments, ConesArguments, CenterlineArguments, DeformArguments, Table1Arguments>;
 
 /// Calls `visit(flag, member, low, high, help)` for every option of the growth. The one list behind the command line
 /// and the summary.

@@ -46,6 +46,7 @@ void Profile::set_scale(Index slot, double scale, RodScene& scene) {
 
 /// At all slots of the node.
 void Profile::set(std::vector<double>& values, Index slot, double value, const RodTree& tree) {
+  if (values[slot] == value) return;
   values[slot] = value;
   for (const auto& tie : tree.ties)
     if (tie.node_slot == slot) values[tie.slot] = value;

@@ -54,6 +54,14 @@ struct CenterlineSimulation::State {
     return j;
   }
 
+  /// The same value again leaves what is at rest alone.
+  void load(Index node, const Vec3& value, std::vector<Vec3>& loads) {
+    const Index j = slot(node);
+    if (loads[j] == value) return;
+    stir(node);
+    loads[j] = value;
+  }
+
   void hold(Index node, Hold how) {
     const Index j = stir(node);
     scene.hold[j] = how;
@@ -87,19 +95,21 @@ void CenterlineSimulation::release(Index node) { state_->scene.hold[state_->stir
 
 void CenterlineSimulation::drag(Index node, const Vec3& position_mm) {
   require_finite(position_mm, "the position to drag to");
-  const Index j = state_->stir(node);
+  const Index j = state_->slot(node);
+  if (state_->scene.hold[j] != Hold::free && position_mm == state_->scene.target[j]) return;
+  state_->stir(node);
   if (state_->scene.hold[j] == Hold::free) state_->scene.hold[j] = Hold::fixed;
   state_->scene.target[j] = position_mm;
 }
 
 void CenterlineSimulation::set_force(Index node, const Vec3& force_N) {
   require_finite(force_N, "a force");
-  state_->scene.force[state_->stir(node)] = 1e3 * force_N;
+  state_->load(node, 1e3 * force_N, state_->scene.force);
 }
 
 void CenterlineSimulation::set_torque(Index node, const Vec3& torque_N_mm) {
   require_finite(torque_N_mm, "a torque");
-  state_->scene.torque[state_->stir(node)] = 1e3 * torque_N_mm;
+  state_->load(node, 1e3 * torque_N_mm, state_->scene.torque);
 }
 
 void CenterlineSimulation::set_radial_scale(Index node, double scale) {
