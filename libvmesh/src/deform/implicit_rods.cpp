@@ -60,6 +60,7 @@ StepReport ImplicitRods::step(RodScene& scene) noexcept {
     if (visited_[j]) begin(scene, j);
   start_tie_energy_ = tie_energy(scene);
   for (int i = 0; i < scene.options.iterations; ++i) {
+    if (i > 0) set_base(scene);
     report.movement_mm = iterate(scene, i == 0, report);
     ++report.iterations;
     if (report.movement_mm == 0) break;
@@ -126,7 +127,7 @@ double ImplicitRods::evaluate_inertia(const RodScene& scene, Index j) {
 double ImplicitRods::evaluate_springs(const RodScene& scene, Index j) {
   const Rod& rod = scene.rods[j];
   const Mat3& own = scene.pose.frame[j];
-  const Mat3 wanted = scene.pose.frame[rod.parent] * rod.turn;
+  const Mat3 wanted = product(scene.pose.frame[rod.parent], rod.turn);
   const Vec3 stretch = misfit(scene, j);
   const Vec3 x = own.col(0), y = own.col(1), z = own.col(2);
   Spatial& gradient = equations_[j].elastic_gradient;
@@ -163,7 +164,7 @@ bool ImplicitRods::dragged(const RodScene& scene, Index j) const {
 double ImplicitRods::iterate(RodScene& scene, bool first, StepReport& report) {
   solve(scene);
   bool drags = false;
-  double before = tie_energy(scene), largest = 0;
+  double before = 0, largest = 0;
   for (Index j = 0; j < scene.size(); ++j) {
     if (!visited_[j]) continue;
     before += value_[j];
@@ -171,7 +172,8 @@ double ImplicitRods::iterate(RodScene& scene, bool first, StepReport& report) {
     set_misfits(scene, j);
     drags = drags || dragged(scene, j);
   }
-  if (drags) before = move(scene, 0, false);
+  if (drags) before += drag(scene);
+  before += tie_energy(scene);
   if (first) energy_bound_ = before;
   double part = 1;
   for (int attempt = 0;; ++attempt) {
@@ -181,12 +183,6 @@ double ImplicitRods::iterate(RodScene& scene, bool first, StepReport& report) {
     if (part == 0 || now <= before * (1 + kEnergyTolerance)) break;
     if (!chained) part /= 2;
     ++report.rejections;
-  }
-  for (Index j = 0; j < scene.size(); ++j) {
-    if (!visited_[j]) continue;
-    base_position_[j] = scene.pose.position[j];
-    base_frame_[j] = scene.pose.frame[j];
-    base_turn_[j] = turn_[j];
   }
   return part * std::sqrt(largest);
 }
@@ -199,6 +195,33 @@ void ImplicitRods::set_misfits(const RodScene& scene, Index j) {
   misfit_change_[j] = e.x.linear + e.lever.cross(e.x.angular) - equations_[scene.rods[j].parent].x.linear;
 }
 
+void ImplicitRods::set_base(const RodScene& scene) {
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (!visited_[j]) continue;
+    base_position_[j] = scene.pose.position[j];
+    base_frame_[j] = scene.pose.frame[j];
+    base_turn_[j] = turn_[j];
+  }
+}
+
+/// Puts dragged slots where they go, all else standing still. Returns by how much the sum to minimise changes.
+double ImplicitRods::drag(RodScene& scene) {
+  double change = 0;
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (!visited_[j]) continue;
+    const Index parent = scene.rods[j].parent;
+    const bool pulled = scene.hold[j] != Hold::free && scene.target[j] != base_position_[j];
+    const bool parent_pulled =
+        parent != kNone && scene.hold[parent] != Hold::free && scene.target[parent] != base_position_[parent];
+    if (!pulled && !parent_pulled) continue;
+    if (pulled) scene.pose.position[j] = scene.target[j];
+    change -= value_[j];
+    evaluate(scene, j);
+    change += value_[j];
+  }
+  return change;
+}
+
 /// From the base by a part of the solution; held slots go all the way. Chained, segments turn with their frames, and
 /// what hangs on them follows; otherwise nodes move straight. Returns the sum to minimise there.
 double ImplicitRods::move(RodScene& scene, double part, bool chained) {
@@ -208,7 +231,7 @@ double ImplicitRods::move(RodScene& scene, double part, bool chained) {
     const Rod& rod = scene.rods[j];
     const Spatial& x = equations_[j].x;
     if (scene.hold[j] != Hold::clamped) {
-      scene.pose.frame[j].noalias() = cayley(part * x.angular) * base_frame_[j];
+      scene.pose.frame[j] = product(cayley(part * x.angular), base_frame_[j]);
       turn_[j] = base_turn_[j] + part * x.angular;
     }
     Vec3& p = scene.pose.position[j];

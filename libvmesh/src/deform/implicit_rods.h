@@ -38,6 +38,8 @@ class ImplicitRods {
 
   bool dragged(const RodScene& scene, Index j) const;
   double iterate(RodScene& scene, bool first, StepReport& report);
+  void set_base(const RodScene& scene);
+  double drag(RodScene& scene);
   void set_misfits(const RodScene& scene, Index j);
   double move(RodScene& scene, double part, bool chained);
 

@@ -43,13 +43,14 @@ Reduced reduce_free(const RodEquation& e, const SpatialMatrix& d, const Spatial&
   SpatialMatrix sum = stiffness(e);
   sum += d;
   const SpatialMatrix g = inverse(sum);
-  const Mat3 h_ll = d.ll * g.ll + d.la * g.la.transpose(), h_la = d.ll * g.la + d.la * g.aa;
-  const Mat3 h_al = d.la.transpose() * g.ll + d.aa * g.la.transpose();
-  const Mat3 h_aa = d.la.transpose() * g.la + d.aa * g.aa;
+  const Mat3 h_ll = product(d.ll, g.ll) + product_transposed(d.la, g.la),
+             h_la = product(d.ll, g.la) + product(d.la, g.aa);
+  const Mat3 h_al = transposed_product(d.la, g.ll) + product_transposed(d.aa, g.la);
+  const Mat3 h_aa = transposed_product(d.la, g.la) + product(d.aa, g.aa);
   Reduced r;
-  r.stiffness.ll = d.ll - h_ll * d.ll - h_la * d.la.transpose();
-  r.stiffness.la = d.la - h_ll * d.la - h_la * d.aa;
-  r.stiffness.aa = d.aa - h_al * d.la - h_aa * d.aa;
+  r.stiffness.ll = d.ll - product(h_ll, d.ll) - product_transposed(h_la, d.la);
+  r.stiffness.la = d.la - product(h_ll, d.la) - product(h_la, d.aa);
+  r.stiffness.aa = d.aa - product(h_al, d.la) - product(h_aa, d.aa);
   const Spatial& f = e.spring_gradient;
   const Spatial all = b + Spatial{f.linear, f.angular - e.lever.cross(f.linear)};
   r.gradient = {b.linear - h_ll * all.linear - h_la * all.angular, b.angular - h_al * all.linear - h_aa * all.angular};

@@ -52,11 +52,16 @@ template <bool kScaled>
     oy[i] = c.m[3] * b.x[i] + c.m[4] * b.y[i] + c.m[5] * b.z[i];
     oz[i] = c.m[6] * b.x[i] + c.m[7] * b.y[i] + c.m[8] * b.z[i];
   }
+  if constexpr (kScaled) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const float scale = static_cast<float>(c.scale + b.t[i] * c.scale_change);
+      ox[i] *= scale, oy[i] *= scale, oz[i] *= scale;
+    }
+  }
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const double s = kScaled ? c.scale + b.t[i] * c.scale_change : 1;
-    x[at + i] = c.px + b.t[i] * c.dx + (kScaled ? s * ox[i] : ox[i]);
-    y[at + i] = c.py + b.t[i] * c.dy + (kScaled ? s * oy[i] : oy[i]);
-    z[at + i] = c.pz + b.t[i] * c.dz + (kScaled ? s * oz[i] : oz[i]);
+    x[at + i] = c.px + b.t[i] * c.dx + ox[i];
+    y[at + i] = c.py + b.t[i] * c.dy + oy[i];
+    z[at + i] = c.pz + b.t[i] * c.dz + oz[i];
   }
   for (std::size_t i = 0; i < kLanes; ++i) {
     const float u = c.m[0] * b.normal_x[i] + c.m[1] * b.normal_y[i] + c.m[2] * b.normal_z[i];

@@ -37,7 +37,7 @@ struct SimulationOptions {
   /// is at rest, until something moves it farther. 0: nothing ever rests.
   double rest_tolerance = 1e-7;
   int rest_steps = 10;  ///< 1 to 100
-  PaperProcedure paper;
+  PaperProcedure paper{};
 };
 
 /// What a step did.
@@ -50,8 +50,9 @@ struct StepReport {
 };
 
 /// A centerline that moves under forces: masses at nodes, springs along segments, damped angular springs between
-/// neighbouring segments (section 3), on trees; loops are closed by springs. Lengths in mm, time in s, forces in N. A
-/// force, torque or squeeze stays until it is set again. Deterministic; runs on one thread.
+/// neighbouring segments (section 3), on trees; loops are closed by springs, which hold their ends together but let
+/// them turn. Lengths in mm, time in s, forces in N. A force, torque or squeeze stays until it is set again.
+/// Deterministic; runs on one thread.
 class CenterlineSimulation {
  public:
   /// `properties`: one per segment. Throws InvalidInput for properties or options out of range.
