@@ -25,6 +25,9 @@ ImplicitRods::ImplicitRods(const RodScene& scene) : step_s_(scene.options.step_s
     e.stretch = rod.stretch * damping;
     e.bend = (rod.tip_xy + rod.tip_z) * damping;
     e.twist = 2 * rod.tip_xy * damping;
+    e.stretch_compliance = 1 / e.stretch;
+    e.bend_compliance = 1 / e.bend;
+    e.twist_compliance = 1 / e.twist;
   }
   start_position_ = start_velocity_ = base_position_ = predicted_position_ = scene.pose.position;
   predicted_x_ = predicted_y_ = turn_ = base_turn_ = start_misfit_ = predicted_position_;
@@ -148,12 +151,12 @@ double ImplicitRods::evaluate_damping(const RodScene& scene, Index j) {
   e.spring_gradient = e.elastic_gradient;
   if (rod.damping_s == 0) return 0;
   const double rate = rod.damping_s / step_s_;
-  const Vec3 pull = rate * (e.elastic_gradient.linear - rod.stretch * start_misfit_[j]);
+  const Vec3 stretched = misfit(scene, j) - start_misfit_[j], pull = rate * rod.stretch * stretched;
   const Vec3 z = start_frame_[j].col(2), turn = turn_[j] - turn_[rod.parent];
   const Vec3 torque = rate * ((rod.tip_xy + rod.tip_z) * turn + (rod.tip_xy - rod.tip_z) * z.dot(turn) * z);
   e.spring_gradient.linear += pull;
   e.spring_gradient.angular += torque;
-  return 0.5 * (pull.squaredNorm() / (rate * rod.stretch) + turn.dot(torque));
+  return 0.5 * (pull.dot(stretched) + turn.dot(torque));
 }
 
 bool ImplicitRods::dragged(const RodScene& scene, Index j) const {

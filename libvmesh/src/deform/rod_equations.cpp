@@ -3,8 +3,8 @@
 namespace vmesh {
 namespace {
 
-Vec3 angular_compliance(const RodEquation& e, const Vec3& t) {
-  return t / e.bend + (1 / e.twist - 1 / e.bend) * e.z.dot(t) * e.z;
+inline Vec3 angular_compliance(const RodEquation& e, const Vec3& t) {
+  return e.bend_compliance * t + (e.twist_compliance - e.bend_compliance) * e.z.dot(t) * e.z;
 }
 
 /// The spring's W seen from the slot: J^T W J, with J x = y.
@@ -20,13 +20,13 @@ SpatialMatrix stiffness(const RodEquation& e) {
 
 /// The inverse of that.
 SpatialMatrix compliance(const RodEquation& e) {
-  const double bend = 1 / e.bend, sideways = bend * e.lever.squaredNorm();
+  const double bend = e.bend_compliance, sideways = bend * e.lever.squaredNorm();
   const Mat3 zz = e.z * e.z.transpose();
   SpatialMatrix c;
   c.ll = -sideways * zz;
-  c.ll.diagonal().array() += 1 / e.stretch + sideways;
+  c.ll.diagonal().array() += e.stretch_compliance + sideways;
   c.la = cross_columns(-bend * e.lever, Mat3::Identity());
-  c.aa = (1 / e.twist - bend) * zz;
+  c.aa = (e.twist_compliance - bend) * zz;
   c.aa.diagonal().array() += bend;
   return c;
 }
@@ -37,23 +37,27 @@ struct Reduced {
   Spatial gradient;
 };
 
-/// D and b in series with the spring. Subtracts from D, which is what matters when it is small beside the spring: a
-/// light vessel on stiff springs; D is not inverted, as it may be stiff one way and next to nothing another.
+/// D and b in series with the spring: D - D (W + D)^-1 D by block elimination. Subtracts from D, which is what matters
+/// when it is small beside the spring: a light vessel on stiff springs; D is not inverted, as it may be stiff one way
+/// and next to nothing another.
 Reduced reduce_free(const RodEquation& e, const SpatialMatrix& d, const Spatial& b) {
   SpatialMatrix sum = stiffness(e);
   sum += d;
-  const SpatialMatrix g = inverse(sum);
-  const Mat3 h_ll = product(d.ll, g.ll) + product_transposed(d.la, g.la),
-             h_la = product(d.ll, g.la) + product(d.la, g.aa);
-  const Mat3 h_al = transposed_product(d.la, g.ll) + product_transposed(d.aa, g.la);
-  const Mat3 h_aa = transposed_product(d.la, g.la) + product(d.aa, g.aa);
+  const Mat3 first = inverse(sum.ll);
+  const Mat3 u = product(first, sum.la);
+  const Mat3 second = inverse(raised(sum.aa - transposed_product(sum.la, u), sum.aa));
+  const Mat3 lower_l = transposed(d.la) - transposed_product(u, d.ll), lower_a = d.aa - transposed_product(u, d.la);
+  const Mat3 first_l = product(first, d.ll), first_a = product(first, d.la);
+  const Mat3 second_l = product(second, lower_l), second_a = product(second, lower_a);
   Reduced r;
-  r.stiffness.ll = d.ll - product(h_ll, d.ll) - product_transposed(h_la, d.la);
-  r.stiffness.la = d.la - product(h_ll, d.la) - product(h_la, d.aa);
-  r.stiffness.aa = d.aa - product(h_al, d.la) - product(h_aa, d.aa);
+  r.stiffness.ll = d.ll - product(d.ll, first_l) - transposed_product(lower_l, second_l);
+  r.stiffness.la = d.la - product(d.ll, first_a) - transposed_product(lower_l, second_a);
+  r.stiffness.aa = d.aa - transposed_product(d.la, first_a) - transposed_product(lower_a, second_a);
   const Spatial& f = e.spring_gradient;
-  const Spatial all = b + Spatial{f.linear, f.angular - e.lever.cross(f.linear)};
-  r.gradient = {b.linear - h_ll * all.linear - h_la * all.angular, b.angular - h_al * all.linear - h_aa * all.angular};
+  const Vec3 all_l = b.linear + f.linear, all_a = b.angular + f.angular - e.lever.cross(f.linear);
+  const Vec3 lower = all_a - times_transposed(u, all_l);
+  r.gradient = {b.linear - times_transposed(first_l, all_l) - times_transposed(second_l, lower),
+                b.angular - times_transposed(first_a, all_l) - times_transposed(second_a, lower)};
   return r;
 }
 
@@ -69,8 +73,9 @@ Reduced reduce_held(const RodEquation& e, const SpatialMatrix& d, const Spatial&
   Reduced r;
   r.stiffness = inverse(follows);
   const Vec3 spring_turn = angular_compliance(e, e.spring_gradient.angular);
-  r.gradient = r.stiffness * Spatial{e.lever.cross(spring_turn) - e.spring_gradient.linear / e.stretch - e.prescribed,
-                                     -spring_turn - turn};
+  r.gradient =
+      r.stiffness * Spatial{e.lever.cross(spring_turn) - e.stretch_compliance * e.spring_gradient.linear - e.prescribed,
+                            -spring_turn - turn};
   return r;
 }
 
@@ -113,7 +118,7 @@ void substitute(std::vector<RodEquation>& equations, Index j, Index parent) {
   const Spatial& at_parent = equations[parent].x;
   const Spatial pull = e.spring_gradient + e.reduced_gradient + e.reduced * at_parent;
   e.x.angular = at_parent.angular - angular_compliance(e, pull.angular);
-  e.x.linear = at_parent.linear - pull.linear / e.stretch - e.lever.cross(e.x.angular);
+  e.x.linear = at_parent.linear - e.stretch_compliance * pull.linear - e.lever.cross(e.x.angular);
   if (e.hold != Hold::free) e.x.linear = e.prescribed;
   if (e.hold == Hold::clamped) e.x.angular.setZero();
 }

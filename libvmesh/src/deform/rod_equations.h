@@ -15,7 +15,8 @@ struct RodEquation {
   double mass = 0, inertia = 0;  ///< inertia about the transverse axes, half of that about z
   Vec3 z = Vec3::UnitZ();
   Vec3 lever = Vec3::Zero();
-  double stretch = 0, bend = 0, twist = 0;  ///< W
+  double stretch = 0, bend = 0, twist = 0;                                   ///< W
+  double stretch_compliance = 0, bend_compliance = 0, twist_compliance = 0;  ///< their inverses
   Spatial gradient, spring_gradient;
   Spatial elastic_gradient;  ///< spring_gradient without damping
   Hold hold = Hold::free;

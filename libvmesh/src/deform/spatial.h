@@ -35,6 +35,13 @@ inline Spatial operator+(const Spatial& a, const Spatial& b) { return {a.linear 
   return r;
 }
 
+[[gnu::always_inline]] inline Mat3 transposed(const Mat3& a) { return a.transpose(); }
+/// a^T v.
+[[gnu::always_inline]] inline Vec3 times_transposed(const Mat3& a, const Vec3& v) {
+  return {a(0, 0) * v[0] + a(1, 0) * v[1] + a(2, 0) * v[2], a(0, 1) * v[0] + a(1, 1) * v[1] + a(2, 1) * v[2],
+          a(0, 2) * v[0] + a(1, 2) * v[1] + a(2, 2) * v[2]};
+}
+
 /// A symmetric 6x6 matrix [ll la; la^T aa].
 struct SpatialMatrix {
   Mat3 ll = Mat3::Zero(), la = Mat3::Zero(), aa = Mat3::Zero();
@@ -68,14 +75,18 @@ constexpr double kRounding = 1e-15;
   return r;
 }
 
+/// A difference that must be positive definite, with its diagonal raised where it is all rounding of the minuend.
+[[gnu::always_inline]] inline Mat3 raised(Mat3 difference, const Mat3& minuend) {
+  for (int i = 0; i < 3; ++i) difference(i, i) = std::max(difference(i, i), kRounding * minuend(i, i));
+  return difference;
+}
+
 /// The same for 6x6.
 [[gnu::always_inline]] inline SpatialMatrix inverse(const SpatialMatrix& m) {
   const Mat3 ll = inverse(m.ll);
   const Mat3 t = product(ll, m.la);
-  Mat3 rest = m.aa - transposed_product(m.la, t);
-  rest.diagonal() = rest.diagonal().cwiseMax(kRounding * m.aa.diagonal());
   SpatialMatrix r;
-  r.aa = inverse(rest);
+  r.aa = inverse(raised(m.aa - transposed_product(m.la, t), m.aa));
   r.la = -product(t, r.aa);
   r.ll = ll - product_transposed(r.la, t);
   return r;
