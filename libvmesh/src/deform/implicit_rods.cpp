@@ -135,6 +135,7 @@ double ImplicitRods::evaluate_springs(const RodScene& scene, Index j) {
   const Vec3 x = own.col(0), y = own.col(1), z = own.col(2);
   Spatial& gradient = equations_[j].elastic_gradient;
   gradient.linear = rod.stretch * stretch;
+  equations_[j].taut = std::max(0.0, rod.length * gradient.linear.dot(own.col(2)));
   gradient.angular = -rod.tip_xy * (x.cross(Vec3(wanted.col(0))) + y.cross(Vec3(wanted.col(1)))) -
                      rod.tip_z * z.cross(Vec3(wanted.col(2)));
   const Mat3 apart = wanted - own;

@@ -9,10 +9,10 @@ namespace vmesh {
 
 /// Implicit Euler on the energy of the springs: every step minimises
 ///   sum m / (2 h^2) |p - p_predicted|^2 + elastic energy + damping,
-/// the same with the tips of the x and y axes for the frames, by Gauss-Newton. Each iteration is one exact solution on
-/// the tree, O(n). Iterates that would raise the sum are halved, so it never exceeds what standing still has; after
-/// that velocities are scaled down where kinetic and elastic energy exceed what was there and the work done.
-/// Only slots that move are visited, those next to them and those towards the root.
+/// the same with the tips of the x and y axes for the frames, by Gauss-Newton and what tension adds to it. Each
+/// iteration is one exact solution on the tree, O(n). Iterates that would raise the sum are halved, so it never exceeds
+/// what standing still has; after that velocities are scaled down where kinetic and elastic energy exceed what was
+/// there and the work done. Only slots that move are visited, those next to them and those towards the root.
 class ImplicitRods {
  public:
   explicit ImplicitRods(const RodScene& scene);

@@ -100,8 +100,8 @@ void eliminate(std::vector<RodEquation>& equations, const std::vector<Rod>& rods
   RodEquation& e = equations[j];
   SpatialMatrix d;
   d.ll.diagonal().setConstant(e.mass);
-  d.aa = e.inertia * e.z * e.z.transpose();
-  d.aa.diagonal().array() += e.inertia;
+  d.aa = (e.inertia - e.taut) * e.z * e.z.transpose();
+  d.aa.diagonal().array() += e.inertia + e.taut;
   Spatial b = e.gradient;
   for (Index c = rods[j].first_child; c != kNone; c = rods[c].next_sibling) {
     d += equations[c].reduced;

@@ -13,6 +13,7 @@ namespace vmesh {
 /// where W is isotropic against stretch, and transversely isotropic about z against rotation.
 struct RodEquation {
   double mass = 0, inertia = 0;  ///< inertia about the transverse axes, half of that about z
+  double taut = 0;               ///< tension times length: what turning the segment meets besides the springs
   Vec3 z = Vec3::UnitZ();
   Vec3 lever = Vec3::Zero();
   double stretch = 0, bend = 0, twist = 0;                                   ///< W
