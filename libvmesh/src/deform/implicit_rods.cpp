@@ -9,6 +9,8 @@ namespace {
 /// Rounding of a sum of the terms of the energy.
 constexpr double kEnergyTolerance = 1e-12;
 constexpr int kMostAttempts = 40;
+/// Strain up to which tension counts in full: beyond, its stiffness would drown that of the springs in rounding.
+constexpr double kMostTautness = 10;
 
 }  // namespace
 
@@ -135,7 +137,7 @@ double ImplicitRods::evaluate_springs(const RodScene& scene, Index j) {
   const Vec3 x = own.col(0), y = own.col(1), z = own.col(2);
   Spatial& gradient = equations_[j].elastic_gradient;
   gradient.linear = rod.stretch * stretch;
-  equations_[j].taut = std::max(0.0, rod.length * gradient.linear.dot(own.col(2)));
+  equations_[j].taut = rod.length * rod.stretch * std::clamp(stretch.dot(z), 0.0, kMostTautness * rod.length);
   gradient.angular = -rod.tip_xy * (x.cross(Vec3(wanted.col(0))) + y.cross(Vec3(wanted.col(1)))) -
                      rod.tip_z * z.cross(Vec3(wanted.col(2)));
   const Mat3 apart = wanted - own;

@@ -47,7 +47,9 @@ void ImplicitRods::substitute_all(const RodScene& scene) {
       begin(scene, j);
     }
     if (parent != kNone) substitute(equations_, j, parent);
-    if (stays(scene, j))
+    // What rounding spoilt at the ends of the range of numbers is no solution: standing still is always allowed.
+    const Spatial& x = equations_[j].x;
+    if (stays(scene, j) || !x.linear.allFinite() || !x.angular.allFinite())
       equations_[j].x = {};
     else if (!awake_[j])
       wake(j);
