@@ -15,15 +15,14 @@ constexpr std::size_t kSharpenEvery = 64;
 void ImplicitRods::finish(RodScene& scene, StepReport& report) {
   set_velocities(scene);
   report.work_J = 1e-6 * govern(scene, work(scene));
-  for (Index j = 0; j < scene.size(); ++j)
-    if (visited_[j]) settle(scene, j);
+  for (const Index j : visited_slots_) settle(scene, j);
+  std::erase_if(awake_slots_, [this](Index j) { return !awake_[j]; });
   report.awake = awake_count_;
 }
 
 void ImplicitRods::set_velocities(RodScene& scene) {
   const bool sharpens = ++steps_ % kSharpenEvery == 0;
-  for (Index j = 0; j < scene.size(); ++j) {
-    if (!visited_[j]) continue;
+  for (const Index j : visited_slots_) {
     if (sharpens) sharpen(scene.pose.frame[j]);
     turn_[j] = turned_by(start_frame_[j], scene.pose.frame[j]);
     scene.velocity[j] = (scene.pose.position[j] - start_position_[j]) / step_s_;
@@ -34,8 +33,7 @@ void ImplicitRods::set_velocities(RodScene& scene) {
 /// Of forces, gravity and dragged slots, uJ.
 double ImplicitRods::work(const RodScene& scene) const {
   double sum = 0;
-  for (Index j = 0; j < scene.size(); ++j) {
-    if (!visited_[j]) continue;
+  for (const Index j : visited_slots_) {
     const Rod& rod = scene.rods[j];
     const Vec3 moved = scene.pose.position[j] - start_position_[j];
     sum += scene.torque[j].dot(turn_[j]);
@@ -57,8 +55,7 @@ double ImplicitRods::work(const RodScene& scene) const {
 /// at most the energy of having struck and dragged first with all else standing still.
 double ImplicitRods::govern(RodScene& scene, double work) {
   double before = start_tie_energy_, elastic = tie_energy(scene), free = 0, held = 0;
-  for (Index j = 0; j < scene.size(); ++j) {
-    if (!visited_[j]) continue;
+  for (const Index j : visited_slots_) {
     before += start_kinetic_[j] + start_elastic_[j];
     elastic += elastic_[j];
     const double given = scene.hold[j] == Hold::free ? 0 : 0.5 * scene.rods[j].mass * scene.velocity[j].squaredNorm();
@@ -68,8 +65,7 @@ double ImplicitRods::govern(RodScene& scene, double work) {
   const double allowed = std::max(0.0, std::min(before + work - held, energy_bound_) - elastic);
   if (free > allowed) {
     const double factor = std::sqrt(allowed / free);
-    for (Index j = 0; j < scene.size(); ++j) {
-      if (!visited_[j]) continue;
+    for (const Index j : visited_slots_) {
       if (scene.hold[j] == Hold::free) scene.velocity[j] *= factor;
       scene.spin[j] *= factor;
     }

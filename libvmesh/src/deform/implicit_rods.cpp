@@ -9,6 +9,8 @@ namespace {
 /// Rounding of a sum of the terms of the energy.
 constexpr double kEnergyTolerance = 1e-12;
 constexpr int kMostAttempts = 40;
+/// With more than one in so many slots awake, looking at all of them is faster than sorting.
+constexpr std::size_t kMuchAwake = 8;
 /// Strain up to which tension counts in full: beyond, its stiffness would drown that of the springs in rounding.
 constexpr double kMostTautness = 10;
 
@@ -38,6 +40,8 @@ ImplicitRods::ImplicitRods(const RodScene& scene) : step_s_(scene.options.step_s
   value_.assign(n, 0);
   elastic_ = start_elastic_ = start_kinetic_ = value_;
   visited_.assign(n, 0);
+  visited_slots_.reserve(n);
+  awake_slots_.reserve(n);
   awake_ = quiet_steps_ = visited_;
   tie_load_.resize(scene.tree.ties.size());
   tie_residual_ = tie_direction_ = tie_image_ = tie_opening_ = tie_load_;
@@ -47,6 +51,7 @@ ImplicitRods::ImplicitRods(const RodScene& scene) : step_s_(scene.options.step_s
 }
 
 void ImplicitRods::wake(Index slot) {
+  if (!awake_[slot]) awake_slots_.push_back(slot);
   awake_count_ += !awake_[slot];
   awake_[slot] = 1;
   quiet_steps_[slot] = 0;
@@ -61,8 +66,7 @@ StepReport ImplicitRods::step(RodScene& scene) noexcept {
   if (awake_count_ == 0) return report;
   if (!scene.tree.ties.empty() && awake_count_ < awake_.size()) wake_all();
   choose_visited(scene);
-  for (Index j = 0; j < scene.size(); ++j)
-    if (visited_[j]) begin(scene, j);
+  for (const Index j : visited_slots_) begin(scene, j);
   start_tie_energy_ = tie_energy(scene);
   for (int i = 0; i < scene.options.iterations; ++i) {
     if (i > 0) set_base(scene);
@@ -74,13 +78,35 @@ StepReport ImplicitRods::step(RodScene& scene) noexcept {
   return report;
 }
 
+/// What is awake, its children, and all on the way to the root, in ascending order.
 void ImplicitRods::choose_visited(const RodScene& scene) {
-  std::fill(visited_.begin(), visited_.end(), char{0});
-  for (Index j = static_cast<Index>(scene.size()); j-- > 0;) {
-    const Index parent = scene.rods[j].parent;
-    if (awake_[j] || (parent != kNone && awake_[parent])) visited_[j] = 1;
-    if (visited_[j] && parent != kNone) visited_[parent] = 1;
+  for (const Index j : visited_slots_) visited_[j] = 0;
+  visited_slots_.clear();
+  if (kMuchAwake * awake_count_ > scene.size()) {
+    for (Index j = static_cast<Index>(scene.size()); j-- > 0;) {
+      const Index parent = scene.tree.parent[j];
+      if (awake_[j] || (parent != kNone && awake_[parent])) visited_[j] = 1;
+      if (visited_[j] && parent != kNone) visited_[parent] = 1;
+    }
+    for (Index j = 0; j < scene.size(); ++j)
+      if (visited_[j]) visited_slots_.push_back(j);
+    return;
   }
+  for (const Index j : awake_slots_) {
+    for (Index up = j; up != kNone && !visited_[up]; up = scene.tree.parent[up]) visit(up);
+    visit_children(scene, j);
+  }
+  std::sort(visited_slots_.begin(), visited_slots_.end());
+}
+
+void ImplicitRods::visit(Index j) {
+  visited_[j] = 1;
+  visited_slots_.push_back(j);
+}
+
+void ImplicitRods::visit_children(const RodScene& scene, Index j) {
+  for (Index c = scene.rods[j].first_child; c != kNone; c = scene.rods[c].next_sibling)
+    if (!visited_[c]) visit(c);
 }
 
 void ImplicitRods::begin(const RodScene& scene, Index j) {
@@ -171,8 +197,7 @@ double ImplicitRods::iterate(RodScene& scene, bool first, StepReport& report) {
   solve(scene);
   bool drags = false;
   double before = 0, largest = 0;
-  for (Index j = 0; j < scene.size(); ++j) {
-    if (!visited_[j]) continue;
+  for (const Index j : visited_slots_) {
     before += value_[j];
     largest = std::max(largest, equations_[j].x.linear.squaredNorm());
     set_misfits(scene, j);
@@ -202,8 +227,7 @@ void ImplicitRods::set_misfits(const RodScene& scene, Index j) {
 }
 
 void ImplicitRods::set_base(const RodScene& scene) {
-  for (Index j = 0; j < scene.size(); ++j) {
-    if (!visited_[j]) continue;
+  for (const Index j : visited_slots_) {
     base_position_[j] = scene.pose.position[j];
     base_frame_[j] = scene.pose.frame[j];
     base_turn_[j] = turn_[j];
@@ -213,8 +237,7 @@ void ImplicitRods::set_base(const RodScene& scene) {
 /// Puts dragged slots where they go, all else standing still. Returns by how much the sum to minimise changes.
 double ImplicitRods::drag(RodScene& scene) {
   double change = 0;
-  for (Index j = 0; j < scene.size(); ++j) {
-    if (!visited_[j]) continue;
+  for (const Index j : visited_slots_) {
     const Index parent = scene.rods[j].parent;
     const bool pulled = scene.hold[j] != Hold::free && scene.target[j] != base_position_[j];
     const bool parent_pulled =
@@ -232,8 +255,7 @@ double ImplicitRods::drag(RodScene& scene) {
 /// what hangs on them follows; otherwise nodes move straight. Returns the sum to minimise there.
 double ImplicitRods::move(RodScene& scene, double part, bool chained) {
   double sum = 0;
-  for (Index j = 0; j < scene.size(); ++j) {
-    if (!visited_[j]) continue;
+  for (const Index j : visited_slots_) {
     const Rod& rod = scene.rods[j];
     const Spatial& x = equations_[j].x;
     if (scene.hold[j] != Hold::clamped) {

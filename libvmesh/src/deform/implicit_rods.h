@@ -23,6 +23,8 @@ class ImplicitRods {
 
  private:
   void choose_visited(const RodScene& scene);
+  void visit(Index j);
+  void visit_children(const RodScene& scene, Index j);
   void begin(const RodScene& scene, Index j);
   void evaluate(const RodScene& scene, Index j);
   double evaluate_inertia(const RodScene& scene, Index j);
@@ -34,6 +36,7 @@ class ImplicitRods {
   void solve_ties(const RodScene& scene);
   void solve_loaded(const RodScene& scene, const std::vector<Vec3>& load, std::vector<Vec3>& opening);
   void substitute_all(const RodScene& scene);
+  void solve_slot(const RodScene& scene, Index j);
   bool stays(const RodScene& scene, Index j) const;
 
   bool dragged(const RodScene& scene, Index j) const;
@@ -52,6 +55,7 @@ class ImplicitRods {
   double step_s_;
   std::vector<RodEquation> equations_;
   std::vector<char> visited_, awake_, quiet_steps_;
+  std::vector<Index> visited_slots_, awake_slots_;  // those in visited_, ascending, and in awake_
   std::size_t awake_count_ = 0;
 
   std::vector<Vec3> start_position_, start_velocity_, base_position_, predicted_position_, predicted_x_, predicted_y_;

@@ -1,4 +1,5 @@
 // ImplicitRods: the solution of one Gauss-Newton iteration on the tree, and with the springs that close loops.
+#include <algorithm>
 #include <cmath>
 
 #include "deform/implicit_rods.h"
@@ -30,30 +31,30 @@ void ImplicitRods::solve(const RodScene& scene) {
 }
 
 void ImplicitRods::solve_tree(const RodScene& scene) {
-  for (Index j = static_cast<Index>(scene.size()); j-- > 0;)
-    if (visited_[j]) eliminate(equations_, scene.rods, j);
+  for (auto j = visited_slots_.rbegin(); j != visited_slots_.rend(); ++j) eliminate(equations_, scene.rods, *j);
   substitute_all(scene);
 }
 
+/// The list grows while it is gone through: what moves wakes its children.
 void ImplicitRods::substitute_all(const RodScene& scene) {
-  for (Index j = 0; j < scene.size(); ++j) {
-    const Index parent = scene.rods[j].parent;
-    const bool parent_moves =
-        parent != kNone && visited_[parent] &&
-        (equations_[parent].x.linear != Vec3::Zero() || equations_[parent].x.angular != Vec3::Zero());
-    if (!visited_[j] && !parent_moves) continue;
-    if (!visited_[j]) {
-      visited_[j] = 1;
-      begin(scene, j);
-    }
-    if (parent != kNone) substitute(equations_, j, parent);
-    // What rounding spoilt at the ends of the range of numbers is no solution: standing still is always allowed.
-    const Spatial& x = equations_[j].x;
-    if (stays(scene, j) || !x.linear.allFinite() || !x.angular.allFinite())
-      equations_[j].x = {};
-    else if (!awake_[j])
-      wake(j);
+  const std::size_t before = visited_slots_.size();
+  for (std::size_t i = 0; i < visited_slots_.size(); ++i) {
+    const Index j = visited_slots_[i];
+    if (i >= before) begin(scene, j);
+    solve_slot(scene, j);
+    if (equations_[j].x.linear != Vec3::Zero() || equations_[j].x.angular != Vec3::Zero()) visit_children(scene, j);
   }
+  if (visited_slots_.size() > before) std::sort(visited_slots_.begin(), visited_slots_.end());
+}
+
+void ImplicitRods::solve_slot(const RodScene& scene, Index j) {
+  if (!scene.is_root(j)) substitute(equations_, j, scene.rods[j].parent);
+  // What rounding spoilt at the ends of the range of numbers is no solution: standing still is always allowed.
+  const Spatial& x = equations_[j].x;
+  if (stays(scene, j) || !x.linear.allFinite() || !x.angular.allFinite())
+    equations_[j].x = {};
+  else if (!awake_[j])
+    wake(j);
 }
 
 /// Whether slot j is at rest and remains so.
