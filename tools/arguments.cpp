@@ -4,11 +4,10 @@
 #include <iostream>
 #include <sstream>
 
-#include <CLI/CLI.hpp>
-
 #include "vmesh/core/error.h"
 #include "vmesh/core/version.h"
 
+#include "arguments_common.h"
 #include "exit_code.h"
 #include "requirements.h"
 
@@ -21,6 +20,7 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate network.csv -o network.stl --unit um --check
   vmesh generate tree.swc -o fine.ply --preset high
   vmesh generate tree.swc -o exact.ply --max-error 5%
+  vmesh generate tree.swc -o game.obj --budget vertices=5000
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
@@ -36,66 +36,10 @@ constexpr const char* kConvertExamples = R"(Examples:
 constexpr const char* kRenderExamples = R"(Examples:
   vmesh render tree.ply -o tree.png
   vmesh render tree.ply -o tree.png --edges --color radius --view left --width 1200 --height 900)";
-constexpr const char* kReferenceExamples = R"(Examples:
-  vmesh reference liver.nii.gz --label 2 --spacing 0.8 --smooth 0.8 -o portal.ply
-  vmesh reference ct.nrrd --threshold 150 --all-components -o bright.stl
-  vmesh reference tree.swc --voxel 0.5 -o tree_reference.ply)";
-constexpr const char* kConesExamples = R"(Examples:
-  vmesh cones tree.swc -o cones.ply
-  vmesh cones tree.swc -o cones.stl --sides 12)";
-constexpr const char* kCenterlineExamples = R"(Examples:
-  vmesh centerline portal.ply -o portal.json
-  vmesh centerline liver.nii.gz --label 2 --spacing 0.8 --smooth 0.8 -o portal.swc --tree)";
-
-constexpr const char* kDeformExamples = R"(Examples:
-  vmesh deform tree.json tree.ply --script scene.json -o frames/
-  vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj)";
-constexpr const char* kTable1Examples = R"(Examples:
-  vmesh table1
-  vmesh table1 --format markdown)";
 constexpr const char* kEvaluateExamples = R"(Examples:
   vmesh evaluate tree.ply
   vmesh evaluate tree.ply --reference scan.stl --report report.md --json report.json -o colored.ply
   vmesh evaluate tree.ply --centerline tree.swc --require closed,max-skewness=0.9,relative-volume-distance=0.5)";
-
-/// CLI::Range lets NaN pass.
-template <class Number>
-CLI::Validator in_range(Number low, Number high) {
-  std::ostringstream name;
-  name << "in [" << low << ", " << high << "]";
-  const auto check = [low, high, words = name.str()](std::string& text) {
-    Number value;
-    const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
-    return good ? std::string() : "not " + words + ": " + text;
-  };
-  return {check, name.str()};
-}
-
-void add_common(CLI::App& verb, CommonArguments& common, bool with_json = true) {
-  verb.add_flag("-q,--quiet", common.quiet, "only warnings and errors on stderr");
-  if (with_json) verb.add_option("--json", common.json, "write a summary to this file; - for stdout");
-}
-
-void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& help) {
-  verb.add_option("-o,--output", output, help)->required();
-}
-
-/// Options that tell how to read a file; `of`: "" for the input, else "reference-" or the like.
-void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
-  verb.add_option_function<std::string>(
-          "--" + of + "unit", [&input](const std::string& text) { input.unit = parse_length_unit(text); },
-          "unit of the numbers in the file; overrides what the file says")
-      ->check(CLI::IsMember({"um", "mm", "cm", "m"}));
-  verb.add_option_function<std::string>(
-          "--" + of + "space", [&input](const std::string& text) { input.space = parse_space(text); },
-          "patient frame of the file; overrides what the file says")
-      ->check(CLI::IsMember({"LPS", "RAS"}));
-}
-
-void add_input(CLI::App& verb, InputArguments& input, const std::string& help) {
-  verb.add_option("IN", input.path, help)->required();
-  add_reading(verb, input, "");
-}
 
 OpenEnds parse_open_ends(const std::string& text) {
   OpenEnds ends;
@@ -150,6 +94,21 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
           "0.3mm, 10% (of the local radius), or both, separated by a comma")
       ->type_name("Xmm|X%");
+  verb.add_option_function<std::string>(
+          "--budget",
+          [&arguments](const std::string& text) {
+            try {
+              arguments.budget = parse_budget(text);
+            } catch (const InvalidInput& error) {
+              throw CLI::ValidationError("--budget", error.what());
+            }
+          },
+          "choose the resolution: the finest surface with vertices=N at most, or grown within time=Xms, or the one "
+          "with the fewest vertices that keeps error=Xmm or error=X% everywhere")
+      ->type_name("vertices=N|time=Xms|error=X")
+      ->excludes("--around")
+      ->excludes("--preset")
+      ->excludes("--max-error");
   verb.add_option_function<std::string>(
           "--placement", [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },
           "inscribed: vertices on the boundary; balanced: lifted off it, so that volume is kept")
@@ -275,102 +234,13 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
   verb.add_option("-o,--output", arguments.output,
                   "the surface with the skewness of its faces, and its vertices' distance to the reference and "
                   "volume_distance (.ply, .vtp)");
-  verb.add_option("--report", arguments.report, "write the report to this file too (.txt, .md, .csv, .json)");
-  verb.add_option("--format", arguments.format, "of the report on stdout")
-      ->check(CLI::IsMember({"text", "markdown", "csv"}))
-      ->capture_default_str();
-  verb.add_option("--tolerance", arguments.tolerance_mm, "width of the interval that holds a Hausdorff distance, mm")
-      ->check(in_range(1e-12, 1e6))
-      ->capture_default_str();
-  verb.add_option("--samples", arguments.samples, "points on each surface for mean, RMS and percentiles")
-      ->check(in_range<std::size_t>(1, 10'000'000))
-      ->capture_default_str();
+  add_report(verb, arguments.report, arguments.format);
+  add_measuring(verb, arguments.tolerance_mm, arguments.samples);
   verb.add_option("--require", arguments.require,
                   "exit with 1 unless all of these hold, separated by commas: " + describe_requirements())
       ->type_name("LIST");
   add_common(verb, arguments.common);
   verb.footer(kEvaluateExamples);
-}
-
-void add_image_options(CLI::App& verb, ReferenceOptions& options) {
-  CLI::Option* label = verb.add_option("--label", options.label, "image: voxels of this value are inside");
-  verb.add_option("--threshold", options.threshold, "image: voxels of at least this value are inside")->excludes(label);
-  verb.add_option("--spacing", options.spacing, "image: resample to cubic voxels of this side, mm; 0: as it is")
-      ->check(in_range(0.0, 1e6))
-      ->capture_default_str();
-  verb.add_option("--smooth", options.smooth, "smooth with a Gaussian of this standard deviation, mm; 0: not at all")
-      ->check(in_range(0.0, 1e6))
-      ->capture_default_str();
-}
-
-void add_reference(CLI::App& app, ReferenceArguments& arguments) {
-  CLI::App& verb = *app.add_subcommand(
-      "reference", "Contour an image by marching cubes, or the vessel volume of a centerline sampled on voxels");
-  add_input(verb, arguments.input, "image (.nii, .nii.gz, .nrrd, .mha) or centerline");
-  add_output(verb, arguments.output, "surface");
-  add_image_options(verb, arguments.options);
-  verb.add_option("--voxel", arguments.voxel, "centerline: side of the voxels, mm")->check(in_range(1e-6, 1e6));
-  verb.add_flag("--binary", arguments.options.binary,
-                "contour inside and outside alone instead of grey values: a staircase of better triangles");
-  verb.add_flag("--all-components", arguments.options.all_components,
-                "keep all components and cavities, not only the component of the largest volume");
-  add_common(verb, arguments.common);
-  verb.footer(kReferenceExamples);
-}
-
-void add_cones(CLI::App& app, ConesArguments& arguments) {
-  CLI::App& verb =
-      *app.add_subcommand("cones", "Put a truncated cone around every segment of a centerline, not joined");
-  add_input(verb, arguments.input, "centerline");
-  add_output(verb, arguments.output, "surface");
-  verb.add_option("--sides", arguments.sides, "of a cone")->check(in_range(3, 1000))->capture_default_str();
-  add_common(verb, arguments.common);
-  verb.footer(kConesExamples);
-}
-
-void add_centerline(CLI::App& app, CenterlineArguments& arguments) {
-  CLI::App& verb =
-      *app.add_subcommand("centerline", "Extract the centerline with radii from a closed surface or an image");
-  add_input(verb, arguments.input, "surface, or image (.nii, .nii.gz, .nrrd, .mha)");
-  add_output(verb, arguments.output, "centerline");
-  add_image_options(verb, arguments.image);
-  verb.add_option("--step", arguments.options.spacing, "distance between nodes along a vessel, in local radii")
-      ->check(in_range(0.1, 10.0))
-      ->capture_default_str();
-  verb.add_option("--join", arguments.options.join,
-                  "join parts whose vessels are closer than this times the smaller of their radii")
-      ->check(in_range(0.0, 1e6))
-      ->capture_default_str();
-  verb.add_flag("--all-components", arguments.options.all_components,
-                "keep all parts that remain apart, not only the one of the largest volume");
-  verb.add_flag("--tree", arguments.options.tree, "break all loops");
-  add_common(verb, arguments.common);
-  verb.footer(kCenterlineExamples);
-}
-
-void add_deform(CLI::App& app, DeformArguments& arguments) {
-  CLI::App& verb = *app.add_subcommand("deform", "Move a centerline under forces, its surface with it");
-  add_input(verb, arguments.input, "centerline");
-  verb.add_option("SURFACE", arguments.surface.path, "surface around it: grown by vmesh, or any other")->required();
-  add_reading(verb, arguments.surface, "surface-");
-  verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (README.md, The scene)")
-      ->required();
-  verb.add_option("-o,--output", arguments.output, "new or empty folder for the frames")->required();
-  verb.add_option("--format", arguments.format, "of the frames")
-      ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off"}))
-      ->capture_default_str();
-  add_common(verb, arguments.common);
-  verb.footer(kDeformExamples);
-}
-
-void add_table1(CLI::App& app, Table1Arguments& arguments) {
-  CLI::App& verb = *app.add_subcommand(
-      "table1", "Measure deformation and synchronisation as in the paper's Table 1, on synthetic trees of its sizes");
-  verb.add_option("--format", arguments.format, "of the tables on stdout")
-      ->check(CLI::IsMember({"text", "markdown", "csv"}))
-      ->capture_default_str();
-  add_common(verb, arguments.common);
-  verb.footer(kTable1Examples);
 }
 
 }  // namespace
@@ -397,6 +267,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   ReferenceArguments reference;
   ConesArguments cones;
   CenterlineArguments centerline;
+  Table2Arguments table2;
+  TradeoffArguments tradeoff;
   DeformArguments deform;
   Table1Arguments table1;
   add_generate(app, generate);
@@ -408,6 +280,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   add_reference(app, reference);
   add_cones(app, cones);
   add_centerline(app, centerline);
+  add_table2(app, table2);
+  add_tradeoff(app, tradeoff);
   add_deform(app, deform);
   add_table1(app, table1);
   try {
@@ -424,6 +298,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   if (app.got_subcommand("reference")) return reference;
   if (app.got_subcommand("cones")) return cones;
   if (app.got_subcommand("centerline")) return centerline;
+  if (app.got_subcommand("table2")) return table2;
+  if (app.got_subcommand("tradeoff")) return tradeoff;
   if (app.got_subcommand("deform")) return deform;
   if (app.got_subcommand("table1")) return table1;
   if (app.got_subcommand("evaluate")) return evaluate;

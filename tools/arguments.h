@@ -9,10 +9,13 @@
 
 #include "vmesh/centerline/raw_centerline.h"
 #include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/comparison/method_comparison.h"
 #include "vmesh/reference/reference_surface.h"
 #include "vmesh/render/render.h"
 #include "vmesh/skeleton/extract_centerline.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/tuning/budget.h"
+#include "vmesh/tuning/tradeoff.h"
 
 namespace vmesh::tool {
 
@@ -39,6 +42,7 @@ struct GenerateArguments {
   InputArguments input;
   std::filesystem::path output;
   GenerateOptions options;
+  std::optional<Budget> budget;  ///< chooses options.around, and max_error for a budget of error
   OverlapHandling overlap = OverlapHandling::keep;
   double gap = 0.1;    ///< vessels closer than this times the smaller radius count as touching
   bool check = false;  ///< exit code 1 unless the surface is flawless
@@ -106,6 +110,30 @@ struct CenterlineArguments {
   ReferenceOptions image;  ///< how an image becomes a surface first
 };
 
+struct Table2Arguments {
+  CommonArguments common;
+  InputArguments reference;     ///< image or surface; empty path: the sampled volume of the centerline
+  InputArguments centerline;    ///< empty path: extracted from the reference; without one, the synthetic tree
+  ReferenceOptions image;       ///< how an image becomes the reference
+  bool all_components = false;  ///< of the reference
+  std::optional<double> voxel;  ///< of the sampled volume, mm; not given: as many vertices as the paper has
+  ExtractOptions extraction;
+  MethodOptions methods;
+  std::filesystem::path surfaces;  ///< folder for them; empty: none
+  std::filesystem::path report;    ///< by extension; empty: none
+  std::string format = "text";     ///< of stdout: text, markdown or csv
+  bool check = false;              ///< exit code 1 unless all demands are met
+};
+
+struct TradeoffArguments {
+  CommonArguments common;
+  InputArguments input;
+  TradeoffOptions options;
+  std::filesystem::path report;  ///< by extension; empty: none
+  std::filesystem::path plot;    ///< SVG; empty: none
+  std::string format = "text";   ///< of stdout: text, markdown or csv
+};
+
 struct DeformArguments {
   CommonArguments common;
   InputArguments input;
@@ -117,12 +145,13 @@ struct DeformArguments {
 
 struct Table1Arguments {
   CommonArguments common;
-  std::string format = "text";  ///< text, markdown or csv
+  std::filesystem::path report;  ///< by extension; empty: none
+  std::string format = "text";   ///< of stdout: text, markdown or csv
 };
 
-using Arguments =
-    std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments, EvaluateArguments,
-                 ReferenceArguments, ConesArguments, CenterlineArguments, DeformArguments, Table1Arguments>;
+using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments,
+                               EvaluateArguments, ReferenceArguments, ConesArguments, CenterlineArguments,
+                               Table2Arguments, TradeoffArguments, DeformArguments, Table1Arguments>;
 
 /// Calls `visit(flag, member, low, high, help)` for every option of the growth. The one list behind the command line
 /// and the summary.

@@ -45,26 +45,11 @@ TriMesh surface_of(const CenterlineArguments& arguments, Console& console) {
 }
 
 ExtractedCenterline extracted(const CenterlineArguments& arguments, Console& console) {
-  const std::string name = arguments.input.path.string();
-  try {
+  return naming(arguments.input.path, [&] {
     const TriMesh surface = surface_of(arguments, console);
     stop_if_interrupted();
     return extract_centerline(surface, arguments.options, console.progress());
-  } catch (const InvalidInput& error) {
-    const std::string what = error.what();
-    throw InvalidInput(what.starts_with(name) ? what : name + ": " + what);
-  }
-}
-
-Json to_json(const ExtractionReport& report) {
-  return {{"parts", report.parts},
-          {"joined", report.joined},
-          {"left_out", report.left_out},
-          {"spurs_removed", report.spurs},
-          {"loops_broken", report.loops_broken},
-          {"mean_distance_mm", report.mean_distance},
-          {"distance_95_mm", report.distance_95},
-          {"max_distance_mm", report.max_distance}};
+  });
 }
 
 void log(const ExtractedCenterline& result, Console& console) {

@@ -5,6 +5,7 @@
 #include "inputs.h"
 #include "interrupt.h"
 #include "outputs.h"
+#include "report_output.h"
 #include "requirements.h"
 #include "verbs.h"
 
@@ -126,18 +127,6 @@ class Evaluation {
   std::optional<VesselField> field_;
 };
 
-void write_report(const EvaluateArguments& arguments, const EvaluationReport& report) {
-  const std::vector<ReportTable> tables = to_tables(report);
-  if (arguments.common.json != "-") write_text("-", format_report(tables, parse_report_format(arguments.format)));
-  if (!arguments.common.json.empty()) write_json(arguments.common.json, to_json(report));
-  if (arguments.report.empty()) return;
-  const std::string extension = extension_of(arguments.report);
-  if (extension == ".json") return write_json(arguments.report, to_json(report));
-  write_text(arguments.report, format_report(tables, parse_report_format(extension == ".md"    ? "markdown"
-                                                                         : extension == ".csv" ? "csv"
-                                                                                               : "text")));
-}
-
 void check_files(const EvaluateArguments& arguments) {
   std::vector<std::filesystem::path> inputs;
   for (const InputArguments* input : {&arguments.input, &arguments.reference, &arguments.centerline}) {
@@ -186,7 +175,7 @@ int run(const EvaluateArguments& arguments, Console& console) {
                   metadata_of(arguments, report.sha256));
     console.log("wrote " + arguments.output.string());
   }
-  write_report(arguments, report);
+  write_report(to_tables(report), to_json(report), {arguments.format, arguments.common.json, arguments.report});
   return check(report, console);
 }
 

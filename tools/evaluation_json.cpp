@@ -65,7 +65,9 @@ Json defects_json(const DefectReport& defects) {
           {"vertices_of_valence", valence}};
 }
 
-Json to_json(const OneSidedHausdorff& side, const SampledDistance& sampled) {
+}  // namespace
+
+Json side_json(const OneSidedHausdorff& side, const SampledDistance& sampled) {
   return {{"hausdorff_mm", {{"lower", side.lower}, {"upper", side.upper}}},
           {"farthest",
            {{"at", to_json(side.witness.from)},
@@ -76,14 +78,16 @@ Json to_json(const OneSidedHausdorff& side, const SampledDistance& sampled) {
           {"samples_per_mm2", sampled.samples_per_mm2}};
 }
 
+namespace {
+
 Json to_json(const ReferenceComparison& reference) {
   return {{"against", "reference surface"},
           {"file", reference.file},
           {"faces", reference.faces},
           {"tolerance_mm", reference.tolerance_mm},
           {"hausdorff_mm", {{"lower", reference.hausdorff.lower()}, {"upper", reference.hausdorff.upper()}}},
-          {"from_surface", to_json(reference.hausdorff.forward, reference.forward)},
-          {"from_reference", to_json(reference.hausdorff.backward, reference.backward)}};
+          {"from_surface", side_json(reference.hausdorff.forward, reference.forward)},
+          {"from_reference", side_json(reference.hausdorff.backward, reference.backward)}};
 }
 
 Json to_json(const VesselDistanceSide& side) {

@@ -48,6 +48,8 @@ struct EvaluationReport {
   std::vector<std::string> warnings;
 };
 
+/// One direction between two surfaces.
+Json side_json(const OneSidedHausdorff& side, const SampledDistance& sampled);
 Json to_json(const EvaluationReport& report);
 std::vector<ReportTable> to_tables(const EvaluationReport& report);
 

@@ -182,6 +182,41 @@ GenerateResult grow(const Centerline& centerline, const GenerateArguments& argum
   }
 }
 
+void log_choice(const BudgetedSurface& surface, const GenerateArguments& arguments, Console& console) {
+  console.log("for " + to_string(*arguments.budget) + " there were:");
+  for (const OperatingPoint& point : surface.tried) {
+    console.log(std::string(&point == &surface.choice() ? "* " : "  ") + std::to_string(point.options.around) +
+                " around: " + std::to_string(point.vertices) + " vertices, " + number(point.seconds) + " s, distance " +
+                number(point.error.mean_relative) + " mean, " + number(point.error.max_relative) + " max (" +
+                number(point.error.max_mm) + " mm), skewness " + number(point.skewness.mean) + " mean, " +
+                number(point.skewness.max) + " max" + (point.within_budget ? "" : "; beyond the budget"));
+  }
+  console.log("the same again: vmesh generate " + arguments.input.path.string() + " -o " + arguments.output.string() +
+              " " + describe(arguments));
+}
+
+/// Chooses the options that make the most of the budget.
+BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& centerline, GenerateArguments& arguments,
+                                   Console& console) {
+  BudgetedSurface surface = [&] {
+    try {
+      return generate_within(*arguments.budget, centerline, arguments.options, console.progress());
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(arguments.input.path.string() + ": " + error.what());
+    }
+  }();
+  arguments.options = surface.choice().options;
+  report.tried = surface.tried;
+  log_choice(surface, arguments, console);
+  if (!surface.met()) {
+    const std::string text = "nothing keeps to the budget " + to_string(*arguments.budget) +
+                             "; the surface written is what comes closest: allow more, or look at the radii";
+    console.warn(text);
+    report.warnings.push_back(text);
+  }
+  return surface;
+}
+
 /// Fills in what is measured of the surface around `grown` and what is wrong with it.
 void measure(GenerateReport& report, const Centerline& grown, Console& console) {
   const GenerateResult& result = *report.result;
@@ -207,10 +242,10 @@ void write(const GenerateReport& report) {
 
 }  // namespace
 
-int run(const GenerateArguments& arguments, Console& console) {
+int run(const GenerateArguments& given, Console& console) {
   using Kind = PlannedOutput::Kind;
-  check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}},
-                files_of(arguments.input.path));
+  check_outputs({{given.output, Kind::surface}, {given.common.json, Kind::summary}}, files_of(given.input.path));
+  GenerateArguments arguments = given;  // a budget chooses some of them
   Stopwatch watch;
   GenerateReport report;
   report.arguments = &arguments;
@@ -227,7 +262,15 @@ int run(const GenerateArguments& arguments, Console& console) {
   report.stages.push_back({separated ? "separate" : "contacts", watch.lap()});
   stop_if_interrupted();
 
-  GenerateResult result = grow(centerline, arguments, console);
+  bool kept_budget = true;
+  GenerateResult result;
+  if (arguments.budget) {
+    BudgetedSurface surface = grow_within_budget(report, centerline, arguments, console);
+    kept_budget = surface.met();
+    result = std::move(surface.result);
+  } else {
+    result = grow(centerline, arguments, console);
+  }
   console.warn(result.warnings);
   report.result = &result;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
@@ -247,7 +290,7 @@ int run(const GenerateArguments& arguments, Console& console) {
   log_result(report, console);
   if (!arguments.common.json.empty()) write_json(arguments.common.json, to_json(report));
   if (arguments.check && !report.problems.empty()) return kCheckFailed;
-  return result.error.unproven_faces > 0 ? kNotConverged : kOk;
+  return result.error.unproven_faces > 0 || !kept_budget ? kNotConverged : kOk;
 }
 
 }  // namespace vmesh::tool

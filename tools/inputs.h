@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "vmesh/core/error.h"
 #include "vmesh/image/image_io.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
@@ -28,6 +29,17 @@ LoadedImage load_image(const InputArguments& input, Console& console);
 /// Either of the two, by extension; what a .vtp holds, its content decides.
 using AnyInput = std::variant<RawCenterline, LoadedSurface>;
 AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings);
+
+/// Calls `function` and names the file in what it finds wrong with it.
+template <class Function>
+auto naming(const std::filesystem::path& path, Function function) {
+  try {
+    return function();
+  } catch (const InvalidInput& error) {
+    const std::string what = error.what(), name = path.string();
+    throw InvalidInput(what.starts_with(name) ? what : name + ": " + what);
+  }
+}
 
 /// All files behind an input: a CSV centerline has two.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& input);

@@ -30,6 +30,8 @@ const char* name_of(Kind kind) {
       return "summary";
     case Kind::report:
       return "report";
+    case Kind::plot:
+      return "plot";
   }
   return "";
 }
@@ -54,6 +56,8 @@ void check_format(const PlannedOutput& output) {
   if (output.kind == Kind::report && extension != ".txt" && extension != ".md" && extension != ".csv" &&
       extension != ".json")
     throw Unsupported(output.path.string() + ": reports are written as .txt, .md, .csv or .json");
+  if (output.kind == Kind::plot && extension != ".svg")
+    throw Unsupported(output.path.string() + ": plots are written as .svg only");
   if (output.kind == Kind::picture && extension != ".png")
     throw Unsupported(output.path.string() + ": pictures are written as .png only");
   if (extension == ".vtp" && !VMESH_TOOL_WITH_VTK)

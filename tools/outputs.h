@@ -11,7 +11,7 @@ std::string extension_of(const std::filesystem::path& path);
 
 /// A file a command is going to write.
 struct PlannedOutput {
-  enum class Kind { surface, centerline, picture, summary, report };
+  enum class Kind { surface, centerline, picture, summary, report, plot };
   std::filesystem::path path;
   Kind kind;
 };

@@ -40,9 +40,8 @@ std::string describe(const ReferenceArguments& arguments) {
 }
 
 ReferenceSurface contoured(const ReferenceArguments& arguments, Console& console) {
-  const std::filesystem::path& path = arguments.input.path;
-  try {
-    if (is_image_path(path)) {
+  return naming(arguments.input.path, [&] {
+    if (is_image_path(arguments.input.path)) {
       const LoadedImage image = load_image(arguments.input, console);
       stop_if_interrupted();
       return reference_surface(image, arguments.options);
@@ -50,10 +49,7 @@ ReferenceSurface contoured(const ReferenceArguments& arguments, Console& console
     const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
     stop_if_interrupted();
     return reference_surface(centerline, arguments.voxel, arguments.options);
-  } catch (const InvalidInput& error) {
-    const std::string what = error.what();
-    throw InvalidInput(what.starts_with(path.string()) ? what : path.string() + ": " + what);
-  }
+  });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "summary.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -21,6 +22,13 @@ std::string key_of(const char* flag) {
   key.erase(0, key.find_first_not_of('-'));
   std::replace(key.begin(), key.end(), '-', '_');
   return key;
+}
+
+/// The shortest text that reads as the same number.
+template <class Number>
+std::string exact_text(Number value) {
+  char text[32];
+  return {text, std::to_chars(std::begin(text), std::end(text), value).ptr};
 }
 
 /// Null where there is no limit.
@@ -128,6 +136,25 @@ Json stages_json(const std::vector<StageTime>& stages) {
   return json;
 }
 
+Json to_json(const OperatingPoint& point) {
+  return {{"around", point.options.around},
+          {"max_error", to_json(point.options.max_error)},
+          {"vertices", point.vertices},
+          {"seconds", point.seconds},
+          {"skewness", {{"mean", point.skewness.mean}, {"max", point.skewness.max}}},
+          {"distance", to_json(point.error)},
+          {"within_budget", point.within_budget}};
+}
+
+Json budget_json(const Budget& budget, const GenerateOptions& chosen, const std::vector<OperatingPoint>& tried) {
+  Json json = {{"budget", to_string(budget)}, {"met", false}, {"tried", Json::array()}};
+  for (const OperatingPoint& point : tried) {
+    json["tried"].push_back(to_json(point));
+    if (point.options.around == chosen.around) json["met"] = point.within_budget;
+  }
+  return json;
+}
+
 }  // namespace
 
 Json generator_json() { return {{"name", "vmesh"}, {"version", version()}}; }
@@ -220,12 +247,24 @@ Json to_json(const GenerateReport& report) {
   json["distance"]["to"] = measured_centerline(report);
   json["rounding"] = to_json(report.rounding);
   if (arguments.options.max_error.is_set()) json["error_bound"] = error_bound_json(arguments, *report.result);
+  if (arguments.budget) json["budget"] = budget_json(*arguments.budget, arguments.options, report.tried);
   json["contacts"] = to_json(report.contacts);
   if (report.separation) json["separation"] = to_json(*report.separation);
   json["seconds"] = stages_json(report.stages);
   json["warnings"] = report.warnings;
   json["problems"] = report.problems;
   return json;
+}
+
+Json to_json(const ExtractionReport& report) {
+  return {{"parts", report.parts},
+          {"joined", report.joined},
+          {"left_out", report.left_out},
+          {"spurs_removed", report.spurs},
+          {"loops_broken", report.loops_broken},
+          {"mean_distance_mm", report.mean_distance},
+          {"distance_95_mm", report.distance_95},
+          {"max_distance_mm", report.max_distance}};
 }
 
 Json openings_json(const GenerateResult& result) {
@@ -265,7 +304,7 @@ void write_json(const std::filesystem::path& path, const Json& json) {
 std::string describe(const GenerateArguments& arguments) {
   std::ostringstream text;
   for_each_generate_option(arguments.options, [&text](const char* flag, const auto& value, auto, auto, const char*) {
-    text << (text.tellp() > 0 ? " " : "") << flag << " " << value;
+    text << (text.tellp() > 0 ? " " : "") << flag << " " << exact_text(value);
   });
   const GenerateOptions& options = arguments.options;
   text << " --growth " << to_string(options.growth) << " --placement " << to_string(options.placement);
@@ -273,7 +312,9 @@ std::string describe(const GenerateArguments& arguments) {
   if (options.open_ends.all) text << " --open-ends all";
   for (std::size_t i = 0; i < options.open_ends.nodes.size(); ++i)
     text << (i == 0 ? " --open-ends " : ",") << options.open_ends.nodes[i];
-  text << " --overlap " << to_string(arguments.overlap) << " --gap " << arguments.gap;
+  text << " --overlap " << to_string(arguments.overlap) << " --gap " << exact_text(arguments.gap);
+  if (arguments.input.unit) text << " --unit " << to_string(*arguments.input.unit);
+  if (arguments.input.space) text << " --space " << to_string(*arguments.input.space);
   return text.str();
 }
 

@@ -24,6 +24,7 @@ struct GenerateReport {
   std::vector<Contact> contacts;               ///< of the cleaned centerline
   std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed or moved
   const GenerateResult* result = nullptr;
+  std::vector<OperatingPoint> tried;  ///< for a budget
   SurfaceMeasurement measurement;
   std::size_t grown_nodes = 0;              ///< of the centerline that was grown: with those a separation added
   std::optional<std::size_t> nodes_inside;  ///< of them
@@ -40,6 +41,7 @@ Json to_json(const GenerateReport& report);
 Json to_json(const Centerline& centerline);
 Json to_json(const CleaningReport& report);
 Json to_json(const GrowthSummary& growth);
+Json to_json(const ExtractionReport& report);
 Json openings_json(const GenerateResult& result);
 Json to_json(const SurfaceMeasurement& measurement);
 Json generator_json();

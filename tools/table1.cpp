@@ -11,7 +11,7 @@
 #include "exit_code.h"
 #include "interrupt.h"
 #include "outputs.h"
-#include "report_table.h"
+#include "report_output.h"
 #include "summary.h"
 #include "verbs.h"
 
@@ -25,7 +25,8 @@ struct PaperCase {
   double deform_ms, synchronise_ms, total_ms;
 };
 
-constexpr std::array kPaper = {PaperCase{"B", 118, 2426, 1215, 0.4, 1.5, 1.9}, PaperCase{"C", 118, 9799, 4907, 0.4, 6.1, 6.5},
+constexpr std::array kPaper = {PaperCase{"B", 118, 2426, 1215, 0.4, 1.5, 1.9},
+                               PaperCase{"C", 118, 9799, 4907, 0.4, 6.1, 6.5},
                                PaperCase{"D", 1559, 25730, 12867, 5.5, 21, 26.5}};
 constexpr int kFrames = 200;
 
@@ -233,10 +234,21 @@ Json to_json(const Trade& t) {
           {"max_mm", t.max_mm}};
 }
 
+Json to_json(const std::vector<Cost>& costs, const std::vector<Trade>& trades) {
+  Json json = {{"schema", "vmesh.table1/1"},
+               {"generator", generator_json()},
+               {"costs", Json::array()},
+               {"trades", Json::array()}};
+  for (const Cost& cost : costs) json["costs"].push_back(to_json(cost));
+  for (const Trade& trade : trades) json["trades"].push_back(to_json(trade));
+  return json;
+}
+
 }  // namespace
 
 int run(const Table1Arguments& arguments, Console& console) {
-  check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, {});
+  check_outputs(
+      {{arguments.common.json, PlannedOutput::Kind::summary}, {arguments.report, PlannedOutput::Kind::report}}, {});
   std::vector<Cost> costs;
   for (const PaperCase& paper : kPaper) {
     console.log("measuring " + std::to_string(paper.segments) + " segments, " + std::to_string(paper.vertices) +
@@ -245,17 +257,8 @@ int run(const Table1Arguments& arguments, Console& console) {
   }
   console.log("measuring accuracy against cost");
   const std::vector<Trade> trades = measure_trades(kPaper.back().segments);
-  if (arguments.common.json != "-")
-    write_text("-", format_report({cost_table(costs), trade_table(trades)}, parse_report_format(arguments.format)));
-  if (!arguments.common.json.empty()) {
-    Json json = {{"schema", "vmesh.table1/1"},
-                 {"generator", generator_json()},
-                 {"costs", Json::array()},
-                 {"trades", Json::array()}};
-    for (const Cost& cost : costs) json["costs"].push_back(to_json(cost));
-    for (const Trade& trade : trades) json["trades"].push_back(to_json(trade));
-    write_json(arguments.common.json, json);
-  }
+  write_report({cost_table(costs), trade_table(trades)}, to_json(costs, trades),
+               {arguments.format, arguments.common.json, arguments.report});
   return kOk;
 }
 

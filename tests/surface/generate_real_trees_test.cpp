@@ -39,6 +39,18 @@ TEST_P(RealLiverTree, BecomesOneCleanSurfaceAtThePapersQuality) {
   EXPECT_LE(static_cast<double>(result.mesh.vertices.size()), 8 * centerline.length_in_radii());
 }
 
+TEST_P(RealLiverTree, IsNoWorseThanFromASingleSeed) {
+  const std::string file = std::string("liver_portal_centerlines/liverModelPatient1__") + GetParam() + "_1.swc";
+  VMESH_NEED_SHARED_DATA(file);
+  const Centerline centerline = load(file);
+  GenerateOptions single_seed;
+  single_seed.growth = GrowthMethod::paper;
+  const SkewnessSummary paper = summarize_skewness(generate_surface(centerline, single_seed).mesh);
+  const SkewnessSummary guided = summarize_skewness(generate_surface(centerline).mesh);
+  EXPECT_LE(guided.mean, paper.mean);
+  EXPECT_LE(guided.max, paper.max);
+}
+
 INSTANTIATE_TEST_SUITE_P(Foundation, RealLiverTree,
                          ::testing::Values("portal1", "portal3", "portal15", "hepatic1", "hepatic3", "hepatic15",
                                            "arterial15", "vessel_portal", "vessel_hepatic", "vessel_arterial"));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -100,6 +101,43 @@ TEST_F(Generate, AFinerSurfaceIsCloserToTheVolume) {
     return json::parse(run.out).at("distance").at("mean_relative").get<double>();
   };
   EXPECT_LT(distance("14"), 0.5 * distance("6"));
+}
+
+TEST_F(Generate, ABudgetSaysHowToHaveTheSameAgain) {
+  const Outcome run = vmesh({"generate", "@y.swc", "-o", "@y.ply", "--budget", "vertices=400", "--json", "@y.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json budget = json::parse(read("y.json")).at("budget");
+  EXPECT_TRUE(budget.at("met"));
+  EXPECT_GE(budget.at("tried").size(), 3u);
+  EXPECT_LE(json::parse(read("y.json")).at("vertices"), 400);
+  const std::string announced =
+      "the same again: vmesh generate " + path("y.swc").string() + " -o " + path("y.ply").string() + " ";
+  const std::size_t at = run.err.find(announced);
+  ASSERT_NE(at, std::string::npos) << run.err;
+  std::istringstream line(run.err.substr(at + announced.size(), run.err.find('\n', at) - at - announced.size()));
+  std::vector<std::string> command = {"generate", "@y.swc", "-o", "@again.ply"};
+  for (std::string word; line >> word;) command.push_back(word);
+  ASSERT_EQ(vmesh(command).exit_code, 0);
+  EXPECT_EQ(read("again.ply"), read("y.ply"));
+}
+
+TEST_F(Generate, ABudgetThatNothingKeepsIsAnErrorOfItsOwn) {
+  const Outcome run = vmesh({"generate", "@y.swc", "-o", "@y.ply", "--budget", "vertices=5"});
+  EXPECT_EQ(run.exit_code, 6);
+  EXPECT_NE(run.err.find("nothing keeps to the budget vertices=5"), std::string::npos) << run.err;
+  EXPECT_TRUE(std::filesystem::exists(path("y.ply")));
+}
+
+TEST_F(Generate, ABudgetChoosesTheResolutionItself) {
+  for (const std::vector<std::string>& other :
+       {std::vector<std::string>{"--around", "8"}, {"--preset", "high"}, {"--max-error", "5%"}}) {
+    std::vector<std::string> command = {"generate", "@y.swc", "-o", "@y.ply", "--budget", "vertices=500"};
+    command.insert(command.end(), other.begin(), other.end());
+    EXPECT_EQ(vmesh(command).exit_code, 2) << other.front();
+  }
+  const Outcome run = vmesh({"generate", "@y.swc", "-o", "@y.ply", "--budget", "faces=5"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("vertices=5000"), std::string::npos) << run.err;
 }
 
 TEST_F(Generate, SummaryOnStdoutIsAllThatIsThere) {

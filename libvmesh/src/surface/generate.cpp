@@ -140,11 +140,26 @@ Placement parse_placement(std::string_view text) {
   throw InvalidInput("placement \"" + std::string(text) + "\": must be inscribed or balanced");
 }
 
+namespace {
+
+// `value` times `scale` in the fewest digits that read as the same value.
+std::string exact_text(double value, double scale) {
+  char text[32];
+  for (int digits = 6; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
+    std::snprintf(text, sizeof text, "%.*g", digits, scale * value);
+    if (std::strtod(text, nullptr) / scale == value) break;
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string to_string(const ErrorLimit& limit) {
-  std::ostringstream text;
-  if (std::isfinite(limit.mm)) text << limit.mm << "mm";
-  if (std::isfinite(limit.relative)) text << (std::isfinite(limit.mm) ? "," : "") << 100 * limit.relative << "%";
-  return text.str();
+  std::string text;
+  if (std::isfinite(limit.mm)) text.append(exact_text(limit.mm, 1)).append("mm");
+  if (!std::isfinite(limit.relative)) return text;
+  if (!text.empty()) text += ',';
+  return text.append(exact_text(limit.relative, 100)).append("%");
 }
 
 ErrorLimit parse_error_limit(std::string_view text) {

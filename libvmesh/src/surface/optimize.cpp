@@ -2,6 +2,7 @@
 
 #include "surface/balance.h"
 #include "surface/error_limit.h"
+#include "surface/polish.h"
 #include "surface/relocation.h"
 #include "surface/remesher.h"
 #include "surface/untangle.h"
@@ -16,8 +17,6 @@ constexpr double kMaxExcess = 1.5;  // vertices against those grown plus those e
 constexpr int kStrayInterval = 4;
 constexpr double kHopeless = 0.02;  // share of the vertices in tangles: growth covered vessels twice
 constexpr int kBalanceRounds = 2, kBalanceSweeps = 6;
-constexpr int kPolishRounds = 20, kPolishPower = 16;
-constexpr double kPolishEnergy = 1.15;  // of a face: skewness 0.28
 constexpr int kSinkRounds = 4;
 constexpr int kErrorRounds = 5;  // without fewer faces over the limit
 constexpr int kErrorSweeps = 4;
@@ -59,7 +58,7 @@ class Optimizer {
 
   void finish() {
     settle();
-    polish();
+    polish(state_, remesher_);
     bool crossing = sink_crossing_walls();
     if (options_.max_error.is_set()) {
       meet_error_limit(true);
@@ -111,7 +110,7 @@ class Optimizer {
   void meet_error_limit(bool polished) {
     refine_unproven();
     if (!polished || !unproven_.empty()) return;
-    polish();
+    polish(state_, remesher_);
     sink_crossing_walls();
     refine_unproven();
   }
@@ -162,20 +161,6 @@ class Optimizer {
       any = true;
     }
     return any;
-  }
-
-  // The worst triangles, and what is around them, at the cost of the rest.
-  void polish() {
-    for (int round = 0; round < kPolishRounds; ++round) {
-      for (const Face f : state_.mesh.faces()) {
-        const auto [a, b, c] = state_.corners(f);
-        if (state_.energy(a, b, c) < kPolishEnergy) continue;
-        for (const Vertex v : {a, b, c}) state_.stir(v);
-      }
-      if (state_.next_sweep() == 0) break;
-      remesher_.flip_edges(0);
-      relocate_vertices(state_, kPolishPower);
-    }
   }
 
   void optimize_at(double around) {

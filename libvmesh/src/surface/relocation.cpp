@@ -11,14 +11,15 @@ constexpr int kAttempts = 3;
 
 class Relocator {
  public:
-  Relocator(SweepState& state, int power) : state_(state), surface_(state.surface), mesh_(state.mesh), power_(power) {}
+  Relocator(SweepState& state, const RelocationOptions& options)
+      : state_(state), surface_(state.surface), mesh_(state.mesh), options_(options) {}
 
   // One Newton step of the shape energy in the tangent plane, reprojected; halved until it is an improvement.
   void relocate(Vertex v) {
     const Vec3 x = state_.point(v);
     const Vec3 n = surface_.gradient[v];
     const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
-    PlanarEnergy energy{power_};
+    PlanarEnergy energy{options_.power};
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       energy.add(x, state_.point(mesh_.target(mesh_.next(h))), state_.point(mesh_.source(h)), u, w);
     }
@@ -51,7 +52,9 @@ class Relocator {
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
       if (!state_.stays_upright(v, b, c, target)) return false;
-      sum += std::pow(SweepState::energy(target.position, state_.point(b), state_.point(c)), power_);
+      const double energy = SweepState::energy(target.position, state_.point(b), state_.point(c));
+      if (energy > options_.highest && energy > state_.energy(v, b, c)) return false;
+      sum += whole_power(energy, options_.power);
     }
     return sum < old_energy;
   }
@@ -59,15 +62,22 @@ class Relocator {
   SweepState& state_;
   BoundSurface& surface_;
   SurfaceMesh& mesh_;
-  int power_;
+  const RelocationOptions options_;
 };
 
 }  // namespace
 
-void relocate_vertices(SweepState& state, int power) {
-  Relocator relocator(state, power);
+void relocate_vertices(SweepState& state) {
+  Relocator relocator(state, {});
   for (const Vertex v : state.mesh.vertices()) {
     if (state.active(v) && !state.surface.held(v)) relocator.relocate(v);
+  }
+}
+
+void relocate_vertices(SweepState& state, const std::vector<Vertex>& vertices, const RelocationOptions& options) {
+  Relocator relocator(state, options);
+  for (const Vertex v : vertices) {
+    if (!state.surface.held(v)) relocator.relocate(v);
   }
 }
 

@@ -4,8 +4,16 @@
 
 namespace vmesh {
 
+struct RelocationOptions {
+  int power = 1;  ///< of the faces' energies in the sum: the higher, the more the worst counts
+  double highest = std::numeric_limits<double>::infinity();  ///< no face's energy rises above that
+};
+
 /// Moves every active vertex to where the shape energy of its faces is least: one Newton step in its tangent plane,
 /// reprojected onto the boundary, taken only if it is an improvement and keeps the faces upright.
-void relocate_vertices(SweepState& state, int power = 1);
+void relocate_vertices(SweepState& state);
+
+/// The same for these vertices.
+void relocate_vertices(SweepState& state, const std::vector<Vertex>& vertices, const RelocationOptions& options);
 
 }  // namespace vmesh

@@ -10,10 +10,11 @@ namespace {
 constexpr double kSplitLength = 1.35;  // in target lengths
 constexpr double kCollapseLength = 0.65;
 constexpr double kSplitFar = 0.8;
-constexpr double kMaxBulge = 0.3;     // see bulge()
-constexpr double kCannotStray = 0.5;  // target lengths: shorter edges keep close to the boundary
-constexpr double kUprightFlip = 0.5;  // agreement that a flip may always lead to
-constexpr double kBadEnergy = 1.8;    // of a face: skewness about 0.4
+constexpr double kMaxBulge = 0.3;      // see bulge()
+constexpr double kCannotStray = 0.5;   // target lengths: shorter edges keep close to the boundary
+constexpr double kUprightFlip = 0.5;   // agreement that a flip may always lead to
+constexpr int kLeastValenceGain = -2;  // of a flip that may yet pay off
+constexpr double kBadEnergy = 1.8;     // of a face: skewness about 0.4
 
 }  // namespace
 
@@ -231,6 +232,17 @@ bool Remesher::try_flip(Edge e, double regularity) {
   double gain = state_.energy(a, b, c) + state_.energy(b, a, d) - state_.energy(c, d, b) - state_.energy(d, c, a);
   if (regularity > 0) gain += regularity * valence_gain(a, b, c, d);
   if (!(gain > 1e-9)) return false;
+  return flip_if_upright(h, a, b, c, d);
+}
+
+bool Remesher::flip_with_foresight(Edge e) {
+  const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
+  const Vertex a = mesh_.source(h), b = mesh_.target(h);
+  const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
+  return valence_gain(a, b, c, d) >= kLeastValenceGain && flip_if_upright(h, a, b, c, d);
+}
+
+bool Remesher::flip_if_upright(Halfedge h, Vertex a, Vertex b, Vertex c, Vertex d) {
   if (!can_flip(h) || !flip_stays_upright(a, b, c, d)) return false;
   const double stray = bulge(c, d);
   if (stray > kMaxBulge && stray > bulge(a, b)) return false;

@@ -25,6 +25,12 @@ class Remesher {
   void repair_strays();
   /// Flips where the two triangles' energy plus `regularity` times the valence defects falls and both stay upright.
   void flip_edges(double regularity);
+  /// Flips one edge where that makes the two triangles better.
+  bool flip_for_shape(Edge e) { return try_flip(e, 0); }
+  /// Flips one edge whatever becomes of the shape, unless a face would turn over or valences get much worse.
+  bool flip_with_foresight(Edge e);
+  /// Takes that back.
+  void flip_back(Edge e) { flip(mesh_.halfedge(e)); }
 
   /// From now on nothing is refined when the mesh has so many vertices.
   void limit_vertices(std::size_t count) { max_vertices_ = count; }
@@ -56,6 +62,8 @@ class Remesher {
   bool flip_stays_upright(Vertex a, Vertex b, Vertex c, Vertex d) const;
   // How much the sum of squared valence defects (valence - 6) of the four vertices falls when ab becomes cd.
   int valence_gain(Vertex a, Vertex b, Vertex c, Vertex d) const;
+  // Flips h from a to b, between the apexes c and d, if both triangles stay upright and the new edge does not stray.
+  bool flip_if_upright(Halfedge h, Vertex a, Vertex b, Vertex c, Vertex d);
   void flip(Halfedge h);
   bool try_flip(Edge e, double regularity);
 

@@ -13,6 +13,15 @@ inline double inverse_mean_ratio(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (ab.squaredNorm() + ac.squaredNorm() + (c - b).squaredNorm()) / (2 * std::sqrt(3.0) * area2);
 }
 
+/// Power with an exponent of 0 or more, by multiplications alone.
+inline double whole_power(double base, int exponent) {
+  double power = 1;
+  for (; exponent > 0; exponent /= 2, base *= base) {
+    if (exponent % 2 == 1) power *= base;
+  }
+  return power;
+}
+
 /// Value, gradient and Hessian of the sum over triangles (x, b, c) of the inverse mean ratio to the power of 2 `power`,
 /// as x moves in the plane spanned by the orthonormal u, w. The triangles' normals are held fixed, which makes the
 /// Hessian positive. A high power is for the worst triangle.
@@ -38,7 +47,7 @@ struct PlanarEnergy {
     const Eigen::Vector2d df = (dn - f * dd) / area2;
     Eigen::Matrix2d hf = (4 * scale * Eigen::Matrix2d::Identity() - dd * df.transpose() - df * dd.transpose()) / area2;
     const int q = 2 * power;
-    const double below = std::pow(f, q - 2);  // exact for power 1
+    const double below = whole_power(f, q - 2);
     value += below * f * f;
     gradient += q * below * f * df;
     hessian += q * below * ((q - 1) * df * df.transpose() + f * hf);

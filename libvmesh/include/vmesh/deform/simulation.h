@@ -44,7 +44,7 @@ struct SimulationOptions {
 struct StepReport {
   int iterations = 0;      ///< Gauss-Newton iterations, or substeps
   int rejections = 0;      ///< Gauss-Newton steps, or parts of them, that would have raised the energy
-  double work_J = 0;       ///< by forces, gravity and dragged nodes
+  double work_J = 0;       ///< by forces, gravity and, implicit, dragged nodes
   double movement_mm = 0;  ///< of the last iteration, the largest of all nodes: how far from converged
   std::size_t awake = 0;   ///< slots that are not at rest
 };

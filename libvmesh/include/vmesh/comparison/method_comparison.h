@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmesh/centerline/centerline.h"
+#include "vmesh/core/progress.h"
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/tri_mesh.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/quality/hausdorff.h"
+#include "vmesh/quality/sampled_distance.h"
+
+namespace vmesh {
+
+/// The surfaces of a comparison: those of the paper's Table 2 in its order, that is marching cubes, which is the
+/// reference, truncated cones and the paper's two resolutions; then vmesh's presets where they are finer than these.
+enum class SurfaceMethod { marching_cubes, truncated_cones, low_resolution, high_resolution, low_preset, high_preset };
+
+/// "marching cubes", "truncated cones", "low resolution", "high resolution", "preset low", "preset high".
+std::string_view to_string(SurfaceMethod method);
+
+/// A surface against the reference, both ways.
+struct ReferenceDistance {
+  Hausdorff hausdorff;  ///< forward: from the surface to the reference
+  SampledDistance from_surface, from_reference;
+};
+
+/// Whether a surface is one.
+struct SurfaceSoundness {
+  Topology topology;
+  std::size_t self_intersections = 0;  ///< pairs of faces
+};
+
+/// What one method made and how good it is.
+struct MethodRow {
+  SurfaceMethod method = SurfaceMethod::marching_cubes;
+  int around = 0;  ///< vertices around a vessel; 0 for what vmesh did not grow
+  TriMesh mesh;
+  SkewnessSummary skewness;
+  std::optional<ReferenceDistance> distance;  ///< none for the reference itself
+  std::optional<SurfaceSoundness> soundness;  ///< of what vmesh grew
+  std::vector<std::string> warnings;          ///< of its growth
+};
+
+struct MethodComparison {
+  std::vector<MethodRow> rows;  ///< in the order of SurfaceMethod: the first four, then presets as needed
+
+  /// One of the first four.
+  const MethodRow& row(SurfaceMethod method) const { return rows.at(static_cast<std::size_t>(method)); }
+};
+
+struct MethodOptions {
+  int sides = 18;                 ///< of a truncated cone
+  double tolerance = 1e-4;        ///< of the Hausdorff distances, mm
+  std::size_t samples = 100'000;  ///< on each surface
+};
+
+/// Puts truncated cones and vmesh's surfaces around `centerline` and measures all of them against `reference`, which
+/// becomes the first row. The low resolution is the preset low, unless its vertices were a larger share of those of
+/// marching cubes or of the cones than the paper's low resolution has; then the finest that is not, or 3 vertices
+/// around a vessel. Likewise the high one. The presets themselves then follow as rows of their own. The reference need
+/// not be closed. Deterministic. Throws InvalidInput for what truncated_cones(), generate_surface() and hausdorff()
+/// refuse; Cancelled.
+MethodComparison compare_methods(TriMesh reference, const Centerline& centerline, const MethodOptions& options = {},
+                                 const Progress& progress = {});
+
+}  // namespace vmesh

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/deviation.h"
+#include "vmesh/surface/generate.h"
+
+namespace vmesh {
+
+/// What a surface may cost, or how exact it must be; one of the three.
+struct Budget {
+  enum class Kind { vertices, time, error };
+  Kind kind = Kind::vertices;
+  std::size_t vertices = 0;  ///< at most so many
+  double seconds = 0;        ///< generate_surface() takes at most so long
+  ErrorLimit error;          ///< proven everywhere, as GenerateOptions::max_error
+};
+
+/// "vertices=5000", "time=50ms" (or s), "error=0.2mm", "error=5%". Throws InvalidInput for anything else.
+Budget parse_budget(std::string_view text);
+std::string to_string(const Budget& budget);
+
+/// A choice of options and what came of it.
+struct OperatingPoint {
+  GenerateOptions options;
+  std::size_t vertices = 0;
+  double seconds = 0;  ///< that generate_surface() took
+  SkewnessSummary skewness;
+  Deviation error;
+  bool within_budget = false;
+};
+
+struct BudgetedSurface {
+  GenerateResult result;
+  std::vector<OperatingPoint> tried;  ///< ascending in GenerateOptions::around
+  std::size_t chosen = 0;             ///< of those; `result` is its surface, or the same again
+  const OperatingPoint& choice() const { return tried[chosen]; }
+  bool met() const { return choice().within_budget; }
+};
+
+/// The operating point that makes the most of a budget: of vertices or time the finest surface within it, of error the
+/// surface with the fewest vertices within it. What varies is GenerateOptions::around; an error budget sets max_error
+/// as well; the rest is as in `options`. Its neighbours are tried, too. If nothing is within the budget, the choice is
+/// what comes closest. Repeating the choice's options gives the same surface; a time budget may choose otherwise each
+/// time. Throws what generate_surface() throws.
+BudgetedSurface generate_within(const Budget& budget, const Centerline& centerline, GenerateOptions options = {},
+                                const Progress& progress = {});
+
+}  // namespace vmesh

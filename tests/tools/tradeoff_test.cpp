@@ -1,0 +1,44 @@
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "run_vmesh.h"
+
+namespace vmesh::testing {
+namespace {
+
+class Tradeoff : public CommandTest {
+ protected:
+  Tradeoff() { write_y("y.swc"); }
+};
+
+TEST_F(Tradeoff, WritesReportPlotAndSummary) {
+  const Outcome run =
+      vmesh({"tradeoff", "@y.swc", "--samples", "500", "--report", "@r.md", "--plot", "@p.svg", "--json", "@s.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::json summary = nlohmann::json::parse(read("s.json"));
+  EXPECT_EQ(summary.at("schema"), "vmesh.tradeoff/1");
+  std::set<std::string> curves;
+  for (const auto& point : summary.at("points")) {
+    curves.insert(point.at("curve"));
+    EXPECT_GT(point.at("error_mm").at("mean"), 0.0);
+    EXPECT_GE(point.at("error_mm").at("max"), point.at("error_mm").at("mean"));
+  }
+  std::set<std::string> expected = {"around",    "around, blend 0", "beta, single seed", "blend",
+                                    "max-error", "sweeps",          "truncated cones"};
+  if (VMESH_TEST_WITH_VTK) expected.insert({"marching cubes", "marching cubes, decimated"});
+  EXPECT_EQ(curves, expected);
+  EXPECT_NE(read("r.md").find("| around "), std::string::npos);
+  EXPECT_NE(read("r.md").find("vmesh against marching cubes"), std::string::npos);
+  EXPECT_EQ(read("p.svg").rfind("<svg", 0), 0u);
+  EXPECT_NE(run.out.find("best for vertices"), std::string::npos);
+}
+
+TEST_F(Tradeoff, RefusesAPlotItCannotDraw) {
+  const Outcome run = vmesh({"tradeoff", "@y.swc", "--plot", "@p.png"});
+  EXPECT_EQ(run.exit_code, 4);
+  EXPECT_NE(run.err.find(".svg"), std::string::npos) << run.err;
+}
+
+}  // namespace
+}  // namespace vmesh::testing
