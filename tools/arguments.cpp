@@ -269,6 +269,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   CenterlineArguments centerline;
   Table2Arguments table2;
   TradeoffArguments tradeoff;
+  DeformArguments deform;
+  Table1Arguments table1;
   add_generate(app, generate);
   add_info(app, info);
   add_synth(app, synth);
@@ -280,6 +282,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   add_centerline(app, centerline);
   add_table2(app, table2);
   add_tradeoff(app, tradeoff);
+  add_deform(app, deform);
+  add_table1(app, table1);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -296,6 +300,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   if (app.got_subcommand("centerline")) return centerline;
   if (app.got_subcommand("table2")) return table2;
   if (app.got_subcommand("tradeoff")) return tradeoff;
+  if (app.got_subcommand("deform")) return deform;
+  if (app.got_subcommand("table1")) return table1;
   if (app.got_subcommand("evaluate")) return evaluate;
   return render;
 }

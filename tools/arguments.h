@@ -134,9 +134,24 @@ struct TradeoffArguments {
   std::string format = "text";   ///< of stdout: text, markdown or csv
 };
 
-using Arguments =
-    std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments, EvaluateArguments,
-                 ReferenceArguments, ConesArguments, CenterlineArguments, Table2Arguments, TradeoffArguments>;
+struct DeformArguments {
+  CommonArguments common;
+  InputArguments input;
+  InputArguments surface;
+  std::filesystem::path script;
+  std::filesystem::path output;  ///< folder
+  std::string format = "vtp";    ///< extension of the frames
+};
+
+struct Table1Arguments {
+  CommonArguments common;
+  std::filesystem::path report;  ///< by extension; empty: none
+  std::string format = "text";   ///< of stdout: text, markdown or csv
+};
+
+using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments,
+                               EvaluateArguments, ReferenceArguments, ConesArguments, CenterlineArguments,
+                               Table2Arguments, TradeoffArguments, DeformArguments, Table1Arguments>;
 
 /// Calls `visit(flag, member, low, high, help)` for every option of the growth. The one list behind the command line
 /// and the summary.

@@ -43,4 +43,8 @@ void add_centerline(CLI::App& app, CenterlineArguments& arguments);
 void add_table2(CLI::App& app, Table2Arguments& arguments);
 void add_tradeoff(CLI::App& app, TradeoffArguments& arguments);
 
+/// The verbs that deal with motion.
+void add_deform(CLI::App& app, DeformArguments& arguments);
+void add_table1(CLI::App& app, Table1Arguments& arguments);
+
 }  // namespace vmesh::tool

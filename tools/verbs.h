@@ -17,5 +17,7 @@ int run(const ConesArguments& arguments, Console& console);
 int run(const CenterlineArguments& arguments, Console& console);
 int run(const Table2Arguments& arguments, Console& console);
 int run(const TradeoffArguments& arguments, Console& console);
+int run(const DeformArguments& arguments, Console& console);
+int run(const Table1Arguments& arguments, Console& console);
 
 }  // namespace vmesh::tool

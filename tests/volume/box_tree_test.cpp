@@ -1,4 +1,4 @@
-#include "vmesh/volume/box_tree.h"
+#include "vmesh/core/box_tree.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "vmesh/centerline/centerline.h"
-#include "vmesh/volume/box_tree.h"
+#include "vmesh/core/box_tree.h"
 
 namespace vmesh {
 

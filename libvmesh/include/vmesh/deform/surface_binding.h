@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "vmesh/deform/rod_tree.h"
+
+namespace vmesh {
+
+/// Where a vertex belongs on a centerline: segment, and parameter in [0, 1] from its node a to its node b. Isolated
+/// nodes are numbered after the segments, by rank.
+struct SurfacePlace {
+  Index segment = kNone;
+  double t = 0;
+};
+
+/// The nearest point of the centerline for every point, by a hierarchy of boxes over the segments; O(n log n).
+std::vector<SurfacePlace> nearest_places(const Centerline& centerline, std::span<const Vec3> points);
+
+/// A surface as it moves: arrays by lane, not by vertex (SurfaceBinding::lane_of_vertex()). Positions in mm; normals of
+/// unit length. Lanes without a vertex hold numbers of no meaning.
+struct DeformedSurface {
+  std::vector<double> x, y, z;
+  std::vector<float> normal_x, normal_y, normal_z;
+
+  Vec3 position(Index lane) const { return {x[lane], y[lane], z[lane]}; }
+  Vec3 normal(Index lane) const { return {normal_x[lane], normal_y[lane], normal_z[lane]}; }
+};
+
+/// Keeps a surface attached to a centerline that moves (Eqs. 1, 2, 9 and 10). A vertex is the point at its parameter of
+/// its segment plus a vector that is carried by two frames, that of the segment and that of the parent's segment, and
+/// is the mean of both: as the vector's rest coordinates in the two differ by Eq. 3's rotation, one matrix per segment
+/// does it. Vertices are stored by segment, in blocks of eight lanes.
+class SurfaceBinding {
+ public:
+  static constexpr std::size_t kLanes = 8;
+
+  /// `vertices`, `normals` (unit) and `places`: of the surface around the tree at rest. Throws InvalidInput for spans
+  /// of different length, places that do not exist and numbers that are not finite.
+  SurfaceBinding(const Centerline& centerline, const RodTree& tree, std::span<const Vec3> vertices,
+                 std::span<const Vec3> normals, std::span<const SurfacePlace> places);
+
+  std::size_t lane_count() const { return blocks_.size() * kLanes; }
+  const std::vector<Index>& lane_of_vertex() const { return lane_of_vertex_; }
+
+  /// Arrays of the right length, filled with the surface at rest.
+  DeformedSurface make_surface() const;
+
+  /// Writes the surface around `pose`. Within 1e-6 times the connecting vector of Eq. 10 in double; the bytes do not
+  /// depend on the processor's vectors.
+  void apply(const Pose& pose, DeformedSurface& surface) const noexcept;
+  /// The same where `moved` (one per slot, CenterlineSimulation::moved()) says that something changed.
+  void apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface) const noexcept;
+
+  struct alignas(64) Block {
+    std::array<double, kLanes> t{};                                ///< from the parent's position to the slot's
+    std::array<float, kLanes> x{}, y{}, z{};                       ///< connecting vector in the slot's frame
+    std::array<float, kLanes> normal_x{}, normal_y{}, normal_z{};  ///< in the slot's frame
+  };
+  /// The blocks of one slot.
+  struct Run {
+    Index slot, parent;  ///< equal for an isolated node
+    Index first_block, block_count;
+    Mat3 turn;
+  };
+
+ private:
+  std::vector<Run> runs_;
+  std::vector<Block> blocks_;
+  std::vector<Index> lane_of_vertex_;
+  Pose rest_;
+};
+
+}  // namespace vmesh

@@ -1,0 +1,157 @@
+#include "vmesh/deform/simulation.h"
+
+#include <cmath>
+#include <string>
+
+#include "vmesh/core/error.h"
+
+#include "deform/implicit_rods.h"
+#include "deform/paper_rods.h"
+#include "deform/profile.h"
+#include "deform/rod_scene.h"
+
+namespace vmesh {
+namespace {
+
+void check(const SimulationOptions& o) {
+  const auto fail = [](const std::string& what) { throw InvalidInput("simulation: " + what); };
+  const auto rate = [](double x) { return std::isfinite(x) && x >= 0; };
+  if (!(std::isfinite(o.step_s) && o.step_s > 0)) fail("the step (s) must be finite and above 0");
+  if (o.iterations < 1) fail("there must be at least 1 iteration a step");
+  if (!o.gravity_mm_s2.allFinite()) fail("gravity must be finite");
+  if (!rate(o.drag_per_s)) fail("the drag (1/s) must be finite and at least 0");
+  if (!rate(o.squeeze_response_s)) fail("the response to a squeeze (s) must be finite and at least 0");
+  if (!rate(o.rest_tolerance)) fail("the tolerance of rest must be finite and at least 0");
+  if (o.rest_steps < 1 || o.rest_steps > 100) fail("the steps until rest must be 1 to 100");
+  if (o.paper.substeps < 0) fail("the substeps must be at least 0");
+}
+
+void require_finite(const Vec3& v, const char* name) {
+  if (!v.allFinite()) throw InvalidInput(std::string("simulation: ") + name + " must be finite");
+}
+
+}  // namespace
+
+struct CenterlineSimulation::State {
+  State(const Centerline& centerline, const std::vector<SegmentProperties>& properties,
+        const SimulationOptions& options)
+      : scene(make_rod_scene(centerline, properties, options)),
+        implicit(scene),
+        paper(scene),
+        profile(centerline, properties, options) {}
+
+  Index slot(Index node) const {
+    if (node >= scene.tree.slot_of_node.size())
+      throw InvalidInput("simulation: there is no node " + std::to_string(node) + "; the nodes are 0 to " +
+                         std::to_string(scene.tree.slot_of_node.size() - 1));
+    return scene.tree.slot_of_node[node];
+  }
+
+  /// Something about the slot changed: it moves, or may.
+  Index stir(Index node) {
+    const Index j = slot(node);
+    implicit.wake(j);
+    return j;
+  }
+
+  /// The same value again leaves what is at rest alone.
+  void load(Index node, const Vec3& value, std::vector<Vec3>& loads) {
+    const Index j = slot(node);
+    if (loads[j] == value) return;
+    stir(node);
+    loads[j] = value;
+  }
+
+  void hold(Index node, Hold how) {
+    const Index j = stir(node);
+    scene.hold[j] = how;
+    scene.target[j] = scene.pose.position[j];
+    scene.velocity[j].setZero();
+    if (how == Hold::clamped) scene.spin[j].setZero();
+  }
+
+  RodScene scene;
+  ImplicitRods implicit;
+  PaperRods paper;
+  Profile profile;
+};
+
+CenterlineSimulation::CenterlineSimulation(const Centerline& centerline,
+                                           const std::vector<SegmentProperties>& properties,
+                                           const SimulationOptions& options) {
+  check(options);
+  state_ = std::make_unique<State>(centerline, properties, options);
+}
+
+CenterlineSimulation::~CenterlineSimulation() = default;
+CenterlineSimulation::CenterlineSimulation(CenterlineSimulation&&) noexcept = default;
+CenterlineSimulation& CenterlineSimulation::operator=(CenterlineSimulation&&) noexcept = default;
+
+void CenterlineSimulation::fix(Index node) { state_->hold(node, Hold::fixed); }
+
+void CenterlineSimulation::clamp(Index node) { state_->hold(node, Hold::clamped); }
+
+void CenterlineSimulation::release(Index node) { state_->scene.hold[state_->stir(node)] = Hold::free; }
+
+void CenterlineSimulation::drag(Index node, const Vec3& position_mm) {
+  require_finite(position_mm, "the position to drag to");
+  const Index j = state_->slot(node);
+  if (state_->scene.hold[j] != Hold::free && position_mm == state_->scene.target[j]) return;
+  state_->stir(node);
+  if (state_->scene.hold[j] == Hold::free) state_->scene.hold[j] = Hold::fixed;
+  state_->scene.target[j] = position_mm;
+}
+
+void CenterlineSimulation::set_force(Index node, const Vec3& force_N) {
+  require_finite(force_N, "a force");
+  state_->load(node, 1e3 * force_N, state_->scene.force);
+}
+
+void CenterlineSimulation::set_torque(Index node, const Vec3& torque_N_mm) {
+  require_finite(torque_N_mm, "a torque");
+  state_->load(node, 1e3 * torque_N_mm, state_->scene.torque);
+}
+
+void CenterlineSimulation::set_radial_scale(Index node, double scale) {
+  if (!(std::isfinite(scale) && scale > 0)) throw InvalidInput("simulation: a radial scale must be finite and above 0");
+  state_->profile.set_scale(state_->slot(node), scale, state_->scene);
+}
+
+void CenterlineSimulation::set_squeeze(Index node, double force_N) {
+  if (!std::isfinite(force_N)) throw InvalidInput("simulation: a squeeze must be finite");
+  state_->profile.set_squeeze(state_->slot(node), force_N, state_->scene);
+}
+
+void CenterlineSimulation::set_velocity(Index node, const Vec3& velocity_mm_s) {
+  require_finite(velocity_mm_s, "a velocity");
+  state_->scene.velocity[state_->stir(node)] = velocity_mm_s;
+}
+
+void CenterlineSimulation::set_gravity(const Vec3& gravity_mm_s2) {
+  require_finite(gravity_mm_s2, "gravity");
+  state_->scene.options.gravity_mm_s2 = gravity_mm_s2;
+  state_->implicit.wake_all();
+}
+
+StepReport CenterlineSimulation::step() noexcept {
+  const bool implicit = state_->scene.options.integrator == Integrator::implicit;
+  const StepReport report = implicit ? state_->implicit.step(state_->scene) : state_->paper.step(state_->scene);
+  state_->profile.step(state_->scene);
+  return report;
+}
+
+const RodTree& CenterlineSimulation::tree() const { return state_->scene.tree; }
+
+const Pose& CenterlineSimulation::pose() const { return state_->scene.pose; }
+
+Vec3 CenterlineSimulation::position(Index node) const { return state_->scene.pose.position[state_->slot(node)]; }
+
+double CenterlineSimulation::kinetic_energy_J() const { return 1e-6 * kinetic_energy(state_->scene); }
+
+double CenterlineSimulation::elastic_energy_J() const { return 1e-6 * elastic_energy(state_->scene); }
+
+const std::vector<char>& CenterlineSimulation::moved() const { return state_->scene.moved; }
+
+void CenterlineSimulation::clear_moved() { std::fill(state_->scene.moved.begin(), state_->scene.moved.end(), char{0}); }
+
+}  // namespace vmesh

@@ -1,0 +1,86 @@
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "vmesh/io/surface_io.h"
+
+#include "run_vmesh.h"
+
+namespace vmesh::testing {
+namespace {
+
+using nlohmann::json;
+
+class Deform : public CommandTest {
+ protected:
+  Deform() {
+    write_y("y.swc");
+    EXPECT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply"}).exit_code, 0);
+  }
+
+  Outcome deform(const std::string& scene, const std::string& surface = "@y.ply") const {
+    write("scene.json", scene);
+    return vmesh(
+        {"deform", "@y.swc", surface, "--script", "@scene.json", "-o", "@frames", "--format", "ply", "--json", "-"});
+  }
+};
+
+constexpr const char* kPull = R"({"schema": "vmesh.scene/1", "clamp": [0], "duration_s": 0.4, "frame_every": 10,
+  "drag": [{"node": 3, "path": [[0, 0, 0, 0], [0.2, 0, 5, 0]]}]})";
+
+TEST_F(Deform, PullsABranch) {
+  const Outcome run = deform(kPull);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json summary = json::parse(run.out);
+  EXPECT_EQ(summary["frames"], 3);
+  EXPECT_GT(summary["work_J"], 0);
+  const LoadedSurface rest = read_surface(path("y.ply")), first = read_surface(path("frames/frame_000000.ply")),
+                      last = read_surface(path("frames/frame_000002.ply"));
+  double farthest_first = 0, farthest = 0;
+  for (std::size_t v = 0; v < rest.mesh.vertices.size(); ++v) {
+    farthest_first = std::max(farthest_first, (first.mesh.vertices[v] - rest.mesh.vertices[v]).norm());
+    farthest = std::max(farthest, (last.mesh.vertices[v] - rest.mesh.vertices[v]).norm());
+  }
+  EXPECT_LT(farthest_first, 1e-5);
+  // The cap beyond the dragged node turns with it.
+  EXPECT_NEAR(farthest, 5, 2.5);
+  EXPECT_EQ(last.attributes.vertex.back().name, "displacement");
+}
+
+TEST_F(Deform, BindsASurfaceThatKnowsNoPlaces) {
+  ASSERT_EQ(vmesh({"convert", "@y.ply", "-o", "@y.stl"}).exit_code, 0);
+  const Outcome run = deform(kPull, "@y.stl");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("nearest segment"), std::string::npos) << run.err;
+}
+
+TEST_F(Deform, ErrorsNameTheElementAndLeaveNothing) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"{", "JSON"},
+      {R"({"schema": "vmesh.scene/2"})", "schema"},
+      {R"({"schema": "vmesh.scene/1", "gravitation": 1})", "\"gravitation\" is not known"},
+      {R"({"schema": "vmesh.scene/1", "fix": [0, 99]})", "fix[1]"},
+      {R"({"schema": "vmesh.scene/1", "drag": [{"node": 1, "path": [[0, 1, 2]]}]})", "drag[0].path[0]"},
+      {R"({"schema": "vmesh.scene/1", "drag": [{"node": 1, "path": [[1, 0, 0, 0], [1, 0, 0, 0]]}]})", "ascend"},
+      {R"({"schema": "vmesh.scene/1", "force": [{"node": 1, "force_N": []}]})", "force[0].force_N"},
+      {R"({"schema": "vmesh.scene/1", "material": {"young_Pa": "soft"}})", "material.young_Pa"},
+      {R"({"schema": "vmesh.scene/1", "duration_s": 1e6, "step_s": 1e-6})", "ten million"},
+  };
+  for (const auto& [scene, named] : wrong) {
+    const Outcome run = deform(scene);
+    EXPECT_EQ(run.exit_code, 3) << scene << run.err;
+    EXPECT_NE(run.err.find("scene.json"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(named), std::string::npos) << run.err;
+    EXPECT_FALSE(exists("frames")) << scene;
+  }
+}
+
+TEST_F(Deform, KeepsWhatIsInTheFolder) {
+  ASSERT_EQ(deform(kPull).exit_code, 0);
+  const Outcome again = deform(kPull);
+  EXPECT_EQ(again.exit_code, 2) << again.err;
+  EXPECT_TRUE(exists("frames/frame_000000.ply"));
+}
+
+}  // namespace
+}  // namespace vmesh::testing
