@@ -111,9 +111,15 @@ class Polisher {
     return worst;
   }
 
+  // Faces worth polishing. Folded ones are not: what would be an improvement there is not to be told from shape.
   std::vector<Face> bad_faces(std::vector<Face> faces) const {
-    std::erase_if(faces, [&](Face f) { return energy(f) < kGoodEnergy; });
+    std::erase_if(faces, [&](Face f) { return energy(f) < kGoodEnergy || folded(f); });
     return faces;
+  }
+
+  bool folded(Face f) const {
+    const auto [a, b, c] = state_.corners(f);
+    return state_.agreement(a, b, c) < SweepState::kMinAgreement;
   }
 
   // The ends of the edge, the apexes beside it, and all their neighbours.
