@@ -174,9 +174,11 @@ void renumber(GrowthSummary& growth, const SeparatedCenterline& separated, const
   }
 }
 
-GenerateResult grow(const Centerline& centerline, const GenerateArguments& arguments, Console& console) {
+/// What is wrong with the centerline is said with the name of its file.
+template <class Grow>
+auto naming_file(const GenerateArguments& arguments, Grow&& grow) {
   try {
-    return generate_surface(centerline, arguments.options, console.progress());
+    return grow();
   } catch (const InvalidInput& error) {
     throw InvalidInput(arguments.input.path.string() + ": " + error.what());
   }
@@ -198,13 +200,8 @@ void log_choice(const BudgetedSurface& surface, const GenerateArguments& argumen
 /// Chooses the options that make the most of the budget.
 BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& centerline, GenerateArguments& arguments,
                                    Console& console) {
-  BudgetedSurface surface = [&] {
-    try {
-      return generate_within(*arguments.budget, centerline, arguments.options, console.progress());
-    } catch (const InvalidInput& error) {
-      throw InvalidInput(arguments.input.path.string() + ": " + error.what());
-    }
-  }();
+  BudgetedSurface surface = naming_file(
+      arguments, [&] { return generate_within(*arguments.budget, centerline, arguments.options, console.progress()); });
   arguments.options = surface.choice().options;
   report.tried = surface.tried;
   log_choice(surface, arguments, console);
@@ -269,7 +266,8 @@ int run(const GenerateArguments& given, Console& console) {
     kept_budget = surface.met();
     result = std::move(surface.result);
   } else {
-    result = grow(centerline, arguments, console);
+    result =
+        naming_file(arguments, [&] { return generate_surface(centerline, arguments.options, console.progress()); });
   }
   console.warn(result.warnings);
   report.result = &result;

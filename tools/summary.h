@@ -28,9 +28,8 @@ struct GenerateReport {
   SurfaceMeasurement measurement;
   std::size_t grown_nodes = 0;              ///< of the centerline that was grown: with those a separation added
   std::optional<std::size_t> nodes_inside;  ///< of them
-  Deviation deviation;
-  Deviation rounding;  ///< of the boundary at branches, against the plain union            ///< from the vessels that
-                       ///< were grown: the narrowed and moved ones after a separation
+  Deviation deviation;            ///< from the vessels that were grown: the narrowed and moved ones after a separation
+  Deviation rounding;             ///< of the boundary at branches, against the plain union
   std::vector<StageTime> stages;  ///< of the whole run
   std::vector<std::string> warnings, problems;
 };

@@ -50,39 +50,34 @@ TEST_F(ComparedMethods, HaveTheSurfacesOfThePresets) {
   }
 }
 
-TEST(ComparedResolutions, ArePresetsWhereThesePassForThePapers) {
-  // A hundred nodes along a vessel: many cones.
-  std::vector<CenterlineNode> nodes;
+Centerline straight_vessel(Index nodes, double spacing, double radius) {
+  std::vector<CenterlineNode> places;
   std::vector<CenterlineSegment> segments;
-  for (Index i = 0; i < 100; ++i) {
-    nodes.push_back({{0, 0, 0.3 * i}, 2});
+  for (Index i = 0; i < nodes; ++i) {
+    places.push_back({{0, 0, spacing * i}, radius});
     if (i > 0) segments.push_back({i - 1, i});
   }
-  const Centerline vessel(nodes, segments);
+  return {std::move(places), std::move(segments)};
+}
+
+MethodComparison compared_with_fine_surface(const Centerline& vessel) {
   GenerateOptions fine;
   fine.around = 40;
   MethodOptions options;
   options.samples = 1000;
-  const TriMesh reference = generate_surface(vessel, fine).mesh;
-  const MethodComparison comparison = compare_methods(reference, vessel, options);
+  return compare_methods(generate_surface(vessel, fine).mesh, vessel, options);
+}
+
+TEST(ComparedResolutions, ArePresetsWhereThesePassForThePapers) {
+  const MethodComparison comparison = compared_with_fine_surface(straight_vessel(100, 0.3, 2));  // many cones
   ASSERT_EQ(comparison.rows.size(), 4u);
   EXPECT_EQ(comparison.row(SurfaceMethod::low_resolution).around, 6);
   EXPECT_EQ(comparison.row(SurfaceMethod::high_resolution).around, 12);
 }
 
 TEST(ComparedResolutions, AreTheFinestWithNoLargerShareThanInThePaper) {
-  std::vector<CenterlineNode> nodes;
-  std::vector<CenterlineSegment> segments;
-  for (Index i = 0; i < 21; ++i) {
-    nodes.push_back({{0, 0, 2.0 * i}, 1});
-    if (i > 0) segments.push_back({i - 1, i});
-  }
-  const Centerline vessel(nodes, segments);
-  GenerateOptions fine;
-  fine.around = 40;
-  MethodOptions options;
-  options.samples = 1000;
-  const MethodComparison comparison = compare_methods(generate_surface(vessel, fine).mesh, vessel, options);
+  const Centerline vessel = straight_vessel(21, 2, 1);
+  const MethodComparison comparison = compared_with_fine_surface(vessel);
   const double cones = 20 * 37;
   for (const auto method : {SurfaceMethod::low_resolution, SurfaceMethod::high_resolution}) {
     const MethodRow& row = comparison.row(method);
