@@ -146,9 +146,9 @@ inline std::string mha_header(const SampleImage& image, const std::string& type,
 }
 
 /// Packed with zlib, or with gzip.
-inline std::string packed(const std::string& bytes, bool gzip) {
+inline std::string packed(const std::string& bytes, bool gzip, int level = 6) {
   z_stream stream{};
-  if (deflateInit2(&stream, 6, Z_DEFLATED, gzip ? 31 : 15, 8, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
+  if (deflateInit2(&stream, level, Z_DEFLATED, gzip ? 31 : 15, 8, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
   std::string result(deflateBound(&stream, static_cast<uLong>(bytes.size())) + 64, '\0');
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   stream.avail_in = static_cast<uInt>(bytes.size());

@@ -125,6 +125,10 @@ TEST(ReadJson, NamesTheEntryThatIsWrong) {
 TEST(ReadJson, SurvivesDeepNesting) {
   expect_contains(json_error(std::string(1000000, '[')), "t.json");
   expect_contains(json_error(std::string(1000000, '[') + std::string(1000000, ']')), "t.json");
+  // In the place of a node's index, where the message would cite it.
+  expect_contains(json_error(R"({"schema": "vmesh.centerline/1", "nodes": [[0, 0, 0, 1]], "segments": [[0, )" +
+                             std::string(1000000, '[') + std::string(1000000, ']') + "]]}"),
+                  "brackets");
 }
 
 TEST(ReadJson, ALoopOfAMillionNodesIsALoop) {

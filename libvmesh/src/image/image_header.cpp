@@ -82,6 +82,15 @@ std::string folded(std::string_view text) {
   return result;
 }
 
+std::string cited(std::string_view text) {
+  constexpr std::size_t kMostShown = 40;
+  std::string shown(text.substr(0, kMostShown));
+  std::replace_if(
+      shown.begin(), shown.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  if (text.size() > kMostShown) shown += "...";
+  return "\"" + shown + "\"";
+}
+
 bool take_line(std::string_view& text, std::string_view& line) {
   const std::size_t end = text.find('\n');
   if (end == std::string_view::npos) return false;

@@ -47,6 +47,9 @@ std::vector<double> numbers_in(std::string_view text, const std::string& name, s
 /// Without blanks at both ends, in lower case.
 std::string folded(std::string_view text);
 
+/// In quotes, on one line and cut to a length fit for a message.
+std::string cited(std::string_view text);
+
 /// Takes the next line off `text`, without its end. False when there is no whole line.
 bool take_line(std::string_view& text, std::string_view& line);
 

@@ -17,7 +17,7 @@ NumberType number_type(const std::string& word, const std::string& name) {
       {"met_long", NumberType::i32},       {"met_ulong", NumberType::u32}, {"met_long_long", NumberType::i64},
       {"met_ulong_long", NumberType::u64}, {"met_float", NumberType::f32}, {"met_double", NumberType::f64}};
   const auto found = kTypes.find(word);
-  if (found == kTypes.end()) throw Unsupported(name + ": voxels of type \"" + word + "\" are not supported");
+  if (found == kTypes.end()) throw Unsupported(name + ": voxels of type " + cited(word) + " are not supported");
   return found->second;
 }
 
@@ -81,7 +81,7 @@ ImageHeader parse_meta_header(std::string_view bytes, const std::string& name) {
   set_size(header, sizes, name);
   const std::string channels = value_of(entries, {"elementnumberofchannels"});
   if (!channels.empty() && channels != "1")
-    throw Unsupported(name + ": has " + channels + " numbers per voxel; give an image of one");
+    throw Unsupported(name + ": has " + cited(channels) + " numbers per voxel; give an image of one");
   const std::string skipped = value_of(entries, {"headersize"});
   if (!skipped.empty() && skipped != "0")
     throw Unsupported(name + ": HeaderSize is not supported; store the image anew");

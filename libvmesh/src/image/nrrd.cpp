@@ -52,7 +52,7 @@ NumberType number_type(const std::string& word, const std::string& name) {
                                                            {"float", NumberType::f32},
                                                            {"double", NumberType::f64}};
   const auto found = kTypes.find(word);
-  if (found == kTypes.end()) throw Unsupported(name + ": voxels of type \"" + word + "\" are not supported");
+  if (found == kTypes.end()) throw Unsupported(name + ": voxels of type " + cited(word) + " are not supported");
   return found->second;
 }
 
@@ -95,7 +95,7 @@ void set_encoding(ImageHeader& header, const Entries& entries, const std::string
   const std::string& encoding = required(entries, "encoding", name);
   header.packed = encoding == "gzip" || encoding == "gz";
   if (!header.packed && encoding != "raw")
-    throw Unsupported(name + ": encoding \"" + encoding + "\" is not supported; store the image raw or with gzip");
+    throw Unsupported(name + ": encoding " + cited(encoding) + " is not supported; store the image raw or with gzip");
   const std::string endian = optional(entries, "endian");
   header.big_endian = endian == "big";
   if (endian.empty() && bytes_of(header.type) > 1) throw InvalidInput(name + ": the header has no line \"endian\"");
@@ -107,7 +107,7 @@ Eigen::DiagonalMatrix<double, 3> frame_of(ImageHeader& header, const std::string
   if (space == "right-anterior-superior" || space == "ras") return {-1, -1, 1};
   if (space == "left-anterior-superior" || space == "las") return {1, -1, 1};
   if (!space.empty() && space != "3")
-    throw Unsupported(name + ": the space \"" + space + "\" is not supported; use LPS");
+    throw Unsupported(name + ": the space " + cited(space) + " is not supported; use LPS");
   header.warnings.push_back(name + ": names no patient frame (\"space\"); LPS is taken");
   return {1, 1, 1};
 }
@@ -118,7 +118,7 @@ void set_place(ImageHeader& header, const Entries& entries, const std::string& n
   const auto to_lps = frame_of(header, space, name);
   const std::string units = optional(entries, "space units");
   if (!units.empty() && units != "\"mm\" \"mm\" \"mm\"")
-    throw Unsupported(name + ": space units " + units + " are not supported; store the image in mm");
+    throw Unsupported(name + ": space units " + cited(units) + " are not supported; store the image in mm");
   std::string directions = optional(entries, "space directions");
   while (directions.ends_with(" none")) directions.resize(directions.size() - 5);
   if (!directions.empty()) {

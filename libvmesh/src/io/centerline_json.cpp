@@ -42,6 +42,11 @@ class JsonReader {
     return found != document_.end() && found->is_string() ? found->get<std::string>() : std::string();
   }
 
+  /// Lists within lists would take as much stack to write as there are.
+  static std::string shown(const Json& value) {
+    return value.is_structured() ? std::string("a value in brackets") : cite(value.dump());
+  }
+
   const Json& array_of(const char* key) const {
     const auto found = document_.find(key);
     if (found == document_.end() || !found->is_array())
@@ -77,7 +82,7 @@ class JsonReader {
     const auto end = [&](const Json& value) {
       const bool known = value.is_number_unsigned() && value.get<std::uint64_t>() < raw_.nodes.size();
       if (!known) {
-        fail("segments entry " + std::to_string(raw_.segments.size()) + ": " + cite(value.dump()) +
+        fail("segments entry " + std::to_string(raw_.segments.size()) + ": " + shown(value) +
              " is no node; the nodes are 0 to " + std::to_string(static_cast<std::ptrdiff_t>(raw_.nodes.size()) - 1));
       }
       return static_cast<Index>(value.get<std::uint64_t>());
@@ -108,7 +113,9 @@ RawCenterline parse_centerline_json(std::string_view content, const std::string&
   try {
     document = Json::parse(content);
   } catch (const Json::exception& error) {
-    throw InvalidInput(source + ": this is no valid JSON: " + one_line(error.what()));
+    constexpr std::size_t kMostShown = 300;  // it cites what it read last, which may be all of the file
+    throw InvalidInput(source +
+                       ": this is no valid JSON: " + one_line(std::string_view(error.what()).substr(0, kMostShown)));
   }
   return JsonReader(document, source).run();
 }

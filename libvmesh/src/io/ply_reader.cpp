@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <unordered_set>
 
 #include "bytes.h"
 #include "formats.h"
@@ -98,7 +99,7 @@ class PlyValues {
 
  private:
   [[noreturn]] void fail_short(const std::string& element, std::uint64_t index) const {
-    throw InvalidInput(source_ + ": " + element + " " + std::to_string(index) +
+    throw InvalidInput(source_ + ": " + one_line(element.substr(0, 40)) + " " + std::to_string(index) +
                        ": the file ends here; it is cut short");
   }
 
@@ -110,7 +111,7 @@ class PlyValues {
     at_ = end;
     const auto value = parse_double(body_.substr(begin, end - begin));
     if (!value) {
-      throw InvalidInput(source_ + ": " + element + " " + std::to_string(index) + ": " +
+      throw InvalidInput(source_ + ": " + one_line(element.substr(0, 40)) + " " + std::to_string(index) + ": " +
                          cite(body_.substr(begin, end - begin)) + " is no number");
     }
     return *value;
@@ -189,6 +190,7 @@ class PlyReader {
   void read_element_line() {
     const auto count = fields_.size() == 3 ? parse_integer(fields_[2]) : std::nullopt;
     if (!count || *count < 0) fail("an element has a name and a count");
+    if (!element_names_.emplace(fields_[1]).second) fail("the element " + cite(fields_[1]) + " was there before");
     elements_.push_back({std::string(fields_[1]), static_cast<std::uint64_t>(*count), {}});
   }
 
@@ -240,8 +242,8 @@ class PlyReader {
     const double count = values.next(p.count_type, element, i);
     if (!(count >= 0) || count != std::floor(count) ||
         count > static_cast<double>(values.left() / values.least_size(p.type))) {
-      throw InvalidInput(source_ + ": " + element + " " + std::to_string(i) + ": the list " + cite(p.name) +
-                         " has an impossible length");
+      throw InvalidInput(source_ + ": " + one_line(element.substr(0, 40)) + " " + std::to_string(i) + ": the list " +
+                         cite(p.name) + " has an impossible length");
     }
     return static_cast<std::size_t>(count);
   }
@@ -335,6 +337,7 @@ class PlyReader {
   std::vector<std::string_view> fields_;
   PlyValues::Encoding encoding_ = PlyValues::Encoding::text;
   std::vector<PlyElement> elements_;
+  std::unordered_set<std::string> element_names_;
   std::vector<std::int64_t> corners_;
   std::vector<std::ptrdiff_t> face_offsets_ = {0};
   bool quality_is_skewness_ = false;

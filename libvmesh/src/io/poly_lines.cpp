@@ -1,6 +1,10 @@
 #include "poly_lines.h"
 
+#include <algorithm>
+
 #include "vmesh/core/error.h"
+
+#include "text.h"
 
 namespace vmesh::io {
 namespace {
@@ -74,8 +78,12 @@ std::vector<std::string> radius_names(const std::string& wanted) {
 
 void fail_without_radius(const std::string& source, const std::string& wanted,
                          const std::vector<std::string>& present) {
+  constexpr std::size_t kMostNamed = 8;
   std::string names;
-  for (const std::string& name : present) names += (names.empty() ? "" : ", ") + name;
+  for (std::size_t i = 0; i < std::min(present.size(), kMostNamed); ++i) {
+    names += (names.empty() ? "" : ", ") + one_line(present[i].substr(0, 40));
+  }
+  if (present.size() > kMostNamed) names += " and " + std::to_string(present.size() - kMostNamed) + " more";
   throw InvalidInput(source + ": there is no point array " +
                      (wanted.empty() ? "MaximumInscribedSphereRadius, Radius or radius" : wanted) + "; it has " +
                      (names.empty() ? "none" : names) + "; name the one that holds the radius");

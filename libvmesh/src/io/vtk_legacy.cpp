@@ -291,7 +291,7 @@ class LegacyVtkReader {
       const auto found = point_arrays_.find(name);
       if (found == point_arrays_.end()) continue;
       if (found->second.empty()) {
-        throw InvalidInput(source_ + ": the point array " + name + " must hold one number for every point");
+        throw InvalidInput(source_ + ": the point array " + cite(name) + " must hold one number for every point");
       }
       for (std::size_t i = 0; i < data_.points.size(); ++i) data_.points[i].radius = found->second[i];
       return;

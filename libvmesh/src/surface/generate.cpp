@@ -16,6 +16,7 @@
 #include "surface/guided_growth.h"
 #include "surface/optimize.h"
 #include "surface/paper_growth.h"
+#include "surface/scale_check.h"
 
 namespace vmesh {
 namespace {
@@ -47,10 +48,9 @@ void check_options(const GenerateOptions& o) {
   if (o.threads < 0) throw InvalidInput("threads must be >= 0");
 }
 
-void check_size(const Centerline& centerline, const GenerateOptions& options) {
-  const double expected = expected_vertices(centerline, options.around, options.max_error);
-  if (expected <= options.max_vertices) return;
-  Index longest = 0;
+/// The vessel thinnest for its length, in words.
+std::string thinnest_vessel(const Centerline& centerline) {
+  Index longest = kNone;
   double most = 0;
   for (Index s = 0; s < centerline.segments().size(); ++s) {
     const double radii = centerline.length(s) / centerline.radius_at(s, 0.5);
@@ -59,12 +59,21 @@ void check_size(const Centerline& centerline, const GenerateOptions& options) {
       longest = s;
     }
   }
+  if (longest == kNone) return {};
   std::ostringstream text;
-  text << "about " << expected << " vertices would be needed, more than the " << options.max_vertices
-       << " allowed; the vessel thinnest for its length is segment " << longest << " at ("
+  text << "the vessel thinnest for its length is segment " << longest << " at ("
        << centerline.point_at(longest, 0.5).transpose() << "): " << centerline.length(longest) << " mm at radius "
-       << centerline.radius_at(longest, 0.5)
-       << " mm. Check its radii, ask for fewer vertices around, or allow more in all";
+       << centerline.radius_at(longest, 0.5) << " mm. Check its radii, ";
+  return text.str();
+}
+
+void check_size(const Centerline& centerline, const GenerateOptions& options) {
+  const double expected = expected_vertices(centerline, options.around, options.max_error);
+  if (expected <= options.max_vertices) return;
+  std::ostringstream text;
+  text << "about " << expected << " vertices would be needed, more than the " << options.max_vertices << " allowed; "
+       << thinnest_vessel(centerline) << "ask for fewer vertices around"
+       << (options.max_error.is_set() ? " or a larger error" : "") << ", or allow more in all";
   throw InvalidInput(text.str());
 }
 
@@ -323,6 +332,7 @@ TriMesh with_lids(const GenerateResult& result) {
 
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& given, const Progress& progress) {
   check_options(given);
+  check_scale(centerline);
   GenerateOptions options = given;
   options.around = std::max(options.around, around_for(options.max_error));
   check_size(centerline, options);

@@ -32,12 +32,16 @@ double lattice_spacing(const Centerline& centerline) {
   double thinnest = std::numeric_limits<double>::infinity(), volume = 0;
   for (const auto& node : centerline.nodes()) {
     thinnest = std::min(thinnest, node.radius);
-    volume += 4.0 / 3 * std::numbers::pi * std::pow(node.radius, 3);
+    volume += 4.0 / 3 * std::numbers::pi * node.radius * node.radius * node.radius;
   }
   for (Index s = 0; s < centerline.segments().size(); ++s) {
-    volume += std::numbers::pi * std::pow(centerline.radius_at(s, 0.5), 2) * centerline.length(s);
+    const double radius = centerline.radius_at(s, 0.5);
+    volume += std::numbers::pi * radius * radius * centerline.length(s);
   }
-  return std::max(kSpacing * thinnest, std::cbrt(2 * volume / kMostPoints));  // two points to a cube
+  // In units near the radius: std::cbrt rounds otherwise below 1 than above, and scales would not be alike to the bit.
+  const double unit = std::ldexp(1.0, std::ilogb(thinnest));
+  const double most_points_spacing = unit * std::cbrt(2 * volume / (unit * unit * unit) / kMostPoints);
+  return std::max(kSpacing * thinnest, most_points_spacing);  // two points to a cube
 }
 
 // The lattice's surface in a mesh that is bound to the field.

@@ -248,13 +248,19 @@ int around_for(const ErrorLimit& limit) {
 }
 
 double expected_vertices(const Centerline& centerline, double around, const ErrorLimit& limit) {
-  if (!limit.is_set()) return expected_vertices(centerline.length_in_radii(), around);
+  const auto expected = [&](double length, double radius) {
+    const double coarse = edge_length_per_radius(around) * radius;
+    const double finer = limit.is_set() ? std::max(1.0, coarse / edge_length_for(limit.at(radius), radius)) : 1;
+    return finer * finer * expected_vertices(length / radius, around);
+  };
   double vertices = 0;
   for (Index s = 0; s < centerline.segments().size(); ++s) {
-    const double radius = centerline.radius_at(s, 0.5);
-    const double coarse = edge_length_per_radius(around) * radius;
-    const double finer = std::max(1.0, coarse / edge_length_for(limit.at(radius), radius));
-    vertices += finer * finer * expected_vertices(centerline.length(s) / radius, around);
+    vertices += expected(centerline.length(s), centerline.radius_at(s, 0.5));
+  }
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    // A sphere has the area of a tube as long as its diameter.
+    const double radius = centerline.node(n).radius;
+    if (centerline.degree(n) == 0) vertices += expected(2 * radius, radius);
   }
   return vertices;
 }

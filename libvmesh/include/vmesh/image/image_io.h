@@ -20,10 +20,11 @@ struct LoadedImage {
 
 /// Reads a scalar image of three dimensions (more, when they have one sample), lying in space where 3D Slicer shows it:
 /// NIfTI-1 and -2, NRRD, MetaImage, with header and voxels in one file, packed or not. In NIfTI, the sform wins over
-/// the qform unless it is skewed. Memory is bounded by what the file holds, unpacked. Throws ReadError (missing, a
-/// directory, unreadable), InvalidInput (content: not such a file, fewer voxels in the file than its header claims,
-/// values that are not finite, axes that span no volume), Unsupported (extension, voxels in another file, several
-/// numbers per voxel, whole numbers that float cannot hold).
+/// the qform unless it is skewed. It takes at most 16 times as much memory as the voxels in the
+/// file, unpacked (and 128 times as much as a file that is not packed), and a megabyte, whatever the header says.
+/// Throws ReadError (missing, a directory, unreadable), InvalidInput (content: not such a file, fewer voxels in the
+/// file than its header claims, values that are not finite, axes that span no volume), Unsupported (extension, voxels
+/// in another file, several numbers per voxel, whole numbers that float cannot hold).
 LoadedImage read_image(const std::filesystem::path& path);
 
 /// The same from memory; `source` names the content in messages and tells its format by its ending.

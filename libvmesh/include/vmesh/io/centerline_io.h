@@ -14,7 +14,7 @@ namespace vmesh {
 
 enum class CenterlineFormat {
   swc,   ///< .swc; rows `id type x y z radius parent`
-  vtp,   ///< .vtp; lines with a radius per point; needs a build with VTK
+  vtp,   ///< .vtp; lines with a radius per point; writing needs a build with VTK
   json,  ///< .json; schema "vmesh.centerline/1"
   csv,   ///< .csv; a pair of files, see csv_segments_path()
   vmv,   ///< .vmv; VessMorphoVis: vertices `id x y z radius`, strands `id vertex vertex ...`; read only
@@ -36,9 +36,10 @@ struct CenterlineReadOptions {
   std::string radius_array;
 };
 
-/// Reads a centerline as it is in the file; see clean() for the way to a Centerline. Memory is bounded by the file's
-/// size. Throws ReadError (missing, a directory, unreadable), InvalidInput (content; names the line or element),
-/// Unsupported (format, or VTP in a build without VTK).
+/// Reads a centerline as it is in the file; see clean() for the way to a Centerline. It takes at most 128 times
+/// as much memory as the file is large (packed VTP: as its data are unpacked) and a megabyte, whatever the file says.
+/// Throws ReadError (missing, a directory, unreadable), InvalidInput (content; names the line or element), Unsupported
+/// (format, or VTP packed by other than zlib).
 RawCenterline read_centerline(const std::filesystem::path& path, const CenterlineReadOptions& options = {});
 
 /// The same from memory; `source` names it in messages. A CSV pair has its second part in `csv_segments`.

@@ -46,7 +46,8 @@ struct LoadedSurface {
 };
 
 /// Reads a surface by extension. Polygons become fans of triangles, lines and loose points are left out, equal corners
-/// of an STL file become one vertex. Memory is bounded by the file's size.
+/// of an STL file become one vertex. It takes at most 128 times as much memory as the file is large (packed VTP: as its
+/// data are unpacked) and a megabyte, whatever the file says.
 /// Throws ReadError (missing, a directory, unreadable), InvalidInput (content; also when there is no face at all),
 /// Unsupported.
 LoadedSurface read_surface(const std::filesystem::path& path);

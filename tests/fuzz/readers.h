@@ -1,0 +1,37 @@
+// Every reader of the library under one name each, for fuzzing and for replaying what fuzzing has found.
+#pragma once
+
+#include <ostream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vmesh::testing {
+
+enum class Verdict { read, refused };
+
+struct Reader {
+  std::string_view name;    ///< "swc", "surface_vtp", "nii_gz" ...
+  std::string_view ending;  ///< of its files, ".swc"
+
+  /// Reads a file's content the way programs do: centerlines are cleaned, too. Refused is what the reader throws
+  /// InvalidInput or Unsupported for. Anything else that is thrown is a finding; so is std::logic_error, thrown when
+  /// what was read does not hold together or when the message of a refusal is not fit to be shown.
+  Verdict (*read)(std::string_view content);
+
+  /// Small valid files that show what the format can do.
+  std::vector<std::string> (*seeds)();
+};
+
+inline void PrintTo(const Reader& reader, std::ostream* out) { *out << reader.name; }
+
+std::span<const Reader> readers();
+
+/// Throws std::invalid_argument when there is none.
+const Reader& reader_named(std::string_view name);
+
+/// The two files of a CSV pair travel as one, nodes first, with this between them.
+constexpr char kCsvSeparator = '\f';
+
+}  // namespace vmesh::testing

@@ -1,0 +1,99 @@
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "seeds.h"
+
+namespace vmesh::testing {
+namespace {
+
+const std::string kPlyHead =
+    "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar label\n"
+    "element face 2\nproperty list uchar int vertex_indices\nproperty float quality\nend_header\n";
+
+template <class T>
+std::string bytes(T value) {
+  const auto buffer = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  return {buffer.begin(), buffer.end()};
+}
+
+std::string binary_ply() {
+  std::string text = "ply\nformat binary_little_endian 1.0\ncomment SPACE=LPS UNIT=mm\n" + kPlyHead;
+  for (const float x : {0.0f, 1.0f, 2.0f, 3.0f}) text += bytes(x) + bytes(x * x) + bytes(1 - x) + '\1';
+  for (const int last : {2, 3}) text += '\3' + bytes(std::int32_t{0}) + bytes(1) + bytes(last) + bytes(0.5f);
+  return text;
+}
+
+std::string binary_stl() {
+  std::string text = "SPACE=LPS UNIT=mm";
+  text.resize(80, ' ');
+  text += bytes(std::uint32_t{2});
+  for (const float x : {0.0f, 1.0f}) {
+    for (int i = 0; i < 12; ++i) text += bytes(i % 5 == 0 ? x : static_cast<float>(i % 4));
+    text += std::string(2, '\0');
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> ply_seeds() {
+  return {"ply\nformat ascii 1.0\ncomment SPACE=RAS\n" + kPlyHead +
+              "0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0.5 4\n4 0 1 2 3 0.25\n3 0 1 3 0.5\n",
+          binary_ply(),
+          "ply\nformat binary_big_endian 1.0\nobj_info UNIT=um\nelement face 1\n"
+          "property list uint8 uint8 vertex_index\nproperty list char short texcoord\nproperty int16 group\n"
+          "element vertex 3\nproperty int8 x\nproperty uint8 y\nproperty short z\nproperty ushort q\n"
+          "element edge 1\nproperty list uchar double w\nproperty uint32 n\nend_header\n" +
+              std::string("\3\0\1\2\1\0\7\0\5"
+                          "\1\2\0\3\0\4"
+                          "\2\2\0\4\0\5"
+                          "\3\1\1\0\0\0"
+                          "\0\0\0\0\1",
+                          32)};
+}
+
+std::vector<std::string> stl_seeds() {
+  const std::string facet = "facet normal 0 0 1\n outer loop\n";
+  return {"solid SPACE=LPS\n" + facet + "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n" + facet +
+              "vertex -0 0 0\nvertex 0 1 0\nvertex 0 0 1e-3\nendloop\nendfacet\nendsolid\n",
+          binary_stl()};
+}
+
+std::vector<std::string> obj_seeds() {
+  return {
+      "# SPACE=LPS UNIT=cm\nf 1 2/5 3//7\nv 0 0 0 0.5 0.5 0.5\nv 1 0 0\nv 0 1 0\nvt 0 0\nv 0 0 1\n"
+      "f -4/1/1 -1 \\\n -2\nl 1 2\nf 1 1 2\no name\nf 1 2 3 4\n"};
+}
+
+std::vector<std::string> off_seeds() {
+  return {"OFF\n# SPACE=RAS\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n4 0 1 3 2 255 0 0\n",
+          "COFF 3 1\n0 0 0 1 1 1\n1 0 0\n0 1 0\n\n3 0 1 2\n"};
+}
+
+std::vector<std::string> surface_vtp_seeds() {
+  return {
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>"
+      "<FieldData><DataArray type=\"String\" Name=\"UNIT\" NumberOfTuples=\"1\" format=\"ascii\">109 109 0"
+      "</DataArray></FieldData><Piece NumberOfPoints=\"5\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
+      "NumberOfStrips=\"1\" NumberOfPolys=\"2\">\n"
+      "<PointData Scalars=\"Distance\"><DataArray type=\"Float32\" Name=\"Distance\" format=\"ascii\">1 2 3 4 5"
+      "</DataArray><DataArray type=\"Float32\" NumberOfComponents=\"3\" Name=\"Normals\" format=\"ascii\">"
+      "0 0 1 0 0 1 0 0 1 0 0 1 0 0 1</DataArray></PointData>\n"
+      "<CellData><DataArray type=\"Int32\" Name=\"GroupIds\" format=\"ascii\">1 2 3</DataArray></CellData>\n"
+      "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0 0 1 0 0 2 1"
+      "</DataArray></Points>\n"
+      "<Strips><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 3 2 4</DataArray>"
+      "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">5</DataArray></Strips>\n"
+      "<Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 0 1 2 3</DataArray>"
+      "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">3 7</DataArray></Polys>\n"
+      "</Piece></PolyData></VTKFile>\n",
+      "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" header_type=\"UInt32\"><PolyData>"
+      "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points><DataArray type=\"UInt8\" NumberOfComponents=\"3\" "
+      "format=\"appended\" offset=\"0\"/></Points><Polys><DataArray type=\"UInt8\" Name=\"connectivity\" "
+      "format=\"appended\" offset=\"20\"/><DataArray type=\"UInt8\" Name=\"offsets\" format=\"appended\" "
+      "offset=\"32\"/></Polys></Piece></PolyData><AppendedData encoding=\"base64\">_CQAAAAAAAAEAAAABAA=="
+      "AwAAAAABAg==AQAAAAM=</AppendedData></VTKFile>"};
+}
+
+}  // namespace vmesh::testing
