@@ -70,25 +70,22 @@ class VtpReader {
       : source_(source), file_(parse_xml(content, source)), arrays_(file_, source) {}
 
   VtpData run() {
-    const XmlElement& root = file_.elements.front();
-    if (root.name != "VTKFile" || root.attribute("type") != "PolyData") {
+    const pugi::xml_node root = file_.document.child("VTKFile");
+    if (root.attribute("type").value() != std::string_view("PolyData")) {
       throw InvalidInput(source_ + ": this is no VTP file: it is not a <VTKFile type=\"PolyData\">");
     }
-    const XmlElement* data = file_.find(root, "PolyData");
+    const pugi::xml_node data = root.child("PolyData");
     if (!data) throw InvalidInput(source_ + ": there is no <PolyData> in it");
-    if (const XmlElement* field = file_.find(*data, "FieldData")) read_tags(*field);
-    for (const std::size_t c : data->children) {
-      if (file_.elements[c].name == "Piece") read_piece(file_.elements[c]);
-    }
+    read_tags(data.child("FieldData"));
+    for (const pugi::xml_node piece : data.children("Piece")) read_piece(piece);
     if (data_.points.empty()) throw InvalidInput(source_ + ": there is no point in it");
     return std::move(data_);
   }
 
  private:
-  void read_tags(const XmlElement& field) {
-    for (std::size_t i = 0; i < field.children.size(); ++i) {
-      const XmlElement& array = file_.child(field, i);
-      const std::string_view name = array.attribute("Name");
+  void read_tags(pugi::xml_node field) {
+    for (const pugi::xml_node array : field.children()) {
+      const std::string_view name = array.attribute("Name").value();
       if (name != "SPACE" && name != "UNIT") continue;
       const std::string text = arrays_.text(array);
       if (name == "SPACE") data_.space = parse_space(text).value_or(data_.space);
@@ -96,7 +93,7 @@ class VtpReader {
     }
   }
 
-  void read_piece(const XmlElement& piece) {
+  void read_piece(pugi::xml_node piece) {
     const std::size_t first_point = data_.points.size();
     const std::uint64_t count = count_of(piece, "NumberOfPoints");
     if (count >= kNone - first_point) throw InvalidInput(source_ + ": too many points: " + std::to_string(count));
@@ -110,43 +107,37 @@ class VtpReader {
     if (first_point == 0) read_arrays(piece, "CellData", 0, data_.cell_count(), data_.cell_arrays);
   }
 
-  std::uint64_t count_of(const XmlElement& piece, const char* key) const {
-    const std::string_view text = piece.attribute(key);
+  std::uint64_t count_of(pugi::xml_node piece, const char* key) const {
+    const std::string_view text = piece.attribute(key).value();
     if (text.empty()) return 0;
     const auto count = parse_integer(text);
     if (count && *count >= 0) return static_cast<std::uint64_t>(*count);
     throw InvalidInput(source_ + ": " + key + "=" + cite(text) + " is no count");
   }
 
-  void read_points(const XmlElement& piece, std::uint64_t count) {
+  void read_points(pugi::xml_node piece, std::uint64_t count) {
     if (count == 0) return;
-    const XmlElement* points = file_.find(piece, "Points");
-    const XmlElement* array = points ? file_.find(*points, "DataArray") : nullptr;
+    const pugi::xml_node array = piece.child("Points").child("DataArray");
     if (!array) throw InvalidInput(source_ + ": there are no coordinates for its " + std::to_string(count) + " points");
-    if (array->attribute("NumberOfComponents") != "3") throw InvalidInput(source_ + ": points need three coordinates");
-    const std::vector<double> x = arrays_.numbers(*array, 3 * count);
+    if (array.attribute("NumberOfComponents").value() != std::string_view("3")) {
+      throw InvalidInput(source_ + ": points need three coordinates");
+    }
+    const std::vector<double> x = arrays_.numbers(array, 3 * count);
     for (std::size_t i = 0; i < x.size(); i += 3) data_.points.emplace_back(x[i], x[i + 1], x[i + 2]);
   }
 
-  const XmlElement* named(const XmlElement& parent, std::string_view name) const {
-    for (const std::size_t c : parent.children) {
-      if (file_.elements[c].attribute("Name") == name) return &file_.elements[c];
-    }
-    return nullptr;
-  }
-
-  void read_cells(const XmlElement& piece, const char* kind, std::uint64_t count, std::size_t first_point,
+  void read_cells(pugi::xml_node piece, const char* kind, std::uint64_t count, std::size_t first_point,
                   VtpCells& cells) {
     if (count == 0) return;
-    const XmlElement* parent = file_.find(piece, kind);
-    const XmlElement* offsets = parent ? named(*parent, "offsets") : nullptr;
-    const XmlElement* ids = parent ? named(*parent, "connectivity") : nullptr;
+    const pugi::xml_node parent = piece.child(kind);
+    const pugi::xml_node offsets = parent.find_child_by_attribute("Name", "offsets");
+    const pugi::xml_node ids = parent.find_child_by_attribute("Name", "connectivity");
     if (!offsets || !ids) {
       throw InvalidInput(source_ + ": <" + kind + "> needs arrays \"connectivity\" and \"offsets\" for its " +
                          std::to_string(count) + " cells");
     }
-    const std::vector<double> ends = arrays_.numbers(*offsets, count);
-    const std::vector<double> points = arrays_.numbers(*ids, VtpArrays::kAll);
+    const std::vector<double> ends = arrays_.numbers(offsets, count);
+    const std::vector<double> points = arrays_.numbers(ids, VtpArrays::kAll);
     const std::size_t first_id = cells.ids.size();
     double before = 0;
     for (std::size_t c = 0; c < ends.size(); ++c) {
@@ -173,14 +164,13 @@ class VtpReader {
 
   /// Adds the piece's numbers, `count` each, to those of the points or cells `before` it. Where a piece before did not
   /// have the array, it stays too short.
-  void read_arrays(const XmlElement& piece, const char* kind, std::size_t before, std::size_t count,
+  void read_arrays(pugi::xml_node piece, const char* kind, std::size_t before, std::size_t count,
                    VtpArrayList& arrays) {
-    const XmlElement* parent = file_.find(piece, kind);
-    for (std::size_t i = 0; parent && i < parent->children.size(); ++i) {
-      const XmlElement& array = file_.child(*parent, i);
-      const std::string name = unescaped(array.attribute("Name"));
-      const std::string_view type = array.attribute("type"), components = array.attribute("NumberOfComponents");
-      if (array.name != "DataArray" || name.empty() || type == "String") continue;
+    for (const pugi::xml_node array : piece.child(kind).children("DataArray")) {
+      const std::string name = array.attribute("Name").value();
+      const std::string_view type = array.attribute("type").value();
+      const std::string_view components = array.attribute("NumberOfComponents").value();
+      if (name.empty() || type == "String") continue;
       VtpArray& target = arrays.get(name, !type.starts_with("Float"));
       if (target.values.size() != before || (!components.empty() && components != "1")) continue;
       const std::vector<double> values = arrays_.numbers(array, count);

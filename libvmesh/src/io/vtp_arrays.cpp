@@ -97,19 +97,20 @@ std::string_view without_blank_ends(std::string_view text) {
 
 VtpArrays::VtpArrays(const XmlFile& file, const std::string& source)
     : file_(file), source_(source), appended_left_(file.appended.size()) {
-  const XmlElement& root = file.elements.front();
-  appended_ = file.find(root, "AppendedData");
-  big_endian_ = root.attribute("byte_order") == "BigEndian";
-  word_size_ = root.attribute("header_type") == "UInt64" ? 8 : 4;
-  const std::string_view compressor = root.attribute("compressor");
+  const pugi::xml_node root = file.document.document_element();
+  const auto is = [](pugi::xml_attribute attribute, std::string_view value) { return attribute.value() == value; };
+  raw_appended_ = is(root.child("AppendedData").attribute("encoding"), "raw");
+  big_endian_ = is(root.attribute("byte_order"), "BigEndian");
+  word_size_ = is(root.attribute("header_type"), "UInt64") ? 8 : 4;
+  const std::string_view compressor = root.attribute("compressor").value();
   packed_ = !compressor.empty();
   if (packed_ && compressor != "vtkZLibDataCompressor") {
     throw Unsupported(source + ": packed by " + cite(compressor) + "; save it with zlib, or not packed");
   }
 }
 
-void VtpArrays::fail(const XmlElement& array, const std::string& what) const {
-  const std::string_view name = array.attribute("Name");
+void VtpArrays::fail(pugi::xml_node array, const std::string& what) const {
+  const std::string_view name = array.attribute("Name").value();
   throw InvalidInput(source_ + ": DataArray " + (name.empty() ? "without a name" : cite(name)) + ": " + what);
 }
 
@@ -119,22 +120,22 @@ std::uint64_t VtpArrays::header_word(std::string_view bytes, std::size_t i) cons
 }
 
 /// The appended data from the array's offset on.
-std::string_view VtpArrays::appended(const XmlElement& array) const {
+std::string_view VtpArrays::appended(pugi::xml_node array) const {
   const std::size_t begin = file_.appended.find_first_not_of(kBlank);
   if (begin == std::string_view::npos || file_.appended[begin] != '_') fail(array, "there is no appended data");
   const std::string_view all = file_.appended.substr(begin + 1);
-  const auto offset = parse_integer(array.attribute("offset"));
+  const auto offset = parse_integer(array.attribute("offset").value());
   if (!offset || *offset < 0 || static_cast<std::uint64_t>(*offset) > all.size())
-    fail(array, "its offset " + cite(array.attribute("offset")) + " is beyond the appended data");
+    fail(array, "its offset " + cite(array.attribute("offset").value()) + " is beyond the appended data");
   return all.substr(static_cast<std::size_t>(*offset));
 }
 
 /// Up to `most` of the bytes that a binary or appended array holds; fewer when the file has no more. Appended data
 /// shared by arrays would let a small file grow without bound: all arrays together have what is there.
-std::string VtpArrays::bytes(const XmlElement& array, std::uint64_t most) {
-  const bool is_appended = array.attribute("format") == "appended";
-  const bool base64 = !is_appended || (appended_ && appended_->attribute("encoding") != "raw");
-  std::string_view stored = is_appended ? appended(array) : without_blank_ends(array.text);
+std::string VtpArrays::bytes(pugi::xml_node array, std::uint64_t most) {
+  const bool is_appended = array.attribute("format").value() == std::string_view("appended");
+  const bool base64 = !is_appended || !raw_appended_;
+  std::string_view stored = is_appended ? appended(array) : without_blank_ends(array.child_value());
   const std::size_t size = stored.size();
   std::string result = packed_ ? unpacked(array, stored, base64, most) : plain(array, stored, base64, most);
   if (is_appended) {
@@ -146,7 +147,7 @@ std::string VtpArrays::bytes(const XmlElement& array, std::uint64_t most) {
 }
 
 /// The number of bytes, then the bytes.
-std::string VtpArrays::plain(const XmlElement& array, std::string_view& stored, bool base64, std::uint64_t most) const {
+std::string VtpArrays::plain(pugi::xml_node array, std::string_view& stored, bool base64, std::uint64_t most) const {
   std::string_view peeked = stored;  // both are encoded in one go
   const std::string header = take(peeked, base64, word_size_);
   if (header.size() < word_size_) return {};
@@ -158,7 +159,7 @@ std::string VtpArrays::plain(const XmlElement& array, std::string_view& stored, 
 
 /// Before packed data: the number of blocks, their size, the size of the last one if it is less, and their packed
 /// sizes.
-std::string VtpArrays::unpacked(const XmlElement& array, std::string_view& stored, bool base64,
+std::string VtpArrays::unpacked(pugi::xml_node array, std::string_view& stored, bool base64,
                                 std::uint64_t most) const {
   std::string_view peeked = stored;
   const std::string first = take(peeked, base64, word_size_);
@@ -190,9 +191,9 @@ std::string VtpArrays::unpacked(const XmlElement& array, std::string_view& store
   return result;
 }
 
-std::vector<double> VtpArrays::words(const XmlElement& array, std::uint64_t count) const {
+std::vector<double> VtpArrays::words(pugi::xml_node array, std::uint64_t count) const {
   std::vector<double> values;
-  std::string_view text = array.text;
+  std::string_view text = array.child_value();
   while (values.size() < count) {
     const std::size_t begin = text.find_first_not_of(kBlank);
     if (begin == std::string_view::npos) break;
@@ -205,10 +206,10 @@ std::vector<double> VtpArrays::words(const XmlElement& array, std::uint64_t coun
   return values;
 }
 
-std::vector<double> VtpArrays::numbers(const XmlElement& array, std::uint64_t count) {
-  const auto type = type_of(array.attribute("type"));
-  if (!type) fail(array, "its type " + cite(array.attribute("type")) + " holds no numbers that can be read");
-  const std::string_view format = array.attribute("format");
+std::vector<double> VtpArrays::numbers(pugi::xml_node array, std::uint64_t count) {
+  const auto type = type_of(array.attribute("type").value());
+  if (!type) fail(array, "its type " + cite(array.attribute("type").value()) + " holds no numbers that can be read");
+  const std::string_view format = array.attribute("format").value();
   std::vector<double> values;
   if (format == "binary" || format == "appended") {
     const std::size_t size = size_of(*type);
@@ -225,10 +226,10 @@ std::vector<double> VtpArrays::numbers(const XmlElement& array, std::uint64_t co
   return values;
 }
 
-std::string VtpArrays::text(const XmlElement& array) {
+std::string VtpArrays::text(pugi::xml_node array) {
   constexpr std::uint64_t kLongest = 256;
   std::string result;
-  const std::string_view format = array.attribute("format");
+  const std::string_view format = array.attribute("format").value();
   if (format == "binary" || format == "appended") {
     result = bytes(array, kLongest);
   } else {
