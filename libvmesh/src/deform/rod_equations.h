@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "deform/rod_scene.h"
-#include "deform/spatial.h"
+#include "deform/matrix6.h"
 
 namespace vmesh {
 
@@ -24,8 +24,8 @@ struct RodEquation {
   Vec3 prescribed = Vec3::Zero();  ///< displacement of a held slot
 
   // What the subtree below and with this slot means to the parent, and the solution.
-  SpatialMatrix reduced;
-  Spatial reduced_gradient;
+  Matrix6 reduced = {};
+  Vector6 reduced_gradient = {};
   Spatial x;
 };
 

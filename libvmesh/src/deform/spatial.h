@@ -14,18 +14,12 @@ struct Spatial {
 
 inline Spatial operator+(const Spatial& a, const Spatial& b) { return {a.linear + b.linear, a.angular + b.angular}; }
 
-/// a b, a b^T and a^T b. Spelt out, as Eigen calls a function for each coefficient of a sum of products: it takes half
+/// a b and a^T b. Spelt out, as Eigen calls a function for each coefficient of a sum of products: it takes half
 /// the time.
 [[gnu::always_inline]] inline Mat3 product(const Mat3& a, const Mat3& b) {
   Mat3 r;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) r(i, j) = a(i, 0) * b(0, j) + a(i, 1) * b(1, j) + a(i, 2) * b(2, j);
-  return r;
-}
-[[gnu::always_inline]] inline Mat3 product_transposed(const Mat3& a, const Mat3& b) {
-  Mat3 r;
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i) r(i, j) = a(i, 0) * b(j, 0) + a(i, 1) * b(j, 1) + a(i, 2) * b(j, 2);
   return r;
 }
 [[gnu::always_inline]] inline Mat3 transposed_product(const Mat3& a, const Mat3& b) {
@@ -34,28 +28,6 @@ inline Spatial operator+(const Spatial& a, const Spatial& b) { return {a.linear 
     for (int i = 0; i < 3; ++i) r(i, j) = a(0, i) * b(0, j) + a(1, i) * b(1, j) + a(2, i) * b(2, j);
   return r;
 }
-
-[[gnu::always_inline]] inline Mat3 transposed(const Mat3& a) { return a.transpose(); }
-/// a^T v.
-[[gnu::always_inline]] inline Vec3 times_transposed(const Mat3& a, const Vec3& v) {
-  return {a(0, 0) * v[0] + a(1, 0) * v[1] + a(2, 0) * v[2], a(0, 1) * v[0] + a(1, 1) * v[1] + a(2, 1) * v[2],
-          a(0, 2) * v[0] + a(1, 2) * v[1] + a(2, 2) * v[2]};
-}
-
-/// A symmetric 6x6 matrix [ll la; la^T aa].
-struct SpatialMatrix {
-  Mat3 ll = Mat3::Zero(), la = Mat3::Zero(), aa = Mat3::Zero();
-
-  Spatial operator*(const Spatial& x) const {
-    return {ll * x.linear + la * x.angular, la.transpose() * x.linear + aa * x.angular};
-  }
-  SpatialMatrix& operator+=(const SpatialMatrix& other) {
-    ll += other.ll;
-    la += other.la;
-    aa += other.aa;
-    return *this;
-  }
-};
 
 /// Where a difference that must be positive is all rounding, what stands for it: this times the minuend.
 constexpr double kRounding = 1e-15;
@@ -72,23 +44,6 @@ constexpr double kRounding = 1e-15;
   const double r01 = -l10 * i1 - l21 * m20 * i2, r02 = m20 * i2, r12 = -l21 * i2;
   Mat3 r;
   r << i0 + l10 * l10 * i1 + m20 * m20 * i2, r01, r02, r01, i1 + l21 * l21 * i2, r12, r02, r12, i2;
-  return r;
-}
-
-/// A difference that must be positive definite, with its diagonal raised where it is all rounding of the minuend.
-[[gnu::always_inline]] inline Mat3 raised(Mat3 difference, const Mat3& minuend) {
-  for (int i = 0; i < 3; ++i) difference(i, i) = std::max(difference(i, i), kRounding * minuend(i, i));
-  return difference;
-}
-
-/// The same for 6x6.
-[[gnu::always_inline]] inline SpatialMatrix inverse(const SpatialMatrix& m) {
-  const Mat3 ll = inverse(m.ll);
-  const Mat3 t = product(ll, m.la);
-  SpatialMatrix r;
-  r.aa = inverse(raised(m.aa - transposed_product(m.la, t), m.aa));
-  r.la = -product(t, r.aa);
-  r.ll = ll - product_transposed(r.la, t);
   return r;
 }
 
