@@ -13,55 +13,53 @@ constexpr std::size_t kSharpenEvery = 64;
 }  // namespace
 
 void ImplicitRods::finish(RodScene& scene, StepReport& report) {
-  set_velocities(scene);
-  report.work_J = 1e-6 * govern(scene, work(scene));
+  const bool sharpens = ++steps_ % kSharpenEvery == 0;
+  Balance balance;
+  balance.before = start_tie_energy_;
+  balance.elastic = tie_energy(scene);
+  for (const Index j : visited_slots_) {
+    if (sharpens) sharpen(scene.pose.frame[j]);
+    set_velocities(scene, j);
+    const double given = scene.hold[j] == Hold::free ? 0 : 0.5 * scene.rods[j].mass * scene.velocity[j].squaredNorm();
+    balance.work += work(scene, j);
+    balance.before += start_kinetic_[j] + start_elastic_[j];
+    balance.elastic += elastic_[j];
+    balance.held += given;
+    balance.free += kinetic_energy(scene, j) - given;
+  }
+  report.work_J = 1e-6 * govern(scene, balance);
   for (const Index j : visited_slots_) settle(scene, j);
   std::erase_if(awake_slots_, [this](Index j) { return !awake_[j]; });
   report.awake = awake_count_;
 }
 
-void ImplicitRods::set_velocities(RodScene& scene) {
-  const bool sharpens = ++steps_ % kSharpenEvery == 0;
-  for (const Index j : visited_slots_) {
-    if (sharpens) sharpen(scene.pose.frame[j]);
-    turn_[j] = turned_by(start_frame_[j], scene.pose.frame[j]);
-    scene.velocity[j] = (scene.pose.position[j] - start_position_[j]) / step_s_;
-    scene.spin[j] = turn_[j] / step_s_;
-  }
+void ImplicitRods::set_velocities(RodScene& scene, Index j) {
+  turn_[j] = turned_by(start_frame_[j], scene.pose.frame[j]);
+  scene.velocity[j] = (scene.pose.position[j] - start_position_[j]) / step_s_;
+  scene.spin[j] = turn_[j] / step_s_;
 }
 
-/// Of forces, gravity and dragged slots, uJ.
-double ImplicitRods::work(const RodScene& scene) const {
-  double sum = 0;
-  for (const Index j : visited_slots_) {
-    const Rod& rod = scene.rods[j];
-    const Vec3 moved = scene.pose.position[j] - start_position_[j];
-    sum += scene.torque[j].dot(turn_[j]);
-    if (scene.hold[j] == Hold::free) {
-      sum += (scene.force[j] + rod.mass * scene.options.gravity_mm_s2).dot(moved);
-    } else if (moved != Vec3::Zero()) {
-      Vec3 hand = rod.mass / step_s_ * (scene.velocity[j] - start_velocity_[j]) + equations_[j].spring_gradient.linear;
-      for (Index c = rod.first_child; c != kNone; c = scene.rods[c].next_sibling)
-        hand -= equations_[c].spring_gradient.linear;
-      sum += hand.dot(moved);
-    }
+/// Of forces, gravity and what drags, on slot j, uJ.
+double ImplicitRods::work(const RodScene& scene, Index j) const {
+  const Rod& rod = scene.rods[j];
+  const Vec3 moved = scene.pose.position[j] - start_position_[j];
+  const double turning = scene.torque[j].dot(turn_[j]);
+  if (scene.hold[j] == Hold::free) {
+    return turning + (scene.force[j] + rod.mass * scene.options.gravity_mm_s2).dot(moved);
   }
-  return sum;
+  if (moved == Vec3::Zero()) return turning;
+  Vec3 hand = rod.mass / step_s_ * (scene.velocity[j] - start_velocity_[j]) + equations_[j].spring_gradient.linear;
+  for (Index c = rod.first_child; c != kNone; c = scene.rods[c].next_sibling)
+    hand -= equations_[c].spring_gradient.linear;
+  return turning + hand.dot(moved);
 }
 
 /// Scales the velocities of what is free down where there is more energy than there may be: exactly minimised and with
 /// convex springs there never is. Returns the work that was done. Where the springs hold more than came in by the
 /// forces at the end of the step, as a slot was dragged far in it or the minimum is not reached, that is what it took:
 /// at most the energy of having struck and dragged first with all else standing still.
-double ImplicitRods::govern(RodScene& scene, double work) {
-  double before = start_tie_energy_, elastic = tie_energy(scene), free = 0, held = 0;
-  for (const Index j : visited_slots_) {
-    before += start_kinetic_[j] + start_elastic_[j];
-    elastic += elastic_[j];
-    const double given = scene.hold[j] == Hold::free ? 0 : 0.5 * scene.rods[j].mass * scene.velocity[j].squaredNorm();
-    held += given;
-    free += kinetic_energy(scene, j) - given;
-  }
+double ImplicitRods::govern(RodScene& scene, const Balance& balance) {
+  const auto& [before, work, elastic, free, held] = balance;
   const double allowed = std::max(0.0, std::min(before + work - held, energy_bound_) - elastic);
   if (free > allowed) {
     const double factor = std::sqrt(allowed / free);

@@ -37,8 +37,8 @@ ImplicitRods::ImplicitRods(const RodScene& scene) : step_s_(scene.options.step_s
   predicted_x_ = predicted_y_ = turn_ = base_turn_ = start_misfit_ = predicted_position_;
   base_misfit_ = misfit_change_ = predicted_position_;
   start_frame_ = base_frame_ = scene.pose.frame;
-  value_.assign(n, 0);
-  elastic_ = start_elastic_ = start_kinetic_ = value_;
+  elastic_.assign(n, 0);
+  start_elastic_ = start_kinetic_ = elastic_;
   visited_.assign(n, 0);
   visited_slots_.reserve(n);
   awake_slots_.reserve(n);
@@ -66,10 +66,11 @@ StepReport ImplicitRods::step(RodScene& scene) noexcept {
   if (awake_count_ == 0) return report;
   if (!scene.tree.ties.empty() && awake_count_ < awake_.size()) wake_all();
   choose_visited(scene);
+  value_ = 0;
+  drags_ = false;
   for (const Index j : visited_slots_) begin(scene, j);
   start_tie_energy_ = tie_energy(scene);
   for (int i = 0; i < scene.options.iterations; ++i) {
-    if (i > 0) set_base(scene);
     report.movement_mm = iterate(scene, i == 0, report);
     ++report.iterations;
     if (report.movement_mm == 0) break;
@@ -113,12 +114,12 @@ void ImplicitRods::begin(const RodScene& scene, Index j) {
   const Rod& rod = scene.rods[j];
   const Vec3& p = scene.pose.position[j];
   const Mat3& frame = scene.pose.frame[j];
-  start_position_[j] = base_position_[j] = p;
-  start_frame_[j] = base_frame_[j] = frame;
+  start_position_[j] = p;
+  start_frame_[j] = frame;
   start_velocity_[j] = scene.velocity[j];
   start_elastic_[j] = elastic_[j];
   start_kinetic_[j] = kinetic_energy(scene, j);
-  base_turn_[j] = turn_[j] = Vec3::Zero();
+  turn_[j] = Vec3::Zero();
   start_misfit_[j] = equations_[j].elastic_gradient.linear * (scene.is_root(j) ? 0 : 1 / rod.stretch);
 
   const double reach = step_s_ / (1 + scene.options.drag_per_s * step_s_);
@@ -129,14 +130,15 @@ void ImplicitRods::begin(const RodScene& scene, Index j) {
   predicted_x_[j] = frame.col(0) + reach * spin.cross(Vec3(frame.col(0)));
   predicted_y_[j] = frame.col(1) + reach * spin.cross(Vec3(frame.col(1)));
   equations_[j].spring_gradient = equations_[j].elastic_gradient;
-  value_[j] = evaluate_inertia(scene, j) + elastic_[j];
+  value_ += evaluate_inertia(scene, j) + elastic_[j];
+  drags_ = drags_ || dragged(scene, j);
 }
 
-void ImplicitRods::evaluate(const RodScene& scene, Index j) {
-  value_[j] = evaluate_inertia(scene, j);
-  if (scene.is_root(j)) return;
+double ImplicitRods::evaluate(const RodScene& scene, Index j) {
+  const double inertia = evaluate_inertia(scene, j);
+  if (scene.is_root(j)) return inertia;
   elastic_[j] = evaluate_springs(scene, j);
-  value_[j] += elastic_[j] + evaluate_damping(scene, j);
+  return inertia + elastic_[j] + evaluate_damping(scene, j);
 }
 
 double ImplicitRods::evaluate_inertia(const RodScene& scene, Index j) {
@@ -192,72 +194,71 @@ bool ImplicitRods::dragged(const RodScene& scene, Index j) const {
   return scene.hold[j] != Hold::free && scene.target[j] != scene.pose.position[j];
 }
 
+/// Asks for what will be worked on soon after visited_slots_[i]: in large trees it comes from far.
+void ImplicitRods::fetch_ahead(const RodScene& scene, std::size_t i) const {
+  if (i + kAhead >= visited_slots_.size()) return;
+  const Index j = visited_slots_[i + kAhead];
+  fetch(equations_[j]);
+  fetch(scene.rods[j]);
+  fetch(scene.pose.frame[j]);
+  fetch(base_frame_[j]);
+}
+
 /// One Gauss-Newton iteration. Returns the largest displacement.
 double ImplicitRods::iterate(RodScene& scene, bool first, StepReport& report) {
   solve(scene);
-  bool drags = false;
-  double before = 0, largest = 0;
-  for (const Index j : visited_slots_) {
-    before += value_[j];
-    largest = std::max(largest, equations_[j].x.linear.squaredNorm());
-    set_misfits(scene, j);
-    drags = drags || dragged(scene, j);
-  }
-  if (drags) before += drag(scene);
-  before += tie_energy(scene);
+  if (first && drags_) drag(scene);
+  const double before = value_ + tie_energy(scene);
   if (first) energy_bound_ = before;
-  double part = 1;
+  double part = 1, largest = 0;
   for (int attempt = 0;; ++attempt) {
     if (attempt == kMostAttempts) part = 0;
     const bool chained = attempt % 2 == 0;
-    const double now = move(scene, part, chained);
-    if (part == 0 || now <= before * (1 + kEnergyTolerance)) break;
+    largest = move(scene, part, chained);
+    if (part == 0 || value_ + tie_energy(scene) <= before * (1 + kEnergyTolerance)) break;
     if (!chained) part /= 2;
     ++report.rejections;
   }
-  return part * std::sqrt(largest);
+  return part * largest;
 }
 
-/// Where the solution would have slot j's segment against its axis if turning by an angle did not lengthen it.
-void ImplicitRods::set_misfits(const RodScene& scene, Index j) {
-  const RodEquation& e = equations_[j];
+/// From where slot j moves, and where the solution would have its segment against its axis if turning by an angle did
+/// not lengthen it.
+void ImplicitRods::set_base(const RodScene& scene, Index j) {
+  base_position_[j] = scene.pose.position[j];
+  base_frame_[j] = scene.pose.frame[j];
+  base_turn_[j] = turn_[j];
   if (scene.is_root(j)) return;
+  const RodEquation& e = equations_[j];
   base_misfit_[j] = e.elastic_gradient.linear / scene.rods[j].stretch;
   misfit_change_[j] = e.x.linear + e.lever.cross(e.x.angular) - equations_[scene.rods[j].parent].x.linear;
 }
 
-void ImplicitRods::set_base(const RodScene& scene) {
-  for (const Index j : visited_slots_) {
-    base_position_[j] = scene.pose.position[j];
-    base_frame_[j] = scene.pose.frame[j];
-    base_turn_[j] = turn_[j];
-  }
-}
-
-/// Puts dragged slots where they go, all else standing still. Returns by how much the sum to minimise changes.
-double ImplicitRods::drag(RodScene& scene) {
-  double change = 0;
+/// Puts dragged slots where they go, all else standing still.
+void ImplicitRods::drag(RodScene& scene) {
   for (const Index j : visited_slots_) {
     const Index parent = scene.rods[j].parent;
     const bool pulled = scene.hold[j] != Hold::free && scene.target[j] != base_position_[j];
     const bool parent_pulled =
         parent != kNone && scene.hold[parent] != Hold::free && scene.target[parent] != base_position_[parent];
     if (!pulled && !parent_pulled) continue;
+    value_ -= evaluate_inertia(scene, j) + elastic_[j];
     if (pulled) scene.pose.position[j] = scene.target[j];
-    change -= value_[j];
-    evaluate(scene, j);
-    change += value_[j];
+    value_ += evaluate(scene, j);
   }
-  return change;
 }
 
 /// From the base by a part of the solution; held slots go all the way. Chained, segments turn with their frames, and
-/// what hangs on them follows; otherwise nodes move straight. Returns the sum to minimise there.
+/// what hangs on them follows; otherwise nodes move straight. Returns the solution's largest displacement.
 double ImplicitRods::move(RodScene& scene, double part, bool chained) {
-  double sum = 0;
-  for (const Index j : visited_slots_) {
+  value_ = 0;
+  double largest = 0;
+  for (std::size_t i = 0; i < visited_slots_.size(); ++i) {
+    const Index j = visited_slots_[i];
+    fetch_ahead(scene, i);
     const Rod& rod = scene.rods[j];
     const Spatial& x = equations_[j].x;
+    largest = std::max(largest, x.linear.squaredNorm());
     if (scene.hold[j] != Hold::clamped) {
       scene.pose.frame[j] = product(cayley(part * x.angular), base_frame_[j]);
       turn_[j] = base_turn_[j] + part * x.angular;
@@ -271,10 +272,9 @@ double ImplicitRods::move(RodScene& scene, double part, bool chained) {
     } else {
       p = base_position_[j] + part * x.linear;
     }
-    evaluate(scene, j);
-    sum += value_[j];
+    value_ += evaluate(scene, j);
   }
-  return sum + tie_energy(scene);
+  return std::sqrt(largest);
 }
 
 }  // namespace vmesh

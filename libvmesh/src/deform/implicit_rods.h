@@ -22,14 +22,24 @@ class ImplicitRods {
   StepReport step(RodScene& scene) noexcept;
 
  private:
+  /// Energies of a step, uJ.
+  struct Balance {
+    double before = 0, work = 0, elastic = 0;
+    double free = 0, held = 0;  ///< kinetic, of what moves by itself and of what is moved
+  };
+
   void choose_visited(const RodScene& scene);
   void visit(Index j);
   void visit_children(const RodScene& scene, Index j);
   void begin(const RodScene& scene, Index j);
-  void evaluate(const RodScene& scene, Index j);
+  double evaluate(const RodScene& scene, Index j);
   double evaluate_inertia(const RodScene& scene, Index j);
   double evaluate_springs(const RodScene& scene, Index j);
   double evaluate_damping(const RodScene& scene, Index j);
+
+  /// Slots between what is worked on and what is asked for.
+  static constexpr std::size_t kAhead = 4;
+  void fetch_ahead(const RodScene& scene, std::size_t i) const;
 
   void solve(const RodScene& scene);
   void solve_tree(const RodScene& scene);
@@ -41,15 +51,14 @@ class ImplicitRods {
 
   bool dragged(const RodScene& scene, Index j) const;
   double iterate(RodScene& scene, bool first, StepReport& report);
-  void set_base(const RodScene& scene);
-  double drag(RodScene& scene);
-  void set_misfits(const RodScene& scene, Index j);
+  void set_base(const RodScene& scene, Index j);
+  void drag(RodScene& scene);
   double move(RodScene& scene, double part, bool chained);
 
   void finish(RodScene& scene, StepReport& report);
-  void set_velocities(RodScene& scene);
-  double work(const RodScene& scene) const;
-  double govern(RodScene& scene, double work);
+  void set_velocities(RodScene& scene, Index j);
+  double work(const RodScene& scene, Index j) const;
+  double govern(RodScene& scene, const Balance& balance);
   void settle(RodScene& scene, Index j);
 
   double step_s_;
@@ -63,8 +72,10 @@ class ImplicitRods {
   std::vector<Vec3> turn_, base_turn_;  // since the step's start: sum of the iterations' rotation vectors
   std::vector<Vec3> start_misfit_, base_misfit_, misfit_change_;
   std::size_t steps_ = 0;
-  std::vector<double> value_, elastic_, start_elastic_, start_kinetic_;
+  std::vector<double> elastic_, start_elastic_, start_kinetic_;
+  double value_ = 0;         // the sum to minimise but for the ties, where things are
   double energy_bound_ = 0;  // of the step: what standing still has
+  bool drags_ = false;       // in this step
   double start_tie_energy_ = 0;
 
   std::vector<Vec3> tie_load_, tie_residual_, tie_direction_, tie_image_, tie_opening_;

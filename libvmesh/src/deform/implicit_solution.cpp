@@ -31,7 +31,10 @@ void ImplicitRods::solve(const RodScene& scene) {
 }
 
 void ImplicitRods::solve_tree(const RodScene& scene) {
-  for (auto j = visited_slots_.rbegin(); j != visited_slots_.rend(); ++j) eliminate(equations_, scene.rods, *j);
+  for (std::size_t i = visited_slots_.size(); i-- > 0;) {
+    if (i >= kAhead) fetch(equations_[visited_slots_[i - kAhead]]);
+    eliminate(equations_, scene.rods, visited_slots_[i]);
+  }
   substitute_all(scene);
 }
 
@@ -40,6 +43,7 @@ void ImplicitRods::substitute_all(const RodScene& scene) {
   const std::size_t before = visited_slots_.size();
   for (std::size_t i = 0; i < visited_slots_.size(); ++i) {
     const Index j = visited_slots_[i];
+    fetch_ahead(scene, i);
     if (i >= before) begin(scene, j);
     solve_slot(scene, j);
     if (equations_[j].x.linear != Vec3::Zero() || equations_[j].x.angular != Vec3::Zero()) visit_children(scene, j);
@@ -55,6 +59,7 @@ void ImplicitRods::solve_slot(const RodScene& scene, Index j) {
     equations_[j].x = {};
   else if (!awake_[j])
     wake(j);
+  set_base(scene, j);
 }
 
 /// Whether slot j is at rest and remains so.

@@ -29,6 +29,12 @@ struct RodEquation {
   Spatial x;
 };
 
+/// Asks the memory for what is written to soon.
+template <class T>
+inline void fetch(const T& place) {
+  for (std::size_t i = 0; i < sizeof(T); i += 64) __builtin_prefetch(reinterpret_cast<const char*>(&place) + i, 1);
+}
+
 /// Eliminates slot j, whose children are: computes `reduced`, or for a root x.
 void eliminate(std::vector<RodEquation>& equations, const std::vector<Rod>& rods, Index j);
 
