@@ -146,6 +146,7 @@ struct DeformArguments {
 struct Table1Arguments {
   CommonArguments common;
   std::filesystem::path report;  ///< by extension; empty: none
+  std::filesystem::path plot;    ///< .svg; empty: none
   std::string format = "text";   ///< of stdout: text, markdown or csv
 };
 

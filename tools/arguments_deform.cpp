@@ -8,7 +8,7 @@ constexpr const char* kDeformExamples = R"(Examples:
   vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj)";
 constexpr const char* kTable1Examples = R"(Examples:
   vmesh table1
-  vmesh table1 --format markdown --report table1.md)";
+  vmesh table1 --format markdown --report table1.md --plot trade.svg)";
 
 }  // namespace
 
@@ -31,6 +31,7 @@ void add_table1(CLI::App& app, Table1Arguments& arguments) {
   CLI::App& verb = *app.add_subcommand(
       "table1", "Measure deformation and synchronisation as in the paper's Table 1, on synthetic trees of its sizes");
   add_report(verb, arguments.report, arguments.format);
+  verb.add_option("--plot", arguments.plot, "what time buys in accuracy, as a picture (.svg)");
   add_common(verb, arguments.common);
   verb.footer(kTable1Examples);
 }
