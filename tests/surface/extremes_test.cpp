@@ -229,5 +229,17 @@ TEST(Extremes, MoveWithTheirCenterline) {
   }
 }
 
+// A 150th of the radius and less: faces folded before they were as small as the limit asks for.
+TEST(Extremes, LimitsFarBelowTheResolutionDoNotFoldTheSurface) {
+  const Centerline fork({{{0, 0, 0}, 1}, {{0, 0, 3}, 1}, {{0, 3, 5}, 0.6}, {{0, -3, 5}, 0.7}}, {{0, 1}, {1, 2}, {1, 3}});
+  for (const double limit : {0.02, 0.01}) {
+    GenerateOptions options;
+    options.max_error.mm = limit;
+    const GenerateResult surface = generate_surface(fork, options);
+    EXPECT_EQ(surface.error.unproven_faces, 0u) << limit;
+    EXPECT_TRUE(self_intersections(surface.mesh).empty()) << limit;
+  }
+}
+
 }  // namespace
 }  // namespace vmesh

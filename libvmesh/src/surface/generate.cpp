@@ -334,7 +334,7 @@ GenerateResult generate_surface(const Centerline& centerline, const GenerateOpti
   check_options(given);
   check_scale(centerline);
   GenerateOptions options = given;
-  options.around = std::max(options.around, around_for(options.max_error));
+  options.around = std::max(options.around, least_around(centerline, options.max_error));
   check_size(centerline, options);
   check_open_ends(centerline, options);
   GenerateResult result;

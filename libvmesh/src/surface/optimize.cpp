@@ -20,6 +20,8 @@ constexpr int kBalanceRounds = 2, kBalanceSweeps = 6;
 constexpr int kSinkRounds = 4;
 constexpr int kErrorRounds = 5;  // without fewer faces over the limit
 constexpr int kErrorSweeps = 4;
+constexpr int kLeastWithLimit = 4;    // vertices around
+constexpr double kMostRefined = 1.8;  // lengths of edges before against after
 constexpr double kFiner = 0.87, kFinest = 0.1;  // of the target edge length, where the error is too large
 
 class Optimizer {
@@ -129,6 +131,8 @@ class Optimizer {
         fewest = unproven_.size();
         best = round;
       }
+      // Finer folds of a folded surface prove nothing.
+      if (hopeless(find_tangles(state_))) break;
       if (!make_finer(unproven_)) break;
       refine();
       unproven_ = check_.unproven_faces(state_);
@@ -240,10 +244,16 @@ class Optimizer {
 
 }  // namespace
 
-int around_for(const ErrorLimit& limit) {
-  if (!std::isfinite(limit.relative)) return 3;
-  int around = 3;
-  while (edge_length_per_radius(around) > edge_length_for(limit.relative, 1) && around < 200) ++around;
+int least_around(const Centerline& centerline, const ErrorLimit& limit) {
+  if (!limit.is_set()) return 3;
+  const auto raised = [](int around, double edge, double times) {
+    while (edge_length_per_radius(around) > times * edge && around < 200) ++around;
+    return around;
+  };
+  int around = kLeastWithLimit;
+  if (std::isfinite(limit.relative)) around = raised(around, edge_length_for(limit.relative, 1), 1);
+  for (const auto& [position, radius] : centerline.nodes())
+    around = raised(around, edge_length_for(limit.at(radius), radius) / radius, kMostRefined);
   return around;
 }
 

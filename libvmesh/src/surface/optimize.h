@@ -13,9 +13,6 @@ struct OptimizeReport {
   std::vector<Face> unproven;  ///< faces for which options.max_error is not proven
 };
 
-/// Vertices around a vessel that a relative limit on the error asks for.
-int around_for(const ErrorLimit& limit);
-
 /// Vertices that the size field asks for, about, as measured on trees.
 double expected_vertices(const Centerline& centerline, double around, const ErrorLimit& limit = {});
 double expected_vertices(double length_in_radii, double around);

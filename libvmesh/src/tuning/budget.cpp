@@ -15,7 +15,7 @@ constexpr int kCoarsest = 3, kFinest = 200;  // vertices around that generate_su
 constexpr int kMaxTrials = 12;               // the secant needs four or five; time is noisy
 constexpr double kRefused = 0.8;             // of max_vertices: what is expected beyond that may be refused
 constexpr int kMostFiner = 3;                // steps of the ladder while the error is not proven
-constexpr int kErrorLadder[] = {3, 4, 5, 6, 8, 10, 12, 16, 20, 24};
+constexpr int kErrorLadder[] = {4, 5, 6, 8, 10, 12, 16, 20, 24};
 
 InvalidInput unknown_budget(std::string_view text) {
   return InvalidInput("budget \"" + std::string(text) +
@@ -79,8 +79,9 @@ class BudgetSearch {
 
   // From the given resolution up until the limit is proven, then to where vertices are fewest.
   void find_fewest_vertices() {
-    const int* const first = std::begin(kErrorLadder);
     const int* const last = std::end(kErrorLadder) - 1;
+    const int least = least_around(centerline_, options_.max_error);
+    const int* const first = std::min(std::lower_bound(std::begin(kErrorLadder), last, least), last);
     const int* best = std::min(std::lower_bound(first, last, options_.around), last);
     for (int finer = 0; !attempt(*best).point.within_budget && best < last && finer < kMostFiner; ++finer) ++best;
     for (const int step : {-1, 1}) {

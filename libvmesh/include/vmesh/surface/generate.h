@@ -66,7 +66,7 @@ struct GenerateOptions {
   /// A grown face is split edge-centrically when its centre is farther than this from the boundary.
   double max_center_distance = 0.35;
   Placement placement = Placement::balanced;
-  /// Where the surface would be farther off, it is refined until it is not. A relative limit may raise `around`.
+  /// Where the surface would be farther off, it is refined until it is not. May raise `around`: see least_around().
   ErrorLimit max_error;
   /// Sweeps of the final optimisation; 0 leaves the surface as it was grown.
   int sweeps = 30;
@@ -155,6 +155,11 @@ struct GenerateResult {
 
 /// The surface with its openings closed by flat fans around their centres: as many vertices more. It bounds a volume.
 TriMesh with_lids(const GenerateResult& result);
+
+/// What a limit raises GenerateOptions::around to: at least 4, as a triangle is no cross-section to refine; what a limit
+/// in local radii needs along a vessel; and where one in mm needs the most, edges of at most 1.8 times the length that
+/// will be there: refined farther, faces fold.
+int least_around(const Centerline& centerline, const ErrorLimit& limit);
 
 /// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.
 /// Throws InvalidInput for options out of range and for a centerline too long for its radii, Cancelled when `progress`
