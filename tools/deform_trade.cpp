@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFrame_s = 0.02;
 constexpr int kFrames = 50, kPaperFrames = 5;  // the paper's procedure takes seconds a frame
-constexpr int kParts[] = {1, 2, 4, 8, 16};               // steps of a frame
+constexpr int kParts[] = {1, 2, 4, 8, 16};     // steps of a frame
 constexpr int kIterations[] = {1, 2, 3, 5};
 constexpr int kConverged = 12;                           // iterations
 constexpr int kFinestParts = 64, kFinestIterations = 4;  // what everything is compared with
@@ -85,8 +85,7 @@ Centerline tree_of(std::size_t segments) {
 Swing::Swing(const Centerline& centerline, SimulationOptions options)
     : step_s_(options.step_s),
       tip_(static_cast<Index>(centerline.nodes().size() - 1)),
-      simulation_(centerline, segment_properties(centerline, {}),
-                  (options.gravity_mm_s2 = Vec3(0, 0, -9810), options)),
+      simulation_(centerline, segment_properties(centerline, {}), (options.gravity_mm_s2 = Vec3(0, 0, -9810), options)),
       from_(simulation_.position(tip_)) {
   simulation_.clamp(0);
 }
@@ -128,8 +127,8 @@ ReportTable trade_table(const std::vector<DeformTrade>& trades) {
   ReportTable table{"trade",
                     "Accuracy against cost, 1,559 segments, frames of 20 ms over 1 s: how far nodes are from the "
                     "converged step, and from the motion that ever shorter steps lead to",
-                    {"integrator, iterations", "step, ms", "iterations or substeps", "ms a frame", "converged: mean, mm",
-                     "largest, mm", "motion: mean, mm", "largest, mm"},
+                    {"integrator, iterations", "step, ms", "iterations or substeps", "ms a frame",
+                     "converged: mean, mm", "largest, mm", "motion: mean, mm", "largest, mm"},
                     {}};
   for (const DeformTrade& t : trades) {
     table.rows.push_back({t.integrator, fixed(t.step_ms), std::to_string(t.iterations), fixed(t.frame_cpu_ms),

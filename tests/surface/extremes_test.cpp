@@ -231,7 +231,8 @@ TEST(Extremes, MoveWithTheirCenterline) {
 
 // A 150th of the radius and less: faces folded before they were as small as the limit asks for.
 TEST(Extremes, LimitsFarBelowTheResolutionDoNotFoldTheSurface) {
-  const Centerline fork({{{0, 0, 0}, 1}, {{0, 0, 3}, 1}, {{0, 3, 5}, 0.6}, {{0, -3, 5}, 0.7}}, {{0, 1}, {1, 2}, {1, 3}});
+  const Centerline fork({{{0, 0, 0}, 1}, {{0, 0, 3}, 1}, {{0, 3, 5}, 0.6}, {{0, -3, 5}, 0.7}},
+                        {{0, 1}, {1, 2}, {1, 3}});
   for (const double limit : {0.02, 0.01}) {
     GenerateOptions options;
     options.max_error.mm = limit;

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "deform/rod_scene.h"
 #include "deform/matrix6.h"
+#include "deform/rod_scene.h"
 
 namespace vmesh {
 

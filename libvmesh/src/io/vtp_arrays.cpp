@@ -159,8 +159,7 @@ std::string VtpArrays::plain(pugi::xml_node array, std::string_view& stored, boo
 
 /// Before packed data: the number of blocks, their size, the size of the last one if it is less, and their packed
 /// sizes.
-std::string VtpArrays::unpacked(pugi::xml_node array, std::string_view& stored, bool base64,
-                                std::uint64_t most) const {
+std::string VtpArrays::unpacked(pugi::xml_node array, std::string_view& stored, bool base64, std::uint64_t most) const {
   std::string_view peeked = stored;
   const std::string first = take(peeked, base64, word_size_);
   if (first.size() < word_size_) return {};

@@ -20,8 +20,8 @@ constexpr int kBalanceRounds = 2, kBalanceSweeps = 6;
 constexpr int kSinkRounds = 4;
 constexpr int kErrorRounds = 5;  // without fewer faces over the limit
 constexpr int kErrorSweeps = 4;
-constexpr int kLeastWithLimit = 4;    // vertices around
-constexpr double kMostRefined = 1.8;  // lengths of edges before against after
+constexpr int kLeastWithLimit = 4;              // vertices around
+constexpr double kMostRefined = 1.8;            // lengths of edges before against after
 constexpr double kFiner = 0.87, kFinest = 0.1;  // of the target edge length, where the error is too large
 
 class Optimizer {

@@ -156,9 +156,9 @@ struct GenerateResult {
 /// The surface with its openings closed by flat fans around their centres: as many vertices more. It bounds a volume.
 TriMesh with_lids(const GenerateResult& result);
 
-/// What a limit raises GenerateOptions::around to: at least 4, as a triangle is no cross-section to refine; what a limit
-/// in local radii needs along a vessel; and where one in mm needs the most, edges of at most 1.8 times the length that
-/// will be there: refined farther, faces fold.
+/// What a limit raises GenerateOptions::around to: at least 4, as a triangle is no cross-section to refine; what a
+/// limit in local radii needs along a vessel; and where one in mm needs the most, edges of at most 1.8 times the length
+/// that will be there: refined farther, faces fold.
 int least_around(const Centerline& centerline, const ErrorLimit& limit);
 
 /// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.
