@@ -12,8 +12,6 @@ struct Spatial {
   Vec3 angular = Vec3::Zero();
 };
 
-inline Spatial operator+(const Spatial& a, const Spatial& b) { return {a.linear + b.linear, a.angular + b.angular}; }
-
 /// a b and a^T b. Spelt out, as Eigen calls a function for each coefficient of a sum of products: it takes half
 /// the time.
 [[gnu::always_inline]] inline Mat3 product(const Mat3& a, const Mat3& b) {
