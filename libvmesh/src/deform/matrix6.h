@@ -162,7 +162,7 @@ class Factors6 {
   }
 
  private:
-  Matrix6 lower_;  ///< L; its diagonal is that of rounding
+  Matrix6 lower_;  ///< L below the diagonal, what is left of the work above
   std::array<double, 6> inverse_;
 };
 

@@ -19,7 +19,7 @@ Matrix6 compliance(const RodEquation& e) {
   return c;
 }
 
-/// `linear` and `angular` about z, `transverse` across, on the diagonal.
+/// `linear` against moving; against turning `axial` about z and `transverse` across it.
 [[gnu::always_inline]] inline Matrix6 diagonal(double linear, double transverse, double axial, const Vec3& z) {
   Matrix6 m;
   for (int i = 0; i < 3; ++i) {
@@ -42,7 +42,7 @@ Matrix6 compliance(const RodEquation& e) {
   Factors6(sum).subtract_series(d, b + Vector6(e.spring_gradient), e.reduced, e.reduced_gradient);
 }
 
-/// What a held slot would turn by, times -D.
+/// The torque on a held slot that goes where it is told without turning.
 Vec3 torque_on(const RodEquation& e, const Matrix6& d, const Vector6& b) {
   Vec3 torque = b.angular();
   for (int i = 0; i < 3; ++i) torque += e.prescribed[i] * d[i].angular();
