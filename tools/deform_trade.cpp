@@ -74,6 +74,11 @@ SimulationOptions implicit_with(int iterations) {
   return options;
 }
 
+std::string distance_text(double mm) {
+  if (std::isnan(mm)) return "-";
+  return mm < kLost ? fixed(mm) : "diverges";
+}
+
 }  // namespace
 
 Centerline tree_of(std::size_t segments) {
@@ -116,11 +121,6 @@ std::vector<DeformTrade> measure_deform_trades(std::size_t segments) {
   paper.paper = {PaperProcedure::Coupling::spring, PaperProcedure::Axes::polar};
   trades.push_back(trade_of("paper, springs (0.1 s)", 1, swing(centerline, 1, paper, kPaperFrames), finest));
   return trades;
-}
-
-std::string distance_text(double mm) {
-  if (std::isnan(mm)) return "-";
-  return mm < kLost ? fixed(mm) : "diverges";
 }
 
 ReportTable trade_table(const std::vector<DeformTrade>& trades) {

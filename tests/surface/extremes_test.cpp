@@ -229,7 +229,7 @@ TEST(Extremes, MoveWithTheirCenterline) {
   }
 }
 
-// A 150th of the radius and less: faces folded before they were as small as the limit asks for.
+// A thirtieth to a hundredth of the radius: faces folded before they were as small as the limit asks for.
 TEST(Extremes, LimitsFarBelowTheResolutionDoNotFoldTheSurface) {
   const Centerline fork({{{0, 0, 0}, 1}, {{0, 0, 3}, 1}, {{0, 3, 5}, 0.6}, {{0, -3, 5}, 0.7}},
                         {{0, 1}, {1, 2}, {1, 3}});
