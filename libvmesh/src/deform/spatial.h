@@ -45,6 +45,13 @@ constexpr double kRounding = 1e-15;
   return r;
 }
 
+/// The columns of `m` crossed by `v` from the left: [v]x m.
+inline Mat3 cross_columns(const Vec3& v, const Mat3& m) {
+  Mat3 r;
+  for (int i = 0; i < 3; ++i) r.col(i) = v.cross(Vec3(m.col(i)));
+  return r;
+}
+
 /// The rotation I + [v]x + ... by Cayley's map: exactly orthogonal, and by |v| for a short v.
 inline Mat3 cayley(const Vec3& v) {
   const Vec3 w = 0.5 * v;
