@@ -336,6 +336,14 @@ TEST(Generate, StopsWhenAsked) {
   EXPECT_EQ(calls, 3);
 }
 
+TEST(Generate, StopsWithinAJunctionThatIsRefined) {
+  GenerateOptions options;
+  options.max_error.relative = 0.01;
+  int calls = 0;
+  const Progress stop_while_growing = [&](std::string_view stage, double) { return stage != "grow" || ++calls < 3; };
+  EXPECT_THROW(generate_surface(fork(), options, stop_while_growing), Cancelled);  // it has one junction
+}
+
 TEST(Generate, ReportsProgressBetweenZeroAndOne) {
   std::vector<std::string> stages;
   generate_surface(fork(), {}, [&](std::string_view stage, double fraction) {

@@ -167,12 +167,16 @@ std::vector<JunctionPiece> make_pieces(const VesselField& field, const std::vect
   std::vector<JunctionPiece> pieces(count);
   std::mutex reporting;
   std::size_t done = 0;
+  // Every sweep of a piece asks whether to go on; what it tells is how many pieces are done.
+  const Progress ask = [&](std::string_view, double) {
+    const std::lock_guard lock(reporting);
+    return !progress || progress("grow", static_cast<double>(done) / static_cast<double>(count));
+  };
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t j) {
-    {
-      const std::lock_guard lock(reporting);
-      report_progress(progress, "grow", static_cast<double>(done++) / static_cast<double>(count));
-    }
-    pieces[j] = make_junction_piece(field, axes, skeleton, skeleton.junctions[j], options);
+    report_progress(ask, "grow", 0);
+    pieces[j] = make_junction_piece(field, axes, skeleton, skeleton.junctions[j], options, ask);
+    const std::lock_guard lock(reporting);
+    ++done;
   });
   return pieces;
 }

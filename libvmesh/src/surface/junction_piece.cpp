@@ -24,8 +24,13 @@ constexpr Variant kVariants[] = {{1, true},         {1.5, true},    {1, false},
 class PieceMaker {
  public:
   PieceMaker(const VesselField& field, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
-             const std::vector<TubeEnd>& openings, const GenerateOptions& options)
-      : skeleton_(skeleton), growth_(growth), openings_(openings), options_(options), surface_(field) {}
+             const std::vector<TubeEnd>& openings, const GenerateOptions& options, const Progress& progress)
+      : skeleton_(skeleton),
+        growth_(growth),
+        openings_(openings),
+        options_(options),
+        progress_(progress),
+        surface_(field) {}
 
   JunctionPiece make(const Variant& variant) {
     const JunctionSurface junction = growth_.make(variant.finer, variant.smooth_rims);
@@ -100,7 +105,7 @@ class PieceMaker {
     const double radii = growth_.length_in_radii() + static_cast<double>(openings_.size() * (kRingsGivenAway + 1));
     const GrownMesh grown{double(options_.around), expected_vertices(radii, options_.around / fineness),
                           GrownMesh::Stage::piece};
-    const OptimizeReport report = optimize(surface_, options_, grown, {});
+    const OptimizeReport report = optimize(surface_, options_, grown, progress_);
     piece.tangles = report.tangles;
     piece.unproven = report.unproven.size();
   }
@@ -140,6 +145,7 @@ class PieceMaker {
   const JunctionGrowth& growth_;
   const std::vector<TubeEnd>& openings_;
   const GenerateOptions& options_;
+  const Progress& progress_;
   BoundSurface surface_;
   std::vector<Vertex> vertex_;  // of the junction's vertices
   std::vector<KeptRing> kept_;
@@ -151,14 +157,14 @@ std::size_t rings_given_away(const Tube& tube) { return std::min(kRingsGivenAway
 
 JunctionPiece make_junction_piece(const VesselField& field, const std::vector<BranchAxis>& axes,
                                   const GrowthSkeleton& skeleton, const Junction& junction,
-                                  const GenerateOptions& options) {
+                                  const GenerateOptions& options, const Progress& progress) {
   const std::vector<TubeEnd> openings = openings_of(junction);
   const auto flaws = [](const JunctionPiece& p) { return std::pair(p.tangles, p.unproven); };
   std::optional<JunctionPiece> best;
   for (const bool leave_out_threads : {true, false}) {
     const JunctionGrowth growth(field, axes, skeleton, junction, options, leave_out_threads);
     for (const Variant& variant : kVariants) {
-      JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options).make(variant);
+      JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options, progress).make(variant);
       if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);
       if (best->tangles == 0 && best->unproven == 0) return *std::move(best);
     }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vmesh/core/progress.h"
+
 #include "surface/growth_skeleton.h"
 
 namespace vmesh {
@@ -32,6 +34,6 @@ std::size_t rings_given_away(const Tube& tube);
 /// junction's surface are tried, and then its threads within the lattice; the best is kept.
 JunctionPiece make_junction_piece(const VesselField& field, const std::vector<BranchAxis>& axes,
                                   const GrowthSkeleton& skeleton, const Junction& junction,
-                                  const GenerateOptions& options);
+                                  const GenerateOptions& options, const Progress& progress);
 
 }  // namespace vmesh
