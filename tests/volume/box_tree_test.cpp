@@ -1,6 +1,7 @@
 #include "vmesh/core/box_tree.h"
 
 #include <algorithm>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -128,6 +129,30 @@ TEST(BoxTree, VisitsAllOverlappingItems) {
   }
 }
 
+TEST(BoxTree, VisitsEveryPairThatMeetsOnce) {
+  Draw draw(26);
+  for (const Index count : {1u, 2u, 4u, 5u, 9u, 300u}) {
+    const Boxes boxes = random_boxes(draw, count, 3);
+    std::set<std::pair<Index, Index>> visited;
+    BoxTree(boxes.low, boxes.high).visit_pairs([&](Index i, Index j) {
+      EXPECT_TRUE(visited.insert(std::minmax(i, j)).second) << i << " " << j;
+      EXPECT_NE(i, j);
+    });
+    for (Index i = 0; i < count; ++i) {
+      for (Index j = i + 1; j < count; ++j) {
+        const bool meet = (boxes.low[i].array() <= boxes.high[j].array()).all() &&
+                          (boxes.low[j].array() <= boxes.high[i].array()).all();
+        if (meet) {
+          EXPECT_TRUE(visited.contains({i, j})) << i << " " << j;
+        }
+      }
+    }
+    if (count == 300) {  // few of those that do not meet
+      EXPECT_LT(visited.size(), 300u * 299u / 4);
+    }
+  }
+}
+
 TEST(BoxTree, CountsBoxesThatOnlyTouchAsOverlapping) {
   const BoxTree tree({{0, 0, 0}}, {{1, 1, 1}});
   EXPECT_EQ(overlapping(tree, {1, 1, 1}, {2, 2, 2}), (std::vector<Index>{0}));
@@ -148,6 +173,7 @@ TEST(BoxTree, VisitsNothingWhenEmpty) {
   for (const BoxTree& tree : {BoxTree(), BoxTree({}, {})}) {
     tree.visit({0, 0, 0}, limit, [](Index) { FAIL(); });
     EXPECT_TRUE(overlapping(tree, {-1, -1, -1}, {1, 1, 1}).empty());
+    tree.visit_pairs([](Index, Index) { FAIL(); });
   }
 }
 

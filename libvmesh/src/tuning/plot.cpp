@@ -10,7 +10,7 @@ namespace vmesh {
 namespace {
 
 constexpr double kWidth = 460, kHeight = 400;  // of one plot, with its margins
-constexpr double kLeft = 70, kRight = 15, kTop = 40, kBottom = 50;
+constexpr double kLeft = 70, kRight = 30, kTop = 40, kBottom = 50;
 constexpr double kLegendLine = 18, kLegendColumn = 230, kMargin = 0.04;  // of an axis
 // Told apart by people with colour blindness as well (Okabe and Ito 2008).
 constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",

@@ -27,6 +27,12 @@ class BoxTree {
     if (!nodes_.empty()) visit_overlapping_node(0, low, high, visit_item);
   }
 
+  /// Calls visit(item, item) once for every two items whose boxes meet, and for a few whose boxes do not.
+  template <class Visit>
+  void visit_pairs(Visit&& visit_pair) const {
+    if (!nodes_.empty()) visit_pairs_within(0, visit_pair);
+  }
+
  private:
   struct Node {
     Vec3 low, high;
@@ -67,6 +73,41 @@ class BoxTree {
     }
     visit_overlapping_node(node.first, low, high, visit_item);
     visit_overlapping_node(node.first + 1, low, high, visit_item);
+  }
+
+  static bool overlap(const Node& a, const Node& b) {
+    return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+  }
+
+  template <class Visit>
+  void visit_pairs_within(Index n, Visit&& visit_pair) const {
+    const Node& node = nodes_[n];
+    if (node.count == 0) {
+      visit_pairs_within(node.first, visit_pair);
+      visit_pairs_within(node.first + 1, visit_pair);
+      visit_pairs_between(node.first, node.first + 1, visit_pair);
+      return;
+    }
+    for (Index i = 0; i < node.count; ++i) {
+      for (Index j = 0; j < i; ++j) visit_pair(order_[node.first + i], order_[node.first + j]);
+    }
+  }
+
+  template <class Visit>
+  void visit_pairs_between(Index m, Index n, Visit&& visit_pair) const {
+    const Node &a = nodes_[m], &b = nodes_[n];
+    if (!overlap(a, b)) return;
+    if (a.count > 0 && b.count > 0) {
+      for (Index i = 0; i < a.count; ++i) {
+        for (Index j = 0; j < b.count; ++j) visit_pair(order_[a.first + i], order_[b.first + j]);
+      }
+    } else if (b.count > 0 || (a.count == 0 && (a.high - a.low).sum() >= (b.high - b.low).sum())) {
+      visit_pairs_between(a.first, n, visit_pair);
+      visit_pairs_between(a.first + 1, n, visit_pair);
+    } else {
+      visit_pairs_between(m, b.first, visit_pair);
+      visit_pairs_between(m, b.first + 1, visit_pair);
+    }
   }
 
   std::vector<Node> nodes_;
