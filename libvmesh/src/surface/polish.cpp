@@ -7,9 +7,10 @@ namespace {
 
 constexpr double kGoodEnergy = 1.10;  // of a face, skewness about 0.25: nothing to polish
 constexpr int kRounds = 2, kSweeps = 20;
-constexpr int kPower = 32;      // of the energies: close to their maximum
-constexpr int kEaseSweeps = 6;  // that give back to all what the worst do not need
-constexpr int kPatience = 10;   // faces in a row that no flip helps: the worst stays as it is
+constexpr int kPower = 32;                 // of the energies: close to their maximum
+constexpr int kEaseSweeps = 6;             // that give back to all what the worst do not need
+constexpr double kNoticeableMove = 0.005;  // in target lengths, for the neighbours to be looked at again
+constexpr int kPatience = 10;              // faces in a row that no flip helps: the worst stays as it is
 // A flip is worth a look if the worst face near it is not much worse at once, and kept if it is better in the end.
 constexpr double kWorthALook = 2, kPaysOff = 0.997;  // worst energy against that before
 constexpr int kFlipSweeps = 8;
@@ -30,8 +31,7 @@ class Polisher {
       improve_shape();
       flip_with_foresight();
     }
-    sort_unique(moved_);
-    for (int sweep = 0; sweep < kEaseSweeps; ++sweep) relocate_vertices(state_, moved_, {.highest = kGoodEnergy});
+    ease();
   }
 
  private:
@@ -41,15 +41,31 @@ class Polisher {
     FieldSample sample;
   };
 
+  // Every sweep looks at what the one before has stirred.
   void improve_shape() {
+    state_.stir_all();
     std::vector<Face> bad = bad_faces({mesh_.faces().begin(), mesh_.faces().end()});
-    for (int sweep = 0; sweep < kSweeps && !bad.empty(); ++sweep) {
-      const std::vector<Vertex> vertices = with_neighbours(corners_of(bad));
+    for (int sweep = 0; sweep < kSweeps && state_.next_sweep() > 0; ++sweep) {
+      const std::vector<Vertex> vertices = active(with_neighbours(corners_of(bad)));
       for (const Edge e : edges_of(vertices)) remesher_.flip_for_shape(e);
-      relocate_vertices(state_, vertices, {.power = kPower});
+      relocate_vertices(state_, vertices, {.power = kPower, .noticeable = kNoticeableMove});
       moved_.insert(moved_.end(), vertices.begin(), vertices.end());
-      bad = bad_faces(faces_of(vertices));
+      for (const Face f : faces_of(vertices)) bad.push_back(f);
+      sort_unique(bad);
+      bad = bad_faces(std::move(bad));
     }
+  }
+
+  void ease() {
+    sort_unique(moved_);
+    state_.stir_all();
+    for (int sweep = 0; sweep < kEaseSweeps && state_.next_sweep() > 0; ++sweep)
+      relocate_vertices(state_, active(moved_), {.highest = kGoodEnergy, .noticeable = kNoticeableMove});
+  }
+
+  std::vector<Vertex> active(std::vector<Vertex> vertices) const {
+    std::erase_if(vertices, [&](Vertex v) { return !state_.active(v); });
+    return vertices;
   }
 
   // Flips that make things worse at first. Worst faces first.

@@ -5,8 +5,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kLongestMove = 0.3;      // in target lengths
-constexpr double kNoticeableMove = 0.02;  // in target lengths, for the neighbours to be looked at again
+constexpr double kLongestMove = 0.3;  // in target lengths
 constexpr int kAttempts = 3;
 
 class Relocator {
@@ -38,7 +37,7 @@ class Relocator {
     for (int attempt = 0; attempt < kAttempts; ++attempt, step *= 0.5) {
       const BoundaryPoint target = state_.project(v, x + step);
       if ((target.position - x).norm() > state_.size[v] || !improves(v, target, energy.value)) continue;
-      if (state_.off_boundary(v) || (target.position - x).norm() > kNoticeableMove * state_.size[v]) state_.stir(v);
+      if (state_.off_boundary(v) || (target.position - x).norm() > options_.noticeable * state_.size[v]) state_.stir(v);
       surface_.place(v, target.position, target.sample);
       return;
     }
