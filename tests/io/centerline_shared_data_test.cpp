@@ -19,7 +19,6 @@ std::vector<std::filesystem::path> files_in(const std::string& folder, const std
 }
 
 TEST(SharedData, SwcAndVtpOfALiverTreeAreTheSameCenterline) {
-  if (!VMESH_WITH_VTK) GTEST_SKIP() << "built without VTK";
   VMESH_NEED_SHARED_DATA("liver_portal_centerlines");
   int pairs = 0;
   for (const auto& swc : files_in("liver_portal_centerlines", ".swc")) {
@@ -36,7 +35,6 @@ TEST(SharedData, SwcAndVtpOfALiverTreeAreTheSameCenterline) {
 }
 
 TEST(SharedData, LooseBranchesAreJoinedLikeInTheJoinedFiles) {
-  if (!VMESH_WITH_VTK) GTEST_SKIP() << "built without VTK";
   const std::string folder = "pulmonary_aorta_coronary_centerlines";
   VMESH_NEED_SHARED_DATA(folder);
   for (const auto& vtp : files_in(folder, ".vtp")) {
@@ -52,7 +50,6 @@ TEST(SharedData, LooseBranchesAreJoinedLikeInTheJoinedFiles) {
 }
 
 TEST(SharedData, RepeatedTrunksOfVmtkBecomeOneTree) {
-  if (!VMESH_WITH_VTK) GTEST_SKIP() << "built without VTK";
   VMESH_NEED_SHARED_DATA("pairs_centerline_surface/aorta-centerline.vtp");
   for (const std::string name :
        {"aorta-centerline.vtp", "aorta-centerline-branches.vtp", "generate-1d-mesh_example_SU201_2005_RPA1_cl.vtp",
@@ -66,7 +63,6 @@ TEST(SharedData, RepeatedTrunksOfVmtkBecomeOneTree) {
 }
 
 TEST(SharedData, LoopsOfCapillariesStayLoops) {
-  if (!VMESH_WITH_VTK) GTEST_SKIP() << "built without VTK";
   VMESH_NEED_SHARED_DATA("microvascular_loops/vasculature1_most_cyclic_component.vtp");
   const auto result = load_centerline(shared_data("microvascular_loops/vasculature1_most_cyclic_component.vtp"));
   EXPECT_EQ(result.cleaned.centerline.cycle_rank(), 8u);

@@ -118,7 +118,6 @@ TEST(ReadLegacyVtk, SaysWhatIsNotSupported) {
 }
 
 TEST(SharedData, LegacyVtkIsTheSameCenterlineAsItsVtp) {
-  if (!VMESH_WITH_VTK) GTEST_SKIP() << "built without VTK";
   VMESH_NEED_SHARED_DATA("pairs_centerline_surface/aorta-centerline.vtk");
   for (const std::string name : {"pairs_centerline_surface/aorta-centerline",
                                  "pairs_centerline_surface/centerline-based-material-props_c++_aorta_cl",
