@@ -18,7 +18,7 @@ constexpr int kStrayInterval = 4;
 constexpr double kHopeless = 0.02;  // share of the vertices in tangles: growth covered vessels twice
 constexpr int kBalanceRounds = 2, kBalanceSweeps = 6;
 constexpr int kSinkRounds = 4;
-constexpr int kErrorRounds = 5;  // without fewer faces over the limit
+constexpr int kErrorRounds = 14;  // without fewer faces over the limit: a last one may need its edges to be a seventh
 constexpr int kErrorSweeps = 4;
 constexpr int kLeastWithLimit = 4;              // vertices around
 constexpr double kMostRefined = 1.8;            // lengths of edges before against after
