@@ -1,11 +1,15 @@
-// Time and memory of generating and of evaluating a surface as the centerline grows, on one thread and on two, as a
-// table in Markdown with the exponent of the last tenfold step. Every run is a process of its own, so that its peak
-// memory is its own. Usage: bench_scaling [SEGMENTS...]; without numbers 100 to 100,000.
+// Time and memory of generating and of evaluating a surface as the centerline grows, as a table in Markdown: medians
+// of some runs, and the exponent of the step from one line to the next beside that of n log n. Every run is a process
+// of its own, so that its peak memory is its own; all sizes are run once before one is run again, so that a machine
+// that changes its speed changes it for all. What is measured is told on standard error as it comes. Usage:
+// bench_scaling [--runs=N] [--threads=N] [SEGMENTS...]; 3 runs each on one thread and on two, of 100 to 100,000.
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 #include <vector>
 
 #include <sys/resource.h>
@@ -84,34 +88,81 @@ bool measure_apart(int segments, int threads, Run& run) {
   return complete;
 }
 
+double median_of(std::vector<Run>& runs, double Run::*value) {
+  const auto middle = runs.begin() + static_cast<std::ptrdiff_t>(runs.size() / 2);
+  std::nth_element(runs.begin(), middle, runs.end(),
+                   [value](const Run& x, const Run& y) { return x.*value < y.*value; });
+  return (*middle).*value;
+}
+
+Run medians(std::vector<Run> runs) {
+  Run median;
+  for (const auto value : {&Run::vertices, &Run::generate_s, &Run::generate_mb, &Run::evaluate_s, &Run::evaluate_mb}) {
+    median.*value = median_of(runs, value);
+  }
+  return median;
+}
+
+// Runs of every size. Empty when one has failed.
+std::vector<std::vector<Run>> measure_all(const std::vector<int>& sizes, int threads, int runs) {
+  std::vector<std::vector<Run>> measured(sizes.size());
+  for (int r = 0; r < runs; ++r) {
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      Run run;
+      if (!measure_apart(sizes[i], threads, run)) return {};
+      std::fprintf(stderr, "%d segments, %d threads, run %d: generate %.2f s, evaluate %.2f s\n", sizes[i], threads,
+                   r + 1, run.generate_s, run.evaluate_s);
+      measured[i].push_back(run);
+    }
+  }
+  return measured;
+}
+
 double exponent(double cost, double cost_before, double size, double size_before) {
   return std::log(cost / cost_before) / std::log(size / size_before);
+}
+
+double n_log_n(double n) { return n * std::log(n); }
+
+void print_line(int segments, int threads, const Run& run) {
+  std::printf("| %d | %d | %.0f | %.2f | %.1f | %.0f | %.2f | %.1f | %.0f |", segments, threads, run.vertices,
+              run.generate_s, 1e6 * run.generate_s / run.vertices, run.generate_mb, run.evaluate_s,
+              1e6 * run.evaluate_s / run.vertices, run.evaluate_mb);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<int> sizes;
-  for (int i = 1; i < argc; ++i) sizes.push_back(std::atoi(argv[i]));
+  std::vector<int> sizes, thread_counts = {1, 2};
+  int runs = 3;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument.starts_with("--runs=")) {
+      runs = std::max(1, std::atoi(argv[i] + 7));
+    } else if (argument.starts_with("--threads=")) {
+      thread_counts = {std::max(1, std::atoi(argv[i] + 10))};
+    } else {
+      sizes.push_back(std::atoi(argv[i]));
+    }
+  }
   if (sizes.empty()) sizes = {100, 1000, 10'000, 100'000};
   std::printf(
-      "| segments | threads | vertices | generate, s | us a vertex | exponent | peak MB | evaluate, s | us a vertex | "
-      "exponent | peak MB |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
-  for (const int threads : {1, 2}) {
-    Run before;
-    int size_before = 0;
-    for (const int segments : sizes) {
-      Run run;
-      if (!measure_apart(segments, threads, run)) return 1;
-      std::printf("| %d | %d | %.0f | %.2f | %.1f | ", segments, threads, run.vertices, run.generate_s,
-                  1e6 * run.generate_s / run.vertices);
-      if (size_before > 0) std::printf("%.2f", exponent(run.generate_s, before.generate_s, segments, size_before));
-      std::printf(" | %.0f | %.2f | %.1f | ", run.generate_mb, run.evaluate_s, 1e6 * run.evaluate_s / run.vertices);
-      if (size_before > 0) std::printf("%.2f", exponent(run.evaluate_s, before.evaluate_s, segments, size_before));
-      std::printf(" | %.0f |\n", run.evaluate_mb);
-      std::fflush(stdout);
-      before = run;
-      size_before = segments;
+      "| segments | threads | vertices | generate, s | us a vertex | peak MB | evaluate, s | us a vertex | peak MB | "
+      "exponents: generate | evaluate | n log n |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+  for (const int threads : thread_counts) {
+    const auto measured = measure_all(sizes, threads, runs);
+    if (measured.empty()) return 1;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      const Run run = medians(measured[i]);
+      print_line(sizes[i], threads, run);
+      if (i == 0) {
+        std::printf(" | | |\n");
+        continue;
+      }
+      const Run before = medians(measured[i - 1]);
+      std::printf(" %.2f | %.2f | %.2f |\n", exponent(run.generate_s, before.generate_s, sizes[i], sizes[i - 1]),
+                  exponent(run.evaluate_s, before.evaluate_s, sizes[i], sizes[i - 1]),
+                  exponent(n_log_n(sizes[i]), n_log_n(sizes[i - 1]), sizes[i], sizes[i - 1]));
     }
   }
 }

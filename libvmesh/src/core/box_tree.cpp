@@ -1,7 +1,6 @@
 #include "vmesh/core/box_tree.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace vmesh {
 namespace {
@@ -10,44 +9,66 @@ constexpr Index kLeafSize = 4;
 
 }  // namespace
 
+// Twice the middles lie beside the numbers, so that dividing them reads memory in order.
+struct BoxTree::Item {
+  Vec3 middle;
+  Index number;
+};
+
 BoxTree::BoxTree(const std::vector<Vec3>& low, const std::vector<Vec3>& high) {
   if (low.empty()) return;
-  order_.resize(low.size());
-  std::iota(order_.begin(), order_.end(), Index{0});
+  const auto count = static_cast<Index>(low.size());
+  std::vector<Item> items;
+  items.reserve(count);
+  for (Index i = 0; i < count; ++i) items.push_back({low[i] + high[i], i});
+  nodes_.reserve(count);  // a leaf has two items or more, unless it is the only one
   nodes_.emplace_back();
-  build(0, 0, static_cast<Index>(low.size()), low, high);
+  divide(0, items, 0, count);
+  order_.reserve(count);
+  for (const Item& item : items) order_.push_back(item.number);
+  // Children come after their parents.
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) enclose(*node, low, high);
 }
 
-void BoxTree::build(Index node, Index first, Index count, const std::vector<Vec3>& low, const std::vector<Vec3>& high) {
-  Vec3 box_low = low[order_[first]], box_high = high[order_[first]];
-  Vec3 mid_low = box_low + box_high, mid_high = mid_low;
-  for (Index i = first; i < first + count; ++i) {
-    const Vec3 mid = low[order_[i]] + high[order_[i]];
-    box_low = box_low.cwiseMin(low[order_[i]]);
-    box_high = box_high.cwiseMax(high[order_[i]]);
-    mid_low = mid_low.cwiseMin(mid);
-    mid_high = mid_high.cwiseMax(mid);
-  }
-  nodes_[node].low = box_low;
-  nodes_[node].high = box_high;
+void BoxTree::divide(Index node, std::vector<Item>& items, Index first, Index count) {
   if (count <= kLeafSize) {
     nodes_[node].first = first;
     nodes_[node].count = count;
     return;
   }
+  const auto begin = items.begin() + first;
+  Vec3 low = begin->middle, high = low;
+  for (auto item = begin; item != begin + count; ++item) {
+    low = low.cwiseMin(item->middle);
+    high = high.cwiseMax(item->middle);
+  }
   int axis = 0;
-  (mid_high - mid_low).maxCoeff(&axis);
+  (high - low).maxCoeff(&axis);
   const Index half = count / 2;
-  const auto begin = order_.begin() + first;
-  std::nth_element(begin, begin + half, begin + count, [&](Index i, Index j) {
-    const double x = low[i][axis] + high[i][axis], y = low[j][axis] + high[j][axis];
-    return x < y || (x == y && i < j);
+  std::nth_element(begin, begin + half, begin + count, [axis](const Item& i, const Item& j) {
+    const double x = i.middle[axis], y = j.middle[axis];
+    return x < y || (x == y && i.number < j.number);
   });
   const auto children = static_cast<Index>(nodes_.size());
   nodes_[node].first = children;
   nodes_.resize(nodes_.size() + 2);
-  build(children, first, half, low, high);
-  build(children + 1, first + half, count - half, low, high);
+  divide(children, items, first, half);
+  divide(children + 1, items, first + half, count - half);
+}
+
+void BoxTree::enclose(Node& node, const std::vector<Vec3>& low, const std::vector<Vec3>& high) const {
+  if (node.count == 0) {
+    const Node &a = nodes_[node.first], &b = nodes_[node.first + 1];
+    node.low = a.low.cwiseMin(b.low);
+    node.high = a.high.cwiseMax(b.high);
+    return;
+  }
+  node.low = low[order_[node.first]];
+  node.high = high[order_[node.first]];
+  for (Index i = node.first; i < node.first + node.count; ++i) {
+    node.low = node.low.cwiseMin(low[order_[i]]);
+    node.high = node.high.cwiseMax(high[order_[i]]);
+  }
 }
 
 }  // namespace vmesh

@@ -1,9 +1,8 @@
 #include "vmesh/mesh/components.h"
 
 #include <numeric>
-#include <string>
 
-#include "vmesh/core/error.h"
+#include "mesh/check_indices.h"
 
 namespace vmesh {
 namespace {
@@ -11,15 +10,6 @@ namespace {
 Index root_of(std::vector<Index>& parent, Index v) {
   while (parent[v] != v) v = parent[v] = parent[parent[v]];
   return v;
-}
-
-void check_faces(const TriMesh& mesh) {
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    for (const Index v : mesh.faces[f]) {
-      if (v >= mesh.vertices.size())
-        throw InvalidInput("face " + std::to_string(f) + ": there is no vertex " + std::to_string(v));
-    }
-  }
 }
 
 /// Component of every vertex, numbered by first faces; kNone for vertices without a face.
@@ -43,7 +33,7 @@ std::vector<Index> number_vertices(const TriMesh& mesh) {
 }  // namespace
 
 std::vector<TriMesh> split_components(const TriMesh& mesh) {
-  check_faces(mesh);
+  check_indices(mesh);
   const std::vector<Index> component = number_vertices(mesh);
   std::vector<TriMesh> parts;
   for (const Triangle& face : mesh.faces) {

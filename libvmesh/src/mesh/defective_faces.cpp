@@ -1,12 +1,17 @@
 #include <algorithm>
+#include <tuple>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include "vmesh/mesh/topology.h"
 
+#include "mesh/check_indices.h"
+#include "mesh/sorted_by_vertex.h"
+
 namespace vmesh {
 
 std::vector<Index> degenerate_faces(const TriMesh& mesh) {
+  check_indices(mesh);
   using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
   std::vector<Index> degenerate;
   for (Index f = 0; f < mesh.faces.size(); ++f) {
@@ -20,17 +25,24 @@ std::vector<Index> degenerate_faces(const TriMesh& mesh) {
 }
 
 std::vector<Index> duplicate_faces(const TriMesh& mesh) {
-  std::vector<std::pair<Triangle, Index>> sorted;
-  sorted.reserve(mesh.faces.size());
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    Triangle corners = mesh.faces[f];
-    std::sort(corners.begin(), corners.end());
-    sorted.emplace_back(corners, f);
-  }
-  std::sort(sorted.begin(), sorted.end());
+  check_indices(mesh);
+  struct Face {
+    Triangle corners;  // ascending
+    Index number;
+  };
+  const auto visit_faces = [&](auto&& visit) {
+    for (Index f = 0; f < mesh.faces.size(); ++f) {
+      Face face{mesh.faces[f], f};
+      std::sort(face.corners.begin(), face.corners.end());
+      visit(face.corners[0], face);
+    }
+  };
+  const auto sorted = sorted_by_vertex<Face>(mesh.vertices.size(), visit_faces, [](const Face& x, const Face& y) {
+    return std::tie(x.corners, x.number) < std::tie(y.corners, y.number);
+  });
   std::vector<Index> duplicates;
   for (std::size_t i = 1; i < sorted.size(); ++i) {
-    if (sorted[i].first == sorted[i - 1].first) duplicates.push_back(sorted[i].second);
+    if (sorted[i].corners == sorted[i - 1].corners) duplicates.push_back(sorted[i].number);
   }
   std::sort(duplicates.begin(), duplicates.end());
   return duplicates;

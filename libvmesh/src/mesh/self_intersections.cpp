@@ -14,19 +14,9 @@ using Point = Kernel::Point_3;
 
 constexpr double kMargin = 1e-9;  // of edges and distance: below it exact predicates decide; rounding is 1e-15 of them
 
-Point to_point(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
 class FacePairTest {
  public:
-  explicit FacePairTest(const TriMesh& mesh) : mesh_(mesh) {
-    points_.reserve(mesh.vertices.size());
-    for (const Vec3& v : mesh.vertices) points_.push_back(to_point(v));
-    planes_.reserve(mesh.faces.size());
-    for (const auto& [a, b, c] : mesh.faces) {
-      const Vec3 ab = mesh.vertices[b] - mesh.vertices[a], ac = mesh.vertices[c] - mesh.vertices[a];
-      planes_.push_back({ab.cross(ac), kMargin * ab.norm() * ac.norm()});
-    }
-  }
+  explicit FacePairTest(const TriMesh& mesh) : mesh_(mesh) {}
 
   bool intersect(Index f, Index g) const {
     const Triangle& x = mesh_.faces[f];
@@ -37,26 +27,29 @@ class FacePairTest {
       if (std::find(y.begin(), y.end(), v) != y.end()) common[count++] = v;
     }
     if (count == 3) return true;
-    if (count < 2 && (on_one_side(f, y, common, count) || on_one_side(g, x, common, count))) return false;
+    if (count < 2 && (on_one_side(x, y, common, count) || on_one_side(y, x, common, count))) return false;
     if (count == 2) return folded(common[0], common[1], apex(x, common), apex(y, common));
     if (count == 1) return opposite_edge_meets(x, y, common[0]) || opposite_edge_meets(y, x, common[0]);
     return CGAL::do_intersect(triangle(x), triangle(y));
   }
 
  private:
-  Kernel::Triangle_3 triangle(const Triangle& t) const { return {points_[t[0]], points_[t[1]], points_[t[2]]}; }
+  Point point(Index v) const { return {mesh_.vertices[v].x(), mesh_.vertices[v].y(), mesh_.vertices[v].z()}; }
+  Kernel::Triangle_3 triangle(const Triangle& t) const { return {point(t[0]), point(t[1]), point(t[2])}; }
 
   // Whether the corners of `other` that are not common lie beyond doubt on one side of the plane of `face`: the two
   // then meet in common corners at most. The margin is far above the rounding of the determinant.
-  bool on_one_side(Index face, const Triangle& other, const Index common[3], int count) const {
-    const Vec3& base = mesh_.vertices[mesh_.faces[face][0]];
-    const auto& [normal, margin] = planes_[face];
+  bool on_one_side(const Triangle& face, const Triangle& other, const Index common[3], int count) const {
+    const Vec3& base = mesh_.vertices[face[0]];
+    const Vec3 first = mesh_.vertices[face[1]] - base, second = mesh_.vertices[face[2]] - base;
+    const Vec3 normal = first.cross(second);
+    const double margin = kMargin * kMargin * first.squaredNorm() * second.squaredNorm();
     int above = 0, below = 0;
     for (const Index v : other) {
       if (std::find(common, common + count, v) != common + count) continue;
       const Vec3 away = mesh_.vertices[v] - base;
       const double height = normal.dot(away);
-      if (!(std::abs(height) > margin * away.norm())) return false;
+      if (!(height * height > margin * away.squaredNorm())) return false;
       ++(height > 0 ? above : below);
     }
     return above == 0 || below == 0;
@@ -68,23 +61,16 @@ class FacePairTest {
 
   // Two faces at an edge overlap only when they are coplanar and lie on the same side of it.
   bool folded(Index a, Index b, Index c, Index d) const {
-    return CGAL::coplanar(points_[a], points_[b], points_[c], points_[d]) &&
-           CGAL::coplanar_orientation(points_[a], points_[b], points_[c], points_[d]) == CGAL::POSITIVE;
+    return CGAL::coplanar(point(a), point(b), point(c), point(d)) &&
+           CGAL::coplanar_orientation(point(a), point(b), point(c), point(d)) == CGAL::POSITIVE;
   }
 
   bool opposite_edge_meets(const Triangle& x, const Triangle& y, Index common) const {
     const auto i = std::find(x.begin(), x.end(), common) - x.begin();
-    return CGAL::do_intersect(triangle(y), Kernel::Segment_3(points_[x[(i + 1) % 3]], points_[x[(i + 2) % 3]]));
+    return CGAL::do_intersect(triangle(y), Kernel::Segment_3(point(x[(i + 1) % 3]), point(x[(i + 2) % 3])));
   }
 
-  struct Plane {
-    Vec3 normal;    // as long as twice the area
-    double margin;  // beyond which a height above it is certain, by distance from the first corner
-  };
-
   const TriMesh& mesh_;
-  std::vector<Point> points_;
-  std::vector<Plane> planes_;
 };
 
 }  // namespace
@@ -95,6 +81,7 @@ std::vector<std::pair<Index, Index>> self_intersections(const TriMesh& mesh) {
   std::vector<Vec3> low, high;
   const std::vector<Index> degenerate = degenerate_faces(mesh);
   auto skipped = degenerate.begin();
+  for (auto* corners : {&low, &high}) corners->reserve(mesh.faces.size());
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     if (skipped != degenerate.end() && *skipped == f) {
       ++skipped;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
-#include "vmesh/core/error.h"
+#include "mesh/check_indices.h"
+#include "mesh/sorted_by_vertex.h"
 
 namespace vmesh {
 namespace {
@@ -17,19 +19,19 @@ struct Side {
   auto key() const { return std::pair(low, high); }
 };
 
+// Those of an edge one after the other.
 std::vector<Side> sorted_sides(const TriMesh& mesh) {
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.faces.size());
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    for (int i = 0; i < 3; ++i) {
-      const Index a = mesh.faces[f][i], b = mesh.faces[f][(i + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), f, a < b});
+  const auto visit_sides = [&](auto&& visit) {
+    for (Index f = 0; f < mesh.faces.size(); ++f) {
+      for (int i = 0; i < 3; ++i) {
+        const Index a = mesh.faces[f][i], b = mesh.faces[f][(i + 1) % 3];
+        visit(std::min(a, b), Side{std::min(a, b), std::max(a, b), f, a < b});
+      }
     }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
-    return std::tie(x.low, x.high, x.face) < std::tie(y.low, y.high, y.face);
+  };
+  return sorted_by_vertex<Side>(mesh.vertices.size(), visit_sides, [](const Side& x, const Side& y) {
+    return std::tie(x.high, x.face) < std::tie(y.high, y.face);
   });
-  return sides;
 }
 
 class DisjointSets {
@@ -78,17 +80,6 @@ std::size_t count_pieces(const std::vector<Side>& edges, std::size_t vertices) {
   for (const Side& edge : edges) roots.push_back(sets.find(edge.low));
   std::sort(roots.begin(), roots.end());
   return static_cast<std::size_t>(std::unique(roots.begin(), roots.end()) - roots.begin());
-}
-
-void check_indices(const TriMesh& mesh) {
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    for (const Index v : mesh.faces[f]) {
-      if (v >= mesh.vertices.size()) {
-        throw InvalidInput("face " + std::to_string(f) + " names vertex " + std::to_string(v) + ", but the mesh has " +
-                           std::to_string(mesh.vertices.size()) + " vertices");
-      }
-    }
-  }
 }
 
 }  // namespace

@@ -16,6 +16,9 @@ namespace vmesh {
 namespace {
 
 constexpr int kFewestOnCap = 4;  // vertices of a cap's ring
+// Pieces that wait to be assembled. Many more, and the memory between them is in so many parts that finding some in it
+// takes longer and longer.
+constexpr std::size_t kPiecesAtOnce = 1024;
 
 // Vertices and faces of all pieces, by number, before they become one halfedge mesh.
 class Assembly {
@@ -159,27 +162,41 @@ class Assembly {
   std::vector<std::vector<Index>> first_;  // vertex of every ring of every tube
 };
 
-// The pieces do not depend on each other, nor on the number of threads.
-std::vector<JunctionPiece> make_pieces(const VesselField& field, const std::vector<BranchAxis>& axes,
-                                       const GrowthSkeleton& skeleton, const GenerateOptions& options,
-                                       const Progress& progress) {
-  const std::size_t count = skeleton.junctions.size();
-  std::vector<JunctionPiece> pieces(count);
-  std::mutex reporting;
-  std::size_t done = 0;
+// Makes the pieces of all junctions, some at a time. They do not depend on each other, nor on the number of threads.
+class PieceMaker {
+ public:
+  PieceMaker(const VesselField& field, const std::vector<BranchAxis>& axes, const GrowthSkeleton& skeleton,
+             const GenerateOptions& options, const Progress& progress)
+      : field_(field), axes_(axes), skeleton_(skeleton), options_(options), progress_(progress) {}
+
+  // The next ones; none after the last.
+  std::vector<JunctionPiece> next() {
+    const std::size_t first = done_, count = std::min(kPiecesAtOnce, skeleton_.junctions.size() - first);
+    std::vector<JunctionPiece> pieces(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      report_progress(ask_, "grow", 0);
+      pieces[i] = make_junction_piece(field_, axes_, skeleton_, skeleton_.junctions[first + i], options_, ask_);
+      const std::lock_guard lock(reporting_);
+      ++done_;
+    });
+    return pieces;
+  }
+
+ private:
+  const VesselField& field_;
+  const std::vector<BranchAxis>& axes_;
+  const GrowthSkeleton& skeleton_;
+  const GenerateOptions& options_;
+  const Progress& progress_;
+  std::mutex reporting_;
+  std::size_t done_ = 0;
   // Every sweep of a piece asks whether to go on; what it tells is how many pieces are done.
-  const Progress ask = [&](std::string_view, double) {
-    const std::lock_guard lock(reporting);
-    return !progress || progress("grow", static_cast<double>(done) / static_cast<double>(count));
+  const Progress ask_ = [this](std::string_view, double) {
+    const std::lock_guard lock(reporting_);
+    const double fraction = static_cast<double>(done_) / static_cast<double>(skeleton_.junctions.size());
+    return !progress_ || progress_("grow", fraction);
   };
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t j) {
-    report_progress(ask, "grow", 0);
-    pieces[j] = make_junction_piece(field, axes, skeleton, skeleton.junctions[j], options, ask);
-    const std::lock_guard lock(reporting);
-    ++done;
-  });
-  return pieces;
-}
+};
 
 std::string at(const Vec3& p) {
   std::ostringstream text;
@@ -240,14 +257,15 @@ GuidedGrowthReport grow_guided(BoundSurface& surface, const std::vector<char>& o
 
   Assembly assembly(skeleton, axes, open);
   for (Index t = 0; t < skeleton.tubes.size(); ++t) assembly.add_tube(t);
-  const std::vector<JunctionPiece> pieces = make_pieces(field, axes, skeleton, options, progress);
-  for (std::size_t j = 0; j < pieces.size(); ++j) {
-    assembly.add_junction(pieces[j]);
-    summary.cycle_rank += pieces[j].handles;
-    report.filled_loops += pieces[j].filled_loops;
-    report.tangled_junctions += pieces[j].tangles > 0;
-    note_simplifications(field.centerline(), axes, skeleton.junctions[j], pieces[j].filled_loops,
-                         summary.simplifications);
+  PieceMaker maker(field, axes, skeleton, options, progress);
+  for (auto junction = skeleton.junctions.begin(); junction != skeleton.junctions.end();) {
+    for (const JunctionPiece& piece : maker.next()) {
+      assembly.add_junction(piece);
+      summary.cycle_rank += piece.handles;
+      report.filled_loops += piece.filled_loops;
+      report.tangled_junctions += piece.tangles > 0;
+      note_simplifications(field.centerline(), axes, *junction++, piece.filled_loops, summary.simplifications);
+    }
   }
   report.open_loops = assembly.build(surface);
   return report;

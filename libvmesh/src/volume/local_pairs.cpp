@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace vmesh {
 namespace {
@@ -9,75 +10,95 @@ namespace {
 constexpr double kSampling = 0.5;  // mean radii between two spheres that stand for a cone
 constexpr int kMaxSamples = 200;   // per cone
 
-// Spheres along all segments, every one next to those before and after it.
-struct SphereChain {
-  std::vector<Vec3> centers;
-  std::vector<double> radii;
-  std::vector<std::vector<Index>> next;   // neighbours along the centerline
-  std::vector<std::vector<Index>> cones;  // of which a sphere is part: several at a node
-};
-
-SphereChain make_chain(const Centerline& centerline) {
-  SphereChain chain;
-  const auto add = [&](const Vec3& center, double radius) {
-    chain.centers.push_back(center);
-    chain.radii.push_back(radius);
-    chain.next.emplace_back();
-    chain.cones.emplace_back();
-    return static_cast<Index>(chain.centers.size() - 1);
-  };
-  const auto link = [&](Index p, Index q, Index cone) {
-    chain.next[p].push_back(q);
-    chain.next[q].push_back(p);
-    for (const Index sphere : {p, q}) {
-      if (chain.cones[sphere].empty() || chain.cones[sphere].back() != cone) chain.cones[sphere].push_back(cone);
+// Spheres at all nodes and along all segments: first those of the nodes, then those within segments in turn.
+class SphereChain {
+ public:
+  explicit SphereChain(const Centerline& centerline) : centerline_(centerline) {
+    for (const auto& node : centerline.nodes()) spheres_.push_back({node.position, node.radius});
+    for (Index s = 0; s < centerline.segments().size(); ++s) {
+      first_.push_back(size());
+      const double steps = std::ceil(centerline.length(s) / (kSampling * centerline.radius_at(s, 0.5)));
+      const int count = static_cast<int>(std::clamp(steps, 1.0, double{kMaxSamples}));
+      for (int k = 1; k < count; ++k) {
+        const double t = static_cast<double>(k) / count;
+        spheres_.push_back({centerline.point_at(s, t), centerline.radius_at(s, t)});
+        segments_.push_back(s);
+      }
     }
-  };
-  for (const auto& node : centerline.nodes()) add(node.position, node.radius);
-  for (Index s = 0; s < centerline.segments().size(); ++s) {
-    const double steps = std::ceil(centerline.length(s) / (kSampling * centerline.radius_at(s, 0.5)));
-    const int count = static_cast<int>(std::clamp(steps, 1.0, double{kMaxSamples}));
-    Index last = centerline.segment(s).a;
-    for (int k = 1; k < count; ++k) {
-      const double t = static_cast<double>(k) / count;
-      const Index sphere = add(centerline.point_at(s, t), centerline.radius_at(s, t));
-      link(last, sphere, s);
-      last = sphere;
-    }
-    link(last, centerline.segment(s).b, s);
+    first_.push_back(size());
   }
-  return chain;
-}
+
+  Index size() const { return static_cast<Index>(spheres_.size()); }
+
+  // The segments of which sphere `p` is part: several at a node.
+  std::span<const Index> segments(Index p) const {
+    return p < nodes() ? centerline_.incident_segments(p) : std::span(&segments_[p - nodes()], 1);
+  }
+
+  // Calls visit(sphere) for the spheres next to `p` along the centerline.
+  template <class Visit>
+  void visit_next(Index p, Visit&& visit) const {
+    for (const Index s : segments(p)) {
+      const Index last = first_[s + 1] - first_[s] + 1;
+      const Index place = p >= nodes() ? p - first_[s] + 1 : p == centerline_.segment(s).a ? 0 : last;
+      if (place > 0) visit(sphere_at(s, place - 1));
+      if (place < last) visit(sphere_at(s, place + 1));
+    }
+  }
+
+  bool touch(Index p, Index q, double factor) const {
+    const double reach = factor * (spheres_[p].radius + spheres_[q].radius);
+    return (spheres_[p].center - spheres_[q].center).squaredNorm() < reach * reach;
+  }
+
+ private:
+  struct Sphere {
+    Vec3 center;
+    double radius;
+  };
+
+  Index nodes() const { return static_cast<Index>(centerline_.nodes().size()); }
+
+  // Along segment `s`, whose first node has place 0.
+  Index sphere_at(Index s, Index place) const {
+    const auto& [a, b] = centerline_.segment(s);
+    const Index within = first_[s] + place - 1;
+    return place == 0 ? a : within < first_[s + 1] ? within : b;
+  }
+
+  const Centerline& centerline_;
+  std::vector<Sphere> spheres_;
+  std::vector<Index> first_;     // of the spheres within every segment; one more for the end
+  std::vector<Index> segments_;  // of spheres within segments
+};
 
 }  // namespace
 
 PairSet local_pairs(const Centerline& centerline, double touch) {
-  const SphereChain chain = make_chain(centerline);
+  const SphereChain chain(centerline);
   PairSet touching, set;
   const auto note = [&](Index p, Index q) {
-    const double reach = touch * (chain.radii[p] + chain.radii[q]);
-    if ((chain.centers[p] - chain.centers[q]).squaredNorm() < reach * reach && p != q) touching.insert(p, q);
+    if (p != q && chain.touch(p, q, touch)) touching.insert(p, q);
   };
-  for (Index p = 0; p < chain.centers.size(); ++p) {
-    for (const Index i : chain.cones[p]) {
-      for (const Index j : chain.cones[p]) {
+  const auto join = [&](Index p, Index q) {
+    for (const Index i : chain.segments(p)) {
+      for (const Index j : chain.segments(q)) {
         if (i != j) set.insert(i, j);
       }
     }
-    for (const Index q : chain.next[p]) note(p, q);
-    for (std::size_t n = 0; n < chain.next[p].size(); ++n) {
-      for (std::size_t m = 0; m < n; ++m) note(chain.next[p][n], chain.next[p][m]);
-    }
+  };
+  for (Index p = 0; p < chain.size(); ++p) {
+    join(p, p);
+    chain.visit_next(p, [&](Index q) {
+      note(p, q);
+      chain.visit_next(p, [&](Index other) { note(q, other); });
+    });
   }
   for (std::size_t n = 0; n < touching.pairs().size(); ++n) {
     const auto [p, q] = touching.pairs()[n];
-    for (const Index i : chain.cones[p]) {
-      for (const Index j : chain.cones[q]) {
-        if (i != j) set.insert(i, j);
-      }
-    }
-    for (const Index next : chain.next[p]) note(next, q);
-    for (const Index next : chain.next[q]) note(p, next);
+    join(p, q);
+    chain.visit_next(p, [&](Index next) { note(next, q); });
+    chain.visit_next(q, [&](Index next) { note(p, next); });
   }
   return set;
 }

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -13,21 +11,29 @@ namespace vmesh {
 /// Sums of radii within which two spheres of the vessel volume touch, or blend.
 inline constexpr double kTouch = 1.25;
 
-/// A growing symmetric relation between indices.
+/// A growing symmetric relation between indices. Rows rather than a hash table: indices that are used one after the
+/// other are near each other in memory.
 class PairSet {
  public:
   bool insert(Index i, Index j) {
-    if (!known_.insert(key(i, j)).second) return false;
-    pairs_.push_back(std::minmax(i, j));
+    const auto [low, high] = std::minmax(i, j);
+    if (low >= above_.size()) above_.resize(low + 1);
+    std::vector<Index>& row = above_[low];
+    const auto place = std::lower_bound(row.begin(), row.end(), high);
+    if (place != row.end() && *place == high) return false;
+    row.insert(place, high);
+    pairs_.emplace_back(low, high);
     return true;
   }
-  bool contains(Index i, Index j) const { return known_.contains(key(i, j)); }
+  bool contains(Index i, Index j) const {
+    const auto [low, high] = std::minmax(i, j);
+    return low < above_.size() && std::binary_search(above_[low].begin(), above_[low].end(), high);
+  }
+  /// In the order of insertion, each with the lower index first.
   const std::vector<std::pair<Index, Index>>& pairs() const { return pairs_; }
 
  private:
-  static std::uint64_t key(Index i, Index j) { return std::uint64_t{std::min(i, j)} << 32 | std::max(i, j); }
-
-  std::unordered_set<std::uint64_t> known_;
+  std::vector<std::vector<Index>> above_;  // of every index its greater partners, ascending
   std::vector<std::pair<Index, Index>> pairs_;
 };
 

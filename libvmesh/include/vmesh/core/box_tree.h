@@ -47,7 +47,9 @@ class BoxTree {
     }
   };
 
-  void build(Index node, Index first, Index count, const std::vector<Vec3>& low, const std::vector<Vec3>& high);
+  struct Item;
+  void divide(Index node, std::vector<Item>& items, Index first, Index count);
+  void enclose(Node& node, const std::vector<Vec3>& low, const std::vector<Vec3>& high) const;
 
   template <class Visit>
   void visit_node(Index n, const Vec3& p, const double& limit, Visit&& visit_item) const {

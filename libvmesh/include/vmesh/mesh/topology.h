@@ -29,10 +29,11 @@ Topology measure_topology(const TriMesh& mesh);
 double enclosed_volume(const TriMesh& mesh);
 
 /// Pairs of faces that intersect other than in their common vertices or edge, each pair in ascending order, the
-/// list sorted. Degenerate faces are not tested. Exact predicates (CGAL polygon mesh processing).
+/// list sorted. Degenerate faces are not tested. Exact predicates (CGAL).
 std::vector<std::pair<Index, Index>> self_intersections(const TriMesh& mesh);
 
-/// Faces without area, ascending: corners in common, at one place or on one line. Exact predicates.
+/// Faces without area, ascending: corners in common, at one place or on one line. Exact predicates. Throws InvalidInput
+/// when a face names a vertex that does not exist, as does the next.
 std::vector<Index> degenerate_faces(const TriMesh& mesh);
 
 /// Faces with the same three vertices as an earlier face, in whatever order, ascending.
