@@ -222,6 +222,13 @@ TEST(DuplicateFaces, HaveTheSameVerticesInWhateverOrder) {
   EXPECT_EQ(duplicate_faces(mesh), (std::vector<Index>{3, 13}));
 }
 
+TEST(DefectiveFaces, AreNotLookedForAmongFacesWithoutVertices) {
+  TriMesh mesh = cube();
+  mesh.faces.push_back({0, 1, 8});
+  EXPECT_THROW(degenerate_faces(mesh), InvalidInput);
+  EXPECT_THROW(duplicate_faces(mesh), InvalidInput);
+}
+
 TEST(Valence, IsTheNumberOfEdges) {
   const auto sphere = valences(icosphere(2));
   EXPECT_EQ(std::count(sphere.begin(), sphere.end(), 5u), 12);

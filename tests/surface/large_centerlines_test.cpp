@@ -1,3 +1,5 @@
+#include "vmesh/centerline/synthetic_tree.h"
+
 #include "extremes.h"
 
 namespace vmesh {
@@ -21,6 +23,23 @@ TEST(LongChain, OfAMillionNodesIsOneTube) {
   testing::expect_valid(centerline, result);
   // As many vertices as its length in radii asks for, whatever the number of nodes: about 7 a radius.
   EXPECT_LT(static_cast<double>(result.mesh.vertices.size()), 10 * centerline.length_in_radii());
+}
+
+TEST(LargeTree, OfMoreJunctionsThanAreGrownAtOnceIsValid) {
+  SyntheticTreeOptions tree;
+  tree.vertices = 10'000;
+  const Centerline centerline = synthetic_tree(tree);
+  double told = 0;
+  const GenerateResult result = generate_surface(centerline, {}, [&](std::string_view stage, double fraction) {
+    if (stage == "grow") {
+      EXPECT_GE(fraction, told);
+      told = fraction;
+    }
+    return true;
+  });
+  EXPECT_GT(result.growth.junctions, 1024u);
+  EXPECT_GT(told, 0.99);
+  testing::expect_valid(centerline, result);
 }
 
 }  // namespace
