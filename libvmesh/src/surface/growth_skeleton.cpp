@@ -42,6 +42,7 @@ class SkeletonMaker {
     do {
       divide_all();
     } while (dissolve_handles());
+    gather_rings();
     return std::move(skeleton_);
   }
 
@@ -63,6 +64,28 @@ class SkeletonMaker {
     collect_junctions();
   }
 
+  // Many small pieces of memory are slow to live with: it is all copied together.
+  void gather_rings() {
+    Rings& all = skeleton_.rings;
+    std::size_t rings = 0, points = 0;
+    for (const Tube& tube : skeleton_.tubes) {
+      rings += tube.rings.size();
+      for (const Ring& ring : tube.rings) points += ring.points.size();
+    }
+    all.rings.reserve(rings);
+    all.points.reserve(points);
+    for (Tube& tube : skeleton_.tubes) {
+      const Ring* first = all.rings.data() + all.rings.size();
+      for (Ring ring : tube.rings) {
+        const BoundaryPoint* place = all.points.data() + all.points.size();
+        all.points.insert(all.points.end(), ring.points.begin(), ring.points.end());
+        ring.points = {place, ring.points.size()};
+        all.rings.push_back(ring);
+      }
+      tube.rings = {first, tube.rings.size()};
+    }
+  }
+
   // A short tube with both ends at one junction cannot be grown apart from it: the ends of the junction's vessels would
   // overlap there.
   bool dissolve_handles() {
@@ -82,21 +105,26 @@ class SkeletonMaker {
   }
 
   void cover(const Tube& tube) {
-    for (Ring& ring : rings_[tube.branch]) {
-      for (const Ring& gone : tube.rings) {
-        if (ring.place == gone.place) ring.free = false;
-      }
-    }
+    std::vector<Ring>& rings = rings_[tube.branch].rings;
+    const auto first = rings.begin() + (tube.rings.data() - rings.data());
+    for (auto ring = first; ring != first + static_cast<std::ptrdiff_t>(tube.rings.size()); ++ring) ring->free = false;
+  }
+
+  // The free rings from number `k` on, up to the next that is not; `k` becomes the number of that one.
+  static std::span<const Ring> free_run(const std::vector<Ring>& rings, std::size_t& k) {
+    const std::size_t first = k;
+    while (k < rings.size() && rings[k].free) ++k;
+    return {rings.data() + first, k - first};
   }
 
   // Runs of free rings become tubes; what lies between them, gaps.
   void divide(Index b) {
     const BranchAxis& axis = axes_[b];
-    std::vector<Ring> rings = rings_[b];
     if (axis.periodic()) {
-      divide_loop(b, std::move(rings));
+      divide_loop(b);
       return;
     }
+    const std::vector<Ring>& rings = rings_[b].rings;
     Gap gap{b, 0, 0, {}};
     for (std::size_t k = 0; k < rings.size();) {
       if (!rings[k].free) {
@@ -105,7 +133,7 @@ class SkeletonMaker {
       }
       Tube tube{b, {}, k == 0 && axis.starts_at_tip(), false, false};
       const bool first_is_tip = tube.starts_at_tip;
-      while (k < rings.size() && rings[k].free) tube.rings.push_back(std::move(rings[k++]));
+      tube.rings = free_run(rings, k);
       tube.ends_at_tip = k == rings.size() && axis.ends_at_tip();
       const auto number = static_cast<Index>(skeleton_.tubes.size());
       if (first_is_tip) {
@@ -126,11 +154,12 @@ class SkeletonMaker {
     }
   }
 
-  void divide_loop(Index b, std::vector<Ring> rings) {
+  void divide_loop(Index b) {
     const BranchAxis& axis = axes_[b];
+    std::vector<Ring>& rings = rings_[b].rings;
     const auto covered = std::find_if(rings.begin(), rings.end(), [](const Ring& r) { return !r.free; });
     if (covered == rings.end()) {
-      skeleton_.tubes.push_back({b, std::move(rings), false, false, true});
+      skeleton_.tubes.push_back({b, rings, false, false, true});
       return;
     }
     std::rotate(rings.begin(), covered, rings.end());  // from a covered ring on
@@ -141,7 +170,7 @@ class SkeletonMaker {
         continue;
       }
       Tube tube{b, {}, false, false, false};
-      while (k < rings.size() && rings[k].free) tube.rings.push_back(std::move(rings[k++]));
+      tube.rings = free_run(rings, k);
       skeleton_.tubes.push_back(std::move(tube));
     }
     const std::size_t count = skeleton_.tubes.size() - first_tube;
@@ -190,8 +219,8 @@ class SkeletonMaker {
   const std::vector<BranchAxis>& axes_;
   std::vector<SegmentPlace> places_;
   RingLayer layer_;
-  std::vector<std::vector<Ring>> rings_;  // of every branch
-  std::vector<char> capped_;              // tips that a tube's cap closes
+  std::vector<Rings> rings_;  // of every branch
+  std::vector<char> capped_;  // tips that a tube's cap closes
   std::vector<Gap> gaps_;
   GrowthSkeleton skeleton_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "surface/vessel_rings.h"
 
@@ -9,7 +10,7 @@ namespace vmesh {
 /// A stretch of a branch whose cross-sections are its own: rings that follow each other.
 struct Tube {
   Index branch = kNone;
-  std::vector<Ring> rings;
+  std::span<const Ring> rings;                      ///< of those of the skeleton
   bool starts_at_tip = false, ends_at_tip = false;  ///< closed by a cap there
   bool periodic = false;                            ///< the last ring is followed by the first
 };
@@ -40,6 +41,7 @@ std::vector<TubeEnd> openings_of(const Junction& junction);
 /// part into tubes of their own where their cross-sections do, and a branch without a cross-section of its own is part
 /// of a junction.
 struct GrowthSkeleton {
+  Rings rings;  ///< of the tubes
   std::vector<Tube> tubes;
   std::vector<Junction> junctions;
 

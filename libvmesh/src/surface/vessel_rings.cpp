@@ -62,14 +62,17 @@ RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& ax
                      const std::vector<SegmentPlace>& places, int around)
     : field_(field), axes_(axes), places_(places), around_(around) {}
 
-std::vector<Ring> RingLayer::lay(Index branch) const {
+Rings RingLayer::lay(Index branch) const {
   const BranchAxis& axis = axes_[branch];
   const double pitch = ring_pitch(around_);
   const double total = axis.length_in_radii();
   const auto bands = static_cast<std::size_t>(std::max(1.0, std::round(total / pitch)));
   const double step = total / static_cast<double>(bands);
   const std::size_t count = axis.periodic() ? bands : bands + 1;
-  std::vector<Ring> rings;
+  Rings laid;
+  std::vector<Ring>& rings = laid.rings;
+  rings.reserve(count);
+  laid.points.reserve(count * static_cast<std::size_t>(around_));
   Vec3 side = Vec3::Zero();
   for (std::size_t k = 0; k < count; ++k) {
     const double radii = step * static_cast<double>(k);
@@ -77,7 +80,7 @@ std::vector<Ring> RingLayer::lay(Index branch) const {
     side = k == 0 ? reference(branch, here.normal)
                   : Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, here.normal) * side);
     side = (side - side.dot(here.normal) * here.normal).normalized();
-    rings.push_back(lay_one(branch, here, side, static_cast<double>(k % 2) / 2));
+    rings.push_back(lay_one(branch, here, side, static_cast<double>(k % 2) / 2, laid.points));
     rings.back().beside = {section(branch, radii - step / 2), section(branch, radii + step / 2)};
   }
   std::vector<char> collides(rings.size(), 0);
@@ -89,7 +92,7 @@ std::vector<Ring> RingLayer::lay(Index branch) const {
   for (std::size_t k = 0; k < rings.size(); ++k) rings[k].free = rings[k].free && !collides[k];
   leave_out_steps(rings, kMinGap * pitch);
   clear_ends(branch, rings);
-  return rings;
+  return laid;
 }
 
 CrossSection RingLayer::section(Index branch, double radii) const {
@@ -101,16 +104,16 @@ CrossSection RingLayer::section(Index branch, double radii) const {
 }
 
 void RingLayer::leave_out_steps(std::vector<Ring>& rings, double least_gap) {
-  std::vector<Ring> kept;
+  std::size_t kept = 0;
   for (std::size_t k = 0; k < rings.size();) {
-    kept.push_back(rings[k]);
+    rings[kept++] = rings[k];
     std::size_t next = k + 1;
     while (next < rings.size() && rings[next].clear && !rings[next].free) ++next;
     const bool skip = rings[k].free && next < rings.size() && rings[next].free && next > k + 1 &&
                       is_straight_between(rings[k], rings[next]) && apart(rings[k], rings[next], least_gap);
     k = skip ? next : k + 1;
   }
-  rings = std::move(kept);
+  rings.resize(kept);
 }
 
 void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings) const {
@@ -119,10 +122,13 @@ void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings) const {
   if (!axis.periodic() && !axis.starts_at_tip()) rings.front().free = false;
   if (!axis.periodic() && !axis.ends_at_tip()) rings.back().free = false;
   const auto covered = [&](std::size_t k) { return !rings[k].free; };
+  std::vector<BoundaryPoint> points;
+  points.reserve(static_cast<std::size_t>(around_));
   const auto can_dock = [&](const Ring& ring, int side) {
     const Vec3 across = ring.points.front().position - ring.center;
     const CrossSection& next = ring.beside[side];
-    return lay_one(branch, next, (across - across.dot(next.normal) * next.normal).normalized(), 0).free;
+    points.clear();
+    return lay_one(branch, next, (across - across.dot(next.normal) * next.normal).normalized(), 0, points).free;
   };
   const std::size_t laps = axis.periodic() ? 2 * count : count;
   for (std::size_t k = 1; k < laps; ++k) {
@@ -155,7 +161,8 @@ Vec3 RingLayer::reference(Index branch, const Vec3& normal) const {
   return best.normalized();
 }
 
-Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase) const {
+Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
+                        std::vector<BoundaryPoint>& points) const {
   const BranchAxis::Point axis = axes_[branch].at(section.place);
   Ring ring{section, {}, {}, false, false};
   const Vec3 up = section.normal.cross(side);
@@ -165,7 +172,8 @@ Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& s
     const double angle = 2 * std::numbers::pi * (j + phase) / around_;
     BoundaryPoint seen;
     if (!see(branch, ring, axis, std::cos(angle) * side + std::sin(angle) * up, seen)) return ring;
-    ring.points.push_back(seen);
+    points.push_back(seen);
+    ring.points = {&points.back() - ring.points.size(), ring.points.size() + 1};
   }
   ring.free = true;
   return ring;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "surface/bound_surface.h"
@@ -18,10 +19,20 @@ struct CrossSection {
 
 /// A ring of vertices around a branch, on the vessel boundary, counter-clockwise about `normal`.
 struct Ring : CrossSection {
-  std::vector<BoundaryPoint> points;
-  std::array<CrossSection, 2> beside;  ///< half a step before and after it
+  std::span<const BoundaryPoint> points;  ///< all, or those before the first that is not seen
+  std::array<CrossSection, 2> beside;     ///< half a step before and after it
   bool clear = false;  ///< no other vessel, nor a far part of this one, covers the cross-section or comes close
   bool free = false;   ///< clear, and the boundary is seen from the axis all around
+};
+
+/// Rings and the points they consist of. Moved, not copied: rings refer to the points by address.
+struct Rings {
+  Rings() = default;
+  Rings(Rings&&) = default;
+  Rings& operator=(Rings&&) = default;
+
+  std::vector<Ring> rings;
+  std::vector<BoundaryPoint> points;
 };
 
 /// Distance in radii between rings of `around` vertices whose band consists of nearly equilateral triangles.
@@ -43,12 +54,14 @@ class RingLayer {
   RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes, const std::vector<SegmentPlace>& places,
             int around);
 
-  std::vector<Ring> lay(Index branch) const;
+  Rings lay(Index branch) const;
 
  private:
   CrossSection section(Index branch, double radii) const;
   Vec3 reference(Index branch, const Vec3& normal) const;
-  Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase) const;
+  // Its points go to the end of `points`, which must have room for them.
+  Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
+               std::vector<BoundaryPoint>& points) const;
   static void leave_out_steps(std::vector<Ring>& rings, double least_gap);
   void clear_ends(Index branch, std::vector<Ring>& rings) const;
   // Whether no other vessel, nor a far part of this one, covers the cross-section or comes close.
