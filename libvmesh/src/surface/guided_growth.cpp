@@ -16,8 +16,7 @@ namespace vmesh {
 namespace {
 
 constexpr int kFewestOnCap = 4;  // vertices of a cap's ring
-// Pieces that wait to be assembled. Many more, and the memory between them is in so many parts that finding some in it
-// takes longer and longer.
+// Pieces that wait to be assembled: no more, as allocation becomes slower the more small parts memory is in.
 constexpr std::size_t kPiecesAtOnce = 1024;
 
 // Vertices and faces of all pieces, by number, before they become one halfedge mesh.
