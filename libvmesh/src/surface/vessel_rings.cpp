@@ -168,13 +168,17 @@ Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& s
   const Vec3 up = section.normal.cross(side);
   ring.clear = goes_through(branch, section) && is_clear(branch, section, axis, side, up);
   if (!ring.clear) return ring;
+  const std::size_t first = points.size();
   for (int j = 0; j < around_; ++j) {
     const double angle = 2 * std::numbers::pi * (j + phase) / around_;
     BoundaryPoint seen;
-    if (!see(branch, ring, axis, std::cos(angle) * side + std::sin(angle) * up, seen)) return ring;
+    if (!see(branch, ring, axis, std::cos(angle) * side + std::sin(angle) * up, seen)) {
+      points.resize(first);
+      return ring;
+    }
     points.push_back(seen);
-    ring.points = {&points.back() - ring.points.size(), ring.points.size() + 1};
   }
+  ring.points = std::span(points).subspan(first);
   ring.free = true;
   return ring;
 }

@@ -19,7 +19,7 @@ struct CrossSection {
 
 /// A ring of vertices around a branch, on the vessel boundary, counter-clockwise about `normal`.
 struct Ring : CrossSection {
-  std::span<const BoundaryPoint> points;  ///< all, or those before the first that is not seen
+  std::span<const BoundaryPoint> points;  ///< none where one of them is not seen from the axis
   std::array<CrossSection, 2> beside;     ///< half a step before and after it
   bool clear = false;  ///< no other vessel, nor a far part of this one, covers the cross-section or comes close
   bool free = false;   ///< clear, and the boundary is seen from the axis all around
