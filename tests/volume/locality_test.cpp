@@ -41,8 +41,8 @@ double axis_distance(const VesselField& field, Index i, Index j) {
   return least;
 }
 
-// The definition, by brute force: spheres half a mean radius apart stand for a cone. Two of them touch within 1.25
-// times the sum of their radii. Pairs of touching spheres are connected where one sphere stays and the other moves on
+// The definition, by brute force: spheres half a mean radius apart stand for a cone. Two of them touch where no more than
+// half of the smaller radius is between them, apart from what spheres lack of a cone. Pairs of touching spheres are connected where one sphere stays and the other moves on
 // to its neighbour along the centerline; cones are local to each other where a pair of their spheres is connected to a
 // sphere paired with itself.
 class Locality {
@@ -54,7 +54,8 @@ class Locality {
     std::vector<char> touching(n * n, 0), reached(n * n, 0);
     for (std::size_t p = 0; p < n; ++p) {
       for (std::size_t q = 0; q < n; ++q) {
-        const double reach = 1.25 * (spheres_[p].radius + spheres_[q].radius);
+        const auto [small, large] = std::minmax(spheres_[p].radius, spheres_[q].radius);
+        const double reach = 1.5 * small + 1.04 * large;
         const double apart = (spheres_[p].position - spheres_[q].position).norm();
         touching[p * n + q] = apart < reach;
         note(apart, reach);

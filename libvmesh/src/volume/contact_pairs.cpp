@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 
 #include "volume/local_pairs.h"
@@ -12,9 +13,11 @@ namespace vmesh {
 namespace {
 
 constexpr int kSectionSteps = 48;  // 0.618^48 = 1e-10 of the axis
-// Vessels that part have a wall of their own from 1.25 times the sum of their radii on (kTouch). Spheres half a radius
-// apart stand for them there, which costs a little of the quarter: this much is always left, in sums of radii.
-constexpr double kForkGap = 0.2;
+// Vessels that part have walls of their own from a gap of half a smaller radius on (kOneVolume): never more than this is
+// asked of them there.
+constexpr double kForkGap = 0.4;
+constexpr double kMostRounding = 0.2;         // sums of radii
+constexpr Touch kFork{0.5, 0.25};             // what still counts as a place where vessels part
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
 // The sphere of a cone that is closest to a point, for radii that count `weight` times.
@@ -116,8 +119,9 @@ Box box_of(const AxisStretch& cone, double margin) {
 class PairFinder {
  public:
   PairFinder(const VesselField& field, double gap)
-      : field_(field), gap_(gap), most_rounding_(std::min(field.blend() / 2, kForkGap)) {
-    if (gap > 2 * kForkGap) parting_ = local_pairs(field.centerline(), 1.05 + gap / 2);
+      : field_(field),
+        gap_(gap),
+        most_rounding_(std::min(field.blend() / 2, kMostRounding)) {
     for (Index c = 0; c < field.cone_count(); ++c) cones_.push_back(stretch_of(field, c));
     std::vector<Vec3> low, high;
     for (const AxisStretch& cone : cones_) {
@@ -147,6 +151,12 @@ class PairFinder {
     return std::binary_search(cones.begin(), cones.end(), j);
   }
 
+  // Close along the graph in a wider sense: at a fork that a wide gap would find still open.
+  bool are_parting(Index i, Index j) {
+    if (!parting_) parting_ = local_pairs(field_.centerline(), {std::max(kFork.smaller, gap_ / 0.8), kFork.larger});
+    return parting_->contains(i, j);
+  }
+
   bool out_of_reach(Index i, Index j) const {
     const AxisStretch &a = cones_[i], &b = cones_[j];
     const double ra = std::max(a.r0, a.r1), rb = std::max(b.r0, b.r1);
@@ -157,12 +167,12 @@ class PairFinder {
 
   void examine(Index i, Index j) {
     if (out_of_reach(i, j) || is_local(i, j)) return;
-    const double gap = parting_.contains(i, j) ? std::min(gap_, 2 * kForkGap) : gap_;
+    const double gap = gap_ > kForkGap && are_parting(i, j) ? kForkGap : gap_;
     ContactPair pair{i, j, gap, closest_approach(cones_[i], cones_[j], gap), kNone};
     if (pair.closest.excess >= 0) {
       const double r = cones_[i].radius(pair.closest.s), q = cones_[j].radius(pair.closest.t);
       if (pair.closest.excess >= most_rounding_ * (r + q)) return;
-      const double most = std::max(gap, kForkGap * (r + q) / std::min(r, q));
+      const double most = std::max(gap, are_parting(i, j) ? kForkGap : kMostRounding * (r + q) / std::min(r, q));
       pair.gap = std::min(gap + rounding(pair) / std::min(r, q), most);
       pair.closest = closest_approach(cones_[i], cones_[j], pair.gap);
     }
@@ -195,8 +205,9 @@ class PairFinder {
   }
 
   const VesselField& field_;
-  double gap_, most_rounding_;
-  PairSet parting_;  // close along the graph in a wider sense: at a fork that a wide gap finds still open
+  double gap_;            // smaller radii
+  double most_rounding_;  // of either vessel, in its radii
+  std::optional<PairSet> parting_;
   std::vector<AxisStretch> cones_;
   BoxTree tree_;
   std::vector<Index> near_;

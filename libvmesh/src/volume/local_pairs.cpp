@@ -46,8 +46,8 @@ class SphereChain {
     }
   }
 
-  bool touch(Index p, Index q, double factor) const {
-    const double reach = factor * (spheres_[p].radius + spheres_[q].radius);
+  bool touch(Index p, Index q, const Touch& touch) const {
+    const double r = spheres_[p].radius, s = spheres_[q].radius, reach = r + s + touch.gap(r, s);
     return (spheres_[p].center - spheres_[q].center).squaredNorm() < reach * reach;
   }
 
@@ -74,7 +74,7 @@ class SphereChain {
 
 }  // namespace
 
-PairSet local_pairs(const Centerline& centerline, double touch) {
+PairSet local_pairs(const Centerline& centerline, const Touch& touch) {
   const SphereChain chain(centerline);
   PairSet touching, set;
   const auto note = [&](Index p, Index q) {

@@ -8,8 +8,18 @@
 
 namespace vmesh {
 
-/// Sums of radii within which two spheres of the vessel volume touch, or blend.
-inline constexpr double kTouch = 1.25;
+/// The gap between two spheres of the vessel volume up to which they touch: so many radii of the smaller and so many of
+/// the larger one.
+struct Touch {
+  double smaller, larger;
+
+  double gap(double r, double q) const { return smaller * std::min(r, q) + larger * std::max(r, q); }
+};
+
+/// Up to this gap vessels that part count as one volume: the default rounding at branches fills what is between them
+/// (VesselField: opposite walls meet where the gap is `blend` smaller radii). Spheres half a radius apart stand for
+/// them, between which the larger's wall recedes by 1 - sqrt(1 - 0.25^2) = 0.032 radii.
+inline constexpr Touch kOneVolume{0.5, 0.04};
 
 /// A growing symmetric relation between indices. Rows rather than a hash table: indices that are used one after the
 /// other are near each other in memory.
@@ -39,7 +49,7 @@ class PairSet {
 
 /// The pairs of segments that are local to each other: a pair of spheres, one on each, can be reached from a pair of
 /// one and the same by moving either along the centerline without losing touch. Spheres half a mean radius apart stand
-/// for a segment; two touch within `touch` times the sum of their radii.
-PairSet local_pairs(const Centerline& centerline, double touch);
+/// for a segment.
+PairSet local_pairs(const Centerline& centerline, const Touch& touch);
 
 }  // namespace vmesh

@@ -16,7 +16,7 @@ constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 }  // namespace
 
 void VesselField::find_local_cones() {
-  const PairSet set = local_pairs(*centerline_, kTouch);
+  const PairSet set = local_pairs(*centerline_, kOneVolume);
 
   local_offsets_.assign(cones_.size() + 1, 0);
   for (std::size_t c = 0; c < cones_.size(); ++c) ++local_offsets_[c + 1];

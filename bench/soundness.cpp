@@ -1,0 +1,176 @@
+// Which surfaces are sound and which are not: over files, and over random trees. A table in Markdown of those that are
+// not (--all: of all) and one closing line. Usage:
+//   bench_soundness [--all] [--keep] [--around N] [--blend B] [--rotate] [FILE...]
+//                   [--noisy FIRST COUNT] [--plausible FIRST COUNT] [--looped FIRST COUNT]
+// --rotate grows each random tree with the next of a list of options; --keep does not separate vessels that touch.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "vmesh/core/error.h"
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/generate.h"
+#include "vmesh/volume/contacts.h"
+
+#include "random_vessels.h"
+
+namespace {
+
+using namespace vmesh;
+
+struct Settings {
+  bool all = false, keep = false, rotate = false;
+  GenerateOptions options;
+};
+
+struct Tally {
+  std::size_t cases = 0, unsound = 0, refused = 0;
+  double seconds = 0;
+};
+
+GenerateOptions rotated(GenerateOptions options, std::uint32_t seed) {
+  switch (seed % 11) {
+    case 1:
+      options.around = 3;
+      break;
+    case 2:
+      options.around = 4;
+      break;
+    case 3:
+      options.around = 12;
+      break;
+    case 4:
+      options.blend = 0;
+      break;
+    case 5:
+      options.blend = 2;
+      break;
+    case 6:
+      options.placement = Placement::inscribed;
+      break;
+    case 7:
+      options.open_ends.all = true;
+      break;
+    case 8:
+      options.max_center_distance = 0.05;
+      break;
+    case 9:
+      options.max_error.relative = 0.1;
+      break;
+    default:
+      break;
+  }
+  return options;
+}
+
+std::size_t nodes_outside(const Centerline& centerline, const GenerateResult& result) {
+  const TriMesh closed = with_lids(result);
+  if (!measure_topology(closed).closed) return centerline.nodes().size();
+  std::vector<Vec3> positions;
+  for (const auto& node : centerline.nodes()) positions.push_back(node.position);
+  std::vector<bool> inside = points_inside(closed, positions);
+  for (const Opening& opening : result.openings) inside[opening.node] = true;
+  return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), false));
+}
+
+void examine(const std::string& name, const Centerline& given, const GenerateOptions& options,
+             const Settings& settings, Tally& tally) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  ++tally.cases;
+  std::size_t left = 0;
+  Centerline centerline = given;
+  if (!settings.keep) {
+    SeparationOptions separation;
+    separation.blend = options.blend;
+    SeparatedCenterline separated = separate_contacts(given, separation);
+    left = separated.report.left.size();
+    centerline = std::move(separated.centerline);
+  }
+  GenerateResult result;
+  try {
+    result = generate_surface(centerline, options);
+  } catch (const std::exception& error) {
+    ++tally.refused;
+    std::printf("| %s | refused: %s |\n", name.c_str(), error.what());
+    return;
+  }
+  const double spent = seconds();
+  tally.seconds += spent;
+  const Topology topology = measure_topology(with_lids(result));
+  const auto crossings = self_intersections(result.mesh);
+  const SkewnessSummary skewness = summarize_skewness(result.mesh);
+  const std::size_t outside = nodes_outside(centerline, result);
+  const bool topology_right = topology.closed && topology.manifold && topology.oriented && topology.outward &&
+                              topology.components == result.growth.components &&
+                              topology.genus == static_cast<std::int64_t>(result.growth.cycle_rank);
+  const bool sound = topology_right && crossings.empty() && outside == 0 && skewness.max <= 0.9;
+  tally.unsound += !sound;
+  if (sound && !settings.all) return;
+  Vec3 at = Vec3::Zero();
+  if (!crossings.empty()) at = result.mesh.vertices[result.mesh.faces[crossings.front().first][0]];
+  std::printf("| %s | %zu | %zu | %.3f / %.3f | %s | %zu | %zu | %zu | %zu | %.2f | (%.2f %.2f %.2f) |\n", name.c_str(),
+              centerline.nodes().size(), result.mesh.vertices.size(), skewness.mean, skewness.max,
+              topology_right ? "right" : "WRONG", crossings.size(), outside, left, result.error.unproven_faces, spent,
+              at.x(), at.y(), at.z());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  settings.options.threads = 1;
+  Tally tally;
+  std::printf(
+      "| case | nodes | vertices | skewness mean / max | topology | crossing pairs | nodes outside | contacts left | "
+      "unproven | s | first crossing |\n|---|--:|--:|--:|---|--:|--:|--:|--:|--:|---|\n");
+  const auto random = [&](const char* name, std::uint32_t first, std::uint32_t count, auto&& make) {
+    for (std::uint32_t seed = first; seed < first + count; ++seed) {
+      const GenerateOptions options = settings.rotate ? rotated(settings.options, seed) : settings.options;
+      examine(std::string(name) + "_" + std::to_string(seed), make(seed), options, settings, tally);
+    }
+  };
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto number = [&](int k) { return static_cast<std::uint32_t>(std::atoi(argv[i + k])); };
+    if (word == "--all") {
+      settings.all = true;
+    } else if (word == "--keep") {
+      settings.keep = true;
+    } else if (word == "--rotate") {
+      settings.rotate = true;
+    } else if (word == "--around" && i + 1 < argc) {
+      settings.options.around = std::atoi(argv[++i]);
+    } else if (word == "--blend" && i + 1 < argc) {
+      settings.options.blend = std::atof(argv[++i]);
+    } else if (word == "--noisy" && i + 2 < argc) {
+      random("noisy", number(1), number(2), [](std::uint32_t seed) { return testing::noisy_tree(seed); });
+      i += 2;
+    } else if (word == "--plausible" && i + 2 < argc) {
+      random("plausible", number(1), number(2), [](std::uint32_t seed) { return testing::plausible_tree(seed); });
+      i += 2;
+    } else if (word == "--looped" && i + 2 < argc) {
+      random("looped", number(1), number(2),
+             [](std::uint32_t seed) { return testing::plausible_tree(seed, 1 + static_cast<int>(seed % 2)); });
+      i += 2;
+    } else {
+      try {
+        const Centerline centerline = load_centerline(word).cleaned.centerline;
+        examine(word.substr(word.rfind('/') + 1), centerline, settings.options, settings, tally);
+      } catch (const std::exception& error) {
+        std::printf("| %s | not read: %s |\n", word.c_str(), error.what());
+      }
+    }
+  }
+  std::printf("\n%zu cases, %zu unsound, %zu refused, %.1f s of generating\n", tally.cases, tally.unsound,
+              tally.refused, tally.seconds);
+  return tally.unsound > 0 ? 1 : 0;
+}
