@@ -1,9 +1,9 @@
 #include <new>
 
-#include "exit_code.h"
-#include "interrupt.h"
-#include "usage_error.h"
-#include "verbs.h"
+#include "command_line/exit_code.h"
+#include "command_line/interrupt.h"
+#include "command_line/usage_error.h"
+#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {

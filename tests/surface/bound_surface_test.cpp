@@ -1,11 +1,11 @@
-#include "surface/bound_surface.h"
+#include "surface/remesh/bound_surface.h"
 
 #include <gtest/gtest.h>
 
 #include "vmesh/mesh/topology.h"
 
 #include "centerlines.h"
-#include "surface/geodesic_sphere.h"
+#include "surface/paper/geodesic_sphere.h"
 
 namespace vmesh {
 namespace {

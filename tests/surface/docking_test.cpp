@@ -1,4 +1,4 @@
-#include "surface/docking.h"
+#include "surface/junction/docking.h"
 
 #include <algorithm>
 #include <map>
@@ -7,7 +7,7 @@
 
 #include "vmesh/mesh/topology.h"
 
-#include "surface/stitch.h"
+#include "surface/tubes/stitch.h"
 
 namespace vmesh {
 namespace {

@@ -1,4 +1,4 @@
-#include "surface/growth_paths.h"
+#include "surface/paper/growth_paths.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Arc length, rings and the graph that they steer growth with.
-#include "surface/growth_skeleton.h"
+#include "surface/tubes/growth_skeleton.h"
 
 #include <gtest/gtest.h>
 
 #include "centerlines.h"
-#include "surface/buried_branches.h"
+#include "surface/input/buried_branches.h"
 
 namespace vmesh {
 namespace {

@@ -1,4 +1,4 @@
-#include "surface/lattice_growth.h"
+#include "surface/junction/lattice_growth.h"
 
 #include <gtest/gtest.h>
 

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "vmesh/core/box_tree.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/generate.h"
-#include "vmesh/core/box_tree.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "shared_data.h"

@@ -1,4 +1,4 @@
-#include "surface/triangle_energy.h"
+#include "surface/remesh/triangle_energy.h"
 
 #include <gtest/gtest.h>
 

@@ -10,13 +10,13 @@
 
 #include "vmesh/core/error.h"
 
-#include "surface/bound_surface.h"
-#include "surface/buried_branches.h"
-#include "surface/error_limit.h"
 #include "surface/guided_growth.h"
-#include "surface/optimize.h"
-#include "surface/paper_growth.h"
-#include "surface/scale_check.h"
+#include "surface/input/buried_branches.h"
+#include "surface/input/scale_check.h"
+#include "surface/paper/paper_growth.h"
+#include "surface/proof/error_limit.h"
+#include "surface/remesh/bound_surface.h"
+#include "surface/remesh/optimize.h"
 
 namespace vmesh {
 namespace {

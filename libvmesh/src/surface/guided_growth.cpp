@@ -8,9 +8,9 @@
 
 #include "vmesh/core/error.h"
 
-#include "surface/junction_growth.h"
-#include "surface/junction_piece.h"
-#include "surface/stitch.h"
+#include "surface/junction/junction_growth.h"
+#include "surface/junction/junction_piece.h"
+#include "surface/tubes/stitch.h"
 
 namespace vmesh {
 namespace {

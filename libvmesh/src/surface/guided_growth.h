@@ -2,7 +2,7 @@
 
 #include "vmesh/core/progress.h"
 
-#include "surface/growth_skeleton.h"
+#include "surface/tubes/growth_skeleton.h"
 
 namespace vmesh {
 

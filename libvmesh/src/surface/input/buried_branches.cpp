@@ -1,0 +1,182 @@
+#include "surface/input/buried_branches.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vmesh/centerline/branches.h"
+
+namespace vmesh {
+namespace {
+
+constexpr double kPiece = 0.5;         // radii: length of the pieces that have to lie in one cone each
+constexpr double kSlack = 0.1;         // radii that a piece may stand out
+constexpr double kNeedle = 0.5;        // of a sphere's radius: thinner spheres may stand out of it ...
+constexpr double kNeedleSlack = 0.25;  // ... by this part of it where a branch ends
+constexpr int kMaxPieces = 2000;       // per segment; a hair that long is not buried, or not worth finding out
+
+class Burial {
+ public:
+  explicit Burial(const VesselField& field)
+      : field_(field), centerline_(field.centerline()), left_(centerline_.segments().size(), 1) {}
+
+  std::vector<BuriedBranch> run() {
+    for (const auto& node : centerline_.nodes()) widest_ = std::max(widest_, node.radius);
+    for (Index n = 0; n < centerline_.nodes().size(); ++n) {
+      if (degree_left(n) == 1) trim(n);
+    }
+    while (bury_some()) {
+    }
+    return std::move(buried_);
+  }
+  bool is_left(Index segment) const { return left_[segment]; }
+
+ private:
+  // From an end on, what lies within the sphere of one node of the branch: the radius falls there faster than the
+  // length grows.
+  void trim(Index tip) {
+    std::vector<Index> nodes = {tip}, segments;
+    std::size_t trimmed = 0;
+    double along = 0;
+    while (along < widest_) {
+      const Index s = first_left(nodes.back(), segments.empty() ? kNone : segments.back());
+      if (s == kNone || (!segments.empty() && degree_left(nodes.back()) != 2)) break;
+      segments.push_back(s);
+      nodes.push_back(centerline_.other_node(s, nodes.back()));
+      along += centerline_.length(s);
+      const bool holds_all =
+          std::all_of(nodes.rbegin() + 1, nodes.rend(), [&](Index n) { return sphere_within(n, nodes.back()); });
+      const bool goes_on = degree_left(nodes.back()) > 1;  // something has to be left of the vessel
+      if (holds_all && goes_on) trimmed = segments.size();
+    }
+    if (trimmed == 0) return;
+    segments.resize(trimmed);
+    for (const Index s : segments) left_[s] = 0;
+    buried_.push_back({std::move(segments)});
+  }
+
+  bool sphere_within(Index inner, Index outer) const {
+    const auto &a = centerline_.node(inner), &b = centerline_.node(outer);
+    const double slack = a.radius < kNeedle * b.radius ? kNeedleSlack * b.radius : 0;
+    return (a.position - b.position).norm() + a.radius <= b.radius + slack;
+  }
+
+  Index first_left(Index node, Index other_than) const {
+    for (const Index s : centerline_.incident_segments(node)) {
+      if (left_[s] && s != other_than) return s;
+    }
+    return kNone;
+  }
+
+  // Goes through the branches of what is left. What is a branch changes where one goes: then it has to be done again.
+  bool bury_some() {
+    bool some = false;
+    for (const Branch& branch : branches_left()) {
+      if (!is_covered(branch)) continue;
+      const bool has_tip = degree_left(branch.nodes.front()) == 1 || degree_left(branch.nodes.back()) == 1;
+      if (!has_tip) continue;  // what closes a loop joins vessels that overlap there, and has to stay
+      for (const Index s : branch.segments) left_[s] = 0;
+      buried_.push_back({branch.segments});
+      some = true;
+    }
+    return some;
+  }
+
+  // With the numbers of the full centerline, thinnest first.
+  std::vector<Branch> branches_left() const {
+    std::vector<CenterlineSegment> segments;
+    std::vector<Index> number;
+    for (Index s = 0; s < left_.size(); ++s) {
+      if (!left_[s]) continue;
+      segments.push_back(centerline_.segment(s));
+      number.push_back(s);
+    }
+    std::vector<Branch> branches = find_branches(Centerline(centerline_.nodes(), std::move(segments)));
+    for (Branch& branch : branches) {
+      for (Index& s : branch.segments) s = number[s];
+    }
+    std::stable_sort(branches.begin(), branches.end(),
+                     [&](const Branch& a, const Branch& b) { return mean_radius(a) < mean_radius(b); });
+    return branches;
+  }
+
+  std::size_t degree_left(Index n) const {
+    const auto incident = centerline_.incident_segments(n);
+    return static_cast<std::size_t>(
+        std::count_if(incident.begin(), incident.end(), [&](Index s) { return left_[s] != 0; }));
+  }
+
+  double mean_radius(const Branch& branch) const {
+    double sum = 0, length = 0;
+    for (const Index s : branch.segments) {
+      sum += centerline_.length(s) * centerline_.radius_at(s, 0.5);
+      length += centerline_.length(s);
+    }
+    return sum / length;
+  }
+
+  bool is_covered(const Branch& branch) const {
+    return std::all_of(branch.segments.begin(), branch.segments.end(), [&](Index s) { return is_covered(s, branch); });
+  }
+
+  bool is_covered(Index s, const Branch& branch) const {
+    std::vector<Index> others;
+    for (const Index cone : field_.local_cones(s)) {
+      if (left_[cone] && !std::count(branch.segments.begin(), branch.segments.end(), cone)) others.push_back(cone);
+    }
+    const double pieces = std::ceil(centerline_.length(s) / (kPiece * centerline_.radius_at(s, 0.5)));
+    if (others.empty() || pieces > kMaxPieces) return false;
+    for (int k = 0; k < pieces; ++k) {
+      const double begin = k / pieces, end = (k + 1) / pieces;
+      const bool covered = std::any_of(others.begin(), others.end(),
+                                       [&](Index cone) { return holds(cone, s, begin) && holds(cone, s, end); });
+      if (!covered) return false;
+    }
+    return true;
+  }
+
+  bool holds(Index cone, Index s, double t) const {
+    const double r = centerline_.radius_at(s, t);
+    return field_.sample_cone(centerline_.point_at(s, t), cone).distance <= (kSlack - 1) * r;
+  }
+
+  const VesselField& field_;
+  const Centerline& centerline_;
+  double widest_ = 0;
+  std::vector<char> left_;
+  std::vector<BuriedBranch> buried_;
+};
+
+}  // namespace
+
+GrowthCenterline without_buried_branches(const VesselField& field) {
+  const Centerline& full = field.centerline();
+  Burial burial(field);
+  std::vector<BuriedBranch> buried = burial.run();
+  std::vector<Index> number(full.nodes().size(), kNone), kept_nodes, kept_segments, kept_cones;
+  std::vector<CenterlineNode> nodes;
+  std::vector<CenterlineSegment> segments;
+  const auto number_of = [&](Index n) {
+    if (number[n] == kNone) {
+      number[n] = static_cast<Index>(nodes.size());
+      nodes.push_back(full.node(n));
+      kept_nodes.push_back(n);
+    }
+    return number[n];
+  };
+  for (Index n = 0; n < full.nodes().size(); ++n) {
+    const auto incident = full.incident_segments(n);
+    if (incident.empty() || std::any_of(incident.begin(), incident.end(), [&](Index s) { return burial.is_left(s); }))
+      number_of(n);
+  }
+  for (Index s = 0; s < full.segments().size(); ++s) {
+    if (!burial.is_left(s)) continue;
+    segments.push_back({number[full.segment(s).a], number[full.segment(s).b]});
+    kept_segments.push_back(s);
+  }
+  kept_cones = kept_segments;
+  for (Index c = static_cast<Index>(full.segments().size()); c < field.cone_count(); ++c) kept_cones.push_back(c);
+  return {Centerline(std::move(nodes), std::move(segments)), std::move(kept_nodes), std::move(kept_segments),
+          std::move(kept_cones), std::move(buried)};
+}
+
+}  // namespace vmesh

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "surface/tubes/growth_skeleton.h"
+
+namespace vmesh {
+
+/// The part of a centerline that belongs to a junction, cut at its openings. Segments know the place they come from.
+struct JunctionCenterline {
+  struct Origin {
+    Index gap;
+    double begin, end;  // places
+  };
+
+  std::vector<CenterlineNode> nodes;
+  std::vector<CenterlineSegment> segments;
+  std::vector<Origin> origins;  // of the segments
+
+  /// The segment at that end of a gap.
+  Index end_segment(Index gap, bool at_end) const;
+};
+
+JunctionCenterline make_junction_centerline(const Centerline& centerline, const std::vector<BranchAxis>& axes,
+                                            const Junction& junction);
+
+}  // namespace vmesh

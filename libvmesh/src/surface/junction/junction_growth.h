@@ -1,0 +1,73 @@
+#pragma once
+
+#include "surface/junction/docking.h"
+#include "surface/junction/junction_threads.h"
+#include "surface/junction/lattice_growth.h"
+
+namespace vmesh {
+
+/// A vertex with the cone it is bound to, the hint of its next query.
+struct SurfacePoint {
+  Vec3 position;
+  Index cone;
+  double fineness = 1;  ///< factor on the target edge length
+  double lift = 0;      ///< signed distance to the boundary at which it belongs, mm
+};
+
+/// A piece of surface.
+struct SurfacePatch {
+  std::vector<SurfacePoint> vertices;
+  std::vector<Triangle> faces;
+};
+
+/// A junction's surface with a hole for every opening of its gaps, in their order.
+struct JunctionSurface {
+  SurfacePatch patch;
+  std::vector<std::vector<Index>> rims;  ///< counter-clockwise about the direction away from the junction
+};
+
+/// Grows the surface of a junction from its widest place, in a lattice as fine as its thinnest vessel
+/// (grow_in_lattice), brings it onto the boundary and to a size field, and cuts its openings. Threads, vessels too thin
+/// for a lattice that holds the whole junction, can be left out of it: the finished wall is refined towards their width
+/// where they leave it, and cut there.
+class JunctionGrowth {
+ public:
+  JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes, const GrowthSkeleton& skeleton,
+                 const Junction& junction, const GenerateOptions& options, bool leave_out_threads);
+
+  bool has_threads() const { return !threads_.empty(); }
+
+  /// The surface, made at `finer` times the resolution asked for; with rims moved onto the boundary and rid of short
+  /// edges, or as they were cut.
+  JunctionSurface make(double finer, bool smooth_rims) const;
+
+  /// Loops of the centerline that the junction closes itself.
+  std::size_t handles() const { return lattice_.handles; }
+  /// Loops that are too short to have a hole.
+  std::size_t filled_loops() const { return centerline_.cycle_rank() - lattice_.handles; }
+  double length_in_radii() const { return centerline_.length_in_radii(); }
+
+ private:
+  const Thread* thread_at(Index gap, bool at_end) const;
+  GenerateResult onto_boundary(double finer) const;
+  CrossSection way_out(const TubeEnd& opening) const;
+  std::vector<Index> cut_opening(DiscCutter& cutter, const GenerateResult& piece, Index gap, bool at_end,
+                                 bool smooth) const;
+  Index original_cone(Index cone) const;
+  std::vector<Index> vertices_near_end(const GenerateResult& piece, Index gap, bool at_end, double reach) const;
+  void move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& piece,
+                          double longest) const;
+
+  const VesselField& field_;
+  const std::vector<BranchAxis>& axes_;
+  const GrowthSkeleton& skeleton_;
+  const Junction& junction_;
+  const GenerateOptions& options_;
+  std::vector<Thread> threads_;  // left out of what follows
+  JunctionCenterline local_;
+  Centerline centerline_;
+  VesselField local_field_;
+  LatticeSurface lattice_;
+};
+
+}  // namespace vmesh

@@ -1,0 +1,176 @@
+#include "surface/junction/junction_piece.h"
+
+#include <optional>
+
+#include "surface/junction/junction_growth.h"
+#include "surface/remesh/optimize.h"
+#include "surface/remesh/untangle.h"
+#include "surface/tubes/stitch.h"
+
+namespace vmesh {
+namespace {
+
+constexpr std::size_t kRingsGivenAway = 2;  // at most, at an end of a tube
+
+// How a junction's surface is made; tried in this order.
+struct Variant {
+  double finer;         ///< resolution at which the junction's surface is made, in that asked for
+  bool smooth_rims;     ///< see JunctionGrowth::make()
+  double fineness = 1;  ///< factor on the target edge length from then on
+};
+constexpr Variant kVariants[] = {{1, true},         {1.5, true},    {1, false},
+                                 {1.5, true, 0.67}, {2, true, 0.5}, {3, true, 0.33}};
+
+class PieceMaker {
+ public:
+  PieceMaker(const VesselField& field, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
+             const std::vector<TubeEnd>& openings, const GenerateOptions& options, const Progress& progress)
+      : skeleton_(skeleton),
+        growth_(growth),
+        openings_(openings),
+        options_(options),
+        progress_(progress),
+        surface_(field) {}
+
+  JunctionPiece make(const Variant& variant) {
+    const JunctionSurface junction = growth_.make(variant.finer, variant.smooth_rims);
+    add(junction.patch);
+    for (const Vertex v : surface_.mesh.vertices()) surface_.fineness[v] = variant.fineness;
+    for (std::size_t i = 0; i < openings_.size(); ++i) dock(openings_[i], junction.rims[i]);
+    JunctionPiece piece;
+    piece.handles = growth_.handles();
+    piece.filled_loops = growth_.filled_loops();
+    finish(variant.fineness, piece);
+    export_to(piece);
+    return piece;
+  }
+
+ private:
+  void add(const SurfacePatch& patch) {
+    vertex_.assign(patch.vertices.size(), SurfaceMesh::null_vertex());
+    for (const Triangle& face : patch.faces) {
+      for (const Index v : face) {
+        if (vertex_[v] == SurfaceMesh::null_vertex())
+          vertex_[v] = add_vertex(patch.vertices[v].position, patch.vertices[v].cone);
+      }
+    }
+    for (const auto& [a, b, c] : patch.faces) add_face(vertex_[a], vertex_[b], vertex_[c]);
+  }
+
+  // Joins the rim to the first ring of the tube's end, that to the next one, up to the ring that is kept.
+  void dock(const TubeEnd& opening, const std::vector<Index>& rim) {
+    const Tube& tube = skeleton_.tubes[opening.tube];
+    std::vector<Vertex> last;
+    for (const Index v : rim) last.push_back(vertex_[v]);
+    const std::size_t count = rings_given_away(tube) + 1;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t number = opening.at_end ? tube.rings.size() - 1 - k : k;
+      std::vector<Vertex> ring;
+      for (const BoundaryPoint& p : tube.rings[number].points) ring.push_back(add_vertex(p.position, p.sample.cone));
+      if (k + 1 == count) kept_.push_back({opening, static_cast<Index>(number), ring});
+      if (opening.at_end) std::reverse(ring.begin(), ring.end());
+      band(last, ring);
+      last = std::move(ring);
+      if (k + 1 == count) surface_.close_with_lid(last, tube.rings[number].center);
+    }
+  }
+
+  Vertex add_vertex(const Vec3& position, Index cone) {
+    const Vertex v = surface_.mesh.add_vertex(position);
+    surface_.place(v, position, surface_.field.sample(position, cone));
+    return v;
+  }
+
+  void add_face(Vertex a, Vertex b, Vertex c) {
+    if (surface_.mesh.add_face(a, b, c) == SurfaceMesh::null_face())
+      throw std::logic_error("the pieces of a junction do not fit together");
+  }
+
+  void band(const std::vector<Vertex>& bottom, const std::vector<Vertex>& top) {
+    const auto vertex = [&](Index i) { return i < bottom.size() ? bottom[i] : top[i - bottom.size()]; };
+    for (const auto& [a, b, c] : stitch(positions(bottom), positions(top))) add_face(vertex(a), vertex(b), vertex(c));
+  }
+
+  std::vector<Vec3> positions(const std::vector<Vertex>& loop) const {
+    std::vector<Vec3> result;
+    for (const Vertex v : loop) result.push_back(surface_.position(v));
+    return result;
+  }
+
+  void finish(double fineness, JunctionPiece& piece) {
+    if (options_.sweeps == 0) {
+      piece.tangles = find_tangles(SweepState(surface_)).size();
+      return;
+    }
+    const double radii = growth_.length_in_radii() + static_cast<double>(openings_.size() * (kRingsGivenAway + 1));
+    const GrownMesh grown{double(options_.around), expected_vertices(radii, options_.around / fineness),
+                          GrownMesh::Stage::piece};
+    const OptimizeReport report = optimize(surface_, options_, grown, progress_);
+    piece.tangles = report.tangles;
+    piece.unproven = report.unproven.size();
+  }
+
+  void export_to(JunctionPiece& piece) const {
+    const SurfaceMesh& mesh = surface_.mesh;
+    std::vector<Index> number(mesh.num_vertices() + mesh.number_of_removed_vertices(), kNone);
+    for (const Vertex v : mesh.vertices()) {
+      if (surface_.role[v] == BoundSurface::Role::lid) continue;
+      number[v.idx()] = static_cast<Index>(piece.vertices.size());
+      piece.vertices.push_back(
+          {surface_.position(v), surface_.cone[v], surface_.fineness[v], surface_.lift[v], {}, 0, 0});
+    }
+    for (const auto& [opening, ring, vertices] : kept_) {
+      for (Index j = 0; j < vertices.size(); ++j) {
+        PieceVertex& v = piece.vertices[number[vertices[j].idx()]];
+        v.tube = opening;
+        v.ring = ring;
+        v.number = j;
+      }
+    }
+    for (const Face f : mesh.faces()) {
+      if (surface_.is_lid(f)) continue;
+      const Halfedge h = mesh.halfedge(f);
+      piece.faces.push_back(
+          {number[mesh.source(h).idx()], number[mesh.target(h).idx()], number[mesh.target(mesh.next(h)).idx()]});
+    }
+  }
+
+  struct KeptRing {
+    TubeEnd opening;
+    Index ring;
+    std::vector<Vertex> vertices;  // in the order of the ring
+  };
+
+  const GrowthSkeleton& skeleton_;
+  const JunctionGrowth& growth_;
+  const std::vector<TubeEnd>& openings_;
+  const GenerateOptions& options_;
+  const Progress& progress_;
+  BoundSurface surface_;
+  std::vector<Vertex> vertex_;  // of the junction's vertices
+  std::vector<KeptRing> kept_;
+};
+
+}  // namespace
+
+std::size_t rings_given_away(const Tube& tube) { return std::min(kRingsGivenAway, (tube.rings.size() - 1) / 2); }
+
+JunctionPiece make_junction_piece(const VesselField& field, const std::vector<BranchAxis>& axes,
+                                  const GrowthSkeleton& skeleton, const Junction& junction,
+                                  const GenerateOptions& options, const Progress& progress) {
+  const std::vector<TubeEnd> openings = openings_of(junction);
+  const auto flaws = [](const JunctionPiece& p) { return std::pair(p.tangles, p.unproven); };
+  std::optional<JunctionPiece> best;
+  for (const bool leave_out_threads : {true, false}) {
+    const JunctionGrowth growth(field, axes, skeleton, junction, options, leave_out_threads);
+    for (const Variant& variant : kVariants) {
+      JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options, progress).make(variant);
+      if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);
+      if (best->tangles == 0 && best->unproven == 0) return *std::move(best);
+    }
+    if (!growth.has_threads()) break;
+  }
+  return *std::move(best);
+}
+
+}  // namespace vmesh

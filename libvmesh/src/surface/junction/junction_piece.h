@@ -1,0 +1,39 @@
+#pragma once
+
+#include "vmesh/core/progress.h"
+
+#include "surface/tubes/growth_skeleton.h"
+
+namespace vmesh {
+
+/// A vertex of the surface, and the vertex of a tube's ring that it is, if any.
+struct PieceVertex {
+  Vec3 position;
+  Index cone;
+  double fineness, lift;
+  TubeEnd tube;    ///< tube.tube == kNone: none
+  Index ring = 0;  ///< number of the ring in the tube
+  Index number = 0;
+};
+
+/// The finished surface of a junction and of the tubes around it up to a ring each that is kept as it was.
+struct JunctionPiece {
+  std::vector<PieceVertex> vertices;
+  std::vector<Triangle> faces;
+  std::size_t handles = 0;       ///< loops of the centerline that the junction closes itself
+  std::size_t filled_loops = 0;  ///< loops that it does not
+  std::size_t unproven = 0;      ///< faces for which the limit on the error is not proven
+  std::size_t tangles = 0;       ///< vertices of faces that intersect each other within the piece
+};
+
+/// Rings at the end of a tube that belong to the piece of the junction there and are replaced by it. The next one joins
+/// them.
+std::size_t rings_given_away(const Tube& tube);
+
+/// Grows a junction, docks its tubes and optimises around their seams. Where faces intersect, other resolutions of the
+/// junction's surface are tried, and then its threads within the lattice; the best is kept.
+JunctionPiece make_junction_piece(const VesselField& field, const std::vector<BranchAxis>& axes,
+                                  const GrowthSkeleton& skeleton, const Junction& junction,
+                                  const GenerateOptions& options, const Progress& progress);
+
+}  // namespace vmesh

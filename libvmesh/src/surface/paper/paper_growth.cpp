@@ -1,0 +1,195 @@
+#include "surface/paper/paper_growth.h"
+
+#include <algorithm>
+
+#include "vmesh/volume/crossing.h"
+
+#include "surface/junction/node_frame.h"
+#include "surface/paper/geodesic_sphere.h"
+#include "surface/paper/growth_paths.h"
+
+namespace vmesh {
+namespace {
+
+constexpr double kSeedFraction = 0.5;       // seed radius in vessel radii: "somewhat smaller than the vessel"
+constexpr double kSettledTolerance = 0.01;  // distance in vessel radii at which a vertex has reached the boundary
+constexpr double kMaxStep = 0.5;            // step in vessel radii
+constexpr int kMaxSteps = 100;              // of one vertex, before it is projected
+constexpr double kMaxFlight = 2;            // vessel radii a vertex may travel before only the boundary attracts it
+constexpr double kBehind = 0.1;             // vessel radii a crossing may lie behind its segment's front
+constexpr double kMaxSplits = 20;           // crossings of a segment per vessel radius, some twenty times what is usual
+constexpr double kSmallestFace = 0.02;      // longest edge, in radii of the crossing segment, that is still split
+
+class Growth {
+ public:
+  Growth(BoundSurface& surface, double beta, const Progress& progress)
+      : surface_(surface),
+        mesh_(surface.mesh),
+        field_(surface.field),
+        beta_(beta),
+        progress_(progress),
+        paths_(surface.field.centerline()),
+        travelled_(mesh_.add_property_map<Vertex, double>("v:travelled", 0.0).first),
+        steps_(mesh_.add_property_map<Vertex, int>("v:steps", 0).first) {}
+
+  PaperGrowthReport run() {
+    plant_seeds();
+    while (!moving_.empty()) {
+      report_progress(progress_, "grow", fraction_reached());
+      move_vertices();
+      split_crossed_faces();
+    }
+    mesh_.remove_property_map(travelled_);
+    mesh_.remove_property_map(steps_);
+    return report_;
+  }
+
+ private:
+  static constexpr int kSettled = -1;  // in steps_
+
+  // One seed per component, at the widest branching node, or the widest node where nothing branches.
+  void plant_seeds() {
+    const Centerline& centerline = field_.centerline();
+    std::vector<Index> widest(centerline.component_count(), kNone);
+    const auto rank = [&](Index n) { return std::pair(centerline.degree(n) >= 3, centerline.node(n).radius); };
+    for (Index n = 0; n < centerline.nodes().size(); ++n) {
+      Index& best = widest[centerline.component_of_node()[n]];
+      if (best == kNone || rank(n) > rank(best)) best = n;
+    }
+    std::vector<Index> ball_of_node(centerline.nodes().size(), kNone);
+    for (auto c = static_cast<Index>(centerline.segments().size()); c < field_.cone_count(); ++c) {
+      ball_of_node[field_.first_node(c)] = c;
+    }
+    for (const Index n : widest) {
+      paths_.start_at(n);
+      const Index cone = centerline.degree(n) > 0 ? centerline.incident_segments(n)[0] : ball_of_node[n];
+      const auto& node = centerline.node(n);
+      for (const Vertex v :
+           add_geodesic_sphere(surface_, node.position, kSeedFraction * node.radius, frame_at(centerline, n), cone)) {
+        moving_.push_back(v);
+      }
+    }
+    for (Index s = 0; s < centerline.segments().size(); ++s) report_.unclosed += paths_.direction(s) == 0;
+  }
+
+  // Every moving vertex takes one step; those that reached the boundary are settled.
+  void move_vertices() {
+    std::vector<Vertex> still_moving;
+    settled_.clear();
+    for (const Vertex v : moving_) {
+      const FieldSample here = field_.sample(surface_.position(v), surface_.cone[v]);
+      const double radius = field_.radius_at(here.cone, here.t);
+      const bool forced = ++steps_[v] > kMaxSteps;
+      if (forced || here.distance >= -kSettledTolerance * radius) {  // outside: the midpoint of an edge over a crotch
+        surface_.place_on_boundary(v, surface_.position(v), here.cone);
+        steps_[v] = kSettled;
+        report_.forced += forced;
+        settled_.push_back(v);
+        continue;
+      }
+      const double step = std::min(-here.distance, kMaxStep * radius);
+      travelled_[v] += step / radius;
+      const Vec3 p = surface_.position(v) + step * force(v, here, travelled_[v] > kMaxFlight ? 1 : beta_);
+      surface_.place(v, p, field_.sample(p, here.cone));
+      still_moving.push_back(v);
+    }
+    moving_.swap(still_moving);
+  }
+
+  // Direction of Eq. 11: F = (1 - beta) n + beta a, n the vertex normal, a towards the closest boundary point.
+  Vec3 force(Vertex v, const FieldSample& here, double beta) const {
+    const Vec3 f = (1 - beta) * surface_.vertex_normal(v) + beta * here.gradient;
+    const double norm = f.norm();
+    return norm > 0 ? Vec3(f / norm) : here.gradient;
+  }
+
+  // Faces next to a vertex that just settled are looked at: all three corners settled and crossed means split.
+  void split_crossed_faces() {
+    for (const Vertex v : settled_) {
+      faces_.assign(mesh_.faces_around_target(mesh_.halfedge(v)).begin(),
+                    mesh_.faces_around_target(mesh_.halfedge(v)).end());
+      for (const Face f : faces_) {
+        if (all_settled(f) && crossed(f)) split(f);
+      }
+    }
+  }
+
+  bool all_settled(Face f) const {
+    for (const Vertex v : mesh_.vertices_around_face(mesh_.halfedge(f))) {
+      if (steps_[v] != kSettled) return false;
+    }
+    return true;
+  }
+
+  // Whether a segment leaves the surface through `f` ahead of what has grown along it already. Only crossings
+  // in the direction of growth count: the others belong to a front that met covered ground.
+  bool crossed(Face f) {
+    const Halfedge h = mesh_.halfedge(f);
+    TriangleCorners triangle;
+    candidates_.clear();
+    int i = 0;
+    for (const Vertex v : mesh_.vertices_around_face(h)) {
+      triangle[i++] = surface_.position(v);
+      const auto local = field_.local_cones(surface_.cone[v]);
+      candidates_.insert(candidates_.end(), local.begin(), local.end());
+    }
+    std::sort(candidates_.begin(), candidates_.end());
+    candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+    const double size2 = std::max({(triangle[0] - triangle[1]).squaredNorm(), (triangle[1] - triangle[2]).squaredNorm(),
+                                   (triangle[2] - triangle[0]).squaredNorm()});
+    bool ahead = false, behind = false;
+    for (const Index s : candidates_) {
+      if (s >= field_.centerline().segments().size() || paths_.direction(s) == 0) continue;
+      const auto crossing = find_crossing(field_.axis_point(s, 0), field_.axis_point(s, 1), triangle);
+      if (!crossing || crossing->direction != paths_.direction(s)) continue;
+      const double radius = field_.radius_at(s, crossing->t);
+      const double depth = paths_.depth(s, crossing->t);
+      const double smallest = kSmallestFace * radius;
+      const double allowed = kMaxSplits * (1 + field_.centerline().length(s) / radius);
+      if (depth < paths_.reached(s) - kBehind * radius || size2 < smallest * smallest ||
+          paths_.crossings(s) > allowed) {
+        behind = true;
+        continue;
+      }
+      paths_.advance(s, depth);
+      ahead = true;
+    }
+    report_.refused += behind && !ahead;
+    return ahead;
+  }
+
+  void split(Face f) {
+    ++report_.splits;
+    for (const Vertex v : surface_.split_edge_centric(f)) {
+      steps_[v] = 0;
+      travelled_[v] = 0;
+      moving_.push_back(v);
+    }
+  }
+
+  double fraction_reached() const {
+    const auto all = static_cast<double>(mesh_.num_vertices());
+    return all > 0 ? 1 - static_cast<double>(moving_.size()) / all : 0;
+  }
+
+  BoundSurface& surface_;
+  SurfaceMesh& mesh_;
+  const VesselField& field_;
+  double beta_;
+  const Progress& progress_;
+  GrowthPaths paths_;
+  SurfaceMesh::Property_map<Vertex, double> travelled_;  // in vessel radii
+  SurfaceMesh::Property_map<Vertex, int> steps_;
+  std::vector<Vertex> moving_, settled_;
+  std::vector<Face> faces_;
+  std::vector<Index> candidates_;
+  PaperGrowthReport report_;
+};
+
+}  // namespace
+
+PaperGrowthReport grow_from_single_seeds(BoundSurface& surface, double beta, const Progress& progress) {
+  return Growth(surface, beta, progress).run();
+}
+
+}  // namespace vmesh

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "vmesh/surface/error_bound.h"
+
+#include "surface/remesh/sweep_state.h"
+
+namespace vmesh {
+
+/// Checks a surface under construction against a limit, again and again.
+class ErrorLimitCheck {
+ public:
+  explicit ErrorLimitCheck(const ErrorLimit& limit) : limit_(limit) {}
+
+  /// Faces for which the limit is not proven (see ErrorProof), ascending. What was proven before and has not changed is
+  /// not proven again. Faces at held vertices are passed over: they are proven when the surface is whole, or end where
+  /// it is left open.
+  std::vector<Face> unproven_faces(const SweepState& state);
+
+ private:
+  struct Known {
+    ErrorProof::Face face;
+    ErrorProof::Shares shares;
+  };
+
+  ErrorLimit limit_;
+  std::vector<Known> known_;  // by face
+};
+
+/// Groups faces that share vertices.
+std::vector<UnprovenPlace> places_of(const BoundSurface& surface, const std::vector<Face>& faces);
+
+}  // namespace vmesh

@@ -1,0 +1,92 @@
+#include "surface/remesh/balance.h"
+
+#include <vector>
+
+namespace vmesh {
+namespace {
+
+constexpr double kMostLift = 0.15;      // in target lengths; a sphere with six vertices around asks for 0.13
+constexpr double kBalanced = 0.003;     // mean signed distance in radii, around a vertex, that may stay
+constexpr double kShareOfLimit = 0.95;  // of the error that is allowed
+constexpr double kShareOfGap = 0.35;    // of the free space before another vessel that a vertex may be lifted into
+
+// Area of every face and signed distance at its centroid.
+struct FaceErrors {
+  std::vector<double> area, at_center;
+};
+
+FaceErrors face_errors(const SweepState& state) {
+  const BoundSurface& surface = state.surface;
+  FaceErrors errors;
+  errors.area.resize(state.mesh.num_faces());
+  errors.at_center.resize(state.mesh.num_faces());
+  for (const Face f : state.mesh.faces()) {
+    if (surface.is_lid(f)) continue;
+    const auto [a, b, c] = state.corners(f);
+    const Vec3 center = (state.point(a) + state.point(b) + state.point(c)) / 3;
+    errors.at_center[f.idx()] = state.field.sample(center, surface.cone[a]).distance;
+    errors.area[f.idx()] = surface.face_area_normal(f).norm();
+  }
+  return errors;
+}
+
+// Walls that come close are not to meet.
+double most_outwards(const SweepState& state, Vertex v, double most) {
+  const BoundSurface& surface = state.surface;
+  const Vec3 on_boundary = state.point(v) - surface.distance[v] * surface.gradient[v];
+  const double gap = state.field.distance_to_others(on_boundary, surface.cone[v], most / kShareOfGap);
+  return kShareOfGap * std::max(0.0, gap);
+}
+
+void update_lifts(SweepState& state, const ErrorLimit& limit) {
+  const FaceErrors errors = face_errors(state);
+  for (const Vertex v : state.mesh.vertices()) {
+    if (state.surface.held(v)) continue;
+    double area = 0, sum = 0;
+    for (const Face f : state.mesh.faces_around_target(state.mesh.halfedge(v))) {
+      area += errors.area[f.idx()];
+      sum += errors.area[f.idx()] * (0.75 * errors.at_center[f.idx()] + 0.25 * state.surface.distance[v]);
+    }
+    if (std::abs(sum) <= kBalanced * state.surface.radius(v) * area) continue;
+    const double radius = state.surface.radius(v), size = state.size[v];
+    const double most = std::min(kMostLift * size * std::min(1.0, size / radius), kShareOfLimit * limit.at(radius));
+    state.surface.lift[v] = std::clamp(state.surface.lift[v] - sum / area, -most, most_outwards(state, v, most));
+  }
+}
+
+bool may_move(const SweepState& state, Vertex v, const BoundaryPoint& target) {
+  if ((target.position - state.point(v)).norm() > state.size[v]) return false;
+  for (const Halfedge h : state.mesh.halfedges_around_target(state.mesh.halfedge(v))) {
+    if (!state.stays_upright(v, state.mesh.target(state.mesh.next(h)), state.mesh.source(h), target)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void balance(SweepState& state, const ErrorLimit& limit) {
+  std::vector<char> strays(state.mesh.num_vertices());
+  for (const Vertex v : state.mesh.vertices()) strays[v.idx()] = state.off_boundary(v);
+  update_lifts(state, limit);
+  for (const Vertex v : state.mesh.vertices()) {
+    if (state.surface.held(v) || strays[v.idx()]) continue;
+    const BoundaryPoint target = state.project(v, state.point(v));
+    if (may_move(state, v, target)) state.surface.place(v, target.position, target.sample);
+    state.surface.lift[v] = state.surface.distance[v];
+  }
+}
+
+void sink(SweepState& state, const std::vector<Vertex>& vertices) {
+  const auto sink_one = [&state](Vertex v) {
+    if (state.surface.held(v) || state.surface.lift[v] <= 0) return;
+    state.surface.lift[v] = 0;
+    const BoundaryPoint target = state.project(v, state.point(v));
+    state.surface.place(v, target.position, target.sample);
+  };
+  for (const Vertex v : vertices) {
+    sink_one(v);
+    for (const Halfedge h : state.mesh.halfedges_around_target(state.mesh.halfedge(v))) sink_one(state.mesh.source(h));
+  }
+}
+
+}  // namespace vmesh

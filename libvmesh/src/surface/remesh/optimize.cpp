@@ -1,0 +1,288 @@
+#include "surface/remesh/optimize.h"
+
+#include "surface/proof/error_limit.h"
+#include "surface/remesh/balance.h"
+#include "surface/remesh/polish.h"
+#include "surface/remesh/relocation.h"
+#include "surface/remesh/remesher.h"
+#include "surface/remesh/untangle.h"
+
+namespace vmesh {
+namespace {
+
+constexpr double kSizingShare = 0.7;      // of the sweeps that work towards the size field; the rest for shape alone
+constexpr double kRegularityShare = 0.8;  // of the sweeps that flip towards valence 6 as well
+constexpr double kVerticesPerRadius = 7;  // and unit of length, at kGrownAround
+constexpr double kMaxExcess = 1.5;  // vertices against those grown plus those expected; well-grown trees reach 0.6
+constexpr int kStrayInterval = 4;
+constexpr double kHopeless = 0.02;  // share of the vertices in tangles: growth covered vessels twice
+constexpr int kBalanceRounds = 2, kBalanceSweeps = 6;
+constexpr int kSinkRounds = 4;
+constexpr int kErrorRounds = 14;  // without fewer faces over the limit: a last one may need its edges to be a seventh
+constexpr int kErrorSweeps = 4;
+constexpr int kLeastWithLimit = 4;              // vertices around
+constexpr double kMostRefined = 1.8;            // lengths of edges before against after
+constexpr double kFiner = 0.87, kFinest = 0.1;  // of the target edge length, where the error is too large
+
+class Optimizer {
+ public:
+  Optimizer(BoundSurface& surface, const GenerateOptions& options, const Progress& progress)
+      : state_(surface), remesher_(state_), options_(options), progress_(progress), check_(options.max_error) {}
+
+  OptimizeReport run(const GrownMesh& grown) {
+    remesher_.limit_vertices(
+        options_.max_error.is_set()
+            ? options_.max_vertices
+            : static_cast<std::size_t>(kMaxExcess * (state_.mesh.number_of_vertices() + grown.expected_vertices)));
+    if (grown.stage == GrownMesh::Stage::assembled) {
+      edge_per_radius_ = edge_length_per_radius(options_.around);
+      state_.update_sizes(edge_per_radius_, options_.max_error);
+      untangle();
+    } else {
+      even_out(grown.around);
+    }
+    if (grown.stage == GrownMesh::Stage::piece) {
+      if (options_.max_error.is_set()) finish_piece();
+    } else {
+      finish();
+    }
+    return {tangles_, remesher_.limited(), std::move(unproven_)};
+  }
+
+ private:
+  void even_out(double around) {
+    optimize_at(around);
+    while (around != options_.around) {
+      around = std::min<double>(2 * around, options_.around);
+      optimize_at(around);
+    }
+  }
+
+  void finish() {
+    settle();
+    polish(state_, remesher_);
+    bool crossing = sink_crossing_walls();
+    if (options_.max_error.is_set()) {
+      meet_error_limit(true);
+      crossing = !find_crossing_walls(state_).empty();
+    }
+    tangles_ = crossing ? find_tangles(state_).size() : 0;
+  }
+
+  // The rest of the surface is not there yet: only what can fail here for good is looked at.
+  void finish_piece() {
+    settle();
+    meet_error_limit(false);
+    tangles_ = find_tangles(state_).size();
+  }
+
+  // Brings vertices to where the placement asks for, and what was joined to rest.
+  void settle() {
+    for (int round = 0; round < kBalanceRounds; ++round) {
+      if (balanced()) {
+        balance(state_, options_.max_error);
+        balance(state_, options_.max_error);
+      }
+      state_.stir_all();
+      shape_sweeps(std::max(0, options_.sweeps - kBalanceSweeps), options_.sweeps);
+    }
+    if (balanced()) balance(state_, options_.max_error);
+  }
+
+  bool balanced() const { return options_.placement == Placement::balanced; }
+
+  // What crosses because of its lifts goes back onto the boundary; what still crosses its own neighbours is loosened.
+  // Whether anything crosses in the end.
+  bool sink_crossing_walls() {
+    std::vector<Vertex> crossing = find_crossing_walls(state_);
+    for (const bool last : {false, true}) {
+      for (int round = 0; balanced() && round < kSinkRounds && !crossing.empty(); ++round) {
+        sink(state_, crossing);
+        crossing = find_crossing_walls(state_);
+      }
+      if (crossing.empty() || last || !balanced()) break;
+      untangle();
+      crossing = find_crossing_walls(state_);
+    }
+    return !crossing.empty();
+  }
+
+  // Refines where the limit is not proven, until it is or triangles get too small. What polishing breaks is mended once
+  // more, and if that fails from a surface come to rest; then it is left so.
+  void meet_error_limit(bool polished) {
+    refine_unproven();
+    if (!polished || !unproven_.empty()) return;
+    polish(state_, remesher_);
+    sink_crossing_walls();
+    refine_unproven();
+    if (unproven_.empty()) return;
+    settle();
+    sink_crossing_walls();
+    refine_unproven();
+  }
+
+  void refine_unproven() {
+    unproven_ = check_.unproven_faces(state_);
+    const double at_first = static_cast<double>(unproven_.size());
+    std::size_t fewest = unproven_.size() + 1;
+    for (int round = 0, best = 0; !unproven_.empty() && round < best + kErrorRounds; ++round) {
+      report_progress(progress_, "refine", 1 - static_cast<double>(unproven_.size()) / at_first);
+      if (unproven_.size() < fewest) {
+        fewest = unproven_.size();
+        best = round;
+      }
+      // Finer folds of a folded surface prove nothing.
+      if (hopeless(find_tangles(state_))) break;
+      if (!make_finer(unproven_)) break;
+      refine();
+      unproven_ = check_.unproven_faces(state_);
+    }
+  }
+
+  void refine() {
+    for (int sweep = 0; sweep < kErrorSweeps && state_.next_sweep() > 0; ++sweep) {
+      state_.update_sizes(edge_per_radius_, options_.max_error);
+      if (sweep == 0) remesher_.repair_strays();
+      remesher_.split_long_edges();
+      remesher_.collapse_short_edges();
+      end_sweep(0);
+    }
+    if (balanced()) balance(state_, options_.max_error);
+    state_.next_sweep();
+    end_sweep(options_.sweeps);
+    if (balanced()) balance(state_, options_.max_error);
+  }
+
+  bool make_finer(const std::vector<Face>& faces) {
+    std::vector<Vertex> vertices;
+    for (const Face f : faces) {
+      for (const Vertex v : state_.corners(f)) vertices.push_back(v);
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    bool any = false;
+    for (const Vertex v : vertices) {
+      double& fineness = state_.surface.fineness[v];
+      if (fineness * kFiner < kFinest) continue;
+      fineness *= kFiner;
+      state_.stir(v);
+      any = true;
+    }
+    return any;
+  }
+
+  void optimize_at(double around) {
+    edge_per_radius_ = edge_length_per_radius(around);
+    state_.stir_all();
+    sweep_from(0);
+    untangle();
+  }
+
+  void untangle() {
+    std::vector<Vertex> tangles = find_tangles(state_);
+    while (!tangles.empty() && !hopeless(tangles)) {
+      loosen(state_, tangles);
+      sweep_from(options_.sweeps / 2);
+      const std::size_t before = tangles.size();
+      tangles = find_tangles(state_);
+      if (tangles.size() >= before) break;
+    }
+    tangles_ = tangles.size();
+  }
+
+  bool hopeless(const std::vector<Vertex>& tangles) const {
+    return static_cast<double>(tangles.size()) > kHopeless * state_.mesh.number_of_vertices();
+  }
+
+  // Sweeps from number `first` on: towards the size field, then for shape alone. Each until nothing changes any more.
+  void sweep_from(int first) {
+    const int shape_begin = static_cast<int>(kSizingShare * options_.sweeps);
+    for (int sweep = first; sweep < shape_begin && begin_sweep(sweep); ++sweep) {
+      state_.update_sizes(edge_per_radius_, options_.max_error);
+      if (sweep % kStrayInterval == 0) remesher_.repair_strays();
+      remesher_.split_long_edges();
+      remesher_.collapse_short_edges();
+      end_sweep(sweep);
+    }
+    remesher_.split_far_faces(options_.max_center_distance);
+    // What had come to rest is looked at again where the rules change.
+    const int irregular_begin = static_cast<int>(kRegularityShare * options_.sweeps);
+    state_.stir_all();
+    shape_sweeps(std::max(first, shape_begin), irregular_begin);
+    state_.stir_all();
+    shape_sweeps(std::max(first, irregular_begin), options_.sweeps);
+  }
+
+  void shape_sweeps(int begin, int end) {
+    for (int sweep = begin; sweep < end && begin_sweep(sweep); ++sweep) {
+      remesher_.collapse_bad_faces();
+      end_sweep(sweep);
+    }
+  }
+
+  double done(int sweep) const { return static_cast<double>(sweep) / options_.sweeps; }
+
+  bool begin_sweep(int sweep) {
+    report_progress(progress_, "optimize", done(sweep));
+    return state_.next_sweep() > 0;
+  }
+
+  void end_sweep(int sweep) {
+    remesher_.flip_edges(done(sweep) < kRegularityShare ? 1 - done(sweep) : 0);
+    relocate_vertices(state_);
+  }
+
+  SweepState state_;
+  Remesher remesher_;
+  const GenerateOptions& options_;
+  const Progress& progress_;
+  ErrorLimitCheck check_;
+  double edge_per_radius_ = 0;
+  std::size_t tangles_ = 0;
+  std::vector<Face> unproven_;
+};
+
+}  // namespace
+
+int least_around(const Centerline& centerline, const ErrorLimit& limit) {
+  if (!limit.is_set()) return 3;
+  const auto raised = [](int around, double edge, double times) {
+    while (edge_length_per_radius(around) > times * edge && around < 200) ++around;
+    return around;
+  };
+  int around = kLeastWithLimit;
+  if (std::isfinite(limit.relative)) around = raised(around, edge_length_for(limit.relative, 1), 1);
+  for (const auto& [position, radius] : centerline.nodes())
+    around = raised(around, edge_length_for(limit.at(radius), radius) / radius, kMostRefined);
+  return around;
+}
+
+double expected_vertices(const Centerline& centerline, double around, const ErrorLimit& limit) {
+  const auto expected = [&](double length, double radius) {
+    const double coarse = edge_length_per_radius(around) * radius;
+    const double finer = limit.is_set() ? std::max(1.0, coarse / edge_length_for(limit.at(radius), radius)) : 1;
+    return finer * finer * expected_vertices(length / radius, around);
+  };
+  double vertices = 0;
+  for (Index s = 0; s < centerline.segments().size(); ++s) {
+    vertices += expected(centerline.length(s), centerline.radius_at(s, 0.5));
+  }
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    // A sphere has the area of a tube as long as its diameter.
+    const double radius = centerline.node(n).radius;
+    if (centerline.degree(n) == 0) vertices += expected(2 * radius, radius);
+  }
+  return vertices;
+}
+
+double expected_vertices(double length_in_radii, double around) {
+  const double finer = around / kGrownAround;
+  return kVerticesPerRadius * finer * finer * length_in_radii;
+}
+
+OptimizeReport optimize(BoundSurface& surface, const GenerateOptions& options, const GrownMesh& grown,
+                        const Progress& progress) {
+  return Optimizer(surface, options, progress).run(grown);
+}
+
+}  // namespace vmesh

@@ -1,0 +1,196 @@
+#include "surface/remesh/polish.h"
+
+#include "surface/remesh/relocation.h"
+
+namespace vmesh {
+namespace {
+
+constexpr double kGoodEnergy = 1.10;  // of a face, skewness about 0.25: nothing to polish
+constexpr int kRounds = 2, kSweeps = 20;
+constexpr int kPower = 32;                 // of the energies: close to their maximum
+constexpr int kEaseSweeps = 6;             // that give back to all what the worst do not need
+constexpr double kNoticeableMove = 0.005;  // in target lengths, for the neighbours to be looked at again
+constexpr int kPatience = 10;              // faces in a row that no flip helps: the worst stays as it is
+// A flip is worth a look if the worst face near it is not much worse at once, and kept if it is better in the end.
+constexpr double kWorthALook = 2, kPaysOff = 0.997;  // worst energy against that before
+constexpr int kFlipSweeps = 8;
+
+template <class T>
+void sort_unique(std::vector<T>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+class Polisher {
+ public:
+  Polisher(SweepState& state, Remesher& remesher)
+      : state_(state), remesher_(remesher), surface_(state.surface), mesh_(state.mesh) {}
+
+  void polish() {
+    for (int round = 0; round < kRounds; ++round) {
+      improve_shape();
+      flip_with_foresight();
+    }
+    ease();
+  }
+
+ private:
+  struct Place {
+    Vertex vertex;
+    Vec3 position;
+    FieldSample sample;
+  };
+
+  // Every sweep looks at what the one before has stirred.
+  void improve_shape() {
+    state_.stir_all();
+    std::vector<Face> bad = bad_faces({mesh_.faces().begin(), mesh_.faces().end()});
+    for (int sweep = 0; sweep < kSweeps && state_.next_sweep() > 0; ++sweep) {
+      const std::vector<Vertex> vertices = active(with_neighbours(corners_of(bad)));
+      for (const Edge e : edges_of(vertices)) remesher_.flip_for_shape(e);
+      relocate_vertices(state_, vertices, {.power = kPower, .noticeable = kNoticeableMove});
+      moved_.insert(moved_.end(), vertices.begin(), vertices.end());
+      for (const Face f : faces_of(vertices)) bad.push_back(f);
+      sort_unique(bad);
+      bad = bad_faces(std::move(bad));
+    }
+  }
+
+  void ease() {
+    sort_unique(moved_);
+    state_.stir_all();
+    for (int sweep = 0; sweep < kEaseSweeps && state_.next_sweep() > 0; ++sweep)
+      relocate_vertices(state_, active(moved_), {.highest = kGoodEnergy, .noticeable = kNoticeableMove});
+  }
+
+  std::vector<Vertex> active(std::vector<Vertex> vertices) const {
+    std::erase_if(vertices, [&](Vertex v) { return !state_.active(v); });
+    return vertices;
+  }
+
+  // Flips that make things worse at first. Worst faces first.
+  void flip_with_foresight() {
+    std::vector<std::pair<double, Face>> queue;
+    for (const Face f : bad_faces({mesh_.faces().begin(), mesh_.faces().end()})) queue.emplace_back(-energy(f), f);
+    std::sort(queue.begin(), queue.end());
+    int failures = 0;
+    for (const auto& [_, f] : queue) {
+      if (energy(f) < kGoodEnergy) continue;  // a flip nearby has mended it
+      failures = mend(f) ? 0 : failures + 1;
+      if (failures == kPatience) break;
+    }
+  }
+
+  bool mend(Face f) {
+    const std::array<Vertex, 3> corners = state_.corners(f);
+    for (const Edge e : edges_of(with_neighbours({corners.begin(), corners.end()}))) {
+      if (flip_pays_off(e)) return true;
+    }
+    return false;
+  }
+
+  bool flip_pays_off(Edge e) {
+    const std::vector<Vertex> nearby = surroundings(e);
+    const double before = worst_energy(nearby);
+    if (!remesher_.flip_with_foresight(e)) return false;
+    if (worst_energy(nearby) < kWorthALook * before) {
+      const std::vector<Place> places = places_of(nearby);
+      for (int sweep = 0; sweep < kFlipSweeps; ++sweep) relocate_vertices(state_, nearby, {.power = kPower});
+      if (worst_energy(nearby) < kPaysOff * before) {
+        moved_.insert(moved_.end(), nearby.begin(), nearby.end());
+        return true;
+      }
+      for (const Place& place : places) surface_.place(place.vertex, place.position, place.sample);
+    }
+    remesher_.flip_back(e);
+    return false;
+  }
+
+  std::vector<Place> places_of(const std::vector<Vertex>& vertices) const {
+    std::vector<Place> places;
+    for (const Vertex v : vertices)
+      places.push_back(
+          {v, state_.point(v), {surface_.distance[v], surface_.gradient[v], surface_.cone[v], surface_.t[v]}});
+    return places;
+  }
+
+  double energy(Face f) const {
+    const auto [a, b, c] = state_.corners(f);
+    return state_.energy(a, b, c);
+  }
+
+  double worst_energy(const std::vector<Vertex>& vertices) const {
+    double worst = 0;
+    for (const Vertex v : vertices) {
+      for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) worst = std::max(worst, energy(f));
+    }
+    return worst;
+  }
+
+  // Faces worth polishing. Folded ones are not: what would be an improvement there is not to be told from shape.
+  std::vector<Face> bad_faces(std::vector<Face> faces) const {
+    std::erase_if(faces, [&](Face f) { return energy(f) < kGoodEnergy || folded(f); });
+    return faces;
+  }
+
+  bool folded(Face f) const {
+    const auto [a, b, c] = state_.corners(f);
+    return state_.agreement(a, b, c) < SweepState::kMinAgreement;
+  }
+
+  // The ends of the edge, the apexes beside it, and all their neighbours.
+  std::vector<Vertex> surroundings(Edge e) const {
+    const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
+    return with_neighbours(
+        {mesh_.source(h), mesh_.target(h), mesh_.target(mesh_.next(h)), mesh_.target(mesh_.next(o))});
+  }
+
+  std::vector<Vertex> corners_of(const std::vector<Face>& faces) const {
+    std::vector<Vertex> vertices;
+    for (const Face f : faces) {
+      for (const Vertex v : state_.corners(f)) vertices.push_back(v);
+    }
+    return vertices;
+  }
+
+  std::vector<Vertex> with_neighbours(std::vector<Vertex> vertices) const {
+    sort_unique(vertices);
+    const std::size_t count = vertices.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(vertices[i])))
+        vertices.push_back(mesh_.source(h));
+    }
+    sort_unique(vertices);
+    return vertices;
+  }
+
+  std::vector<Edge> edges_of(const std::vector<Vertex>& vertices) const {
+    std::vector<Edge> edges;
+    for (const Vertex v : vertices) {
+      for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) edges.push_back(mesh_.edge(h));
+    }
+    sort_unique(edges);
+    return edges;
+  }
+
+  std::vector<Face> faces_of(const std::vector<Vertex>& vertices) const {
+    std::vector<Face> faces;
+    for (const Vertex v : vertices) {
+      for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) faces.push_back(f);
+    }
+    sort_unique(faces);
+    return faces;
+  }
+
+  SweepState& state_;
+  Remesher& remesher_;
+  BoundSurface& surface_;
+  SurfaceMesh& mesh_;
+  std::vector<Vertex> moved_;
+};
+
+}  // namespace
+
+void polish(SweepState& state, Remesher& remesher) { Polisher(state, remesher).polish(); }
+
+}  // namespace vmesh

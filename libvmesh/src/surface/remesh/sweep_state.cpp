@@ -1,0 +1,94 @@
+#include "surface/remesh/sweep_state.h"
+
+#include <numbers>
+
+namespace vmesh {
+namespace {
+
+constexpr double kEdgeFactor = 1.026;  // target length in edges of a regular polygon around the vessel
+constexpr double kErrorMargin = 0.87;
+constexpr double kGradation = 0.5;  // largest slope of the size field along the surface
+constexpr int kGradationPasses = 3;
+constexpr double kMaxTurn = 0.5;     // cosine of the angle a face may turn in one move ...
+constexpr double kFreeToTurn = 0.8;  // ... unless it agrees so well with the boundary afterwards
+
+}  // namespace
+
+double balanced_ring_radius(double around) {
+  const double half_edge = std::sin(std::numbers::pi / around);
+  return 1 + half_edge * half_edge / 4;
+}
+
+double edge_length_per_radius(double around) {
+  return kEdgeFactor * balanced_ring_radius(around) * 2 * std::sin(std::numbers::pi / around);
+}
+
+// An edge of length h across a vessel of radius r cuts off h^2 / (8 r); balanced, half of that is outside.
+double edge_length_for(double limit, double radius) { return kErrorMargin * std::sqrt(16 * limit * radius); }
+
+SweepState::SweepState(BoundSurface& bound_surface)
+    : surface(bound_surface),
+      mesh(surface.mesh),
+      field(surface.field),
+      size(mesh.add_property_map<Vertex, double>("v:size", 0.0).first),
+      stirred_(mesh.add_property_map<Vertex, char>("v:stirred", 0).first) {}
+
+SweepState::~SweepState() {
+  mesh.remove_property_map(size);
+  mesh.remove_property_map(stirred_);
+}
+
+void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
+  for (const Vertex v : mesh.vertices()) {
+    const double radius = surface.radius(v);
+    double edge = edge_per_radius * radius;
+    if (limit.is_set()) edge = std::min(edge, edge_length_for(limit.at(radius), radius));
+    size[v] = edge * surface.fineness[v];
+    for (const auto& [spot, spot_radius] : surface.fine_spots)
+      size[v] = std::min(size[v], edge_per_radius * spot_radius + kGradation * (point(v) - spot).norm());
+  }
+  for (int pass = 0; pass < kGradationPasses; ++pass) {
+    for (const Edge e : mesh.edges()) {
+      const Vertex a = mesh.vertex(e, 0), b = mesh.vertex(e, 1);
+      const double slack = kGradation * length(e);
+      size[a] = std::min(size[a], size[b] + slack);
+      size[b] = std::min(size[b], size[a] + slack);
+    }
+  }
+}
+
+void SweepState::stir(Vertex v) {
+  touch(v);
+  for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) touch(mesh.source(h));
+}
+
+void SweepState::stir_all() {
+  for (const Vertex v : mesh.vertices()) touch(v);
+}
+
+std::size_t SweepState::next_sweep() {
+  std::size_t count = 0;
+  for (const Vertex v : mesh.vertices()) {
+    stirred_[v] = stirred_[v] & kStirred ? kActive : 0;
+    count += stirred_[v] != 0;
+  }
+  return count;
+}
+
+double SweepState::agreement(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& gradient_sum) {
+  const Vec3 normal = (b - a).cross(c - a);
+  const double norm = normal.norm() * gradient_sum.norm();
+  return norm > 0 ? normal.dot(gradient_sum) / norm : -1;
+}
+
+bool SweepState::stays_upright(Vertex v, Vertex b, Vertex c, const BoundaryPoint& target) const {
+  const double after = agreement(target, b, c);
+  if (after < kMinAgreement && after < agreement(v, b, c)) return false;
+  if (after > kFreeToTurn) return true;
+  const Vec3 edge_b = point(b) - point(v), edge_c = point(c) - point(v);
+  const Vec3 old_normal = edge_b.cross(edge_c);
+  const Vec3 new_normal = (point(b) - target.position).cross(point(c) - target.position);
+  return new_normal.dot(old_normal) >= kMaxTurn * new_normal.norm() * old_normal.norm();
+}
+
+}  // namespace vmesh

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "surface/remesh/bound_surface.h"
+#include "surface/remesh/triangle_energy.h"
+
+namespace vmesh {
+
+/// Radius of a ring of `around` vertices in balanced placement, in vessel radii: an edge of length h cuts off h^2 / 8,
+/// faces half of that on average.
+double balanced_ring_radius(double around);
+
+/// Target edge length in vessel radii at `around` vertices around a vessel.
+double edge_length_per_radius(double around);
+
+/// Longest edge, mm, with which a surface in balanced placement keeps within `limit` (mm) of a vessel of `radius`.
+double edge_length_for(double limit, double radius);
+
+/// What the steps of a sweep share: the surface, its size field, and which vertices are worth looking at.
+class SweepState {
+ public:
+  explicit SweepState(BoundSurface& bound_surface);
+  ~SweepState();
+  SweepState(const SweepState&) = delete;
+  SweepState& operator=(const SweepState&) = delete;
+
+  BoundSurface& surface;
+  SurfaceMesh& mesh;
+  const VesselField& field;
+  SurfaceMesh::Property_map<Vertex, double> size;  ///< target edge length, mm
+
+  const Vec3& point(Vertex v) const { return mesh.point(v); }
+  double length(Edge e) const { return (point(mesh.vertex(e, 0)) - point(mesh.vertex(e, 1))).norm(); }
+  double target_length(Edge e) const { return 0.5 * (size[mesh.vertex(e, 0)] + size[mesh.vertex(e, 1)]); }
+  std::array<Vertex, 3> corners(Face f) const {
+    const Halfedge h = mesh.halfedge(f);
+    return {mesh.source(h), mesh.target(h), mesh.target(mesh.next(h))};
+  }
+
+  /// Sets the size field: `edge_per_radius` times the local radius but no more than `limit` allows on a vessel, times
+  /// the vertex's fineness, its slope along the surface bounded.
+  void update_sizes(double edge_per_radius, const ErrorLimit& limit = {});
+
+  // Only what changed in the last sweep, and its neighbours, is looked at in the next one.
+  bool active(Vertex v) const { return stirred_[v] & kActive; }
+  bool active(Edge e) const { return active(mesh.vertex(e, 0)) || active(mesh.vertex(e, 1)); }
+  /// `v` has changed: it and its neighbours are active in the next sweep.
+  void stir(Vertex v);
+  /// `v` alone is active in the next sweep.
+  void touch(Vertex v) { stirred_[v] |= kStirred; }
+  /// `v` is new: it is active in this sweep already.
+  void activate(Vertex v) { stirred_[v] |= kActive; }
+  void stir_all();
+  /// Begins a sweep. Returns how many vertices are active.
+  std::size_t next_sweep();
+
+  /// Cosine between the normal of the face abc and the boundary's mean normal at its corners: whether it lies the
+  /// right way up. -1 for a degenerate face.
+  double agreement(Vertex a, Vertex b, Vertex c) const {
+    return agreement(point(a), point(b), point(c), surface.gradient[a] + surface.gradient[b] + surface.gradient[c]);
+  }
+  /// The same once `v` has moved to `target`.
+  double agreement(const BoundaryPoint& target, Vertex b, Vertex c) const {
+    return agreement(target.position, point(b), point(c),
+                     target.sample.gradient.normalized() + surface.gradient[b] + surface.gradient[c]);
+  }
+  /// Least agreement at which a face counts as upright.
+  static constexpr double kMinAgreement = 0.2;
+
+  /// Whether the face vbc stays upright and does not turn far when `v` moves to `target`.
+  bool stays_upright(Vertex v, Vertex b, Vertex c, const BoundaryPoint& target) const;
+
+  /// Squared inverse mean ratio: 1 equilateral.
+  double energy(Vertex a, Vertex b, Vertex c) const { return energy(point(a), point(b), point(c)); }
+  static double energy(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double ratio = inverse_mean_ratio(a, b, c);
+    return ratio * ratio;
+  }
+
+  /// Whether `v` is not yet where it belongs, at its lift from the boundary.
+  bool off_boundary(Vertex v) const {
+    return std::abs(surface.distance[v] - surface.lift[v]) > kOffBoundary * surface.radius(v);
+  }
+
+  /// Where `v` belongs when it goes to `p`.
+  BoundaryPoint project(Vertex v, const Vec3& p, double tolerance = kProjectionTolerance) const {
+    return project_to_boundary(field, p, surface.cone[v], tolerance, surface.lift[v]);
+  }
+  /// Where the vertex belongs that `a` and `b` become.
+  BoundaryPoint project_middle(Vertex a, Vertex b) const {
+    return project_to_boundary(field, 0.5 * (point(a) + point(b)), surface.cone[a], kProjectionTolerance,
+                               0.5 * (surface.lift[a] + surface.lift[b]));
+  }
+
+ private:
+  static constexpr char kActive = 1, kStirred = 2;
+  static constexpr double kOffBoundary = 0.01;  // vessel radii
+  static constexpr double kProjectionTolerance = 1e-3;
+
+  static double agreement(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& gradient_sum);
+
+  SurfaceMesh::Property_map<Vertex, char> stirred_;
+};
+
+}  // namespace vmesh

@@ -1,0 +1,93 @@
+#include "surface/remesh/untangle.h"
+
+#include "vmesh/mesh/topology.h"
+
+namespace vmesh {
+namespace {
+
+constexpr int kRings = 2;  // around a tangle that take part
+constexpr int kPasses = 5;
+
+void sort_unique(std::vector<Vertex>& vertices) {
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+}
+
+bool neighbours(const BoundSurface& surface, const Triangle& f, const Triangle& g) {
+  for (const Index v : f) {
+    const auto local = surface.field.local_cones(surface.cone[Vertex(v)]);
+    for (const Index w : g) {
+      if (std::binary_search(local.begin(), local.end(), surface.cone[Vertex(w)])) return true;
+    }
+  }
+  return false;
+}
+
+TriMesh indexed_mesh(const SweepState& state) {
+  TriMesh mesh;
+  mesh.vertices.assign(state.mesh.points().begin(), state.mesh.points().end());
+  for (const Face f : state.mesh.faces()) {
+    if (state.surface.is_lid(f)) continue;
+    const auto [a, b, c] = state.corners(f);
+    mesh.faces.push_back({a.idx(), b.idx(), c.idx()});
+  }
+  return mesh;
+}
+
+void add_ring(const SurfaceMesh& mesh, std::vector<Vertex>& region) {
+  const std::size_t count = region.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(region[i]))) region.push_back(mesh.source(h));
+  }
+  sort_unique(region);
+}
+
+}  // namespace
+
+std::vector<Vertex> find_crossing_walls(const SweepState& state) {
+  const TriMesh mesh = indexed_mesh(state);
+  std::vector<Vertex> vertices;
+  for (const auto& [f, g] : self_intersections(mesh)) {
+    for (const Index face : {f, g}) {
+      for (const Index v : mesh.faces[face]) vertices.emplace_back(v);
+    }
+  }
+  sort_unique(vertices);
+  return vertices;
+}
+
+std::vector<Vertex> find_tangles(const SweepState& state) {
+  std::vector<Vertex> vertices;
+  for (const Vertex v : state.mesh.vertices()) {
+    if (state.off_boundary(v) && !state.surface.held(v)) vertices.push_back(v);
+  }
+  const TriMesh mesh = indexed_mesh(state);
+  for (const auto& [f, g] : self_intersections(mesh)) {
+    if (!neighbours(state.surface, mesh.faces[f], mesh.faces[g])) continue;
+    for (const Index face : {f, g}) {
+      for (const Index v : mesh.faces[face]) vertices.emplace_back(v);
+    }
+  }
+  sort_unique(vertices);
+  return vertices;
+}
+
+void loosen(SweepState& state, const std::vector<Vertex>& tangles) {
+  const SurfaceMesh& mesh = state.mesh;
+  std::vector<Vertex> region = tangles;
+  for (int ring = 0; ring < kRings; ++ring) add_ring(mesh, region);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    for (const Vertex v : region) {
+      if (state.surface.held(v)) continue;
+      Vec3 center = Vec3::Zero();
+      for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) center += state.point(mesh.source(h));
+      center /= static_cast<double>(mesh.degree(v));
+      const BoundaryPoint target = state.project(v, center);
+      const bool near = (target.position - center).norm() < state.size[v];
+      if (near) state.surface.place(v, target.position, target.sample);
+    }
+  }
+  for (const Vertex v : region) state.stir(v);
+}
+
+}  // namespace vmesh

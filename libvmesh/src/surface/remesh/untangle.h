@@ -1,0 +1,17 @@
+#pragma once
+
+#include "surface/remesh/sweep_state.h"
+
+namespace vmesh {
+
+/// Vertices of faces that intersect although their vessels are neighbours along the graph, and vertices off the
+/// boundary: what a local operation can mend. Ascending.
+std::vector<Vertex> find_tangles(const SweepState& state);
+
+/// Lets the surroundings of `tangles` relax on the boundary like a rubber sheet, which pulls folds flat.
+void loosen(SweepState& state, const std::vector<Vertex>& tangles);
+
+/// Vertices of all faces that intersect others, be it of vessels that are no neighbours; ascending.
+std::vector<Vertex> find_crossing_walls(const SweepState& state);
+
+}  // namespace vmesh

@@ -1,0 +1,82 @@
+#include "surface/tubes/branch_axis.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vmesh {
+namespace {
+
+constexpr double kFlat = 1e-9;  // relative taper below which a segment counts as a cylinder
+
+// Integral of ds / r over a segment whose radius runs from r0 to r1.
+double radii_along(double length, double r0, double r1) {
+  const double taper = (r1 - r0) / r0;
+  return std::abs(taper) < kFlat ? length / r0 : length * std::log1p(taper) / (r1 - r0);
+}
+
+}  // namespace
+
+BranchAxis::BranchAxis(const Centerline& centerline, const Branch& branch)
+    : centerline_(&centerline),
+      branch_(&branch),
+      periodic_(branch.nodes.front() == branch.nodes.back() && centerline.degree(branch.nodes.front()) == 2),
+      starts_at_tip_(centerline.degree(branch.nodes.front()) == 1),
+      ends_at_tip_(centerline.degree(branch.nodes.back()) == 1),
+      places_(1, 0),
+      radii_(1, 0) {
+  for (std::size_t i = 0; i < branch.segments.size(); ++i) {
+    const double length = centerline.length(branch.segments[i]);
+    const double r0 = centerline.node(branch.nodes[i]).radius, r1 = centerline.node(branch.nodes[i + 1]).radius;
+    places_.push_back(places_.back() + length);
+    radii_.push_back(radii_.back() + radii_along(length, r0, r1));
+  }
+}
+
+bool BranchAxis::reversed(std::size_t piece) const {
+  return centerline_->segment(branch_->segments[piece]).a != branch_->nodes[piece];
+}
+
+BranchAxis::Point BranchAxis::at(double place) const {
+  if (periodic_) place -= length() * std::floor(place / length());
+  place = std::clamp(place, 0.0, length());
+  const auto above = std::upper_bound(places_.begin(), places_.end(), place);
+  const std::size_t piece = std::min<std::size_t>(above - places_.begin(), branch_->segments.size()) - 1;
+  const double along = (place - places_[piece]) / (places_[piece + 1] - places_[piece]);
+  const double t = std::clamp(reversed(piece) ? 1 - along : along, 0.0, 1.0);
+  const Index s = branch_->segments[piece];
+  return {piece, t, centerline_->point_at(s, t), centerline_->radius_at(s, t)};
+}
+
+Vec3 BranchAxis::direction(double place, double reach) const {
+  if (periodic_) reach = std::min(reach, length() / 4);
+  const Vec3 chord = at(place + reach).position - at(place - reach).position;
+  const double norm = chord.norm();
+  if (norm > 0.1 * reach) return chord / norm;
+  const std::size_t piece = at(place).piece;  // a hairpin
+  return (centerline_->node(branch_->nodes[piece + 1]).position - centerline_->node(branch_->nodes[piece]).position)
+      .normalized();
+}
+
+double BranchAxis::place_of(std::size_t piece, double t) const {
+  const double along = reversed(piece) ? 1 - t : t;
+  return places_[piece] + along * (places_[piece + 1] - places_[piece]);
+}
+
+double BranchAxis::apart(double place, double other) const {
+  const double distance = std::abs(place - other);
+  return periodic_ ? std::min(distance, length() - distance) : distance;
+}
+
+double BranchAxis::place_at_radii(double radii) const {
+  radii = std::clamp(radii, 0.0, radii_.back());
+  const auto above = std::upper_bound(radii_.begin(), radii_.end(), radii);
+  const std::size_t piece = std::min<std::size_t>(above - radii_.begin(), branch_->segments.size()) - 1;
+  const double r0 = centerline_->node(branch_->nodes[piece]).radius;
+  const double r1 = centerline_->node(branch_->nodes[piece + 1]).radius;
+  const double length = places_[piece + 1] - places_[piece], slope = (r1 - r0) / length;
+  const double rest = radii - radii_[piece];
+  const double along = std::abs(r1 - r0) < kFlat * r0 ? rest * r0 : r0 * std::expm1(slope * rest) / slope;
+  return places_[piece] + std::clamp(along, 0.0, length);
+}
+
+}  // namespace vmesh

@@ -1,0 +1,110 @@
+#include "surface/tubes/stitch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vmesh {
+namespace {
+
+constexpr std::size_t kStarts = 6;  // places from which a band is tried
+constexpr double kTie = 1 - 1e-9;   // of a value: what is not less than that is equal
+
+// Shortest way through the grid of pairs (bottom i, top j) from (0, start) once around both loops.
+class BandSearch {
+ public:
+  BandSearch(std::span<const Vec3> bottom, std::span<const Vec3> top)
+      : bottom_(bottom), top_(top), cost_((bottom.size() + 1) * (top.size() + 1)), from_bottom_(cost_.size()) {}
+
+  double run(std::size_t first, std::size_t start) {
+    first_ = first;
+    start_ = start;
+    for (std::size_t i = 0; i <= bottom_.size(); ++i) {
+      for (std::size_t j = 0; j <= top_.size(); ++j) {
+        const double edge = i + j == 0 ? 0 : in_step(i, j) ? (low(i) - high(j)).squaredNorm() : kInfinite;
+        const double via_bottom = i > 0 ? cost(i - 1, j) : kInfinite, via_top = j > 0 ? cost(i, j - 1) : kInfinite;
+        from_bottom_[at(i, j)] = via_bottom < kTie * via_top;
+        cost_[at(i, j)] = i + j == 0 ? 0 : std::min(via_bottom, via_top) + edge;
+      }
+    }
+    return cost_.back();
+  }
+
+  std::vector<Triangle> faces() const {
+    std::vector<Triangle> result;
+    for (std::size_t i = bottom_.size(), j = top_.size(); i + j > 0;) {
+      if (from_bottom_[at(i, j)]) {
+        result.push_back({index_low(i - 1), index_low(i), index_high(j)});
+        --i;
+      } else {
+        result.push_back({index_low(i), index_high(j), index_high(j - 1)});
+        --j;
+      }
+    }
+    return result;
+  }
+
+ private:
+  static constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+  // Neither loop may be walked around while the other stands still: an edge would come back.
+  bool in_step(std::size_t i, std::size_t j) const {
+    const auto n = static_cast<double>(bottom_.size()), m = static_cast<double>(top_.size());
+    return std::abs(static_cast<double>(i) / n - static_cast<double>(j) / m) < 0.5;
+  }
+
+  std::size_t at(std::size_t i, std::size_t j) const { return i * (top_.size() + 1) + j; }
+  double cost(std::size_t i, std::size_t j) const { return cost_[at(i, j)]; }
+  Index index_low(std::size_t i) const { return static_cast<Index>((first_ + i) % bottom_.size()); }
+  Index index_high(std::size_t j) const { return static_cast<Index>(bottom_.size() + (start_ + j) % top_.size()); }
+  const Vec3& low(std::size_t i) const { return bottom_[index_low(i)]; }
+  const Vec3& high(std::size_t j) const { return top_[index_high(j) - bottom_.size()]; }
+
+  std::span<const Vec3> bottom_, top_;
+  std::size_t first_ = 0, start_ = 0;
+  std::vector<double> cost_;
+  std::vector<char> from_bottom_;
+};
+
+double distance2_to(std::span<const Vec3> loop, const Vec3& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3& q : loop) least = std::min(least, (q - p).squaredNorm());
+  return least;
+}
+
+// The numbers of the kStarts nearest points, nearest first; ties, rounding apart, by number.
+std::vector<std::size_t> nearest_of(std::span<const Vec3> points, const Vec3& p) {
+  double farthest = 0;
+  for (const Vec3& q : points) farthest = std::max(farthest, (q - p).squaredNorm());
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    order.emplace_back(std::round((points[i] - p).squaredNorm() / ((1 - kTie) * farthest)), i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::size_t> nearest;
+  for (std::size_t i = 0; i < std::min(order.size(), kStarts); ++i) nearest.push_back(order[i].second);
+  return nearest;
+}
+
+}  // namespace
+
+std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3> top) {
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < bottom.size(); ++i) {
+    if (distance2_to(top, bottom[i]) < kTie * distance2_to(top, bottom[first])) first = i;
+  }
+  BandSearch search(bottom, top);
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t start : nearest_of(top, bottom[first])) {
+    const double cost = search.run(first, start);
+    if (cost < kTie * least) {
+      least = cost;
+      best = start;
+    }
+  }
+  search.run(first, best);
+  return search.faces();
+}
+
+}  // namespace vmesh

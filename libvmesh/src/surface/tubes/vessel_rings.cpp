@@ -1,0 +1,253 @@
+#include "surface/tubes/vessel_rings.h"
+
+#include <numbers>
+
+#include "surface/remesh/sweep_state.h"
+
+namespace vmesh {
+namespace {
+
+constexpr double kPitch = 1.055;      // of rings, in heights of the equilateral band at their final radius
+constexpr double kSmoothing = 0.6;    // radii before and behind over which the direction of the vessel is taken
+constexpr int kSteps = 8;             // of the search for the boundary along a ray
+constexpr double kOnBoundary = 1e-3;  // radii
+constexpr double kNearest = 0.5, kFarthest = 2;  // radii at which the boundary may lie
+constexpr double kFacing = 0.5;                  // cosine between ray and boundary normal
+constexpr double kOwnReach = 1.5;                // radii along the branch from which the boundary may come
+// Nothing else may come as close as `space` to the points `far` from the axis, both in radii, in kDirections
+// directions.
+struct Clearance {
+  double far, space;
+};
+constexpr Clearance kClearances[] = {{0, 0}, {0.5, 0}, {1, 0}, {1.35, 0.15}};
+constexpr double kNeighbourhood = 1.5;  // radii around the axis where that may fail
+constexpr int kDirections = 24;
+constexpr int kPlacesThrough = 6;
+constexpr double kThrough = 0.3;        // cosine between the vessel's way and the normal of its cross-section
+constexpr double kStraight = 1e-3;      // sine of an angle below which directions count as equal
+constexpr double kLongestSkip = 2.5;    // radii along the branch
+constexpr double kStraightSkip = 0.95;  // cosine
+constexpr double kMinGap = 0.2;         // pitches between two rings anywhere
+
+// Height of the band of triangles between two rings, in ring radii, when all its edges are as long as the ring's.
+double equilateral_height(int around) {
+  const double edge = 2 * std::sin(std::numbers::pi / around);
+  const double shift = 2 * std::sin(std::numbers::pi / (2 * around));  // of a vertex turned half a step
+  return std::sqrt(edge * edge - shift * shift);
+}
+
+bool apart(const Ring& ring, const Ring& next, double gap) {
+  for (const auto& p : next.points) {
+    if ((p.position - ring.center).dot(ring.normal) < gap * ring.radius) return false;
+  }
+  for (const auto& p : ring.points) {
+    if ((next.center - p.position).dot(next.normal) < gap * next.radius) return false;
+  }
+  return true;
+}
+
+// A short way along which the vessel hardly bends.
+bool is_straight_between(const Ring& ring, const Ring& next) {
+  const double along = next.place - ring.place;
+  const Vec3 chord = next.center - ring.center;
+  return along < kLongestSkip * std::max(ring.radius, next.radius) && chord.dot(ring.normal) > kStraightSkip * along &&
+         chord.dot(next.normal) > kStraightSkip * along;
+}
+
+}  // namespace
+
+double ring_pitch(int around) { return kPitch * balanced_ring_radius(around) * equilateral_height(around); }
+
+RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes,
+                     const std::vector<SegmentPlace>& places, int around)
+    : field_(field), axes_(axes), places_(places), around_(around) {}
+
+Rings RingLayer::lay(Index branch) const {
+  const BranchAxis& axis = axes_[branch];
+  const double pitch = ring_pitch(around_);
+  const double total = axis.length_in_radii();
+  const auto bands = static_cast<std::size_t>(std::max(1.0, std::round(total / pitch)));
+  const double step = total / static_cast<double>(bands);
+  const std::size_t count = axis.periodic() ? bands : bands + 1;
+  Rings laid;
+  std::vector<Ring>& rings = laid.rings;
+  rings.reserve(count);
+  laid.points.reserve(count * static_cast<std::size_t>(around_));
+  Vec3 side = Vec3::Zero();
+  for (std::size_t k = 0; k < count; ++k) {
+    const double radii = step * static_cast<double>(k);
+    const CrossSection here = section(branch, radii);
+    side = k == 0 ? reference(branch, here.normal)
+                  : Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, here.normal) * side);
+    side = (side - side.dot(here.normal) * here.normal).normalized();
+    rings.push_back(lay_one(branch, here, side, static_cast<double>(k % 2) / 2, laid.points));
+    rings.back().beside = {section(branch, radii - step / 2), section(branch, radii + step / 2)};
+  }
+  std::vector<char> collides(rings.size(), 0);
+  for (std::size_t k = 0; k < bands && rings.size() > 1; ++k) {
+    const std::size_t next = (k + 1) % rings.size();
+    if (!rings[k].free || !rings[next].free || apart(rings[k], rings[next], kMinGap * pitch)) continue;
+    collides[k] = collides[next] = 1;
+  }
+  for (std::size_t k = 0; k < rings.size(); ++k) rings[k].free = rings[k].free && !collides[k];
+  leave_out_steps(rings, kMinGap * pitch);
+  clear_ends(branch, rings);
+  return laid;
+}
+
+CrossSection RingLayer::section(Index branch, double radii) const {
+  const BranchAxis& axis = axes_[branch];
+  if (axis.periodic()) radii -= axis.length_in_radii() * std::floor(radii / axis.length_in_radii());
+  const double place = axis.place_at_radii(radii);
+  const auto point = axis.at(place);
+  return {place, point.position, axis.direction(place, kSmoothing * point.radius), point.radius};
+}
+
+void RingLayer::leave_out_steps(std::vector<Ring>& rings, double least_gap) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < rings.size();) {
+    rings[kept++] = rings[k];
+    std::size_t next = k + 1;
+    while (next < rings.size() && rings[next].clear && !rings[next].free) ++next;
+    const bool skip = rings[k].free && next < rings.size() && rings[next].free && next > k + 1 &&
+                      is_straight_between(rings[k], rings[next]) && apart(rings[k], rings[next], least_gap);
+    k = skip ? next : k + 1;
+  }
+  rings.resize(kept);
+}
+
+void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings) const {
+  const BranchAxis& axis = axes_[branch];
+  const std::size_t count = rings.size();
+  if (!axis.periodic() && !axis.starts_at_tip()) rings.front().free = false;
+  if (!axis.periodic() && !axis.ends_at_tip()) rings.back().free = false;
+  const auto covered = [&](std::size_t k) { return !rings[k].free; };
+  std::vector<BoundaryPoint> points;
+  points.reserve(static_cast<std::size_t>(around_));
+  const auto can_dock = [&](const Ring& ring, int side) {
+    const Vec3 across = ring.points.front().position - ring.center;
+    const CrossSection& next = ring.beside[side];
+    points.clear();
+    return lay_one(branch, next, (across - across.dot(next.normal) * next.normal).normalized(), 0, points).free;
+  };
+  const std::size_t laps = axis.periodic() ? 2 * count : count;
+  for (std::size_t k = 1; k < laps; ++k) {
+    Ring& ring = rings[k % count];
+    if (ring.free && covered((k - 1) % count)) ring.free = can_dock(ring, 0);
+  }
+  for (std::size_t k = laps - 1; k-- > 0;) {
+    Ring& ring = rings[k % count];
+    if (ring.free && covered((k + 1) % count)) ring.free = can_dock(ring, 1);
+  }
+}
+
+// From where angles count: turns with the centerline, where that is not straight throughout.
+Vec3 RingLayer::reference(Index branch, const Vec3& normal) const {
+  const Centerline& centerline = field_.centerline();
+  const auto& nodes = axes_[branch].branch().nodes;
+  Vec3 best = kStraight * normal.unitOrthogonal();
+  const auto offer = [&](const Vec3& way) {
+    const Vec3 across = way - way.dot(normal) * normal;
+    if (across.norm() > best.norm() * (1 + kStraight)) best = across;
+  };
+  for (const Index end : {nodes.front(), nodes.back()}) {
+    for (const Index s : centerline.incident_segments(end)) {
+      offer((centerline.node(centerline.other_node(s, end)).position - centerline.node(end).position).normalized());
+    }
+  }
+  for (const Index n : nodes) {
+    offer((centerline.node(n).position - centerline.node(nodes.front()).position) / axes_[branch].length());
+  }
+  return best.normalized();
+}
+
+Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
+                        std::vector<BoundaryPoint>& points) const {
+  const BranchAxis::Point axis = axes_[branch].at(section.place);
+  Ring ring{section, {}, {}, false, false};
+  const Vec3 up = section.normal.cross(side);
+  ring.clear = goes_through(branch, section) && is_clear(branch, section, axis, side, up);
+  if (!ring.clear) return ring;
+  const std::size_t first = points.size();
+  for (int j = 0; j < around_; ++j) {
+    const double angle = 2 * std::numbers::pi * (j + phase) / around_;
+    BoundaryPoint seen;
+    if (!see(branch, ring, axis, std::cos(angle) * side + std::sin(angle) * up, seen)) {
+      points.resize(first);
+      return ring;
+    }
+    points.push_back(seen);
+  }
+  ring.points = std::span(points).subspan(first);
+  ring.free = true;
+  return ring;
+}
+
+bool RingLayer::see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way,
+                    BoundaryPoint& seen) const {
+  const Index segment = axes_[branch].branch().segments[axis.piece];
+  double far = ring.radius;
+  FieldSample s;
+  for (int step = 0; step < kSteps; ++step) {
+    s = field_.sample(ring.center + far * way, segment);
+    if (std::abs(s.distance) < kOnBoundary * ring.radius) break;
+    const double slope = s.gradient.dot(way);
+    if (slope < kFacing) return false;
+    far -= s.distance / slope;
+    if (!(far > kNearest * ring.radius && far < kFarthest * ring.radius)) return false;
+  }
+  if (!(std::abs(s.distance) < kOnBoundary * ring.radius) || s.gradient.dot(way) < kFacing) return false;
+  seen = {ring.center + far * way, s};
+  return is_own(branch, ring, s);
+}
+
+bool RingLayer::is_own(Index branch, const CrossSection& section, const FieldSample& sample) const {
+  const SegmentPlace at = places_[sample.cone];
+  if (at.branch != branch) return false;
+  const BranchAxis& axis = axes_[branch];
+  const double radius = std::max(section.radius, field_.radius_at(sample.cone, sample.t));
+  return axis.apart(axis.place_of(at.piece, sample.t), section.place) <= kOwnReach * radius;
+}
+
+// Whether the vessel comes from behind the plane and goes on before it, as far as it counts as the section's own.
+bool RingLayer::goes_through(Index branch, const CrossSection& section) const {
+  const BranchAxis& axis = axes_[branch];
+  for (int k = 1; k <= kPlacesThrough; ++k) {
+    const double reach = kOwnReach * section.radius * k / kPlacesThrough;
+    for (const double way : {-1.0, 1.0}) {
+      const double place = section.place + way * reach;
+      if (!axis.periodic() && (place < 0 || place > axis.length())) continue;
+      if (way * (axis.at(place).position - section.center).dot(section.normal) < kThrough * reach) return false;
+    }
+  }
+  return true;
+}
+
+// Whether `cone` reaches beyond what counts as the section's own part of the branch.
+bool RingLayer::may_be_foreign(Index branch, const CrossSection& section, Index cone) const {
+  return !is_own(branch, section, {0, {}, cone, 0}) || !is_own(branch, section, {0, {}, cone, 1});
+}
+
+bool RingLayer::is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
+                         const Vec3& up) const {
+  const Index segment = axes_[branch].branch().segments[axis.piece];
+  std::vector<Index> others;
+  for (const Index cone : field_.local_cones(segment)) {
+    if (cone == segment || !may_be_foreign(branch, section, cone)) continue;
+    if (field_.sample_cone(section.center, cone).distance < kNeighbourhood * section.radius) others.push_back(cone);
+  }
+  for (int j = 0; j < kDirections && !others.empty(); ++j) {
+    const double angle = 2 * std::numbers::pi * j / kDirections;
+    const Vec3 way = std::cos(angle) * side + std::sin(angle) * up;
+    for (const auto& [far, space] : kClearances) {
+      const Vec3 p = section.center + far * section.radius * way;
+      for (const Index cone : others) {
+        const FieldSample s = field_.sample_cone(p, cone);
+        if (s.distance < space * section.radius && !is_own(branch, section, s)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace vmesh

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "surface/remesh/bound_surface.h"
+#include "surface/tubes/branch_axis.h"
+
+namespace vmesh {
+
+/// A plane across a branch.
+struct CrossSection {
+  double place = 0;  ///< on the branch
+  Vec3 center = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();  ///< along the branch, in the order of its nodes
+  double radius = 0;
+};
+
+/// A ring of vertices around a branch, on the vessel boundary, counter-clockwise about `normal`.
+struct Ring : CrossSection {
+  std::span<const BoundaryPoint> points;  ///< none where one of them is not seen from the axis
+  std::array<CrossSection, 2> beside;     ///< half a step before and after it
+  bool clear = false;  ///< no other vessel, nor a far part of this one, covers the cross-section or comes close
+  bool free = false;   ///< clear, and the boundary is seen from the axis all around
+};
+
+/// Rings and the points they consist of. Moved, not copied: rings refer to the points by address.
+struct Rings {
+  Rings() = default;
+  Rings(Rings&&) = default;
+  Rings& operator=(Rings&&) = default;
+
+  std::vector<Ring> rings;
+  std::vector<BoundaryPoint> points;
+};
+
+/// Distance in radii between rings of `around` vertices whose band consists of nearly equilateral triangles.
+double ring_pitch(int around);
+
+/// Where every segment lies: its branch and its number there.
+struct SegmentPlace {
+  Index branch = kNone;
+  Index piece = kNone;
+};
+
+/// Lays rings of `around` vertices along branches, evenly in units of the local radius, each turned half a step
+/// against the one before: bands of nearly equilateral triangles. The first and the last ring lie at the branch's ends.
+/// Rings that are clear but not free, for a step in the radius or a sharp bend, are left out where the band between
+/// their neighbours stays short. Where free rings begin or end off a tip, the cross-section half a step further is free
+/// as well.
+class RingLayer {
+ public:
+  RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes, const std::vector<SegmentPlace>& places,
+            int around);
+
+  Rings lay(Index branch) const;
+
+ private:
+  CrossSection section(Index branch, double radii) const;
+  Vec3 reference(Index branch, const Vec3& normal) const;
+  // Its points go to the end of `points`, which must have room for them.
+  Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
+               std::vector<BoundaryPoint>& points) const;
+  static void leave_out_steps(std::vector<Ring>& rings, double least_gap);
+  void clear_ends(Index branch, std::vector<Ring>& rings) const;
+  // Whether no other vessel, nor a far part of this one, covers the cross-section or comes close.
+  bool is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
+                const Vec3& up) const;
+  bool goes_through(Index branch, const CrossSection& section) const;
+  bool may_be_foreign(Index branch, const CrossSection& section, Index cone) const;
+  bool is_own(Index branch, const CrossSection& section, const FieldSample& sample) const;
+  // The boundary point seen from `center` in direction `way`; false if it does not belong to the place alone.
+  bool see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way, BoundaryPoint& seen) const;
+
+  const VesselField& field_;
+  const std::vector<BranchAxis>& axes_;
+  const std::vector<SegmentPlace>& places_;
+  int around_;
+};
+
+}  // namespace vmesh

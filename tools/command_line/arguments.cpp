@@ -1,0 +1,309 @@
+#include "command_line/arguments.h"
+
+#include <charconv>
+#include <iostream>
+#include <sstream>
+
+#include "vmesh/core/error.h"
+#include "vmesh/core/version.h"
+
+#include "command_line/arguments_common.h"
+#include "command_line/exit_code.h"
+#include "report/requirements.h"
+
+namespace vmesh::tool {
+namespace {
+
+constexpr const char* kGenerateExamples = R"(Examples:
+  vmesh generate tree.swc -o tree.ply
+  vmesh generate tree.vtp -o tree.vtp --around 8 --blend 0.8 --json summary.json
+  vmesh generate network.csv -o network.stl --unit um --check
+  vmesh generate tree.swc -o fine.ply --preset high
+  vmesh generate tree.swc -o exact.ply --max-error 5%
+  vmesh generate tree.swc -o game.obj --budget vertices=5000
+  vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
+constexpr const char* kInfoExamples = R"(Examples:
+  vmesh info tree.swc
+  vmesh info tree.ply --json -
+  vmesh info tree.ply --check && echo flawless)";
+constexpr const char* kSynthExamples = R"(Examples:
+  vmesh synth -o tree.json
+  vmesh synth --vertices 119 --seed 7 -o small.swc)";
+constexpr const char* kConvertExamples = R"(Examples:
+  vmesh convert tree.swc -o tree.vtp
+  vmesh convert tree.swc -o tree.json --unit um
+  vmesh convert tree.ply -o tree.stl)";
+constexpr const char* kRenderExamples = R"(Examples:
+  vmesh render tree.ply -o tree.png
+  vmesh render tree.ply -o tree.png --edges --color radius --view left --width 1200 --height 900)";
+constexpr const char* kEvaluateExamples = R"(Examples:
+  vmesh evaluate tree.ply
+  vmesh evaluate tree.ply --reference scan.stl --report report.md --json report.json -o colored.ply
+  vmesh evaluate tree.ply --centerline tree.swc --require closed,max-skewness=0.9,relative-volume-distance=0.5)";
+
+OpenEnds parse_open_ends(const std::string& text) {
+  OpenEnds ends;
+  ends.all = text == "all";
+  if (ends.all) return ends;
+  std::istringstream list(text);
+  for (std::string item; std::getline(list, item, ',');) {
+    Index node = 0;
+    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), node);
+    if (error != std::errc() || end != item.data() + item.size())
+      throw CLI::ValidationError("--open-ends",
+                                 "\"" + item + "\" is no node number; give all, or numbers such as 3,17");
+    ends.nodes.push_back(node);
+  }
+  return ends;
+}
+
+// What the presets stand for can be overridden by its own option, wherever that is on the line.
+void add_preset(CLI::App& verb, GenerateOptions& options) {
+  CLI::Option* preset = verb.add_option("--preset", "low: 6 vertices around; high: 12, about four times as many in all")
+                            ->check(CLI::IsMember({"low", "high"}))
+                            ->default_str("low");
+  verb.parse_complete_callback([&verb, &options, preset] {
+    if (preset->count() == 0 || verb.get_option("--around")->count() > 0) return;
+    options.around = vertices_around(preset->as<std::string>() == "high" ? Preset::high : Preset::low);
+  });
+}
+
+void add_generate(CLI::App& app, GenerateArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
+  add_input(verb, arguments.input, "centerline");
+  add_output(verb, arguments.output, "surface");
+  for_each_generate_option(arguments.options,
+                           [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
+                             verb.add_option(flag, member, help)->check(in_range(low, high))->capture_default_str();
+                           });
+  add_preset(verb, arguments.options);
+  verb.add_option_function<std::string>(
+          "--growth", [&arguments](const std::string& text) { arguments.options.growth = parse_growth_method(text); },
+          "guided: topology as the centerline's; paper: a single seed, as published")
+      ->check(CLI::IsMember({"guided", "paper"}))
+      ->default_str("guided");
+  verb.add_option_function<std::string>(
+          "--max-error",
+          [&arguments](const std::string& text) {
+            try {
+              arguments.options.max_error = parse_error_limit(text);
+            } catch (const InvalidInput& error) {
+              throw CLI::ValidationError("--max-error", error.what());
+            }
+          },
+          "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
+          "0.3mm, 10% (of the local radius), or both, separated by a comma")
+      ->type_name("Xmm|X%");
+  verb.add_option_function<std::string>(
+          "--budget",
+          [&arguments](const std::string& text) {
+            try {
+              arguments.budget = parse_budget(text);
+            } catch (const InvalidInput& error) {
+              throw CLI::ValidationError("--budget", error.what());
+            }
+          },
+          "choose the resolution: the finest surface with vertices=N at most, or grown within time=Xms, or the one "
+          "with the fewest vertices that keeps error=Xmm or error=X% everywhere")
+      ->type_name("vertices=N|time=Xms|error=X")
+      ->excludes("--around")
+      ->excludes("--preset")
+      ->excludes("--max-error");
+  verb.add_option_function<std::string>(
+          "--placement", [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },
+          "inscribed: vertices on the boundary; balanced: lifted off it, so that volume is kept")
+      ->check(CLI::IsMember({"inscribed", "balanced"}))
+      ->default_str("balanced");
+  verb.add_option_function<std::string>(
+          "--open-ends", [&arguments](const std::string& text) { arguments.options.open_ends = parse_open_ends(text); },
+          "leave the surface open at these ends of the centerline: all, or node numbers as in the summary, "
+          "separated by commas")
+      ->type_name("all|N,N,...");
+  verb.add_option("--threads", arguments.options.threads, "to work on; 0: as many as there are; the result is the same")
+      ->check(in_range(0, 4096))
+      ->capture_default_str();
+  verb.add_option_function<std::string>(
+          "--overlap",
+          [&arguments](const std::string& text) {
+            arguments.overlap = text == "separate" ? OverlapHandling::separate : OverlapHandling::keep;
+          },
+          "where vessels touch that are not neighbours: keep their radii, or separate them by narrowing, and by moving "
+          "those that cross")
+      ->check(CLI::IsMember({"keep", "separate"}))
+      ->default_str("keep");
+  verb.add_option("--gap", arguments.gap, "free space between vessels below which they touch, in smaller radii")
+      ->check(in_range(0.001, 1.0))
+      ->capture_default_str();
+  verb.add_flag("--check", arguments.check,
+                "exit with 1 unless the surface is closed, manifold, free of "
+                "self-intersections, of the expected topology, and holds every centerline node");
+  add_common(verb, arguments.common);
+  verb.footer(kGenerateExamples);
+}
+
+void add_info(CLI::App& app, InfoArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand("info", "Tell what is in a centerline or surface, and what is wrong with it");
+  add_input(verb, arguments.input, "centerline or surface");
+  verb.add_flag("--check", arguments.check, "exit with 1 when there is a problem");
+  add_common(verb, arguments.common);
+  verb.footer(kInfoExamples);
+}
+
+void add_synth(CLI::App& app, SynthArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand("synth", "Make a synthetic tree like a liver's portal vein");
+  add_output(verb, arguments.output, "centerline");
+  verb.add_option("--vertices", arguments.options.vertices, "nodes of the centerline")
+      ->check(in_range(2, 1000000))
+      ->capture_default_str();
+  verb.add_option("--seed", arguments.options.seed, "each number gives another tree")->capture_default_str();
+  add_common(verb, arguments.common, false);
+  verb.footer(kSynthExamples);
+}
+
+void add_convert(CLI::App& app, ConvertArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand(
+      "convert", "Convert between centerline formats or between surface formats; writes millimetres and LPS");
+  add_input(verb, arguments.input, "centerline or surface");
+  add_output(verb, arguments.output, "file of the same kind");
+  add_common(verb, arguments.common, false);
+  verb.footer(kConvertExamples);
+}
+
+void add_render_view(CLI::App& verb, RenderOptions& options) {
+  verb.add_option("--width", options.width, "pixels")->check(in_range(16, 16384))->capture_default_str();
+  verb.add_option("--height", options.height, "pixels")->check(in_range(16, 16384))->capture_default_str();
+  verb.add_option_function<std::string>(
+      "--view",
+      [&options](const std::string& text) {
+        try {
+          options.view = view_direction(text);
+        } catch (const InvalidInput& error) {
+          throw CLI::ValidationError("--view", error.what());
+        }
+      },
+      "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees");
+  verb.add_option_function<std::array<double, 3>>(
+      "--look-at", [&options](const std::array<double, 3>& p) { options.look_at = Vec3(p[0], p[1], p[2]); },
+      "point in the middle of the picture, mm; default: the middle of the mesh");
+  verb.add_option("--view-height", options.view_height_mm, "height of the scene in the picture, mm; 0: the whole mesh")
+      ->check(in_range(0.0, 1e9))
+      ->capture_default_str();
+  verb.add_option("--zoom", options.zoom, "magnification")->check(in_range(1e-3, 1e6))->capture_default_str();
+  verb.add_option("--field-of-view", options.field_of_view_deg, "degrees; 0: orthographic")
+      ->check(in_range(0.0, 119.0))
+      ->capture_default_str();
+}
+
+void add_render_look(CLI::App& verb, RenderArguments& arguments) {
+  RenderOptions& options = arguments.options;
+  verb.add_flag("--edges", options.edges, "draw the triangles' edges");
+  verb.add_option("--edge-width", options.edge_width_px, "pixels")->check(in_range(0.01, 100.0))->capture_default_str();
+  verb.add_flag("!--flat", options.smooth, "shade facet by facet");
+  verb.add_flag("!--no-back-faces", options.highlight_back_faces, "do not show the inside of the surface in magenta");
+  verb.add_flag("!--no-legend", options.legend, "leave the colour scale out");
+  verb.add_option("--occlusion", options.occlusion, "darkening where little light gets in")
+      ->check(in_range(0.0, 1.0))
+      ->capture_default_str();
+  verb.add_option("--color", arguments.color,
+                  "colour by this attribute of the file, or by skewness; branch: a colour for each");
+  verb.add_option_function<std::pair<double, double>>(
+      "--range", [&options](const std::pair<double, double>& range) { options.range = range; },
+      "attribute values at the ends of the colour scale");
+}
+
+void add_render(CLI::App& app, RenderArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand("render", "Draw a surface; needs no display");
+  add_input(verb, arguments.input, "surface");
+  add_output(verb, arguments.output, "picture (.png)");
+  add_render_view(verb, arguments.options);
+  add_render_look(verb, arguments);
+  add_common(verb, arguments.common, false);
+  verb.footer(kRenderExamples);
+}
+
+void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand(
+      "evaluate", "Measure a surface: faces, defects, distance to a reference surface or to a centerline's vessels");
+  add_input(verb, arguments.input, "surface");
+  verb.add_option("--reference", arguments.reference.path,
+                  "surface to compare with: guaranteed Hausdorff distance, mean, RMS and percentiles, both ways");
+  add_reading(verb, arguments.reference, "reference-");
+  verb.add_option("--centerline", arguments.centerline.path,
+                  "compare with the exact volume of its round cones, both ways, in mm and in local radii");
+  add_reading(verb, arguments.centerline, "centerline-");
+  verb.add_option("-o,--output", arguments.output,
+                  "the surface with the skewness of its faces, and its vertices' distance to the reference and "
+                  "volume_distance (.ply, .vtp)");
+  add_report(verb, arguments.report, arguments.format);
+  add_measuring(verb, arguments.tolerance_mm, arguments.samples);
+  verb.add_option("--require", arguments.require,
+                  "exit with 1 unless all of these hold, separated by commas: " + describe_requirements())
+      ->type_name("LIST");
+  add_common(verb, arguments.common);
+  verb.footer(kEvaluateExamples);
+}
+
+}  // namespace
+
+std::string_view to_string(OverlapHandling overlap) {
+  return overlap == OverlapHandling::separate ? "separate" : "keep";
+}
+
+std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int& exit_code) {
+  CLI::App app("vmesh turns vessel centerlines into surfaces.", "vmesh");
+  app.set_version_flag("--version", "vmesh " + std::string(version()));
+  app.footer(
+      "vmesh VERB --help tells the options of a verb and shows examples.\n"
+      "Exit codes: 0 ok, 1 a requested check failed, 2 usage, 3 bad input, 4 unsupported or not built in,\n"
+      "5 cannot write, 6 did not converge, 130 interrupted.");
+  app.require_subcommand(1);
+
+  GenerateArguments generate;
+  InfoArguments info;
+  SynthArguments synth;
+  ConvertArguments convert;
+  RenderArguments render;
+  EvaluateArguments evaluate;
+  ReferenceArguments reference;
+  ConesArguments cones;
+  CenterlineArguments centerline;
+  Table2Arguments table2;
+  TradeoffArguments tradeoff;
+  DeformArguments deform;
+  Table1Arguments table1;
+  add_generate(app, generate);
+  add_info(app, info);
+  add_synth(app, synth);
+  add_convert(app, convert);
+  add_render(app, render);
+  add_evaluate(app, evaluate);
+  add_reference(app, reference);
+  add_cones(app, cones);
+  add_centerline(app, centerline);
+  add_table2(app, table2);
+  add_tradeoff(app, tradeoff);
+  add_deform(app, deform);
+  add_table1(app, table1);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // CLI11's own codes run from 100 to 127.
+    exit_code = app.exit(error, std::cout, std::cerr) == 0 ? kOk : kUsage;
+    return std::nullopt;
+  }
+  if (app.got_subcommand("generate")) return generate;
+  if (app.got_subcommand("info")) return info;
+  if (app.got_subcommand("synth")) return synth;
+  if (app.got_subcommand("convert")) return convert;
+  if (app.got_subcommand("reference")) return reference;
+  if (app.got_subcommand("cones")) return cones;
+  if (app.got_subcommand("centerline")) return centerline;
+  if (app.got_subcommand("table2")) return table2;
+  if (app.got_subcommand("tradeoff")) return tradeoff;
+  if (app.got_subcommand("deform")) return deform;
+  if (app.got_subcommand("table1")) return table1;
+  if (app.got_subcommand("evaluate")) return evaluate;
+  return render;
+}
+
+}  // namespace vmesh::tool

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+
+#include "command_line/arguments.h"
+
+namespace vmesh::tool {
+
+/// CLI::Range lets NaN pass.
+template <class Number>
+CLI::Validator in_range(Number low, Number high) {
+  std::ostringstream name;
+  name << "in [" << low << ", " << high << "]";
+  const auto check = [low, high, words = name.str()](std::string& text) {
+    Number value;
+    const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+    return good ? std::string() : "not " + words + ": " + text;
+  };
+  return {check, name.str()};
+}
+
+void add_common(CLI::App& verb, CommonArguments& common, bool with_json = true);
+
+void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& help);
+
+/// Options that tell how to read a file; `of`: "" for the input, else "reference-" or the like.
+void add_reading(CLI::App& verb, InputArguments& input, const std::string& of);
+
+void add_input(CLI::App& verb, InputArguments& input, const std::string& help);
+
+/// Where a report goes besides stdout, and its format there.
+void add_report(CLI::App& verb, std::filesystem::path& report, std::string& format);
+
+/// How a surface is measured against another one.
+void add_measuring(CLI::App& verb, double& tolerance_mm, std::size_t& samples);
+
+/// The verbs that deal with what surfaces are compared with.
+void add_reference(CLI::App& app, ReferenceArguments& arguments);
+void add_cones(CLI::App& app, ConesArguments& arguments);
+void add_centerline(CLI::App& app, CenterlineArguments& arguments);
+void add_table2(CLI::App& app, Table2Arguments& arguments);
+void add_tradeoff(CLI::App& app, TradeoffArguments& arguments);
+
+/// The verbs that deal with motion.
+void add_deform(CLI::App& app, DeformArguments& arguments);
+void add_table1(CLI::App& app, Table1Arguments& arguments);
+
+}  // namespace vmesh::tool

@@ -1,0 +1,39 @@
+#include "command_line/arguments_common.h"
+
+namespace vmesh::tool {
+namespace {
+
+constexpr const char* kDeformExamples = R"(Examples:
+  vmesh deform tree.json tree.ply --script scene.json -o frames/
+  vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj)";
+constexpr const char* kTable1Examples = R"(Examples:
+  vmesh table1
+  vmesh table1 --format markdown --report table1.md --plot trade.svg)";
+
+}  // namespace
+
+void add_deform(CLI::App& app, DeformArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand("deform", "Move a centerline under forces, its surface with it");
+  add_input(verb, arguments.input, "centerline");
+  verb.add_option("SURFACE", arguments.surface.path, "surface around it: grown by vmesh, or any other")->required();
+  add_reading(verb, arguments.surface, "surface-");
+  verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (README.md, Deforming)")
+      ->required();
+  verb.add_option("-o,--output", arguments.output, "new or empty folder for the frames")->required();
+  verb.add_option("--format", arguments.format, "of the frames")
+      ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off"}))
+      ->capture_default_str();
+  add_common(verb, arguments.common);
+  verb.footer(kDeformExamples);
+}
+
+void add_table1(CLI::App& app, Table1Arguments& arguments) {
+  CLI::App& verb = *app.add_subcommand(
+      "table1", "Measure deformation and synchronisation as in the paper's Table 1, on synthetic trees of its sizes");
+  add_report(verb, arguments.report, arguments.format);
+  verb.add_option("--plot", arguments.plot, "what time buys in accuracy, as a picture (.svg)");
+  add_common(verb, arguments.common);
+  verb.footer(kTable1Examples);
+}
+
+}  // namespace vmesh::tool

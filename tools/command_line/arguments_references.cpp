@@ -1,0 +1,133 @@
+#include "command_line/arguments_common.h"
+
+namespace vmesh::tool {
+namespace {
+
+constexpr const char* kReferenceExamples = R"(Examples:
+  vmesh reference liver.nii.gz --label 2 --spacing 0.8 --smooth 0.8 -o portal.ply
+  vmesh reference ct.nrrd --threshold 150 --all-components -o bright.stl
+  vmesh reference tree.swc --voxel 0.5 -o tree_reference.ply)";
+constexpr const char* kConesExamples = R"(Examples:
+  vmesh cones tree.swc -o cones.ply
+  vmesh cones tree.swc -o cones.stl --sides 12)";
+constexpr const char* kCenterlineExamples = R"(Examples:
+  vmesh centerline portal.ply -o portal.json
+  vmesh centerline liver.nii.gz --label 2 --spacing 0.8 --smooth 0.8 -o portal.swc --tree)";
+constexpr const char* kTable2Examples = R"(Examples:
+  vmesh table2
+  vmesh table2 --centerline tree.swc --voxel 0.5 --format markdown
+  vmesh table2 --reference liver.nii.gz --label 2 --spacing 1 --smooth 0.8 --report table.md --surfaces folder
+  vmesh table2 --reference portal.ply --tree)";
+constexpr const char* kTradeoffExamples = R"(Examples:
+  vmesh tradeoff tree.swc --report tradeoff.md --plot tradeoff.svg --json tradeoff.json)";
+
+void add_image_options(CLI::App& verb, ReferenceOptions& options) {
+  CLI::Option* label = verb.add_option("--label", options.label, "image: voxels of this value are inside");
+  verb.add_option("--threshold", options.threshold, "image: voxels of at least this value are inside")->excludes(label);
+  verb.add_option("--spacing", options.spacing, "image: resample to cubic voxels of this side, mm; 0: as it is")
+      ->check(in_range(0.0, 1e6))
+      ->capture_default_str();
+  verb.add_option("--smooth", options.smooth, "smooth with a Gaussian of this standard deviation, mm; 0: not at all")
+      ->check(in_range(0.0, 1e6))
+      ->capture_default_str();
+}
+
+void add_extraction(CLI::App& verb, ExtractOptions& options) {
+  verb.add_option("--step", options.spacing, "distance between nodes along a vessel, in local radii")
+      ->check(in_range(0.1, 10.0))
+      ->capture_default_str();
+  verb.add_option("--join", options.join,
+                  "join parts whose vessels are closer than this times the smaller of their radii")
+      ->check(in_range(0.0, 1e6))
+      ->capture_default_str();
+  verb.add_flag("--tree", options.tree, "break all loops");
+}
+
+}  // namespace
+
+void add_reference(CLI::App& app, ReferenceArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand(
+      "reference", "Contour an image by marching cubes, or the vessel volume of a centerline sampled on voxels");
+  add_input(verb, arguments.input, "image (.nii, .nii.gz, .nrrd, .mha) or centerline");
+  add_output(verb, arguments.output, "surface");
+  add_image_options(verb, arguments.options);
+  verb.add_option("--voxel", arguments.voxel, "centerline: side of the voxels, mm")->check(in_range(1e-6, 1e6));
+  verb.add_flag("--binary", arguments.options.binary,
+                "contour inside and outside alone instead of grey values: a staircase of better triangles");
+  verb.add_flag("--all-components", arguments.options.all_components,
+                "keep all components and cavities, not only the component of the largest volume");
+  add_common(verb, arguments.common);
+  verb.footer(kReferenceExamples);
+}
+
+void add_cones(CLI::App& app, ConesArguments& arguments) {
+  CLI::App& verb =
+      *app.add_subcommand("cones", "Put a truncated cone around every segment of a centerline, not joined");
+  add_input(verb, arguments.input, "centerline");
+  add_output(verb, arguments.output, "surface");
+  verb.add_option("--sides", arguments.sides, "of a cone")->check(in_range(3, 1000))->capture_default_str();
+  add_common(verb, arguments.common);
+  verb.footer(kConesExamples);
+}
+
+void add_centerline(CLI::App& app, CenterlineArguments& arguments) {
+  CLI::App& verb =
+      *app.add_subcommand("centerline", "Extract the centerline with radii from a closed surface or an image");
+  add_input(verb, arguments.input, "surface, or image (.nii, .nii.gz, .nrrd, .mha)");
+  add_output(verb, arguments.output, "centerline");
+  add_image_options(verb, arguments.image);
+  add_extraction(verb, arguments.options);
+  verb.add_flag("--all-components", arguments.options.all_components,
+                "keep all parts that remain apart, not only the one of the largest volume");
+  add_common(verb, arguments.common);
+  verb.footer(kCenterlineExamples);
+}
+
+void add_table2(CLI::App& app, Table2Arguments& arguments) {
+  CLI::App& verb = *app.add_subcommand(
+      "table2",
+      "Compare marching cubes, truncated cones and both presets, as the paper's Table 2; without a file, on a "
+      "synthetic portal vein");
+  verb.add_option("--reference", arguments.reference.path,
+                  "image or closed surface to compare with; centerline and surfaces are made from it");
+  add_reading(verb, arguments.reference, "reference-");
+  verb.add_option("--centerline", arguments.centerline.path,
+                  "centerline to start from; without a reference, its sampled volume is the reference");
+  add_reading(verb, arguments.centerline, "centerline-");
+  add_image_options(verb, arguments.image);
+  verb.add_flag("--binary", arguments.image.binary, "contour inside and outside alone instead of grey values");
+  verb.add_flag("--all-components", arguments.all_components,
+                "keep all components of the reference, not only that of the largest volume");
+  verb.add_option("--voxel", arguments.voxel,
+                  "without a reference: side of the voxels that the centerline's volume is sampled on, mm")
+      ->check(in_range(1e-6, 1e6))
+      ->default_str("0.665");
+  add_extraction(verb, arguments.extraction);
+  verb.add_option("--sides", arguments.methods.sides, "of a cone")->check(in_range(3, 1000))->capture_default_str();
+  add_measuring(verb, arguments.methods.tolerance, arguments.methods.samples);
+  add_report(verb, arguments.report, arguments.format);
+  verb.add_option("--surfaces", arguments.surfaces,
+                  "folder for reference.ply, cones.ply, low.ply and high.ply with distances (the reference's: to low), "
+                  "and centerline.json");
+  verb.add_flag("--check", arguments.check, "exit with 1 unless all that is demanded of the low resolution holds");
+  add_common(verb, arguments.common);
+  verb.footer(kTable2Examples);
+}
+
+void add_tradeoff(CLI::App& app, TradeoffArguments& arguments) {
+  CLI::App& verb = *app.add_subcommand(
+      "tradeoff", "Grow a centerline's surface with many settings and show what time and vertices buy in accuracy");
+  add_input(verb, arguments.input, "centerline");
+  add_report(verb, arguments.report, arguments.format);
+  verb.add_option("--plot", arguments.plot, "error against time and against vertices, as a picture (.svg)");
+  verb.add_option("--samples", arguments.options.samples, "points on each surface and on the vessels")
+      ->check(in_range<std::size_t>(1, 10'000'000))
+      ->capture_default_str();
+  verb.add_option("--threads", arguments.options.generate.threads, "to work on; 0: as many as there are")
+      ->check(in_range(0, 4096))
+      ->capture_default_str();
+  add_common(verb, arguments.common);
+  verb.footer(kTradeoffExamples);
+}
+
+}  // namespace vmesh::tool

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "vmesh/core/error.h"
+#include "vmesh/image/image_io.h"
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
+
+#include "command_line/arguments.h"
+#include "command_line/console.h"
+
+namespace vmesh::tool {
+
+/// A centerline as its file tells it, in mm and LPS; warnings are appended.
+RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings);
+
+/// A surface in mm and LPS. Attributes that are lengths are converted too.
+LoadedSurface load_surface(const InputArguments& input);
+
+/// The same, cleaned; warnings and what cleaning did are told.
+LoadedCenterline load_clean_centerline(const InputArguments& input, Console& console);
+
+/// An image; --unit and --space are refused, as images say where they lie. Throws UsageError.
+LoadedImage load_image(const InputArguments& input, Console& console);
+
+/// Either of the two, by extension; what a .vtp holds, its content decides.
+using AnyInput = std::variant<RawCenterline, LoadedSurface>;
+AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings);
+
+/// Calls `function` and names the file in what it finds wrong with it.
+template <class Function>
+auto naming(const std::filesystem::path& path, Function function) {
+  try {
+    return function();
+  } catch (const InvalidInput& error) {
+    const std::string what = error.what(), name = path.string();
+    throw InvalidInput(what.starts_with(name) ? what : name + ": " + what);
+  }
+}
+
+/// All files behind an input: a CSV centerline has two.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& input);
+
+}  // namespace vmesh::tool

@@ -1,0 +1,109 @@
+#include "command_line/outputs.h"
+
+#include <algorithm>
+#include <cctype>
+#include <iostream>
+
+#include "vmesh/core/atomic_file.h"
+#include "vmesh/core/version.h"
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
+
+#include "command_line/usage_error.h"
+
+namespace vmesh::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Kind = PlannedOutput::Kind;
+
+const char* name_of(Kind kind) {
+  switch (kind) {
+    case Kind::surface:
+      return "surface";
+    case Kind::centerline:
+      return "centerline";
+    case Kind::picture:
+      return "picture";
+    case Kind::summary:
+      return "summary";
+    case Kind::report:
+      return "report";
+    case Kind::plot:
+      return "plot";
+  }
+  return "";
+}
+
+bool needs_no_check(const PlannedOutput& output) {
+  return output.path.empty() || (output.kind == Kind::summary && output.path == "-");
+}
+
+/// Whether both names lead to one file, through links and detours; also when it does not exist yet.
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  const fs::path full_a = fs::weakly_canonical(a, error), full_b = fs::weakly_canonical(b, error);
+  return !full_a.empty() && full_a == full_b;
+}
+
+void check_format(const PlannedOutput& output) {
+  if (output.kind == Kind::summary) return;
+  if (output.kind == Kind::surface) surface_format(output.path);
+  if (output.kind == Kind::centerline) centerline_output_format(output.path);
+  const std::string extension = extension_of(output.path);
+  if (output.kind == Kind::report && extension != ".txt" && extension != ".md" && extension != ".csv" &&
+      extension != ".json")
+    throw Unsupported(output.path.string() + ": reports are written as .txt, .md, .csv or .json");
+  if (output.kind == Kind::plot && extension != ".svg")
+    throw Unsupported(output.path.string() + ": plots are written as .svg only");
+  if (output.kind == Kind::picture && extension != ".png")
+    throw Unsupported(output.path.string() + ": pictures are written as .png only");
+  if (extension == ".vtp" && !VMESH_TOOL_WITH_VTK)
+    throw Unsupported(output.path.string() + ": this vmesh was built without VTK and cannot write .vtp");
+}
+
+void check_writable(const fs::path& path) {
+  if (fs::exists(path) && !fs::is_regular_file(path) && !fs::is_directory(path)) return;  // a device or a pipe
+  const AtomicFile probe(path);  // throws WriteError; removed as it is not committed
+}
+
+}  // namespace
+
+std::string extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<fs::path>& inputs) {
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    if (needs_no_check(*output)) continue;
+    const std::string name = output->path.string();
+    check_format(*output);
+    for (const fs::path& input : inputs)
+      if (same_file(output->path, input))
+        throw UsageError(name + ": is an input; choose another name for the " + name_of(output->kind));
+    for (auto other = outputs.begin(); other != output; ++other)
+      if (!needs_no_check(*other) && same_file(output->path, other->path))
+        throw UsageError(name + ": named for the " + name_of(other->kind) + " and for the " + name_of(output->kind));
+    check_writable(output->path);
+  }
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  if (path == "-") {
+    std::cout << text << std::flush;
+    if (!std::cout) throw WriteError("cannot write to stdout");
+    return;
+  }
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+std::string generator_name() { return "vmesh " + std::string(version()); }
+
+}  // namespace vmesh::tool

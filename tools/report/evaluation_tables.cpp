@@ -1,0 +1,127 @@
+#include "report/evaluation_report.h"
+
+namespace vmesh::tool {
+namespace {
+
+using Row = std::vector<std::string>;
+
+const std::vector<std::string> kDistributionColumns = {"mean", "rms", "min", "5 %", "median", "95 %", "99 %", "max"};
+
+std::string yes_no(bool value) { return value ? "yes" : "no"; }
+
+std::string point(const Vec3& p) {
+  return "(" + format_number(p.x()) + ", " + format_number(p.y()) + ", " + format_number(p.z()) + ")";
+}
+
+Row distribution_row(const std::string& name, const Distribution& d) {
+  Row row = {name};
+  for (const double value : {d.mean, d.rms, d.min, d.p5, d.median, d.p95, d.p99, d.max}) {
+    row.push_back(format_number(value));
+  }
+  return row;
+}
+
+ReportTable distribution_table(const std::string& key, const std::string& title, const std::string& what) {
+  ReportTable table{key, title, {what}, {}};
+  table.columns.insert(table.columns.end(), kDistributionColumns.begin(), kDistributionColumns.end());
+  return table;
+}
+
+ReportTable sampled_table(const std::string& key, const std::string& title) {
+  ReportTable table = distribution_table(key, title, "direction");
+  table.columns.push_back("samples per mm^2");
+  return table;
+}
+
+Row sampled_row(const std::string& name, const Distribution& d, double samples_per_mm2) {
+  Row row = distribution_row(name, d);
+  row.push_back(format_number(samples_per_mm2));
+  return row;
+}
+
+ReportTable surface_table(const EvaluationReport& report) {
+  const Topology& topology = report.defects.topology;
+  const bool has_genus = topology.closed && topology.manifold && topology.oriented;
+  return {"surface",
+          "Surface " + report.file,
+          {"property", "value"},
+          {{"vertices", std::to_string(report.vertices)},
+           {"faces", std::to_string(report.faces)},
+           {"area, mm^2", format_number(report.area_mm2)},
+           {"enclosed volume, mm^3", report.volume_mm3 ? format_number(*report.volume_mm3) : "not defined"},
+           {"closed", yes_no(topology.closed)},
+           {"manifold", yes_no(topology.manifold)},
+           {"oriented", yes_no(topology.oriented)},
+           {"outward", yes_no(topology.outward)},
+           {"components", std::to_string(topology.components)},
+           {"genus", has_genus ? std::to_string(topology.genus) : "not defined"},
+           {"boundary loops", std::to_string(topology.boundary_loops)},
+           {"boundary edges", std::to_string(topology.boundary_edges)},
+           {"edges of three faces or more", std::to_string(topology.crowded_edges)},
+           {"degenerate faces", std::to_string(report.defects.degenerate_faces.size())},
+           {"duplicate faces", std::to_string(report.defects.duplicate_faces.size())},
+           {"intersecting pairs of faces", std::to_string(report.defects.self_intersections.size())}}};
+}
+
+ReportTable measures_table(const FaceMeasures& measures) {
+  ReportTable table = distribution_table("faces", "Faces", "measure");
+  for_each_face_measure(measures, [&](const char* name, const std::vector<double>& values, double, double) {
+    table.rows.push_back(distribution_row(name, summarize(values)));
+  });
+  return table;
+}
+
+Row hausdorff_row(const std::string& name, const OneSidedHausdorff& side) {
+  return {name, format_lower_bound(side.lower), format_upper_bound(side.upper), point(side.witness.from),
+          point(side.witness.to)};
+}
+
+void add_tables(const ReferenceComparison& reference, std::vector<ReportTable>& tables) {
+  const Hausdorff& h = reference.hausdorff;
+  ReportTable bounds{
+      "reference_hausdorff_mm",
+      "Hausdorff distance to the reference surface " + reference.file + ", mm, guaranteed",
+      {"direction", "at least", "at most", "farthest point", "closest to it"},
+      {hausdorff_row("surface to reference", h.forward), hausdorff_row("reference to surface", h.backward)}};
+  bounds.rows.push_back({"symmetric", format_lower_bound(h.lower()), format_upper_bound(h.upper()), "", ""});
+  ReportTable sampled = sampled_table("reference_sampled_mm", "Distance to the reference surface, mm, sampled");
+  sampled.rows = {sampled_row("surface to reference", reference.forward.distance, reference.forward.samples_per_mm2),
+                  sampled_row("reference to surface", reference.backward.distance, reference.backward.samples_per_mm2)};
+  tables.push_back(std::move(bounds));
+  tables.push_back(std::move(sampled));
+}
+
+void add_tables(const VolumeComparison& volume, std::vector<ReportTable>& tables) {
+  const VesselDistance& distance = volume.distance;
+  const std::string to = "the round-cone volume of " + volume.file;
+  ReportTable mm = sampled_table("volume_sampled_mm", "Distance to " + to + ", mm, sampled");
+  mm.rows = {sampled_row("surface to volume", distance.from_mesh.mm, distance.from_mesh.samples_per_mm2),
+             sampled_row("volume to surface", distance.from_volume.mm, distance.from_volume.samples_per_mm2)};
+  ReportTable relative = sampled_table("volume_sampled_local_radii", "Distance to " + to + ", in local radii, sampled");
+  relative.rows = {
+      sampled_row("surface to volume", distance.from_mesh.relative, distance.from_mesh.samples_per_mm2),
+      sampled_row("volume to surface", distance.from_volume.relative, distance.from_volume.samples_per_mm2)};
+  ReportTable places{
+      "volume_farthest",
+      "Where the surface and the volume are farthest apart",
+      {"direction", "in mm, at", "in local radii, at"},
+      {{"surface to volume", point(distance.from_mesh.max_at), point(distance.from_mesh.max_relative_at)},
+       {"volume to surface", point(distance.from_volume.max_at), point(distance.from_volume.max_relative_at)}}};
+  for (ReportTable* table : {&mm, &relative, &places}) tables.push_back(std::move(*table));
+}
+
+}  // namespace
+
+std::vector<ReportTable> to_tables(const EvaluationReport& report) {
+  std::vector<ReportTable> tables = {surface_table(report), measures_table(report.measures)};
+  if (report.reference) add_tables(*report.reference, tables);
+  if (report.volume) add_tables(*report.volume, tables);
+  if (!report.requirements.empty()) {
+    ReportTable table{"requirements", "Requirements", {"requirement", "found", "met"}, {}};
+    for (const CheckedRequirement& r : report.requirements) table.rows.push_back({r.text, r.found, yes_no(r.met)});
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+}  // namespace vmesh::tool

@@ -1,0 +1,87 @@
+#include "report/measure.h"
+
+#include <algorithm>
+
+#include "command_line/interrupt.h"
+
+namespace vmesh::tool {
+namespace {
+
+std::string count(std::size_t number, const std::string& singular, const std::string& plural) {
+  return std::to_string(number) + " " + (number == 1 ? singular : plural);
+}
+
+bool has_genus(const Topology& topology) { return topology.closed && topology.manifold && topology.oriented; }
+
+}  // namespace
+
+SurfaceMeasurement measure_surface(const TriMesh& mesh) {
+  SurfaceMeasurement measurement;
+  measurement.topology = measure_topology(mesh);
+  measurement.skewness = summarize_skewness(mesh);
+  stop_if_interrupted();
+  measurement.self_intersections = self_intersections(mesh).size();
+  return measurement;
+}
+
+SurfaceMeasurement measure_surface(const GenerateResult& result) {
+  SurfaceMeasurement measurement = measure_surface(result.mesh);
+  if (result.openings.empty()) return measurement;
+  std::size_t rings = 0;
+  for (const Opening& opening : result.openings) rings += opening.ring.size();
+  measurement.openings = result.openings.size();
+  measurement.open_elsewhere =
+      measurement.topology.boundary_edges - std::min(measurement.topology.boundary_edges, rings);
+  measurement.topology = measure_topology(with_lids(result));
+  return measurement;
+}
+
+SurfaceExpectation expected_surface(const Centerline& centerline, const GenerateResult& result) {
+  if (result.growth.components > 0) return {result.growth.components, result.growth.cycle_rank};
+  return {centerline.component_count(), centerline.cycle_rank()};
+}
+
+std::optional<std::size_t> count_nodes_inside(const Centerline& centerline, const GenerateResult& result) {
+  const TriMesh mesh = with_lids(result);
+  if (!measure_topology(mesh).closed) return std::nullopt;
+  std::vector<Vec3> points;
+  points.reserve(centerline.nodes().size());
+  for (const CenterlineNode& node : centerline.nodes()) points.push_back(node.position);
+  std::vector<bool> inside = points_inside(mesh, points);
+  for (const Opening& opening : result.openings) inside[opening.node] = true;
+  return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), true));
+}
+
+std::vector<std::string> problems_of(const SurfaceMeasurement& measurement) {
+  const Topology& topology = measurement.topology;
+  std::vector<std::string> problems;
+  if (!topology.closed)
+    problems.push_back("not closed: " + count(topology.boundary_edges, "boundary edge", "boundary edges"));
+  if (!topology.manifold) problems.push_back("not a manifold: an edge has three faces or a vertex two fans");
+  if (!topology.oriented) problems.push_back("not oriented: neighbouring faces disagree about the outside");
+  if (topology.closed && topology.oriented && !topology.outward) problems.push_back("faces point inwards");
+  if (measurement.open_elsewhere > 0)
+    problems.push_back(count(measurement.open_elsewhere, "boundary edge", "boundary edges") + " besides the openings");
+  if (measurement.self_intersections > 0)
+    problems.push_back(count(measurement.self_intersections, "pair of faces intersects", "pairs of faces intersect"));
+  return problems;
+}
+
+std::vector<std::string> problems_of(const SurfaceMeasurement& measurement, const SurfaceExpectation& expected,
+                                     std::optional<std::size_t> nodes_inside, std::size_t nodes) {
+  const Topology& topology = measurement.topology;
+  std::vector<std::string> problems = problems_of(measurement);
+  if (topology.components != expected.components)
+    problems.push_back(count(topology.components, "component", "components") + " where the centerline has " +
+                       std::to_string(expected.components));
+  if (has_genus(topology) && topology.genus != static_cast<std::int64_t>(expected.genus))
+    problems.push_back("genus " + std::to_string(topology.genus) + " where the centerline has " +
+                       count(expected.genus, "independent loop", "independent loops"));
+  if (!nodes_inside)
+    problems.push_back("whether the centerline's nodes are inside cannot be told of an open surface");
+  else if (*nodes_inside != nodes)
+    problems.push_back(count(nodes - *nodes_inside, "centerline node is", "centerline nodes are") + " not inside");
+  return problems;
+}
+
+}  // namespace vmesh::tool

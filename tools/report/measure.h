@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vmesh/centerline/centerline.h"
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/generate.h"
+
+#include "command_line/console.h"
+
+namespace vmesh::tool {
+
+/// What can be told of a surface alone.
+struct SurfaceMeasurement {
+  Topology topology;
+  SkewnessSummary skewness;
+  std::size_t self_intersections = 0;
+  std::size_t openings = 0;        ///< intended ones
+  std::size_t open_elsewhere = 0;  ///< boundary edges besides those of openings
+};
+
+SurfaceMeasurement measure_surface(const TriMesh& mesh);
+
+/// The same for a surface that may be open at ends of the vessel: topology with these closed. `open_elsewhere` are the
+/// boundary edges that do not belong to an opening.
+SurfaceMeasurement measure_surface(const GenerateResult& result);
+
+/// What a surface should be, given its centerline and, if that steered growth, the skeleton: loops too short to have a
+/// hole are left out there, and said to be.
+struct SurfaceExpectation {
+  std::size_t components = 0;
+  std::size_t genus = 0;
+};
+
+SurfaceExpectation expected_surface(const Centerline& centerline, const GenerateResult& result);
+
+/// Number of nodes inside the surface, its openings closed, or at an opening; nothing when it is open elsewhere.
+std::optional<std::size_t> count_nodes_inside(const Centerline& centerline, const GenerateResult& result);
+
+/// What keeps a surface from being flawless, one line each.
+std::vector<std::string> problems_of(const SurfaceMeasurement& measurement);
+
+/// The same for a surface of which more is expected.
+std::vector<std::string> problems_of(const SurfaceMeasurement& measurement, const SurfaceExpectation& expected,
+                                     std::optional<std::size_t> nodes_inside, std::size_t nodes);
+
+}  // namespace vmesh::tool

@@ -1,0 +1,321 @@
+#include "report/summary.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "vmesh/centerline/branches.h"
+#include "vmesh/core/version.h"
+
+#include "command_line/outputs.h"
+
+namespace vmesh::tool {
+namespace {
+
+constexpr std::size_t kListedContacts = 1000;
+
+/// "--max-center-distance" -> "max_center_distance"
+std::string key_of(const char* flag) {
+  std::string key = flag;
+  key.erase(0, key.find_first_not_of('-'));
+  std::replace(key.begin(), key.end(), '-', '_');
+  return key;
+}
+
+/// The shortest text that reads as the same number.
+template <class Number>
+std::string exact_text(Number value) {
+  char text[32];
+  return {text, std::to_chars(std::begin(text), std::end(text), value).ptr};
+}
+
+/// Null where there is no limit.
+Json to_json(const ErrorLimit& limit) {
+  return {{"mm", std::isfinite(limit.mm) ? Json(limit.mm) : Json()},
+          {"relative", std::isfinite(limit.relative) ? Json(limit.relative) : Json()}};
+}
+
+Json options_json(const GenerateArguments& arguments) {
+  Json json = Json::object();
+  for_each_generate_option(arguments.options, [&json](const char* flag, const auto& value, auto, auto, const char*) {
+    json[key_of(flag)] = value;
+  });
+  json["growth"] = to_string(arguments.options.growth);
+  json["placement"] = to_string(arguments.options.placement);
+  json["max_error"] = to_json(arguments.options.max_error);
+  json["overlap"] = to_string(arguments.overlap);
+  json["gap"] = arguments.gap;
+  json["unit"] = arguments.input.unit ? Json(to_string(*arguments.input.unit)) : Json();
+  json["space"] = arguments.input.space ? Json(to_string(*arguments.input.space)) : Json();
+  return json;
+}
+
+Json to_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+Json to_json(const Deviation& deviation) {
+  return {{"mean_mm", deviation.mean_mm},
+          {"rms_mm", deviation.rms_mm},
+          {"max_mm", deviation.max_mm},
+          {"mean_relative", deviation.mean_relative},
+          {"rms_relative", deviation.rms_relative},
+          {"max_relative", deviation.max_relative},
+          {"max_at", to_json(deviation.max_at)}};
+}
+
+Json to_json(const ContactSide& side) {
+  return {{"segment", side.segment},
+          {"parameter", side.t},
+          {"branch", side.branch == kNone ? Json() : Json(side.branch)},
+          {"radius_mm", side.radius}};
+}
+
+Json to_json(const Contact& contact) {
+  Json sides = Json::array();
+  for (const ContactSide& side : contact.sides) sides.push_back(to_json(side));
+  const double smaller = std::min(contact.sides[0].radius, contact.sides[1].radius);
+  return {{"at", to_json(contact.position)},
+          {"depth_mm", contact.depth},
+          {"depth_relative", contact.depth / smaller},
+          {"vessels", std::move(sides)}};
+}
+
+/// The deepest contacts, and how many there are in all.
+Json to_json(const std::vector<Contact>& contacts) {
+  Json list = Json::array();
+  for (std::size_t c = 0; c < std::min(contacts.size(), kListedContacts); ++c) list.push_back(to_json(contacts[c]));
+  return {{"count", contacts.size()}, {"list", std::move(list)}};
+}
+
+Json to_json(const VesselMove& move) {
+  const double distance = move.displacement.norm();
+  return {{"at", to_json(move.position)},  {"displacement_mm", to_json(move.displacement)},
+          {"moved_mm", distance},          {"moved_relative", distance / move.moved.radius},
+          {"vessel", to_json(move.moved)}, {"away_from", to_json(move.other)}};
+}
+
+/// The farthest moves, and how many there are in all.
+Json to_json(const std::vector<VesselMove>& moves) {
+  Json list = Json::array();
+  for (std::size_t m = 0; m < std::min(moves.size(), kListedContacts); ++m) list.push_back(to_json(moves[m]));
+  return {{"count", moves.size()}, {"list", std::move(list)}};
+}
+
+Json to_json(const SeparationReport& separation) {
+  return {{"rounds", separation.rounds},
+          {"nodes_narrowed", separation.nodes_narrowed},
+          {"nodes_added", separation.nodes_added},
+          {"max_taken_mm", separation.max_taken},
+          {"max_taken_relative", separation.max_taken_relative},
+          {"mean_taken_relative", separation.mean_taken_relative},
+          {"max_taken_at", to_json(separation.max_taken_at)},
+          {"nodes_moved", separation.nodes_moved},
+          {"max_moved_mm", separation.max_moved},
+          {"max_moved_relative", separation.max_moved_relative},
+          {"max_moved_at", to_json(separation.max_moved_at)},
+          {"steepest_move", separation.steepest_move},
+          {"moves", to_json(separation.moves)},
+          {"contacts_left", to_json(separation.left)}};
+}
+
+/// What the surface was grown around and is compared with.
+std::string measured_centerline(const GenerateReport& report) {
+  if (!report.separation) return "the vessels";
+  return report.separation->nodes_moved > 0 ? "the narrowed and moved vessels" : "the narrowed vessels";
+}
+
+Json stages_json(const std::vector<StageTime>& stages) {
+  Json json = Json::object();
+  double total = 0;
+  for (const StageTime& stage : stages) {
+    json[stage.stage] = json.value(stage.stage, 0.0) + stage.seconds;
+    total += stage.seconds;
+  }
+  json["total"] = total;
+  return json;
+}
+
+Json to_json(const OperatingPoint& point) {
+  return {{"around", point.options.around},
+          {"max_error", to_json(point.options.max_error)},
+          {"vertices", point.vertices},
+          {"seconds", point.seconds},
+          {"skewness", {{"mean", point.skewness.mean}, {"max", point.skewness.max}}},
+          {"distance", to_json(point.error)},
+          {"within_budget", point.within_budget}};
+}
+
+Json budget_json(const Budget& budget, const GenerateOptions& chosen, const std::vector<OperatingPoint>& tried) {
+  Json json = {{"budget", to_string(budget)}, {"met", false}, {"tried", Json::array()}};
+  for (const OperatingPoint& point : tried) {
+    json["tried"].push_back(to_json(point));
+    if (point.options.around == chosen.around) json["met"] = point.within_budget;
+  }
+  return json;
+}
+
+}  // namespace
+
+Json generator_json() { return {{"name", "vmesh"}, {"version", version()}}; }
+
+Json to_json(const Centerline& centerline) {
+  double length = 0;
+  for (Index s = 0; s < centerline.segments().size(); ++s) length += centerline.length(s);
+  const auto [thin, thick] = std::minmax_element(centerline.nodes().begin(), centerline.nodes().end(),
+                                                 [](const auto& a, const auto& b) { return a.radius < b.radius; });
+  std::size_t isolated = 0, ends = 0, branch_nodes = 0;
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    const std::size_t degree = centerline.degree(n);
+    isolated += degree == 0;
+    ends += degree == 1;
+    branch_nodes += degree > 2;
+  }
+  return {{"nodes", centerline.nodes().size()},
+          {"segments", centerline.segments().size()},
+          {"components", centerline.component_count()},
+          {"loops", centerline.cycle_rank()},
+          {"ends", ends},
+          {"branches", find_branches(centerline).size()},
+          {"branch_nodes", branch_nodes},
+          {"isolated_nodes", isolated},
+          {"radius_min_mm", thin->radius},
+          {"radius_max_mm", thick->radius},
+          {"length_mm", length},
+          {"length_in_radii", centerline.length_in_radii()}};
+}
+
+Json to_json(const CleaningReport& report) {
+  std::map<std::string, std::size_t> counts;
+  for (const CleaningAction& action : report.actions) ++counts[std::string(to_string(action.kind))];
+  return {{"counts", counts.empty() ? Json::object() : Json(counts)}, {"actions", report.summary()}};
+}
+
+Json to_json(const SurfaceMeasurement& measurement) {
+  const Topology& topology = measurement.topology;
+  return {{"topology",
+           {{"closed", topology.closed},
+            {"manifold", topology.manifold},
+            {"oriented", topology.oriented},
+            {"outward", topology.outward},
+            {"components", topology.components},
+            {"genus", topology.genus},
+            {"openings", measurement.openings},
+            {"boundary_edges", topology.boundary_edges},
+            {"euler_characteristic", topology.euler_characteristic}}},
+          {"skewness", {{"mean", measurement.skewness.mean}, {"max", measurement.skewness.max}}},
+          {"self_intersections", measurement.self_intersections}};
+}
+
+// What is proven of the distance between the surface and the boundary, both ways.
+Json error_bound_json(const GenerateArguments& arguments, const GenerateResult& result) {
+  Json json = to_json(arguments.options.max_error);
+  json["proven"] = result.error.unproven_faces == 0;
+  json["unproven_faces"] = result.error.unproven_faces;
+  Json places = Json::array();
+  for (const UnprovenPlace& place : result.error.unproven_places)
+    places.push_back({{"at", to_json(place.position)}, {"faces", place.faces}});
+  json["unproven_places"] = std::move(places);
+  return json;
+}
+
+Json to_json(const GenerateReport& report) {
+  const GenerateArguments& arguments = *report.arguments;
+  const Centerline& centerline = report.cleaned->centerline;
+  const TriMesh& mesh = report.result->mesh;
+  const double size = centerline.length_in_radii();
+  const SurfaceExpectation expected = expected_surface(centerline, *report.result);
+  Json json = {
+      {"schema", "vmesh.summary/1"},
+      {"generator", generator_json()},
+      {"input", {{"file", arguments.input.path.string()}, {"sha256", report.input_sha256}}},
+      {"output", arguments.output.string()},
+      {"options", options_json(arguments)},
+      {"centerline", to_json(centerline)},
+      {"cleaning", to_json(report.cleaned->report)},
+      {"vertices", mesh.vertices.size()},
+      {"faces", mesh.faces.size()},
+      {"vertices_per_length_in_radii", size > 0 ? Json(static_cast<double>(mesh.vertices.size()) / size) : Json()}};
+  json.update(to_json(report.measurement));
+  json["topology"]["expected_components"] = expected.components;
+  json["topology"]["expected_genus"] = expected.genus;
+  json["openings"] = openings_json(*report.result);
+  json["growth"] = arguments.options.growth == GrowthMethod::guided ? to_json(report.result->growth) : Json();
+  json["nodes_inside"] = report.nodes_inside ? Json(*report.nodes_inside) : Json();
+  json["nodes_inside_of"] = {{"centerline", measured_centerline(report)}, {"nodes", report.grown_nodes}};
+  json["distance"] = to_json(report.deviation);
+  json["distance"]["to"] = measured_centerline(report);
+  json["rounding"] = to_json(report.rounding);
+  if (arguments.options.max_error.is_set()) json["error_bound"] = error_bound_json(arguments, *report.result);
+  if (arguments.budget) json["budget"] = budget_json(*arguments.budget, arguments.options, report.tried);
+  json["contacts"] = to_json(report.contacts);
+  if (report.separation) json["separation"] = to_json(*report.separation);
+  json["seconds"] = stages_json(report.stages);
+  json["warnings"] = report.warnings;
+  json["problems"] = report.problems;
+  return json;
+}
+
+Json to_json(const ExtractionReport& report) {
+  return {{"parts", report.parts},
+          {"joined", report.joined},
+          {"left_out", report.left_out},
+          {"spurs_removed", report.spurs},
+          {"loops_broken", report.loops_broken},
+          {"mean_distance_mm", report.mean_distance},
+          {"distance_95_mm", report.distance_95},
+          {"max_distance_mm", report.max_distance}};
+}
+
+Json openings_json(const GenerateResult& result) {
+  Json json = Json::array();
+  for (std::size_t i = 0; i < result.openings.size(); ++i) {
+    const Opening& opening = result.openings[i];
+    json.push_back({{"label", i + 1},
+                    {"node", opening.node},
+                    {"center", {opening.center.x(), opening.center.y(), opening.center.z()}},
+                    {"normal", {opening.normal.x(), opening.normal.y(), opening.normal.z()}},
+                    {"radius", opening.radius},
+                    {"vertices", opening.ring}});
+  }
+  return json;
+}
+
+Json to_json(const GrowthSummary& growth) {
+  Json simplifications = Json::array();
+  for (const GrowthSimplification& s : growth.simplifications) {
+    simplifications.push_back({{"kind", to_string(s.kind)},
+                               {"position", {s.position.x(), s.position.y(), s.position.z()}},
+                               {"nodes", s.nodes},
+                               {"segments", s.segments},
+                               {"message", s.message}});
+  }
+  return {{"junctions", growth.junctions},
+          {"tubes", growth.tubes},
+          {"components", growth.components},
+          {"cycle_rank", growth.cycle_rank},
+          {"simplifications", std::move(simplifications)}};
+}
+
+void write_json(const std::filesystem::path& path, const Json& json) {
+  write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::string describe(const GenerateArguments& arguments) {
+  std::ostringstream text;
+  for_each_generate_option(arguments.options, [&text](const char* flag, const auto& value, auto, auto, const char*) {
+    text << (text.tellp() > 0 ? " " : "") << flag << " " << exact_text(value);
+  });
+  const GenerateOptions& options = arguments.options;
+  text << " --growth " << to_string(options.growth) << " --placement " << to_string(options.placement);
+  if (options.max_error.is_set()) text << " --max-error " << to_string(options.max_error);
+  if (options.open_ends.all) text << " --open-ends all";
+  for (std::size_t i = 0; i < options.open_ends.nodes.size(); ++i)
+    text << (i == 0 ? " --open-ends " : ",") << options.open_ends.nodes[i];
+  text << " --overlap " << to_string(arguments.overlap) << " --gap " << exact_text(arguments.gap);
+  if (arguments.input.unit) text << " --unit " << to_string(*arguments.input.unit);
+  if (arguments.input.space) text << " --space " << to_string(*arguments.input.space);
+  return text.str();
+}
+
+}  // namespace vmesh::tool

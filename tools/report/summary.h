@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "vmesh/centerline/cleaning.h"
+#include "vmesh/surface/deviation.h"
+#include "vmesh/volume/contacts.h"
+
+#include "command_line/arguments.h"
+#include "report/measure.h"
+
+namespace vmesh::tool {
+
+/// JSON that keeps the order in which its members were written.
+using Json = nlohmann::ordered_json;
+
+/// Everything `vmesh generate` reports. Schema "vmesh.summary/1".
+struct GenerateReport {
+  const GenerateArguments* arguments = nullptr;
+  std::string input_sha256;
+  const CleanedCenterline* cleaned = nullptr;
+  std::vector<Contact> contacts;               ///< of the cleaned centerline
+  std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed or moved
+  const GenerateResult* result = nullptr;
+  std::vector<OperatingPoint> tried;  ///< for a budget
+  SurfaceMeasurement measurement;
+  std::size_t grown_nodes = 0;              ///< of the centerline that was grown: with those a separation added
+  std::optional<std::size_t> nodes_inside;  ///< of them
+  Deviation deviation;            ///< from the vessels that were grown: the narrowed and moved ones after a separation
+  Deviation rounding;             ///< of the boundary at branches, against the plain union
+  std::vector<StageTime> stages;  ///< of the whole run
+  std::vector<std::string> warnings, problems;
+};
+
+Json to_json(const GenerateReport& report);
+
+/// Parts that several verbs use.
+Json to_json(const Centerline& centerline);
+Json to_json(const CleaningReport& report);
+Json to_json(const GrowthSummary& growth);
+Json to_json(const ExtractionReport& report);
+Json openings_json(const GenerateResult& result);
+Json to_json(const SurfaceMeasurement& measurement);
+Json generator_json();
+
+/// Writes the JSON with a newline at its end, as write_text() does. Text that is not UTF-8 is repaired.
+void write_json(const std::filesystem::path& path, const Json& json);
+
+/// "--beta 0.3 --blend 0.5 ...": how a surface was made.
+std::string describe(const GenerateArguments& arguments);
+
+}  // namespace vmesh::tool

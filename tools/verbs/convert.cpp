@@ -1,0 +1,74 @@
+#include "vmesh/io/sha256.h"
+
+#include "command_line/exit_code.h"
+#include "command_line/inputs.h"
+#include "command_line/interrupt.h"
+#include "command_line/outputs.h"
+#include "command_line/usage_error.h"
+#include "verbs/verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+using Kind = PlannedOutput::Kind;
+
+/// What a file of that name holds; nothing for .vtp, which may hold both.
+std::optional<Kind> kind_of(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  if (extension == ".vtp") return std::nullopt;
+  for (const char* centerline : {".swc", ".json", ".csv", ".vmv", ".vtk"})
+    if (extension == centerline) return Kind::centerline;
+  surface_format(path);  // throws Unsupported
+  return Kind::surface;
+}
+
+void check_kinds(const ConvertArguments& arguments) {
+  const auto from = kind_of(arguments.input.path), to = kind_of(arguments.output);
+  if (from && to && *from != *to)
+    throw UsageError(arguments.output.string() + ": a " + (*from == Kind::surface ? "surface" : "centerline") +
+                     " cannot be converted to a " + (*to == Kind::surface ? "surface" : "centerline") +
+                     (*from == Kind::centerline ? "; see vmesh generate" : ""));
+}
+
+std::vector<PlannedOutput> planned_outputs(const std::filesystem::path& output) {
+  const Kind kind = kind_of(output).value_or(Kind::surface);
+  std::vector<PlannedOutput> outputs;
+  for (const std::filesystem::path& file : files_of(output)) outputs.push_back({file, kind});
+  return outputs;
+}
+
+void convert(const RawCenterline& raw, const ConvertArguments& arguments, Console& console) {
+  CleaningOptions options;
+  options.canonical_order = false;
+  const CleanedCenterline cleaned = clean(raw, options);
+  for (const std::string& line : cleaned.report.summary()) console.log("cleaning: " + line);
+  write_centerline(
+      arguments.output, cleaned.centerline,
+      {generator_name(), "convert", arguments.input.path.filename().string(), sha256_of_file(arguments.input.path)});
+}
+
+void convert(const LoadedSurface& surface, const ConvertArguments& arguments, Console&) {
+  write_surface(
+      arguments.output, surface.mesh, surface.attributes,
+      {generator_name(), "convert", arguments.input.path.filename().string(), sha256_of_file(arguments.input.path)});
+}
+
+}  // namespace
+
+int run(const ConvertArguments& arguments, Console& console) {
+  check_kinds(arguments);
+  check_outputs(planned_outputs(arguments.output), files_of(arguments.input.path));
+  std::vector<std::string> warnings;
+  const AnyInput input = load_any(arguments.input, warnings);
+  console.warn(warnings);
+  stop_if_interrupted();
+  const bool is_surface = std::holds_alternative<LoadedSurface>(input);
+  if (const auto to = kind_of(arguments.output); to && (*to == Kind::surface) != is_surface)
+    throw UsageError(arguments.input.path.string() + ": holds a " + (is_surface ? "surface" : "centerline") +
+                     ", which " + arguments.output.string() + " cannot take");
+  std::visit([&](const auto& content) { convert(content, arguments, console); }, input);
+  console.log("wrote " + arguments.output.string());
+  return kOk;
+}
+
+}  // namespace vmesh::tool

@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "vmesh/deform/surface_binding.h"
+#include "vmesh/io/sha256.h"
+
+#include "command_line/exit_code.h"
+#include "command_line/inputs.h"
+#include "command_line/interrupt.h"
+#include "command_line/outputs.h"
+#include "command_line/usage_error.h"
+#include "report/summary.h"
+#include "verbs/scene.h"
+#include "verbs/verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A vertex farther from its place than this many local radii was bound to another centerline.
+constexpr double kFarthestPlace = 4;
+
+const MeshAttribute* find(const std::vector<MeshAttribute>& attributes, const std::string& name) {
+  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
+  return found == attributes.end() ? nullptr : &*found;
+}
+
+bool is_place(const Centerline& centerline, double segment, double t, const Vec3& vertex) {
+  if (!(segment >= 0 && segment < static_cast<double>(centerline.segments().size()) && t >= 0 && t <= 1)) return false;
+  const Index s = static_cast<Index>(segment);
+  return (vertex - centerline.point_at(s, t)).norm() <= kFarthestPlace * centerline.radius_at(s, t);
+}
+
+/// Places that the surface's file has, if they are of this centerline.
+std::optional<std::vector<SurfacePlace>> places_in_file(const Centerline& centerline, const LoadedSurface& surface) {
+  const MeshAttribute* segment = find(surface.attributes.vertex, "segment");
+  const MeshAttribute* t = find(surface.attributes.vertex, "parameter");
+  if (!segment || !t) return std::nullopt;
+  std::vector<SurfacePlace> places;
+  for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
+    if (!is_place(centerline, segment->values[v], t->values[v], surface.mesh.vertices[v])) return std::nullopt;
+    places.push_back({static_cast<Index>(segment->values[v]), t->values[v]});
+  }
+  return places;
+}
+
+std::vector<SurfacePlace> places_of(const Centerline& centerline, const LoadedSurface& surface, Console& console) {
+  if (auto places = places_in_file(centerline, surface)) return *places;
+  console.log("the surface's file has no places on this centerline; every vertex goes to the nearest segment");
+  return nearest_places(centerline, surface.mesh.vertices);
+}
+
+/// Files of a series. All are removed again unless kept.
+class Series {
+ public:
+  Series(fs::path folder, std::string extension) : folder_(std::move(folder)), extension_(std::move(extension)) {
+    std::error_code error;
+    made_folder_ = fs::create_directory(folder_, error);
+    if (!fs::is_directory(folder_)) throw WriteError(folder_.string() + ": is no folder and cannot be made one");
+    if (!fs::is_empty(folder_, error) || error)
+      throw UsageError(folder_.string() + ": the folder is not empty; name an empty or a new one for the frames");
+  }
+  ~Series() {
+    if (kept_) return;
+    std::error_code ignored;
+    for (const fs::path& file : files_) fs::remove(file, ignored);
+    if (made_folder_) fs::remove(folder_, ignored);
+  }
+  Series(const Series&) = delete;
+  Series& operator=(const Series&) = delete;
+
+  fs::path next() {
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%06zu", files_.size());
+    files_.push_back(folder_ / (name + extension_));
+    return files_.back();
+  }
+  std::size_t size() const { return files_.size(); }
+  void keep() { kept_ = true; }
+
+ private:
+  fs::path folder_;
+  std::string extension_;
+  std::vector<fs::path> files_;
+  bool made_folder_ = false, kept_ = false;
+};
+
+/// Plays a scene on a simulation.
+class Stage {
+ public:
+  Stage(const Centerline& centerline, const Scene& scene)
+      : scene_(scene), simulation_(centerline, segment_properties(centerline, scene.material), scene.options) {
+    for (const Index node : scene.fix) simulation_.fix(node);
+    for (const Index node : scene.clamp) simulation_.clamp(node);
+    for (const Scene::Drag& drag : scene.drags) dragged_from_.push_back(simulation_.position(drag.node));
+  }
+
+  void step(double time) {
+    for (std::size_t i = 0; i < scene_.drags.size(); ++i) pull(scene_.drags[i], dragged_from_[i], time);
+    for (const Scene::Force& force : scene_.forces) simulation_.set_force(force.node, force.force_N.at(time));
+    for (const Scene::Profile& scale : scene_.scales) simulation_.set_radial_scale(scale.node, scale.value.at(time));
+    for (const Scene::Profile& squeeze : scene_.squeezes) simulation_.set_squeeze(squeeze.node, squeeze.value.at(time));
+    const StepReport report = simulation_.step();
+    work_J_ += report.work_J;
+    last_movement_mm_ = report.movement_mm;
+  }
+
+  CenterlineSimulation& simulation() { return simulation_; }
+  double work_J() const { return work_J_; }
+  double last_movement_mm() const { return last_movement_mm_; }
+
+ private:
+  void pull(const Scene::Drag& drag, const Vec3& from, double time) {
+    const double step = scene_.options.step_s;
+    if (time <= drag.release_s)
+      simulation_.drag(drag.node, from + drag.offset_mm.at(time));
+    else if (time - step <= drag.release_s)
+      simulation_.release(drag.node);
+  }
+
+  const Scene& scene_;
+  CenterlineSimulation simulation_;
+  std::vector<Vec3> dragged_from_;
+  double work_J_ = 0, last_movement_mm_ = 0;
+};
+
+struct Timing {
+  double simulate_s = 0, synchronise_s = 0;
+};
+
+/// The input surface, moved, with how far its vertices are from rest.
+class FrameWriter {
+ public:
+  FrameWriter(const DeformArguments& arguments, const LoadedSurface& rest, const SurfaceBinding& binding)
+      : rest_(rest), binding_(binding), mesh_(rest.mesh), attributes_(rest.attributes) {
+    std::erase_if(attributes_.vertex, [](const MeshAttribute& a) { return a.name == "displacement"; });
+    attributes_.vertex.push_back({"displacement", std::vector<double>(mesh_.vertices.size())});
+    metadata_ = {generator_name(), "deform --script " + arguments.script.filename().string(),
+                 arguments.surface.path.filename().string(), sha256_of_file(arguments.surface.path)};
+  }
+
+  void write(const fs::path& path, const DeformedSurface& surface) {
+    std::vector<double>& displacement = attributes_.vertex.back().values;
+    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+      mesh_.vertices[v] = surface.position(binding_.lane_of_vertex()[v]);
+      displacement[v] = (mesh_.vertices[v] - rest_.mesh.vertices[v]).norm();
+      largest_mm_ = std::max(largest_mm_, displacement[v]);
+    }
+    write_surface(path, mesh_, attributes_, metadata_);
+  }
+
+  double largest_displacement_mm() const { return largest_mm_; }
+
+ private:
+  const LoadedSurface& rest_;
+  const SurfaceBinding& binding_;
+  TriMesh mesh_;
+  MeshAttributes attributes_;
+  SurfaceMetadata metadata_;
+  double largest_mm_ = 0;
+};
+
+Timing play(const Scene& scene, Stage& stage, const SurfaceBinding& binding, FrameWriter& writer, Series& series,
+            const Progress& progress) {
+  Timing timing;
+  DeformedSurface surface = binding.make_surface();
+  writer.write(series.next(), surface);
+  const auto steps = static_cast<std::size_t>(std::llround(scene.duration_s / scene.options.step_s));
+  for (std::size_t i = 1; i <= steps; ++i) {
+    report_progress(progress, "deforming", static_cast<double>(i - 1) / static_cast<double>(steps));
+    Stopwatch watch;
+    stage.step(static_cast<double>(i) * scene.options.step_s);
+    timing.simulate_s += watch.lap();
+    binding.apply(stage.simulation().pose(), stage.simulation().moved(), surface);
+    stage.simulation().clear_moved();
+    timing.synchronise_s += watch.lap();
+    if (i % static_cast<std::size_t>(scene.frame_every) == 0 || i == steps) writer.write(series.next(), surface);
+  }
+  return timing;
+}
+
+void check_files(const DeformArguments& arguments) {
+  std::vector<fs::path> inputs = files_of(arguments.input.path);
+  inputs.push_back(arguments.surface.path);
+  inputs.push_back(arguments.script);
+  check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, inputs);
+  surface_format("frame." + arguments.format);
+  if (arguments.format == "vtp" && !VMESH_TOOL_WITH_VTK)
+    throw Unsupported("this vmesh was built without VTK and cannot write .vtp; choose --format obj");
+}
+
+}  // namespace
+
+int run(const DeformArguments& arguments, Console& console) {
+  check_files(arguments);
+  const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
+  const LoadedSurface rest = load_surface(arguments.surface);
+  console.warn(rest.warnings);
+  const Scene scene = read_scene(arguments.script, centerline.nodes().size());
+  Stage stage(centerline, scene);
+  const SurfaceBinding binding(centerline, stage.simulation().tree(), rest.mesh.vertices, vertex_normals(rest.mesh),
+                               places_of(centerline, rest, console));
+  stop_if_interrupted();
+  Series series(arguments.output, "." + arguments.format);
+  FrameWriter writer(arguments, rest, binding);
+  const Timing timing = play(scene, stage, binding, writer, series, console.progress());
+  series.keep();
+  console.log("wrote " + std::to_string(series.size()) + " frames to " + arguments.output.string());
+  if (!arguments.common.json.empty())
+    write_json(arguments.common.json, {{"schema", "vmesh.deform/1"},
+                                       {"generator", generator_json()},
+                                       {"centerline", to_json(centerline)},
+                                       {"vertices", rest.mesh.vertices.size()},
+                                       {"frames", series.size()},
+                                       {"largest_displacement_mm", writer.largest_displacement_mm()},
+                                       {"last_movement_mm", stage.last_movement_mm()},
+                                       {"work_J", stage.work_J()},
+                                       {"kinetic_energy_J", stage.simulation().kinetic_energy_J()},
+                                       {"elastic_energy_J", stage.simulation().elastic_energy_J()},
+                                       {"simulate_s", timing.simulate_s},
+                                       {"synchronise_s", timing.synchronise_s}});
+  return kOk;
+}
+
+}  // namespace vmesh::tool

@@ -1,0 +1,294 @@
+#include <algorithm>
+
+#include "vmesh/io/sha256.h"
+#include "vmesh/surface/branch_labels.h"
+#include "vmesh/volume/vessel_field.h"
+
+#include "command_line/exit_code.h"
+#include "command_line/inputs.h"
+#include "command_line/interrupt.h"
+#include "command_line/outputs.h"
+#include "report/summary.h"
+#include "verbs/verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+std::string number(double value, int digits = 3) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string percent(double share) { return number(100 * share, 0) + " %"; }
+
+MeshAttribute branch_attribute(const std::vector<Index>& labels) {
+  return {"branch", {labels.begin(), labels.end()}, true};
+}
+
+// 0: not at an opening.
+MeshAttribute opening_labels(const GenerateResult& result) {
+  MeshAttribute labels{"opening", std::vector<double>(result.mesh.vertices.size(), 0), true};
+  for (std::size_t i = 0; i < result.openings.size(); ++i) {
+    for (const Index v : result.openings[i].ring) labels.values[v] = static_cast<double>(i + 1);
+  }
+  return labels;
+}
+
+MeshAttributes attributes_of(const GenerateResult& result, const Centerline& centerline) {
+  MeshAttributes attributes;
+  const BranchLabels branch = label_branches(result.mesh, result.binding, centerline);
+  MeshAttribute segment{"segment", {}, true}, parameter{"parameter", {}};
+  for (const CenterlineBinding& binding : result.binding) {
+    segment.values.push_back(binding.segment);
+    parameter.values.push_back(binding.t);
+  }
+  attributes.vertex = {
+      {"radius", result.radius}, std::move(segment), std::move(parameter), branch_attribute(branch.vertex)};
+  if (!result.openings.empty()) attributes.vertex.push_back(opening_labels(result));
+  attributes.face = {{"EquiangleSkewness", equiangle_skewness(result.mesh)}, branch_attribute(branch.face)};
+  return attributes;
+}
+
+void log_result(const GenerateReport& report, Console& console) {
+  const TriMesh& mesh = report.result->mesh;
+  const double size = report.cleaned->centerline.length_in_radii();
+  std::string vertices = std::to_string(mesh.vertices.size()) + " vertices";
+  if (size > 0)
+    vertices += " (" + number(static_cast<double>(mesh.vertices.size()) / size, 1) + " per radius of length)";
+  console.log(vertices + ", " + std::to_string(mesh.faces.size()) + " faces, skewness " +
+              number(report.measurement.skewness.mean) + " mean, " + number(report.measurement.skewness.max) + " max");
+  console.log("distance to the volume " + number(report.deviation.mean_relative) + " mean, " +
+              number(report.deviation.max_relative) + " max, in local radii");
+  const ErrorLimit& limit = report.arguments->options.max_error;
+  if (limit.is_set() && report.result->error.unproven_faces == 0)
+    console.log("proven: nowhere farther than " + to_string(limit) + " from the boundary, nor the boundary from it");
+  double total = 0;
+  for (const StageTime& stage : report.stages) total += stage.seconds;
+  console.log("wrote " + report.arguments->output.string() + " after " + number(total, 2) + " s");
+}
+
+std::string text_of(const Vec3& p) { return "(" + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()) + ")"; }
+
+std::string places(const std::vector<Contact>& contacts) {
+  return std::to_string(contacts.size()) + (contacts.size() == 1 ? " place" : " places");
+}
+
+void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+void warn_of_error(GenerateReport& report, Console& console) {
+  const ErrorSummary& error = report.result->error;
+  if (error.unproven_faces == 0) return;
+  constexpr std::size_t kNamed = 5;
+  std::string text = "the surface may be farther than " + to_string(report.arguments->options.max_error) +
+                     " from the boundary, or the boundary from it, at " + std::to_string(error.unproven_faces) +
+                     " faces in " + std::to_string(error.unproven_places.size()) + " places, the largest at ";
+  for (std::size_t i = 0; i < std::min(kNamed, error.unproven_places.size()); ++i)
+    text += (i > 0 ? ", " : "") + text_of(error.unproven_places[i].position);
+  text += ": triangles became as small as they may; allow more there, or look at the radii";
+  console.warn(text);
+  report.warnings.push_back(text);
+}
+
+LoadedCenterline load(const InputArguments& input, Console& console) {
+  LoadedCenterline loaded = load_clean_centerline(input, console);
+  const Centerline& centerline = loaded.cleaned.centerline;
+  console.log(std::to_string(centerline.nodes().size()) + " nodes, " + std::to_string(centerline.segments().size()) +
+              " segments, " + std::to_string(centerline.component_count()) + " components, " +
+              std::to_string(centerline.cycle_rank()) + " loops");
+  return loaded;
+}
+
+/// Finds where vessels touch and, when asked to, narrows or moves them. Without a value the vessels stay as they are.
+std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, Console& console) {
+  const GenerateArguments& arguments = *report.arguments;
+  const Centerline& centerline = report.cleaned->centerline;
+  const auto warn = [&](const std::string& line) {
+    console.warn(line);
+    report.warnings.push_back(line);
+  };
+  if (arguments.overlap == OverlapHandling::keep) {
+    report.contacts = find_contacts(VesselField(centerline, arguments.options.blend), arguments.gap);
+    if (report.contacts.empty()) return std::nullopt;
+    warn("vessels that are not neighbours touch in " + places(report.contacts) + ", the deepest " +
+         describe(report.contacts.front()) +
+         "; there the surface may intersect itself (--overlap separate narrows them, and moves those that cross)");
+    return std::nullopt;
+  }
+  SeparationOptions options;
+  options.gap = arguments.gap;
+  options.blend = arguments.options.blend;
+  SeparatedCenterline separated = separate_contacts(centerline, options, console.progress());
+  const SeparationReport& separation = separated.report;
+  report.contacts = separation.before;
+  if (separation.nodes_narrowed > 0) {
+    console.log("vessels that are not neighbours touched in " + places(separation.before) + "; " +
+                std::to_string(separation.nodes_narrowed) + " nodes were narrowed, by " +
+                percent(separation.mean_taken_relative) + " of the radius in the mean, " +
+                percent(separation.max_taken_relative) + " (" + number(separation.max_taken) + " mm) at most");
+  }
+  if (separation.nodes_moved > 0) {
+    const std::size_t moves = separation.moves.size();
+    console.log("vessels were moved aside in " + std::to_string(moves) + (moves == 1 ? " place" : " places") +
+                " where they cross or nearly do: " + std::to_string(separation.nodes_moved) + " nodes, by " +
+                number(separation.max_moved) + " mm, " + number(separation.max_moved_relative, 2) +
+                " radii at most, the farthest at " + text_of(separation.max_moved_at));
+  }
+  constexpr std::size_t kNamed = 5;
+  for (std::size_t c = 0; c < std::min(kNamed, separation.left.size()); ++c) {
+    warn("vessels still touch " + describe(separation.left[c]) +
+         "; neither narrowing nor a small move can part them: move the nodes of one, or join them if they are one "
+         "vessel");
+  }
+  if (separation.left.size() > kNamed)
+    warn("vessels still touch in " + places(separation.left) + "; the summary lists them");
+  report.separation = separation;
+  return separated;
+}
+
+/// A binding to segments of a separated centerline, as one to those of the original.
+std::vector<CenterlineBinding> original_binding(const std::vector<CenterlineBinding>& binding,
+                                                const SeparatedCenterline& separated, const Centerline& original) {
+  std::vector<CenterlineBinding> result;
+  result.reserve(binding.size());
+  for (const auto& [segment, t] : binding) {
+    if (segment < separated.pieces.size()) {
+      const SegmentPiece& piece = separated.pieces[segment];
+      result.push_back({piece.segment, piece.original_t(t)});
+    } else {  // an isolated node
+      result.push_back({static_cast<Index>(segment - separated.pieces.size() + original.segments().size()), t});
+    }
+  }
+  return result;
+}
+
+/// Nodes and segments of a separated centerline, as those of the original; nodes that were added are left out.
+void renumber(GrowthSummary& growth, const SeparatedCenterline& separated, const Centerline& original) {
+  for (GrowthSimplification& note : growth.simplifications) {
+    std::erase_if(note.nodes, [&](Index n) { return n >= original.nodes().size(); });
+    for (Index& s : note.segments) s = separated.pieces[s].segment;
+    std::sort(note.segments.begin(), note.segments.end());
+    note.segments.erase(std::unique(note.segments.begin(), note.segments.end()), note.segments.end());
+  }
+}
+
+/// What is wrong with the centerline is said with the name of its file.
+template <class Grow>
+auto naming_file(const GenerateArguments& arguments, Grow&& grow) {
+  try {
+    return grow();
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(arguments.input.path.string() + ": " + error.what());
+  }
+}
+
+void log_choice(const BudgetedSurface& surface, const GenerateArguments& arguments, Console& console) {
+  console.log("for " + to_string(*arguments.budget) + " there were:");
+  for (const OperatingPoint& point : surface.tried) {
+    console.log(std::string(&point == &surface.choice() ? "* " : "  ") + std::to_string(point.options.around) +
+                " around: " + std::to_string(point.vertices) + " vertices, " + number(point.seconds) + " s, distance " +
+                number(point.error.mean_relative) + " mean, " + number(point.error.max_relative) + " max (" +
+                number(point.error.max_mm) + " mm), skewness " + number(point.skewness.mean) + " mean, " +
+                number(point.skewness.max) + " max" + (point.within_budget ? "" : "; beyond the budget"));
+  }
+  console.log("the same again: vmesh generate " + arguments.input.path.string() + " -o " + arguments.output.string() +
+              " " + describe(arguments));
+}
+
+/// Chooses the options that make the most of the budget.
+BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& centerline, GenerateArguments& arguments,
+                                   Console& console) {
+  BudgetedSurface surface = naming_file(
+      arguments, [&] { return generate_within(*arguments.budget, centerline, arguments.options, console.progress()); });
+  arguments.options = surface.choice().options;
+  report.tried = surface.tried;
+  log_choice(surface, arguments, console);
+  if (!surface.met()) {
+    const std::string text = "nothing keeps to the budget " + to_string(*arguments.budget) +
+                             "; the surface written is what comes closest: allow more, or look at the radii";
+    console.warn(text);
+    report.warnings.push_back(text);
+  }
+  return surface;
+}
+
+/// Fills in what is measured of the surface around `grown` and what is wrong with it.
+void measure(GenerateReport& report, const Centerline& grown, Console& console) {
+  const GenerateResult& result = *report.result;
+  report.measurement = measure_surface(result);
+  stop_if_interrupted();
+  const VesselField field(grown, report.arguments->options.blend);
+  report.deviation = measure_deviation(result.mesh, result.binding, field);
+  report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown));
+  stop_if_interrupted();
+  report.grown_nodes = grown.nodes().size();
+  report.nodes_inside = count_nodes_inside(grown, result);
+  stop_if_interrupted();
+  report.problems =
+      problems_of(report.measurement, expected_surface(grown, result), report.nodes_inside, report.grown_nodes);
+  for (const std::string& problem : report.problems) console.warn("surface: " + problem);
+}
+
+void write(const GenerateReport& report) {
+  const GenerateArguments& arguments = *report.arguments;
+  write_surface(arguments.output, report.result->mesh, attributes_of(*report.result, report.cleaned->centerline),
+                {generator_name(), describe(arguments), arguments.input.path.filename().string(), report.input_sha256});
+}
+
+}  // namespace
+
+int run(const GenerateArguments& given, Console& console) {
+  using Kind = PlannedOutput::Kind;
+  check_outputs({{given.output, Kind::surface}, {given.common.json, Kind::summary}}, files_of(given.input.path));
+  GenerateArguments arguments = given;  // a budget chooses some of them
+  Stopwatch watch;
+  GenerateReport report;
+  report.arguments = &arguments;
+
+  const LoadedCenterline loaded = load(arguments.input, console);
+  report.input_sha256 = sha256_of_file(arguments.input.path);
+  report.cleaned = &loaded.cleaned;
+  report.stages.push_back({"read", watch.lap()});
+  stop_if_interrupted();
+
+  append(report.warnings, loaded.warnings);
+  const std::optional<SeparatedCenterline> separated = handle_contacts(report, console);
+  const Centerline& centerline = separated ? separated->centerline : loaded.cleaned.centerline;
+  report.stages.push_back({separated ? "separate" : "contacts", watch.lap()});
+  stop_if_interrupted();
+
+  bool kept_budget = true;
+  GenerateResult result;
+  if (arguments.budget) {
+    BudgetedSurface surface = grow_within_budget(report, centerline, arguments, console);
+    kept_budget = surface.met();
+    result = std::move(surface.result);
+  } else {
+    result =
+        naming_file(arguments, [&] { return generate_surface(centerline, arguments.options, console.progress()); });
+  }
+  console.warn(result.warnings);
+  report.result = &result;
+  report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
+  append(report.warnings, result.warnings);
+  warn_of_error(report, console);
+
+  watch.lap();
+  measure(report, centerline, console);
+  if (separated) {
+    result.binding = original_binding(result.binding, *separated, loaded.cleaned.centerline);
+    renumber(result.growth, *separated, loaded.cleaned.centerline);
+  }
+  report.stages.push_back({"measure", watch.lap()});
+
+  write(report);
+  report.stages.push_back({"write", watch.lap()});
+  log_result(report, console);
+  if (!arguments.common.json.empty()) write_json(arguments.common.json, to_json(report));
+  if (arguments.check && !report.problems.empty()) return kCheckFailed;
+  return result.error.unproven_faces > 0 || !kept_budget ? kNotConverged : kOk;
+}
+
+}  // namespace vmesh::tool

@@ -1,0 +1,94 @@
+#include <iostream>
+#include <sstream>
+
+#include "vmesh/io/sha256.h"
+
+#include "command_line/exit_code.h"
+#include "command_line/inputs.h"
+#include "command_line/interrupt.h"
+#include "command_line/outputs.h"
+#include "report/summary.h"
+#include "verbs/verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+/// One value per line, as "name: value"; members of members as "name.member: value".
+void print(std::ostream& out, const Json& json, const std::string& prefix = "") {
+  for (const auto& [key, value] : json.items()) {
+    const std::string name = prefix + key;
+    if (value.is_object()) {
+      print(out, value, name + ".");
+    } else if (value.is_array()) {
+      for (const Json& element : value)
+        out << name << ": " << (element.is_string() ? element.get<std::string>() : element.dump()) << "\n";
+    } else {
+      out << name << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << "\n";
+    }
+  }
+}
+
+std::vector<std::string> messages_of(const std::vector<CenterlineProblem>& problems) {
+  std::vector<std::string> messages;
+  messages.reserve(problems.size());
+  for (const CenterlineProblem& problem : problems) messages.push_back(problem.message);
+  return messages;
+}
+
+/// What is in the file, what is wrong with it, and what cleaning makes of it. A file that cannot be cleaned has its
+/// reason under "error".
+void describe(const RawCenterline& raw, Json& json) {
+  json["kind"] = "centerline";
+  json["in_file"] = {{"nodes", raw.nodes.size()}, {"segments", raw.segments.size()}};
+  try {
+    const CleanedCenterline cleaned = clean(raw);
+    json["centerline"] = to_json(cleaned.centerline);
+    json["cleaning"] = to_json(cleaned.report);
+  } catch (const InvalidInput& error) {
+    json["error"] = error.what();
+  }
+  json["problems"] = messages_of(validate(raw.nodes, raw.segments));
+}
+
+void describe(const LoadedSurface& surface, Json& json) {
+  json["kind"] = "surface";
+  json["vertices"] = surface.mesh.vertices.size();
+  json["faces"] = surface.mesh.faces.size();
+  const SurfaceMeasurement measurement = measure_surface(surface.mesh);
+  json.update(to_json(measurement));
+  if (measurement.topology.closed && measurement.topology.oriented)
+    json["enclosed_volume_mm3"] = enclosed_volume(surface.mesh);
+  for (const auto& [name, list] : {std::pair{"vertex_attributes", &surface.attributes.vertex},
+                                   std::pair{"face_attributes", &surface.attributes.face}}) {
+    json[name] = Json::array();
+    for (const MeshAttribute& attribute : *list) json[name].push_back(attribute.name);
+  }
+  json["problems"] = problems_of(measurement);
+}
+
+}  // namespace
+
+int run(const InfoArguments& arguments, Console& console) {
+  check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, files_of(arguments.input.path));
+  std::vector<std::string> warnings;
+  const AnyInput input = load_any(arguments.input, warnings);
+  console.warn(warnings);
+  Json json = {{"schema", "vmesh.info/1"},
+               {"generator", generator_json()},
+               {"file", arguments.input.path.string()},
+               {"sha256", sha256_of_file(arguments.input.path)}};
+  std::visit([&json](const auto& content) { describe(content, json); }, input);
+  json["warnings"] = warnings;
+  stop_if_interrupted();
+
+  if (arguments.common.json != "-") {
+    std::ostringstream text;
+    print(text, json);
+    write_text("-", text.str());
+  }
+  if (!arguments.common.json.empty()) write_json(arguments.common.json, json);
+  if (json.contains("error")) throw InvalidInput(json["error"].get<std::string>());
+  return arguments.check && !json["problems"].empty() ? kCheckFailed : kOk;
+}
+
+}  // namespace vmesh::tool

@@ -1,0 +1,86 @@
+#include <sstream>
+
+#include "vmesh/io/sha256.h"
+
+#include "command_line/exit_code.h"
+#include "command_line/inputs.h"
+#include "command_line/interrupt.h"
+#include "command_line/outputs.h"
+#include "command_line/usage_error.h"
+#include "report/summary.h"
+#include "verbs/verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+void check(const ReferenceArguments& arguments) {
+  const ReferenceOptions& options = arguments.options;
+  const bool image = is_image_path(arguments.input.path);
+  const std::string name = arguments.input.path.string();
+  if (image && arguments.voxel > 0) throw UsageError(name + ": --voxel is for centerlines; see --spacing");
+  if (image) return;
+  if (options.label || options.threshold || options.spacing > 0)
+    throw UsageError(name + ": --label, --threshold and --spacing are for images; this is taken for a centerline");
+  if (arguments.voxel == 0)
+    throw UsageError(name + ": to contour the volume of a centerline, give the side of the voxels: --voxel MM");
+}
+
+std::string describe(const ReferenceArguments& arguments) {
+  const ReferenceOptions& options = arguments.options;
+  std::ostringstream text;
+  text << "reference";
+  if (arguments.voxel > 0) text << " --voxel " << arguments.voxel;
+  if (options.label) text << " --label " << *options.label;
+  if (options.threshold) text << " --threshold " << *options.threshold;
+  if (options.spacing > 0) text << " --spacing " << options.spacing;
+  if (options.smooth > 0) text << " --smooth " << options.smooth;
+  if (options.binary) text << " --binary";
+  if (options.all_components) text << " --all-components";
+  return text.str();
+}
+
+ReferenceSurface contoured(const ReferenceArguments& arguments, Console& console) {
+  return naming(arguments.input.path, [&] {
+    if (is_image_path(arguments.input.path)) {
+      const LoadedImage image = load_image(arguments.input, console);
+      stop_if_interrupted();
+      return reference_surface(image, arguments.options);
+    }
+    const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
+    stop_if_interrupted();
+    return reference_surface(centerline, arguments.voxel, arguments.options);
+  });
+}
+
+}  // namespace
+
+int run(const ReferenceArguments& arguments, Console& console) {
+  using Kind = PlannedOutput::Kind;
+  const std::filesystem::path& path = arguments.input.path;
+  check(arguments);
+  check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, files_of(path));
+  const ReferenceSurface surface = contoured(arguments, console);
+  stop_if_interrupted();
+  const std::string sha256 = sha256_of_file(path);
+  write_surface(arguments.output, surface.mesh, {},
+                {generator_name(), describe(arguments), path.filename().string(), sha256});
+  if (surface.components > 1 && !arguments.options.all_components)
+    console.log("the largest of " + std::to_string(surface.components) + " components was kept (--all-components)");
+  const char* kind = surface.binary ? "a binary volume" : "grey values";
+  console.log("wrote " + arguments.output.string() + ": marching cubes of " + kind + ", " +
+              std::to_string(surface.mesh.vertices.size()) + " vertices, " + std::to_string(surface.mesh.faces.size()) +
+              " faces");
+  if (!arguments.common.json.empty())
+    write_json(arguments.common.json, {{"schema", "vmesh.reference/1"},
+                                       {"generator", generator_json()},
+                                       {"input", {{"file", path.string()}, {"sha256", sha256}}},
+                                       {"options", describe(arguments)},
+                                       {"contour_of", surface.binary ? "binary" : "grey"},
+                                       {"spacing_mm", {surface.spacing.x(), surface.spacing.y(), surface.spacing.z()}},
+                                       {"components", surface.components},
+                                       {"vertices", surface.mesh.vertices.size()},
+                                       {"faces", surface.mesh.faces.size()}});
+  return kOk;
+}
+
+}  // namespace vmesh::tool

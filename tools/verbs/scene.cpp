@@ -1,0 +1,227 @@
+#include "verbs/scene.h"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "vmesh/core/error.h"
+
+namespace vmesh::tool {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kSchema = "vmesh.scene/1";
+/// What a scene may ask for, so that a slip of a digit ends in a message and not in a night's work.
+constexpr double kMostSteps = 10e6;
+
+/// An element of the document and its name for messages: "drag[0].path".
+class Element {
+ public:
+  Element(const Json& json, std::string name, const std::string& source)
+      : json_(json), name_(std::move(name)), source_(source) {}
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InvalidInput(source_ + ": " + (name_.empty() ? "" : name_ + ": ") + what);
+  }
+
+  /// Refuses members that are not listed: a misspelt one would go unnoticed.
+  void allow(std::initializer_list<const char*> known) const {
+    if (!json_.is_object()) fail("it must be an object {...}");
+    for (const auto& [key, value] : json_.items()) {
+      std::string list;
+      bool found = false;
+      for (const char* name : known) {
+        found = found || key == name;
+        list += (list.empty() ? "" : ", ") + std::string(name);
+      }
+      if (!found) fail("\"" + key + "\" is not known; there are " + list);
+    }
+  }
+
+  bool has(const char* key) const { return json_.contains(key); }
+
+  Element member(const char* key) const {
+    if (!has(key)) fail("\"" + std::string(key) + "\" is missing");
+    return {json_[key], name_.empty() ? key : name_ + "." + key, source_};
+  }
+
+  std::vector<Element> items() const {
+    if (!json_.is_array()) fail("it must be an array [...]");
+    std::vector<Element> all;
+    for (std::size_t i = 0; i < json_.size(); ++i)
+      all.emplace_back(json_[i], name_ + "[" + std::to_string(i) + "]", source_);
+    return all;
+  }
+  std::vector<Element> items(const char* key) const { return has(key) ? member(key).items() : std::vector<Element>(); }
+
+  double number(double low, double high) const {
+    if (!json_.is_number()) fail("it must be a number");
+    const double value = json_.get<double>();
+    if (!(value >= low && value <= high)) {
+      std::ostringstream range;
+      range << "it is " << value << "; it must be in [" << low << ", " << high << "]";
+      fail(range.str());
+    }
+    return value;
+  }
+
+  /// Overwrites `value` when there is such a member.
+  void take(const char* key, double low, double high, double& value) const {
+    if (has(key)) value = member(key).number(low, high);
+  }
+  void take(const char* key, double low, double high, int& value) const {
+    if (!has(key)) return;
+    const double number = member(key).number(low, high);
+    if (number != std::floor(number)) member(key).fail("it must be a whole number");
+    value = static_cast<int>(number);
+  }
+
+  std::string text() const {
+    if (!json_.is_string()) fail("it must be a string");
+    return json_.get<std::string>();
+  }
+
+  Index node(std::size_t nodes) const {
+    const double value = number(0, static_cast<double>(nodes) - 1);
+    if (value != std::floor(value)) fail("it must be a whole number, a node of the centerline");
+    return static_cast<Index>(value);
+  }
+
+  std::vector<double> numbers(std::size_t count, const char* form) const {
+    const std::vector<Element> all = items();
+    if (all.size() != count) fail(std::string("it must be ") + form);
+    std::vector<double> values;
+    for (const Element& item : all) values.push_back(item.number(-1e12, 1e12));
+    return values;
+  }
+
+ private:
+  const Json& json_;
+  std::string name_;
+  const std::string& source_;
+};
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+template <class Value, class Read>
+Course<Value> read_course(const Element& element, Read&& read) {
+  Course<Value> course;
+  for (const Element& item : element.items()) {
+    const auto [time, value] = read(item);
+    if (!course.time_s.empty() && time <= course.time_s.back()) item.fail("times must ascend");
+    course.time_s.push_back(time);
+    course.value.push_back(value);
+  }
+  if (course.time_s.empty()) element.fail("it must have at least one point");
+  return course;
+}
+
+Course<Vec3> vector_course(const Element& element) {
+  return read_course<Vec3>(element, [](const Element& item) {
+    const std::vector<double> v = item.numbers(4, "[time_s, x, y, z]");
+    return std::pair(v[0], Vec3(v[1], v[2], v[3]));
+  });
+}
+
+Course<double> number_course(const Element& element, double low) {
+  return read_course<double>(element, [low](const Element& item) {
+    const std::vector<double> v = item.numbers(2, "[time_s, value]");
+    if (v[1] < low) item.fail("the value is too small");
+    return std::pair(v[0], v[1]);
+  });
+}
+
+Material read_material(const Element& element) {
+  element.allow({"young_Pa", "density_kg_m3", "poisson_ratio", "wall_mm", "wall_ratio", "damping_s"});
+  Material material;
+  element.take("young_Pa", 1e-3, 1e13, material.young_Pa);
+  element.take("density_kg_m3", 1e-3, 1e6, material.density_kg_m3);
+  element.take("poisson_ratio", 0, 0.5, material.poisson_ratio);
+  element.take("wall_mm", 0, 1e6, material.wall_mm);
+  element.take("wall_ratio", 1e-6, 1, material.wall_ratio);
+  element.take("damping_s", 0, 1e6, material.damping_s);
+  return material;
+}
+
+Integrator read_integrator(const Element& element) {
+  const std::string name = element.text();
+  if (name != "implicit" && name != "paper") element.fail("it is \"" + name + "\"; there are implicit and paper");
+  return name == "paper" ? Integrator::paper : Integrator::implicit;
+}
+
+void read_options(const Element& root, Scene& scene) {
+  SimulationOptions& options = scene.options;
+  if (root.has("integrator")) options.integrator = read_integrator(root.member("integrator"));
+  root.take("step_s", 1e-7, 10, options.step_s);
+  root.take("iterations", 1, 1000, options.iterations);
+  root.take("drag_per_s", 0, 1e9, options.drag_per_s);
+  root.take("squeeze_response_s", 0, 1e6, options.squeeze_response_s);
+  root.take("duration_s", 0, 1e6, scene.duration_s);
+  root.take("frame_every", 1, 1e9, scene.frame_every);
+  if (root.has("gravity_m_s2")) {
+    const std::vector<double> g = root.member("gravity_m_s2").numbers(3, "[x, y, z]");
+    options.gravity_mm_s2 = 1e3 * Vec3(g[0], g[1], g[2]);
+  }
+  if (scene.duration_s / options.step_s > kMostSteps)
+    root.member("duration_s")
+        .fail("that is more than ten million steps of step_s; lengthen the step or shorten the scene");
+}
+
+Scene::Drag read_drag(const Element& element, std::size_t nodes) {
+  element.allow({"node", "path", "release_s"});
+  Scene::Drag drag{element.member("node").node(nodes), vector_course(element.member("path")), kInfinite};
+  element.take("release_s", 0, 1e6, drag.release_s);
+  return drag;
+}
+
+Scene read(const Element& root, std::size_t nodes) {
+  root.allow({"schema", "material", "integrator", "step_s", "iterations", "drag_per_s", "squeeze_response_s",
+              "duration_s", "frame_every", "gravity_m_s2", "fix", "clamp", "drag", "force", "radial_scale", "squeeze"});
+  if (root.member("schema").text() != kSchema)
+    root.member("schema").fail(std::string("this version reads \"") + kSchema + "\"");
+  Scene scene;
+  if (root.has("material")) scene.material = read_material(root.member("material"));
+  read_options(root, scene);
+  for (const Element& item : root.items("fix")) scene.fix.push_back(item.node(nodes));
+  for (const Element& item : root.items("clamp")) scene.clamp.push_back(item.node(nodes));
+  for (const Element& item : root.items("drag")) scene.drags.push_back(read_drag(item, nodes));
+  for (const Element& item : root.items("force")) {
+    item.allow({"node", "force_N"});
+    scene.forces.push_back({item.member("node").node(nodes), vector_course(item.member("force_N"))});
+  }
+  for (const Element& item : root.items("radial_scale")) {
+    item.allow({"node", "scale"});
+    scene.scales.push_back({item.member("node").node(nodes), number_course(item.member("scale"), 1e-6)});
+  }
+  for (const Element& item : root.items("squeeze")) {
+    item.allow({"node", "force_N"});
+    scene.squeezes.push_back({item.member("node").node(nodes), number_course(item.member("force_N"), -1e12)});
+  }
+  return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& path, std::size_t nodes) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  if (!std::filesystem::is_regular_file(path) || !file || !(text << file.rdbuf()))
+    throw ReadError(path.string() + ": cannot be read; name a scene file");
+  return parse_scene(text.str(), path.string(), nodes);
+}
+
+Scene parse_scene(const std::string& text, const std::string& source, std::size_t nodes) {
+  Json document;
+  try {
+    document = Json::parse(text);
+  } catch (const Json::exception& error) {
+    throw InvalidInput(source + ": this is no valid JSON: " + error.what());
+  }
+  return read(Element(document, "", source), nodes);
+}
+
+}  // namespace vmesh::tool

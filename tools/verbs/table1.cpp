@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "vmesh/deform/surface_binding.h"
+#include "vmesh/surface/generate.h"
+
+#include "command_line/exit_code.h"
+#include "command_line/interrupt.h"
+#include "command_line/outputs.h"
+#include "report/deform_trade.h"
+#include "report/report_output.h"
+#include "report/summary.h"
+#include "verbs/verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+/// A column of the paper's Table 1.
+struct PaperCase {
+  const char* name;
+  std::size_t segments, triangles, vertices;
+  double deform_ms, synchronise_ms, total_ms;
+};
+
+constexpr std::array kPaper = {PaperCase{"B", 118, 2426, 1215, 0.4, 1.5, 1.9},
+                               PaperCase{"C", 118, 9799, 4907, 0.4, 6.1, 6.5},
+                               PaperCase{"D", 1559, 25730, 12867, 5.5, 21, 26.5}};
+constexpr int kFrames = 200;
+
+/// The surface whose number of vertices is nearest to `vertices`: it grows with `around`.
+GenerateResult surface_of(const Centerline& centerline, std::size_t vertices) {
+  const auto at = [&](int around) {
+    stop_if_interrupted();
+    GenerateOptions options;
+    options.around = around;
+    return generate_surface(centerline, options);
+  };
+  const auto off = [vertices](const GenerateResult& result) {
+    return std::abs(static_cast<double>(result.mesh.vertices.size()) - static_cast<double>(vertices));
+  };
+  int around = 3;
+  GenerateResult best = at(around);
+  for (;;) {
+    GenerateResult next = at(++around);
+    if (off(next) >= off(best)) return best;
+    best = std::move(next);
+  }
+}
+
+/// Medians over the frames, ms.
+struct Cost {
+  std::size_t segments = 0, vertices = 0, triangles = 0;
+  double deform_ms = 0, synchronise_ms = 0;
+
+  double total_ms() const { return deform_ms + synchronise_ms; }
+};
+
+Cost measure(const PaperCase& paper) {
+  const Centerline centerline = tree_of(paper.segments);
+  const GenerateResult grown = surface_of(centerline, paper.vertices);
+  Swing swing(centerline, {});
+  std::vector<SurfacePlace> places;
+  for (const auto& [segment, t] : grown.binding) places.push_back({segment, t});
+  const SurfaceBinding binding(centerline, swing.simulation().tree(), grown.mesh.vertices, vertex_normals(grown.mesh),
+                               places);
+  DeformedSurface surface = binding.make_surface();
+  std::vector<double> deform, synchronise;
+  for (int i = 0; i < kFrames; ++i) {
+    stop_if_interrupted();
+    Stopwatch watch;
+    swing.step();
+    deform.push_back(1e3 * watch.lap());
+    binding.apply(swing.simulation().pose(), swing.simulation().moved(), surface);
+    swing.simulation().clear_moved();
+    synchronise.push_back(1e3 * watch.lap());
+  }
+  return {centerline.segments().size(), grown.mesh.vertices.size(), grown.mesh.faces.size(), median(deform),
+          median(synchronise)};
+}
+
+std::string sizes(std::size_t a, std::size_t b) { return std::to_string(a) + "/" + std::to_string(b); }
+
+ReportTable cost_table(const std::vector<Cost>& costs) {
+  ReportTable table{
+      "table1", "Table 1, median of " + std::to_string(kFrames) + " frames of 20 ms, one thread", {""}, {}};
+  std::vector<std::vector<std::string>> rows = {{"segments/vertices of the centerline"},
+                                                {"triangles/vertices of the surface"},
+                                                {"deformation, ms"},
+                                                {"synchronisation, ms"},
+                                                {"total, ms"},
+                                                {"share of synchronisation, %"},
+                                                {"times faster"}};
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    const PaperCase& p = kPaper[i];
+    const Cost& c = costs[i];
+    table.columns.push_back(std::string(p.name) + ", paper");
+    table.columns.push_back(std::string(p.name) + ", vmesh");
+    const std::vector<std::string> cells[] = {
+        {sizes(p.segments, p.segments + 1), sizes(c.segments, c.segments + 1)},
+        {sizes(p.triangles, p.vertices), sizes(c.triangles, c.vertices)},
+        {fixed(p.deform_ms), fixed(c.deform_ms)},
+        {fixed(p.synchronise_ms), fixed(c.synchronise_ms)},
+        {fixed(p.total_ms), fixed(c.total_ms())},
+        {fixed(100 * p.synchronise_ms / p.total_ms), fixed(100 * c.synchronise_ms / c.total_ms())},
+        {"1", fixed(p.total_ms / c.total_ms())}};
+    for (std::size_t r = 0; r < rows.size(); ++r) rows[r].insert(rows[r].end(), cells[r].begin(), cells[r].end());
+  }
+  table.rows = rows;
+  return table;
+}
+
+Json to_json(const Cost& cost) {
+  return {{"segments", cost.segments},
+          {"vertices", cost.vertices},
+          {"triangles", cost.triangles},
+          {"deform_ms", cost.deform_ms},
+          {"synchronise_ms", cost.synchronise_ms}};
+}
+
+Json to_json(const std::vector<Cost>& costs, const std::vector<DeformTrade>& trades) {
+  Json json = {{"schema", "vmesh.table1/1"},
+               {"generator", generator_json()},
+               {"costs", Json::array()},
+               {"trades", Json::array()}};
+  for (const Cost& cost : costs) json["costs"].push_back(to_json(cost));
+  for (const DeformTrade& trade : trades) json["trades"].push_back(to_json(trade));
+  return json;
+}
+
+}  // namespace
+
+int run(const Table1Arguments& arguments, Console& console) {
+  using Kind = PlannedOutput::Kind;
+  check_outputs(
+      {{arguments.common.json, Kind::summary}, {arguments.report, Kind::report}, {arguments.plot, Kind::plot}}, {});
+  std::vector<Cost> costs;
+  for (const PaperCase& paper : kPaper) {
+    console.log("measuring " + std::to_string(paper.segments) + " segments, " + std::to_string(paper.vertices) +
+                " vertices");
+    costs.push_back(measure(paper));
+  }
+  console.log("measuring accuracy against cost");
+  const std::vector<DeformTrade> trades = measure_deform_trades(kPaper.back().segments);
+  write_report({cost_table(costs), trade_table(trades)}, to_json(costs, trades),
+               {arguments.format, arguments.common.json, arguments.report});
+  if (!arguments.plot.empty()) write_text(arguments.plot, plot_deform_trades(trades));
+  return kOk;
+}
+
+}  // namespace vmesh::tool

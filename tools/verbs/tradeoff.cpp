@@ -1,0 +1,100 @@
+#include "vmesh/tuning/tradeoff.h"
+
+#include "vmesh/io/sha256.h"
+
+#include "command_line/exit_code.h"
+#include "command_line/inputs.h"
+#include "command_line/outputs.h"
+#include "report/report_output.h"
+#include "report/summary.h"
+#include "verbs/verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+constexpr const char* kPeers[] = {"marching cubes, decimated", "marching cubes"};
+constexpr const char* kOurs[] = {"max-error", "around, blend 0"};
+
+std::string text_or_dash(double value) { return std::isfinite(value) ? format_number(value) : "-"; }
+
+std::string ratio(double ours, double theirs) { return text_or_dash(ours / theirs); }
+
+ReportTable points_table(const std::vector<TradeoffPoint>& points) {
+  ReportTable table{"points",
+                    "Time and vertices against accuracy",
+                    {"curve", "setting", "seconds", "vertices", "skewness mean", "max", "error mean, mm", "rms", "max",
+                     "mean, radii", "rms", "max", "sound", "best for time", "best for vertices"},
+                    {}};
+  for (const TradeoffPoint& p : points) {
+    std::vector<std::string> row = {p.curve, p.setting, format_number(p.seconds), std::to_string(p.vertices)};
+    for (const double value : {p.skewness_mean, p.skewness_max, p.error_mean_mm, p.error_rms_mm, p.error_max_mm,
+                               p.error_mean_relative, p.error_rms_relative, p.error_max_relative})
+      row.push_back(format_number(value));
+    for (const bool value : {p.sound, p.best_for_time, p.best_for_vertices}) row.push_back(value ? "yes" : "no");
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+// How vmesh does where a peer is: vertices for the same maximum error, mean error and skewness with as many vertices.
+ReportTable peers_table(const std::vector<TradeoffPoint>& points) {
+  ReportTable table{"peers",
+                    "vmesh against marching cubes: ratios below 1 are in favour of vmesh, - where the curve has ended",
+                    {"peer", "vertices", "vmesh curve", "vertices at its max error, ratio",
+                     "mean error with its vertices, ratio", "mean skewness with its vertices, ratio"},
+                    {}};
+  for (const char* peer : kPeers) {
+    for (const char* ours : kOurs) {
+      for (const CurveComparison& c : compare_curves(points, ours, peer)) {
+        const auto vertices = static_cast<double>(c.theirs.vertices);
+        table.rows.push_back({peer, std::to_string(c.theirs.vertices), ours, ratio(c.our_vertices, vertices),
+                              ratio(c.our_error_mean_mm, c.theirs.error_mean_mm),
+                              ratio(c.our_skewness_mean, c.theirs.skewness_mean)});
+      }
+    }
+  }
+  return table;
+}
+
+Json point_json(const TradeoffPoint& p) {
+  return {{"curve", p.curve},
+          {"setting", p.setting},
+          {"seconds", p.seconds},
+          {"vertices", p.vertices},
+          {"skewness", {{"mean", p.skewness_mean}, {"max", p.skewness_max}}},
+          {"error_mm", {{"mean", p.error_mean_mm}, {"rms", p.error_rms_mm}, {"max", p.error_max_mm}}},
+          {"error_in_local_radii",
+           {{"mean", p.error_mean_relative}, {"rms", p.error_rms_relative}, {"max", p.error_max_relative}}},
+          {"sound", p.sound},
+          {"best_for_time", p.best_for_time},
+          {"best_for_vertices", p.best_for_vertices}};
+}
+
+Json report_json(const TradeoffArguments& arguments, const Centerline& centerline,
+                 const std::vector<TradeoffPoint>& points) {
+  Json list = Json::array();
+  for (const TradeoffPoint& point : points) list.push_back(point_json(point));
+  const std::filesystem::path& path = arguments.input.path;
+  return {{"schema", "vmesh.tradeoff/1"},
+          {"generator", generator_json()},
+          {"input", {{"file", path.string()}, {"sha256", sha256_of_file(path)}}},
+          {"centerline", to_json(centerline)},
+          {"points", std::move(list)}};
+}
+
+}  // namespace
+
+int run(const TradeoffArguments& arguments, Console& console) {
+  using Kind = PlannedOutput::Kind;
+  check_outputs(
+      {{arguments.report, Kind::report}, {arguments.plot, Kind::plot}, {arguments.common.json, Kind::summary}},
+      files_of(arguments.input.path));
+  const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
+  const std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, arguments.options, console.progress());
+  write_report({points_table(points), peers_table(points)}, report_json(arguments, centerline, points),
+               {arguments.format, arguments.common.json, arguments.report});
+  if (!arguments.plot.empty()) write_text(arguments.plot, plot_tradeoff(points));
+  return kOk;
+}
+
+}  // namespace vmesh::tool
