@@ -78,12 +78,10 @@ std::size_t nodes_outside(const Centerline& centerline, const GenerateResult& re
   return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), false));
 }
 
-void examine(const std::string& name, const Centerline& given, const GenerateOptions& options,
-             const Settings& settings, Tally& tally) {
+void examine(const std::string& name, const Centerline& given, const GenerateOptions& options, const Settings& settings,
+             Tally& tally) {
   const auto start = std::chrono::steady_clock::now();
-  const auto seconds = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   ++tally.cases;
   std::size_t left = 0;
   Centerline centerline = given;
@@ -111,15 +109,17 @@ void examine(const std::string& name, const Centerline& given, const GenerateOpt
   const bool topology_right = topology.closed && topology.manifold && topology.oriented && topology.outward &&
                               topology.components == result.growth.components &&
                               topology.genus == static_cast<std::int64_t>(result.growth.cycle_rank);
-  const bool sound = topology_right && crossings.empty() && outside == 0 && skewness.max <= 0.9;
+  const bool sound = topology_right && crossings.empty() && outside == 0 && skewness.max <= kWorstSkewness;
   tally.unsound += !sound;
   if (sound && !settings.all) return;
   Vec3 at = Vec3::Zero();
   if (!crossings.empty()) at = result.mesh.vertices[result.mesh.faces[crossings.front().first][0]];
-  std::printf("| %s | %zu | %zu | %.3f / %.3f | %s | %zu | %zu | %zu | %zu | %.2f | (%.2f %.2f %.2f) |\n", name.c_str(),
-              centerline.nodes().size(), result.mesh.vertices.size(), skewness.mean, skewness.max,
-              topology_right ? "right" : "WRONG", crossings.size(), outside, left, result.error.unproven_faces, spent,
-              at.x(), at.y(), at.z());
+  std::string rungs;
+  for (const std::size_t count : result.growth.rungs) rungs += (rungs.empty() ? "" : " ") + std::to_string(count);
+  std::printf("| %s | %zu | %zu | %.3f / %.3f | %s | %zu | %zu | %zu | %zu | %s | %.2f | (%.2f %.2f %.2f) |\n",
+              name.c_str(), centerline.nodes().size(), result.mesh.vertices.size(), skewness.mean, skewness.max,
+              topology_right ? "right" : "WRONG", crossings.size(), outside, left, result.error.unproven_faces,
+              rungs.c_str(), spent, at.x(), at.y(), at.z());
   std::fflush(stdout);
 }
 
@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   Tally tally;
   std::printf(
       "| case | nodes | vertices | skewness mean / max | topology | crossing pairs | nodes outside | contacts left | "
-      "unproven | s | first crossing |\n|---|--:|--:|--:|---|--:|--:|--:|--:|--:|---|\n");
+      "unproven | pieces by rung | s | first crossing |\n|---|--:|--:|--:|---|--:|--:|--:|--:|---|--:|---|\n");
   const auto random = [&](const char* name, std::uint32_t first, std::uint32_t count, auto&& make) {
     for (std::uint32_t seed = first; seed < first + count; ++seed) {
       const GenerateOptions options = settings.rotate ? rotated(settings.options, seed) : settings.options;

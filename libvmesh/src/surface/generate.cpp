@@ -9,11 +9,14 @@
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/mesh/topology.h"
+#include "vmesh/surface/error_bound.h"
 
-#include "surface/guided_growth.h"
 #include "surface/input/buried_branches.h"
 #include "surface/input/scale_check.h"
 #include "surface/paper/paper_growth.h"
+#include "surface/pieces/grow_pieces.h"
+#include "surface/proof/defects.h"
 #include "surface/proof/error_limit.h"
 #include "surface/remesh/bound_surface.h"
 #include "surface/remesh/optimize.h"
@@ -91,17 +94,6 @@ void add_warnings(const PaperGrowthReport& growth, std::vector<std::string>& war
   if (growth.forced > 0) {
     warnings.push_back("growth: " + std::to_string(growth.forced) +
                        " vertices did not reach the boundary by themselves and were projected");
-  }
-}
-
-void add_warnings(const GuidedGrowthReport& growth, std::vector<std::string>& warnings) {
-  if (growth.filled_loops > 0) {
-    warnings.push_back("growth: " + std::to_string(growth.filled_loops) +
-                       " loops of the centerline are too short to have a hole; the surface is filled there");
-  }
-  if (growth.tangled_junctions > 0) {
-    warnings.push_back("growth: at " + std::to_string(growth.tangled_junctions) +
-                       " junctions faces intersect each other; more vertices around may help");
   }
 }
 
@@ -198,8 +190,6 @@ void optimize_grown(BoundSurface& surface, const GenerateOptions& options, const
   if (options.sweeps == 0) return;
   const OptimizeReport report = optimize(surface, options, grown, progress);
   add_warnings(report, result.warnings);
-  result.error.unproven_faces = report.unproven.size();
-  result.error.unproven_places = places_of(surface, report.unproven);
 }
 
 void generate_paper(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
@@ -214,6 +204,13 @@ void generate_paper(const Centerline& centerline, const GenerateOptions& options
     optimize_grown(surface, options, grown, progress, result);
   });
   surface.export_to(result);
+  clock.time("check", [&] {
+    if (options.max_error.is_set()) {
+      const std::vector<Index> unproven = unproven_faces(result.mesh, result.binding, *field, options.max_error);
+      result.error = {unproven.size(), places_of(result.mesh, unproven)};
+    }
+    result.defects = find_defects(centerline, result, self_intersections(result.mesh));
+  });
 }
 
 void check_open_ends(const Centerline& centerline, const GenerateOptions& options) {
@@ -235,12 +232,6 @@ std::vector<char> nodes_to_open(const Centerline& centerline, const std::vector<
   std::vector<char> open(centerline.nodes().size(), 0);
   for (Index n = 0; n < open.size(); ++n) open[n] = centerline.degree(n) == 1 && is_chosen(ends, number[n]);
   return open;
-}
-
-Opening opening_at(const Centerline& centerline, const OpenLoop& loop, const std::vector<Index>& number) {
-  Opening opening{loop.node, centerline.node(loop.node).position, Vec3::Zero(), centerline.node(loop.node).radius, {}};
-  for (const Vertex v : loop.vertices) opening.ring.push_back(number[v.idx()]);
-  return opening;
 }
 
 void warn_of_closed_ends(const Centerline& centerline, const OpenEnds& ends, GenerateResult& result) {
@@ -298,23 +289,11 @@ void generate_guided(const Centerline& centerline, const GenerateOptions& option
     if (!growth->buried.empty()) field.emplace(growth->centerline, options.blend);
   });
   const std::vector<char> open = nodes_to_open(growth->centerline, growth->node, options.open_ends);
-  BoundSurface surface(*field);
-  GuidedGrowthReport report;
-  clock.time("grow", [&] {
-    report = grow_guided(surface, open, options, progress);
-    add_warnings(report, result.warnings);
-    result.growth = std::move(report.summary);
-  });
-  clock.time("optimize", [&] {
-    const GrownMesh grown{double(options.around), expected_vertices(centerline, options.around),
-                          GrownMesh::Stage::assembled};
-    optimize_grown(surface, options, grown, progress, result);
-  });
-  const std::vector<Index> number = surface.export_to(result);
-  for (const OpenLoop& loop : report.open_loops)
-    result.openings.push_back(opening_at(growth->centerline, loop, number));
+  std::vector<std::pair<Index, Index>> crossings;
+  clock.time("grow", [&] { crossings = grow_pieces(*field, open, options, progress, result); });
   renumber(*growth, centerline, result);
   warn_of_closed_ends(centerline, options.open_ends, result);
+  clock.time("check", [&] { result.defects = find_defects(centerline, result, crossings); });
 }
 
 }  // namespace

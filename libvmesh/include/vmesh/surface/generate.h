@@ -10,6 +10,7 @@
 #include "vmesh/centerline/centerline.h"
 #include "vmesh/core/progress.h"
 #include "vmesh/mesh/tri_mesh.h"
+#include "vmesh/surface/soundness.h"
 
 namespace vmesh {
 
@@ -117,6 +118,8 @@ struct GrowthSummary {
   std::size_t components = 0;
   std::size_t cycle_rank = 0;  ///< the genus of the surface
   std::vector<GrowthSimplification> simplifications;
+  std::size_t pieces = 0;          ///< in which the surface was made
+  std::vector<std::size_t> rungs;  ///< pieces by the rung of the ladder on which they were found sound, or gave up
 };
 
 /// A hole in the surface at an end of a vessel: a ring in the plane across the vessel through the end's node.
@@ -149,6 +152,7 @@ struct GenerateResult {
   std::vector<Opening> openings;           ///< ascending in the nodes
   ErrorSummary error;                      ///< with max_error
   GrowthSummary growth;                    ///< of guided growth; empty after paper growth
+  std::vector<Defect> defects;             ///< none: the surface is sound
   std::vector<StageTime> stages;
   std::vector<std::string> warnings;
 };

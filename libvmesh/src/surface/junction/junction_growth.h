@@ -6,12 +6,15 @@
 
 namespace vmesh {
 
+/// A vertex's lift where it stays at the distance from the boundary at which it is.
+inline constexpr double kAsLaid = std::numeric_limits<double>::infinity();
+
 /// A vertex with the cone it is bound to, the hint of its next query.
 struct SurfacePoint {
   Vec3 position;
   Index cone;
   double fineness = 1;  ///< factor on the target edge length
-  double lift = 0;      ///< signed distance to the boundary at which it belongs, mm
+  double lift = 0;      ///< signed distance to the boundary at which it belongs, mm; or kAsLaid
 };
 
 /// A piece of surface.

@@ -66,7 +66,10 @@ class PieceMaker {
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t number = opening.at_end ? tube.rings.size() - 1 - k : k;
       std::vector<Vertex> ring;
-      for (const BoundaryPoint& p : tube.rings[number].points) ring.push_back(add_vertex(p.position, p.sample.cone));
+      for (const BoundaryPoint& p : tube.rings[number].points) {
+        ring.push_back(add_vertex(p.position, p.sample.cone));
+        surface_.lift[ring.back()] = surface_.distance[ring.back()];
+      }
       if (k + 1 == count) kept_.push_back({opening, static_cast<Index>(number), ring});
       if (opening.at_end) std::reverse(ring.begin(), ring.end());
       band(last, ring);
@@ -153,16 +156,19 @@ class PieceMaker {
 
 }  // namespace
 
-std::size_t rings_given_away(const Tube& tube) { return std::min(kRingsGivenAway, (tube.rings.size() - 1) / 2); }
+std::size_t rings_given_away(const Tube& tube) {
+  const bool to_seam = tube.starts_at_seam || tube.ends_at_seam;
+  return std::min(kRingsGivenAway, to_seam ? tube.rings.size() - 1 : (tube.rings.size() - 1) / 2);
+}
 
-JunctionPiece make_junction_piece(const VesselField& field, const std::vector<BranchAxis>& axes,
-                                  const GrowthSkeleton& skeleton, const Junction& junction,
+JunctionPiece make_junction_piece(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
                                   const GenerateOptions& options, const Progress& progress) {
+  const VesselField& field = tubes.field();
   const std::vector<TubeEnd> openings = openings_of(junction);
   const auto flaws = [](const JunctionPiece& p) { return std::pair(p.tangles, p.unproven); };
   std::optional<JunctionPiece> best;
   for (const bool leave_out_threads : {true, false}) {
-    const JunctionGrowth growth(field, axes, skeleton, junction, options, leave_out_threads);
+    const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options, leave_out_threads);
     for (const Variant& variant : kVariants) {
       JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options, progress).make(variant);
       if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);

@@ -32,8 +32,7 @@ std::size_t rings_given_away(const Tube& tube);
 
 /// Grows a junction, docks its tubes and optimises around their seams. Where faces intersect, other resolutions of the
 /// junction's surface are tried, and then its threads within the lattice; the best is kept.
-JunctionPiece make_junction_piece(const VesselField& field, const std::vector<BranchAxis>& axes,
-                                  const GrowthSkeleton& skeleton, const Junction& junction,
+JunctionPiece make_junction_piece(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
                                   const GenerateOptions& options, const Progress& progress);
 
 }  // namespace vmesh

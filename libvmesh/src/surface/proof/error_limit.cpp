@@ -1,6 +1,10 @@
 #include "surface/proof/error_limit.h"
 
+#include <map>
+
 #include <tbb/parallel_for.h>
+
+#include "vmesh/core/disjoint_sets.h"
 
 namespace vmesh {
 
@@ -40,29 +44,18 @@ std::vector<Face> ErrorLimitCheck::unproven_faces(const SweepState& state) {
   return unproven;
 }
 
-std::vector<UnprovenPlace> places_of(const BoundSurface& surface, const std::vector<Face>& faces) {
-  const SurfaceMesh& mesh = surface.mesh;
-  std::vector<char> waiting(mesh.num_faces(), 0);
-  for (const Face f : faces) waiting[f.idx()] = 1;
+std::vector<UnprovenPlace> places_of(const TriMesh& mesh, const std::vector<Index>& faces) {
   std::vector<UnprovenPlace> places;
-  for (const Face first : faces) {
-    if (!waiting[first.idx()]) continue;
-    UnprovenPlace place{surface.position(mesh.target(mesh.halfedge(first))), 0};
-    std::vector<Face> stack = {first};
-    waiting[first.idx()] = 0;
-    while (!stack.empty()) {
-      const Face f = stack.back();
-      stack.pop_back();
-      ++place.faces;
-      for (const Vertex v : mesh.vertices_around_face(mesh.halfedge(f))) {
-        for (const Face next : mesh.faces_around_target(mesh.halfedge(v))) {
-          if (next == SurfaceMesh::null_face() || !waiting[next.idx()]) continue;
-          waiting[next.idx()] = 0;
-          stack.push_back(next);
-        }
-      }
-    }
-    places.push_back(place);
+  if (faces.empty()) return places;
+  DisjointSets joined(mesh.vertices.size());
+  for (const Index f : faces) {
+    for (const Index v : mesh.faces[f]) joined.join(mesh.faces[f][0], v);
+  }
+  std::map<Index, std::size_t> number;
+  for (const Index f : faces) {
+    const auto [it, is_new] = number.emplace(joined.find(mesh.faces[f][0]), places.size());
+    if (is_new) places.push_back({mesh.vertices[mesh.faces[f][1]], 0});
+    ++places[it->second].faces;
   }
   std::stable_sort(places.begin(), places.end(),
                    [](const UnprovenPlace& a, const UnprovenPlace& b) { return a.faces > b.faces; });

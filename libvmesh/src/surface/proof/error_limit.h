@@ -29,6 +29,6 @@ class ErrorLimitCheck {
 };
 
 /// Groups faces that share vertices.
-std::vector<UnprovenPlace> places_of(const BoundSurface& surface, const std::vector<Face>& faces);
+std::vector<UnprovenPlace> places_of(const TriMesh& mesh, const std::vector<Index>& faces);
 
 }  // namespace vmesh

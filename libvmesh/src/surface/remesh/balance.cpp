@@ -7,7 +7,6 @@ namespace {
 
 constexpr double kMostLift = 0.15;      // in target lengths; a sphere with six vertices around asks for 0.13
 constexpr double kBalanced = 0.003;     // mean signed distance in radii, around a vertex, that may stay
-constexpr double kShareOfLimit = 0.95;  // of the error that is allowed
 constexpr double kShareOfGap = 0.35;    // of the free space before another vessel that a vertex may be lifted into
 
 // Area of every face and signed distance at its centroid.

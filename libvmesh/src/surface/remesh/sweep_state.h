@@ -12,6 +12,9 @@ namespace vmesh {
 /// faces half of that on average.
 double balanced_ring_radius(double around);
 
+/// Share of the error limit up to which vertices are lifted: the rest is for what lies between them.
+inline constexpr double kShareOfLimit = 0.95;
+
 /// Target edge length in vessel radii at `around` vertices around a vessel.
 double edge_length_per_radius(double around);
 

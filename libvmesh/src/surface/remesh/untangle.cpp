@@ -23,17 +23,6 @@ bool neighbours(const BoundSurface& surface, const Triangle& f, const Triangle& 
   return false;
 }
 
-TriMesh indexed_mesh(const SweepState& state) {
-  TriMesh mesh;
-  mesh.vertices.assign(state.mesh.points().begin(), state.mesh.points().end());
-  for (const Face f : state.mesh.faces()) {
-    if (state.surface.is_lid(f)) continue;
-    const auto [a, b, c] = state.corners(f);
-    mesh.faces.push_back({a.idx(), b.idx(), c.idx()});
-  }
-  return mesh;
-}
-
 void add_ring(const SurfaceMesh& mesh, std::vector<Vertex>& region) {
   const std::size_t count = region.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -44,8 +33,19 @@ void add_ring(const SurfaceMesh& mesh, std::vector<Vertex>& region) {
 
 }  // namespace
 
+TriMesh indexed_mesh(const SweepState& state, bool with_lids) {
+  TriMesh mesh;
+  mesh.vertices.assign(state.mesh.points().begin(), state.mesh.points().end());
+  for (const Face f : state.mesh.faces()) {
+    if (!with_lids && state.surface.is_lid(f)) continue;
+    const auto [a, b, c] = state.corners(f);
+    mesh.faces.push_back({a.idx(), b.idx(), c.idx()});
+  }
+  return mesh;
+}
+
 std::vector<Vertex> find_crossing_walls(const SweepState& state) {
-  const TriMesh mesh = indexed_mesh(state);
+  const TriMesh mesh = indexed_mesh(state, false);
   std::vector<Vertex> vertices;
   for (const auto& [f, g] : self_intersections(mesh)) {
     for (const Index face : {f, g}) {
@@ -61,7 +61,7 @@ std::vector<Vertex> find_tangles(const SweepState& state) {
   for (const Vertex v : state.mesh.vertices()) {
     if (state.off_boundary(v) && !state.surface.held(v)) vertices.push_back(v);
   }
-  const TriMesh mesh = indexed_mesh(state);
+  const TriMesh mesh = indexed_mesh(state, false);
   for (const auto& [f, g] : self_intersections(mesh)) {
     if (!neighbours(state.surface, mesh.faces[f], mesh.faces[g])) continue;
     for (const Index face : {f, g}) {

@@ -1,90 +1,80 @@
 #include "surface/tubes/growth_skeleton.h"
 
-#include <numeric>
+#include <map>
 
 #include <tbb/parallel_for.h>
+
+#include "vmesh/core/disjoint_sets.h"
 
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kShortHandle = 6;  // rings
+constexpr std::size_t kShortHandle = 6;  // rings; measured on random graphs with loops, safe from 4 to 8
 
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
-  Index find(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
+std::vector<SegmentPlace> places_of(const Centerline& centerline, const std::vector<Branch>& branches) {
+  std::vector<SegmentPlace> places(centerline.segments().size());
+  for (Index b = 0; b < branches.size(); ++b) {
+    const auto& segments = branches[b].segments;
+    for (Index i = 0; i < segments.size(); ++i) places[segments[i]] = {b, i};
   }
-  // The lower number stays.
-  void join(Index i, Index j) {
-    i = find(i);
-    j = find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
+  return places;
+}
 
- private:
-  std::vector<Index> parent_;
-};
+std::vector<BranchAxis> axes_of(const Centerline& centerline, const std::vector<Branch>& branches) {
+  std::vector<BranchAxis> axes;
+  for (const Branch& branch : branches) axes.emplace_back(centerline, branch);
+  return axes;
+}
 
 class SkeletonMaker {
  public:
-  SkeletonMaker(const VesselField& field, const std::vector<BranchAxis>& axes, int around)
-      : centerline_(field.centerline()),
-        axes_(axes),
-        places_(places_of(field.centerline(), axes)),
-        layer_(field, axes, places_, around) {}
+  SkeletonMaker(const VesselTubes& tubes, const PiecePlan& plan, const std::vector<RingPlace>& covered)
+      : tubes_(tubes), plan_(plan) {
+    for (const Stretch& stretch : plan.stretches) rings_.push_back(rings_of(stretch, covered));
+  }
 
   GrowthSkeleton run() {
-    rings_.resize(axes_.size());
-    tbb::parallel_for(std::size_t{0}, axes_.size(),
-                      [&](std::size_t b) { rings_[b] = layer_.lay(static_cast<Index>(b)); });
     do {
       divide_all();
     } while (dissolve_handles());
-    gather_rings();
+    skeleton_.rings = std::move(rings_);
     return std::move(skeleton_);
   }
 
  private:
-  static std::vector<SegmentPlace> places_of(const Centerline& centerline, const std::vector<BranchAxis>& axes) {
-    std::vector<SegmentPlace> places(centerline.segments().size());
-    for (Index b = 0; b < axes.size(); ++b) {
-      const auto& segments = axes[b].branch().segments;
-      for (Index i = 0; i < segments.size(); ++i) places[segments[i]] = {b, i};
+  const BranchAxis& axis_of(const Stretch& stretch) const { return tubes_.axes()[stretch.branch]; }
+
+  bool is_loop(const Stretch& stretch) const {
+    return axis_of(stretch).periodic() && !stretch.seam_at_first && !stretch.seam_at_last;
+  }
+
+  std::vector<Ring> rings_of(const Stretch& stretch, const std::vector<RingPlace>& covered) const {
+    const std::vector<Ring>& all = tubes_.rings(stretch.branch);
+    std::vector<Ring> rings;
+    bool changed = false;
+    for (Index k = 0; k < stretch.count; ++k) {
+      const auto number = static_cast<Index>((stretch.first + k) % all.size());
+      rings.push_back(all[number]);
+      const bool is_seam = (k == 0 && stretch.seam_at_first) || (k + 1 == stretch.count && stretch.seam_at_last);
+      if (is_seam || !rings.back().free) continue;
+      if (!std::binary_search(covered.begin(), covered.end(), RingPlace{stretch.branch, number})) continue;
+      rings.back().free = false;
+      changed = true;
     }
-    return places;
+    if (changed) {
+      tubes_.layer().clear_ends(stretch.branch, rings, is_loop(stretch));
+      if (stretch.seam_at_first) rings.front().free = true;
+      if (stretch.seam_at_last) rings.back().free = true;
+    }
+    return rings;
   }
 
   void divide_all() {
     skeleton_ = {};
     gaps_.clear();
-    capped_.assign(centerline_.nodes().size(), 0);
-    for (Index b = 0; b < axes_.size(); ++b) divide(b);
+    capped_.clear();
+    for (std::size_t i = 0; i < plan_.stretches.size(); ++i) divide(plan_.stretches[i], rings_[i]);
     collect_junctions();
-  }
-
-  // Copies the tubes' rings together. In a piece of memory for every branch, with what was freed between, they would
-  // make all allocation after them slower, the more the larger the tree.
-  void gather_rings() {
-    Rings& all = skeleton_.rings;
-    std::size_t rings = 0, points = 0;
-    for (const Tube& tube : skeleton_.tubes) {
-      rings += tube.rings.size();
-      for (const Ring& ring : tube.rings) points += ring.points.size();
-    }
-    all.rings.reserve(rings);
-    all.points.reserve(points);
-    for (Tube& tube : skeleton_.tubes) {
-      const Ring* first = all.rings.data() + all.rings.size();
-      for (Ring ring : tube.rings) {
-        const BoundaryPoint* place = all.points.data() + all.points.size();
-        all.points.insert(all.points.end(), ring.points.begin(), ring.points.end());
-        ring.points = {place, ring.points.size()};
-        all.rings.push_back(ring);
-      }
-      tube.rings = {first, tube.rings.size()};
-    }
   }
 
   // A short tube with both ends at one junction cannot be grown apart from it: the ends of the junction's vessels would
@@ -106,9 +96,11 @@ class SkeletonMaker {
   }
 
   void cover(const Tube& tube) {
-    std::vector<Ring>& rings = rings_[tube.branch].rings;
-    const auto first = rings.begin() + (tube.rings.data() - rings.data());
-    for (auto ring = first; ring != first + static_cast<std::ptrdiff_t>(tube.rings.size()); ++ring) ring->free = false;
+    for (std::vector<Ring>& rings : rings_) {
+      const auto first = tube.rings.data() - rings.data();
+      if (first < 0 || static_cast<std::size_t>(first) >= rings.size()) continue;
+      for (std::size_t k = 0; k < tube.rings.size(); ++k) rings[static_cast<std::size_t>(first) + k].free = false;
+    }
   }
 
   // The free rings from number `k` on, up to the next that is not; `k` becomes the number of that one.
@@ -119,28 +111,32 @@ class SkeletonMaker {
   }
 
   // Runs of free rings become tubes; what lies between them, gaps.
-  void divide(Index b) {
-    const BranchAxis& axis = axes_[b];
-    if (axis.periodic()) {
-      divide_loop(b);
+  void divide(const Stretch& stretch, std::vector<Ring>& rings) {
+    if (is_loop(stretch)) {
+      divide_loop(stretch, rings);
       return;
     }
-    const std::vector<Ring>& rings = rings_[b].rings;
+    const BranchAxis& axis = axis_of(stretch);
+    const Index b = stretch.branch;
+    const bool from_begin = !stretch.seam_at_first, to_end = !stretch.seam_at_last;
     Gap gap{b, 0, 0, {}};
     for (std::size_t k = 0; k < rings.size();) {
       if (!rings[k].free) {
         ++k;
         continue;
       }
-      Tube tube{b, {}, k == 0 && axis.starts_at_tip(), false, false};
-      const bool first_is_tip = tube.starts_at_tip;
+      Tube tube;
+      tube.branch = b;
+      tube.starts_at_tip = from_begin && k == 0 && axis.starts_at_tip();
+      tube.starts_at_seam = k == 0 && stretch.seam_at_first;
       tube.rings = free_run(rings, k);
-      tube.ends_at_tip = k == rings.size() && axis.ends_at_tip();
+      tube.ends_at_tip = to_end && k == rings.size() && axis.ends_at_tip();
+      tube.ends_at_seam = k == rings.size() && stretch.seam_at_last;
       const auto number = static_cast<Index>(skeleton_.tubes.size());
-      if (first_is_tip) {
-        capped_[axis.branch().nodes.front()] = 1;
-      } else {
+      if (tube.starts_at_tip) capped_[axis.branch().nodes.front()] = 1;
+      if (tube.starts_at_junction()) {
         gap.end = tube.rings.front().place;
+        if (axis.periodic() && gap.end <= gap.begin) gap.end += axis.length();
         gap.openings[1] = {number, false};
         gaps_.push_back(gap);
       }
@@ -149,18 +145,24 @@ class SkeletonMaker {
       gap.openings[0] = {number, true};
       skeleton_.tubes.push_back(std::move(tube));
     }
-    if (skeleton_.tubes.empty() || skeleton_.tubes.back().branch != b || !skeleton_.tubes.back().ends_at_tip) {
+    const bool closed =
+        !skeleton_.tubes.empty() && skeleton_.tubes.back().branch == b && to_end && skeleton_.tubes.back().ends_at_tip;
+    if (to_end && !closed) {
       gap.end = axis.length();
       gaps_.push_back(gap);
     }
   }
 
-  void divide_loop(Index b) {
-    const BranchAxis& axis = axes_[b];
-    std::vector<Ring>& rings = rings_[b].rings;
+  void divide_loop(const Stretch& stretch, std::vector<Ring>& rings) {
+    const BranchAxis& axis = axis_of(stretch);
+    const Index b = stretch.branch;
     const auto covered = std::find_if(rings.begin(), rings.end(), [](const Ring& r) { return !r.free; });
     if (covered == rings.end()) {
-      skeleton_.tubes.push_back({b, rings, false, false, true});
+      Tube tube;
+      tube.branch = b;
+      tube.rings = rings;
+      tube.periodic = true;
+      skeleton_.tubes.push_back(tube);
       return;
     }
     std::rotate(rings.begin(), covered, rings.end());  // from a covered ring on
@@ -170,7 +172,8 @@ class SkeletonMaker {
         ++k;
         continue;
       }
-      Tube tube{b, {}, false, false, false};
+      Tube tube;
+      tube.branch = b;
       tube.rings = free_run(rings, k);
       skeleton_.tubes.push_back(std::move(tube));
     }
@@ -187,46 +190,74 @@ class SkeletonMaker {
 
   // Gaps and nodes that touch form one junction.
   void collect_junctions() {
-    const auto node_count = static_cast<Index>(centerline_.nodes().size());
-    UnionFind pieces(node_count + gaps_.size());
+    const auto node_count = static_cast<Index>(plan_.nodes.size());
+    DisjointSets parts(node_count + gaps_.size());
     std::vector<char> taken(node_count, 0);
-    for (Index n = 0; n < node_count; ++n) taken[n] = centerline_.degree(n) != 2 && !capped_[n];
+    for (Index i = 0; i < node_count; ++i) taken[i] = !capped_.contains(plan_.nodes[i]);
+    const auto join = [&](Index node, Index part) {
+      const auto i =
+          static_cast<Index>(std::lower_bound(plan_.nodes.begin(), plan_.nodes.end(), node) - plan_.nodes.begin());
+      if (i == node_count || plan_.nodes[i] != node) return;  // where a loop without a branching node closes
+      taken[i] = 1;
+      parts.join(i, part);
+    };
     for (Index g = 0; g < gaps_.size(); ++g) {
-      const auto& nodes = axes_[gaps_[g].branch].branch().nodes;
-      if (gaps_[g].openings[0].tube == kNone) join(pieces, taken, nodes.front(), node_count + g);
-      if (gaps_[g].openings[1].tube == kNone) join(pieces, taken, nodes.back(), node_count + g);
+      const auto& nodes = tubes_.axes()[gaps_[g].branch].branch().nodes;
+      if (gaps_[g].openings[0].tube == kNone) join(nodes.front(), node_count + g);
+      if (gaps_[g].openings[1].tube == kNone) join(nodes.back(), node_count + g);
     }
     std::vector<Index> number(node_count + gaps_.size(), kNone);
-    const auto junction_of = [&](Index piece) -> Junction& {
-      Index& n = number[pieces.find(piece)];
+    const auto junction_of = [&](Index part) -> Junction& {
+      Index& n = number[parts.find(part)];
       if (n == kNone) {
         n = static_cast<Index>(skeleton_.junctions.size());
         skeleton_.junctions.emplace_back();
       }
       return skeleton_.junctions[n];
     };
-    for (Index n = 0; n < node_count; ++n) {
-      if (taken[n]) junction_of(n).nodes.push_back(n);
+    for (Index i = 0; i < node_count; ++i) {
+      if (taken[i]) junction_of(i).nodes.push_back(plan_.nodes[i]);
     }
-    for (Index g = 0; g < gaps_.size(); ++g) junction_of(node_count + g).gaps.push_back(gaps_[g]);
+    for (Index g = 0; g < gaps_.size(); ++g) {
+      Junction& junction = junction_of(node_count + g);
+      const auto& nodes = tubes_.axes()[gaps_[g].branch].branch().nodes;
+      // A loop that is one gap all around hangs at its own first node.
+      if (junction.nodes.empty() && gaps_[g].openings[0].tube == kNone) junction.nodes.push_back(nodes.front());
+      junction.gaps.push_back(gaps_[g]);
+    }
   }
 
-  static void join(UnionFind& pieces, std::vector<char>& taken, Index node, Index piece) {
-    taken[node] = 1;
-    pieces.join(node, piece);
-  }
-
-  const Centerline& centerline_;
-  const std::vector<BranchAxis>& axes_;
-  std::vector<SegmentPlace> places_;
-  RingLayer layer_;
-  std::vector<Rings> rings_;  // of every branch
-  std::vector<char> capped_;  // tips that a tube's cap closes
+  const VesselTubes& tubes_;
+  const PiecePlan& plan_;
+  std::vector<std::vector<Ring>> rings_;  // of the stretches
+  std::map<Index, char> capped_;          // tips that a tube's cap closes
   std::vector<Gap> gaps_;
   GrowthSkeleton skeleton_;
 };
 
 }  // namespace
+
+VesselTubes::VesselTubes(const VesselField& field, const RingOptions& rings)
+    : field_(field),
+      branches_(find_branches(field.centerline())),
+      axes_(axes_of(field.centerline(), branches_)),
+      places_(places_of(field.centerline(), branches_)),
+      layer_(field, axes_, places_, rings),
+      rings_(axes_.size()) {
+  tbb::parallel_for(std::size_t{0}, axes_.size(),
+                    [&](std::size_t b) { rings_[b] = layer_.lay(static_cast<Index>(b)); });
+}
+
+PiecePlan whole_plan(const VesselTubes& tubes) {
+  PiecePlan plan;
+  const Centerline& centerline = tubes.centerline();
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    if (centerline.degree(n) != 2) plan.nodes.push_back(n);
+  }
+  for (Index b = 0; b < tubes.axes().size(); ++b)
+    plan.stretches.push_back({b, 0, static_cast<Index>(tubes.rings(b).size())});
+  return plan;
+}
 
 std::vector<TubeEnd> openings_of(const Junction& junction) {
   std::vector<TubeEnd> openings;
@@ -240,19 +271,15 @@ std::vector<TubeEnd> openings_of(const Junction& junction) {
 
 std::size_t GrowthSkeleton::component_count() const {
   std::size_t count = junctions.size();
-  UnionFind pieces(junctions.size());
+  DisjointSets parts(junctions.size());
   std::vector<Index> first(tubes.size(), kNone);
   for (Index j = 0; j < junctions.size(); ++j) {
-    for (const Gap& gap : junctions[j].gaps) {
-      for (const TubeEnd& opening : gap.openings) {
-        if (opening.tube == kNone) continue;
-        Index& other = first[opening.tube];
-        if (other == kNone) {
-          other = j;
-        } else if (pieces.find(other) != pieces.find(j)) {
-          pieces.join(other, j);
-          --count;
-        }
+    for (const TubeEnd& opening : openings_of(junctions[j])) {
+      Index& other = first[opening.tube];
+      if (other == kNone) {
+        other = j;
+      } else {
+        count -= parts.join(other, j);
       }
     }
   }
@@ -263,15 +290,16 @@ std::size_t GrowthSkeleton::component_count() const {
 std::size_t GrowthSkeleton::cycle_rank() const {
   std::size_t joints = 0, loops = 0, lone = 0;
   for (const Tube& tube : tubes) {
-    joints += !tube.periodic && !tube.starts_at_tip && !tube.ends_at_tip;
+    joints += tube.starts_at_junction() && tube.ends_at_junction();
     loops += tube.periodic;
-    lone += tube.periodic || (tube.starts_at_tip && tube.ends_at_tip);
+    lone += !tube.starts_at_junction() && !tube.ends_at_junction();
   }
   return joints + loops + component_count() - lone - junctions.size();
 }
 
-GrowthSkeleton make_growth_skeleton(const VesselField& field, const std::vector<BranchAxis>& axes, int around) {
-  return SkeletonMaker(field, axes, around).run();
+GrowthSkeleton make_growth_skeleton(const VesselTubes& tubes, const PiecePlan& plan,
+                                    const std::vector<RingPlace>& covered) {
+  return SkeletonMaker(tubes, plan, covered).run();
 }
 
 }  // namespace vmesh

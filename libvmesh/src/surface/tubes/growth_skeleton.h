@@ -7,12 +7,64 @@
 
 namespace vmesh {
 
+/// All branches of a centerline with the rings laid along them.
+class VesselTubes {
+ public:
+  /// `field` must outlive it.
+  VesselTubes(const VesselField& field, const RingOptions& rings);
+  VesselTubes(const VesselTubes&) = delete;
+  VesselTubes& operator=(const VesselTubes&) = delete;
+
+  const VesselField& field() const { return field_; }
+  const Centerline& centerline() const { return field_.centerline(); }
+  const std::vector<BranchAxis>& axes() const { return axes_; }
+  const std::vector<Ring>& rings(Index branch) const { return rings_[branch].rings; }
+  const RingLayer& layer() const { return layer_; }
+
+ private:
+  const VesselField& field_;
+  std::vector<Branch> branches_;
+  std::vector<BranchAxis> axes_;
+  std::vector<SegmentPlace> places_;
+  RingLayer layer_;
+  std::vector<Rings> rings_;  // of every branch
+};
+
+/// Rings of a branch that follow each other, and what lies between and beyond them up to the next seam or the branch's
+/// end. A seam is a ring at which the surface is divided: it stays as it was laid.
+struct Stretch {
+  Index branch = kNone;
+  Index first = 0, count = 0;  ///< its rings; along a loop they go on with the first after the last
+  bool seam_at_first = false, seam_at_last = false;  ///< whether its outer rings are seams
+
+  auto operator<=>(const Stretch&) const = default;
+};
+
+/// What a piece of the surface is grown around.
+struct PiecePlan {
+  std::vector<Index> nodes;  ///< nodes where vessels branch or end, and isolated ones, ascending
+  std::vector<Stretch> stretches;
+
+  auto operator<=>(const PiecePlan&) const = default;
+};
+
+/// A ring of a branch by its number.
+struct RingPlace {
+  Index branch = kNone, ring = kNone;
+
+  auto operator<=>(const RingPlace&) const = default;
+};
+
 /// A stretch of a branch whose cross-sections are its own: rings that follow each other.
 struct Tube {
   Index branch = kNone;
   std::span<const Ring> rings;                      ///< of those of the skeleton
   bool starts_at_tip = false, ends_at_tip = false;  ///< closed by a cap there
   bool periodic = false;                            ///< the last ring is followed by the first
+  bool starts_at_seam = false, ends_at_seam = false;
+
+  bool starts_at_junction() const { return !starts_at_tip && !periodic && !starts_at_seam; }
+  bool ends_at_junction() const { return !ends_at_tip && !periodic && !ends_at_seam; }
 };
 
 /// The open end of a tube at which a junction docks.
@@ -41,7 +93,7 @@ std::vector<TubeEnd> openings_of(const Junction& junction);
 /// part into tubes of their own where their cross-sections do, and a branch without a cross-section of its own is part
 /// of a junction.
 struct GrowthSkeleton {
-  Rings rings;  ///< of the tubes
+  std::vector<std::vector<Ring>> rings;  ///< of the plan's stretches
   std::vector<Tube> tubes;
   std::vector<Junction> junctions;
 
@@ -49,7 +101,12 @@ struct GrowthSkeleton {
   std::size_t component_count() const;
 };
 
-/// `axes` are those of `find_branches`. Isolated nodes become junctions without gaps.
-GrowthSkeleton make_growth_skeleton(const VesselField& field, const std::vector<BranchAxis>& axes, int around);
+/// The plan of the whole surface as one piece.
+PiecePlan whole_plan(const VesselTubes& tubes);
+
+/// The skeleton of a piece. Rings in `covered` (ascending) are left to junctions; seams cannot be. Isolated nodes
+/// become junctions without gaps.
+GrowthSkeleton make_growth_skeleton(const VesselTubes& tubes, const PiecePlan& plan,
+                                    const std::vector<RingPlace>& covered = {});
 
 }  // namespace vmesh

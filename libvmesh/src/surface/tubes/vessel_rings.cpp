@@ -59,12 +59,12 @@ bool is_straight_between(const Ring& ring, const Ring& next) {
 double ring_pitch(int around) { return kPitch * balanced_ring_radius(around) * equilateral_height(around); }
 
 RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes,
-                     const std::vector<SegmentPlace>& places, int around)
-    : field_(field), axes_(axes), places_(places), around_(around) {}
+                     const std::vector<SegmentPlace>& places, const RingOptions& options)
+    : field_(field), axes_(axes), places_(places), options_(options) {}
 
 Rings RingLayer::lay(Index branch) const {
   const BranchAxis& axis = axes_[branch];
-  const double pitch = ring_pitch(around_);
+  const double pitch = ring_pitch(options_.around);
   const double total = axis.length_in_radii();
   const auto bands = static_cast<std::size_t>(std::max(1.0, std::round(total / pitch)));
   const double step = total / static_cast<double>(bands);
@@ -72,7 +72,7 @@ Rings RingLayer::lay(Index branch) const {
   Rings laid;
   std::vector<Ring>& rings = laid.rings;
   rings.reserve(count);
-  laid.points.reserve(count * static_cast<std::size_t>(around_));
+  laid.points.reserve(count * static_cast<std::size_t>(options_.around));
   Vec3 side = Vec3::Zero();
   for (std::size_t k = 0; k < count; ++k) {
     const double radii = step * static_cast<double>(k);
@@ -81,6 +81,8 @@ Rings RingLayer::lay(Index branch) const {
                   : Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, here.normal) * side);
     side = (side - side.dot(here.normal) * here.normal).normalized();
     rings.push_back(lay_one(branch, here, side, static_cast<double>(k % 2) / 2, laid.points));
+    const bool at_tip = (k == 0 && axis.starts_at_tip()) || (k + 1 == count && axis.ends_at_tip());
+    if (options_.lifted && !at_tip) lift(rings.back(), laid.points);
     rings.back().beside = {section(branch, radii - step / 2), section(branch, radii + step / 2)};
   }
   std::vector<char> collides(rings.size(), 0);
@@ -91,7 +93,9 @@ Rings RingLayer::lay(Index branch) const {
   }
   for (std::size_t k = 0; k < rings.size(); ++k) rings[k].free = rings[k].free && !collides[k];
   leave_out_steps(rings, kMinGap * pitch);
-  clear_ends(branch, rings);
+  if (!axis.periodic() && !axis.starts_at_tip()) rings.front().free = false;
+  if (!axis.periodic() && !axis.ends_at_tip()) rings.back().free = false;
+  clear_ends(branch, rings, axis.periodic());
   return laid;
 }
 
@@ -116,21 +120,29 @@ void RingLayer::leave_out_steps(std::vector<Ring>& rings, double least_gap) {
   rings.resize(kept);
 }
 
-void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings) const {
-  const BranchAxis& axis = axes_[branch];
+// The wall is a curve along which nothing else is near: the ring's radius grows evenly.
+void RingLayer::lift(const Ring& ring, std::vector<BoundaryPoint>& points) const {
+  const double height = std::min((balanced_ring_radius(options_.around) - 1) * ring.radius,
+                                 kShareOfLimit * options_.limit.at(ring.radius));
+  for (std::size_t i = points.size() - ring.points.size(); i < points.size(); ++i) {
+    BoundaryPoint& p = points[i];
+    const Vec3 way = (p.position - ring.center).normalized();
+    p.position += height / std::max(kFacing, p.sample.gradient.dot(way)) * way;
+  }
+}
+
+void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings, bool loop) const {
   const std::size_t count = rings.size();
-  if (!axis.periodic() && !axis.starts_at_tip()) rings.front().free = false;
-  if (!axis.periodic() && !axis.ends_at_tip()) rings.back().free = false;
   const auto covered = [&](std::size_t k) { return !rings[k].free; };
   std::vector<BoundaryPoint> points;
-  points.reserve(static_cast<std::size_t>(around_));
+  points.reserve(static_cast<std::size_t>(options_.around));
   const auto can_dock = [&](const Ring& ring, int side) {
     const Vec3 across = ring.points.front().position - ring.center;
     const CrossSection& next = ring.beside[side];
     points.clear();
     return lay_one(branch, next, (across - across.dot(next.normal) * next.normal).normalized(), 0, points).free;
   };
-  const std::size_t laps = axis.periodic() ? 2 * count : count;
+  const std::size_t laps = loop ? 2 * count : count;
   for (std::size_t k = 1; k < laps; ++k) {
     Ring& ring = rings[k % count];
     if (ring.free && covered((k - 1) % count)) ring.free = can_dock(ring, 0);
@@ -169,8 +181,8 @@ Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& s
   ring.clear = goes_through(branch, section) && is_clear(branch, section, axis, side, up);
   if (!ring.clear) return ring;
   const std::size_t first = points.size();
-  for (int j = 0; j < around_; ++j) {
-    const double angle = 2 * std::numbers::pi * (j + phase) / around_;
+  for (int j = 0; j < options_.around; ++j) {
+    const double angle = 2 * std::numbers::pi * (j + phase) / options_.around;
     BoundaryPoint seen;
     if (!see(branch, ring, axis, std::cos(angle) * side + std::sin(angle) * up, seen)) {
       points.resize(first);

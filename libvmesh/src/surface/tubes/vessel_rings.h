@@ -38,6 +38,13 @@ struct Rings {
 /// Distance in radii between rings of `around` vertices whose band consists of nearly equilateral triangles.
 double ring_pitch(int around);
 
+/// How rings are laid.
+struct RingOptions {
+  int around;
+  bool lifted;       ///< for balanced placement: off the boundary, so that the volume is kept; but for rings at tips
+  ErrorLimit limit;  ///< never lifted beyond it
+};
+
 /// Where every segment lies: its branch and its number there.
 struct SegmentPlace {
   Index branch = kNone;
@@ -52,9 +59,13 @@ struct SegmentPlace {
 class RingLayer {
  public:
   RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes, const std::vector<SegmentPlace>& places,
-            int around);
+            const RingOptions& options);
 
   Rings lay(Index branch) const;
+
+  /// Frees no more than what can end a tube: where free rings begin or end off a tip, the cross-section half a step
+  /// further is free as well. `loop`: the first ring follows the last one.
+  void clear_ends(Index branch, std::vector<Ring>& rings, bool loop) const;
 
  private:
   CrossSection section(Index branch, double radii) const;
@@ -62,8 +73,8 @@ class RingLayer {
   // Its points go to the end of `points`, which must have room for them.
   Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
                std::vector<BoundaryPoint>& points) const;
+  void lift(const Ring& ring, std::vector<BoundaryPoint>& points) const;
   static void leave_out_steps(std::vector<Ring>& rings, double least_gap);
-  void clear_ends(Index branch, std::vector<Ring>& rings) const;
   // Whether no other vessel, nor a far part of this one, covers the cross-section or comes close.
   bool is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
                 const Vec3& up) const;
@@ -76,7 +87,7 @@ class RingLayer {
   const VesselField& field_;
   const std::vector<BranchAxis>& axes_;
   const std::vector<SegmentPlace>& places_;
-  int around_;
+  RingOptions options_;
 };
 
 }  // namespace vmesh

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "surface/pieces/piece.h"
+
+namespace vmesh {
+
+/// A surface put together from its pieces: vertices of the seams first, then those of the pieces in their order.
+struct GatheredSurface {
+  TriMesh mesh;
+  std::vector<CenterlineBinding> binding;
+  std::vector<double> radius;
+  std::vector<Opening> openings;   ///< node, centre, radius and ring
+  std::vector<Index> first_face;   ///< of every piece, and one more for the end
+
+  Index piece_of(Index face) const;
+};
+
+GatheredSurface gather(const VesselTubes& tubes, const Division& division, const std::vector<PieceSurface>& pieces);
+
+}  // namespace vmesh

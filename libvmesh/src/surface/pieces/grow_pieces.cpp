@@ -1,0 +1,175 @@
+#include "surface/pieces/grow_pieces.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include <tbb/parallel_for.h>
+
+#include "vmesh/mesh/topology.h"
+#include "vmesh/surface/error_bound.h"
+
+#include "surface/pieces/gathering.h"
+#include "surface/proof/error_limit.h"
+
+namespace vmesh {
+namespace {
+
+constexpr int kRounds = 5;         // of making pieces again as one
+constexpr double kNearSeam = 4.0;  // radii: what is wrong so near to a seam may be because of it
+
+class PieceGrower {
+ public:
+  PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
+              const Progress& progress)
+      : tubes_(field, {options.around, options.placement == Placement::balanced, options.max_error}),
+        options_(options),
+        progress_(progress),
+        context_{tubes_, open, options_, ask_},
+        division_(divide(tubes_)) {}
+
+  std::vector<std::pair<Index, Index>> run(GenerateResult& result) {
+    make_pieces({});
+    for (int round = 0;; ++round) {
+      gathered_ = gather(tubes_, division_, pieces_);
+      crossings_ = self_intersections(gathered_.mesh);
+      if (options_.max_error.is_set())
+        unproven_ = unproven_faces(gathered_.mesh, gathered_.binding, tubes_.field(), options_.max_error);
+      if (round == kRounds || !regroup()) break;
+    }
+    tell(result);
+    return std::move(crossings_);
+  }
+
+ private:
+  // Makes those that are not in `known` yet.
+  void make_pieces(std::map<PiecePlan, PieceSurface> known) {
+    pieces_.clear();
+    pieces_.resize(division_.plans.size());
+    std::vector<Index> missing;
+    for (Index p = 0; p < pieces_.size(); ++p) {
+      const auto it = known.find(division_.plans[p]);
+      if (it == known.end()) {
+        missing.push_back(p);
+      } else {
+        pieces_[p] = std::move(it->second);
+      }
+    }
+    done_ = pieces_.size() - missing.size();
+    tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
+      report_progress(ask_, "grow", 0);
+      pieces_[missing[i]] = make_piece(context_, division_.plans[missing[i]]);
+      const std::lock_guard lock(reporting_);
+      ++done_;
+    });
+  }
+
+  // Joins pieces at what is wrong between them. Returns whether there was something.
+  bool regroup() {
+    std::vector<RingPlace> dissolved;
+    std::vector<std::pair<Anchor, Anchor>> joined;
+    for (const auto& [f, g] : crossings_) part(gathered_.piece_of(f), gathered_.piece_of(g), dissolved, joined);
+    for (Index p = 0; p < pieces_.size(); ++p) {
+      for (const RingPlace& seam : seams_of(tubes_, division_.plans[p])) {
+        if (has_fault_near(pieces_[p], seam)) dissolved.push_back(seam);
+      }
+    }
+    for (const Index f : unproven_) {
+      for (const Index v : gathered_.mesh.faces[f]) {
+        if (const auto seam = seam_of_vertex(v)) dissolved.push_back(*seam);
+      }
+    }
+    if (dissolved.empty() && joined.empty()) return false;
+    std::sort(dissolved.begin(), dissolved.end());
+    dissolved.erase(std::unique(dissolved.begin(), dissolved.end()), dissolved.end());
+    Division next = regrouped(tubes_, division_, dissolved, joined);
+    if (next.plans == division_.plans) return false;
+    std::map<PiecePlan, PieceSurface> known;
+    for (Index p = 0; p < pieces_.size(); ++p) known.emplace(std::move(division_.plans[p]), std::move(pieces_[p]));
+    division_ = std::move(next);
+    make_pieces(std::move(known));
+    return true;
+  }
+
+  void part(Index p, Index q, std::vector<RingPlace>& dissolved, std::vector<std::pair<Anchor, Anchor>>& joined) const {
+    if (p == q) return;
+    const std::vector<RingPlace> of_p = seams_of(tubes_, division_.plans[p]);
+    bool neighbours = false;
+    for (const RingPlace& seam : seams_of(tubes_, division_.plans[q])) {
+      if (std::find(of_p.begin(), of_p.end(), seam) == of_p.end()) continue;
+      dissolved.push_back(seam);
+      neighbours = true;
+    }
+    if (!neighbours) joined.emplace_back(anchor_of(division_.plans[p]), anchor_of(division_.plans[q]));
+  }
+
+  bool has_fault_near(const PieceSurface& piece, const RingPlace& seam) const {
+    const Ring& ring = tubes_.rings(seam.branch)[seam.ring];
+    return std::any_of(piece.faults.begin(), piece.faults.end(), [&](const PieceFault& fault) {
+      return (fault.position - ring.center).norm() < kNearSeam * ring.radius;
+    });
+  }
+
+  // All seams have as many vertices as there are around a vessel, and come first.
+  std::optional<RingPlace> seam_of_vertex(Index v) const {
+    const std::size_t seam = v / static_cast<std::size_t>(options_.around);
+    if (seam >= division_.seams.size()) return std::nullopt;
+    return division_.seams[seam];
+  }
+
+  void tell(GenerateResult& result) {
+    const Centerline& centerline = tubes_.centerline();
+    GrowthSummary& growth = result.growth;
+    std::size_t filled = 0;
+    growth.rungs.assign(kRungs, 0);
+    growth.pieces = pieces_.size();
+    for (PieceSurface& piece : pieces_) {
+      growth.junctions += piece.junctions;
+      growth.tubes += piece.tubes;
+      filled += piece.filled_loops;
+      ++growth.rungs[static_cast<std::size_t>(piece.rung)];
+      for (GrowthSimplification& note : piece.simplifications) growth.simplifications.push_back(std::move(note));
+    }
+    growth.tubes -= division_.seams.size();  // a tube on either side is one
+    growth.components = centerline.component_count();
+    growth.cycle_rank = centerline.cycle_rank() - filled;
+    if (filled > 0)
+      result.warnings.push_back("growth: " + std::to_string(filled) +
+                                " loops of the centerline are too short to have a hole; the surface is filled there");
+    result.error.unproven_faces = unproven_.size();
+    result.error.unproven_places = places_of(gathered_.mesh, unproven_);
+    result.mesh = std::move(gathered_.mesh);
+    result.binding = std::move(gathered_.binding);
+    result.radius = std::move(gathered_.radius);
+    result.openings = std::move(gathered_.openings);
+  }
+
+  VesselTubes tubes_;
+  const GenerateOptions& options_;
+  const Progress& progress_;
+  std::mutex reporting_;
+  std::size_t done_ = 0;
+  // Every sweep of a piece asks whether to go on; what it tells is how many pieces are done.
+  const Progress ask_ = [this](std::string_view, double) {
+    const std::lock_guard lock(reporting_);
+    const double fraction = static_cast<double>(done_) / static_cast<double>(std::max<std::size_t>(1, pieces_.size()));
+    return !progress_ || progress_("grow", fraction);
+  };
+  PieceContext context_;
+  Division division_;
+  std::vector<PieceSurface> pieces_;
+  GatheredSurface gathered_;
+  std::vector<std::pair<Index, Index>> crossings_;
+  std::vector<Index> unproven_;
+};
+
+}  // namespace
+
+std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const std::vector<char>& open,
+                                                 const GenerateOptions& options, const Progress& progress,
+                                                 GenerateResult& result) {
+  return PieceGrower(field, open, options, progress).run(result);
+}
+
+}  // namespace vmesh

@@ -1,0 +1,217 @@
+#include "surface/pieces/piece.h"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "surface/junction/junction_piece.h"
+#include "surface/pieces/assembly.h"
+#include "surface/pieces/piece_check.h"
+#include "surface/remesh/optimize.h"
+
+namespace vmesh {
+namespace {
+
+// What is done about the faults of the rung before.
+struct Rung {
+  double reach;  // rings so near to a fault, in their radii, are left to a junction; 0: none
+  double finer;  // radius of fine spots at faults, in local ones; 0: none
+};
+constexpr Rung kLadder[kRungs] = {{0, 0}, {2, 0}, {3, 0}, {3, 0.5}, {5, 0}, {5, 0.35}};
+
+std::string at(const Vec3& p) {
+  std::ostringstream text;
+  text << "(" << p.x() << ", " << p.y() << ", " << p.z() << ")";
+  return text.str();
+}
+
+// What growing this junction as one piece leaves out of the centerline's graph.
+void note_simplifications(const VesselTubes& tubes, const Junction& junction, std::size_t filled_loops,
+                          std::vector<GrowthSimplification>& notes) {
+  const Centerline& centerline = tubes.centerline();
+  GrowthSimplification note;
+  std::size_t inner_branches = 0;
+  note.nodes = junction.nodes;
+  for (const Gap& gap : junction.gaps) {
+    if (gap.openings[0].tube != kNone || gap.openings[1].tube != kNone) continue;
+    const auto& segments = tubes.axes()[gap.branch].branch().segments;
+    note.segments.insert(note.segments.end(), segments.begin(), segments.end());
+    ++inner_branches;
+  }
+  double widest = 0;
+  for (const Index n : junction.nodes) {
+    if (centerline.node(n).radius <= widest) continue;
+    widest = centerline.node(n).radius;
+    note.position = centerline.node(n).position;
+  }
+  if (junction.nodes.empty()) {
+    const Gap& gap = junction.gaps.front();
+    note.position = tubes.axes()[gap.branch].at(gap.begin).position;
+  }
+  if (junction.nodes.size() > 1) {
+    note.kind = GrowthSimplification::Kind::merged_nodes;
+    note.message = std::to_string(junction.nodes.size()) + " nodes around " + at(note.position) +
+                   " grew as one junction: nowhere between them does a vessel have a cross-section of its own; " +
+                   std::to_string(inner_branches) + " branches lie wholly within it";
+    notes.push_back(note);
+  }
+  if (filled_loops > 0) {
+    note.kind = GrowthSimplification::Kind::filled_loop;
+    note.message = std::to_string(filled_loops) + " loops around " + at(note.position) +
+                   " are too short to have a hole; the surface is filled there";
+    notes.push_back(note);
+  }
+}
+
+class PieceMaker {
+ public:
+  PieceMaker(const PieceContext& context, const PiecePlan& plan)
+      : context_(context), tubes_(context.tubes), plan_(plan) {}
+
+  PieceSurface run() {
+    PieceSurface best;
+    for (int rung = 0; rung < kRungs; ++rung) {
+      if (rung > 0 && !climb(kLadder[rung], best.faults)) continue;
+      PieceSurface piece = make(kLadder[rung], best.faults);
+      piece.rung = rung;
+      if (rung == 0 || piece.faults.size() < best.faults.size()) best = std::move(piece);
+      if (best.faults.empty()) break;
+    }
+    return best;
+  }
+
+ private:
+  // Whether that changes anything.
+  bool climb(const Rung& rung, const std::vector<PieceFault>& faults) {
+    const std::size_t before = covered_.size();
+    for (const Stretch& stretch : plan_.stretches) {
+      const std::vector<Ring>& rings = tubes_.rings(stretch.branch);
+      for (Index k = 0; k < stretch.count; ++k) {
+        const auto number = static_cast<Index>((stretch.first + k) % rings.size());
+        const Ring& ring = rings[number];
+        const double reach = rung.reach * ring.radius;
+        const bool near = std::any_of(faults.begin(), faults.end(), [&](const PieceFault& fault) {
+          return (fault.position - ring.center).squaredNorm() < reach * reach;
+        });
+        if (near && ring.free) covered_.push_back({stretch.branch, number});
+      }
+    }
+    std::sort(covered_.begin(), covered_.end());
+    covered_.erase(std::unique(covered_.begin(), covered_.end()), covered_.end());
+    return covered_.size() > before || rung.finer > 0;
+  }
+
+  PieceSurface make(const Rung& rung, const std::vector<PieceFault>& faults) {
+    const GrowthSkeleton skeleton = make_growth_skeleton(tubes_, plan_, covered_);
+    PieceSurface piece;
+    piece.junctions = skeleton.junctions.size();
+    piece.tubes = skeleton.tubes.size();
+    Assembly assembly(tubes_, plan_, skeleton, context_.open);
+    for (const Junction& junction : skeleton.junctions) {
+      const JunctionPiece grown =
+          make_junction_piece(tubes_, skeleton, junction, context_.options, context_.progress);
+      assembly.add_junction(grown);
+      piece.filled_loops += grown.filled_loops;
+      note_simplifications(tubes_, junction, grown.filled_loops, piece.simplifications);
+    }
+    BoundSurface surface(tubes_.field());
+    const std::vector<PieceLoop> loops = assembly.build(surface);
+    if (rung.finer > 0) {
+      for (const PieceFault& fault : faults)
+        surface.fine_spots.push_back({fault.position, rung.finer * radius_at(surface, fault.position)});
+    }
+    if (context_.options.sweeps > 0) {
+      const GrownMesh grown{double(context_.options.around),
+                            expected_vertices(length_in_radii(), context_.options.around),
+                            GrownMesh::Stage::assembled};
+      optimize(surface, context_.options, grown, context_.progress);
+    }
+    piece.faults = find_faults(surface, nodes_of(skeleton), context_.options);
+    export_surface(surface, loops, piece);
+    return piece;
+  }
+
+  static double radius_at(const BoundSurface& surface, const Vec3& p) {
+    double nearest = std::numeric_limits<double>::infinity(), radius = 0;
+    for (const Vertex v : surface.mesh.vertices()) {
+      const double away = (surface.position(v) - p).squaredNorm();
+      if (away >= nearest) continue;
+      nearest = away;
+      radius = surface.radius(v);
+    }
+    return radius;
+  }
+
+  double length_in_radii() const {
+    double rings = 0;
+    for (const Stretch& stretch : plan_.stretches) rings += stretch.count;
+    return (rings + 2 * static_cast<double>(plan_.nodes.size())) * ring_pitch(context_.options.around);
+  }
+
+  // Nodes that must lie inside: those not right at a seam.
+  std::vector<Index> nodes_of(const GrowthSkeleton& skeleton) const {
+    std::vector<Index> nodes = plan_.nodes;
+    for (std::size_t i = 0; i < plan_.stretches.size(); ++i) {
+      const Stretch& stretch = plan_.stretches[i];
+      const BranchAxis& axis = tubes_.axes()[stretch.branch];
+      const std::vector<Ring>& rings = skeleton.rings[i];
+      double low = stretch.seam_at_first ? rings.front().place + rings.front().radius : 0;
+      double high = stretch.seam_at_last ? rings.back().place - rings.back().radius : axis.length();
+      const bool around = axis.periodic() && stretch.seam_at_first && rings.front().place >= rings.back().place;
+      for (std::size_t n = 1; n + 1 < axis.branch().nodes.size() || (axis.periodic() && n < axis.branch().nodes.size());
+           ++n) {
+        const double place = axis.node_place(n);
+        if (around ? place > low || place < high : place > low && place < high)
+          nodes.push_back(axis.branch().nodes[n]);
+      }
+    }
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    std::erase_if(nodes, [&](Index n) { return context_.open[n] != 0; });
+    return nodes;
+  }
+
+  void export_surface(const BoundSurface& surface, const std::vector<PieceLoop>& loops, PieceSurface& piece) const {
+    const SurfaceMesh& mesh = surface.mesh;
+    std::vector<Index> number(mesh.num_vertices() + mesh.number_of_removed_vertices(), kNone);
+    std::map<Vertex, SeamVertex> at_seam;
+    for (const PieceLoop& loop : loops) {
+      for (Index j = 0; loop.node == kNone && j < loop.vertices.size(); ++j)
+        at_seam.emplace(loop.vertices[j], SeamVertex{loop.seam, j});
+    }
+    for (const Vertex v : mesh.vertices()) {
+      if (surface.role[v] == BoundSurface::Role::lid || at_seam.contains(v)) continue;
+      number[v.idx()] = static_cast<Index>(piece.vertices.size());
+      piece.vertices.push_back(surface.position(v));
+      piece.binding.push_back({surface.cone[v], surface.t[v]});
+      piece.radius.push_back(surface.radius(v));
+    }
+    for (const auto& [v, seam] : at_seam) {
+      number[v.idx()] = static_cast<Index>(piece.vertices.size() + piece.seam_vertices.size());
+      piece.seam_vertices.push_back(seam);
+    }
+    for (const Face f : mesh.faces()) {
+      if (surface.is_lid(f)) continue;
+      const Halfedge h = mesh.halfedge(f);
+      piece.faces.push_back(
+          {number[mesh.source(h).idx()], number[mesh.target(h).idx()], number[mesh.target(mesh.next(h)).idx()]});
+    }
+    for (const PieceLoop& loop : loops) {
+      if (loop.node == kNone) continue;
+      PieceSurface::Hole hole{loop.node, {}};
+      for (const Vertex v : loop.vertices) hole.vertices.push_back(number[v.idx()]);
+      piece.holes.push_back(std::move(hole));
+    }
+  }
+
+  const PieceContext& context_;
+  const VesselTubes& tubes_;
+  const PiecePlan& plan_;
+  std::vector<RingPlace> covered_;
+};
+
+}  // namespace
+
+PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan) { return PieceMaker(context, plan).run(); }
+
+}  // namespace vmesh

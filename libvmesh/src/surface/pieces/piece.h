@@ -1,0 +1,58 @@
+#pragma once
+
+#include "vmesh/core/progress.h"
+#include "vmesh/surface/generate.h"
+
+#include "surface/pieces/division.h"
+
+namespace vmesh {
+
+/// Why a piece is not sound.
+struct PieceFault {
+  DefectKind kind;
+  Vec3 position = Vec3::Zero();
+};
+
+/// A vertex of a seam: number `number` of its ring.
+struct SeamVertex {
+  RingPlace seam;
+  Index number = 0;
+};
+
+/// A piece of surface, finished: grown, docked, optimised and checked. Faces refer to its own vertices and, from
+/// vertices.size() on, to those of its seams.
+struct PieceSurface {
+  std::vector<Vec3> vertices;
+  std::vector<CenterlineBinding> binding;  ///< one per own vertex, as is the next
+  std::vector<double> radius;
+  std::vector<SeamVertex> seam_vertices;
+  std::vector<Triangle> faces;
+  struct Hole {
+    Index node;
+    std::vector<Index> vertices;  ///< counter-clockwise about the direction out of the vessel
+  };
+  std::vector<Hole> holes;  ///< at ends that are left open
+
+  std::size_t junctions = 0, tubes = 0;
+  std::vector<GrowthSimplification> simplifications;
+  std::size_t filled_loops = 0;  ///< loops of the centerline too short to have a hole
+  int rung = 0;                  ///< of the ladder at which it was found
+  std::vector<PieceFault> faults;
+};
+
+/// What all pieces of a surface have in common.
+struct PieceContext {
+  const VesselTubes& tubes;
+  const std::vector<char>& open;  ///< for every node, whether the surface is to be open there
+  const GenerateOptions& options;
+  const Progress& progress;
+};
+
+/// Rungs of the ladder, cheapest first: the piece as planned; rings around its faults left to junctions, farther and
+/// farther; finer triangles around them as well.
+inline constexpr int kRungs = 6;
+
+/// Makes a piece on the first rung on which it is sound, or the one with the fewest faults.
+PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan);
+
+}  // namespace vmesh

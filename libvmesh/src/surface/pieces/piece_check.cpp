@@ -1,0 +1,56 @@
+#include "surface/pieces/piece_check.h"
+
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/soundness.h"
+
+#include "surface/remesh/untangle.h"
+
+namespace vmesh {
+namespace {
+
+Vec3 center_of(const TriMesh& mesh, Index f) {
+  const auto& [a, b, c] = mesh.faces[f];
+  return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+}
+
+void find_crossings(const TriMesh& mesh, std::vector<PieceFault>& faults) {
+  for (const auto& [f, g] : self_intersections(mesh)) {
+    for (const Index face : {f, g}) faults.push_back({DefectKind::crossing_faces, center_of(mesh, face)});
+  }
+}
+
+void find_bad_faces(const SweepState& state, std::vector<PieceFault>& faults) {
+  for (const Face f : state.mesh.faces()) {
+    if (state.surface.is_lid(f)) continue;
+    const auto [a, b, c] = state.corners(f);
+    const double skewness = equiangle_skewness(state.point(a), state.point(b), state.point(c));
+    if (skewness <= kWorstSkewness) continue;
+    faults.push_back({DefectKind::bad_triangle, (state.point(a) + state.point(b) + state.point(c)) / 3});
+  }
+}
+
+void find_nodes_outside(const BoundSurface& surface, const TriMesh& mesh, const std::vector<Index>& nodes,
+                        std::vector<PieceFault>& faults) {
+  std::vector<Vec3> positions;
+  for (const Index n : nodes) positions.push_back(surface.field.centerline().node(n).position);
+  if (positions.empty()) return;
+  const std::vector<bool> inside = points_inside(mesh, positions);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    if (!inside[i]) faults.push_back({DefectKind::node_outside, positions[i]});
+  }
+}
+
+}  // namespace
+
+std::vector<PieceFault> find_faults(BoundSurface& surface, const std::vector<Index>& nodes,
+                                    const GenerateOptions& options) {
+  std::vector<PieceFault> faults;
+  const SweepState state(surface);
+  find_crossings(indexed_mesh(state, false), faults);
+  if (options.sweeps > 0) find_bad_faces(state, faults);
+  find_nodes_outside(surface, indexed_mesh(state, true), nodes, faults);
+  return faults;
+}
+
+}  // namespace vmesh
