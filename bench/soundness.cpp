@@ -115,7 +115,7 @@ void examine(const std::string& name, const Centerline& given, const GenerateOpt
   Vec3 at = Vec3::Zero();
   if (!crossings.empty()) at = result.mesh.vertices[result.mesh.faces[crossings.front().first][0]];
   std::string rungs;
-  for (const std::size_t count : result.growth.rungs) rungs += (rungs.empty() ? "" : " ") + std::to_string(count);
+  for (const std::size_t count : result.growth.rungs) rungs.append(rungs.empty() ? "" : " ").append(std::to_string(count));
   std::printf("| %s | %zu | %zu | %.3f / %.3f | %s | %zu | %zu | %zu | %zu | %s | %.2f | (%.2f %.2f %.2f) |\n",
               name.c_str(), centerline.nodes().size(), result.mesh.vertices.size(), skewness.mean, skewness.max,
               topology_right ? "right" : "WRONG", crossings.size(), outside, left, result.error.unproven_faces,

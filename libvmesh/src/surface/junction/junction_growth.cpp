@@ -91,8 +91,8 @@ JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<Branc
   }
 }
 
-JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims) const {
-  const GenerateResult piece = onto_boundary(finer);
+JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarded) const {
+  const GenerateResult piece = onto_boundary(finer, guarded);
   JunctionSurface result;
   DiscCutter cutter(piece.mesh.vertices, piece.mesh.faces);
   for (Index g = 0; g < junction_.gaps.size(); ++g) {
@@ -114,9 +114,10 @@ const Thread* JunctionGrowth::thread_at(Index gap, bool at_end) const {
   return it == threads_.end() ? nullptr : &*it;
 }
 
-GenerateResult JunctionGrowth::onto_boundary(double finer) const {
+GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   BoundSurface surface(local_field_);
   fill(surface, lattice_);
+  if (guarded) surface.guard_crossings();
   GenerateOptions options = options_;
   options.sweeps = kSweeps;
   options.max_error = {};

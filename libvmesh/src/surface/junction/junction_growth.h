@@ -41,8 +41,8 @@ class JunctionGrowth {
   bool has_threads() const { return !threads_.empty(); }
 
   /// The surface, made at `finer` times the resolution asked for; with rims moved onto the boundary and rid of short
-  /// edges, or as they were cut.
-  JunctionSurface make(double finer, bool smooth_rims) const;
+  /// edges, or as they were cut. Guarded: faces never cross on the way from the lattice to the boundary.
+  JunctionSurface make(double finer, bool smooth_rims, bool guarded) const;
 
   /// Loops of the centerline that the junction closes itself.
   std::size_t handles() const { return lattice_.handles; }
@@ -52,7 +52,7 @@ class JunctionGrowth {
 
  private:
   const Thread* thread_at(Index gap, bool at_end) const;
-  GenerateResult onto_boundary(double finer) const;
+  GenerateResult onto_boundary(double finer, bool guarded) const;
   CrossSection way_out(const TubeEnd& opening) const;
   std::vector<Index> cut_opening(DiscCutter& cutter, const GenerateResult& piece, Index gap, bool at_end,
                                  bool smooth) const;

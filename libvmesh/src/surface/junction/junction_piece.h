@@ -23,7 +23,8 @@ struct JunctionPiece {
   std::size_t handles = 0;       ///< loops of the centerline that the junction closes itself
   std::size_t filled_loops = 0;  ///< loops that it does not
   std::size_t unproven = 0;      ///< faces for which the limit on the error is not proven
-  std::size_t tangles = 0;       ///< vertices of faces that intersect each other within the piece
+  std::size_t crossings = 0;     ///< vertices of faces that intersect each other
+  std::size_t tangles = 0;       ///< these of neighbouring vessels, and vertices off the boundary
 };
 
 /// Rings at the end of a tube that belong to the piece of the junction there and are replaced by it. The next one joins
@@ -31,8 +32,9 @@ struct JunctionPiece {
 std::size_t rings_given_away(const Tube& tube);
 
 /// Grows a junction, docks its tubes and optimises around their seams. Where faces intersect, other resolutions of the
-/// junction's surface are tried, and then its threads within the lattice; the best is kept.
+/// junction's surface are tried, then its threads within the lattice; the best is kept. `guarded`: variants on which no
+/// step is taken after which faces cross are among them.
 JunctionPiece make_junction_piece(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
-                                  const GenerateOptions& options, const Progress& progress);
+                                  const GenerateOptions& options, bool guarded, const Progress& progress);
 
 }  // namespace vmesh

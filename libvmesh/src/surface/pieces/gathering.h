@@ -9,8 +9,8 @@ struct GatheredSurface {
   TriMesh mesh;
   std::vector<CenterlineBinding> binding;
   std::vector<double> radius;
-  std::vector<Opening> openings;   ///< node, centre, radius and ring
-  std::vector<Index> first_face;   ///< of every piece, and one more for the end
+  std::vector<Opening> openings;  ///< node, centre, radius and ring
+  std::vector<Index> first_face;  ///< of every piece, and one more for the end
 
   Index piece_of(Index face) const;
 };

@@ -16,8 +16,11 @@ namespace {
 struct Rung {
   double reach;  // rings so near to a fault, in their radii, are left to a junction; 0: none
   double finer;  // radius of fine spots at faults, in local ones; 0: none
+  bool guarded;  // no step is taken after which faces cross
 };
-constexpr Rung kLadder[kRungs] = {{0, 0}, {2, 0}, {3, 0}, {3, 0.5}, {5, 0}, {5, 0.35}};
+constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+constexpr Rung kLadder[kRungs] = {{0, 0, false},  {2, 0, true}, {3, 0, true},
+                                  {3, 0.5, true}, {5, 0, true}, {kEverywhere, 0, true}};
 
 std::string at(const Vec3& p) {
   std::ostringstream text;
@@ -74,6 +77,21 @@ class PieceMaker {
       if (rung > 0 && !climb(kLadder[rung], best.faults)) continue;
       PieceSurface piece = make(kLadder[rung], best.faults);
       piece.rung = rung;
+      if (getenv("VDBG")) {
+        int k[8] = {};
+        for (auto& f : piece.faults) ++k[int(f.kind)];
+        fprintf(stderr,
+                "piece b%u r%u nodes %zu rung %d: junctions %zu tubes %zu verts %zu faults %zu: cross %d bad %d node "
+                "%d covered %zu",
+                plan_.stretches.empty() ? 0 : plan_.stretches[0].branch,
+                plan_.stretches.empty() ? 0 : plan_.stretches[0].first, plan_.nodes.size(), rung, piece.junctions,
+                piece.tubes, piece.vertices.size(), piece.faults.size(), k[4], k[5], k[6], covered_.size());
+        if (!piece.faults.empty()) {
+          auto& p = piece.faults[0].position;
+          fprintf(stderr, " at %.2f %.2f %.2f", p.x(), p.y(), p.z());
+        }
+        fprintf(stderr, "\n");
+      }
       if (rung == 0 || piece.faults.size() < best.faults.size()) best = std::move(piece);
       if (best.faults.empty()) break;
     }
@@ -109,21 +127,25 @@ class PieceMaker {
     Assembly assembly(tubes_, plan_, skeleton, context_.open);
     for (const Junction& junction : skeleton.junctions) {
       const JunctionPiece grown =
-          make_junction_piece(tubes_, skeleton, junction, context_.options, context_.progress);
+          make_junction_piece(tubes_, skeleton, junction, context_.options, rung.guarded, context_.progress);
       assembly.add_junction(grown);
+      if (getenv("VDBG"))
+        fprintf(stderr, "   junction nodes %zu gaps %zu verts %zu tangles %zu handles %zu filled %zu\n",
+                junction.nodes.size(), junction.gaps.size(), grown.vertices.size(), grown.tangles, grown.handles,
+                grown.filled_loops);
       piece.filled_loops += grown.filled_loops;
       note_simplifications(tubes_, junction, grown.filled_loops, piece.simplifications);
     }
     BoundSurface surface(tubes_.field());
     const std::vector<PieceLoop> loops = assembly.build(surface);
+    if (rung.guarded) surface.guard_crossings();
     if (rung.finer > 0) {
       for (const PieceFault& fault : faults)
         surface.fine_spots.push_back({fault.position, rung.finer * radius_at(surface, fault.position)});
     }
     if (context_.options.sweeps > 0) {
       const GrownMesh grown{double(context_.options.around),
-                            expected_vertices(length_in_radii(), context_.options.around),
-                            GrownMesh::Stage::assembled};
+                            expected_vertices(length_in_radii(), context_.options.around), GrownMesh::Stage::assembled};
       optimize(surface, context_.options, grown, context_.progress);
     }
     piece.faults = find_faults(surface, nodes_of(skeleton), context_.options);
@@ -161,8 +183,7 @@ class PieceMaker {
       for (std::size_t n = 1; n + 1 < axis.branch().nodes.size() || (axis.periodic() && n < axis.branch().nodes.size());
            ++n) {
         const double place = axis.node_place(n);
-        if (around ? place > low || place < high : place > low && place < high)
-          nodes.push_back(axis.branch().nodes[n]);
+        if (around ? place > low || place < high : place > low && place < high) nodes.push_back(axis.branch().nodes[n]);
       }
     }
     std::sort(nodes.begin(), nodes.end());

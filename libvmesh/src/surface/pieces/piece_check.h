@@ -6,8 +6,8 @@
 namespace vmesh {
 
 /// What keeps a piece of surface from being sound: faces that cross each other, faces that lie the wrong way up or are
-/// degenerate nearly, vertices that did not reach their wall, and nodes among `nodes` that are not inside. Open ends and
-/// seams count as closed by their lids for the last.
+/// degenerate nearly, vertices that did not reach their wall, and nodes among `nodes` that are not inside. Open ends
+/// and seams count as closed by their lids for the last.
 std::vector<PieceFault> find_faults(BoundSurface& surface, const std::vector<Index>& nodes,
                                     const GenerateOptions& options);
 

@@ -147,8 +147,7 @@ class DefectSearch {
     std::vector<bool> inside = points_inside(closed_, positions);
     for (const Opening& opening : result_.openings) inside[opening.node] = true;
     for (Index n = 0; n < inside.size(); ++n) {
-      if (!inside[n])
-        add(DefectKind::node_outside, positions[n], 1, "node " + std::to_string(n) + " is not inside");
+      if (!inside[n]) add(DefectKind::node_outside, positions[n], 1, "node " + std::to_string(n) + " is not inside");
     }
   }
 

@@ -5,9 +5,9 @@
 namespace vmesh {
 namespace {
 
-constexpr double kMostLift = 0.15;      // in target lengths; a sphere with six vertices around asks for 0.13
-constexpr double kBalanced = 0.003;     // mean signed distance in radii, around a vertex, that may stay
-constexpr double kShareOfGap = 0.35;    // of the free space before another vessel that a vertex may be lifted into
+constexpr double kMostLift = 0.15;    // in target lengths; a sphere with six vertices around asks for 0.13
+constexpr double kBalanced = 0.003;   // mean signed distance in radii, around a vertex, that may stay
+constexpr double kShareOfGap = 0.35;  // of the free space before another vessel that a vertex may be lifted into
 
 // Area of every face and signed distance at its centroid.
 struct FaceErrors {
@@ -58,7 +58,7 @@ bool may_move(const SweepState& state, Vertex v, const BoundaryPoint& target) {
   for (const Halfedge h : state.mesh.halfedges_around_target(state.mesh.halfedge(v))) {
     if (!state.stays_upright(v, state.mesh.target(state.mesh.next(h)), state.mesh.source(h), target)) return false;
   }
-  return true;
+  return state.surface.may_place(v, target.position);
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ void sink(SweepState& state, const std::vector<Vertex>& vertices) {
     if (state.surface.held(v) || state.surface.lift[v] <= 0) return;
     state.surface.lift[v] = 0;
     const BoundaryPoint target = state.project(v, state.point(v));
-    state.surface.place(v, target.position, target.sample);
+    if (may_move(state, v, target)) state.surface.place(v, target.position, target.sample);
   };
   for (const Vertex v : vertices) {
     sink_one(v);

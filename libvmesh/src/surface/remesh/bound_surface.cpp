@@ -56,6 +56,11 @@ void BoundSurface::place(Vertex v, const Vec3& p, const FieldSample& sample) {
   t[v] = sample.t;
   gradient[v] = sample.gradient.normalized();
   distance[v] = sample.distance;
+  if (guard_) guard_->touch(v);
+}
+
+void BoundSurface::guard_crossings() {
+  guard_ = std::make_unique<CrossingGuard>(mesh, [this](Vertex v) { return role[v] == Role::lid; });
 }
 
 void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {
@@ -97,6 +102,7 @@ Vertex BoundSurface::split_edge(Edge e) {
   CGAL::Euler::split_face(in, mesh.next(h), mesh);
   const Halfedge opposite_in = mesh.opposite(h);
   CGAL::Euler::split_face(opposite_in, mesh.next(mesh.opposite(in)), mesh);
+  touch_faces(v);
   return v;
 }
 
@@ -114,6 +120,7 @@ std::array<Vertex, 3> BoundSurface::split_edge_centric(Face f) {
     const Halfedge in = mesh.prev(sides[i]);  // ends at middle i; sides[i] runs on to the corner
     CGAL::Euler::split_face(in, mesh.next(mesh.next(in)), mesh);
   }
+  for (const Vertex v : middles) touch_faces(v);
   return middles;
 }
 

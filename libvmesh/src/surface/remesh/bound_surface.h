@@ -1,11 +1,15 @@
 #pragma once
 
+#include <memory>
+
 #include <CGAL/Surface_mesh.h>
 
 #include "vmesh/core/types.h"
 #include "vmesh/mesh/tri_mesh.h"
 #include "vmesh/surface/generate.h"
 #include "vmesh/volume/vessel_field.h"
+
+#include "surface/remesh/crossing_guard.h"
 
 namespace vmesh {
 
@@ -54,6 +58,17 @@ class BoundSurface {
   /// holds them.
   void close_with_lid(const std::vector<Vertex>& loop, const Vec3& center);
 
+  /// From now on no step of remeshing is taken after which faces cross each other.
+  void guard_crossings();
+  /// Whether the steps are allowed: always, unless guarded.
+  bool may_place(Vertex v, const Vec3& p) const { return !guard_ || guard_->may_move(v, p); }
+  bool may_collapse(Vertex a, Vertex b, const Vec3& p) const { return !guard_ || guard_->may_collapse(a, b, p); }
+  bool may_flip(Halfedge h) const { return !guard_ || guard_->may_flip(h); }
+  /// The faces around `v` are new: they take part in what is guarded.
+  void touch_faces(Vertex v) {
+    if (guard_) guard_->touch(v);
+  }
+
   const Vec3& position(Vertex v) const { return mesh.point(v); }
   double radius(Vertex v) const { return field.radius_at(cone[v], t[v]); }
 
@@ -79,6 +94,8 @@ class BoundSurface {
 
  private:
   Vertex halve(Halfedge h);
+
+  std::unique_ptr<CrossingGuard> guard_;
 };
 
 /// A point and what the field says about it.

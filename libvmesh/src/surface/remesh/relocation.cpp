@@ -36,7 +36,9 @@ class Relocator {
     if (norm > longest) step *= longest / norm;
     for (int attempt = 0; attempt < kAttempts; ++attempt, step *= 0.5) {
       const BoundaryPoint target = state_.project(v, x + step);
-      if ((target.position - x).norm() > state_.size[v] || !improves(v, target, energy.value)) continue;
+      if ((target.position - x).norm() > state_.size[v] || !improves(v, target, energy.value) ||
+          !surface_.may_place(v, target.position))
+        continue;
       if (state_.off_boundary(v) || (target.position - x).norm() > options_.noticeable * state_.size[v]) state_.stir(v);
       surface_.place(v, target.position, target.sample);
       return;

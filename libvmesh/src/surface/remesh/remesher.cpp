@@ -72,7 +72,11 @@ void Remesher::move_to_boundary(Vertex v) {
       return;
     }
   }
-  surface_.place(v, target.position, target.sample);
+  if (surface_.may_place(v, target.position)) {
+    surface_.place(v, target.position, target.sample);
+  } else {
+    surface_.place(v, state_.point(v), field_.sample(state_.point(v), surface_.cone[v]));
+  }
 }
 
 void Remesher::collapse_short_edges() {
@@ -91,6 +95,7 @@ bool Remesher::collapse(Edge e) {
   const BoundaryPoint target = state_.project_middle(a, b);
   if (!collapsible_to(a, b, target) || !collapsible_to(b, a, target)) return false;
   if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return false;
+  if (!surface_.may_collapse(a, b, target.position)) return false;
   const double size = std::min(state_.size[a], state_.size[b]);
   const double fineness = std::min(surface_.fineness[a], surface_.fineness[b]);
   const double lift = 0.5 * (surface_.lift[a] + surface_.lift[b]);
@@ -187,7 +192,7 @@ void Remesher::repair_strays() {
     if (stray < kMaxBulge) continue;
     const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
     const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
-    if (can_flip(h) && bulge(c, d) < 0.5 * stray && flip_stays_upright(a, b, c, d)) {
+    if (can_flip(h) && bulge(c, d) < 0.5 * stray && flip_stays_upright(a, b, c, d) && surface_.may_flip(h)) {
       flip(h);
     }
   }
@@ -223,6 +228,7 @@ void Remesher::flip(Halfedge h) {
     state_.touch(mesh_.target(mesh_.next(side)));
   }
   CGAL::Euler::flip_edge(h, mesh_);
+  surface_.touch_faces(mesh_.target(h));
 }
 
 bool Remesher::try_flip(Edge e, double regularity) {
@@ -246,6 +252,7 @@ bool Remesher::flip_if_upright(Halfedge h, Vertex a, Vertex b, Vertex c, Vertex 
   if (!can_flip(h) || !flip_stays_upright(a, b, c, d)) return false;
   const double stray = bulge(c, d);
   if (stray > kMaxBulge && stray > bulge(a, b)) return false;
+  if (!surface_.may_flip(h)) return false;
   flip(h);
   return true;
 }

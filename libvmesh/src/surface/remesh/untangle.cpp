@@ -84,7 +84,7 @@ void loosen(SweepState& state, const std::vector<Vertex>& tangles) {
       center /= static_cast<double>(mesh.degree(v));
       const BoundaryPoint target = state.project(v, center);
       const bool near = (target.position - center).norm() < state.size[v];
-      if (near) state.surface.place(v, target.position, target.sample);
+      if (near && state.surface.may_place(v, target.position)) state.surface.place(v, target.position, target.sample);
     }
   }
   for (const Vertex v : region) state.stir(v);

@@ -1,0 +1,79 @@
+#include "mesh/face_pair.h"
+
+#include <algorithm>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+
+namespace vmesh {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+
+constexpr double kMargin = 1e-9;  // of edges and distance: below it exact predicates decide; rounding is 1e-15 of them
+
+// Corners are numbered 0 to 2 within their faces.
+Point point(const PlacedFace& f, int i) { return {f.points[i].x(), f.points[i].y(), f.points[i].z()}; }
+Kernel::Triangle_3 triangle(const PlacedFace& f) { return {point(f, 0), point(f, 1), point(f, 2)}; }
+
+bool has(const PlacedFace& f, Index v) { return f.vertices[0] == v || f.vertices[1] == v || f.vertices[2] == v; }
+
+// Whether the corners of `other` that are not common lie beyond doubt on one side of the plane of `face`: the two then
+// meet in common corners at most. The margin is far above the rounding of the determinant.
+bool on_one_side(const PlacedFace& face, const PlacedFace& other) {
+  const Vec3& base = face.points[0];
+  const Vec3 first = face.points[1] - base, second = face.points[2] - base;
+  const Vec3 normal = first.cross(second);
+  const double margin = kMargin * kMargin * first.squaredNorm() * second.squaredNorm();
+  int above = 0, below = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (has(face, other.vertices[i])) continue;
+    const Vec3 away = other.points[i] - base;
+    const double height = normal.dot(away);
+    if (!(height * height > margin * away.squaredNorm())) return false;
+    ++(height > 0 ? above : below);
+  }
+  return above == 0 || below == 0;
+}
+
+int apex(const PlacedFace& f, const PlacedFace& other) {
+  for (int i = 0; i < 3; ++i) {
+    if (!has(other, f.vertices[i])) return i;
+  }
+  return 0;
+}
+
+// Two faces at an edge overlap only when they are coplanar and lie on the same side of it.
+bool folded(const PlacedFace& x, const PlacedFace& y) {
+  const int i = apex(x, y), j = apex(y, x);
+  const Point a = point(x, (i + 1) % 3), b = point(x, (i + 2) % 3), c = point(x, i), d = point(y, j);
+  return CGAL::coplanar(a, b, c, d) && CGAL::coplanar_orientation(a, b, c, d) == CGAL::POSITIVE;
+}
+
+bool opposite_edge_meets(const PlacedFace& x, const PlacedFace& y, int common) {
+  return CGAL::do_intersect(triangle(y), Kernel::Segment_3(point(x, (common + 1) % 3), point(x, (common + 2) % 3)));
+}
+
+}  // namespace
+
+bool intersect(const PlacedFace& x, const PlacedFace& y) {
+  int count = 0, in_x = 0, in_y = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (x.vertices[i] != y.vertices[j]) continue;
+      ++count;
+      in_x = i;
+      in_y = j;
+    }
+  }
+  if (count == 3) return true;
+  if (count < 2 && (on_one_side(x, y) || on_one_side(y, x))) return false;
+  if (count == 2) return folded(x, y);
+  if (count == 1) return opposite_edge_meets(x, y, in_x) || opposite_edge_meets(y, x, in_y);
+  return CGAL::do_intersect(triangle(x), triangle(y));
+}
+
+bool is_degenerate(const PlacedFace& x) { return CGAL::collinear(point(x, 0), point(x, 1), point(x, 2)); }
+
+}  // namespace vmesh
