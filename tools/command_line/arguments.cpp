@@ -127,16 +127,18 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           [&arguments](const std::string& text) {
             arguments.overlap = text == "separate" ? OverlapHandling::separate : OverlapHandling::keep;
           },
-          "where vessels touch that are not neighbours: keep their radii, or separate them by narrowing, and by moving "
-          "those that cross")
+          "where vessels touch that are not neighbours: separate them by narrowing, and by moving those that cross; or "
+          "keep them as they are: the surface then intersects itself there and is refused")
       ->check(CLI::IsMember({"keep", "separate"}))
-      ->default_str("keep");
+      ->default_str("separate");
   verb.add_option("--gap", arguments.gap, "free space between vessels below which they touch, in smaller radii")
       ->check(in_range(0.001, 1.0))
       ->capture_default_str();
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
                 "self-intersections, of the expected topology, and holds every centerline node");
+  verb.add_flag("--allow-defects", arguments.allow_defects,
+                "write the surface even if it is not sound; the summary lists what is wrong with it, and where");
   add_common(verb, arguments.common);
   verb.footer(kGenerateExamples);
 }
@@ -255,7 +257,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   app.footer(
       "vmesh VERB --help tells the options of a verb and shows examples.\n"
       "Exit codes: 0 ok, 1 a requested check failed, 2 usage, 3 bad input, 4 unsupported or not built in,\n"
-      "5 cannot write, 6 did not converge, 130 interrupted.");
+      "5 cannot write, 6 did not converge, 7 no sound surface was found, 130 interrupted.");
   app.require_subcommand(1);
 
   GenerateArguments generate;

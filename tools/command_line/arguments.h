@@ -43,9 +43,10 @@ struct GenerateArguments {
   std::filesystem::path output;
   GenerateOptions options;
   std::optional<Budget> budget;  ///< chooses options.around, and max_error for a budget of error
-  OverlapHandling overlap = OverlapHandling::keep;
-  double gap = 0.1;    ///< vessels closer than this times the smaller radius count as touching
-  bool check = false;  ///< exit code 1 unless the surface is flawless
+  OverlapHandling overlap = OverlapHandling::separate;
+  double gap = 0.1;            ///< vessels closer than this times the smaller radius count as touching
+  bool check = false;          ///< exit code 1 unless the surface is flawless
+  bool allow_defects = false;  ///< a surface that is not sound is written all the same
 };
 
 struct InfoArguments {

@@ -11,6 +11,7 @@ enum ExitCode : int {
   kUnsupported = 4,
   kCannotWrite = 5,
   kNotConverged = 6,
+  kDefective = 7,
   kInternal = 70,
   kInterrupted = 130,
 };

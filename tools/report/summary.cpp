@@ -207,6 +207,20 @@ Json to_json(const SurfaceMeasurement& measurement) {
           {"self_intersections", measurement.self_intersections}};
 }
 
+Json to_json(const std::vector<Defect>& defects) {
+  Json list = Json::array();
+  for (const Defect& defect : defects) {
+    list.push_back({{"kind", to_string(defect.kind)},
+                    {"at", to_json(defect.position)},
+                    {"count", defect.count},
+                    {"segment", defect.segment == kNone ? Json() : Json(defect.segment)},
+                    {"branch", defect.branch == kNone ? Json() : Json(defect.branch)},
+                    {"node", defect.node == kNone ? Json() : Json(defect.node)},
+                    {"message", defect.message}});
+  }
+  return list;
+}
+
 // What is proven of the distance between the surface and the boundary, both ways.
 Json error_bound_json(const GenerateArguments& arguments, const GenerateResult& result) {
   Json json = to_json(arguments.options.max_error);
@@ -252,6 +266,8 @@ Json to_json(const GenerateReport& report) {
   if (report.separation) json["separation"] = to_json(*report.separation);
   json["seconds"] = stages_json(report.stages);
   json["warnings"] = report.warnings;
+  json["sound"] = report.result->is_sound();
+  json["defects"] = to_json(report.result->defects);
   json["problems"] = report.problems;
   return json;
 }
@@ -294,6 +310,8 @@ Json to_json(const GrowthSummary& growth) {
           {"tubes", growth.tubes},
           {"components", growth.components},
           {"cycle_rank", growth.cycle_rank},
+          {"pieces", growth.pieces},
+          {"pieces_by_rung", growth.rungs},
           {"simplifications", std::move(simplifications)}};
 }
 

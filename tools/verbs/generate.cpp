@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "vmesh/centerline/branches.h"
 #include "vmesh/io/sha256.h"
 #include "vmesh/surface/branch_labels.h"
 #include "vmesh/volume/vessel_field.h"
@@ -114,7 +115,9 @@ std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, Conso
     if (report.contacts.empty()) return std::nullopt;
     warn("vessels that are not neighbours touch in " + places(report.contacts) + ", the deepest " +
          describe(report.contacts.front()) +
-         "; there the surface may intersect itself (--overlap separate narrows them, and moves those that cross)");
+         "; there the surface intersects itself, and is refused unless --allow-defects (--overlap separate, the "
+         "default, "
+         "narrows them, and moves those that cross)");
     return std::nullopt;
   }
   SeparationOptions options;
@@ -165,6 +168,19 @@ std::vector<CenterlineBinding> original_binding(const std::vector<CenterlineBind
 }
 
 /// Nodes and segments of a separated centerline, as those of the original; nodes that were added are left out.
+void renumber(std::vector<Defect>& defects, const SeparatedCenterline& separated, const Centerline& original) {
+  const std::vector<Branch> branches = find_branches(original);
+  for (Defect& defect : defects) {
+    if (defect.segment < separated.pieces.size()) defect.segment = separated.pieces[defect.segment].segment;
+    if (defect.node >= original.nodes().size()) defect.node = kNone;
+    defect.branch = kNone;
+    for (Index b = 0; b < branches.size(); ++b) {
+      const auto& segments = branches[b].segments;
+      if (std::find(segments.begin(), segments.end(), defect.segment) != segments.end()) defect.branch = b;
+    }
+  }
+}
+
 void renumber(GrowthSummary& growth, const SeparatedCenterline& separated, const Centerline& original) {
   for (GrowthSimplification& note : growth.simplifications) {
     std::erase_if(note.nodes, [&](Index n) { return n >= original.nodes().size(); });
@@ -231,6 +247,18 @@ void measure(GenerateReport& report, const Centerline& grown, Console& console) 
   for (const std::string& problem : report.problems) console.warn("surface: " + problem);
 }
 
+/// Says why nothing is written.
+void refuse(const GenerateReport& report, Console& console) {
+  constexpr std::size_t kNamed = 8;
+  const std::vector<Defect>& defects = report.result->defects;
+  for (std::size_t i = 0; i < std::min(kNamed, defects.size()); ++i)
+    console.error(std::string(to_string(defects[i].kind)) + ": " + defects[i].message);
+  if (defects.size() > kNamed) console.error("and " + std::to_string(defects.size() - kNamed) + " defects more");
+  console.error(report.arguments->input.path.string() +
+                ": no sound surface was found, nothing is written: look at the radii and nodes there, try another "
+                "--around or --blend, or take the surface as it is with --allow-defects");
+}
+
 void write(const GenerateReport& report) {
   const GenerateArguments& arguments = *report.arguments;
   write_surface(arguments.output, report.result->mesh, attributes_of(*report.result, report.cleaned->centerline),
@@ -269,10 +297,12 @@ int run(const GenerateArguments& given, Console& console) {
     result =
         naming_file(arguments, [&] { return generate_surface(centerline, arguments.options, console.progress()); });
   }
-  console.warn(result.warnings);
   report.result = &result;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
-  append(report.warnings, result.warnings);
+  for (const GrowthWarning& warning : result.warnings) {
+    console.warn(warning.message);
+    report.warnings.push_back(warning.message);
+  }
   warn_of_error(report, console);
 
   watch.lap();
@@ -280,8 +310,13 @@ int run(const GenerateArguments& given, Console& console) {
   if (separated) {
     result.binding = original_binding(result.binding, *separated, loaded.cleaned.centerline);
     renumber(result.growth, *separated, loaded.cleaned.centerline);
+    renumber(result.defects, *separated, loaded.cleaned.centerline);
   }
   report.stages.push_back({"measure", watch.lap()});
+  if (!result.is_sound() && !arguments.allow_defects) {
+    refuse(report, console);
+    return kDefective;
+  }
 
   write(report);
   report.stages.push_back({"write", watch.lap()});

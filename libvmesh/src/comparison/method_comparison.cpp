@@ -71,7 +71,8 @@ class Grower {
     row.method = method;
     row.around = options.around;
     row.mesh = std::move(result.mesh);
-    row.warnings = std::move(result.warnings);
+    for (const GrowthWarning& warning : result.warnings) row.warnings.push_back(warning.message);
+    for (const Defect& defect : result.defects) row.warnings.push_back("not sound: " + defect.message);
     return row;
   }
 

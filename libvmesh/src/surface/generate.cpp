@@ -80,38 +80,57 @@ void check_size(const Centerline& centerline, const GenerateOptions& options) {
   throw InvalidInput(text.str());
 }
 
-void add_warnings(const PaperGrowthReport& growth, std::vector<std::string>& warnings) {
-  if (growth.refused > 0) {
-    warnings.push_back(
-        "growth: " + std::to_string(growth.refused) +
-        " faces were crossed by the centerline behind its front, or too often, and left alone; branch nodes crowd "
-        "there, expect overlapping faces");
-  }
-  if (growth.unclosed > 0) {
-    warnings.push_back("growth: " + std::to_string(growth.unclosed) +
-                       " segments close a loop, which a single seed cannot do; the surface is open there");
-  }
-  if (growth.forced > 0) {
-    warnings.push_back("growth: " + std::to_string(growth.forced) +
-                       " vertices did not reach the boundary by themselves and were projected");
-  }
+using WarningKind = GrowthWarning::Kind;
+
+void warn(GenerateResult& result, WarningKind kind, std::size_t count, const std::string& what) {
+  if (count > 0) result.warnings.push_back({kind, count, what});
 }
 
-void add_warnings(const OptimizeReport& optimized, std::vector<std::string>& warnings) {
-  if (optimized.tangles > 0) {
-    warnings.push_back("optimize: around " + std::to_string(optimized.tangles) +
-                       " vertices faces of neighbouring vessels intersect each other; more vertices around may help");
-  }
-  if (optimized.limited) {
-    warnings.push_back(
-        "optimize: refinement stopped early, the surface has far more vertices already than its length and radii ask "
-        "for; expect folds");
-  }
+void add_warnings(const PaperGrowthReport& growth, GenerateResult& result) {
+  warn(result, WarningKind::refused_faces, growth.refused,
+       "growth: " + std::to_string(growth.refused) +
+           " faces were crossed by the centerline behind its front, or too often, and left alone; branch nodes crowd "
+           "there, expect overlapping faces");
+  warn(result, WarningKind::unclosed_loop, growth.unclosed,
+       "growth: " + std::to_string(growth.unclosed) +
+           " segments close a loop, which a single seed cannot do; the surface is open there");
+  warn(result, WarningKind::forced_vertices, growth.forced,
+       "growth: " + std::to_string(growth.forced) +
+           " vertices did not reach the boundary by themselves and were projected");
+}
+
+void add_warnings(const OptimizeReport& optimized, GenerateResult& result) {
+  warn(result, WarningKind::crossing_faces, optimized.tangles,
+       "optimize: around " + std::to_string(optimized.tangles) +
+           " vertices faces of neighbouring vessels intersect each other; more vertices around may help");
+  warn(result, WarningKind::stopped_refining, optimized.limited,
+       "optimize: refinement stopped early, the surface has far more vertices already than its length and radii ask "
+       "for; expect folds");
 }
 
 }  // namespace
 
 std::string_view to_string(GrowthMethod method) { return method == GrowthMethod::paper ? "paper" : "guided"; }
+
+std::string_view to_string(GrowthWarning::Kind kind) {
+  switch (kind) {
+    case WarningKind::filled_loop:
+      return "filled_loop";
+    case WarningKind::closed_end:
+      return "closed_end";
+    case WarningKind::refused_faces:
+      return "refused_faces";
+    case WarningKind::unclosed_loop:
+      return "unclosed_loop";
+    case WarningKind::forced_vertices:
+      return "forced_vertices";
+    case WarningKind::crossing_faces:
+      return "crossing_faces";
+    case WarningKind::stopped_refining:
+      break;
+  }
+  return "stopped_refining";
+}
 
 std::string_view to_string(GrowthSimplification::Kind kind) {
   switch (kind) {
@@ -189,7 +208,7 @@ void optimize_grown(BoundSurface& surface, const GenerateOptions& options, const
                     const Progress& progress, GenerateResult& result) {
   if (options.sweeps == 0) return;
   const OptimizeReport report = optimize(surface, options, grown, progress);
-  add_warnings(report, result.warnings);
+  add_warnings(report, result);
 }
 
 void generate_paper(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
@@ -198,7 +217,7 @@ void generate_paper(const Centerline& centerline, const GenerateOptions& options
   std::optional<VesselField> field;
   clock.time("volume", [&] { field.emplace(centerline, options.blend); });
   BoundSurface surface(*field);
-  clock.time("grow", [&] { add_warnings(grow_from_single_seeds(surface, options.beta, progress), result.warnings); });
+  clock.time("grow", [&] { add_warnings(grow_from_single_seeds(surface, options.beta, progress), result); });
   clock.time("optimize", [&] {
     const GrownMesh grown{kGrownAround, expected_vertices(centerline, options.around), GrownMesh::Stage::grown};
     optimize_grown(surface, options, grown, progress, result);
@@ -242,7 +261,7 @@ void warn_of_closed_ends(const Centerline& centerline, const OpenEnds& ends, Gen
     std::ostringstream text;
     text << "open ends: the end at node " << n << " (" << centerline.node(n).position.transpose()
          << ") stays closed: other vessels cover its cross-section";
-    result.warnings.push_back(text.str());
+    warn(result, WarningKind::closed_end, 1, text.str());
   }
 }
 

@@ -144,7 +144,27 @@ struct ErrorSummary {
   std::vector<UnprovenPlace> unproven_places;  ///< largest first
 };
 
-/// A generated surface. What went wrong is data, never hidden: see `warnings`.
+/// Something about a surface that its user should know.
+struct GrowthWarning {
+  enum class Kind {
+    filled_loop,       ///< loops of the centerline are too short to have a hole
+    closed_end,        ///< an end that was to be left open could not be
+    refused_faces,     ///< paper growth: faces were crossed by the centerline too often and left alone
+    unclosed_loop,     ///< paper growth: a loop that a single seed cannot close
+    forced_vertices,   ///< paper growth: vertices that did not reach the boundary by themselves
+    crossing_faces,    ///< paper growth: faces of neighbouring vessels intersect each other
+    stopped_refining,  ///< paper growth: far more vertices than were expected
+  };
+
+  Kind kind = Kind::filled_loop;
+  std::size_t count = 0;  ///< of what the kind says
+  std::string message;
+};
+
+/// "filled_loop", "closed_end", ...
+std::string_view to_string(GrowthWarning::Kind kind);
+
+/// A generated surface. What went wrong is data, never hidden: see `defects` and `warnings`.
 struct GenerateResult {
   TriMesh mesh;
   std::vector<CenterlineBinding> binding;  ///< one per vertex
@@ -154,7 +174,9 @@ struct GenerateResult {
   GrowthSummary growth;                    ///< of guided growth; empty after paper growth
   std::vector<Defect> defects;             ///< none: the surface is sound
   std::vector<StageTime> stages;
-  std::vector<std::string> warnings;
+  std::vector<GrowthWarning> warnings;
+
+  bool is_sound() const { return defects.empty(); }
 };
 
 /// The surface with its openings closed by flat fans around their centres: as many vertices more. It bounds a volume.

@@ -10,13 +10,13 @@ namespace vmesh {
 
 /// What a sound surface does not have.
 enum class DefectKind {
-  not_closed,       ///< a boundary edge that is not at an opening
-  not_manifold,     ///< an edge with three faces, a vertex with two fans, or faces that disagree about the outside
-  wrong_topology,   ///< components or holes that the centerline does not have, or lacks some that it has
-  inside_out,       ///< a component that encloses a negative volume
-  crossing_faces,   ///< faces that intersect other than in what they have in common
-  bad_triangle,     ///< a triangle of equiangle skewness above kWorstSkewness
-  node_outside      ///< a node of the centerline that is not inside
+  not_closed,      ///< a boundary edge that is not at an opening
+  not_manifold,    ///< an edge with three faces, a vertex with two fans, or faces that disagree about the outside
+  wrong_topology,  ///< components or holes that the centerline does not have, or lacks some that it has
+  inside_out,      ///< a component that encloses a negative volume
+  crossing_faces,  ///< faces that intersect other than in what they have in common
+  bad_triangle,    ///< a triangle of equiangle skewness above kWorstSkewness
+  node_outside     ///< a node of the centerline that is not inside
 };
 
 std::string_view to_string(DefectKind kind);
@@ -31,6 +31,7 @@ struct Defect {
   Vec3 position = Vec3::Zero();  ///< of one of them, mm
   std::size_t count = 0;         ///< pairs of faces, faces, edges or nodes
   Index segment = kNone;         ///< of the centerline, where the vertex nearest to the place is bound
+  Index branch = kNone;          ///< in find_branches(), of that segment
   Index node = kNone;            ///< the centerline's node nearest to the place
   std::string message;           ///< what, how many, where
 };

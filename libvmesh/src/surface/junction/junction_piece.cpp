@@ -15,11 +15,12 @@ constexpr std::size_t kRingsGivenAway = 2;  // at most, at an end of a tube
 // How a junction's surface is made; tried in this order. Of 1,794 junctions of random trees the first was clean 1,762
 // times, the second 19 and the third twice.
 struct Variant {
-  double finer;      ///< resolution at which the junction's surface is made, in that asked for
-  bool smooth_rims;  ///< see JunctionGrowth::make()
-  bool guarded;      ///< no step is taken after which faces cross
+  double finer;         ///< resolution at which the junction's surface is made, in that asked for
+  bool smooth_rims;     ///< see JunctionGrowth::make()
+  bool guarded;         ///< no step is taken after which faces cross
+  double fineness = 1;  ///< factor on the target edge length from then on
 };
-constexpr Variant kVariants[] = {{1, true, false}, {1.5, true, false}, {1, false, false}};
+constexpr Variant kVariants[] = {{1, true, false}, {1.5, true, false}, {1.5, true, false, 0.67}, {2, true, false, 0.5}};
 constexpr Variant kGuardedVariants[] = {{1, true, false}, {1, true, true}, {1, false, true}};
 
 class PieceMaker {
@@ -36,12 +37,13 @@ class PieceMaker {
   JunctionPiece make(const Variant& variant) {
     const JunctionSurface junction = growth_.make(variant.finer, variant.smooth_rims, variant.guarded);
     add(junction.patch);
+    for (const Vertex v : surface_.mesh.vertices()) surface_.fineness[v] = variant.fineness;
     for (std::size_t i = 0; i < openings_.size(); ++i) dock(openings_[i], junction.rims[i]);
     if (variant.guarded) surface_.guard_crossings();
     JunctionPiece piece;
     piece.handles = growth_.handles();
     piece.filled_loops = growth_.filled_loops();
-    finish(piece);
+    finish(variant.fineness, piece);
     export_to(piece);
     return piece;
   }
@@ -101,13 +103,14 @@ class PieceMaker {
     return result;
   }
 
-  void finish(JunctionPiece& piece) {
+  void finish(double fineness, JunctionPiece& piece) {
     if (options_.sweeps == 0) {
       piece.tangles = find_tangles(SweepState(surface_)).size();
       return;
     }
     const double radii = growth_.length_in_radii() + static_cast<double>(openings_.size() * (kRingsGivenAway + 1));
-    const GrownMesh grown{double(options_.around), expected_vertices(radii, options_.around), GrownMesh::Stage::piece};
+    const GrownMesh grown{double(options_.around), expected_vertices(radii, options_.around / fineness),
+                          GrownMesh::Stage::piece};
     const OptimizeReport report = optimize(surface_, options_, grown, progress_);
     piece.tangles = report.tangles;
     piece.crossings = report.tangles > 0 ? find_crossing_walls(SweepState(surface_)).size() : 0;
@@ -170,7 +173,8 @@ JunctionPiece make_junction_piece(const VesselTubes& tubes, const GrowthSkeleton
   std::optional<JunctionPiece> best;
   for (const bool leave_out_threads : {true, false}) {
     const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options, leave_out_threads);
-    for (const Variant& variant : guarded ? kGuardedVariants : kVariants) {
+    for (const Variant& variant :
+         guarded ? std::span<const Variant>(kGuardedVariants) : std::span<const Variant>(kVariants)) {
       JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options, progress).make(variant);
       if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);
       if (best->tangles == 0 && best->unproven == 0) return *std::move(best);

@@ -5,6 +5,7 @@
 #include <ranges>
 
 #include "vmesh/core/disjoint_sets.h"
+#include "vmesh/surface/error_bound.h"
 
 #include "surface/remesh/sweep_state.h"
 #include "surface/tubes/stitch.h"
@@ -15,28 +16,29 @@ namespace {
 constexpr std::size_t kLongest = 96;  // rings between two seams: a piece of some 600 vertices at 6 around
 constexpr std::size_t kWindow = 3;    // rings before and after the middle that may become the seam instead of it
 
-std::vector<Vec3> positions_of(const Ring& ring) {
-  std::vector<Vec3> positions;
-  for (const BoundaryPoint& p : ring.points) positions.push_back(p.position);
-  return positions;
-}
+// Two rings and the faces between them.
+struct Band {
+  std::vector<Vec3> points;
+  std::vector<Index> cones;
+  std::vector<Triangle> faces;
 
-// The worst energy of the faces between two rings.
-double worst_between(const Ring& ring, const Ring& next) {
-  std::vector<Vec3> points = positions_of(ring);
-  const std::vector<Vec3> top = positions_of(next);
-  const std::size_t count = points.size();
-  points.insert(points.end(), top.begin(), top.end());
-  double worst = 0;
-  for (const auto& [a, b, c] : stitch(std::span(points).first(count), top))
-    worst = std::max(worst, SweepState::energy(points[a], points[b], points[c]));
-  return worst;
-}
+  Band(const Ring& ring, const Ring& next) {
+    for (const Ring* r : {&ring, &next}) {
+      for (const BoundaryPoint& p : r->points) {
+        points.push_back(p.position);
+        cones.push_back(p.sample.cone);
+      }
+    }
+    const std::size_t count = ring.points.size();
+    faces = stitch(std::span(points).first(count), std::span(points).subspan(count));
+  }
+};
 
 // Chooses seams along the branches.
 class SeamSearch {
  public:
-  explicit SeamSearch(const VesselTubes& tubes) : tubes_(tubes) {}
+  SeamSearch(const VesselTubes& tubes, const GenerateOptions& options)
+      : tubes_(tubes), field_(tubes.field()), options_(options), proof_(tubes.field()) {}
 
   std::vector<RingPlace> run() {
     for (Index b = 0; b < tubes_.axes().size(); ++b) search(b);
@@ -86,15 +88,37 @@ class SeamSearch {
 
   bool is_even(Index branch, std::size_t k) const {
     const std::vector<Ring>& rings = tubes_.rings(branch);
-    return worst_between(rings[k - 1], rings[k]) < kSeamEnergy && worst_between(rings[k], rings[k + 1]) < kSeamEnergy &&
-           !near_others(rings[k]);
+    return is_even(Band(rings[k - 1], rings[k])) && is_even(Band(rings[k], rings[k + 1])) && !near_others(rings[k]);
+  }
+
+  // Whether the faces are as good as they will become, and as close to the boundary as is asked for.
+  bool is_even(const Band& band) const {
+    return std::all_of(band.faces.begin(), band.faces.end(), [&](const Triangle& f) {
+      const std::array<Vec3, 3> p = {band.points[f[0]], band.points[f[1]], band.points[f[2]]};
+      if (SweepState::energy(p[0], p[1], p[2]) >= kSeamEnergy) return false;
+      const FieldSample center = field_.sample((p[0] + p[1] + p[2]) / 3, band.cones[f[0]]);
+      const double radius = field_.radius_at(center.cone, center.t);
+      const double before_lift = std::abs(center.distance) + (balanced_ring_radius(options_.around) - 1) * radius;
+      if (before_lift > options_.max_center_distance * radius) return false;
+      return !options_.max_error.is_set() || is_proven(band, f, radius);
+    });
+  }
+
+  bool is_proven(const Band& band, const Triangle& f, double radius) const {
+    ErrorProof::Face face;
+    for (int i = 0; i < 3; ++i) {
+      const FieldSample s = field_.sample(band.points[f[i]], band.cones[f[i]]);
+      face[i] = {band.points[f[i]], s.gradient.normalized(), kSeamLimit * options_.max_error.at(radius), s.cone};
+    }
+    const ErrorProof::Shares shares = proof_.shares(face);
+    return shares.inner > 0 && shares.outer > 0;
   }
 
   // Where another wall is near, how far vertices may be lifted is not known yet.
   bool near_others(const Ring& ring) const {
     const double reach = kClear * ring.radius;
     return std::any_of(ring.points.begin(), ring.points.end(), [&](const BoundaryPoint& p) {
-      return tubes_.field().distance_to_others(p.position, p.sample.cone, reach) < reach;
+      return field_.distance_to_others(p.position, p.sample.cone, reach) < reach;
     });
   }
 
@@ -102,7 +126,12 @@ class SeamSearch {
   static constexpr double kSeamEnergy = 1.12;
   static constexpr double kClear = 0.5;  // radii: more than the highest lift, a third of a radius, and edges between
 
+  static constexpr double kSeamLimit = 0.8;  // of the error limit: neighbours with lower shells take some of it
+
   const VesselTubes& tubes_;
+  const VesselField& field_;
+  const GenerateOptions& options_;
+  ErrorProof proof_;
   std::vector<RingPlace> seams_;
 };
 
@@ -239,7 +268,9 @@ Anchor anchor_of(const PiecePlan& plan) {
   return {{plan.stretches.front().branch, plan.stretches.front().first}, kNone};
 }
 
-Division divide(const VesselTubes& tubes) { return divide_at(tubes, SeamSearch(tubes).run(), {}); }
+Division divide(const VesselTubes& tubes, const GenerateOptions& options) {
+  return divide_at(tubes, SeamSearch(tubes, options).run(), {});
+}
 
 Division regrouped(const VesselTubes& tubes, const Division& division, const std::vector<RingPlace>& dissolved,
                    const std::vector<std::pair<Anchor, Anchor>>& joined) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vmesh/surface/generate.h"
+
 #include "surface/tubes/growth_skeleton.h"
 
 namespace vmesh {
@@ -24,7 +26,8 @@ struct Division {
 
 /// Divides a surface at rings where the tube around is as even as the rest will become, so that nothing is lost when
 /// they stay as they are: a ring about halfway between two junctions, and more along far ways.
-Division divide(const VesselTubes& tubes);
+/// What the options would have refined there is no seam.
+Division divide(const VesselTubes& tubes, const GenerateOptions& options);
 
 /// The division without some seams, with the pieces at both of these anchors as one.
 Division regrouped(const VesselTubes& tubes, const Division& division, const std::vector<RingPlace>& dissolved,

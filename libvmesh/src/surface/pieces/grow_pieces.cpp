@@ -27,7 +27,7 @@ class PieceGrower {
         options_(options),
         progress_(progress),
         context_{tubes_, open, options_, ask_},
-        division_(divide(tubes_)) {}
+        division_(divide(tubes_, options)) {}
 
   std::vector<std::pair<Index, Index>> run(GenerateResult& result) {
     make_pieces({});
@@ -135,8 +135,10 @@ class PieceGrower {
     growth.components = centerline.component_count();
     growth.cycle_rank = centerline.cycle_rank() - filled;
     if (filled > 0)
-      result.warnings.push_back("growth: " + std::to_string(filled) +
-                                " loops of the centerline are too short to have a hole; the surface is filled there");
+      result.warnings.push_back(
+          {GrowthWarning::Kind::filled_loop, filled,
+           "growth: " + std::to_string(filled) +
+               " loops of the centerline are too short to have a hole; the surface is filled there"});
     result.error.unproven_faces = unproven_.size();
     result.error.unproven_places = places_of(gathered_.mesh, unproven_);
     result.mesh = std::move(gathered_.mesh);

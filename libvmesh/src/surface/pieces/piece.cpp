@@ -7,6 +7,7 @@
 #include "surface/junction/junction_piece.h"
 #include "surface/pieces/assembly.h"
 #include "surface/pieces/piece_check.h"
+#include "surface/remesh/mend.h"
 #include "surface/remesh/optimize.h"
 
 namespace vmesh {
@@ -18,6 +19,7 @@ struct Rung {
   double finer;  // radius of fine spots at faults, in local ones; 0: none
   bool guarded;  // no step is taken after which faces cross
 };
+constexpr double kMended = 0.5;  // skewness above which triangles are mended at any price but soundness
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 constexpr Rung kLadder[kRungs] = {{0, 0, false},  {2, 0, true}, {3, 0, true},
                                   {3, 0.5, true}, {5, 0, true}, {kEverywhere, 0, true}};
@@ -147,6 +149,7 @@ class PieceMaker {
       const GrownMesh grown{double(context_.options.around),
                             expected_vertices(length_in_radii(), context_.options.around), GrownMesh::Stage::assembled};
       optimize(surface, context_.options, grown, context_.progress);
+      mend_worst_faces(surface, kMended);
     }
     piece.faults = find_faults(surface, nodes_of(skeleton), context_.options);
     export_surface(surface, loops, piece);

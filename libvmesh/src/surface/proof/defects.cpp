@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "vmesh/centerline/branches.h"
 #include "vmesh/core/disjoint_sets.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
@@ -50,7 +51,7 @@ class DefectSearch {
 
  private:
   void add(DefectKind kind, const Vec3& position, std::size_t count, const std::string& what) {
-    Defect defect{kind, position, count, kNone, kNone, {}};
+    Defect defect{kind, position, count, kNone, kNone, kNone, {}};
     std::ostringstream text;
     text << what << " at (" << position.x() << ", " << position.y() << ", " << position.z() << ")";
     double nearest = std::numeric_limits<double>::infinity();
@@ -67,9 +68,19 @@ class DefectSearch {
       nearest = away;
       defect.node = n;
     }
+    defect.branch = branch_of(defect.segment);
     text << ", near node " << defect.node;
+    if (defect.branch != kNone) text << " on branch " << defect.branch;
     defect.message = text.str();
     defects_.push_back(std::move(defect));
+  }
+
+  Index branch_of(Index segment) const {
+    const std::vector<Branch> branches = find_branches(centerline_);
+    for (Index b = 0; b < branches.size(); ++b) {
+      if (std::count(branches[b].segments.begin(), branches[b].segments.end(), segment)) return b;
+    }
+    return kNone;
   }
 
   void topology() {
