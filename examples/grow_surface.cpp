@@ -15,7 +15,10 @@ int main(int argc, char** argv) {
     vmesh::GenerateOptions options;
     options.around = 8;
     const vmesh::GenerateResult result = vmesh::generate_surface(centerline, options);
-    for (const std::string& warning : result.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    for (const vmesh::GrowthWarning& warning : result.warnings)
+      std::fprintf(stderr, "warning: %s\n", warning.message.c_str());
+    for (const vmesh::Defect& defect : result.defects) std::fprintf(stderr, "defect: %s\n", defect.message.c_str());
+    if (!result.is_sound()) return 1;
 
     vmesh::MeshAttributes attributes;
     attributes.vertex.push_back({"radius", result.radius});

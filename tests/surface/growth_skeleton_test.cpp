@@ -10,16 +10,15 @@ namespace vmesh {
 namespace {
 
 struct Steered {
-  explicit Steered(Centerline c, int around = 6) : centerline(std::move(c)), field(centerline, 0.5) {
-    branches = find_branches(centerline);
-    for (const Branch& branch : branches) axes.emplace_back(centerline, branch);
-    skeleton = make_growth_skeleton(field, axes, around);
+  explicit Steered(Centerline c, int around = 6)
+      : centerline(std::move(c)), field(centerline, 0.5), tubes(field, {around, false, {}}) {
+    skeleton = make_growth_skeleton(tubes, whole_plan(tubes));
   }
 
   Centerline centerline;
   VesselField field;
-  std::vector<Branch> branches;
-  std::vector<BranchAxis> axes;
+  VesselTubes tubes;
+  const std::vector<BranchAxis>& axes = tubes.axes();
   GrowthSkeleton skeleton;
 };
 

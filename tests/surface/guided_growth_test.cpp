@@ -241,7 +241,7 @@ TEST(OpenEnds, StayClosedWhereOtherVesselsCoverThem) {
   const GenerateResult result = generate_surface(centerline, options);
   EXPECT_EQ(result.openings.size(), 2u);
   ASSERT_FALSE(result.warnings.empty());
-  EXPECT_NE(result.warnings[0].find("node 3"), std::string::npos) << result.warnings[0];
+  EXPECT_NE(result.warnings[0].message.find("node 3"), std::string::npos) << result.warnings[0].message;
 }
 
 }  // namespace

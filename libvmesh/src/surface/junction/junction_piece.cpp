@@ -38,7 +38,7 @@ class PieceMaker {
     const JunctionSurface junction = growth_.make(variant.finer, variant.smooth_rims, variant.guarded);
     add(junction.patch);
     for (const Vertex v : surface_.mesh.vertices()) surface_.fineness[v] = variant.fineness;
-    for (std::size_t i = 0; i < openings_.size(); ++i) dock(openings_[i], junction.rims[i]);
+    for (Index i = 0; i < openings_.size(); ++i) dock(i, junction.rims[i]);
     if (variant.guarded) surface_.guard_crossings();
     JunctionPiece piece;
     piece.handles = growth_.handles();
@@ -61,7 +61,8 @@ class PieceMaker {
   }
 
   // Joins the rim to the first ring of the tube's end, that to the next one, up to the ring that is kept.
-  void dock(const TubeEnd& opening, const std::vector<Index>& rim) {
+  void dock(Index number_of_opening, const std::vector<Index>& rim) {
+    const TubeEnd& opening = openings_[number_of_opening];
     const Tube& tube = skeleton_.tubes[opening.tube];
     std::vector<Vertex> last;
     for (const Index v : rim) last.push_back(vertex_[v]);
@@ -73,7 +74,7 @@ class PieceMaker {
         ring.push_back(add_vertex(p.position, p.sample.cone));
         surface_.lift[ring.back()] = surface_.distance[ring.back()];
       }
-      if (k + 1 == count) kept_.push_back({opening, static_cast<Index>(number), ring});
+      if (k + 1 == count) kept_.push_back({number_of_opening, ring});
       if (opening.at_end) std::reverse(ring.begin(), ring.end());
       band(last, ring);
       last = std::move(ring);
@@ -124,13 +125,12 @@ class PieceMaker {
       if (surface_.role[v] == BoundSurface::Role::lid) continue;
       number[v.idx()] = static_cast<Index>(piece.vertices.size());
       piece.vertices.push_back(
-          {surface_.position(v), surface_.cone[v], surface_.fineness[v], surface_.lift[v], {}, 0, 0});
+          {surface_.position(v), surface_.cone[v], surface_.fineness[v], surface_.lift[v], kNone, 0});
     }
-    for (const auto& [opening, ring, vertices] : kept_) {
+    for (const auto& [opening, vertices] : kept_) {
       for (Index j = 0; j < vertices.size(); ++j) {
         PieceVertex& v = piece.vertices[number[vertices[j].idx()]];
-        v.tube = opening;
-        v.ring = ring;
+        v.opening = opening;
         v.number = j;
       }
     }
@@ -143,8 +143,7 @@ class PieceMaker {
   }
 
   struct KeptRing {
-    TubeEnd opening;
-    Index ring;
+    Index opening;
     std::vector<Vertex> vertices;  // in the order of the ring
   };
 
@@ -163,6 +162,11 @@ class PieceMaker {
 std::size_t rings_given_away(const Tube& tube) {
   const bool to_seam = tube.starts_at_seam || tube.ends_at_seam;
   return std::min(kRingsGivenAway, to_seam ? tube.rings.size() - 1 : (tube.rings.size() - 1) / 2);
+}
+
+Index kept_ring(const Tube& tube, bool at_end) {
+  const std::size_t given = rings_given_away(tube);
+  return static_cast<Index>(at_end ? tube.rings.size() - 1 - given : given);
 }
 
 JunctionPiece make_junction_piece(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const Junction& junction,

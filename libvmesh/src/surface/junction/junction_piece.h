@@ -6,14 +6,13 @@
 
 namespace vmesh {
 
-/// A vertex of the surface, and the vertex of a tube's ring that it is, if any.
+/// A vertex of the surface, and the vertex of a kept ring that it is, if any.
 struct PieceVertex {
   Vec3 position;
   Index cone;
   double fineness, lift;
-  TubeEnd tube;    ///< tube.tube == kNone: none
-  Index ring = 0;  ///< number of the ring in the tube
-  Index number = 0;
+  Index opening = kNone;  ///< of the junction's (openings_of), at whose tube the ring is
+  Index number = 0;       ///< in the ring
 };
 
 /// The finished surface of a junction and of the tubes around it up to a ring each that is kept as it was.
@@ -30,6 +29,9 @@ struct JunctionPiece {
 /// Rings at the end of a tube that belong to the piece of the junction there and are replaced by it. The next one joins
 /// them.
 std::size_t rings_given_away(const Tube& tube);
+
+/// The ring of the tube's end that joins what the junction there replaces, and is kept.
+Index kept_ring(const Tube& tube, bool at_end);
 
 /// Grows a junction, docks its tubes and optimises around their seams. Where faces intersect, other resolutions of the
 /// junction's surface are tried, then its threads within the lattice; the best is kept. `guarded`: variants on which no

@@ -54,14 +54,16 @@ RingPlace Assembly::seam_at(const Tube& tube, bool at_last) const {
   throw std::logic_error("a seam is no ring of its piece");
 }
 
-void Assembly::add_junction(const JunctionPiece& piece) {
+void Assembly::add_junction(const Junction& junction, const JunctionPiece& piece) {
+  const std::vector<TubeEnd> openings = openings_of(junction);
   std::vector<Index> number;
   for (const PieceVertex& v : piece.vertices) {
-    if (v.tube.tube == kNone) {
+    if (v.opening == kNone) {
       number.push_back(size());
       vertices_.push_back({v.position, v.cone, v.fineness, v.lift});
     } else {
-      number.push_back(first_[v.tube.tube][v.ring] + v.number);
+      const auto [tube, at_end] = openings[v.opening];
+      number.push_back(first_[tube][kept_ring(skeleton_.tubes[tube], at_end)] + v.number);
     }
   }
   for (const auto& [a, b, c] : piece.faces) faces_.push_back({number[a], number[b], number[c]});

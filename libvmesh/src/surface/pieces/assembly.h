@@ -21,7 +21,7 @@ class Assembly {
   Assembly(const VesselTubes& tubes, const PiecePlan& plan, const GrowthSkeleton& skeleton,
            const std::vector<char>& open);
 
-  void add_junction(const JunctionPiece& piece);
+  void add_junction(const Junction& junction, const JunctionPiece& piece);
 
   /// Fills in the surface. Lids close what is open; returns the loops around them.
   std::vector<PieceLoop> build(BoundSurface& surface) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "surface/junction/junction_piece.h"
@@ -128,9 +129,8 @@ class PieceMaker {
     piece.tubes = skeleton.tubes.size();
     Assembly assembly(tubes_, plan_, skeleton, context_.open);
     for (const Junction& junction : skeleton.junctions) {
-      const JunctionPiece grown =
-          make_junction_piece(tubes_, skeleton, junction, context_.options, rung.guarded, context_.progress);
-      assembly.add_junction(grown);
+      const JunctionPiece& grown = junction_piece(skeleton, junction, rung.guarded);
+      assembly.add_junction(junction, grown);
       if (getenv("VDBG"))
         fprintf(stderr, "   junction nodes %zu gaps %zu verts %zu tangles %zu handles %zu filled %zu\n",
                 junction.nodes.size(), junction.gaps.size(), grown.vertices.size(), grown.tangles, grown.handles,
@@ -154,6 +154,29 @@ class PieceMaker {
     piece.faults = find_faults(surface, nodes_of(skeleton), context_.options);
     export_surface(surface, loops, piece);
     return piece;
+  }
+
+  // Junctions that a rung does not touch are grown once.
+  const JunctionPiece& junction_piece(const GrowthSkeleton& skeleton, const Junction& junction, bool guarded) {
+    GrownJunction& known = grown_[key_of(skeleton, junction)];
+    const bool will_do = known.piece && (known.guarded || !guarded || known.piece->tangles == 0);
+    if (!will_do) {
+      known.piece = make_junction_piece(tubes_, skeleton, junction, context_.options, guarded, context_.progress);
+      known.guarded = guarded;
+    }
+    return *known.piece;
+  }
+
+  // What a junction's piece depends on: its nodes, its gaps, and how many rings it replaces at each end of a gap.
+  static std::vector<double> key_of(const GrowthSkeleton& skeleton, const Junction& junction) {
+    std::vector<double> key(junction.nodes.begin(), junction.nodes.end());
+    for (const Gap& gap : junction.gaps) {
+      key.insert(key.end(), {-1.0 - gap.branch, gap.begin, gap.end});
+      for (const TubeEnd& opening : gap.openings)
+        key.push_back(opening.tube == kNone ? -1.0
+                                            : static_cast<double>(rings_given_away(skeleton.tubes[opening.tube])));
+    }
+    return key;
   }
 
   static double radius_at(const BoundSurface& surface, const Vec3& p) {
@@ -232,6 +255,11 @@ class PieceMaker {
   const VesselTubes& tubes_;
   const PiecePlan& plan_;
   std::vector<RingPlace> covered_;
+  struct GrownJunction {
+    std::optional<JunctionPiece> piece;
+    bool guarded = false;
+  };
+  std::map<std::vector<double>, GrownJunction> grown_;
 };
 
 }  // namespace
