@@ -16,7 +16,7 @@
 namespace vmesh {
 namespace {
 
-constexpr int kRounds = 5;         // of making pieces again as one
+constexpr int kRounds = 3;         // of making pieces again as one
 constexpr double kNearSeam = 4.0;  // radii: what is wrong so near to a seam may be because of it
 
 class PieceGrower {
@@ -65,11 +65,15 @@ class PieceGrower {
     });
   }
 
-  // Joins pieces at what is wrong between them. Returns whether there was something.
+  // Joins pieces at what is wrong between them. Returns whether there was something that this may mend.
   bool regroup() {
     std::vector<RingPlace> dissolved;
     std::vector<std::pair<Anchor, Anchor>> joined;
-    for (const auto& [f, g] : crossings_) part(gathered_.piece_of(f), gathered_.piece_of(g), dissolved, joined);
+    if (std::any_of(pieces_.begin(), pieces_.end(), is_hopeless)) return false;
+    for (const auto& [f, g] : crossings_) {
+      if (vessels_overlap(f, g)) return false;
+      part(gathered_.piece_of(f), gathered_.piece_of(g), dissolved, joined);
+    }
     for (Index p = 0; p < pieces_.size(); ++p) {
       for (const RingPlace& seam : seams_of(tubes_, division_.plans[p])) {
         if (has_fault_near(pieces_[p], seam)) dissolved.push_back(seam);
@@ -90,6 +94,15 @@ class PieceGrower {
     division_ = std::move(next);
     make_pieces(std::move(known));
     return true;
+  }
+
+  bool vessels_overlap(Index f, Index g) const {
+    for (const Index face : {f, g}) {
+      for (const Index v : gathered_.mesh.faces[face]) {
+        if (is_covered(tubes_.field(), gathered_.mesh.vertices[v], gathered_.binding[v].segment)) return true;
+      }
+    }
+    return false;
   }
 
   void part(Index p, Index q, std::vector<RingPlace>& dissolved, std::vector<std::pair<Anchor, Anchor>>& joined) const {

@@ -20,6 +20,7 @@ struct Rung {
   double finer;  // radius of fine spots at faults, in local ones; 0: none
   bool guarded;  // no step is taken after which faces cross
 };
+constexpr int kPatience = 3;     // rungs in a row on which nothing becomes better
 constexpr double kMended = 0.5;  // skewness above which triangles are mended at any price but soundness
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 constexpr Rung kLadder[kRungs] = {{0, 0, false},  {2, 0, true}, {3, 0, true},
@@ -76,7 +77,8 @@ class PieceMaker {
 
   PieceSurface run() {
     PieceSurface best;
-    for (int rung = 0; rung < kRungs; ++rung) {
+    int in_vain = 0;
+    for (int rung = 0; rung < kRungs && in_vain < kPatience; ++rung) {
       if (rung > 0 && !climb(kLadder[rung], best.faults)) continue;
       PieceSurface piece = make(kLadder[rung], best.faults);
       piece.rung = rung;
@@ -95,8 +97,9 @@ class PieceMaker {
         }
         fprintf(stderr, "\n");
       }
-      if (rung == 0 || piece.faults.size() < best.faults.size()) best = std::move(piece);
-      if (best.faults.empty()) break;
+      in_vain = rung == 0 || piece.faults.size() < best.faults.size() ? 0 : in_vain + 1;
+      if (in_vain == 0) best = std::move(piece);
+      if (best.faults.empty() || is_hopeless(best)) break;
     }
     return best;
   }
@@ -145,13 +148,14 @@ class PieceMaker {
       for (const PieceFault& fault : faults)
         surface.fine_spots.push_back({fault.position, rung.finer * radius_at(surface, fault.position)});
     }
+    bool tested = false;  // and no faces cross
     if (context_.options.sweeps > 0) {
       const GrownMesh grown{double(context_.options.around),
                             expected_vertices(length_in_radii(), context_.options.around), GrownMesh::Stage::assembled};
-      optimize(surface, context_.options, grown, context_.progress);
-      mend_worst_faces(surface, kMended);
+      const bool crosses = optimize(surface, context_.options, grown, context_.progress).crosses;
+      tested = !mend_worst_faces(surface, kMended) && !crosses;
     }
-    piece.faults = find_faults(surface, nodes_of(skeleton), context_.options);
+    piece.faults = find_faults(surface, nodes_of(skeleton), context_.options, !tested);
     export_surface(surface, loops, piece);
     return piece;
   }
@@ -263,6 +267,10 @@ class PieceMaker {
 };
 
 }  // namespace
+
+bool is_hopeless(const PieceSurface& piece) {
+  return std::any_of(piece.faults.begin(), piece.faults.end(), [](const PieceFault& f) { return f.vessels_overlap; });
+}
 
 PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan) { return PieceMaker(context, plan).run(); }
 

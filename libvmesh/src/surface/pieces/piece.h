@@ -11,7 +11,11 @@ namespace vmesh {
 struct PieceFault {
   DefectKind kind;
   Vec3 position = Vec3::Zero();
+  bool vessels_overlap = false;  ///< another vessel covers the place: no other surface would do better
 };
+
+/// Whether a vessel that `cone` does not see covers `p`.
+bool is_covered(const VesselField& field, const Vec3& p, Index cone);
 
 /// A vertex of a seam: number `number` of its ring.
 struct SeamVertex {
@@ -40,6 +44,9 @@ struct PieceSurface {
   std::vector<PieceFault> faults;
 };
 
+/// Whether vessels overlap in it, so that it cannot be sound.
+bool is_hopeless(const PieceSurface& piece);
+
 /// What all pieces of a surface have in common.
 struct PieceContext {
   const VesselTubes& tubes;
@@ -52,7 +59,8 @@ struct PieceContext {
 /// farther; finer triangles around them as well.
 inline constexpr int kRungs = 6;
 
-/// Makes a piece on the first rung on which it is sound, or the one with the fewest faults.
+/// Makes a piece on the first rung on which it is sound, or the one with the fewest faults. Where vessels overlap that
+/// do not belong together no rung would help: the first is taken.
 PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan);
 
 }  // namespace vmesh

@@ -9,14 +9,21 @@
 namespace vmesh {
 namespace {
 
+constexpr double kCovered = 0.02;  // radii below another vessel's wall
+
 Vec3 center_of(const TriMesh& mesh, Index f) {
   const auto& [a, b, c] = mesh.faces[f];
   return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
 }
 
-void find_crossings(const TriMesh& mesh, std::vector<PieceFault>& faults) {
+void find_crossings(const BoundSurface& surface, const TriMesh& mesh, std::vector<PieceFault>& faults) {
   for (const auto& [f, g] : self_intersections(mesh)) {
-    for (const Index face : {f, g}) faults.push_back({DefectKind::crossing_faces, center_of(mesh, face)});
+    bool overlap = false;
+    for (const Index face : {f, g}) {
+      for (const Index v : mesh.faces[face])
+        overlap = overlap || is_covered(surface.field, mesh.vertices[v], surface.cone[Vertex(v)]);
+    }
+    for (const Index face : {f, g}) faults.push_back({DefectKind::crossing_faces, center_of(mesh, face), overlap});
   }
 }
 
@@ -37,17 +44,24 @@ void find_nodes_outside(const BoundSurface& surface, const TriMesh& mesh, const 
   if (positions.empty()) return;
   const std::vector<bool> inside = points_inside(mesh, positions);
   for (std::size_t i = 0; i < inside.size(); ++i) {
-    if (!inside[i]) faults.push_back({DefectKind::node_outside, positions[i]});
+    if (inside[i]) continue;
+    const auto segments = surface.field.centerline().incident_segments(nodes[i]);
+    const bool overlap = !segments.empty() && is_covered(surface.field, positions[i], segments.front());
+    faults.push_back({DefectKind::node_outside, positions[i], overlap});
   }
 }
 
 }  // namespace
 
+bool is_covered(const VesselField& field, const Vec3& p, Index cone) {
+  return field.distance_to_others(p, cone, 0) < -kCovered * field.radius_at(cone, 0.5);
+}
+
 std::vector<PieceFault> find_faults(BoundSurface& surface, const std::vector<Index>& nodes,
-                                    const GenerateOptions& options) {
+                                    const GenerateOptions& options, bool may_cross) {
   std::vector<PieceFault> faults;
   const SweepState state(surface);
-  find_crossings(indexed_mesh(state, false), faults);
+  if (may_cross) find_crossings(surface, indexed_mesh(state, false), faults);
   if (options.sweeps > 0) find_bad_faces(state, faults);
   find_nodes_outside(surface, indexed_mesh(state, true), nodes, faults);
   return faults;

@@ -18,15 +18,16 @@ class Mender {
  public:
   Mender(BoundSurface& surface, double limit) : surface_(surface), mesh_(surface.mesh), limit_(limit) {}
 
-  void run() {
+  bool run() {
     for (int round = 0; round < kRounds; ++round) {
       const std::vector<Face> bad = bad_faces();
-      if (bad.empty()) return;
+      if (bad.empty()) return round > 0;
       if (round == 0) surface_.guard_crossings();
       bool any = false;
       for (const Face f : bad) any = (!mesh_.is_removed(f) && skewness(f) > limit_ && mend(f)) || any;
-      if (!any) return;
+      if (!any) break;
     }
+    return true;
   }
 
  private:
@@ -158,6 +159,6 @@ class Mender {
 
 }  // namespace
 
-void mend_worst_faces(BoundSurface& surface, double limit) { Mender(surface, limit).run(); }
+bool mend_worst_faces(BoundSurface& surface, double limit) { return Mender(surface, limit).run(); }
 
 }  // namespace vmesh

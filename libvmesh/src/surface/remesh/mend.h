@@ -7,6 +7,7 @@ namespace vmesh {
 /// Takes the worst triangles, of equiangle skewness above `limit`, out of a surface where keeping to the boundary or to
 /// the size field does not let them become better: flips, collapses and moves that lower the worst skewness around,
 /// wherever that leads, but never to faces that cross each other. Guards the surface from then on.
-void mend_worst_faces(BoundSurface& surface, double limit);
+/// Returns whether there were any such triangles.
+bool mend_worst_faces(BoundSurface& surface, double limit);
 
 }  // namespace vmesh

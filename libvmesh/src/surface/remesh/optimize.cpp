@@ -38,7 +38,6 @@ class Optimizer {
     if (grown.stage == GrownMesh::Stage::assembled) {
       edge_per_radius_ = edge_length_per_radius(options_.around);
       state_.update_sizes(edge_per_radius_, options_.max_error);
-      untangle();
       for (int round = 0; !state_.surface.fine_spots.empty() && round < kSpotRounds; ++round) {
         state_.stir_all();
         refine();
@@ -51,7 +50,7 @@ class Optimizer {
     } else {
       finish();
     }
-    return {tangles_, remesher_.limited(), std::move(unproven_)};
+    return {crosses_, tangles_, remesher_.limited(), std::move(unproven_)};
   }
 
  private:
@@ -66,12 +65,12 @@ class Optimizer {
   void finish() {
     settle();
     polish(state_, remesher_);
-    bool crossing = sink_crossing_walls();
+    crosses_ = sink_crossing_walls();
     if (options_.max_error.is_set()) {
       meet_error_limit(true);
-      crossing = !find_crossing_walls(state_).empty();
+      crosses_ = !find_crossing_walls(state_).empty();
     }
-    tangles_ = crossing ? find_tangles(state_).size() : 0;
+    tangles_ = crosses_ ? find_tangles(state_).size() : 0;
   }
 
   // The rest of the surface is not there yet: only what can fail here for good is looked at.
@@ -243,6 +242,7 @@ class Optimizer {
   const Progress& progress_;
   ErrorLimitCheck check_;
   double edge_per_radius_ = 0;
+  bool crosses_ = false;
   std::size_t tangles_ = 0;
   std::vector<Face> unproven_;
 };

@@ -8,6 +8,7 @@
 namespace vmesh {
 
 struct OptimizeReport {
+  bool crosses = false;        ///< faces intersect each other at the end, be it of vessels that are no neighbours
   std::size_t tangles = 0;     ///< vertices where faces still intersect within the volume's own neighbourhood
   bool limited = false;        ///< refinement stopped at the bound on the number of vertices
   std::vector<Face> unproven;  ///< faces for which options.max_error is not proven

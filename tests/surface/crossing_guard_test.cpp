@@ -1,0 +1,79 @@
+// Steps of remeshing after which faces would cross are told from those that may be taken.
+#include "surface/remesh/crossing_guard.h"
+
+#include <gtest/gtest.h>
+
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_quality.h"
+
+#include "draw.h"
+#include "surface/paper/geodesic_sphere.h"
+#include "surface/remesh/mend.h"
+#include "surface/remesh/untangle.h"
+
+namespace vmesh {
+namespace {
+
+using testing::Draw;
+
+// Two spheres of radius 1 whose centres are `apart`, in one mesh.
+struct TwoSpheres {
+  explicit TwoSpheres(double apart)
+      : centerline({{{0, 0, 0}, 1}, {{apart, 0, 0}, 1}}, {}), field(centerline), surface(field) {
+    for (const Index cone : {0u, 1u})
+      add_geodesic_sphere(surface, centerline.node(cone).position, 1, Eigen::Matrix3d::Identity(), cone);
+  }
+  std::size_t crossings() { return self_intersections(indexed_mesh(SweepState(surface), true)).size(); }
+
+  Centerline centerline;
+  VesselField field;
+  BoundSurface surface;
+};
+
+TEST(CrossingGuard, AllowsExactlyTheMovesAfterWhichNothingCrosses) {
+  TwoSpheres spheres(2.2);
+  ASSERT_EQ(spheres.crossings(), 0u);
+  spheres.surface.guard_crossings();
+  Draw draw(5);
+  int allowed = 0, refused = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const Vertex v(draw.below(static_cast<Index>(spheres.surface.mesh.num_vertices())));
+    const Vec3 before = spheres.surface.position(v), after = before + 0.5 * draw.in_cube(1);
+    const bool may = spheres.surface.may_place(v, after);
+    spheres.surface.place(v, after, spheres.field.sample(after, spheres.surface.cone[v]));
+    EXPECT_EQ(may, spheres.crossings() == 0);
+    if (!may) spheres.surface.place(v, before, spheres.field.sample(before, spheres.surface.cone[v]));
+    ++(may ? allowed : refused);
+  }
+  EXPECT_GT(allowed, 50);
+  EXPECT_GT(refused, 50);
+  EXPECT_EQ(spheres.crossings(), 0u);
+}
+
+TEST(Mend, TakesNeedlesOutWithoutACrossing) {
+  TwoSpheres spheres(2.3);
+  Draw draw(6);
+  spheres.surface.guard_crossings();
+  // Vertices next to others: needles.
+  for (int i = 0; i < 8; ++i) {
+    const Vertex v(draw.below(static_cast<Index>(spheres.surface.mesh.num_vertices())));
+    const Vertex w = spheres.surface.mesh.source(spheres.surface.mesh.halfedge(v));
+    const Vec3 near = 0.97 * spheres.surface.position(w) + 0.03 * spheres.surface.position(v);
+    if (spheres.surface.may_place(v, near))
+      spheres.surface.place(v, near, spheres.field.sample(near, spheres.surface.cone[v]));
+  }
+  const auto worst = [&] {
+    double skewness = 0;
+    for (const double s : equiangle_skewness(indexed_mesh(SweepState(spheres.surface), true)))
+      skewness = std::max(skewness, s);
+    return skewness;
+  };
+  ASSERT_GT(worst(), 0.8);
+  EXPECT_TRUE(mend_worst_faces(spheres.surface, 0.5));
+  EXPECT_LE(worst(), 0.5);
+  EXPECT_EQ(spheres.crossings(), 0u);
+  EXPECT_FALSE(mend_worst_faces(spheres.surface, 0.5));
+}
+
+}  // namespace
+}  // namespace vmesh

@@ -1,0 +1,143 @@
+// How a surface is divided, and that nothing depends on it.
+#include <gtest/gtest.h>
+
+#include "vmesh/mesh/topology.h"
+
+#include "centerlines.h"
+#include "random_vessels.h"
+#include "surface/pieces/gathering.h"
+
+namespace vmesh {
+namespace {
+
+struct Divided {
+  explicit Divided(Centerline c, const GenerateOptions& o = {})
+      : options(o),
+        centerline(std::move(c)),
+        field(centerline, options.blend),
+        tubes(field, {options.around, true, options.max_error}),
+        division(divide(tubes, options)),
+        open(centerline.nodes().size(), 0) {}
+
+  PieceSurface make(const PiecePlan& plan) const { return make_piece({tubes, open, options, progress}, plan); }
+
+  GenerateOptions options;
+  Centerline centerline;
+  VesselField field;
+  VesselTubes tubes;
+  Division division;
+  std::vector<char> open;
+  Progress progress;
+};
+
+// Forks one after the other, far enough apart for seams.
+Centerline chain_of_forks(int count) {
+  std::vector<CenterlineNode> nodes = {{{0, 0, 0}, 1}};
+  std::vector<CenterlineSegment> segments;
+  Index last = 0;
+  for (int i = 0; i < count; ++i) {
+    const double x = 14.0 * (i + 1);
+    nodes.push_back({{x, 0, 0}, 1});
+    const auto fork = static_cast<Index>(nodes.size() - 1);
+    segments.push_back({last, fork});
+    nodes.push_back({{x + 3, i % 2 == 0 ? 8.0 : -8.0, 0}, 0.7});
+    segments.push_back({fork, fork + 1});
+    last = fork;
+  }
+  nodes.push_back({{14.0 * (count + 1), 0, 0}, 1});
+  segments.push_back({last, static_cast<Index>(nodes.size() - 1)});
+  return {std::move(nodes), std::move(segments)};
+}
+
+TEST(Division, HasAPieceForEveryJunctionAndASeamBetweenTwo) {
+  const Divided divided(chain_of_forks(5));
+  EXPECT_EQ(divided.division.plans.size(), 5u);
+  EXPECT_EQ(divided.division.seams.size(), 4u);
+  std::map<RingPlace, int> sides;
+  for (const PiecePlan& plan : divided.division.plans) {
+    for (const RingPlace& seam : seams_of(divided.tubes, plan)) ++sides[seam];
+  }
+  for (const RingPlace& seam : divided.division.seams) EXPECT_EQ(sides[seam], 2);
+}
+
+TEST(Division, DividesALongTubeAndALongLoop) {
+  std::vector<CenterlineNode> nodes;
+  std::vector<CenterlineSegment> segments;
+  for (Index i = 0; i < 60; ++i) {
+    nodes.push_back({{10.0 * i, 0, 0}, 1});
+    if (i > 0) segments.push_back({i - 1, i});
+  }
+  const Divided tube(Centerline(nodes, segments));
+  EXPECT_GT(tube.division.plans.size(), 3u);
+  EXPECT_EQ(tube.division.seams.size() + 1, tube.division.plans.size());
+
+  nodes.clear();
+  segments.clear();
+  for (Index i = 0; i < 200; ++i) {
+    const double angle = 2 * M_PI * i / 200;
+    nodes.push_back({80 * Vec3(std::cos(angle), std::sin(angle), 0), 1});
+    segments.push_back({i, (i + 1) % 200});
+  }
+  const Divided loop(Centerline(nodes, segments));
+  EXPECT_GT(loop.division.plans.size(), 2u);
+  EXPECT_EQ(loop.division.seams.size(), loop.division.plans.size());
+  const GenerateResult result = generate_surface(loop.centerline);
+  EXPECT_TRUE(result.is_sound());
+  EXPECT_EQ(measure_topology(result.mesh).genus, 1);
+}
+
+TEST(Division, LeavesNoSeamWithOnePieceOnBothSides) {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    const Divided divided(testing::plausible_tree(seed, 2));
+    for (const PiecePlan& plan : divided.division.plans) {
+      std::vector<RingPlace> seams = seams_of(divided.tubes, plan);
+      std::sort(seams.begin(), seams.end());
+      EXPECT_EQ(std::adjacent_find(seams.begin(), seams.end()), seams.end());
+    }
+  }
+}
+
+TEST(Division, IsCoarserWithoutSomeSeams) {
+  const Divided divided(chain_of_forks(5));
+  const Division fewer = regrouped(divided.tubes, divided.division, {divided.division.seams[1]}, {});
+  EXPECT_EQ(fewer.plans.size(), 4u);
+  EXPECT_EQ(fewer.seams.size(), 3u);
+  const auto& plans = divided.division.plans;
+  const Division joined = regrouped(divided.tubes, divided.division, {}, {{anchor_of(plans[0]), anchor_of(plans[4])}});
+  EXPECT_EQ(joined.plans.size(), 4u);
+  EXPECT_EQ(joined.seams, divided.division.seams);
+}
+
+TEST(Pieces, AreTheSameWhoeverMakesThemInWhateverOrder) {
+  const Divided divided(testing::noisy_tree(3));
+  std::vector<PieceSurface> forward, backward(divided.division.plans.size());
+  for (const PiecePlan& plan : divided.division.plans) forward.push_back(divided.make(plan));
+  for (std::size_t p = backward.size(); p-- > 0;) {
+    const Divided apart(testing::noisy_tree(3));  // as on another machine
+    backward[p] = apart.make(apart.division.plans[p]);
+  }
+  const GatheredSurface one = gather(divided.tubes, divided.division, forward);
+  const GatheredSurface other = gather(divided.tubes, divided.division, backward);
+  EXPECT_GT(forward.size(), 5u);
+  EXPECT_EQ(one.mesh.vertices, other.mesh.vertices);
+  EXPECT_EQ(one.mesh.faces, other.mesh.faces);
+  EXPECT_TRUE(measure_topology(one.mesh).closed);
+}
+
+TEST(Pieces, KeepTheirSeamsAsTheyWereLaid) {
+  const Divided divided(chain_of_forks(4));
+  std::vector<PieceSurface> pieces;
+  for (const PiecePlan& plan : divided.division.plans) pieces.push_back(divided.make(plan));
+  const GatheredSurface surface = gather(divided.tubes, divided.division, pieces);
+  std::size_t v = 0;
+  for (const RingPlace& seam : divided.division.seams) {
+    for (const BoundaryPoint& p : divided.tubes.rings(seam.branch)[seam.ring].points)
+      EXPECT_EQ(surface.mesh.vertices[v++], p.position);
+  }
+  for (const PieceSurface& piece : pieces) EXPECT_TRUE(piece.faults.empty());
+  EXPECT_EQ(surface.piece_of(0), 0u);
+  EXPECT_EQ(surface.piece_of(static_cast<Index>(surface.mesh.faces.size() - 1)), pieces.size() - 1);
+}
+
+}  // namespace
+}  // namespace vmesh

@@ -1,0 +1,178 @@
+// Surfaces of vessels as they come: sound, every one of them. VMESH_RANDOM_VESSELS of each kind.
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/generate.h"
+#include "vmesh/volume/contacts.h"
+
+#include "random_vessels.h"
+#include "shared_data.h"
+
+namespace vmesh {
+namespace {
+
+using Seed = std::uint32_t;
+constexpr Seed kCount = VMESH_RANDOM_VESSELS;
+constexpr Seed kFirst = VMESH_FIRST_SEED;
+
+Centerline separated(const Centerline& centerline, double blend) {
+  SeparationOptions options;
+  options.blend = blend;
+  return separate_contacts(centerline, options).centerline;
+}
+
+GenerateResult generated(const Centerline& centerline, GenerateOptions options = {}) {
+  options.threads = 1;
+  return generate_surface(separated(centerline, options.blend), options);
+}
+
+// What the result says of itself is true: measured anew, apart from what generate_surface() measures with.
+void expect_sound(const Centerline& centerline, const GenerateOptions& options = {}) {
+  const GenerateResult result = generated(centerline, options);
+  for (const Defect& defect : result.defects) ADD_FAILURE() << to_string(defect.kind) << ": " << defect.message;
+  EXPECT_TRUE(result.is_sound());
+  const Topology topology = measure_topology(with_lids(result));
+  EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented && topology.outward);
+  EXPECT_EQ(topology.components, centerline.component_count());
+  EXPECT_EQ(topology.genus, static_cast<std::int64_t>(result.growth.cycle_rank));
+  EXPECT_TRUE(self_intersections(result.mesh).empty());
+  EXPECT_LE(summarize_skewness(result.mesh).max, kWorstSkewness);
+}
+
+GenerateOptions rotated(Seed seed) {
+  GenerateOptions options;
+  switch (seed % 10) {
+    case 1:
+      options.around = 3;
+      break;
+    case 2:
+      options.around = 4;
+      break;
+    case 3:
+      options.around = 12;
+      break;
+    case 4:
+      options.blend = 0;
+      break;
+    case 5:
+      options.blend = 2;
+      break;
+    case 6:
+      options.placement = Placement::inscribed;
+      break;
+    case 7:
+      options.open_ends.all = true;
+      break;
+    case 8:
+      options.max_center_distance = 0.05;
+      break;
+    case 9:
+      options.max_error.relative = 0.1;
+      break;
+    default:
+      break;
+  }
+  return options;
+}
+
+TEST(Soundness, OfNoisyTrees) {
+  for (Seed seed = kFirst; seed < kFirst + kCount; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    expect_sound(testing::noisy_tree(seed));
+  }
+}
+
+TEST(Soundness, OfPlausibleTrees) {
+  for (Seed seed = kFirst; seed < kFirst + kCount; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    expect_sound(testing::plausible_tree(seed));
+  }
+}
+
+TEST(Soundness, OfPlausibleTreesWhateverTheOptions) {
+  for (Seed seed = kFirst; seed < kFirst + kCount; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    expect_sound(testing::plausible_tree(seed), rotated(seed));
+  }
+}
+
+// Pieces of BraVa and trees in their likeness, random trees that came out broken, vessels that touch.
+TEST(Soundness, OfCrowdedFiles) {
+  VMESH_NEED_SHARED_DATA("crowded");
+  for (const char* file :
+       {"hairpin_28.swc", "hairpin_120.swc", "noisy_34.swc",    "noisy_8.swc",         "noisy_91.swc", "s1005.csv",
+        "s1078.csv",      "s1130.csv",       "s1131.csv",       "s1156.csv",           "p5040.csv",    "p5133.csv",
+        "p5249.csv",      "p5255.csv",       "p5400.csv",       "p6037.csv",           "p6038.csv",    "k5.csv",
+        "cross90.csv",    "helix_over.csv",  "trefoil_fat.csv", "parallel_overlap.csv"}) {
+    SCOPED_TRACE(file);
+    const Centerline centerline =
+        load_centerline(testing::shared_data(std::string("crowded/") + file)).cleaned.centerline;
+    expect_sound(centerline);
+  }
+}
+
+// Two legs that part at a bend and come near again: no vessels of which the graph knows that they are apart.
+TEST(Soundness, OfVesselsThatPartAndComeNearAgain) {
+  std::vector<CenterlineNode> nodes = {{{0, 0, 0}, 1}};
+  std::vector<CenterlineSegment> segments;
+  for (const double side : {1.0, -1.0}) {
+    Index last = 0;
+    for (int i = 1; i <= 24; ++i) {
+      const double along = 0.5 * i, apart = 1.7 * std::sin(M_PI * along / 8);  // 3.4 apart at 4, 0 at 8
+      nodes.push_back({{along, side * std::max(apart, along > 4 ? 0.9 : 0.0), 0}, 1});
+      segments.push_back({last, static_cast<Index>(nodes.size() - 1)});
+      last = segments.back().b;
+    }
+  }
+  const Centerline centerline(nodes, segments);
+  EXPECT_FALSE(find_contacts(VesselField(centerline, 0.5), 0.1).empty());
+  expect_sound(centerline);
+}
+
+// A vessel within another one from end to end, which nothing can part.
+TEST(Soundness, IsNotClaimedOfOneVesselInAnother) {
+  const Centerline centerline({{{0, 0, 0}, 2}, {{12, 0, 0}, 2}, {{1, 0, 0.01}, 0.5}, {{11, 0, 0.01}, 0.5}},
+                              {{0, 1}, {2, 3}});
+  const GenerateResult result = generated(centerline);
+  ASSERT_FALSE(result.is_sound());
+  EXPECT_FALSE(result.defects.front().message.empty());
+}
+
+TEST(Soundness, NamesVesselsThatCross) {
+  const Centerline cross({{{-6, 0, 0}, 1}, {{6, 0, 0}, 1}, {{0, -6, 0.3}, 1}, {{0, 6, 0.3}, 1}}, {{0, 1}, {2, 3}});
+  const GenerateResult kept = generate_surface(cross);
+  ASSERT_FALSE(kept.is_sound());
+  const Defect& defect = kept.defects.front();
+  EXPECT_EQ(defect.kind, DefectKind::crossing_faces);
+  EXPECT_EQ(defect.count, self_intersections(kept.mesh).size());
+  EXPECT_LT(defect.position.norm(), 2.5);
+  EXPECT_LT(defect.segment, 2u);
+  EXPECT_LT(defect.branch, 2u);
+  EXPECT_NE(defect.message.find("cross"), std::string::npos);
+  expect_sound(cross);
+}
+
+TEST(Soundness, DoesNotDependOnTheThreads) {
+  for (const Seed seed : {kFirst, kFirst + 1, kFirst + 7}) {
+    const Centerline centerline = separated(testing::noisy_tree(seed), 0.5);
+    GenerateOptions options;
+    options.threads = 1;
+    const GenerateResult one = generate_surface(centerline, options);
+    for (const int threads : {2, 7}) {
+      options.threads = threads;
+      const GenerateResult many = generate_surface(centerline, options);
+      EXPECT_EQ(one.mesh.vertices, many.mesh.vertices);
+      EXPECT_EQ(one.mesh.faces, many.mesh.faces);
+      EXPECT_EQ(one.radius, many.radius);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vmesh
