@@ -11,7 +11,7 @@ namespace {
 
 struct Steered {
   explicit Steered(Centerline c, int around = 6)
-      : centerline(std::move(c)), field(centerline, 0.5), tubes(field, {around, false, {}}) {
+      : centerline(std::move(c)), field(centerline, 0.5), tubes(field, {around}) {
     skeleton = make_growth_skeleton(tubes, whole_plan(tubes));
   }
 

@@ -15,7 +15,7 @@ struct Divided {
       : options(o),
         centerline(std::move(c)),
         field(centerline, options.blend),
-        tubes(field, {options.around, true, options.max_error}),
+        tubes(field, {options.around, options.placement, options.max_error}),
         division(divide(tubes, options)),
         open(centerline.nodes().size(), 0) {}
 
@@ -131,7 +131,7 @@ TEST(Pieces, KeepTheirSeamsAsTheyWereLaid) {
   const GatheredSurface surface = gather(divided.tubes, divided.division, pieces);
   std::size_t v = 0;
   for (const RingPlace& seam : divided.division.seams) {
-    for (const BoundaryPoint& p : divided.tubes.rings(seam.branch)[seam.ring].points)
+    for (const BoundaryPoint& p : divided.tubes.layer().lifted(divided.tubes.rings(seam.branch)[seam.ring]))
       EXPECT_EQ(surface.mesh.vertices[v++], p.position);
   }
   for (const PieceSurface& piece : pieces) EXPECT_TRUE(piece.faults.empty());

@@ -199,7 +199,7 @@ class Overlap : public CommandTest {
 TEST_F(Overlap, IsToldAndKept) {
   write_crossing("1.2");
   std::string err;
-  const json summary = summary_of({}, &err);
+  const json summary = summary_of({"--overlap", "keep", "--allow-defects"}, &err);
   EXPECT_EQ(summary.at("options").at("overlap"), "keep");
   EXPECT_EQ(summary.at("options").at("gap"), 0.1);
   const json& contacts = summary.at("contacts");
@@ -213,6 +213,25 @@ TEST_F(Overlap, IsToldAndKept) {
   EXPECT_GT(summary.at("self_intersections"), 0);
   EXPECT_NE(err.find("touch in 1 place"), std::string::npos) << err;
   EXPECT_NE(err.find("--overlap separate"), std::string::npos) << err;
+}
+
+TEST_F(Overlap, IsRefusedWhenKept) {
+  write_crossing("1.2");
+  const Outcome run = vmesh({"generate", "@x.swc", "-o", "@x.ply", "--overlap", "keep", "--json", "@x.json"});
+  EXPECT_EQ(run.exit_code, 7);
+  EXPECT_FALSE(exists("x.ply"));
+  EXPECT_FALSE(exists("x.json"));
+  EXPECT_NE(run.err.find("crossing_faces: "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("on branch "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("--allow-defects"), std::string::npos) << run.err;
+
+  const json summary = summary_of({"--overlap", "keep", "--allow-defects"});
+  EXPECT_EQ(summary.at("sound"), false);
+  const json& defect = summary.at("defects").at(0);
+  EXPECT_EQ(defect.at("kind"), "crossing_faces");
+  EXPECT_EQ(defect.at("count"), summary.at("self_intersections"));
+  EXPECT_TRUE(defect.at("at").is_array() && defect.at("segment").is_number() && defect.at("branch").is_number());
+  EXPECT_EQ(summary_of({}).at("sound"), true);
 }
 
 TEST_F(Overlap, IsSeparated) {
@@ -302,7 +321,9 @@ TEST_F(Overlap, OfVesselsThatCannotBePartedIsNamed) {
   }
   write("x.swc", swc);
   std::string err;
-  const json summary = summary_of({"--overlap", "separate"}, &err);
+  EXPECT_EQ(vmesh({"generate", "@x.swc", "-o", "@x.ply"}).exit_code, 7);
+  EXPECT_FALSE(exists("x.ply"));
+  const json summary = summary_of({"--overlap", "separate", "--allow-defects"}, &err);
   EXPECT_GT(summary.at("separation").at("contacts_left").at("count"), 0);
   EXPECT_NE(err.find("neither narrowing nor a small move can part them"), std::string::npos) << err;
 }

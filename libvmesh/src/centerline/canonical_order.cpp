@@ -31,7 +31,7 @@ class CanonicalOrder {
   /// One node per component: the best of its ends or, for a component without ends, of all.
   std::vector<Index> roots() {
     DisjointSets joined(work_.nodes.size());
-    for (const auto& [a, b] : work_.segments) joined.unite(a, b);
+    for (const auto& [a, b] : work_.segments) joined.join(a, b);
     std::vector<Index> best(work_.nodes.size(), kNone);
     for (Index n = 0; n < work_.nodes.size(); ++n) {
       if (work_.merged.find(n) != n) continue;

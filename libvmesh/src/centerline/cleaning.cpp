@@ -122,7 +122,7 @@ Workspace::Workspace(const RawCenterline& raw_centerline, const CleaningOptions&
 void Workspace::merge(Index a, Index b) {
   a = merged.find(a);
   b = merged.find(b);
-  if (!merged.unite(a, b)) return;
+  if (!merged.join(a, b)) return;
   const auto [low, high] = std::minmax(a, b);
   if (nodes[low].radius <= 0) nodes[low].radius = nodes[high].radius;
 }

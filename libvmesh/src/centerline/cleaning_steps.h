@@ -7,34 +7,9 @@
 #include <vector>
 
 #include "vmesh/centerline/cleaning.h"
+#include "vmesh/core/disjoint_sets.h"
 
 namespace vmesh::cleaning {
-
-/// Disjoint sets of indices; the lowest index of a set represents it.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
-
-  Index find(Index i) {
-    while (parent_[i] != i) {
-      parent_[i] = parent_[parent_[i]];
-      i = parent_[i];
-    }
-    return i;
-  }
-
-  bool unite(Index i, Index j) {
-    i = find(i);
-    j = find(j);
-    if (i == j) return false;
-    if (j < i) std::swap(i, j);
-    parent_[j] = i;
-    return true;
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 /// Adjacency of a list of segments, each node's segments in ascending order.
 struct Adjacency {

@@ -148,7 +148,7 @@ class NodeMerger {
     for (const auto& [a, b] : work.segments) {
       ++degree_[a];
       ++degree_[b];
-      joined_.unite(a, b);
+      joined_.join(a, b);
     }
   }
 
@@ -172,7 +172,7 @@ class NodeMerger {
     const Index degree = degree_[n] + degree_[into];
     work_.merge(n, into);
     degree_[work_.merged.find(n)] = degree;
-    joined_.unite(n, into);
+    joined_.join(n, into);
   }
 
   void merge_at_equal_positions() {

@@ -16,7 +16,7 @@ class GapJoiner {
     for (const auto& [a, b] : work.segments) {
       ++degree_[a];
       ++degree_[b];
-      joined_.unite(a, b);
+      joined_.join(a, b);
     }
     has_join_.assign(work.nodes.size(), 0);
     starts_component_.resize(work.nodes.size());
@@ -75,7 +75,7 @@ class GapJoiner {
     std::sort(candidates.begin(), candidates.end());
     bool any = false;
     for (const auto& candidate : candidates) {
-      if (joined_.unite(candidate.from, candidate.to)) {
+      if (joined_.join(candidate.from, candidate.to)) {
         join(candidate);
         any = true;
       }

@@ -1,29 +1,23 @@
 #include "vmesh/mesh/components.h"
 
-#include <numeric>
+#include "vmesh/core/disjoint_sets.h"
 
 #include "mesh/check_indices.h"
 
 namespace vmesh {
 namespace {
 
-Index root_of(std::vector<Index>& parent, Index v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
 /// Component of every vertex, numbered by first faces; kNone for vertices without a face.
 std::vector<Index> number_vertices(const TriMesh& mesh) {
-  std::vector<Index> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), Index{0});
+  DisjointSets sets(mesh.vertices.size());
   for (const auto& [a, b, c] : mesh.faces) {
-    parent[root_of(parent, a)] = root_of(parent, b);
-    parent[root_of(parent, b)] = root_of(parent, c);
+    sets.join(a, b);
+    sets.join(b, c);
   }
   std::vector<Index> number_of_root(mesh.vertices.size(), kNone), component(mesh.vertices.size(), kNone);
   Index count = 0;
   for (const Triangle& face : mesh.faces) {
-    Index& number = number_of_root[root_of(parent, face[0])];
+    Index& number = number_of_root[sets.find(face[0])];
     if (number == kNone) number = count++;
     for (const Index v : face) component[v] = number;
   }

@@ -1,8 +1,9 @@
 #include "vmesh/mesh/topology.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
+
+#include "vmesh/core/disjoint_sets.h"
 
 #include "mesh/check_indices.h"
 #include "mesh/sorted_by_vertex.h"
@@ -34,19 +35,6 @@ std::vector<Side> sorted_sides(const TriMesh& mesh) {
   });
 }
 
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
-  Index find(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(Index i, Index j) { parent_[std::max(find(i), find(j))] = std::min(find(i), find(j)); }
-
- private:
-  std::vector<Index> parent_;
-};
-
 // A vertex is manifold when its faces, joined across edges at it, form one fan: count fans as classes of face corners.
 bool one_fan_each(const TriMesh& mesh, const std::vector<Side>& sides) {
   DisjointSets corners(3 * mesh.faces.size());
@@ -57,7 +45,7 @@ bool one_fan_each(const TriMesh& mesh, const std::vector<Side>& sides) {
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     if (sides[i].key() != sides[i + 1].key()) continue;
     for (const Index v : {sides[i].low, sides[i].high}) {
-      corners.unite(corner_of(sides[i].face, v), corner_of(sides[i + 1].face, v));
+      corners.join(corner_of(sides[i].face, v), corner_of(sides[i + 1].face, v));
     }
   }
   std::vector<Index> fan(mesh.vertices.size(), kNone);
@@ -75,7 +63,7 @@ bool one_fan_each(const TriMesh& mesh, const std::vector<Side>& sides) {
 // Of a graph, isolated vertices not counted.
 std::size_t count_pieces(const std::vector<Side>& edges, std::size_t vertices) {
   DisjointSets sets(edges.empty() ? 0 : vertices);
-  for (const Side& edge : edges) sets.unite(edge.low, edge.high);
+  for (const Side& edge : edges) sets.join(edge.low, edge.high);
   std::vector<Index> roots;
   for (const Side& edge : edges) roots.push_back(sets.find(edge.low));
   std::sort(roots.begin(), roots.end());
@@ -111,8 +99,8 @@ Topology measure_topology(const TriMesh& mesh) {
   std::vector<char> used(mesh.vertices.size(), 0);
   for (const auto& [a, b, c] : mesh.faces) {
     used[a] = used[b] = used[c] = 1;
-    sets.unite(a, b);
-    sets.unite(a, c);
+    sets.join(a, b);
+    sets.join(a, c);
   }
   std::int64_t vertices = 0;
   for (Index v = 0; v < used.size(); ++v) {

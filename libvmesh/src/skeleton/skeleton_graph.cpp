@@ -6,19 +6,15 @@
 #include <numeric>
 #include <queue>
 
+#include "vmesh/core/disjoint_sets.h"
+
 namespace vmesh::skeleton {
 namespace {
 
-Index root_of(std::vector<Index>& parent, Index n) {
-  while (parent[n] != n) n = parent[n] = parent[parent[n]];
-  return n;
-}
-
-std::vector<Index> forest_of(const Graph& graph) {
-  std::vector<Index> parent(graph.nodes.size());
-  std::iota(parent.begin(), parent.end(), Index{0});
-  for (const auto& [a, b] : graph.edges) parent[root_of(parent, a)] = root_of(parent, b);
-  return parent;
+DisjointSets parts_of(const Graph& graph) {
+  DisjointSets parts(graph.nodes.size());
+  for (const auto& [a, b] : graph.edges) parts.join(a, b);
+  return parts;
 }
 
 void remove_edges(Graph& graph, const std::vector<bool>& removed) {
@@ -59,12 +55,10 @@ double way_around(const Graph& graph, const std::vector<std::vector<Index>>& edg
 
 /// Edges that are not in the spanning forest of the shortest ones.
 std::vector<Index> closing_edges(const Graph& graph) {
-  std::vector<Index> parent(graph.nodes.size()), closing;
-  std::iota(parent.begin(), parent.end(), Index{0});
+  DisjointSets parts(graph.nodes.size());
+  std::vector<Index> closing;
   for (const Index e : by_length(graph)) {
-    const Index a = root_of(parent, graph.edges[e][0]), b = root_of(parent, graph.edges[e][1]);
-    if (a == b) closing.push_back(e);
-    parent[a] = b;
+    if (!parts.join(graph.edges[e][0], graph.edges[e][1])) closing.push_back(e);
   }
   return closing;
 }
@@ -110,14 +104,14 @@ std::vector<Chain> chains_of(const Graph& graph) {
 
 void connect(Graph& graph) {
   for (;;) {
-    std::vector<Index> parent = forest_of(graph);
-    const Index first = root_of(parent, 0);
+    DisjointSets parts = parts_of(graph);
+    const Index first = parts.find(0);
     double best = std::numeric_limits<double>::infinity();
     std::array<Index, 2> edge{};
     for (Index a = 0; a < graph.nodes.size(); ++a) {
-      if (root_of(parent, a) != first) continue;
+      if (parts.find(a) != first) continue;
       for (Index b = 0; b < graph.nodes.size(); ++b) {
-        if (root_of(parent, b) == first) continue;
+        if (parts.find(b) == first) continue;
         const double distance = (graph.nodes[a].position - graph.nodes[b].position).norm();
         if (distance < best) best = distance, edge = {a, b};
       }

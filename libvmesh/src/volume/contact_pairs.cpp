@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <unordered_map>
+
+#include "vmesh/core/disjoint_sets.h"
 
 #include "volume/local_pairs.h"
 
@@ -13,11 +14,11 @@ namespace vmesh {
 namespace {
 
 constexpr int kSectionSteps = 48;  // 0.618^48 = 1e-10 of the axis
-// Vessels that part have walls of their own from a gap of half a smaller radius on (kOneVolume): never more than this is
-// asked of them there.
+// Vessels that part have walls of their own from a gap of half a smaller radius on (kOneVolume): never more than this
+// is asked of them there.
 constexpr double kForkGap = 0.4;
-constexpr double kMostRounding = 0.2;         // sums of radii
-constexpr Touch kFork{0.5, 0.25};             // what still counts as a place where vessels part
+constexpr double kMostRounding = 0.2;  // sums of radii
+constexpr Touch kFork{0.5, 0.25};      // what still counts as a place where vessels part
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
 // The sphere of a cone that is closest to a point, for radii that count `weight` times.
@@ -119,9 +120,7 @@ Box box_of(const AxisStretch& cone, double margin) {
 class PairFinder {
  public:
   PairFinder(const VesselField& field, double gap)
-      : field_(field),
-        gap_(gap),
-        most_rounding_(std::min(field.blend() / 2, kMostRounding)) {
+      : field_(field), gap_(gap), most_rounding_(std::min(field.blend() / 2, kMostRounding)) {
     for (Index c = 0; c < field.cone_count(); ++c) cones_.push_back(stretch_of(field, c));
     std::vector<Vec3> low, high;
     for (const AxisStretch& cone : cones_) {
@@ -216,12 +215,7 @@ class PairFinder {
 
 // Pairs whose cones share a node on either side belong to one region.
 void number_regions(const VesselField& field, std::vector<ContactPair>& pairs) {
-  std::vector<std::size_t> parent(pairs.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root = [&parent](std::size_t n) {
-    while (parent[n] != n) n = parent[n] = parent[parent[n]];
-    return n;
-  };
+  DisjointSets joined(pairs.size());
   std::unordered_map<std::uint64_t, std::size_t> first_with;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     for (const Index a : {field.first_node(pairs[n].i), field.last_node(pairs[n].i)}) {
@@ -229,14 +223,13 @@ void number_regions(const VesselField& field, std::vector<ContactPair>& pairs) {
         const auto [low, high] = std::minmax(a, b);
         const auto [known, is_new] = first_with.try_emplace(std::uint64_t{low} << 32 | high, n);
         if (is_new) continue;
-        const std::size_t first = root(known->second), second = root(n);
-        parent[std::max(first, second)] = std::min(first, second);
+        joined.join(static_cast<Index>(known->second), static_cast<Index>(n));
       }
     }
   }
   Index count = 0;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
-    const std::size_t first = root(n);
+    const std::size_t first = joined.find(static_cast<Index>(n));
     pairs[n].region = first == n ? count++ : pairs[first].region;
   }
 }

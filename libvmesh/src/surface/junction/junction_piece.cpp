@@ -72,7 +72,7 @@ class PieceMaker {
       std::vector<Vertex> ring;
       for (const BoundaryPoint& p : tube.rings[number].points) {
         ring.push_back(add_vertex(p.position, p.sample.cone));
-        surface_.lift[ring.back()] = surface_.distance[ring.back()];
+        if (is_seam(tube, number)) surface_.lift[ring.back()] = surface_.distance[ring.back()];
       }
       if (k + 1 == count) kept_.push_back({number_of_opening, ring});
       if (opening.at_end) std::reverse(ring.begin(), ring.end());

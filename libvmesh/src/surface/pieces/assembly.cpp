@@ -31,7 +31,8 @@ void Assembly::add_tube(Index number) {
   first_[number].resize(count, kNone);
   for (std::size_t k = begin; k < end; ++k) {
     first_[number][k] = size();
-    for (const BoundaryPoint& p : tube.rings[k].points) vertices_.push_back({p.position, p.sample.cone, 1, kAsLaid});
+    const double lift = is_seam(tube, k) ? kAsLaid : 0;
+    for (const BoundaryPoint& p : tube.rings[k].points) vertices_.push_back({p.position, p.sample.cone, 1, lift});
   }
   for (std::size_t k = begin; k + 1 < end; ++k) band(ring_vertices(number, k), ring_vertices(number, k + 1));
   if (tube.periodic) band(ring_vertices(number, count - 1), ring_vertices(number, 0));

@@ -123,7 +123,7 @@ class SeamSearch {
   }
 
   // Measured on ten liver trees and tree1560: the mean skewness grows by less than 1 % up to here.
-  static constexpr double kSeamEnergy = 1.12;
+  static constexpr double kSeamEnergy = 1.05;
   static constexpr double kClear = 0.5;  // radii: more than the highest lift, a third of a radius, and edges between
 
   static constexpr double kSeamLimit = 0.8;  // of the error limit: neighbours with lower shells take some of it

@@ -23,7 +23,7 @@ class PieceGrower {
  public:
   PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
               const Progress& progress)
-      : tubes_(field, {options.around, options.placement == Placement::balanced, options.max_error}),
+      : tubes_(field, {options.around, options.placement, options.max_error}),
         options_(options),
         progress_(progress),
         context_{tubes_, open, options_, ask_},

@@ -153,7 +153,9 @@ class PieceMaker {
       const GrownMesh grown{double(context_.options.around),
                             expected_vertices(length_in_radii(), context_.options.around), GrownMesh::Stage::assembled};
       const bool crosses = optimize(surface, context_.options, grown, context_.progress).crosses;
-      tested = !mend_worst_faces(surface, kMended) && !crosses;
+      // What is mended leaves the boundary a little: not beyond a limit, unless it must.
+      const double limit = context_.options.max_error.is_set() ? kWorstSkewness : kMended;
+      tested = !mend_worst_faces(surface, limit) && !crosses;
     }
     piece.faults = find_faults(surface, nodes_of(skeleton), context_.options, !tested);
     export_surface(surface, loops, piece);

@@ -38,6 +38,7 @@ class SkeletonMaker {
       divide_all();
     } while (dissolve_handles());
     skeleton_.rings = std::move(rings_);
+    skeleton_.seam_points = std::move(seam_points_);
     return std::move(skeleton_);
   }
 
@@ -48,7 +49,7 @@ class SkeletonMaker {
     return axis_of(stretch).periodic() && !stretch.seam_at_first && !stretch.seam_at_last;
   }
 
-  std::vector<Ring> rings_of(const Stretch& stretch, const std::vector<RingPlace>& covered) const {
+  std::vector<Ring> rings_of(const Stretch& stretch, const std::vector<RingPlace>& covered) {
     const std::vector<Ring>& all = tubes_.rings(stretch.branch);
     std::vector<Ring> rings;
     bool changed = false;
@@ -56,6 +57,10 @@ class SkeletonMaker {
       const auto number = static_cast<Index>((stretch.first + k) % all.size());
       rings.push_back(all[number]);
       const bool is_seam = (k == 0 && stretch.seam_at_first) || (k + 1 == stretch.count && stretch.seam_at_last);
+      if (is_seam) {
+        seam_points_.push_back(tubes_.layer().lifted(rings.back()));
+        rings.back().points = seam_points_.back();
+      }
       if (is_seam || !rings.back().free) continue;
       if (!std::binary_search(covered.begin(), covered.end(), RingPlace{stretch.branch, number})) continue;
       rings.back().free = false;
@@ -230,7 +235,8 @@ class SkeletonMaker {
   const VesselTubes& tubes_;
   const PiecePlan& plan_;
   std::vector<std::vector<Ring>> rings_;  // of the stretches
-  std::map<Index, char> capped_;          // tips that a tube's cap closes
+  std::vector<std::vector<BoundaryPoint>> seam_points_;
+  std::map<Index, char> capped_;  // tips that a tube's cap closes
   std::vector<Gap> gaps_;
   GrowthSkeleton skeleton_;
 };

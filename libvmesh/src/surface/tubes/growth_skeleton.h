@@ -67,6 +67,11 @@ struct Tube {
   bool ends_at_junction() const { return !ends_at_tip && !periodic && !ends_at_seam; }
 };
 
+/// Whether ring `k` of the tube is a seam.
+inline bool is_seam(const Tube& tube, std::size_t k) {
+  return (tube.starts_at_seam && k == 0) || (tube.ends_at_seam && k + 1 == tube.rings.size());
+}
+
 /// The open end of a tube at which a junction docks.
 struct TubeEnd {
   Index tube = kNone;
@@ -93,7 +98,8 @@ std::vector<TubeEnd> openings_of(const Junction& junction);
 /// part into tubes of their own where their cross-sections do, and a branch without a cross-section of its own is part
 /// of a junction.
 struct GrowthSkeleton {
-  std::vector<std::vector<Ring>> rings;  ///< of the plan's stretches
+  std::vector<std::vector<Ring>> rings;                 ///< of the plan's stretches
+  std::vector<std::vector<BoundaryPoint>> seam_points;  ///< of the rings that are seams, lifted
   std::vector<Tube> tubes;
   std::vector<Junction> junctions;
 

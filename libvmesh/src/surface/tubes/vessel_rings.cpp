@@ -81,8 +81,6 @@ Rings RingLayer::lay(Index branch) const {
                   : Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, here.normal) * side);
     side = (side - side.dot(here.normal) * here.normal).normalized();
     rings.push_back(lay_one(branch, here, side, static_cast<double>(k % 2) / 2, laid.points));
-    const bool at_tip = (k == 0 && axis.starts_at_tip()) || (k + 1 == count && axis.ends_at_tip());
-    if (options_.lifted && !at_tip) lift(rings.back(), laid.points);
     rings.back().beside = {section(branch, radii - step / 2), section(branch, radii + step / 2)};
   }
   std::vector<char> collides(rings.size(), 0);
@@ -120,15 +118,16 @@ void RingLayer::leave_out_steps(std::vector<Ring>& rings, double least_gap) {
   rings.resize(kept);
 }
 
-// The wall is a curve along which nothing else is near: the ring's radius grows evenly.
-void RingLayer::lift(const Ring& ring, std::vector<BoundaryPoint>& points) const {
+std::vector<BoundaryPoint> RingLayer::lifted(const Ring& ring) const {
+  std::vector<BoundaryPoint> points(ring.points.begin(), ring.points.end());
+  if (options_.placement == Placement::inscribed) return points;
   const double height = std::min((balanced_ring_radius(options_.around) - 1) * ring.radius,
                                  kShareOfLimit * options_.limit.at(ring.radius));
-  for (std::size_t i = points.size() - ring.points.size(); i < points.size(); ++i) {
-    BoundaryPoint& p = points[i];
+  for (BoundaryPoint& p : points) {
     const Vec3 way = (p.position - ring.center).normalized();
     p.position += height / std::max(kFacing, p.sample.gradient.dot(way)) * way;
   }
+  return points;
 }
 
 void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings, bool loop) const {

@@ -41,8 +41,8 @@ double ring_pitch(int around);
 /// How rings are laid.
 struct RingOptions {
   int around;
-  bool lifted;       ///< for balanced placement: off the boundary, so that the volume is kept; but for rings at tips
-  ErrorLimit limit;  ///< never lifted beyond it
+  Placement placement = Placement::inscribed;
+  ErrorLimit limit = {};  ///< no ring is lifted beyond it
 };
 
 /// Where every segment lies: its branch and its number there.
@@ -63,6 +63,9 @@ class RingLayer {
 
   Rings lay(Index branch) const;
 
+  /// The ring's points where balanced placement will have them: off the boundary, so that the volume is kept.
+  std::vector<BoundaryPoint> lifted(const Ring& ring) const;
+
   /// Frees no more than what can end a tube: where free rings begin or end off a tip, the cross-section half a step
   /// further is free as well. `loop`: the first ring follows the last one.
   void clear_ends(Index branch, std::vector<Ring>& rings, bool loop) const;
@@ -73,7 +76,7 @@ class RingLayer {
   // Its points go to the end of `points`, which must have room for them.
   Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
                std::vector<BoundaryPoint>& points) const;
-  void lift(const Ring& ring, std::vector<BoundaryPoint>& points) const;
+
   static void leave_out_steps(std::vector<Ring>& rings, double least_gap);
   // Whether no other vessel, nor a far part of this one, covers the cross-section or comes close.
   bool is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
