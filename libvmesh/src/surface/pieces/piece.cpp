@@ -20,11 +20,10 @@ struct Rung {
   double finer;  // radius of fine spots at faults, in local ones; 0: none
   bool guarded;  // no step is taken after which faces cross
 };
-constexpr int kPatience = 3;     // rungs in a row on which nothing becomes better
 constexpr double kMended = 0.5;  // skewness above which triangles are mended at any price but soundness
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
-constexpr Rung kLadder[kRungs] = {{0, 0, false},  {2, 0, true}, {3, 0, true},
-                                  {3, 0.5, true}, {5, 0, true}, {kEverywhere, 0, true}};
+constexpr Rung kLadder[kRungs] = {{0, 0, false}, {2, 0, false},  {2, 0, true}, {3, 0, false},
+                                  {3, 0, true},  {3, 0.5, true}, {5, 0, true}, {kEverywhere, 0, true}};
 
 std::string at(const Vec3& p) {
   std::ostringstream text;
@@ -77,28 +76,11 @@ class PieceMaker {
 
   PieceSurface run() {
     PieceSurface best;
-    int in_vain = 0;
-    for (int rung = 0; rung < kRungs && in_vain < kPatience; ++rung) {
+    for (int rung = 0; rung < kRungs; ++rung) {
       if (rung > 0 && !climb(kLadder[rung], best.faults)) continue;
       PieceSurface piece = make(kLadder[rung], best.faults);
       piece.rung = rung;
-      if (getenv("VDBG")) {
-        int k[8] = {};
-        for (auto& f : piece.faults) ++k[int(f.kind)];
-        fprintf(stderr,
-                "piece b%u r%u nodes %zu rung %d: junctions %zu tubes %zu verts %zu faults %zu: cross %d bad %d node "
-                "%d covered %zu",
-                plan_.stretches.empty() ? 0 : plan_.stretches[0].branch,
-                plan_.stretches.empty() ? 0 : plan_.stretches[0].first, plan_.nodes.size(), rung, piece.junctions,
-                piece.tubes, piece.vertices.size(), piece.faults.size(), k[4], k[5], k[6], covered_.size());
-        if (!piece.faults.empty()) {
-          auto& p = piece.faults[0].position;
-          fprintf(stderr, " at %.2f %.2f %.2f", p.x(), p.y(), p.z());
-        }
-        fprintf(stderr, "\n");
-      }
-      in_vain = rung == 0 || piece.faults.size() < best.faults.size() ? 0 : in_vain + 1;
-      if (in_vain == 0) best = std::move(piece);
+      if (rung == 0 || piece.faults.size() < best.faults.size()) best = std::move(piece);
       if (best.faults.empty() || is_hopeless(best)) break;
     }
     return best;
@@ -122,7 +104,7 @@ class PieceMaker {
     }
     std::sort(covered_.begin(), covered_.end());
     covered_.erase(std::unique(covered_.begin(), covered_.end()), covered_.end());
-    return covered_.size() > before || rung.finer > 0;
+    return covered_.size() > before || rung.finer > 0 || rung.guarded;
   }
 
   PieceSurface make(const Rung& rung, const std::vector<PieceFault>& faults) {
@@ -134,10 +116,6 @@ class PieceMaker {
     for (const Junction& junction : skeleton.junctions) {
       const JunctionPiece& grown = junction_piece(skeleton, junction, rung.guarded);
       assembly.add_junction(junction, grown);
-      if (getenv("VDBG"))
-        fprintf(stderr, "   junction nodes %zu gaps %zu verts %zu tangles %zu handles %zu filled %zu\n",
-                junction.nodes.size(), junction.gaps.size(), grown.vertices.size(), grown.tangles, grown.handles,
-                grown.filled_loops);
       piece.filled_loops += grown.filled_loops;
       note_simplifications(tubes_, junction, grown.filled_loops, piece.simplifications);
     }

@@ -56,8 +56,8 @@ struct PieceContext {
 };
 
 /// Rungs of the ladder, cheapest first: the piece as planned; rings around its faults left to junctions, farther and
-/// farther; finer triangles around them as well.
-inline constexpr int kRungs = 6;
+/// farther, with and without a guard against crossings; finer triangles around them as well; all from one lattice.
+inline constexpr int kRungs = 8;
 
 /// Makes a piece on the first rung on which it is sound, or the one with the fewest faults. Where vessels overlap that
 /// do not belong together no rung would help: the first is taken.
