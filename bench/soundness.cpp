@@ -3,6 +3,7 @@
 //   bench_soundness [--all] [--keep] [--around N] [--blend B] [--rotate] [FILE...]
 //                   [--noisy FIRST COUNT] [--plausible FIRST COUNT] [--looped FIRST COUNT]
 // --rotate grows each random tree with the next of a list of options; --keep does not separate vessels that touch.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -68,14 +69,11 @@ GenerateOptions rotated(GenerateOptions options, std::uint32_t seed) {
   return options;
 }
 
-std::size_t nodes_outside(const Centerline& centerline, const GenerateResult& result) {
-  const TriMesh closed = with_lids(result);
-  if (!measure_topology(closed).closed) return centerline.nodes().size();
-  std::vector<Vec3> positions;
-  for (const auto& node : centerline.nodes()) positions.push_back(node.position);
-  std::vector<bool> inside = points_inside(closed, positions);
-  for (const Opening& opening : result.openings) inside[opening.node] = true;
-  return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), false));
+// Nodes of branches that are listed as left out do not count.
+std::size_t nodes_outside(const GenerateResult& result) {
+  return static_cast<std::size_t>(std::count_if(result.defects.begin(), result.defects.end(), [](const Defect& defect) {
+    return defect.kind == DefectKind::node_outside;
+  }));
 }
 
 void examine(const std::string& name, const Centerline& given, const GenerateOptions& options, const Settings& settings,
@@ -105,7 +103,7 @@ void examine(const std::string& name, const Centerline& given, const GenerateOpt
   const Topology topology = measure_topology(with_lids(result));
   const auto crossings = self_intersections(result.mesh);
   const SkewnessSummary skewness = summarize_skewness(result.mesh);
-  const std::size_t outside = nodes_outside(centerline, result);
+  const std::size_t outside = nodes_outside(result);
   const bool topology_right = topology.closed && topology.manifold && topology.oriented && topology.outward &&
                               topology.components == result.growth.components &&
                               topology.genus == static_cast<std::int64_t>(result.growth.cycle_rank);
@@ -115,7 +113,8 @@ void examine(const std::string& name, const Centerline& given, const GenerateOpt
   Vec3 at = Vec3::Zero();
   if (!crossings.empty()) at = result.mesh.vertices[result.mesh.faces[crossings.front().first][0]];
   std::string rungs;
-  for (const std::size_t count : result.growth.rungs) rungs.append(rungs.empty() ? "" : " ").append(std::to_string(count));
+  for (const std::size_t count : result.growth.rungs)
+    rungs.append(rungs.empty() ? "" : " ").append(std::to_string(count));
   std::printf("| %s | %zu | %zu | %.3f / %.3f | %s | %zu | %zu | %zu | %zu | %s | %.2f | (%.2f %.2f %.2f) |\n",
               name.c_str(), centerline.nodes().size(), result.mesh.vertices.size(), skewness.mean, skewness.max,
               topology_right ? "right" : "WRONG", crossings.size(), outside, left, result.error.unproven_faces,

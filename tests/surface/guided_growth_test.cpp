@@ -119,6 +119,7 @@ TEST(GuidedGrowth, LeavesOutABranchThatNeverLeavesTheVolume) {
                               {{0, 1}, {0, 2}, {0, 3}});
   const auto result = expect_surface(centerline, 1, 0);
   ASSERT_EQ(count(result, Kind::buried_branch), 1u);
+  EXPECT_TRUE(result.is_sound());
   EXPECT_EQ(result.growth.simplifications[0].segments, (std::vector<Index>{2}));
   for (const auto& binding : result.binding) EXPECT_NE(binding.segment, 2u);
 }

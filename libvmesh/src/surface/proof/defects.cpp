@@ -151,14 +151,29 @@ class DefectSearch {
     add(DefectKind::bad_triangle, center(worst), count, text.str());
   }
 
+  // Of branches that are listed as left out: their ends may stand out of the others a little.
+  std::vector<char> segments_left_out() const {
+    std::vector<char> left_out(centerline_.segments().size(), 0);
+    for (const GrowthSimplification& note : result_.growth.simplifications) {
+      if (note.kind != GrowthSimplification::Kind::buried_branch) continue;
+      for (const Index s : note.segments) left_out[s] = 1;
+    }
+    return left_out;
+  }
+
   void nodes_outside() {
     if (!defects_.empty() && defects_.front().kind <= DefectKind::not_manifold) return;  // inside is not defined
     std::vector<Vec3> positions;
     for (const CenterlineNode& node : centerline_.nodes()) positions.push_back(node.position);
     std::vector<bool> inside = points_inside(closed_, positions);
     for (const Opening& opening : result_.openings) inside[opening.node] = true;
+    const std::vector<char> left_out = segments_left_out();
     for (Index n = 0; n < inside.size(); ++n) {
-      if (!inside[n]) add(DefectKind::node_outside, positions[n], 1, "node " + std::to_string(n) + " is not inside");
+      const auto segments = centerline_.incident_segments(n);
+      const bool listed =
+          !segments.empty() && std::all_of(segments.begin(), segments.end(), [&](Index s) { return left_out[s] != 0; });
+      if (!inside[n] && !listed)
+        add(DefectKind::node_outside, positions[n], 1, "node " + std::to_string(n) + " is not inside");
     }
   }
 
