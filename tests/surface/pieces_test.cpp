@@ -109,16 +109,16 @@ TEST(Division, IsCoarserWithoutSomeSeams) {
 }
 
 TEST(Pieces, AreTheSameWhoeverMakesThemInWhateverOrder) {
-  const Divided divided(testing::noisy_tree(3));
+  const Divided divided(testing::plausible_tree(3));
   std::vector<PieceSurface> forward, backward(divided.division.plans.size());
   for (const PiecePlan& plan : divided.division.plans) forward.push_back(divided.make(plan));
   for (std::size_t p = backward.size(); p-- > 0;) {
-    const Divided apart(testing::noisy_tree(3));  // as on another machine
+    const Divided apart(testing::plausible_tree(3));  // as on another machine
     backward[p] = apart.make(apart.division.plans[p]);
   }
   const GatheredSurface one = gather(divided.tubes, divided.division, forward);
   const GatheredSurface other = gather(divided.tubes, divided.division, backward);
-  EXPECT_GT(forward.size(), 5u);
+  EXPECT_GT(forward.size(), 2u);
   EXPECT_EQ(one.mesh.vertices, other.mesh.vertices);
   EXPECT_EQ(one.mesh.faces, other.mesh.faces);
   EXPECT_TRUE(measure_topology(one.mesh).closed);
