@@ -19,6 +19,7 @@
 #include "vmesh/volume/contacts.h"
 
 #include "random_vessels.h"
+#include "rotated_options.h"
 
 namespace {
 
@@ -33,41 +34,6 @@ struct Tally {
   std::size_t cases = 0, unsound = 0, refused = 0;
   double seconds = 0;
 };
-
-GenerateOptions rotated(GenerateOptions options, std::uint32_t seed) {
-  switch (seed % 11) {
-    case 1:
-      options.around = 3;
-      break;
-    case 2:
-      options.around = 4;
-      break;
-    case 3:
-      options.around = 12;
-      break;
-    case 4:
-      options.blend = 0;
-      break;
-    case 5:
-      options.blend = 2;
-      break;
-    case 6:
-      options.placement = Placement::inscribed;
-      break;
-    case 7:
-      options.open_ends.all = true;
-      break;
-    case 8:
-      options.max_center_distance = 0.05;
-      break;
-    case 9:
-      options.max_error.relative = 0.1;
-      break;
-    default:
-      break;
-  }
-  return options;
-}
 
 // Nodes of branches that are listed as left out do not count.
 std::size_t nodes_outside(const GenerateResult& result) {
@@ -133,7 +99,8 @@ int main(int argc, char** argv) {
       "unproven | pieces by rung | s | first crossing |\n|---|--:|--:|--:|---|--:|--:|--:|--:|---|--:|---|\n");
   const auto random = [&](const char* name, std::uint32_t first, std::uint32_t count, auto&& make) {
     for (std::uint32_t seed = first; seed < first + count; ++seed) {
-      const GenerateOptions options = settings.rotate ? rotated(settings.options, seed) : settings.options;
+      GenerateOptions options = settings.rotate ? testing::rotated_options(seed) : settings.options;
+      options.threads = settings.options.threads;
       examine(std::string(name) + "_" + std::to_string(seed), make(seed), options, settings, tally);
     }
   };

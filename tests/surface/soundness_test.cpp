@@ -14,6 +14,7 @@
 #include "vmesh/volume/contacts.h"
 
 #include "random_vessels.h"
+#include "rotated_options.h"
 #include "shared_data.h"
 
 namespace vmesh {
@@ -65,42 +66,6 @@ void expect_nearly_all_sound(Seed count, Make&& make) {
   EXPECT_LE(refused, std::ceil(kRefused * count - 0.5));
 }
 
-GenerateOptions rotated(Seed seed) {
-  GenerateOptions options;
-  switch (seed % 10) {
-    case 1:
-      options.around = 3;
-      break;
-    case 2:
-      options.around = 4;
-      break;
-    case 3:
-      options.around = 12;
-      break;
-    case 4:
-      options.blend = 0;
-      break;
-    case 5:
-      options.blend = 2;
-      break;
-    case 6:
-      options.placement = Placement::inscribed;
-      break;
-    case 7:
-      options.open_ends.all = true;
-      break;
-    case 8:
-      options.max_center_distance = 0.05;
-      break;
-    case 9:
-      options.max_error.relative = 0.1;
-      break;
-    default:
-      break;
-  }
-  return options;
-}
-
 TEST(Soundness, OfNoisyTrees) {
   expect_nearly_all_sound(kCount, [](Seed seed) { return is_sound_or_refused(testing::noisy_tree(seed)); });
 }
@@ -114,8 +79,9 @@ TEST(Soundness, OfPlausibleTreesWithLoops) {
 }
 
 TEST(Soundness, OfPlausibleTreesWhateverTheOptions) {
-  expect_nearly_all_sound(kCount / 4,
-                          [](Seed seed) { return is_sound_or_refused(testing::plausible_tree(seed), rotated(seed)); });
+  expect_nearly_all_sound(kCount / 4, [](Seed seed) {
+    return is_sound_or_refused(testing::plausible_tree(seed), testing::rotated_options(seed));
+  });
 }
 
 // Pieces of BraVa and trees in their likeness, random trees that came out broken, vessels that touch.
