@@ -44,9 +44,7 @@ class JunctionGrowth {
   /// edges, or as they were cut. Guarded: faces never cross on the way from the lattice to the boundary.
   JunctionSurface make(double finer, bool smooth_rims, bool guarded) const;
 
-  /// Loops of the centerline that the junction closes itself.
-  std::size_t handles() const { return lattice_.handles; }
-  /// Loops that are too short to have a hole.
+  /// Loops of the centerline that are too short to have a hole.
   std::size_t filled_loops() const { return centerline_.cycle_rank() - lattice_.handles; }
   double length_in_radii() const { return centerline_.length_in_radii(); }
 

@@ -41,7 +41,6 @@ class PieceMaker {
     for (Index i = 0; i < openings_.size(); ++i) dock(i, junction.rims[i]);
     if (variant.guarded) surface_.guard_crossings();
     JunctionPiece piece;
-    piece.handles = growth_.handles();
     piece.filled_loops = growth_.filled_loops();
     finish(variant.fineness, piece);
     export_to(piece);

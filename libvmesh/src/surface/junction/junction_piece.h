@@ -19,8 +19,7 @@ struct PieceVertex {
 struct JunctionPiece {
   std::vector<PieceVertex> vertices;
   std::vector<Triangle> faces;
-  std::size_t handles = 0;       ///< loops of the centerline that the junction closes itself
-  std::size_t filled_loops = 0;  ///< loops that it does not
+  std::size_t filled_loops = 0;  ///< loops of the centerline that are too short to have a hole
   std::size_t unproven = 0;      ///< faces for which the limit on the error is not proven
   std::size_t crossings = 0;     ///< vertices of faces that intersect each other
   std::size_t tangles = 0;       ///< these of neighbouring vessels, and vertices off the boundary
