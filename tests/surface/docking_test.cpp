@@ -140,57 +140,5 @@ TEST(DiscCutter, OpensAWindowWhereTheTipHasNoVertex) {
   EXPECT_EQ(topology.boundary_edges, 3u);
 }
 
-// A flat square of 10 by 10 in cells of two triangles.
-TriMesh square(int cells) {
-  TriMesh mesh;
-  const auto at = [&](int i, int j) { return static_cast<Index>(i * (cells + 1) + j); };
-  for (int i = 0; i <= cells; ++i) {
-    for (int j = 0; j <= cells; ++j) mesh.vertices.emplace_back(10.0 * i / cells, 10.0 * j / cells, 0);
-  }
-  for (int i = 0; i < cells; ++i) {
-    for (int j = 0; j < cells; ++j) {
-      mesh.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      mesh.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  }
-  return mesh;
-}
-
-// The rim turns once around the axis through `center`, counter-clockwise about z, and lies on the square.
-void expect_hole(const DiscCutter& cutter, const std::vector<Index>& rim, const Vec3& center, std::size_t outer_edges) {
-  double turn = 0;
-  for (std::size_t i = 0; i < rim.size(); ++i) {
-    const Vec3 p = cutter.vertices()[rim[i]] - center, q = cutter.vertices()[rim[(i + 1) % rim.size()]] - center;
-    turn += std::atan2(p.x() * q.y() - p.y() * q.x(), p.x() * q.x() + p.y() * q.y());
-    EXPECT_EQ(cutter.vertices()[rim[i]].z(), 0);
-  }
-  EXPECT_NEAR(turn, 2 * M_PI, 1e-9);
-  const Topology topology = measure_topology({cutter.vertices(), cutter.rest()});
-  EXPECT_TRUE(topology.manifold && topology.oriented);
-  EXPECT_EQ(topology.boundary_edges, outer_edges + rim.size());
-}
-
-TEST(DiscCutter, CutsAroundAnAxis) {
-  const TriMesh mesh = square(40);
-  DiscCutter cutter(mesh.vertices, mesh.faces);
-  const Vec3 center(5.07, 4.91, 0);
-  const auto rim = cutter.cut_around(center - 0.3 * Vec3::UnitZ(), Vec3::UnitZ(), 1.5, 0.2);
-  expect_hole(cutter, rim, center, 160);
-  for (const Index v : rim) {
-    const double away = (cutter.vertices()[v] - center).norm();
-    EXPECT_LE(away, 1.5 + 0.1 * 0.36);  // cuts keep a tenth of an edge from its inner end as well
-    EXPECT_GE(away, 1.5 - 0.36);        // the longest edge
-  }
-}
-
-TEST(DiscCutter, CutsAroundAnAxisFarThinnerThanItsFace) {
-  const TriMesh mesh = square(2);
-  DiscCutter cutter(mesh.vertices, mesh.faces);
-  const Vec3 center(3.1, 1.2, 0);
-  const auto rim = cutter.cut_around(center, Vec3::UnitZ(), 0.01, 0);
-  EXPECT_EQ(rim.size(), 3u);
-  expect_hole(cutter, rim, center, 8);
-}
-
 }  // namespace
 }  // namespace vmesh

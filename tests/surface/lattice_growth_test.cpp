@@ -15,6 +15,23 @@ TriMesh mesh_of(const LatticeSurface& surface) { return {surface.vertices, surfa
 
 Eigen::Matrix3d any_frame() { return Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix(); }
 
+// A lattice that is even, or in every vessel as fine as `fineness` radii ask for, around all of a volume.
+GradedLattice lattice_around(const VesselField& field, const Vec3& origin, double spacing, double fineness = 0) {
+  std::vector<LatticeBall> balls;
+  for (Index cone = 0; cone < field.cone_count(); ++cone) {
+    for (double t = 0; t <= 1; t += 1.0 / 32) {
+      const double radius = field.radius_at(cone, t);
+      balls.push_back({field.axis_point(cone, t), 1.25 * radius, fineness > 0 ? fineness * radius : spacing});
+    }
+  }
+  return {origin, any_frame(), spacing, balls};
+}
+
+LatticeSurface grow_around(const VesselField& field, const Vec3& seed, double spacing, std::size_t max_handles,
+                           double fineness = 0) {
+  return grow_in_lattice(field, lattice_around(field, seed, spacing, fineness), 0, max_handles);
+}
+
 void expect_surface_of_genus(const LatticeSurface& surface, std::int64_t genus) {
   const TriMesh mesh = mesh_of(surface);
   const Topology topology = measure_topology(mesh);
@@ -29,7 +46,7 @@ TEST(LatticeGrowth, FillsABallToHalfASpacing) {
   const Centerline centerline({{{1, 2, 3}, 2}}, {});
   const VesselField field(centerline);
   const double spacing = 0.4;
-  const auto surface = grow_in_lattice(field, {1, 2, 3}, 0, spacing, any_frame(), 0);
+  const auto surface = grow_around(field, {1, 2, 3}, spacing, 0);
   expect_surface_of_genus(surface, 0);
   // A vertex lies on an edge (at most one spacing) between a point inside and one outside, off both by a quarter of it.
   for (const Vec3& v : surface.vertices) EXPECT_LT(std::abs((v - Vec3(1, 2, 3)).norm() - 2), 0.75 * spacing);
@@ -40,7 +57,7 @@ TEST(LatticeGrowth, FillsABallToHalfASpacing) {
 TEST(LatticeGrowth, HoldsTheSeedInAVesselThinnerThanTheLattice) {
   const Centerline centerline({{{0, 0, 0}, 0.1}, {{5, 0, 0}, 0.1}}, {{0, 1}});
   const VesselField field(centerline);
-  const auto surface = grow_in_lattice(field, {0, 0, 0}, 0, 1, any_frame(), 0);
+  const auto surface = grow_around(field, {0, 0, 0}, 1, 0);
   expect_surface_of_genus(surface, 0);
   EXPECT_TRUE(points_inside(mesh_of(surface), {{0, 0, 0}})[0]);
 }
@@ -57,10 +74,29 @@ TEST(LatticeGrowth, ClosesARingOnlyWhenAllowed) {
   const Centerline centerline(nodes, segments);
   const VesselField field(centerline);
   for (const std::size_t allowed : {0u, 1u, 5u}) {
-    const auto surface = grow_in_lattice(field, nodes[0].position, 0, 0.5, any_frame(), allowed);
+    const auto surface = grow_around(field, nodes[0].position, 0.5, allowed);
     EXPECT_EQ(surface.handles, std::min<std::size_t>(allowed, 1));
     expect_surface_of_genus(surface, static_cast<std::int64_t>(surface.handles));
   }
+}
+
+// A vessel a thousand times thinner than the one that it leaves is entered to its end.
+TEST(LatticeGrowth, EntersAVesselThinnerByAnyFactor) {
+  const double thin = 1e-3;
+  const Centerline centerline({{{0, 0, 0}, 1}, {{0.9, 0, 0}, thin}, {{1.02, 0.01, 0}, thin}, {{1.03, 0, 0.01}, thin}},
+                              {{0, 1}, {1, 2}, {2, 3}});
+  const VesselField field(centerline);
+  std::vector<LatticeBall> balls = {{Vec3::Zero(), 1.25, 1}};
+  for (Index cone = 0; cone < 3; ++cone) {
+    const double length = (field.axis_point(cone, 1) - field.axis_point(cone, 0)).norm();
+    for (double t = 0; t <= 1; t += 0.5 * thin / length)
+      balls.push_back({field.axis_point(cone, t), 1.25 * thin, std::max(thin, field.radius_at(cone, t))});
+  }
+  const auto surface = grow_in_lattice(field, {Vec3::Zero(), any_frame(), 1, balls}, 0, 0);
+  expect_surface_of_genus(surface, 0);
+  const std::vector<bool> inside = points_inside(mesh_of(surface), {{1.02, 0.01, 0}, {1.03, 0, 0.01}});
+  EXPECT_TRUE(inside[0] && inside[1]);
+  EXPECT_LT(surface.vertices.size(), 20'000u);  // an even lattice that fine would have a billion around the ball
 }
 
 // Whatever the volume, the surface is a sphere.
@@ -76,15 +112,16 @@ TEST(LatticeGrowth, MakesASphereOfAnyTangle) {
     }
     const Centerline centerline(nodes, segments);
     const VesselField field(centerline, 0.5);
-    expect_surface_of_genus(grow_in_lattice(field, Vec3::Zero(), 0, 0.4, any_frame(), 0), 0);
+    expect_surface_of_genus(grow_around(field, Vec3::Zero(), 0.4, 0), 0);
+    expect_surface_of_genus(grow_around(field, Vec3::Zero(), 0.8, 0, 0.5), 0);
   }
 }
 
 TEST(LatticeGrowth, ScalesBitForBitByPowersOfTwo) {
   const Centerline centerline({{{0, 0, 0}, 1}, {{3, 1, 0}, 0.7}, {{-2, 2, 1}, 0.8}}, {{0, 1}, {0, 2}});
   const Centerline large({{{0, 0, 0}, 64}, {{192, 64, 0}, 0.7 * 64}, {{-128, 128, 64}, 0.8 * 64}}, {{0, 1}, {0, 2}});
-  const auto a = grow_in_lattice(VesselField(centerline, 0.5), Vec3::Zero(), 0, 0.3, any_frame(), 0);
-  const auto b = grow_in_lattice(VesselField(large, 0.5), Vec3::Zero(), 0, 0.3 * 64, any_frame(), 0);
+  const auto a = grow_around(VesselField(centerline, 0.5), Vec3::Zero(), 0.8, 0, 0.3);
+  const auto b = grow_around(VesselField(large, 0.5), Vec3::Zero(), 0.8 * 64, 0, 0.3);
   ASSERT_EQ(a.faces, b.faces);
   for (std::size_t v = 0; v < a.vertices.size(); ++v) EXPECT_EQ(64 * a.vertices[v], b.vertices[v]);
 }

@@ -10,8 +10,6 @@ namespace vmesh {
 namespace {
 
 constexpr std::size_t kShortestRim = 5;  // vertices
-constexpr double kAround = 4;            // radii from where a vessel leaves in which it may make a hole
-constexpr double kCloseToAxis = 0.7;     // radii
 constexpr double kNearestCut = 0.1;      // of an edge: cuts keep that far from its ends
 
 }  // namespace
@@ -27,65 +25,12 @@ std::vector<Index> DiscCutter::cut(const Vec3& center, const Vec3& normal, const
                                    double shortest) {
   const Index apex = farthest(normal, own);
   if (apex == kNone) return open_window(center);
-  const double height = center.dot(normal);
-  return cut_off(
-      apex, [&](const Vec3& p) { return p.dot(normal) - height; }, own, shortest);
-}
-
-std::vector<Index> DiscCutter::cut_around(const Vec3& point, const Vec3& direction, double radius, double shortest) {
-  std::vector<Index> near;
-  for (Index v = 0; v < vertices_.size(); ++v) {
-    if (source_[v] == v && (vertices_[v] - point).norm() < kAround * radius) near.push_back(v);
-  }
-  const Index apex = pierce(point, direction, radius);
-  if (apex == kNone) return open_window(point);
-  const auto within = [&](const Vec3& p) { return radius - (p - point).cross(direction).norm(); };
-  return cut_off(apex, within, near, shortest);
-}
-
-std::vector<Index> DiscCutter::cut_off(Index apex, const Height& height, const std::vector<Index>& own,
-                                       double shortest) {
+  const double at_plane = center.dot(normal);
+  const auto height = [&](const Vec3& p) { return p.dot(normal) - at_plane; };
   const auto region = region_above(apex, height, own);
-  std::vector<Index> rim = is_disc(region) ? cut_off(region, height) : cut_off(std::vector<Index>{apex}, height);
+  std::vector<Index> rim = cut_off(is_disc(region) ? region : std::vector<Index>{apex}, height);
   collapse_short_edges(rim, shortest);
   return rim;
-}
-
-// The vertex at which the line leaves the piece, nearest to `point`: one close to the line, or a new one in a face.
-Index DiscCutter::pierce(const Vec3& point, const Vec3& direction, double radius) {
-  Index best = kNone;
-  double along = 0;
-  for (Index f = 0; f < faces_.size(); ++f) {
-    if (removed_face_[f]) continue;
-    const auto place = leaves_at(f, point, direction);
-    if (!place || (best != kNone && std::abs(*place) >= std::abs(along))) continue;
-    best = f;
-    along = *place;
-  }
-  if (best == kNone) return kNone;
-  for (const Index v : faces_[best]) {
-    if (source_[v] == v && (vertices_[v] - point).cross(direction).norm() < kCloseToAxis * radius) return v;
-  }
-  return divide(best, point + along * direction);
-}
-
-// How far from `point` the line leaves the piece through the face, if it does.
-std::optional<double> DiscCutter::leaves_at(Index f, const Vec3& point, const Vec3& direction) const {
-  const auto& [a, b, c] = faces_[f];
-  const Vec3 u = vertices_[a] - point, v = vertices_[b] - point, w = vertices_[c] - point;
-  const double over_a = v.cross(w).dot(direction), over_b = w.cross(u).dot(direction),
-               over_c = u.cross(v).dot(direction);
-  if (over_a < 0 || over_b < 0 || over_c < 0 || !(over_a + over_b + over_c > 0)) return std::nullopt;
-  return u.cross(v).dot(w) / (over_a + over_b + over_c);
-}
-
-// The new vertex in a face.
-Index DiscCutter::divide(Index f, const Vec3& position) {
-  const Triangle face = faces_[f];
-  const Index middle = add_vertex(position, source_[face[0]]);
-  removed_face_[f] = 1;
-  for (int i = 0; i < 3; ++i) add_face({face[i], face[(i + 1) % 3], middle});
-  return middle;
 }
 
 Index DiscCutter::farthest(const Vec3& normal, const std::vector<Index>& own) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include "vmesh/core/types.h"
@@ -21,10 +20,6 @@ class DiscCutter {
   /// that keeps the surface's topology.
   std::vector<Index> cut(const Vec3& center, const Vec3& normal, const std::vector<Index>& own, double shortest);
 
-  /// Opens a hole where a vessel of that radius leaves the piece: `point` lies on its axis, about where that crosses
-  /// the surface in `direction`. What lies within the radius around the axis goes. Otherwise like cut().
-  std::vector<Index> cut_around(const Vec3& point, const Vec3& direction, double radius, double shortest);
-
   void move(Index v, const Vec3& position) { vertices_[v] = position; }
 
   const std::vector<Vec3>& vertices() const { return vertices_; }
@@ -39,11 +34,7 @@ class DiscCutter {
   Index farthest(const Vec3& normal, const std::vector<Index>& own) const;
   std::vector<Index> region_above(Index apex, const Height& height, const std::vector<Index>& own) const;
   bool is_disc(const std::vector<Index>& region) const;
-  std::vector<Index> cut_off(Index apex, const Height& height, const std::vector<Index>& own, double shortest);
   std::vector<Index> cut_off(const std::vector<Index>& region, const Height& height);
-  std::optional<double> leaves_at(Index f, const Vec3& point, const Vec3& direction) const;
-  Index divide(Index f, const Vec3& position);
-  Index pierce(const Vec3& point, const Vec3& direction, double radius);
   std::vector<Index> open_window(const Vec3& near);
   void collapse_short_edges(std::vector<Index>& rim, double shortest);
   bool collapsible(Index v, Index into) const;

@@ -9,12 +9,10 @@
 namespace vmesh {
 namespace {
 
-constexpr double kSpacing = 1;            // of the lattice, in the smallest radii ...
-constexpr double kMostPoints = 300'000;   // in the lattice, about
+constexpr double kSpacing = 1;            // of the lattice, in radii of the vessel there
+constexpr double kReach = 1.25;           // radii from a vessel's axis up to which the lattice is that fine
+constexpr double kBallStep = 0.5;         // radii along the axis
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
-constexpr double kHoleRadius = 1.6;       // of the hole for a thread, in radii
-constexpr int kSpotSweeps = 20;           // towards a size field with fine spots: about a halving each
-constexpr double kVerticesPerSpot = 300;  // for 1:1000, about
 constexpr double kShortestRimEdge = 0.4;  // intended edges of the surface
 constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move onto the boundary
 constexpr double kOwnReach = 1.5;         // radii along the branch from which a tip's vertices come
@@ -27,21 +25,41 @@ Index widest_node(const Centerline& centerline) {
   return widest;
 }
 
-// As fine as the thinnest vessel asks for and the number of points allows.
-double lattice_spacing(const Centerline& centerline) {
-  double thinnest = std::numeric_limits<double>::infinity(), volume = 0;
+// How far below the walls of thicker vessels the axis runs, beyond the depth from which neither the vessel nor its
+// blend reaches them.
+double depth_at(const VesselField& field, const Vec3& p, Index cone, double radius) {
+  return -field.sample(p, cone).distance - (1 + 2 * field.blend()) * radius;
+}
+
+// Balls along the vessels, in which the lattice is as fine as their radius asks for; but where its cubes are that fine
+// everywhere, and where the vessel runs deep within thicker ones.
+std::vector<LatticeBall> balls_along(const VesselField& field, double cube) {
+  std::vector<LatticeBall> balls;
+  for (Index cone = 0; cone < field.cone_count(); ++cone) {
+    const double length = (field.axis_point(cone, 1) - field.axis_point(cone, 0)).norm();
+    for (double t = 0;;) {
+      const double radius = field.radius_at(cone, t), finest = kSpacing * radius;
+      const Vec3 p = field.axis_point(cone, t);
+      const double depth = finest < cube ? depth_at(field, p, cone, radius) : 0;
+      if (depth <= 0) balls.push_back({p, kReach * radius, finest});
+      if (t == 1) break;
+      t = length > 0 ? std::min(1.0, t + std::max(kBallStep * radius, 0.5 * depth) / length) : 1;
+    }
+  }
+  return balls;
+}
+
+// The cubes as large as the widest vessel allows: the thinnest one's, doubled.
+GradedLattice lattice_around(const VesselField& field, Index start) {
+  const Centerline& centerline = field.centerline();
+  double thinnest = std::numeric_limits<double>::infinity(), widest = 0;
   for (const auto& node : centerline.nodes()) {
     thinnest = std::min(thinnest, node.radius);
-    volume += 4.0 / 3 * std::numbers::pi * node.radius * node.radius * node.radius;
+    widest = std::max(widest, node.radius);
   }
-  for (Index s = 0; s < centerline.segments().size(); ++s) {
-    const double radius = centerline.radius_at(s, 0.5);
-    volume += std::numbers::pi * radius * radius * centerline.length(s);
-  }
-  // In units near the radius: std::cbrt rounds otherwise below 1 than above, and scales would not be alike to the bit.
-  const double unit = std::ldexp(1.0, std::ilogb(thinnest));
-  const double most_points_spacing = unit * std::cbrt(2 * volume / (unit * unit * unit) / kMostPoints);
-  return std::max(kSpacing * thinnest, most_points_spacing);  // two points to a cube
+  double spacing = kSpacing * thinnest;
+  while (2 * spacing <= kSpacing * widest) spacing *= 2;
+  return {centerline.node(start).position, frame_at(centerline, start), spacing, balls_along(field, spacing)};
 }
 
 // The lattice's surface in a mesh that is bound to the field.
@@ -53,43 +71,26 @@ void fill(BoundSurface& surface, const LatticeSurface& lattice) {
   for (const auto& [a, b, c] : lattice.faces) surface.mesh.add_face(Vertex(a), Vertex(b), Vertex(c));
 }
 
-std::vector<Thread> threads_of(const VesselField& field, const std::vector<BranchAxis>& axes,
-                               const Junction& junction) {
-  const JunctionCenterline local = make_junction_centerline(field.centerline(), axes, junction);
-  const Centerline centerline(local.nodes, local.segments);
-  const std::vector<Thread> narrow = narrow_openings(axes, junction, lattice_spacing(centerline));
-  if (narrow.empty()) return narrow;
-  return find_threads(narrow, VesselField(centerline, field.blend()), local, axes, junction);
-}
-
 LatticeSurface grow_lattice(const VesselField& field) {
   const Centerline& centerline = field.centerline();
   const Index start = widest_node(centerline);
   const Index hint = centerline.degree(start) > 0 ? centerline.incident_segments(start)[0] : 0;
-  return grow_in_lattice(field, centerline.node(start).position, hint, lattice_spacing(centerline),
-                         frame_at(centerline, start), centerline.cycle_rank());
+  return grow_in_lattice(field, lattice_around(field, start), hint, centerline.cycle_rank());
 }
 
 }  // namespace
 
 JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes,
-                               const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options,
-                               bool leave_out_threads)
+                               const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options)
     : field_(field),
       axes_(axes),
       skeleton_(skeleton),
       junction_(junction),
       options_(options),
-      threads_(leave_out_threads ? threads_of(field, axes, junction) : std::vector<Thread>{}),
-      local_(make_junction_centerline(field.centerline(), axes, without_threads(junction, threads_))),
+      local_(make_junction_centerline(field.centerline(), axes, junction)),
       centerline_(local_.nodes, local_.segments),
       local_field_(centerline_, options.blend),
-      lattice_(grow_lattice(local_field_)) {
-  for (Thread& thread : threads_) {
-    const Gap& gap = junction.gaps[thread.gap];
-    thread.exit = find_exit(thread, axes[gap.branch], gap, local_field_, local_.end_segment(thread.gap, thread.at_end));
-  }
-}
+      lattice_(grow_lattice(local_field_)) {}
 
 JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarded) const {
   const GenerateResult piece = onto_boundary(finer, guarded);
@@ -108,12 +109,6 @@ JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarde
   return result;
 }
 
-const Thread* JunctionGrowth::thread_at(Index gap, bool at_end) const {
-  const auto it = std::find_if(threads_.begin(), threads_.end(),
-                               [&](const Thread& thread) { return thread.gap == gap && thread.at_end == at_end; });
-  return it == threads_.end() ? nullptr : &*it;
-}
-
 GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   BoundSurface surface(local_field_);
   fill(surface, lattice_);
@@ -125,13 +120,6 @@ GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   const double expected = expected_vertices(centerline_, options.around);
   optimize(surface, options,
            {std::min<double>(finer * kGrownAround, options.around), expected, GrownMesh::Stage::piece}, {});
-  if (!threads_.empty()) {
-    for (const Thread& thread : threads_) surface.fine_spots.push_back({thread.exit.center, thread.exit.radius});
-    options.sweeps = kSpotSweeps;
-    const double around_spots = kVerticesPerSpot * static_cast<double>(threads_.size());
-    optimize(surface, options, {static_cast<double>(options.around), expected + around_spots, GrownMesh::Stage::piece},
-             {});
-  }
   GenerateResult piece;
   surface.export_to(piece);
   return piece;
@@ -148,12 +136,10 @@ CrossSection JunctionGrowth::way_out(const TubeEnd& opening) const {
 // Returns the rim; moved onto the boundary and rid of short edges, or as it was cut.
 std::vector<Index> JunctionGrowth::cut_opening(DiscCutter& cutter, const GenerateResult& piece, Index gap, bool at_end,
                                                bool smooth) const {
-  const Thread* thread = thread_at(gap, at_end);
-  const auto [place, center, normal, radius] = thread ? thread->exit : way_out(junction_.gaps[gap].openings[at_end]);
+  const auto [place, center, normal, radius] = way_out(junction_.gaps[gap].openings[at_end]);
   const double shortest = smooth ? kShortestRimEdge * edge_length_per_radius(options_.around) * radius : 0;
   std::vector<Index> rim =
-      thread ? cutter.cut_around(center, normal, kHoleRadius * radius, shortest)
-             : cutter.cut(center, normal, vertices_near_end(piece, gap, at_end, kOwnReach * radius), shortest);
+      cutter.cut(center, normal, vertices_near_end(piece, gap, at_end, kOwnReach * radius), shortest);
   if (smooth) move_onto_boundary(cutter, rim, piece, kRimStep * radius);
   return rim;
 }

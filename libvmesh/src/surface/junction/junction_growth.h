@@ -1,7 +1,7 @@
 #pragma once
 
 #include "surface/junction/docking.h"
-#include "surface/junction/junction_threads.h"
+#include "surface/junction/junction_centerline.h"
 #include "surface/junction/lattice_growth.h"
 
 namespace vmesh {
@@ -29,16 +29,12 @@ struct JunctionSurface {
   std::vector<std::vector<Index>> rims;  ///< counter-clockwise about the direction away from the junction
 };
 
-/// Grows the surface of a junction from its widest place, in a lattice as fine as its thinnest vessel
-/// (grow_in_lattice), brings it onto the boundary and to a size field, and cuts its openings. Threads, vessels too thin
-/// for a lattice that holds the whole junction, can be left out of it: the finished wall is refined towards their width
-/// where they leave it, and cut there.
+/// Grows the surface of a junction from its widest place, in a lattice as fine as the vessel at every place
+/// (grow_in_lattice), brings it onto the boundary and to a size field, and cuts its openings.
 class JunctionGrowth {
  public:
   JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes, const GrowthSkeleton& skeleton,
-                 const Junction& junction, const GenerateOptions& options, bool leave_out_threads);
-
-  bool has_threads() const { return !threads_.empty(); }
+                 const Junction& junction, const GenerateOptions& options);
 
   /// The surface, made at `finer` times the resolution asked for; with rims moved onto the boundary and rid of short
   /// edges, or as they were cut. Guarded: faces never cross on the way from the lattice to the boundary.
@@ -49,7 +45,6 @@ class JunctionGrowth {
   double length_in_radii() const { return centerline_.length_in_radii(); }
 
  private:
-  const Thread* thread_at(Index gap, bool at_end) const;
   GenerateResult onto_boundary(double finer, bool guarded) const;
   CrossSection way_out(const TubeEnd& opening) const;
   std::vector<Index> cut_opening(DiscCutter& cutter, const GenerateResult& piece, Index gap, bool at_end,
@@ -64,7 +59,6 @@ class JunctionGrowth {
   const GrowthSkeleton& skeleton_;
   const Junction& junction_;
   const GenerateOptions& options_;
-  std::vector<Thread> threads_;  // left out of what follows
   JunctionCenterline local_;
   Centerline centerline_;
   VesselField local_field_;

@@ -174,15 +174,12 @@ JunctionPiece make_junction_piece(const VesselTubes& tubes, const GrowthSkeleton
   const std::vector<TubeEnd> openings = openings_of(junction);
   const auto flaws = [](const JunctionPiece& p) { return std::tuple(p.crossings, p.tangles, p.unproven); };
   std::optional<JunctionPiece> best;
-  for (const bool leave_out_threads : {true, false}) {
-    const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options, leave_out_threads);
-    for (const Variant& variant :
-         guarded ? std::span<const Variant>(kGuardedVariants) : std::span<const Variant>(kVariants)) {
-      JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options, progress).make(variant);
-      if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);
-      if (best->tangles == 0 && best->unproven == 0) return *std::move(best);
-    }
-    if (!growth.has_threads()) break;
+  const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options);
+  for (const Variant& variant :
+       guarded ? std::span<const Variant>(kGuardedVariants) : std::span<const Variant>(kVariants)) {
+    JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options, progress).make(variant);
+    if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);
+    if (best->tangles == 0 && best->unproven == 0) break;
   }
   return *std::move(best);
 }

@@ -1,34 +1,11 @@
 #include "surface/junction/lattice_growth.h"
 
 #include <array>
-#include <bit>
 #include <queue>
-#include <tuple>
 #include <unordered_map>
 
 namespace vmesh {
 namespace {
-
-using Offset = std::array<int, 3>;
-
-// The 14 neighbours of a point: along the diagonals of the cubes, and along their edges; in half edges.
-constexpr int kNeighbours = 14;
-constexpr std::array<Offset, kNeighbours> kOffsets = {{{1, 1, 1},
-                                                       {-1, -1, -1},
-                                                       {1, 1, -1},
-                                                       {-1, -1, 1},
-                                                       {1, -1, 1},
-                                                       {-1, 1, -1},
-                                                       {-1, 1, 1},
-                                                       {1, -1, -1},
-                                                       {2, 0, 0},
-                                                       {-2, 0, 0},
-                                                       {0, 2, 0},
-                                                       {0, -2, 0},
-                                                       {0, 0, 2},
-                                                       {0, 0, -2}}};
-using Mask = std::uint32_t;
-constexpr Mask kAll = (1 << kNeighbours) - 1;
 
 constexpr double kNearestToPoint = 0.25;  // of an edge: a surface vertex keeps that far from lattice points
 constexpr double kInside = 0.05;          // spacings below the boundary from which on a point counts as inside
@@ -36,183 +13,135 @@ constexpr double kFarInside = 1.5;        // spacings below the boundary from wh
 constexpr double kDepthStep = 1e-6;       // spacings below which depths count as equal
 constexpr double kBlockedDepth = 0.4;     // spacings below the boundary at which a blocked point asks for a handle
 
-// Which of the 14 are neighbours of each other: the edges of the link of a point, a triangulated sphere.
-std::array<Mask, kNeighbours> make_link() {
-  std::array<Mask, kNeighbours> link{};
-  for (int i = 0; i < kNeighbours; ++i) {
-    for (int j = 0; j < kNeighbours; ++j) {
-      Offset d;
-      for (int c = 0; c < 3; ++c) d[c] = kOffsets[j][c] - kOffsets[i][c];
-      if (std::find(kOffsets.begin(), kOffsets.end(), d) != kOffsets.end()) link[i] |= Mask{1} << j;
-    }
-  }
-  return link;
-}
-
-int part_count(Mask mask, const std::array<Mask, kNeighbours>& link) {
-  int count = 0;
-  while (mask) {
-    Mask part = mask & (~mask + 1), last = 0;
-    while (part != last) {
-      last = part;
-      for (Mask rest = last; rest; rest &= rest - 1) part |= link[std::countr_zero(rest)] & mask;
-    }
-    mask &= ~part;
-    ++count;
-  }
-  return count;
-}
-
-// For every set of neighbours, whether it falls into so many parts, and the rest of the link into one.
-std::vector<char> make_table(int parts_inside) {
-  const auto link = make_link();
-  std::vector<char> table(1 << kNeighbours);
-  for (Mask m = 0; m <= kAll; ++m) table[m] = part_count(m, link) == parts_inside && part_count(kAll & ~m, link) == 1;
-  return table;
-}
-
-// Whether a point with these neighbours in the set may join it: its link falls into one disc inside and one outside.
-const std::vector<char>& simple_table() {
-  static const std::vector<char> table = make_table(1);
-  return table;
-}
-
-// Whether a point with these neighbours in the set joins two parts of it and nothing else: one handle more.
-const std::vector<char>& bridge_table() {
-  static const std::vector<char> table = make_table(2);
-  return table;
-}
-
 class LatticeGrowth {
  public:
-  LatticeGrowth(const VesselField& field, const Vec3& seed, double spacing, const Eigen::Matrix3d& frame)
-      : field_(field), seed_(seed), spacing_(spacing), half_step_(0.5 * spacing * frame) {}
+  LatticeGrowth(const VesselField& field, const GradedLattice& lattice)
+      : field_(field),
+        lattice_(lattice),
+        points_(lattice.size()),
+        depth_step_(kDepthStep * lattice.spacing(0)),
+        seen_by_(lattice.size(), kNone),
+        part_(lattice.size(), kNone) {}
 
   LatticeSurface run(Index hint, std::size_t max_handles) {
-    add(find({0, 0, 0}, {{}, 0, hint}));
+    points_[0] = {0, hint, true};
+    add(0);
     thicken();
     while (surface_.handles < max_handles && bridge()) thicken();
-    extract();
+    for (const auto& corners : lattice_.tetrahedra()) march(corners);
     return std::move(surface_);
   }
 
  private:
   struct Point {
-    Offset at;
-    double distance;
-    Index cone;
+    double distance = 0;
+    Index cone = kNone;
+    bool known = false;
     bool in = false;
   };
+  struct Parts {
+    int inside, outside;
+  };
 
-  static std::uint64_t key(const Offset& at) {
-    std::uint64_t k = 0;
-    for (const int c : at) k = k << 21 | static_cast<std::uint64_t>(c + (1 << 20));
-    return k;
-  }
-  Vec3 position(const Offset& at) const { return seed_ + half_step_ * Vec3(at[0], at[1], at[2]); }
-  static Offset plus(const Offset& a, const Offset& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-
-  // The number of the neighbour `at` of a point; it is made where it is not known yet. Far inside, an upper bound of
-  // its distance will do, which a step from the point gives.
-  Index find(const Offset& at, const Point& from) {
-    const auto [it, is_new] = number_.emplace(key(at), static_cast<Index>(points_.size()));
-    if (is_new) {
-      const double bound = from.distance + spacing_;
-      if (bound < -kFarInside * spacing_) {
-        points_.push_back({at, bound, from.cone});
-      } else {
-        const FieldSample s = field_.sample(position(at), from.cone);
-        points_.push_back({at, s.distance, s.cone});
-      }
+  // Far inside, an upper bound of the distance will do, which a step from a neighbour gives.
+  void learn(Index q, Index from) {
+    Point& point = points_[q];
+    if (point.known) return;
+    point.known = true;
+    const Vec3 p = lattice_.position(q);
+    const double bound = points_[from].distance + (p - lattice_.position(from)).norm();
+    if (bound < -kFarInside * lattice_.spacing(q)) {
+      point.distance = bound;
+      point.cone = points_[from].cone;
+    } else {
+      const FieldSample s = field_.sample(p, points_[from].cone);
+      point.distance = s.distance;
+      point.cone = s.cone;
     }
-    return it->second;
   }
 
-  Index known(const Offset& at) const {
-    const auto it = number_.find(key(at));
-    return it == number_.end() ? kNone : it->second;
-  }
-
-  bool in(const Offset& at) const {
-    const Index p = known(at);
-    return p != kNone && points_[p].in;
-  }
-
-  Mask neighbours_in(const Offset& at) const {
-    Mask mask = 0;
-    for (int i = 0; i < kNeighbours; ++i) mask |= Mask{in(plus(at, kOffsets[i]))} << i;
-    return mask;
+  bool is_inside(Index p) const {
+    return points_[p].known && !lattice_.at_rim(p) && points_[p].distance < -kInside * lattice_.spacing(p);
   }
 
   void add(Index p) {
     points_[p].in = true;
-    const Offset at = points_[p].at;
-    for (const Offset& offset : kOffsets) {
-      const Index q = find(plus(at, offset), Point(points_[p]));
-      if (!points_[q].in && points_[q].distance < -kInside * spacing_) queue_.emplace(depth(q), key(points_[q].at), q);
+    for (const Index t : lattice_.around(p)) {
+      for (const Index q : lattice_.tetrahedra()[t]) {
+        if (seen_by_[q] == p) continue;
+        seen_by_[q] = p;
+        learn(q, p);
+        if (!points_[q].in && is_inside(q)) queue_.emplace(depth(q), q);
+      }
     }
   }
 
   // In steps, so that rounding does not decide between points of equal depth.
-  double depth(Index p) const { return std::round(-points_[p].distance / (kDepthStep * spacing_)); }
+  double depth(Index p) const { return std::round(-points_[p].distance / depth_step_); }
+
+  // Into how many parts the link of a point, a triangulated sphere, falls: of neighbours in the set, and of others.
+  Parts parts_around(Index p) {
+    link_.clear();
+    int parts[2] = {0, 0};
+    const auto root = [&](Index q) {
+      while (part_[q] != q) q = part_[q] = part_[part_[q]];
+      return q;
+    };
+    for (const Index t : lattice_.around(p)) {
+      const auto& corners = lattice_.tetrahedra()[t];
+      for (const Index q : corners) {
+        if (q == p || part_[q] != kNone) continue;
+        part_[q] = q;
+        link_.push_back(q);
+        ++parts[points_[q].in];
+      }
+      for (int i = 0; i < 4; ++i) {
+        for (int j = i + 1; j < 4; ++j) {
+          const Index a = corners[i], b = corners[j];
+          if (a == p || b == p || points_[a].in != points_[b].in) continue;
+          const Index from = root(a), to = root(b);
+          if (from == to) continue;
+          part_[from] = to;
+          --parts[points_[a].in];
+        }
+      }
+    }
+    for (const Index q : link_) part_[q] = kNone;
+    return {parts[1], parts[0]};
+  }
+
+  // Whether it may join the set: its link falls into one disc inside and one outside.
+  bool is_simple(Index p) {
+    const auto [inside, outside] = parts_around(p);
+    return inside == 1 && outside == 1;
+  }
+  // Whether it joins two parts of the set and nothing else: one handle more.
+  bool is_bridge(Index p) {
+    const auto [inside, outside] = parts_around(p);
+    return inside == 2 && outside == 1;
+  }
 
   // Deepest first. A point that is not simple is tried again when a neighbour has joined.
   void thicken() {
-    const auto& simple = simple_table();
     while (!queue_.empty()) {
-      const Index p = std::get<Index>(queue_.top());
+      const Index p = queue_.top().second;
       queue_.pop();
-      if (!points_[p].in && simple[neighbours_in(points_[p].at)]) add(p);
+      if (!points_[p].in && is_simple(p)) add(p);
     }
   }
 
   // Joins two fronts at the deepest point that keeps them apart.
   bool bridge() {
-    const auto& bridges = bridge_table();
     Index deepest = kNone;
     for (Index p = 0; p < points_.size(); ++p) {
-      if (points_[p].in || points_[p].distance > -kBlockedDepth * spacing_) continue;
+      if (points_[p].in || !is_inside(p) || points_[p].distance > -kBlockedDepth * lattice_.spacing(p)) continue;
       if (deepest != kNone && depth(p) <= depth(deepest)) continue;
-      if (bridges[neighbours_in(points_[p].at)]) deepest = p;
+      if (is_bridge(p)) deepest = p;
     }
     if (deepest == kNone) return false;
     add(deepest);
     ++surface_.handles;
     return true;
-  }
-
-  // Every tetrahedron has two opposite long edges, along different axes; it is met at the one along the lower axis.
-  void extract() {
-    const auto count = static_cast<Index>(points_.size());
-    for (Index p = 0; p < count; ++p) {
-      for (int d = 0; d < 3; ++d) {
-        const Index q = known(far_end(points_[p].at, d));
-        if (q != kNone) extract_around(p, q, d);
-      }
-    }
-  }
-
-  static Offset far_end(Offset at, int axis) {
-    at[axis] += 2;
-    return at;
-  }
-
-  void extract_around(Index p, Index q, int d) {
-    const int u = (d + 1) % 3, v = (d + 2) % 3;
-    std::array<Index, 4> ring;
-    constexpr std::array<std::array<int, 2>, 4> kRound = {{{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
-    for (int i = 0; i < 4; ++i) {
-      Offset at = points_[p].at;
-      at[d] += 1;
-      at[u] += kRound[i][0];
-      at[v] += kRound[i][1];
-      ring[i] = known(at);
-    }
-    for (int i = 0; i < 4; ++i) {
-      const int other_axis = i % 2 == 0 ? u : v;  // along which ring[i] and the next differ
-      const Index a = ring[i], b = ring[(i + 1) % 4];
-      if (other_axis > d && a != kNone && b != kNone) march({p, q, a, b});
-    }
   }
 
   // The tetrahedron's corners are in positive order.
@@ -260,27 +189,28 @@ class LatticeGrowth {
       const double inside = points_[p].distance, outside = points_[q].distance;
       const double t =
           outside > 0 ? std::clamp(inside / (inside - outside), kNearestToPoint, 1 - kNearestToPoint) : 0.5;
-      surface_.vertices.push_back((1 - t) * position(points_[p].at) + t * position(points_[q].at));
+      surface_.vertices.push_back((1 - t) * lattice_.position(p) + t * lattice_.position(q));
       surface_.cones.push_back(points_[p].cone);
     }
     return it->second;
   }
 
   const VesselField& field_;
-  Vec3 seed_;
-  double spacing_;
-  Eigen::Matrix3d half_step_;
+  const GradedLattice& lattice_;
   std::vector<Point> points_;
-  std::unordered_map<std::uint64_t, Index> number_, vertex_;
-  std::priority_queue<std::tuple<double, std::uint64_t, Index>> queue_;  // depth, key, number
+  double depth_step_;
+  std::priority_queue<std::pair<double, Index>> queue_;  // depth, point
+  std::vector<Index> seen_by_;                           // the point last added that has looked at this one
+  std::vector<Index> part_, link_;                       // of parts_around()
+  std::unordered_map<std::uint64_t, Index> vertex_;
   LatticeSurface surface_;
 };
 
 }  // namespace
 
-LatticeSurface grow_in_lattice(const VesselField& field, const Vec3& seed, Index hint, double spacing,
-                               const Eigen::Matrix3d& frame, std::size_t max_handles) {
-  return LatticeGrowth(field, seed, spacing, frame).run(hint, max_handles);
+LatticeSurface grow_in_lattice(const VesselField& field, const GradedLattice& lattice, Index hint,
+                               std::size_t max_handles) {
+  return LatticeGrowth(field, lattice).run(hint, max_handles);
 }
 
 }  // namespace vmesh

@@ -1,0 +1,267 @@
+#include "surface/junction/graded_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+
+namespace vmesh {
+namespace {
+
+constexpr double kMargin = 2;          // units around a ball in which there are tetrahedra: a spacing
+constexpr double kLongest = 2;         // units: the longest edge of an unbisected tetrahedron
+constexpr int kTetrahedraAround = 24;  // a point, unbisected
+
+using Tetrahedron = GradedLattice::Tetrahedron;
+
+std::uint64_t key_of_pair(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
+
+std::uint64_t key_of_place(const Vec3& at) {
+  std::uint64_t key = 0;
+  for (int c = 0; c < 3; ++c)
+    key = key << 21 | static_cast<std::uint64_t>(static_cast<std::int64_t>(at[c]) + (1 << 20));
+  return key;
+}
+
+}  // namespace
+
+class GradedLattice::Maker {
+ public:
+  Maker(GradedLattice& lattice, std::span<const LatticeBall> balls) : lattice_(lattice), at_(lattice.at_) {
+    for (const LatticeBall& ball : balls) {
+      const Vec3 center = lattice.frame_.transpose() * (ball.center - lattice.origin_) / lattice.unit_;
+      balls_.push_back({center, ball.radius / lattice.unit_, ball.longest / lattice.unit_});
+    }
+  }
+
+  void run() {
+    root_number_.emplace(key_of_place(Vec3::Zero()), 0);
+    at_.push_back(Vec3::Zero());
+    for (const LatticeBall& ball : balls_) for_points_near(ball, kMargin, [&](const Vec3& at) { add_root(at); });
+    make_roots();
+    const auto is_fine = [](const LatticeBall& ball) { return ball.longest < kLongest; };
+    if (std::any_of(balls_.begin(), balls_.end(), is_fine)) {
+      note_roots();
+      for (Index i = 0; i < balls_.size(); ++i) {
+        if (is_fine(balls_[i])) refine(i);
+      }
+    }
+    finish();
+  }
+
+ private:
+  struct Node {
+    Tetrahedron corners;
+    Index child = kNone;  // the first of two; kNone: not bisected
+    std::array<Index, 4>
+        next;  // in the list of the tetrahedra around each corner: four times its number, and the corner
+  };
+  struct Edge {
+    int a, b;  // corners
+    double length2;
+  };
+
+  // Lattice points are all even or all odd.
+  template <class Visit>
+  static void for_points_near(const LatticeBall& ball, double margin, const Visit& visit) {
+    const double reach = ball.radius + margin;
+    for (double x = std::ceil(ball.center.x() - reach); x <= ball.center.x() + reach; ++x) {
+      const double over_x = reach * reach - (x - ball.center.x()) * (x - ball.center.x());
+      const double parity = std::abs(std::fmod(x, 2));
+      const auto first = [&](double low) {
+        const double least = std::ceil(low);
+        return std::abs(std::fmod(least, 2)) == parity ? least : least + 1;
+      };
+      const double wide = std::sqrt(std::max(0.0, over_x));
+      for (double y = first(ball.center.y() - wide); y <= ball.center.y() + wide; y += 2) {
+        const double over_y = over_x - (y - ball.center.y()) * (y - ball.center.y());
+        const double tall = std::sqrt(std::max(0.0, over_y));
+        for (double z = first(ball.center.z() - tall); z <= ball.center.z() + tall; z += 2) visit(Vec3(x, y, z));
+      }
+    }
+  }
+
+  void add_root(const Vec3& at) {
+    if (root_number_.emplace(key_of_place(at), static_cast<Index>(at_.size())).second) at_.push_back(at);
+  }
+
+  Index root(const Vec3& at) const {
+    const auto it = root_number_.find(key_of_place(at));
+    return it == root_number_.end() ? kNone : it->second;
+  }
+
+  // Every tetrahedron has two opposite long edges, along different axes; it is met at the one along the lower axis.
+  void make_roots() {
+    const auto count = static_cast<Index>(at_.size());
+    first_around_.assign(count, kNone);
+    std::vector<int> around(count, 0);
+    for (Index p = 0; p < count; ++p) {
+      for (int d = 0; d < 3; ++d) {
+        const Index q = root(at_[p] + 2 * Vec3::Unit(d));
+        if (q != kNone) make_around(p, q, d, around);
+      }
+    }
+    for (const int n : around) lattice_.at_rim_.push_back(n < kTetrahedraAround);
+  }
+
+  void make_around(Index p, Index q, int d, std::vector<int>& around) {
+    const int u = (d + 1) % 3, v = (d + 2) % 3;
+    constexpr std::array<std::array<int, 2>, 4> kRound = {{{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
+    std::array<Index, 4> ring;
+    for (int i = 0; i < 4; ++i)
+      ring[i] = root(at_[p] + Vec3::Unit(d) + kRound[i][0] * Vec3::Unit(u) + kRound[i][1] * Vec3::Unit(v));
+    for (int i = 0; i < 4; ++i) {
+      const int other_axis = i % 2 == 0 ? u : v;  // along which ring[i] and the next differ
+      const Index a = ring[i], b = ring[(i + 1) % 4];
+      if (other_axis < d || a == kNone || b == kNone) continue;
+      const bool odd = std::fmod(at_[p].x(), 2) != 0;
+      const Tetrahedron corners = odd ? Tetrahedron{p, q, a, b} : Tetrahedron{a, b, p, q};
+      for (const Index c : corners) ++around[c];
+      add(corners);
+    }
+  }
+
+  Index add(const Tetrahedron& corners) {
+    const auto number = static_cast<Index>(nodes_.size());
+    Node node{corners, kNone, {}};
+    for (int i = 0; i < 4; ++i) {
+      node.next[i] = first_around_[corners[i]];
+      first_around_[corners[i]] = 4 * number + i;
+    }
+    nodes_.push_back(node);
+    return number;
+  }
+
+  // The first in order where two are as long: the odd points' of an unbisected one.
+  Edge longest_edge(Index t) const {
+    const Tetrahedron& corners = nodes_[t].corners;
+    Edge longest{0, 1, 0};
+    for (int a = 0; a < 4; ++a) {
+      for (int b = a + 1; b < 4; ++b) {
+        const double length2 = (at_[corners[a]] - at_[corners[b]]).squaredNorm();
+        if (length2 > longest.length2) longest = {a, b, length2};
+      }
+    }
+    return longest;
+  }
+
+  // The unbisected tetrahedra around every root point, while that is all there is.
+  void note_roots() {
+    roots_around_.resize(at_.size());
+    for (Index t = 0; t < nodes_.size(); ++t) {
+      for (const Index c : nodes_[t].corners) roots_around_[c].push_back(t);
+    }
+    last_ball_.assign(nodes_.size(), kNone);
+  }
+
+  void refine(Index number) {
+    const LatticeBall& ball = balls_[number];
+    for_points_near(ball, kLongest, [&](const Vec3& at) {
+      const Index p = root(at);
+      if (p == kNone) return;
+      for (const Index t : roots_around_[p]) {
+        if (last_ball_[t] == number) continue;
+        last_ball_[t] = number;
+        refine(t, ball);
+      }
+    });
+  }
+
+  void refine(Index t, const LatticeBall& ball) {
+    const Edge longest = longest_edge(t);
+    const Vec3 middle = 0.5 * (at_[nodes_[t].corners[longest.a]] + at_[nodes_[t].corners[longest.b]]);
+    // All of it lies within a longest edge's length of the middle of that edge.
+    const double reach = ball.radius + std::sqrt(longest.length2);
+    if ((middle - ball.center).squaredNorm() > reach * reach) return;
+    if (nodes_[t].child == kNone) {
+      if (longest.length2 <= ball.longest * ball.longest) return;
+      bisect(t);
+    }
+    const Index child = nodes_[t].child;
+    refine(child, ball);
+    refine(child + 1, ball);
+  }
+
+  // With all others around its longest edge, after those among them that have a longer one.
+  void bisect(Index t) {
+    const Edge edge = longest_edge(t);
+    const Index a = nodes_[t].corners[edge.a], b = nodes_[t].corners[edge.b];
+    std::vector<Index> around = around_edge(a, b);
+    for (std::size_t i = 0; i < around.size();) {
+      const Edge other = longest_edge(around[i]);
+      if (key_of_pair(nodes_[around[i]].corners[other.a], nodes_[around[i]].corners[other.b]) == key_of_pair(a, b)) {
+        ++i;
+        continue;
+      }
+      bisect(around[i]);
+      around = around_edge(a, b);
+      i = 0;
+    }
+    const auto middle = static_cast<Index>(at_.size());
+    at_.push_back(0.5 * (at_[a] + at_[b]));
+    lattice_.at_rim_.push_back(lattice_.at_rim_[a] && lattice_.at_rim_[b]);
+    first_around_.push_back(kNone);
+    for (const Index u : around) {
+      for (const Index end : {b, a}) {
+        Tetrahedron corners = nodes_[u].corners;
+        *std::find(corners.begin(), corners.end(), end) = middle;
+        const Index child = add(corners);
+        if (nodes_[u].child == kNone) nodes_[u].child = child;
+      }
+    }
+  }
+
+  // The unbisected ones, ascending. Those that no longer are leave the list on the way.
+  std::vector<Index> around_edge(Index a, Index b) {
+    std::vector<Index> found;
+    Index* link = &first_around_[a];
+    while (*link != kNone) {
+      Node& node = nodes_[*link / 4];
+      if (node.child != kNone) {
+        *link = node.next[*link % 4];
+        continue;
+      }
+      if (std::find(node.corners.begin(), node.corners.end(), b) != node.corners.end()) found.push_back(*link / 4);
+      link = &node.next[*link % 4];
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+  void finish() {
+    lattice_.longest_.assign(at_.size(), 0);
+    lattice_.around_offsets_.assign(at_.size() + 1, 0);
+    for (Index t = 0; t < nodes_.size(); ++t) {
+      if (nodes_[t].child != kNone) continue;
+      const double longest = std::sqrt(longest_edge(t).length2);
+      for (const Index c : nodes_[t].corners) {
+        lattice_.longest_[c] = std::max(lattice_.longest_[c], longest);
+        ++lattice_.around_offsets_[c + 1];
+      }
+      lattice_.tetrahedra_.push_back(nodes_[t].corners);
+    }
+    for (std::size_t p = 0; p < at_.size(); ++p) lattice_.around_offsets_[p + 1] += lattice_.around_offsets_[p];
+    lattice_.around_.resize(4 * lattice_.tetrahedra_.size());
+    std::vector<Index> next(lattice_.around_offsets_.begin(), lattice_.around_offsets_.end() - 1);
+    for (Index t = 0; t < lattice_.tetrahedra_.size(); ++t) {
+      for (const Index c : lattice_.tetrahedra_[t]) lattice_.around_[next[c]++] = t;
+    }
+  }
+
+  GradedLattice& lattice_;
+  std::vector<Vec3>& at_;
+  std::vector<LatticeBall> balls_;  // in units, along the frame
+  std::unordered_map<std::uint64_t, Index> root_number_;
+  std::vector<Node> nodes_;
+  std::vector<Index> first_around_;  // of every point: as Node::next
+  std::vector<std::vector<Index>> roots_around_;
+  std::vector<Index> last_ball_;  // that has refined a root
+};
+
+GradedLattice::GradedLattice(const Vec3& origin, const Eigen::Matrix3d& frame, double spacing,
+                             std::span<const LatticeBall> balls)
+    : origin_(origin), frame_(frame), unit_(0.5 * spacing) {
+  Maker(*this, balls).run();
+}
+
+}  // namespace vmesh
