@@ -18,7 +18,7 @@ constexpr int kSectionSteps = 48;  // 0.618^48 = 1e-10 of the axis
 // is asked of them there.
 constexpr double kForkGap = 0.4;
 constexpr double kMostRounding = 0.2;  // sums of radii
-constexpr Touch kFork{0.5, 0.25};      // what still counts as a place where vessels part
+constexpr Touch kFork{0.5, 0.04};      // what still counts as a place where vessels part
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
 // The sphere of a cone that is closest to a point, for radii that count `weight` times.

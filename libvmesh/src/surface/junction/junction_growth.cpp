@@ -9,7 +9,8 @@
 namespace vmesh {
 namespace {
 
-constexpr double kSpacing = 1;            // of the lattice, in radii of the vessel there
+constexpr double kSpacing = 1;            // of the lattice, in radii of the junction's thinnest vessel ...
+constexpr double kFiner = 0.6;            // ... but no finer than this in radii of the vessel there
 constexpr double kReach = 1.25;           // radii from a vessel's axis up to which the lattice is that fine
 constexpr double kBallStep = 0.5;         // radii along the axis
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
@@ -33,12 +34,12 @@ double depth_at(const VesselField& field, const Vec3& p, Index cone, double radi
 
 // Balls along the vessels, in which the lattice is as fine as their radius asks for; but where its cubes are that fine
 // everywhere, and where the vessel runs deep within thicker ones.
-std::vector<LatticeBall> balls_along(const VesselField& field, double cube) {
+std::vector<LatticeBall> balls_along(const VesselField& field, double cube, double thinnest) {
   std::vector<LatticeBall> balls;
   for (Index cone = 0; cone < field.cone_count(); ++cone) {
     const double length = (field.axis_point(cone, 1) - field.axis_point(cone, 0)).norm();
     for (double t = 0;;) {
-      const double radius = field.radius_at(cone, t), finest = kSpacing * radius;
+      const double radius = field.radius_at(cone, t), finest = std::max(kSpacing * thinnest, kFiner * radius);
       const Vec3 p = field.axis_point(cone, t);
       const double depth = finest < cube ? depth_at(field, p, cone, radius) : 0;
       if (depth <= 0) balls.push_back({p, kReach * radius, finest});
@@ -58,8 +59,8 @@ GradedLattice lattice_around(const VesselField& field, Index start) {
     widest = std::max(widest, node.radius);
   }
   double spacing = kSpacing * thinnest;
-  while (2 * spacing <= kSpacing * widest) spacing *= 2;
-  return {centerline.node(start).position, frame_at(centerline, start), spacing, balls_along(field, spacing)};
+  while (2 * spacing <= kFiner * widest) spacing *= 2;
+  return {centerline.node(start).position, frame_at(centerline, start), spacing, balls_along(field, spacing, thinnest)};
 }
 
 // The lattice's surface in a mesh that is bound to the field.

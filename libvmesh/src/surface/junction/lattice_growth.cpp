@@ -10,7 +10,7 @@ namespace {
 constexpr double kNearestToPoint = 0.25;  // of an edge: a surface vertex keeps that far from lattice points
 constexpr double kInside = 0.05;          // spacings below the boundary from which on a point counts as inside
 constexpr double kFarInside = 1.5;        // spacings below the boundary from which on depths need not be exact
-constexpr double kDepthStep = 1e-6;       // spacings below which depths count as equal
+constexpr double kDepthStep = 1e-6;       // radii below which depths count as equal
 constexpr double kBlockedDepth = 0.4;     // spacings below the boundary at which a blocked point asks for a handle
 
 class LatticeGrowth {
@@ -19,12 +19,11 @@ class LatticeGrowth {
       : field_(field),
         lattice_(lattice),
         points_(lattice.size()),
-        depth_step_(kDepthStep * lattice.spacing(0)),
         seen_by_(lattice.size(), kNone),
         part_(lattice.size(), kNone) {}
 
   LatticeSurface run(Index hint, std::size_t max_handles) {
-    points_[0] = {0, hint, true};
+    points_[0] = {0, 1, hint, true};
     add(0);
     thicken();
     while (surface_.handles < max_handles && bridge()) thicken();
@@ -35,6 +34,7 @@ class LatticeGrowth {
  private:
   struct Point {
     double distance = 0;
+    double radius = 1;  // of the vessel there
     Index cone = kNone;
     bool known = false;
     bool in = false;
@@ -52,10 +52,12 @@ class LatticeGrowth {
     const double bound = points_[from].distance + (p - lattice_.position(from)).norm();
     if (bound < -kFarInside * lattice_.spacing(q)) {
       point.distance = bound;
+      point.radius = points_[from].radius;
       point.cone = points_[from].cone;
     } else {
       const FieldSample s = field_.sample(p, points_[from].cone);
       point.distance = s.distance;
+      point.radius = field_.radius_at(s.cone, s.t);
       point.cone = s.cone;
     }
   }
@@ -76,8 +78,9 @@ class LatticeGrowth {
     }
   }
 
-  // In steps, so that rounding does not decide between points of equal depth.
-  double depth(Index p) const { return std::round(-points_[p].distance / depth_step_); }
+  // In radii, so that vessels grow along their axes before walls that touch elsewhere are reached; in steps, so that
+  // rounding does not decide between points of equal depth.
+  double depth(Index p) const { return std::round(-points_[p].distance / (kDepthStep * points_[p].radius)); }
 
   // Into how many parts the link of a point, a triangulated sphere, falls: of neighbours in the set, and of others.
   Parts parts_around(Index p) {
@@ -198,7 +201,6 @@ class LatticeGrowth {
   const VesselField& field_;
   const GradedLattice& lattice_;
   std::vector<Point> points_;
-  double depth_step_;
   std::priority_queue<std::pair<double, Index>> queue_;  // depth, point
   std::vector<Index> seen_by_;                           // the point last added that has looked at this one
   std::vector<Index> part_, link_;                       // of parts_around()

@@ -17,13 +17,13 @@ namespace {
 // What is done about the faults of the rung before.
 struct Rung {
   double reach;  // rings so near to a fault, in their radii, are left to a junction; 0: none
-  double finer;  // radius of fine spots at faults, in local ones; 0: none
+  double finer;  // radius of fine spots at faults, in those of the thinnest vessel there; 0: none
   bool guarded;  // no step is taken after which faces cross
 };
 constexpr double kMended = 0.5;  // skewness above which triangles are mended at any price but soundness
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
-constexpr Rung kLadder[kRungs] = {{0, 0, false}, {2, 0, false},  {2, 0, true}, {3, 0, false},
-                                  {3, 0, true},  {3, 0.5, true}, {5, 0, true}, {kEverywhere, 0, true}};
+constexpr Rung kLadder[kRungs] = {{0, 0, false}, {2, 0, false}, {3, 0, false},  {3, 1, false},
+                                  {3, 0, true},  {3, 1, true},  {5, 0.5, true}, {kEverywhere, 0.5, true}};
 
 std::string at(const Vec3& p) {
   std::ostringstream text;
@@ -76,10 +76,12 @@ class PieceMaker {
 
   PieceSurface run() {
     PieceSurface best;
+    std::vector<PieceFault> last;
     for (int rung = 0; rung < kRungs; ++rung) {
-      if (rung > 0 && !climb(kLadder[rung], best.faults)) continue;
-      PieceSurface piece = make(kLadder[rung], best.faults);
+      if (rung > 0 && !climb(kLadder[rung], last)) continue;
+      PieceSurface piece = make(kLadder[rung]);
       piece.rung = rung;
+      last = piece.faults;
       if (rung == 0 || piece.faults.size() < best.faults.size()) best = std::move(piece);
       if (best.faults.empty() || is_hopeless(best)) break;
     }
@@ -90,6 +92,9 @@ class PieceMaker {
   // Whether that changes anything.
   bool climb(const Rung& rung, const std::vector<PieceFault>& faults) {
     const std::size_t before = covered_.size();
+    if (rung.finer > 0) {
+      for (const PieceFault& fault : faults) fine_spots_.push_back({fault.position, rung.finer * fault.radius});
+    }
     for (const Stretch& stretch : plan_.stretches) {
       const std::vector<Ring>& rings = tubes_.rings(stretch.branch);
       for (Index k = 0; k < stretch.count; ++k) {
@@ -107,7 +112,7 @@ class PieceMaker {
     return covered_.size() > before || rung.finer > 0 || rung.guarded;
   }
 
-  PieceSurface make(const Rung& rung, const std::vector<PieceFault>& faults) {
+  PieceSurface make(const Rung& rung) {
     const GrowthSkeleton skeleton = make_growth_skeleton(tubes_, plan_, covered_);
     PieceSurface piece;
     piece.junctions = skeleton.junctions.size();
@@ -122,10 +127,7 @@ class PieceMaker {
     BoundSurface surface(tubes_.field());
     const std::vector<PieceLoop> loops = assembly.build(surface);
     if (rung.guarded) surface.guard_crossings();
-    if (rung.finer > 0) {
-      for (const PieceFault& fault : faults)
-        surface.fine_spots.push_back({fault.position, rung.finer * radius_at(surface, fault.position)});
-    }
+    if (rung.finer > 0) surface.fine_spots = fine_spots_;
     bool tested = false;  // and no faces cross
     if (context_.options.sweeps > 0) {
       const GrownMesh grown{double(context_.options.around),
@@ -161,17 +163,6 @@ class PieceMaker {
                                             : static_cast<double>(rings_given_away(skeleton.tubes[opening.tube])));
     }
     return key;
-  }
-
-  static double radius_at(const BoundSurface& surface, const Vec3& p) {
-    double nearest = std::numeric_limits<double>::infinity(), radius = 0;
-    for (const Vertex v : surface.mesh.vertices()) {
-      const double away = (surface.position(v) - p).squaredNorm();
-      if (away >= nearest) continue;
-      nearest = away;
-      radius = surface.radius(v);
-    }
-    return radius;
   }
 
   double length_in_radii() const {
@@ -239,6 +230,7 @@ class PieceMaker {
   const VesselTubes& tubes_;
   const PiecePlan& plan_;
   std::vector<RingPlace> covered_;
+  std::vector<BoundSurface::FineSpot> fine_spots_;
   struct GrownJunction {
     std::optional<JunctionPiece> piece;
     bool guarded = false;

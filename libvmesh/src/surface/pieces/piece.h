@@ -11,6 +11,7 @@ namespace vmesh {
 struct PieceFault {
   DefectKind kind;
   Vec3 position = Vec3::Zero();
+  double radius = 0;             ///< of the thinnest vessel there, mm
   bool vessels_overlap = false;  ///< another vessel covers the place: no other surface would do better
 };
 

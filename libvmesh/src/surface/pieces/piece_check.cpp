@@ -19,11 +19,15 @@ Vec3 center_of(const TriMesh& mesh, Index f) {
 void find_crossings(const BoundSurface& surface, const TriMesh& mesh, std::vector<PieceFault>& faults) {
   for (const auto& [f, g] : self_intersections(mesh)) {
     bool overlap = false;
+    double radius = std::numeric_limits<double>::infinity();
     for (const Index face : {f, g}) {
-      for (const Index v : mesh.faces[face])
+      for (const Index v : mesh.faces[face]) {
         overlap = overlap || is_covered(surface.field, mesh.vertices[v], surface.cone[Vertex(v)]);
+        radius = std::min(radius, surface.radius(Vertex(v)));
+      }
     }
-    for (const Index face : {f, g}) faults.push_back({DefectKind::crossing_faces, center_of(mesh, face), overlap});
+    for (const Index face : {f, g})
+      faults.push_back({DefectKind::crossing_faces, center_of(mesh, face), radius, overlap});
   }
 }
 
@@ -33,7 +37,8 @@ void find_bad_faces(const SweepState& state, std::vector<PieceFault>& faults) {
     const auto [a, b, c] = state.corners(f);
     const double skewness = equiangle_skewness(state.point(a), state.point(b), state.point(c));
     if (skewness <= kWorstSkewness) continue;
-    faults.push_back({DefectKind::bad_triangle, (state.point(a) + state.point(b) + state.point(c)) / 3});
+    const double radius = std::min({state.surface.radius(a), state.surface.radius(b), state.surface.radius(c)});
+    faults.push_back({DefectKind::bad_triangle, (state.point(a) + state.point(b) + state.point(c)) / 3, radius});
   }
 }
 
@@ -47,7 +52,8 @@ void find_nodes_outside(const BoundSurface& surface, const TriMesh& mesh, const 
     if (inside[i]) continue;
     const auto segments = surface.field.centerline().incident_segments(nodes[i]);
     const bool overlap = !segments.empty() && is_covered(surface.field, positions[i], segments.front());
-    faults.push_back({DefectKind::node_outside, positions[i], overlap});
+    const double radius = surface.field.centerline().node(nodes[i]).radius;
+    faults.push_back({DefectKind::node_outside, positions[i], radius, overlap});
   }
 }
 

@@ -6,6 +6,7 @@ namespace vmesh {
 namespace {
 
 constexpr std::size_t kMostLatest = 32;  // faces that are looked at one by one
+constexpr double kRoom = 0.25;           // around a face in its box, in the diagonal of what it needs
 
 std::pair<Vec3, Vec3> box_of(const PlacedFace& f) {
   const auto& [a, b, c] = f.points;
@@ -16,25 +17,29 @@ std::pair<Vec3, Vec3> box_of(const PlacedFace& f) {
 
 CrossingGuard::CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_lid)
     : mesh_(mesh), is_lid_(std::move(is_lid)) {
-  add_layer({mesh.faces().begin(), mesh.faces().end()});
+  for (const Face f : mesh.faces()) insert(f);
 }
 
-void CrossingGuard::add_layer(std::vector<Face> faces) {
-  while (!layers_.empty() && layers_.back().faces.size() < 2 * faces.size()) {
-    faces.insert(faces.end(), layers_.back().faces.begin(), layers_.back().faces.end());
+// Its box still holds it.
+bool CrossingGuard::is_current(const Entry& entry) const {
+  return entry.face.idx() < mesh_.num_faces() && box_[entry.face.idx()].number == entry.number &&
+         !mesh_.is_removed(entry.face);
+}
+
+void CrossingGuard::add_layer(std::vector<Entry> entries) {
+  while (!layers_.empty() && layers_.back().entries.size() < 2 * entries.size()) {
+    const std::vector<Entry>& last = layers_.back().entries;
+    entries.insert(entries.end(), last.begin(), last.end());
     layers_.pop_back();
   }
-  std::sort(faces.begin(), faces.end());
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  std::erase_if(faces, [&](Face f) { return f.idx() >= mesh_.num_faces() || mesh_.is_removed(f) || is_lid(f); });
+  std::erase_if(entries, [&](const Entry& entry) { return !is_current(entry); });
   std::vector<Vec3> low, high;
-  for (const Face f : faces) {
-    const auto box = box_of(placed(f));
-    low.push_back(box.first);
-    high.push_back(box.second);
+  for (const Entry& entry : entries) {
+    low.push_back(box_[entry.face.idx()].low);
+    high.push_back(box_[entry.face.idx()].high);
   }
   BoxTree tree(low, high);
-  layers_.push_back({std::move(faces), std::move(tree)});
+  layers_.push_back({std::move(entries), std::move(tree)});
 }
 
 bool CrossingGuard::is_lid(Face f) const {
@@ -51,7 +56,14 @@ PlacedFace CrossingGuard::placed(Face f) const {
 }
 
 void CrossingGuard::insert(Face f) {
-  latest_.push_back(f);
+  if (is_lid(f)) return;
+  if (f.idx() >= box_.size()) box_.resize(f.idx() + 1);
+  Box& box = box_[f.idx()];
+  const auto [low, high] = box_of(placed(f));
+  if ((box.low.array() <= low.array()).all() && (high.array() <= box.high.array()).all()) return;
+  const double room = kRoom * (high - low).norm();
+  box = {low.array() - room, high.array() + room, next_number_++};
+  latest_.push_back({f, box.number});
   if (latest_.size() < kMostLatest) return;
   add_layer(std::move(latest_));
   latest_.clear();
@@ -70,24 +82,36 @@ bool CrossingGuard::clear(const std::vector<PlacedFace>& faces, const std::vecto
       if (intersect(faces[i], faces[j])) return false;
     }
   }
-  return std::none_of(faces.begin(), faces.end(), [&](const PlacedFace& face) { return is_crossed(face, gone); });
+  return !cross_others(faces, gone);
 }
 
-bool CrossingGuard::is_crossed(const PlacedFace& face, const std::vector<Face>& gone) const {
-  const auto [low, high] = box_of(face);
+bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const {
+  if (faces.empty()) return false;
+  auto [low, high] = box_of(faces.front());
+  for (const PlacedFace& face : faces) {
+    const auto box = box_of(face);
+    low = low.cwiseMin(box.first);
+    high = high.cwiseMax(box.second);
+  }
   bool crossed = false;
-  const auto look_at = [&, low_corner = low, high_corner = high](Face f) {
-    if (crossed || f.idx() >= mesh_.num_faces() || mesh_.is_removed(f)) return;
-    const PlacedFace other = placed(f);
+  const auto look_at = [&](const Entry& entry) {
+    if (crossed || !is_current(entry)) return;
+    const PlacedFace other = placed(entry.face);
     const auto [other_low, other_high] = box_of(other);
-    if ((other_low.array() > high_corner.array()).any() || (low_corner.array() > other_high.array()).any()) return;
-    if (std::find(gone.begin(), gone.end(), f) != gone.end() || is_lid(f) || is_degenerate(other)) return;
-    crossed = intersect(face, other);
+    const auto apart_from = [&, first = other_low, last = other_high](const Vec3& from, const Vec3& to) {
+      return (first.array() > to.array()).any() || (from.array() > last.array()).any();
+    };
+    if (apart_from(low, high) || std::find(gone.begin(), gone.end(), entry.face) != gone.end() || is_degenerate(other))
+      return;
+    crossed = std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
+      const auto box = box_of(face);
+      return !apart_from(box.first, box.second) && intersect(face, other);
+    });
   };
-  for (const Face f : latest_) look_at(f);
+  for (const Entry& entry : latest_) look_at(entry);
   for (const Layer& layer : layers_) {
     if (crossed) break;
-    layer.tree.visit_overlapping(low, high, [&](Index i) { look_at(layer.faces[i]); });
+    layer.tree.visit_overlapping(low, high, [&](Index i) { look_at(layer.entries[i]); });
   }
   return crossed;
 }

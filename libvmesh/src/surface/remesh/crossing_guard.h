@@ -37,24 +37,35 @@ class CrossingGuard {
   void touch(Vertex v);
 
  private:
-  // Faces as they once were; those that have changed since are in a later one as well.
+  // A face lies in its box until it leaves it; then it gets another.
+  struct Box {
+    Vec3 low = Vec3::Ones(), high = -Vec3::Ones();
+    Index number = kNone;  // boxes are numbered in the order in which they were needed
+  };
+  struct Entry {
+    Face face;
+    Index number;  // of the box; an older one than the face's own says nothing
+  };
   struct Layer {
-    std::vector<Face> faces;
+    std::vector<Entry> entries;
     BoxTree tree;
   };
 
   void insert(Face f);
-  void add_layer(std::vector<Face> faces);
+  void add_layer(std::vector<Entry> entries);
+  bool is_current(const Entry& entry) const;
   bool is_lid(Face f) const;
   PlacedFace placed(Face f) const;
   // Whether no face but `gone` crosses one of `faces`, nor they each other.
   bool clear(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const;
-  bool is_crossed(const PlacedFace& face, const std::vector<Face>& gone) const;
+  bool cross_others(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const;
 
   const Mesh& mesh_;
   std::function<bool(Vertex)> is_lid_;
+  std::vector<Box> box_;  // of every face
+  Index next_number_ = 0;
   std::vector<Layer> layers_;  // each less than half as large as the one before
-  std::vector<Face> latest_;   // not in a layer yet
+  std::vector<Entry> latest_;  // not in a layer yet
 };
 
 }  // namespace vmesh

@@ -20,7 +20,7 @@ constexpr int kBalanceRounds = 2, kBalanceSweeps = 6;
 constexpr int kSinkRounds = 4;
 constexpr int kErrorRounds = 14;  // without fewer faces over the limit: a last one may need its edges to be a seventh
 constexpr int kErrorSweeps = 4;
-constexpr int kSpotRounds = 3;                  // each halves edges at most
+constexpr int kSpotRounds = 10;                 // each halves edges at most
 constexpr int kLeastWithLimit = 4;              // vertices around
 constexpr double kMostRefined = 1.8;            // lengths of edges before against after
 constexpr double kFiner = 0.87, kFinest = 0.1;  // of the target edge length, where the error is too large
