@@ -13,7 +13,7 @@ namespace vmesh {
 struct Touch {
   double smaller, larger;
 
-  double gap(double r, double q) const { return smaller * std::min(r, q) + larger * std::max(r, q); }
+  double gap(double r, double q) const { return std::max(smaller * std::min(r, q), (smaller - 0.4) * std::min(r, q) + larger * std::max(r, q)); }
 };
 
 /// Up to this gap vessels that part count as one volume: the default rounding at branches fills what is between them

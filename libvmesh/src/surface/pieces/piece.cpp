@@ -69,6 +69,14 @@ void note_simplifications(const VesselTubes& tubes, const Junction& junction, st
   }
 }
 
+// Faults, then the worst triangle where that is bad.
+using Badness = std::pair<std::size_t, double>;
+constexpr Badness kNoBadness{0, 0};
+
+Badness badness(const PieceSurface& piece) {
+  return {piece.faults.size(), piece.worst_skewness > kMended ? piece.worst_skewness : 0};
+}
+
 class PieceMaker {
  public:
   PieceMaker(const PieceContext& context, const PiecePlan& plan)
@@ -82,8 +90,8 @@ class PieceMaker {
       PieceSurface piece = make(kLadder[rung]);
       piece.rung = rung;
       last = piece.faults;
-      if (rung == 0 || piece.faults.size() < best.faults.size()) best = std::move(piece);
-      if (best.faults.empty() || is_hopeless(best)) break;
+      if (rung == 0 || badness(piece) < badness(best)) best = std::move(piece);
+      if (badness(best) == kNoBadness || is_hopeless(best)) break;
     }
     return best;
   }
@@ -137,7 +145,9 @@ class PieceMaker {
       const double limit = context_.options.max_error.is_set() ? kWorstSkewness : kMended;
       tested = !mend_worst_faces(surface, limit) && !crosses;
     }
-    piece.faults = find_faults(surface, nodes_of(skeleton), context_.options, !tested);
+    const PieceFindings findings = check_piece(surface, nodes_of(skeleton), context_.options, !tested);
+    piece.faults = findings.faults;
+    piece.worst_skewness = findings.worst_skewness;
     export_surface(surface, loops, piece);
     return piece;
   }

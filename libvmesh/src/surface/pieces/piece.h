@@ -41,6 +41,7 @@ struct PieceSurface {
   std::size_t junctions = 0, tubes = 0;
   std::vector<GrowthSimplification> simplifications;
   std::size_t filled_loops = 0;  ///< loops of the centerline too short to have a hole
+  double worst_skewness = 0;     ///< equiangle, of its triangles
   int rung = 0;                  ///< of the ladder at which it was found
   std::vector<PieceFault> faults;
 };

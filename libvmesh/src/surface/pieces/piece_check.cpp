@@ -31,14 +31,16 @@ void find_crossings(const BoundSurface& surface, const TriMesh& mesh, std::vecto
   }
 }
 
-void find_bad_faces(const SweepState& state, std::vector<PieceFault>& faults) {
+void find_bad_faces(const SweepState& state, PieceFindings& findings) {
   for (const Face f : state.mesh.faces()) {
     if (state.surface.is_lid(f)) continue;
     const auto [a, b, c] = state.corners(f);
     const double skewness = equiangle_skewness(state.point(a), state.point(b), state.point(c));
+    findings.worst_skewness = std::max(findings.worst_skewness, skewness);
     if (skewness <= kWorstSkewness) continue;
     const double radius = std::min({state.surface.radius(a), state.surface.radius(b), state.surface.radius(c)});
-    faults.push_back({DefectKind::bad_triangle, (state.point(a) + state.point(b) + state.point(c)) / 3, radius});
+    findings.faults.push_back(
+        {DefectKind::bad_triangle, (state.point(a) + state.point(b) + state.point(c)) / 3, radius});
   }
 }
 
@@ -63,14 +65,14 @@ bool is_covered(const VesselField& field, const Vec3& p, Index cone) {
   return field.distance_to_others(p, cone, 0) < -kCovered * field.radius_at(cone, 0.5);
 }
 
-std::vector<PieceFault> find_faults(BoundSurface& surface, const std::vector<Index>& nodes,
-                                    const GenerateOptions& options, bool may_cross) {
-  std::vector<PieceFault> faults;
+PieceFindings check_piece(BoundSurface& surface, const std::vector<Index>& nodes, const GenerateOptions& options,
+                          bool may_cross) {
+  PieceFindings findings;
   const SweepState state(surface);
-  if (may_cross) find_crossings(surface, indexed_mesh(state, false), faults);
-  if (options.sweeps > 0) find_bad_faces(state, faults);
-  find_nodes_outside(surface, indexed_mesh(state, true), nodes, faults);
-  return faults;
+  if (may_cross) find_crossings(surface, indexed_mesh(state, false), findings.faults);
+  if (options.sweeps > 0) find_bad_faces(state, findings);
+  find_nodes_outside(surface, indexed_mesh(state, true), nodes, findings.faults);
+  return findings;
 }
 
 }  // namespace vmesh
