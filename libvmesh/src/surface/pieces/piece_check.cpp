@@ -9,7 +9,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kCovered = 0.02;  // radii below another vessel's wall
+constexpr double kCovered = 0.2;  // radii below another vessel's wall: less may be the rounding of a third
 
 Vec3 center_of(const TriMesh& mesh, Index f) {
   const auto& [a, b, c] = mesh.faces[f];
