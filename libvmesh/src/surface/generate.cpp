@@ -129,7 +129,7 @@ void generate_paper(const Centerline& centerline, const GenerateOptions& options
   clock.time("check", [&] {
     if (options.max_error.is_set()) {
       const std::vector<Index> unproven = unproven_faces(result.mesh, result.binding, *field, options.max_error);
-      result.error = {unproven.size(), places_of(result.mesh, unproven)};
+      result.error = {unproven.size(), places_of(result.mesh, unproven), {}};
     }
     result.defects = find_defects(centerline, result, self_intersections(result.mesh));
   });

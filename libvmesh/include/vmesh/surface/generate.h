@@ -137,11 +137,20 @@ struct UnprovenPlace {
   std::size_t faces = 0;
 };
 
+/// A place where the gap between two walls ends in a notch too narrow for triangles across it, and was closed up to
+/// some height above its end.
+struct ClosedNotch {
+  Vec3 position = Vec3::Zero();  ///< of the vertex farthest above the end, mm
+  double depth = 0;              ///< how far that is, mm; the limit counts what is closed
+  std::size_t vertices = 0;      ///< that close it
+};
+
 /// What is known of the distance between a surface and the boundary, both ways (see ErrorProof), when there is a limit.
 /// Where the surface was left open there is no boundary to compare with.
 struct ErrorSummary {
   std::size_t unproven_faces = 0;              ///< 0: the limit holds everywhere
   std::vector<UnprovenPlace> unproven_places;  ///< largest first
+  std::vector<ClosedNotch> closed_notches;     ///< deepest first
 };
 
 /// Something about a surface that its user should know.

@@ -11,7 +11,7 @@
 #include "vmesh/surface/error_bound.h"
 
 #include "surface/pieces/gathering.h"
-#include "surface/proof/error_limit.h"
+#include "surface/proof/notches.h"
 
 namespace vmesh {
 namespace {
@@ -35,9 +35,11 @@ class PieceGrower {
       gathered_ = gather(tubes_, division_, pieces_);
       crossings_ = self_intersections(gathered_.mesh);
       if (options_.max_error.is_set())
-        unproven_ = unproven_faces(gathered_.mesh, gathered_.binding, tubes_.field(), options_.max_error);
+        unproven_ = unproven_faces(gathered_.mesh, gathered_.binding, tubes_.field(), options_.max_error,
+                                   Shells::along_normals);
       if (round == kRounds || !regroup()) break;
     }
+    if (!unproven_.empty()) close_notches_left(result.error);
     tell(result);
     return std::move(crossings_);
   }
@@ -96,6 +98,17 @@ class PieceGrower {
     return true;
   }
 
+  void close_notches_left(ErrorSummary& summary) {
+    FinishedSurface surface{std::move(gathered_.mesh), std::move(gathered_.binding), std::move(gathered_.radius),
+                            std::move(gathered_.openings)};
+    summary = close_notches(surface, tubes_.field(), options_.max_error);
+    gathered_.mesh = std::move(surface.mesh);
+    gathered_.binding = std::move(surface.binding);
+    gathered_.radius = std::move(surface.radius);
+    gathered_.openings = std::move(surface.openings);
+    crossings_ = self_intersections(gathered_.mesh);
+  }
+
   bool vessels_overlap(Index f, Index g) const {
     for (const Index face : {f, g}) {
       for (const Index v : gathered_.mesh.faces[face]) {
@@ -152,8 +165,6 @@ class PieceGrower {
           {GrowthWarning::Kind::filled_loop, filled,
            "growth: " + std::to_string(filled) +
                " loops of the centerline are too short to have a hole; the surface is filled there"});
-    result.error.unproven_faces = unproven_.size();
-    result.error.unproven_places = places_of(gathered_.mesh, unproven_);
     result.mesh = std::move(gathered_.mesh);
     result.binding = std::move(gathered_.binding);
     result.radius = std::move(gathered_.radius);

@@ -11,6 +11,7 @@ namespace {
 constexpr int kPieces = 2;    // along an edge of a face: the shell follows the normals that much closer
 constexpr int kMaxDepth = 5;  // of further subdivision, into four each
 constexpr double kLowerShell = 0.6, kLowestShell = 0.04;  // of the limit
+constexpr int kBendRounds = 4;  // each bends the corners of faces that the last left open; one or two as a rule
 
 using Points = std::array<Vec3, 3>;
 
@@ -260,6 +261,119 @@ ErrorProof::Face face_of(const std::vector<ErrorProof::Corner>& vertices, const 
   return {vertices[f[0]], vertices[f[1]], vertices[f[2]]};
 }
 
+double sign_of(ErrorProof::Side side) { return side == ErrorProof::Side::inner ? -1 : 1; }
+
+// One side of the shell of a whole surface. Where it does not hold along the normals, it is bent.
+class BentCopy {
+ public:
+  BentCopy(const ErrorProof& proof, const VesselField& field, ErrorProof::Side side,
+           const std::vector<ErrorProof::Corner>& vertices, const std::vector<Triangle>& faces,
+           const std::vector<ErrorProof::Shares>& shares)
+      : proof_(proof), field_(field), side_(side), corners_(vertices), faces_(faces), bent_(vertices.size()) {
+    for (const ErrorProof::Corner& corner : vertices) heights_.push_back(corner.limit);
+    std::vector<Index> lowered;
+    for (Index f = 0; f < faces.size(); ++f) {
+      ErrorProof::Shares own = shares[f];
+      const double s = share(own, side);
+      if (s == 0) open_.push_back(f);
+      for (const Index v : faces[f]) {
+        if (s > 0) heights_[v] = std::min(heights_[v], s * vertices[v].limit);
+      }
+    }
+    for (Index f = 0; f < faces.size(); ++f) {
+      ErrorProof::Shares own = shares[f];
+      const double s = share(own, side);
+      if (s > 0 && heights(f) != heights_of(face_of(corners_, faces[f]), s)) lowered.push_back(f);
+    }
+    keep_open(lowered);
+  }
+
+  // Faces for which no shell is found.
+  std::vector<Index> open() {
+    for (int round = 0; round < kBendRounds && !open_.empty(); ++round) {
+      bool any = false;
+      for (const Index f : open_) {
+        for (const Index v : faces_[f]) any = bend(v) || any;
+      }
+      if (!any) break;
+      std::vector<Index> touched;
+      for (Index f = 0; f < faces_.size(); ++f) {
+        if (std::any_of(faces_[f].begin(), faces_[f].end(), [&](Index v) { return bent_[v] != 0; }))
+          touched.push_back(f);
+      }
+      open_.clear();
+      keep_open(touched);
+    }
+    return open_;
+  }
+
+ private:
+  std::array<double, 3> heights(Index f) const {
+    return {heights_[faces_[f][0]], heights_[faces_[f][1]], heights_[faces_[f][2]]};
+  }
+
+  // Adds those of `faces` that do not hold to the open ones.
+  void keep_open(const std::vector<Index>& faces) {
+    std::vector<char> holds(faces.size());
+    tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
+      holds[i] = proof_.holds(face_of(corners_, faces_[faces[i]]), heights(faces[i]), side_);
+    });
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (!holds[i]) open_.push_back(faces[i]);
+    }
+  }
+
+  // Lets the corner go where it gets farthest from the boundary. Returns whether that is new.
+  bool bend(Index v) {
+    if (bent_[v]) return false;
+    bent_[v] = 1;
+    ErrorProof::Corner& corner = corners_[v];
+    const double sign = sign_of(side_);
+    const Vec3 normal = corner.normal;
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const Vec3& direction : directions(corner.position, normal, corner.limit, corner.cone)) {
+      for (double s = 1; s > kLowestShell; s *= kLowerShell) {
+        const double height = s * corner.limit;
+        const double away = sign * field_.sample(corner.position + sign * height * direction, corner.cone).distance;
+        if (away <= farthest) continue;
+        farthest = away;
+        corner.normal = direction;
+        heights_[v] = height;
+      }
+    }
+    return true;
+  }
+
+  // Away from the cones that are near, and between any two of them.
+  std::vector<Vec3> directions(const Vec3& p, const Vec3& normal, double limit, Index hint) const {
+    std::vector<Vec3> gradients;
+    const FieldSample sample = field_.sample(p, hint);
+    const double nearest = field_.sample_cone(p, sample.cone).distance;
+    for (const Index cone : field_.local_cones(sample.cone)) {
+      const FieldSample s = field_.sample_cone(p, cone);
+      if (s.distance < nearest + 2 * limit) gradients.push_back(s.gradient);
+    }
+    std::vector<Vec3> result = {normal};
+    for (std::size_t i = 0; i < gradients.size(); ++i) {
+      result.push_back(gradients[i]);
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vec3 middle = gradients[i] + gradients[j];
+        if (middle.squaredNorm() > 0) result.push_back(middle.normalized());
+      }
+    }
+    return result;
+  }
+
+  const ErrorProof& proof_;
+  const VesselField& field_;
+  ErrorProof::Side side_;
+  std::vector<ErrorProof::Corner> corners_;
+  const std::vector<Triangle>& faces_;
+  std::vector<double> heights_;
+  std::vector<char> bent_;
+  std::vector<Index> open_;
+};
+
 }  // namespace
 
 bool ErrorProof::holds(const Face& face, const std::array<double, 3>& heights, Side side) const {
@@ -313,8 +427,20 @@ std::vector<Index> ErrorProof::unproven(const std::vector<Corner>& vertices, con
   return result;
 }
 
+std::vector<Index> ErrorProof::unproven_if_bent(const std::vector<Corner>& vertices, const std::vector<Triangle>& faces,
+                                                const std::vector<Shares>& shares) const {
+  std::vector<Index> result;
+  for (const Side side : {Side::inner, Side::outer}) {
+    const std::vector<Index> open = BentCopy(*this, field_, side, vertices, faces, shares).open();
+    result.insert(result.end(), open.begin(), open.end());
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
 std::vector<Index> unproven_faces(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
-                                  const VesselField& field, const ErrorLimit& limit) {
+                                  const VesselField& field, const ErrorLimit& limit, Shells shells) {
   std::vector<ErrorProof::Corner> vertices(mesh.vertices.size());
   for (Index v = 0; v < vertices.size(); ++v) {
     const auto& [cone, t] = binding[v];
@@ -328,7 +454,9 @@ std::vector<Index> unproven_faces(const TriMesh& mesh, const std::vector<Centerl
   std::vector<ErrorProof::Shares> shares(mesh.faces.size());
   tbb::parallel_for(std::size_t{0}, mesh.faces.size(),
                     [&](std::size_t f) { shares[f] = proof.shares(face_of(vertices, mesh.faces[f])); });
-  return proof.unproven(vertices, mesh.faces, shares);
+  std::vector<Index> unproven = proof.unproven(vertices, mesh.faces, shares);
+  if (unproven.empty() || shells == Shells::along_normals) return unproven;
+  return proof.unproven_if_bent(vertices, mesh.faces, shares);
 }
 
 }  // namespace vmesh
