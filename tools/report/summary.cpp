@@ -230,6 +230,10 @@ Json error_bound_json(const GenerateArguments& arguments, const GenerateResult& 
   for (const UnprovenPlace& place : result.error.unproven_places)
     places.push_back({{"at", to_json(place.position)}, {"faces", place.faces}});
   json["unproven_places"] = std::move(places);
+  Json notches = Json::array();
+  for (const ClosedNotch& notch : result.error.closed_notches)
+    notches.push_back({{"at", to_json(notch.position)}, {"depth_mm", notch.depth}, {"vertices", notch.vertices}});
+  json["closed_notches"] = std::move(notches);
   return json;
 }
 

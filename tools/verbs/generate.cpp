@@ -51,6 +51,17 @@ MeshAttributes attributes_of(const GenerateResult& result, const Centerline& cen
   return attributes;
 }
 
+std::string text_of(const Vec3& p) { return "(" + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()) + ")"; }
+
+void tell_of_notches(const ErrorSummary& error, Console& console) {
+  if (error.closed_notches.empty()) return;
+  const ClosedNotch& deepest = error.closed_notches.front();
+  const std::size_t count = error.closed_notches.size();
+  console.log(std::to_string(count) + (count == 1 ? " notch" : " notches") +
+              " closed, too narrow for triangles across; the limit counts that: the deepest by " +
+              number(deepest.depth) + " mm at " + text_of(deepest.position));
+}
+
 void log_result(const GenerateReport& report, Console& console) {
   const TriMesh& mesh = report.result->mesh;
   const double size = report.cleaned->centerline.length_in_radii();
@@ -64,12 +75,11 @@ void log_result(const GenerateReport& report, Console& console) {
   const ErrorLimit& limit = report.arguments->options.max_error;
   if (limit.is_set() && report.result->error.unproven_faces == 0)
     console.log("proven: nowhere farther than " + to_string(limit) + " from the boundary, nor the boundary from it");
+  tell_of_notches(report.result->error, console);
   double total = 0;
   for (const StageTime& stage : report.stages) total += stage.seconds;
   console.log("wrote " + report.arguments->output.string() + " after " + number(total, 2) + " s");
 }
-
-std::string text_of(const Vec3& p) { return "(" + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()) + ")"; }
 
 std::string places(const std::vector<Contact>& contacts) {
   return std::to_string(contacts.size()) + (contacts.size() == 1 ? " place" : " places");
