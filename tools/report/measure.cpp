@@ -24,32 +24,19 @@ SurfaceMeasurement measure_surface(const TriMesh& mesh) {
   return measurement;
 }
 
-SurfaceMeasurement measure_surface(const GenerateResult& result) {
-  SurfaceMeasurement measurement = measure_surface(result.mesh);
-  if (result.openings.empty()) return measurement;
-  std::size_t rings = 0;
-  for (const Opening& opening : result.openings) rings += opening.ring.size();
+SurfaceMeasurement measurement_of(const GenerateResult& result) {
+  SurfaceMeasurement measurement;
+  measurement.topology = result.check.topology;
+  measurement.skewness = summarize_skewness(result.mesh);
+  measurement.self_intersections = result.check.crossing_pairs;
   measurement.openings = result.openings.size();
-  measurement.open_elsewhere =
-      measurement.topology.boundary_edges - std::min(measurement.topology.boundary_edges, rings);
-  measurement.topology = measure_topology(with_lids(result));
+  if (measurement.openings > 0) measurement.open_elsewhere = result.check.topology.boundary_edges;
   return measurement;
 }
 
 SurfaceExpectation expected_surface(const Centerline& centerline, const GenerateResult& result) {
   if (result.growth.components > 0) return {result.growth.components, result.growth.cycle_rank};
   return {centerline.component_count(), centerline.cycle_rank()};
-}
-
-std::optional<std::size_t> count_nodes_inside(const Centerline& centerline, const GenerateResult& result) {
-  const TriMesh mesh = with_lids(result);
-  if (!measure_topology(mesh).closed) return std::nullopt;
-  std::vector<Vec3> points;
-  points.reserve(centerline.nodes().size());
-  for (const CenterlineNode& node : centerline.nodes()) points.push_back(node.position);
-  std::vector<bool> inside = points_inside(mesh, points);
-  for (const Opening& opening : result.openings) inside[opening.node] = true;
-  return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), true));
 }
 
 std::vector<std::string> problems_of(const SurfaceMeasurement& measurement) {

@@ -24,9 +24,9 @@ struct SurfaceMeasurement {
 
 SurfaceMeasurement measure_surface(const TriMesh& mesh);
 
-/// The same for a surface that may be open at ends of the vessel: topology with these closed. `open_elsewhere` are the
-/// boundary edges that do not belong to an opening.
-SurfaceMeasurement measure_surface(const GenerateResult& result);
+/// The same for a surface that was generated, as it was measured then. It may be open at ends of the vessel: topology
+/// is with these closed, `open_elsewhere` are the boundary edges that do not belong to an opening.
+SurfaceMeasurement measurement_of(const GenerateResult& result);
 
 /// What a surface should be, given its centerline and, if that steered growth, the skeleton: loops too short to have a
 /// hole are left out there, and said to be.
@@ -36,9 +36,6 @@ struct SurfaceExpectation {
 };
 
 SurfaceExpectation expected_surface(const Centerline& centerline, const GenerateResult& result);
-
-/// Number of nodes inside the surface, its openings closed, or at an opening; nothing when it is open elsewhere.
-std::optional<std::size_t> count_nodes_inside(const Centerline& centerline, const GenerateResult& result);
 
 /// What keeps a surface from being flawless, one line each.
 std::vector<std::string> problems_of(const SurfaceMeasurement& measurement);

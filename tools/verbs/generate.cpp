@@ -243,15 +243,14 @@ BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& cen
 /// Fills in what is measured of the surface around `grown` and what is wrong with it.
 void measure(GenerateReport& report, const Centerline& grown, Console& console) {
   const GenerateResult& result = *report.result;
-  report.measurement = measure_surface(result);
+  report.measurement = measurement_of(result);
   stop_if_interrupted();
   const VesselField field(grown, report.arguments->options.blend);
   report.deviation = measure_deviation(result.mesh, result.binding, field);
   report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown));
   stop_if_interrupted();
   report.grown_nodes = grown.nodes().size();
-  report.nodes_inside = count_nodes_inside(grown, result);
-  stop_if_interrupted();
+  report.nodes_inside = result.check.nodes_inside;
   report.problems =
       problems_of(report.measurement, expected_surface(grown, result), report.nodes_inside, report.grown_nodes);
   for (const std::string& problem : report.problems) console.warn("surface: " + problem);

@@ -131,7 +131,7 @@ void generate_paper(const Centerline& centerline, const GenerateOptions& options
       const std::vector<Index> unproven = unproven_faces(result.mesh, result.binding, *field, options.max_error);
       result.error = {unproven.size(), places_of(result.mesh, unproven), {}};
     }
-    result.defects = find_defects(centerline, result, self_intersections(result.mesh));
+    find_defects(centerline, self_intersections(result.mesh), result);
   });
 }
 
@@ -215,7 +215,7 @@ void generate_guided(const Centerline& centerline, const GenerateOptions& option
   clock.time("grow", [&] { crossings = grow_pieces(*field, open, options, progress, result); });
   renumber(*growth, centerline, result);
   warn_of_closed_ends(centerline, options.open_ends, result);
-  clock.time("check", [&] { result.defects = find_defects(centerline, result, crossings); });
+  clock.time("check", [&] { find_defects(centerline, crossings, result); });
 }
 
 }  // namespace

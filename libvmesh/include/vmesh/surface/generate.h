@@ -182,6 +182,7 @@ struct GenerateResult {
   ErrorSummary error;                      ///< with max_error
   GrowthSummary growth;                    ///< of guided growth; empty after paper growth
   std::vector<Defect> defects;             ///< none: the surface is sound
+  SurfaceCheck check;                      ///< what `defects` follows from
   std::vector<StageTime> stages;
   std::vector<GrowthWarning> warnings;
 

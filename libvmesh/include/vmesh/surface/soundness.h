@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "vmesh/core/types.h"
+#include "vmesh/mesh/topology.h"
 
 namespace vmesh {
 
@@ -24,6 +26,14 @@ std::string_view to_string(DefectKind kind);
 /// Skewness above which a triangle is a defect: its smallest angle is below 6 degrees, or its largest above 168.
 /// Surfaces that grew well reach 0.5.
 inline constexpr double kWorstSkewness = 0.9;
+
+/// What was measured of a surface whose openings are closed by lids.
+struct SurfaceCheck {
+  Topology topology;
+  std::size_t crossing_pairs = 0;  ///< of faces, lids aside
+  std::optional<std::size_t>
+      nodes_inside;  ///< of the centerline's, with those at openings; none: inside is not defined
+};
 
 /// Defects of one kind near each other.
 struct Defect {

@@ -41,13 +41,15 @@ class DefectSearch {
   DefectSearch(const Centerline& centerline, const GenerateResult& result)
       : centerline_(centerline), result_(result), mesh_(result.mesh), closed_(with_lids(result)) {}
 
-  std::vector<Defect> run(const std::vector<std::pair<Index, Index>>& crossings) {
+  void run(const std::vector<std::pair<Index, Index>>& crossings) {
     topology();
     faces_that_cross(crossings);
     bad_triangles();
     nodes_outside();
-    return std::move(defects_);
   }
+
+  std::vector<Defect> defects;
+  SurfaceCheck check;
 
  private:
   void add(DefectKind kind, const Vec3& position, std::size_t count, const std::string& what) {
@@ -72,7 +74,7 @@ class DefectSearch {
     text << ", near node " << defect.node;
     if (defect.branch != kNone) text << " on branch " << defect.branch;
     defect.message = text.str();
-    defects_.push_back(std::move(defect));
+    defects.push_back(std::move(defect));
   }
 
   Index branch_of(Index segment) const {
@@ -84,7 +86,7 @@ class DefectSearch {
   }
 
   void topology() {
-    const Topology topology = measure_topology(closed_);
+    const Topology& topology = check.topology = measure_topology(closed_);
     const Vec3 somewhere = mesh_.vertices.empty() ? Vec3(Vec3::Zero()) : mesh_.vertices.front();
     if (!topology.closed)
       add(DefectKind::not_closed, somewhere, topology.boundary_edges,
@@ -113,6 +115,7 @@ class DefectSearch {
 
   // Pairs that have vertices in common, directly or through others, are one defect.
   void faces_that_cross(const std::vector<std::pair<Index, Index>>& crossings) {
+    check.crossing_pairs = crossings.size();
     if (crossings.empty()) return;
     DisjointSets places(mesh_.vertices.size());
     for (const auto& [f, g] : crossings) {
@@ -162,11 +165,12 @@ class DefectSearch {
   }
 
   void nodes_outside() {
-    if (!defects_.empty() && defects_.front().kind <= DefectKind::not_manifold) return;  // inside is not defined
+    if (!check.topology.closed) return;
     std::vector<Vec3> positions;
     for (const CenterlineNode& node : centerline_.nodes()) positions.push_back(node.position);
     std::vector<bool> inside = points_inside(closed_, positions);
     for (const Opening& opening : result_.openings) inside[opening.node] = true;
+    check.nodes_inside = static_cast<std::size_t>(std::count(inside.begin(), inside.end(), true));
     const std::vector<char> left_out = segments_left_out();
     for (Index n = 0; n < inside.size(); ++n) {
       const auto segments = centerline_.incident_segments(n);
@@ -181,14 +185,16 @@ class DefectSearch {
   const GenerateResult& result_;
   const TriMesh& mesh_;
   TriMesh closed_;
-  std::vector<Defect> defects_;
 };
 
 }  // namespace
 
-std::vector<Defect> find_defects(const Centerline& centerline, const GenerateResult& result,
-                                 const std::vector<std::pair<Index, Index>>& crossings) {
-  return DefectSearch(centerline, result).run(crossings);
+void find_defects(const Centerline& centerline, const std::vector<std::pair<Index, Index>>& crossings,
+                  GenerateResult& result) {
+  DefectSearch search(centerline, result);
+  search.run(crossings);
+  result.defects = std::move(search.defects);
+  result.check = search.check;
 }
 
 }  // namespace vmesh
