@@ -17,8 +17,9 @@ constexpr int kSectionSteps = 48;  // 0.618^48 = 1e-10 of the axis
 // Vessels that part have walls of their own from a gap of half a smaller radius on (kOneVolume): never more than this
 // is asked of them there.
 constexpr double kForkGap = 0.4;
-constexpr double kMostRounding = 0.2;  // sums of radii
-constexpr Touch kFork{0.5, 0.04};      // what still counts as a place where vessels part
+constexpr double kMostRounding = 0.2;     // sums of radii
+constexpr Touch kFork{0.5, 0.04};         // what still counts as a place where vessels part
+constexpr double kNearlyParallel = 1e-6;  // of lengths: more than what rounding at any angle does to an axis distance
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
 // The sphere of a cone that is closest to a point, for radii that count `weight` times.
@@ -99,6 +100,17 @@ class Approach {
   NearestSphere plain_, widened_;
 };
 
+// The distance between the two axes; by a little too much at most where they are nearly parallel.
+double axis_distance(const AxisStretch& first, const AxisStretch& second) {
+  const Vec3 between = first.origin - second.origin;
+  const double a = first.axis.squaredNorm(), b = first.axis.dot(second.axis), e = second.axis.squaredNorm();
+  const double c = first.axis.dot(between), f = second.axis.dot(between);
+  const auto share = [](double part, double whole) { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; };
+  const double t = share(b * share(b * f - c * e, a * e - b * b) + f, e);
+  const double s = share(b * t - c, a);
+  return (between + s * first.axis - t * second.axis).norm();
+}
+
 struct Box {
   Vec3 low, high;
 };
@@ -165,7 +177,7 @@ class PairFinder {
   }
 
   void examine(Index i, Index j) {
-    if (out_of_reach(i, j) || is_local(i, j)) return;
+    if (out_of_reach(i, j) || are_apart(cones_[i], cones_[j], gap_, most_rounding_) || is_local(i, j)) return;
     const double gap = gap_ > kForkGap && are_parting(i, j) ? kForkGap : gap_;
     ContactPair pair{i, j, gap, closest_approach(cones_[i], cones_[j], gap), kNone};
     if (pair.closest.excess >= 0) {
@@ -239,6 +251,13 @@ void number_regions(const VesselField& field, std::vector<ContactPair>& pairs) {
 AxisStretch stretch_of(const VesselField& field, Index cone, double first, double last) {
   const Vec3 origin = field.axis_point(cone, first);
   return {origin, field.axis_point(cone, last) - origin, field.radius_at(cone, first), field.radius_at(cone, last)};
+}
+
+bool are_apart(const AxisStretch& first, const AxisStretch& second, double gap, double margin) {
+  const double r = std::max(first.r0, first.r1), q = std::max(second.r0, second.r1);
+  const double reach = (1 + margin) * (r + q) + gap * std::min(r, q);
+  const double size = first.axis.norm() + second.axis.norm() + reach;
+  return axis_distance(first, second) > reach + kNearlyParallel * size;
 }
 
 ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& second, double gap) {

@@ -25,6 +25,10 @@ struct ClosestApproach {
   double distance = 0;  ///< of the axes there, mm
 };
 
+/// Whether vessels are so far apart that the excess of their closest approach is `margin` sums of the radii there at
+/// least. Says no where only a closer look can tell.
+bool are_apart(const AxisStretch& first, const AxisStretch& second, double gap, double margin);
+
 ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& second, double gap);
 
 /// Two cones that are not local to each other and closer than the gap.

@@ -7,8 +7,9 @@
 namespace vmesh {
 namespace {
 
-constexpr double kSampling = 0.5;  // mean radii between two spheres that stand for a cone
-constexpr int kMaxSamples = 200;   // per cone
+constexpr double kSampling = 0.5;         // mean radii between two spheres that stand for a cone
+constexpr int kMaxSamples = 200;          // per cone
+constexpr std::size_t kManySegments = 8;  // at a node: from there on it pays to note what it was joined to
 
 // Spheres at all nodes and along all segments: first those of the nodes, then those within segments in turn.
 class SphereChain {
@@ -80,12 +81,17 @@ PairSet local_pairs(const Centerline& centerline, const Touch& touch) {
   const auto note = [&](Index p, Index q) {
     if (p != q && chain.touch(p, q, touch)) touching.insert(p, q);
   };
-  const auto join = [&](Index p, Index q) {
-    for (const Index i : chain.segments(p)) {
-      for (const Index j : chain.segments(q)) {
-        if (i != j) set.insert(i, j);
-      }
+  PairSet joined;  // nodes of many branches and the segments that were joined to all of these
+  const auto join_one = [&](Index p, Index j) {
+    const auto segments = chain.segments(p);
+    if (segments.size() > kManySegments && !joined.insert(p, chain.size() + j)) return;
+    for (const Index i : segments) {
+      if (i != j) set.insert(i, j);
     }
+  };
+  const auto join = [&](Index p, Index q) {
+    if (chain.segments(p).size() < chain.segments(q).size()) std::swap(p, q);
+    for (const Index j : chain.segments(q)) join_one(p, j);
   };
   for (Index p = 0; p < chain.size(); ++p) {
     join(p, p);

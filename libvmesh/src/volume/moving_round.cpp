@@ -82,6 +82,7 @@ class MovingRound {
     for (Index n = 0; n < count; ++n) {
       const double first = static_cast<double>(n) / count, last = static_cast<double>(n + 1) / count;
       const AxisStretch part = stretch_of(field_, cone, first, last);
+      if (are_apart(part, across, gap, 0)) continue;
       const ClosestApproach closest = closest_approach(part, across, gap);
       if (closest.excess >= 0) continue;
       CloseLeaf leaf;
@@ -204,13 +205,7 @@ class MovingRound {
   double room(const CloseLeaf& leaf, const Vec3& direction) const {
     const double t = task_.narrowed.pieces.size() > leaf.cone ? 0.5 : 0;
     const Vec3 place = field_.axis_point(leaf.cone, t) + distance_to_go(leaf, direction) * direction;
-    const auto local = field_.local_cones(leaf.cone);
-    double least = leaf.wanted;
-    for (Index cone = 0; cone < field_.cone_count(); ++cone) {
-      if (std::binary_search(local.begin(), local.end(), cone)) continue;
-      least = std::min(least, field_.sample_cone(place, cone).distance);
-    }
-    return least;
+    return field_.distance_to_others(place, leaf.cone, leaf.wanted);
   }
 
   // The leaves of a region that are on the anchor's side of it.

@@ -85,6 +85,7 @@ class Round {
       const double last = std::min(1.0, ((leaf + 1) / count - piece.t_first) / width);
       if (!(first < last)) continue;
       const AxisStretch part = stretch_of(field_, cone, first, last);
+      if (are_apart(part, across, gap, 0)) continue;
       const ClosestApproach closest = closest_approach(part, across, gap);
       if (closest.excess >= 0) continue;
       const double t = first + closest.s * (last - first);

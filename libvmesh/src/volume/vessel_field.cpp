@@ -91,10 +91,10 @@ FieldSample VesselField::sample_cone(const Vec3& p, Index cone) const {
 }
 
 FieldSample VesselField::sample(const Vec3& p, Index hint) const {
-  FieldSample sample = blended(p, local_cones(hint), hint);
+  FieldSample sample = blended_local(p, hint);
   while (sample.cone != hint) {  // ends: every step is to a closer cone, or to an equally close one of lower number
     hint = sample.cone;
-    sample = blended(p, local_cones(hint), hint);
+    sample = blended_local(p, hint);
   }
   return sample;
 }
@@ -160,7 +160,7 @@ void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidate
 
 double VesselField::distance_to_others(const Vec3& p, Index cone, double limit) const {
   const std::span<const Index> local = local_cones(cone);
-  tree_.visit(p, limit, [&](Index c) {
+  visit_near(p, limit, [&](Index c) {
     if (!std::binary_search(local.begin(), local.end(), c)) limit = std::min(limit, distance_to(cones_[c], p).value);
   });
   return limit;
@@ -170,7 +170,7 @@ FieldSample VesselField::sample_global(const Vec3& p) const {
   const double rounding = kRounding * p.norm();
   Index best = 0;
   double least = std::numeric_limits<double>::infinity(), limit = least;
-  tree_.visit(p, limit, [&](Index c) {
+  visit_near(p, limit, [&](Index c) {
     const double value = distance_to(cones_[c], p).value;
     if (value < least || (value == least && c < best)) {
       least = value;
@@ -180,7 +180,7 @@ FieldSample VesselField::sample_global(const Vec3& p) const {
   });
   if (blend_ == 0) return sample_cone(p, best);
   std::vector<Index> near;
-  tree_.visit(p, limit, [&](Index c) { near.push_back(c); });
+  visit_near(p, limit, [&](Index c) { near.push_back(c); });
   std::sort(near.begin(), near.end());
   return blended(p, near, best);
 }

@@ -12,6 +12,21 @@ namespace {
 
 // Relative to coordinates: covers the rounding in a distance and in a box.
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+constexpr double kLongPiece = 2;  // lengths of a piece of a cone, in the widths from its axis that count as near
+constexpr int kMostPieces = 16;   // of a cone
+constexpr std::size_t kFewCones =
+    512;  // up to here going through all is as fast; measured on stars, safe from 100 to 1000
+
+void sort_unique(std::vector<Index>& cones) {
+  std::sort(cones.begin(), cones.end());
+  cones.erase(std::unique(cones.begin(), cones.end()), cones.end());
+}
+
+// Of the cones those in the ascending list.
+void keep_listed(std::span<const Index> list, std::vector<Index>& cones) {
+  sort_unique(cones);
+  std::erase_if(cones, [&](Index c) { return !std::binary_search(list.begin(), list.end(), c); });
+}
 
 }  // namespace
 
@@ -37,20 +52,59 @@ void VesselField::find_local_cones() {
   }
 }
 
-// The box of a cone holds all points at which it may be blended in: those closer to it than the widest blend.
+// The box of a piece of a cone holds all points at which it may be blended in: those closer to it than the widest
+// blend. Cones that are long for their width are taken in pieces: across the axes, their boxes would be as wide as
+// long.
 void VesselField::build_tree() {
-  std::vector<Vec3> low(cones_.size()), high(cones_.size());
+  std::vector<Vec3> low, high;
   for (Index c = 0; c < cones_.size(); ++c) {
     const Cone& cone = cones_[c];
-    const Vec3 end = cone.origin + cone.axis;
-    low[c] = (cone.origin.array() - cone.r0).min(end.array() - cone.r1);
-    high[c] = (cone.origin.array() + cone.r0).max(end.array() + cone.r1);
-    const double size = low[c].cwiseAbs().cwiseMax(high[c].cwiseAbs()).maxCoeff();
-    const double margin = 2 * blend_ * max_radius(c) + kRounding * size;
-    low[c].array() -= margin;
-    high[c].array() += margin;
+    const double margin = 2 * blend_ * max_radius(c);
+    const double pieces = std::ceil(cone.axis.norm() / (kLongPiece * (max_radius(c) + margin)));
+    const int count = static_cast<int>(std::clamp(pieces, 1.0, double{kMostPieces}));
+    for (int k = 0; k < count; ++k) {
+      const double t0 = static_cast<double>(k) / count, t1 = static_cast<double>(k + 1) / count;
+      const Vec3 begin = axis_point(c, t0), end = axis_point(c, t1);
+      const double r0 = radius_at(c, t0), r1 = radius_at(c, t1);
+      low.push_back((begin.array() - r0).min(end.array() - r1));
+      high.push_back((begin.array() + r0).max(end.array() + r1));
+      const double size = low.back().cwiseAbs().cwiseMax(high.back().cwiseAbs()).maxCoeff();
+      low.back().array() -= margin + kRounding * size;
+      high.back().array() += margin + kRounding * size;
+      cone_of_item_.push_back(c);
+    }
   }
   tree_ = BoxTree(low, high);
+}
+
+void VesselField::local_cones_near(const Vec3& p, Index cone, double limit, std::vector<Index>& near) const {
+  const std::span<const Index> local = local_cones(cone);
+  near.clear();
+  if (local.size() <= kFewCones) {
+    near.assign(local.begin(), local.end());
+    return;
+  }
+  const double most = limit + kRounding * p.norm();
+  visit_near(p, most, [&](Index c) { near.push_back(c); });
+  keep_listed(local, near);
+}
+
+// As blended(p, local_cones(hint), hint).
+FieldSample VesselField::blended_local(const Vec3& p, Index hint) const {
+  const std::span<const Index> local = local_cones(hint);
+  if (local.size() <= kFewCones) return blended(p, local, hint);
+  thread_local std::vector<Index> near;
+  near.clear();
+  const double rounding = kRounding * p.norm();
+  double limit = distance_to(cones_[hint], p).value + rounding;
+  visit_near(p, limit, [&](Index c) {
+    const double value = distance_to(cones_[c], p).value;
+    if (value > limit + 2 * blend_ * max_radius(c) || !std::binary_search(local.begin(), local.end(), c)) return;
+    near.push_back(c);
+    limit = std::min(limit, value + rounding);
+  });
+  sort_unique(near);
+  return blended(p, near, hint);
 }
 
 }  // namespace vmesh

@@ -56,6 +56,10 @@ class VesselField {
     return {local_.data() + local_offsets_[cone], local_.data() + local_offsets_[cone + 1]};
   }
 
+  /// Of local_cones(cone) those whose distance at `p` (mm), less the widest blend, is at most `limit` (mm), and perhaps
+  /// others; ascending. They are found in space where there are many, as around a node of many branches.
+  void local_cones_near(const Vec3& p, Index cone, double limit, std::vector<Index>& near) const;
+
   /// The node a cone starts and ends at (equal for an isolated node).
   Index first_node(Index cone) const { return cones_[cone].a; }
   Index last_node(Index cone) const { return cones_[cone].b; }
@@ -103,6 +107,11 @@ class VesselField {
   double max_radius(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
   // `first`: one of the cones, likely to be near.
   FieldSample blended(const Vec3& p, std::span<const Index> cones, Index first) const;
+  FieldSample blended_local(const Vec3& p, Index hint) const;
+  template <class Visit>
+  void visit_near(const Vec3& p, const double& limit, Visit&& visit) const {
+    tree_.visit(p, limit, [&](Index item) { visit(cone_of_item_[item]); });
+  }
   void blend_candidates(const Vec3& p, std::span<Candidate> candidates, FieldSample& sample) const;
   void measure_runs();
   void measure_spheres();
@@ -115,7 +124,8 @@ class VesselField {
   std::vector<Run> runs_;
   std::vector<Sphere> spheres_;
   std::vector<Index> local_offsets_, local_;
-  BoxTree tree_;
+  BoxTree tree_;                     // of pieces of cones
+  std::vector<Index> cone_of_item_;  // in the tree
 };
 
 }  // namespace vmesh

@@ -17,7 +17,10 @@ constexpr int kMaxPieces = 2000;       // per segment; a hair that long is not b
 class Burial {
  public:
   explicit Burial(const VesselField& field)
-      : field_(field), centerline_(field.centerline()), left_(centerline_.segments().size(), 1) {}
+      : field_(field),
+        centerline_(field.centerline()),
+        left_(centerline_.segments().size(), 1),
+        in_branch_(left_.size(), 0) {}
 
   std::vector<BuriedBranch> run() {
     for (const auto& node : centerline_.nodes()) widest_ = std::max(widest_, node.radius);
@@ -114,35 +117,42 @@ class Burial {
     return sum / length;
   }
 
-  bool is_covered(const Branch& branch) const {
-    return std::all_of(branch.segments.begin(), branch.segments.end(), [&](Index s) { return is_covered(s, branch); });
+  bool is_covered(const Branch& branch) {
+    for (const Index s : branch.segments) in_branch_[s] = 1;
+    const bool covered =
+        std::all_of(branch.segments.begin(), branch.segments.end(), [&](Index s) { return is_covered_by_others(s); });
+    for (const Index s : branch.segments) in_branch_[s] = 0;
+    return covered;
   }
 
-  bool is_covered(Index s, const Branch& branch) const {
-    std::vector<Index> others;
-    for (const Index cone : field_.local_cones(s)) {
-      if (left_[cone] && !std::count(branch.segments.begin(), branch.segments.end(), cone)) others.push_back(cone);
-    }
+  bool is_covered_by_others(Index s) {
     const double pieces = std::ceil(centerline_.length(s) / (kPiece * centerline_.radius_at(s, 0.5)));
-    if (others.empty() || pieces > kMaxPieces) return false;
+    if (pieces > kMaxPieces) return false;
     for (int k = 0; k < pieces; ++k) {
       const double begin = k / pieces, end = (k + 1) / pieces;
-      const bool covered = std::any_of(others.begin(), others.end(),
-                                       [&](Index cone) { return holds(cone, s, begin) && holds(cone, s, end); });
+      field_.local_cones_near(centerline_.point_at(s, begin), s, depth_in_others(s, begin), near_);
+      const bool covered = std::any_of(near_.begin(), near_.end(), [&](Index cone) {
+        return is_other(cone) && holds(cone, s, begin) && holds(cone, s, end);
+      });
       if (!covered) return false;
     }
     return true;
   }
 
+  bool is_other(Index cone) const { return left_[cone] && !in_branch_[cone]; }
+
+  // The distance from another cone that holds the vessel at that place.
+  double depth_in_others(Index s, double t) const { return (kSlack - 1) * centerline_.radius_at(s, t); }
+
   bool holds(Index cone, Index s, double t) const {
-    const double r = centerline_.radius_at(s, t);
-    return field_.sample_cone(centerline_.point_at(s, t), cone).distance <= (kSlack - 1) * r;
+    return field_.sample_cone(centerline_.point_at(s, t), cone).distance <= depth_in_others(s, t);
   }
 
   const VesselField& field_;
   const Centerline& centerline_;
   double widest_ = 0;
-  std::vector<char> left_;
+  std::vector<char> left_, in_branch_;
+  std::vector<Index> near_;
   std::vector<BuriedBranch> buried_;
 };
 

@@ -208,22 +208,12 @@ class TriangleTest {
 // The cones that can be nearest, or be blended with the nearest, within `radius` of `center`.
 void find_cones(const VesselField& field, const Vec3& center, double radius, Index hint, std::vector<Index>& cones) {
   const Index nearest = field.sample(center, hint).cone;
-  struct Near {
-    Index cone;
-    double distance, radius;
-  };
-  thread_local std::vector<Near> all;
-  all.clear();
-  double least = std::numeric_limits<double>::infinity();
-  for (const Index cone : field.local_cones(nearest)) {
+  const double least = field.sample_cone(center, nearest).distance;
+  field.local_cones_near(center, nearest, least + 2 * radius, cones);
+  std::erase_if(cones, [&](Index cone) {
     const double widest = std::max(field.radius_at(cone, 0), field.radius_at(cone, 1));
-    all.push_back({cone, field.sample_cone(center, cone).distance, widest});
-    least = std::min(least, all.back().distance);
-  }
-  cones.clear();
-  for (const Near& near : all) {
-    if (near.distance - least < 2 * radius + 2 * field.blend() * near.radius) cones.push_back(near.cone);
-  }
+    return field.sample_cone(center, cone).distance - least >= 2 * radius + 2 * field.blend() * widest;
+  });
 }
 
 // One side of a face's shell, on a grid of kPieces along each edge. What lies on an edge follows from its ends alone.

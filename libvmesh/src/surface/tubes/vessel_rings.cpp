@@ -242,8 +242,9 @@ bool RingLayer::may_be_foreign(Index branch, const CrossSection& section, Index 
 bool RingLayer::is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
                          const Vec3& up) const {
   const Index segment = axes_[branch].branch().segments[axis.piece];
-  std::vector<Index> others;
-  for (const Index cone : field_.local_cones(segment)) {
+  std::vector<Index> near, others;
+  field_.local_cones_near(section.center, segment, kNeighbourhood * section.radius, near);
+  for (const Index cone : near) {
     if (cone == segment || !may_be_foreign(branch, section, cone)) continue;
     if (field_.sample_cone(section.center, cone).distance < kNeighbourhood * section.radius) others.push_back(cone);
   }
