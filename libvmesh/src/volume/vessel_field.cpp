@@ -134,8 +134,24 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, In
   return sample;
 }
 
+// Cones that begin with one and the same sphere are alike to the bit where that is what is near. At a thick node of
+// many branches nearly all are. Looks back at a few, which is enough there.
+std::span<VesselField::Candidate> VesselField::at_different_places(std::span<Candidate> candidates) const {
+  constexpr std::size_t kLookBack = 8;
+  std::size_t kept = 0;
+  for (const Candidate& c : candidates) {
+    const auto recent = candidates.subspan(kept - std::min(kept, kLookBack), std::min(kept, kLookBack));
+    const bool known = c.t == 0 && std::any_of(recent.begin(), recent.end(), [&](const Candidate& other) {
+                         return other.t == 0 && cones_[other.cone].a == cones_[c.cone].a;
+                       });
+    if (!known) candidates[kept++] = c;
+  }
+  return candidates.first(kept);
+}
+
 // The least of the pairwise smooth minima: continuous, and the plain minimum where gradients agree.
 void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidates, FieldSample& sample) const {
+  candidates = at_different_places(candidates);
   for (Candidate& c : candidates) {
     c.radius = radius_at(c.cone, c.t);
     c.gradient = gradient_of(cones_[c.cone], p, c.t);

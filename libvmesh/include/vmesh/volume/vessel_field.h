@@ -112,6 +112,7 @@ class VesselField {
   void visit_near(const Vec3& p, const double& limit, Visit&& visit) const {
     tree_.visit(p, limit, [&](Index item) { visit(cone_of_item_[item]); });
   }
+  std::span<Candidate> at_different_places(std::span<Candidate> candidates) const;
   void blend_candidates(const Vec3& p, std::span<Candidate> candidates, FieldSample& sample) const;
   void measure_runs();
   void measure_spheres();
