@@ -73,6 +73,29 @@ TEST(Union, LocalDistanceIsTheLeastOverTheConesAroundTheClosest) {
   }
 }
 
+// So many branches at one node that their cones are looked for in space; a third of them begins with the hub's sphere.
+TEST(Union, LocalDistanceIsTheLeastAroundANodeOfManyBranchesToo) {
+  Draw draw(46);
+  std::vector<CenterlineNode> nodes = {{Vec3::Zero(), 2}};
+  std::vector<CenterlineSegment> segments;
+  for (int branch = 0; branch < 600; ++branch) {
+    const Vec3 way = draw.direction();
+    for (int k = 0; k < 3; ++k) {
+      const auto next = static_cast<Index>(nodes.size());
+      segments.push_back({k == 0 ? 0 : next - 1, next});
+      nodes.push_back({(3 + 4 * k) * way, 0.3});
+    }
+  }
+  const Centerline centerline(nodes, segments);
+  const VesselField field(centerline);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p = draw.in_cube(6);
+    const auto s = field.sample(p, draw.below(static_cast<Index>(field.cone_count())));
+    EXPECT_GT(field.local_cones(0).size(), 512u);
+    expect_same(s, closest_of(field, p, field.local_cones(s.cone)));
+  }
+}
+
 // Whatever the direction: the union is outside all its cones, and within a cone the distance is the depth.
 TEST(Union, AStepOfTheDistanceNeverCrossesTheBoundary) {
   Draw draw(44);
