@@ -55,7 +55,7 @@ class Locality {
     for (std::size_t p = 0; p < n; ++p) {
       for (std::size_t q = 0; q < n; ++q) {
         const auto [small, large] = std::minmax(spheres_[p].radius, spheres_[q].radius);
-        const double reach = 1.5 * small + 1.04 * large;
+        const double reach = small + large + std::max(0.5 * small, 0.4 * small + 0.04 * large);
         const double apart = (spheres_[p].position - spheres_[q].position).norm();
         touching[p * n + q] = apart < reach;
         note(apart, reach);

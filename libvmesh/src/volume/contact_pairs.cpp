@@ -18,7 +18,7 @@ constexpr int kSectionSteps = 48;  // 0.618^48 = 1e-10 of the axis
 // is asked of them there.
 constexpr double kForkGap = 0.4;
 constexpr double kMostRounding = 0.2;     // sums of radii
-constexpr Touch kFork{0.5, 0.04};         // what still counts as a place where vessels part
+constexpr Touch kFork{0.5, 0.25};         // what then still counts as a place where vessels part
 constexpr double kNearlyParallel = 1e-6;  // of lengths: more than what rounding at any angle does to an axis distance
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
@@ -162,8 +162,9 @@ class PairFinder {
     return std::binary_search(cones.begin(), cones.end(), j);
   }
 
-  // Close along the graph in a wider sense: at a fork that a wide gap would find still open.
+  // Close along the graph in a wider sense: at a fork that a gap wider than what a fork has would find still open.
   bool are_parting(Index i, Index j) {
+    if (gap_ <= kForkGap) return false;
     if (!parting_) parting_ = local_pairs(field_.centerline(), {std::max(kFork.smaller, gap_ / 0.8), kFork.larger});
     return parting_->contains(i, j);
   }
@@ -178,7 +179,7 @@ class PairFinder {
 
   void examine(Index i, Index j) {
     if (out_of_reach(i, j) || are_apart(cones_[i], cones_[j], gap_, most_rounding_) || is_local(i, j)) return;
-    const double gap = gap_ > kForkGap && are_parting(i, j) ? kForkGap : gap_;
+    const double gap = are_parting(i, j) ? kForkGap : gap_;
     ContactPair pair{i, j, gap, closest_approach(cones_[i], cones_[j], gap), kNone};
     if (pair.closest.excess >= 0) {
       const double r = cones_[i].radius(pair.closest.s), q = cones_[j].radius(pair.closest.t);

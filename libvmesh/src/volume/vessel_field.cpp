@@ -198,6 +198,7 @@ FieldSample VesselField::sample_global(const Vec3& p) const {
   std::vector<Index> near;
   visit_near(p, limit, [&](Index c) { near.push_back(c); });
   std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
   return blended(p, near, best);
 }
 

@@ -97,9 +97,11 @@ class PieceMaker {
   }
 
  private:
-  // Whether that changes anything.
+  // Whether that changes anything against what was made last.
   bool climb(const Rung& rung, const std::vector<PieceFault>& faults) {
-    const std::size_t before = covered_.size();
+    const std::size_t before = covered_.size() + fine_spots_.size();
+    const bool newly_guarded = rung.guarded && !guarded_;
+    guarded_ = rung.guarded;
     if (rung.finer > 0) {
       for (const PieceFault& fault : faults) fine_spots_.push_back({fault.position, rung.finer * fault.radius});
     }
@@ -117,7 +119,7 @@ class PieceMaker {
     }
     std::sort(covered_.begin(), covered_.end());
     covered_.erase(std::unique(covered_.begin(), covered_.end()), covered_.end());
-    return covered_.size() > before || rung.finer > 0 || rung.guarded;
+    return covered_.size() + fine_spots_.size() > before || newly_guarded;
   }
 
   PieceSurface make(const Rung& rung) {
@@ -241,6 +243,7 @@ class PieceMaker {
   const PiecePlan& plan_;
   std::vector<RingPlace> covered_;
   std::vector<BoundSurface::FineSpot> fine_spots_;
+  bool guarded_ = false;  // on the last rung
   struct GrownJunction {
     std::optional<JunctionPiece> piece;
     bool guarded = false;
