@@ -16,12 +16,33 @@ using Tetrahedron = GradedLattice::Tetrahedron;
 
 std::uint64_t key_of_pair(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
-std::uint64_t key_of_place(const Vec3& at) {
-  std::uint64_t key = 0;
-  for (int c = 0; c < 3; ++c)
-    key = key << 21 | static_cast<std::uint64_t>(static_cast<std::int64_t>(at[c]) + (1 << 20));
-  return key;
-}
+// Numbers of points with whole coordinates, in blocks: who looks up one looks up its neighbours next.
+class PlaceNumbers {
+ public:
+  // kNone where there is none yet.
+  Index& at(const Vec3& place) {
+    std::array<std::int32_t, 3> c;
+    for (int i = 0; i < 3; ++i) c[i] = static_cast<std::int32_t>(place[i]);
+    std::uint64_t key = 0;
+    for (const std::int32_t x : c) key = key << 21 | (static_cast<std::uint64_t>(x >> kBits) & 0x1FFFFF);
+    if (key != last_key_) {
+      const auto [it, is_new] = blocks_.try_emplace(key);
+      if (is_new) it->second.fill(kNone);
+      last_key_ = key;
+      last_ = &it->second;
+    }
+    constexpr int kMask = kSide - 1;
+    return (*last_)[static_cast<std::size_t>(((c[0] & kMask) * kSide + (c[1] & kMask)) * kSide + (c[2] & kMask))];
+  }
+
+ private:
+  static constexpr int kBits = 3, kSide = 1 << kBits;
+  using Block = std::array<Index, kSide * kSide * kSide>;
+
+  std::unordered_map<std::uint64_t, Block> blocks_;
+  std::uint64_t last_key_ = ~std::uint64_t{0};
+  Block* last_ = nullptr;
+};
 
 }  // namespace
 
@@ -35,8 +56,7 @@ class GradedLattice::Maker {
   }
 
   void run() {
-    root_number_.emplace(key_of_place(Vec3::Zero()), 0);
-    at_.push_back(Vec3::Zero());
+    add_root(Vec3::Zero());
     for (const LatticeBall& ball : balls_) for_points_near(ball, kMargin, [&](const Vec3& at) { add_root(at); });
     make_roots();
     const auto is_fine = [](const LatticeBall& ball) { return ball.longest < kLongest; };
@@ -82,13 +102,13 @@ class GradedLattice::Maker {
   }
 
   void add_root(const Vec3& at) {
-    if (root_number_.emplace(key_of_place(at), static_cast<Index>(at_.size())).second) at_.push_back(at);
+    Index& number = root_number_.at(at);
+    if (number != kNone) return;
+    number = static_cast<Index>(at_.size());
+    at_.push_back(at);
   }
 
-  Index root(const Vec3& at) const {
-    const auto it = root_number_.find(key_of_place(at));
-    return it == root_number_.end() ? kNone : it->second;
-  }
+  Index root(const Vec3& at) { return root_number_.at(at); }
 
   // Every tetrahedron has two opposite long edges, along different axes; it is met at the one along the lower axis.
   void make_roots() {
@@ -251,7 +271,7 @@ class GradedLattice::Maker {
   GradedLattice& lattice_;
   std::vector<Vec3>& at_;
   std::vector<LatticeBall> balls_;  // in units, along the frame
-  std::unordered_map<std::uint64_t, Index> root_number_;
+  PlaceNumbers root_number_;
   std::vector<Node> nodes_;
   std::vector<Index> first_around_;  // of every point: as Node::next
   std::vector<std::vector<Index>> roots_around_;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kSpacing = 1;            // of the lattice, in radii of the junction's thinnest vessel ...
 constexpr double kFiner = 0.6;            // ... but no finer than this in radii of the vessel there
-constexpr double kReach = 1.25;           // radii from a vessel's axis up to which the lattice is that fine
-constexpr double kBallStep = 0.5;         // radii along the axis
+constexpr double kBallStep = 1;           // radii along the axis, of balls in which it is that fine ...
+constexpr double kReach = 1.35;           // ... with this radius: 1.25 around the axis between two of them
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
 constexpr double kShortestRimEdge = 0.4;  // intended edges of the surface
 constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move onto the boundary
