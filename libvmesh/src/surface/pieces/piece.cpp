@@ -5,6 +5,8 @@
 #include <optional>
 #include <sstream>
 
+#include <tbb/parallel_for.h>
+
 #include "surface/junction/junction_piece.h"
 #include "surface/pieces/assembly.h"
 #include "surface/pieces/piece_check.h"
@@ -128,8 +130,10 @@ class PieceMaker {
     piece.junctions = skeleton.junctions.size();
     piece.tubes = skeleton.tubes.size();
     Assembly assembly(tubes_, plan_, skeleton, context_.open);
-    for (const Junction& junction : skeleton.junctions) {
-      const JunctionPiece& grown = junction_piece(skeleton, junction, rung.guarded);
+    const auto pieces = junction_pieces(skeleton, rung.guarded);
+    for (std::size_t j = 0; j < skeleton.junctions.size(); ++j) {
+      const Junction& junction = skeleton.junctions[j];
+      const JunctionPiece& grown = **pieces[j];
       assembly.add_junction(junction, grown);
       piece.filled_loops += grown.filled_loops;
       note_simplifications(tubes_, junction, grown.filled_loops, piece.simplifications);
@@ -155,14 +159,21 @@ class PieceMaker {
   }
 
   // Junctions that a rung does not touch are grown once.
-  const JunctionPiece& junction_piece(const GrowthSkeleton& skeleton, const Junction& junction, bool guarded) {
-    GrownJunction& known = grown_[key_of(skeleton, junction)];
-    const bool will_do = known.piece && (known.guarded || !guarded || known.piece->tangles == 0);
-    if (!will_do) {
-      known.piece = make_junction_piece(tubes_, skeleton, junction, context_.options, guarded, context_.progress);
-      known.guarded = guarded;
+  std::vector<const std::optional<JunctionPiece>*> junction_pieces(const GrowthSkeleton& skeleton, bool guarded) {
+    std::vector<const std::optional<JunctionPiece>*> pieces;
+    std::vector<std::pair<const Junction*, GrownJunction*>> missing;
+    for (const Junction& junction : skeleton.junctions) {
+      GrownJunction& known = grown_[key_of(skeleton, junction)];
+      const bool will_do = known.piece && (known.guarded || !guarded || known.piece->tangles == 0);
+      if (!will_do) missing.emplace_back(&junction, &known);
+      pieces.push_back(&known.piece);
     }
-    return *known.piece;
+    tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
+      const auto& [junction, known] = missing[i];
+      known->piece = make_junction_piece(tubes_, skeleton, *junction, context_.options, guarded, context_.progress);
+      known->guarded = guarded;
+    });
+    return pieces;
   }
 
   // What a junction's piece depends on: its nodes, its gaps, and how many rings it replaces at each end of a gap.
