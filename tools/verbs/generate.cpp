@@ -245,9 +245,10 @@ void measure(GenerateReport& report, const Centerline& grown, Console& console) 
   const GenerateResult& result = *report.result;
   report.measurement = measurement_of(result);
   stop_if_interrupted();
-  const VesselField field(grown, report.arguments->options.blend);
-  report.deviation = measure_deviation(result.mesh, result.binding, field);
-  report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown));
+  const GenerateOptions& options = report.arguments->options;
+  const VesselField field(grown, options.blend);
+  report.deviation = measure_deviation(result.mesh, result.binding, field, options.threads);
+  report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown), options.threads);
   stop_if_interrupted();
   report.grown_nodes = grown.nodes().size();
   report.nodes_inside = result.check.nodes_inside;

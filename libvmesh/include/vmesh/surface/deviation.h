@@ -21,13 +21,14 @@ struct Deviation {
 };
 
 /// Measures `mesh` against `field`, locally: each face is compared with the vessels its `binding` (one per vertex)
-/// says it belongs to. Four sample points a face: its centre and one towards each corner.
+/// says it belongs to. Four sample points a face: its centre and one towards each corner. `threads`: 0 for as many as
+/// there are; the result is the same.
 Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
-                            const VesselField& field);
+                            const VesselField& field, int threads = 0);
 
 /// How far the rounding at branches moves the boundary: |signed distance| to the plain union `plain` at points of the
 /// boundary of `rounded` near the same sample points of `mesh`. Both fields are of the same centerline.
 Deviation measure_rounding(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
-                           const VesselField& rounded, const VesselField& plain);
+                           const VesselField& rounded, const VesselField& plain, int threads = 0);
 
 }  // namespace vmesh

@@ -1,6 +1,10 @@
 #include "vmesh/surface/deviation.h"
 
+#include <array>
 #include <cmath>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "surface/remesh/bound_surface.h"
 
@@ -10,30 +14,63 @@ namespace {
 constexpr double kSampleWeights[4][3] = {
     {1.0 / 3, 1.0 / 3, 1.0 / 3}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}};
 
-// Gathers the absolute value of what distance_at(point, hint) says at the sample points.
+constexpr std::size_t kBatch = 1 << 14;  // faces that are looked at before they are summed up
+
+struct Sample {
+  Vec3 point;
+  double distance, relative;
+};
+using FaceSamples = std::array<Sample, 4>;
+
+template <class DistanceAt>
+FaceSamples samples_of(const TriMesh& mesh, Index f, Index hint, const VesselField& field,
+                       const DistanceAt& distance_at) {
+  FaceSamples samples;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    Vec3 p = Vec3::Zero();
+    for (int i = 0; i < 3; ++i) p += kSampleWeights[k][i] * mesh.vertices[mesh.faces[f][i]];
+    const FieldSample sample = distance_at(p, hint);
+    const double distance = std::abs(sample.distance);
+    samples[k] = {p, distance, distance / field.radius_at(sample.cone, sample.t)};
+  }
+  return samples;
+}
+
+void add(Deviation& deviation, double area, const FaceSamples& samples) {
+  for (const auto& [point, distance, relative] : samples) {
+    deviation.mean_mm += area * distance;
+    deviation.rms_mm += area * distance * distance;
+    deviation.mean_relative += area * relative;
+    deviation.rms_relative += area * relative * relative;
+    deviation.max_mm = std::max(deviation.max_mm, distance);
+    if (relative > deviation.max_relative) {
+      deviation.max_relative = relative;
+      deviation.max_at = point;
+    }
+  }
+}
+
+// Gathers the absolute value of what distance_at(point, hint) says at the sample points. Sums go in the order of the
+// faces, whoever looks at them.
 template <class DistanceAt>
 Deviation gather(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding, const VesselField& field,
-                 DistanceAt&& distance_at) {
+                 int threads, const DistanceAt& distance_at) {
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   Deviation deviation;
   double total_area = 0;
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    const double area = area_normal(mesh, f).norm();
-    total_area += 4 * area;
-    for (const auto& weight : kSampleWeights) {
-      Vec3 p = Vec3::Zero();
-      for (int i = 0; i < 3; ++i) p += weight[i] * mesh.vertices[mesh.faces[f][i]];
-      const FieldSample sample = distance_at(p, binding[mesh.faces[f][0]].segment);
-      const double distance = std::abs(sample.distance);
-      const double relative = distance / field.radius_at(sample.cone, sample.t);
-      deviation.mean_mm += area * distance;
-      deviation.rms_mm += area * distance * distance;
-      deviation.mean_relative += area * relative;
-      deviation.rms_relative += area * relative * relative;
-      deviation.max_mm = std::max(deviation.max_mm, distance);
-      if (relative > deviation.max_relative) {
-        deviation.max_relative = relative;
-        deviation.max_at = p;
-      }
+  std::vector<FaceSamples> samples(std::min(kBatch, mesh.faces.size()));
+  for (std::size_t first = 0; first < mesh.faces.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, mesh.faces.size() - first);
+    arena.execute([&] {
+      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        const auto f = static_cast<Index>(first + i);
+        samples[i] = samples_of(mesh, f, binding[mesh.faces[f][0]].segment, field, distance_at);
+      });
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      const double area = area_normal(mesh, static_cast<Index>(first + i)).norm();
+      total_area += 4 * area;
+      add(deviation, area, samples[i]);
     }
   }
   if (total_area > 0) {
@@ -48,13 +85,13 @@ Deviation gather(const TriMesh& mesh, const std::vector<CenterlineBinding>& bind
 }  // namespace
 
 Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
-                            const VesselField& field) {
-  return gather(mesh, binding, field, [&field](const Vec3& p, Index hint) { return field.sample(p, hint); });
+                            const VesselField& field, int threads) {
+  return gather(mesh, binding, field, threads, [&field](const Vec3& p, Index hint) { return field.sample(p, hint); });
 }
 
 Deviation measure_rounding(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
-                           const VesselField& rounded, const VesselField& plain) {
-  return gather(mesh, binding, plain, [&](const Vec3& p, Index hint) {
+                           const VesselField& rounded, const VesselField& plain, int threads) {
+  return gather(mesh, binding, plain, threads, [&](const Vec3& p, Index hint) {
     const BoundaryPoint point = project_to_boundary(rounded, p, hint);
     return plain.sample(point.position, point.sample.cone);
   });
