@@ -9,10 +9,13 @@
 namespace vmesh {
 namespace {
 
-constexpr double kSpacing = 1;            // of the lattice, in radii of the junction's thinnest vessel ...
-constexpr double kFiner = 0.6;            // ... but no finer than this in radii of the vessel there
-constexpr double kBallStep = 1;           // radii along the axis, of balls in which it is that fine ...
-constexpr double kReach = 1.35;           // ... with this radius: 1.25 around the axis between two of them
+// Of the lattice, in radii of the junction's thinnest vessel; but no finer than kFiner in radii of the vessel there.
+// Measured on 14 liver and synthetic trees: at 0.5 to 1 for kFiner vertices, skewness and mean error are the same to
+// 2 %; kSpacing 1.3 is unsafe.
+constexpr double kSpacing = 1, kFiner = 0.6;
+// Balls in which it is that fine, radii along the axis, and their radius. Derived: 1.25 around the axis between two of
+// them, for the boundary with what the default rounding adds.
+constexpr double kBallStep = 1, kReach = 1.35;
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
 constexpr double kShortestRimEdge = 0.4;  // intended edges of the surface
 constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move onto the boundary

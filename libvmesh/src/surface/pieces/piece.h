@@ -58,10 +58,10 @@ struct PieceContext {
 };
 
 /// Rungs of the ladder, cheapest first: the piece as planned; rings around its faults left to junctions, farther and
-/// farther, with and without a guard against crossings; finer triangles around them as well; all from one lattice.
+/// farther; finer triangles around them; the same with a guard against crossings; all from one lattice.
 inline constexpr int kRungs = 8;
 
-/// Makes a piece on the first rung on which it is sound, or the one with the fewest faults. Where vessels overlap that
+/// Makes a piece on the first rung on which it is sound and without bad triangles, or the one with the fewest faults. Where vessels overlap that
 /// do not belong together no rung would help: the first is taken.
 PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan);
 
