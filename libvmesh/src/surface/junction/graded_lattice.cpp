@@ -219,7 +219,7 @@ class GradedLattice::Maker {
     }
     const auto middle = static_cast<Index>(at_.size());
     at_.push_back(0.5 * (at_[a] + at_[b]));
-    lattice_.at_rim_.push_back(lattice_.at_rim_[a] && lattice_.at_rim_[b]);
+    lattice_.at_rim_.push_back(lattice_.at_rim_[a] && lattice_.at_rim_[b] && !closes_around(a, b, around));
     first_around_.push_back(kNone);
     for (const Index u : around) {
       for (const Index end : {b, a}) {
@@ -229,6 +229,20 @@ class GradedLattice::Maker {
         if (nodes_[u].child == kNone) nodes_[u].child = child;
       }
     }
+  }
+
+  // Whether these tetrahedra around an edge form a ring: two at each of the triangles at it.
+  bool closes_around(Index a, Index b, const std::vector<Index>& around) const {
+    const auto count = [&](Index corner) {
+      return std::count_if(around.begin(), around.end(), [&](Index t) {
+        const Tetrahedron& corners = nodes_[t].corners;
+        return std::find(corners.begin(), corners.end(), corner) != corners.end();
+      });
+    };
+    return std::all_of(around.begin(), around.end(), [&](Index t) {
+      const Tetrahedron& corners = nodes_[t].corners;
+      return std::all_of(corners.begin(), corners.end(), [&](Index c) { return c == a || c == b || count(c) == 2; });
+    });
   }
 
   // The unbisected ones, ascending. Those that no longer are leave the list on the way.

@@ -34,7 +34,7 @@ class GradedLattice {
   Vec3 position(Index point) const { return origin_ + frame_ * (unit_ * at_[point]); }
   /// Longest edge of the tetrahedra around a point, mm.
   double spacing(Index point) const { return unit_ * longest_[point]; }
-  /// Whether tetrahedra around the point may be missing.
+  /// Whether tetrahedra around the point are missing.
   bool at_rim(Index point) const { return at_rim_[point] != 0; }
 
   const std::vector<Tetrahedron>& tetrahedra() const { return tetrahedra_; }
