@@ -76,8 +76,7 @@ void examine(const std::string& name, const Centerline& given, const GenerateOpt
   const bool sound = topology_right && crossings.empty() && outside == 0 && skewness.max <= kWorstSkewness;
   tally.unsound += !sound;
   if (sound && !settings.all) return;
-  Vec3 at = Vec3::Zero();
-  if (!crossings.empty()) at = result.mesh.vertices[result.mesh.faces[crossings.front().first][0]];
+  const Vec3 at = result.defects.empty() ? Vec3::Zero() : result.defects.front().position;
   std::string rungs;
   for (const std::size_t count : result.growth.rungs)
     rungs.append(rungs.empty() ? "" : " ").append(std::to_string(count));
@@ -96,7 +95,7 @@ int main(int argc, char** argv) {
   Tally tally;
   std::printf(
       "| case | nodes | vertices | skewness mean / max | topology | crossing pairs | nodes outside | contacts left | "
-      "unproven | pieces by rung | s | first crossing |\n|---|--:|--:|--:|---|--:|--:|--:|--:|---|--:|---|\n");
+      "unproven | pieces by rung | s | first defect |\n|---|--:|--:|--:|---|--:|--:|--:|--:|---|--:|---|\n");
   const auto random = [&](const char* name, std::uint32_t first, std::uint32_t count, auto&& make) {
     for (std::uint32_t seed = first; seed < first + count; ++seed) {
       GenerateOptions options = settings.rotate ? testing::rotated_options(seed) : settings.options;

@@ -74,6 +74,11 @@ bool intersect(const PlacedFace& x, const PlacedFace& y) {
   return CGAL::do_intersect(triangle(x), triangle(y));
 }
 
+bool meets_segment(const PlacedFace& x, const Vec3& from, const Vec3& to) {
+  const Kernel::Segment_3 segment({from.x(), from.y(), from.z()}, {to.x(), to.y(), to.z()});
+  return CGAL::do_intersect(triangle(x), segment);
+}
+
 bool is_degenerate(const PlacedFace& x) { return CGAL::collinear(point(x, 0), point(x, 1), point(x, 2)); }
 
 }  // namespace vmesh

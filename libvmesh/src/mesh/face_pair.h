@@ -16,6 +16,9 @@ struct PlacedFace {
 /// degenerate. Exact predicates.
 bool intersect(const PlacedFace& x, const PlacedFace& y);
 
+/// Whether a face, not degenerate, meets the segment between two points that are not the same. Exact predicates.
+bool meets_segment(const PlacedFace& x, const Vec3& from, const Vec3& to);
+
 /// Whether the corners lie on one line. Exact predicate.
 bool is_degenerate(const PlacedFace& x);
 

@@ -175,9 +175,12 @@ JunctionPiece make_junction_piece(const VesselTubes& tubes, const GrowthSkeleton
   const auto flaws = [](const JunctionPiece& p) { return std::tuple(p.crossings, p.tangles, p.unproven); };
   std::optional<JunctionPiece> best;
   const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options);
+  // With the guard, what is refined for the limit on the error is refined on the whole piece.
+  GenerateOptions piece_options = options;
+  if (guarded) piece_options.max_error = {};
   for (const Variant& variant :
        guarded ? std::span<const Variant>(kGuardedVariants) : std::span<const Variant>(kVariants)) {
-    JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, options, progress).make(variant);
+    JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, piece_options, progress).make(variant);
     if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);
     if (best->tangles == 0 && best->unproven == 0) break;
   }

@@ -23,6 +23,9 @@ struct Rung {
   bool guarded;  // no step is taken after which faces cross
 };
 constexpr double kMended = 0.5;  // skewness above which triangles are mended at any price but soundness
+// Where there are faults, nothing is refined for the limit on the error any more once the guard is there, radii around
+// them. The boundary may have a step there, at which finer triangles prove nothing and stand on edge.
+constexpr double kCalm = 2;
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 constexpr Rung kLadder[kRungs] = {{0, 0, false}, {2, 0, false}, {3, 0, false},  {3, 1, false},
                                   {3, 0, true},  {3, 1, true},  {5, 0.5, true}, {kEverywhere, 0.5, true}};
@@ -101,11 +104,14 @@ class PieceMaker {
  private:
   // Whether that changes anything against what was made last.
   bool climb(const Rung& rung, const std::vector<PieceFault>& faults) {
-    const std::size_t before = covered_.size() + fine_spots_.size();
+    const std::size_t before = covered_.size() + fine_spots_.size() + calm_spots_.size();
     const bool newly_guarded = rung.guarded && !guarded_;
     guarded_ = rung.guarded;
     if (rung.finer > 0) {
       for (const PieceFault& fault : faults) fine_spots_.push_back({fault.position, rung.finer * fault.radius});
+    }
+    if (rung.guarded && context_.options.max_error.is_set()) {
+      for (const PieceFault& fault : faults) calm_spots_.push_back({fault.position, kCalm * fault.radius});
     }
     for (const Stretch& stretch : plan_.stretches) {
       const std::vector<Ring>& rings = tubes_.rings(stretch.branch);
@@ -121,7 +127,7 @@ class PieceMaker {
     }
     std::sort(covered_.begin(), covered_.end());
     covered_.erase(std::unique(covered_.begin(), covered_.end()), covered_.end());
-    return covered_.size() + fine_spots_.size() > before || newly_guarded;
+    return covered_.size() + fine_spots_.size() + calm_spots_.size() > before || newly_guarded;
   }
 
   PieceSurface make(const Rung& rung) {
@@ -142,6 +148,7 @@ class PieceMaker {
     const std::vector<PieceLoop> loops = assembly.build(surface);
     if (rung.guarded) surface.guard_crossings();
     if (rung.finer > 0) surface.fine_spots = fine_spots_;
+    surface.calm_spots = calm_spots_;
     bool tested = false;  // and no faces cross
     if (context_.options.sweeps > 0) {
       const GrownMesh grown{double(context_.options.around),
@@ -253,7 +260,7 @@ class PieceMaker {
   const VesselTubes& tubes_;
   const PiecePlan& plan_;
   std::vector<RingPlace> covered_;
-  std::vector<BoundSurface::FineSpot> fine_spots_;
+  std::vector<BoundSurface::Spot> fine_spots_, calm_spots_;
   bool guarded_ = false;  // on the last rung
   struct GrownJunction {
     std::optional<JunctionPiece> piece;

@@ -61,8 +61,8 @@ struct PieceContext {
 /// farther; finer triangles around them; the same with a guard against crossings; all from one lattice.
 inline constexpr int kRungs = 8;
 
-/// Makes a piece on the first rung on which it is sound and without bad triangles, or the one with the fewest faults. Where vessels overlap that
-/// do not belong together no rung would help: the first is taken.
+/// Makes a piece on the first rung on which it is sound and without bad triangles, or the one with the fewest faults.
+/// Where vessels overlap that do not belong together no rung would help: the first is taken.
 PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan);
 
 }  // namespace vmesh

@@ -40,12 +40,14 @@ class BoundSurface {
   /// Factor on the target edge length, 1 as a rule: less where narrow places do not bear the triangles asked for.
   SurfaceMesh::Property_map<Vertex, double> fineness;
 
-  /// A place that a vessel of that radius is to leave from: the target edge length grows with the distance from it.
-  struct FineSpot {
+  struct Spot {
     Vec3 position;
     double radius;
   };
-  std::vector<FineSpot> fine_spots;
+  /// Places that a vessel of that radius is to leave from: the target edge length grows with the distance from them.
+  std::vector<Spot> fine_spots;
+  /// Balls in which nothing is refined for the limit on the error.
+  std::vector<Spot> calm_spots;
 
   /// What may happen to a vertex. Edges between two held ones stay as they are as well. A lid is the middle of the
   /// faces that close an open end as long as the surface is worked on; it is never exported.
@@ -58,7 +60,7 @@ class BoundSurface {
   /// holds them.
   void close_with_lid(const std::vector<Vertex>& loop, const Vec3& center);
 
-  /// From now on no step of remeshing is taken after which faces cross each other.
+  /// From now on no step of remeshing is taken after which faces cross each other, or the axis of a vessel.
   void guard_crossings();
   /// Whether the steps are allowed: always, unless guarded.
   bool may_place(Vertex v, const Vec3& p) const { return !guard_ || guard_->may_move(v, p); }

@@ -15,8 +15,14 @@ std::pair<Vec3, Vec3> box_of(const PlacedFace& f) {
 
 }  // namespace
 
-CrossingGuard::CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_lid)
-    : mesh_(mesh), is_lid_(std::move(is_lid)) {
+CrossingGuard::CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_lid, std::vector<Thread> threads)
+    : mesh_(mesh), is_lid_(std::move(is_lid)), threads_(std::move(threads)) {
+  std::vector<Vec3> low, high;
+  for (const auto& [from, to] : threads_) {
+    low.push_back(from.cwiseMin(to));
+    high.push_back(from.cwiseMax(to));
+  }
+  thread_tree_ = BoxTree(low, high);
   for (const Face f : mesh.faces()) insert(f);
 }
 
@@ -82,7 +88,25 @@ bool CrossingGuard::clear(const std::vector<PlacedFace>& faces, const std::vecto
       if (intersect(faces[i], faces[j])) return false;
     }
   }
-  return !cross_others(faces, gone);
+  return !cross_threads(faces, gone) && !cross_others(faces, gone);
+}
+
+bool CrossingGuard::cross_threads(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const {
+  const auto meets = [&](const PlacedFace& face, Index thread) {
+    return meets_segment(face, threads_[thread][0], threads_[thread][1]);
+  };
+  return std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
+    const auto [low, high] = box_of(face);
+    bool crossed = false;
+    thread_tree_.visit_overlapping(low, high, [&](Index thread) {
+      if (crossed || !meets(face, thread)) return;
+      crossed = std::none_of(gone.begin(), gone.end(), [&](Face f) {
+        const PlacedFace before = placed(f);
+        return !is_degenerate(before) && meets(before, thread);
+      });
+    });
+    return crossed;
+  });
 }
 
 bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const {

@@ -167,12 +167,19 @@ class Optimizer {
     bool any = false;
     for (const Vertex v : vertices) {
       double& fineness = state_.surface.fineness[v];
-      if (fineness * kFiner < kFinest) continue;
+      if (fineness * kFiner < kFinest || is_calm(v)) continue;
       fineness *= kFiner;
       state_.stir(v);
       any = true;
     }
     return any;
+  }
+
+  bool is_calm(Vertex v) const {
+    const auto& spots = state_.surface.calm_spots;
+    return std::any_of(spots.begin(), spots.end(), [&](const BoundSurface::Spot& spot) {
+      return (state_.point(v) - spot.position).squaredNorm() < spot.radius * spot.radius;
+    });
   }
 
   void optimize_at(double around) {
