@@ -1,6 +1,7 @@
 #include "surface/remesh/mend.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include <CGAL/boost/graph/Euler_operations.h>
@@ -10,8 +11,18 @@
 namespace vmesh {
 namespace {
 
-constexpr int kRounds = 6;         // through all bad faces
+constexpr int kRounds = 20;        // through all bad faces
 constexpr double kPaysOff = 0.99;  // worst skewness around against that before
+
+constexpr double kDiagonal = 0.70710678118654752;
+constexpr std::array<std::array<double, 2>, 8> kDirections = {{{1, 0},
+                                                              {kDiagonal, kDiagonal},
+                                                              {0, 1},
+                                                              {-kDiagonal, kDiagonal},
+                                                              {-1, 0},
+                                                              {-kDiagonal, -kDiagonal},
+                                                              {0, -1},
+                                                              {kDiagonal, -kDiagonal}}};
 
 // Applies to one face after the other the step that helps most.
 class Mender {
@@ -31,10 +42,10 @@ class Mender {
   }
 
  private:
-  enum class Kind { flip, collapse, move };
+  enum class Kind { flip, collapse, split, move };
   struct Step {
     Kind kind;
-    Halfedge edge;  // of a flip or collapse
+    Halfedge edge;  // of a flip, collapse or split
     Vertex vertex;  // of a move
     Vec3 place;
     double worst;  // skewness around, afterwards
@@ -64,6 +75,7 @@ class Mender {
     for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
       add_flip(h, steps);
       add_collapses(h, steps);
+      add_split(h, steps);
       add_moves(mesh_.target(h), steps);
     }
     std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.worst < b.worst; });
@@ -100,14 +112,43 @@ class Mender {
     }
   }
 
+  // In the middle; faces stay where they are.
+  void add_split(Halfedge h, std::vector<Step>& steps) const {
+    const Halfedge o = mesh_.opposite(h);
+    const Vertex a = mesh_.source(h), b = mesh_.target(h);
+    const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
+    for (const Vertex v : {a, b, c, d}) {
+      if (surface_.role[v] == BoundSurface::Role::lid) return;
+    }
+    if (surface_.held(a) && surface_.held(b)) return;
+    const Vec3 middle = 0.5 * (mesh_.point(a) + mesh_.point(b));
+    double worst = 0;
+    for (const Vertex apex : {c, d}) {
+      for (const Vertex end : {a, b})
+        worst = std::max(worst, equiangle_skewness(mesh_.point(apex), mesh_.point(end), middle));
+    }
+    offer({Kind::split, h, {}, middle, worst}, std::max(skewness(mesh_.face(h)), skewness(mesh_.face(o))), steps);
+  }
+
+  // To the neighbours' centre and around where it is, nearer and nearer.
   void add_moves(Vertex v, std::vector<Step>& steps) const {
     if (surface_.held(v)) return;
     Vec3 center = Vec3::Zero();
-    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) center += mesh_.point(mesh_.source(h));
+    double length = 0;
+    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+      center += mesh_.point(mesh_.source(h));
+      length += (mesh_.point(mesh_.source(h)) - mesh_.point(v)).norm();
+    }
     center /= static_cast<double>(mesh_.degree(v));
-    for (const double share : {0.25, 0.5, 1.0}) {
-      const Vec3 place = mesh_.point(v) + share * (center - mesh_.point(v));
-      offer({Kind::move, {}, v, place, worst_with(v, v, place)}, worst_around(v), steps);
+    length /= static_cast<double>(mesh_.degree(v));
+    const double before = worst_around(v);
+    const auto offer_place = [&](const Vec3& place) {
+      offer({Kind::move, {}, v, place, worst_with(v, v, place)}, before, steps);
+    };
+    for (const double share : {0.25, 0.5, 1.0}) offer_place(mesh_.point(v) + share * (center - mesh_.point(v)));
+    const Vec3 normal = surface_.gradient[v], side = normal.unitOrthogonal(), across = normal.cross(side);
+    for (const double share : {0.4, 0.2, 0.1, 0.05}) {
+      for (const auto& [x, y] : kDirections) offer_place(mesh_.point(v) + share * length * (x * side + y * across));
     }
   }
 
@@ -137,6 +178,11 @@ class Mender {
         if (!surface_.may_collapse(a, b, step.place)) return false;
         const Index hint = surface_.cone[a];
         put(CGAL::Euler::collapse_edge(mesh_.edge(step.edge), mesh_), step.place, hint);
+        return true;
+      }
+      case Kind::split: {
+        const Index hint = surface_.cone[mesh_.target(step.edge)];
+        put(surface_.split_edge(mesh_.edge(step.edge)), step.place, hint);
         return true;
       }
       case Kind::move:
