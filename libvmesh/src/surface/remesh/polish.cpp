@@ -5,7 +5,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kGoodEnergy = 1.10;  // of a face, skewness about 0.25: nothing to polish
+constexpr double kGoodEnergy = 1.2;  // of a face, skewness about 0.3: nothing to polish
 constexpr int kRounds = 2, kSweeps = 20;
 constexpr int kPower = 32;                 // of the energies: close to their maximum
 constexpr int kEaseSweeps = 6;             // that give back to all what the worst do not need
