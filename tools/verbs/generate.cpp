@@ -248,7 +248,8 @@ void measure(GenerateReport& report, const Centerline& grown, Console& console) 
   const GenerateOptions& options = report.arguments->options;
   const VesselField field(grown, options.blend);
   report.deviation = measure_deviation(result.mesh, result.binding, field, options.threads);
-  report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown), options.threads);
+  if (!report.arguments->common.json.empty())  // nothing else tells of it
+    report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown), options.threads);
   stop_if_interrupted();
   report.grown_nodes = grown.nodes().size();
   report.nodes_inside = result.check.nodes_inside;

@@ -16,7 +16,7 @@ constexpr double kVerticesPerRadius = 7;  // and unit of length, at kGrownAround
 constexpr double kMaxExcess = 1.5;  // vertices against those grown plus those expected; well-grown trees reach 0.6
 constexpr int kStrayInterval = 4;
 constexpr double kHopeless = 0.02;  // share of the vertices in tangles: growth covered vessels twice
-constexpr int kBalanceRounds = 2, kBalanceSweeps = 6;
+constexpr int kBalanceRounds = 1, kBalanceSweeps = 6;
 constexpr int kSinkRounds = 4;
 constexpr int kErrorRounds = 14;  // without fewer faces over the limit: a last one may need its edges to be a seventh
 constexpr int kErrorSweeps = 4;
