@@ -1,0 +1,95 @@
+#include "mesh/close_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vmesh {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kBits = 21;  // of each coordinate on the curve
+
+float rounded_down(double x) {
+  const auto rounded = static_cast<float>(x);
+  return rounded <= x ? rounded : std::nextafter(rounded, -kInfinity);
+}
+
+float rounded_up(double x) {
+  const auto rounded = static_cast<float>(x);
+  return rounded >= x ? rounded : std::nextafter(rounded, kInfinity);
+}
+
+// The lowest 21 bits, two zeros between each two.
+std::uint64_t spread(std::uint64_t x) {
+  x = (x | x << 32) & 0x1F00000000FFFF;
+  x = (x | x << 16) & 0x1F0000FF0000FF;
+  x = (x | x << 8) & 0x100F00F00F00F00F;
+  x = (x | x << 4) & 0x10C30C30C30C30C3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+}  // namespace
+
+void CloseFaces::Box::enclose(const Box& other) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    low[i] = std::min(low[i], other.low[i]);
+    high[i] = std::max(high[i], other.high[i]);
+  }
+}
+
+CloseFaces::Box CloseFaces::box_of(const TriMesh& mesh, Index face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  const Vec3 low = mesh.vertices[a].cwiseMin(mesh.vertices[b]).cwiseMin(mesh.vertices[c]);
+  const Vec3 high = mesh.vertices[a].cwiseMax(mesh.vertices[b]).cwiseMax(mesh.vertices[c]);
+  return {{rounded_down(low.x()), rounded_down(low.y()), rounded_down(low.z())},
+          {rounded_up(high.x()), rounded_up(high.y()), rounded_up(high.z())}};
+}
+
+CloseFaces::CloseFaces(const TriMesh& mesh, std::vector<Index> faces) : faces_(std::move(faces)) {
+  sort(mesh);
+  for (const Index f : faces_) boxes_.push_back(box_of(mesh, f));
+  blocks_ = (faces_.size() + kBlock - 1) / kBlock;
+  while (leaves_ < blocks_) leaves_ *= 2;
+  const Box nothing{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  nodes_.assign(2 * leaves_, nothing);
+  last_block_.assign(2 * leaves_, 0);
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    nodes_[leaves_ + i / kBlock].enclose(boxes_[i]);
+    last_block_[leaves_ + i / kBlock] = i / kBlock + 1;
+  }
+  for (std::size_t node = leaves_; --node > 0;) {
+    for (const std::size_t child : {2 * node, 2 * node + 1}) {
+      nodes_[node].enclose(nodes_[child]);
+      last_block_[node] = std::max(last_block_[node], last_block_[child]);
+    }
+  }
+}
+
+// Along the Z curve, by the faces' middles.
+void CloseFaces::sort(const TriMesh& mesh) {
+  if (faces_.empty()) return;
+  const auto middle = [&](Index f) -> Vec3 {
+    const auto& [a, b, c] = mesh.faces[f];
+    return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+  };
+  Vec3 low = middle(faces_.front()), high = low;
+  for (const Index f : faces_) {
+    low = low.cwiseMin(middle(f));
+    high = high.cwiseMax(middle(f));
+  }
+  const double size = (high - low).maxCoeff();
+  const double scale = size > 0 ? ((1 << kBits) - 1) / size : 0;
+  std::vector<std::pair<std::uint64_t, Index>> order;
+  order.reserve(faces_.size());
+  for (const Index f : faces_) {
+    const Vec3 at = scale * (middle(f) - low);
+    std::uint64_t key = 0;
+    for (int i = 0; i < 3; ++i) key |= spread(static_cast<std::uint64_t>(at[i])) << i;
+    order.emplace_back(key, f);
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t i = 0; i < order.size(); ++i) faces_[i] = order[i].second;
+}
+
+}  // namespace vmesh

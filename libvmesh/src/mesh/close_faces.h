@@ -1,0 +1,81 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "vmesh/mesh/tri_mesh.h"
+
+namespace vmesh {
+
+/// Which faces of a mesh come close: those whose boxes meet. Faces are put in the order of a space-filling curve, eight
+/// to a block; over the blocks lies a binary tree. Boxes are in single precision, rounded outwards.
+class CloseFaces {
+ public:
+  /// `faces`: the numbers of those that take part. O(n log n).
+  CloseFaces(const TriMesh& mesh, std::vector<Index> faces);
+
+  /// Calls visit(face, face) once for every two faces whose boxes meet, and for some whose boxes nearly do.
+  template <class Visit>
+  void visit_pairs(Visit&& visit) const {
+    for (std::size_t block = 0; block < blocks_; ++block) {
+      visit_within(block, visit);
+      visit_later(1, block, visit);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kBlock = 8;
+  struct Box {
+    std::array<float, 3> low, high;
+
+    bool meets(const Box& other) const {
+      // All six at once: a branch each costs more.
+      return (low[0] <= other.high[0]) & (other.low[0] <= high[0]) & (low[1] <= other.high[1]) &
+             (other.low[1] <= high[1]) & (low[2] <= other.high[2]) & (other.low[2] <= high[2]);
+    }
+    void enclose(const Box& other);
+  };
+
+  static Box box_of(const TriMesh& mesh, Index face);
+  void sort(const TriMesh& mesh);
+
+  std::size_t end_of(std::size_t block) const { return std::min(faces_.size(), (block + 1) * kBlock); }
+
+  template <class Visit>
+  void visit_within(std::size_t block, Visit& visit) const {
+    for (std::size_t i = block * kBlock; i < end_of(block); ++i) {
+      for (std::size_t j = block * kBlock; j < i; ++j) {
+        if (boxes_[i].meets(boxes_[j])) visit(faces_[i], faces_[j]);
+      }
+    }
+  }
+
+  // The faces of a block with those of the later ones below a node.
+  template <class Visit>
+  void visit_later(std::size_t node, std::size_t block, Visit& visit) const {
+    if (last_block_[node] <= block + 1 || !nodes_[node].meets(nodes_[leaves_ + block])) return;
+    if (node < leaves_) {
+      visit_later(2 * node, block, visit);
+      visit_later(2 * node + 1, block, visit);
+      return;
+    }
+    const std::size_t other = node - leaves_;
+    for (std::size_t i = block * kBlock; i < end_of(block); ++i) {
+      if (!boxes_[i].meets(nodes_[node])) continue;
+      for (std::size_t j = other * kBlock; j < end_of(other); ++j) {
+        if (boxes_[i].meets(boxes_[j])) visit(faces_[i], faces_[j]);
+      }
+    }
+  }
+
+  std::vector<Index> faces_;             // along the curve
+  std::vector<Box> boxes_;               // theirs
+  std::size_t blocks_ = 0, leaves_ = 1;  // a power of two
+  // Node 1 is the root, those below node n are 2 n and 2 n + 1; from leaves_ on they are blocks.
+  std::vector<Box> nodes_;
+  std::vector<std::size_t> last_block_;  // below a node, counted from one; 0: none
+};
+
+}  // namespace vmesh
