@@ -9,7 +9,9 @@
 namespace vmesh {
 namespace {
 
-constexpr double kCovered = 0.2;  // radii below another vessel's wall: less may be the rounding of a third
+// Radii below another vessel's wall from which on no surface could be sound. Less may be the rounding of a third one,
+// which the guard keeps away: at 0.2 noisy tree 315 is refused with a blend of 2, at 0.4 it is sound.
+constexpr double kCovered = 0.4;
 
 Vec3 center_of(const TriMesh& mesh, Index f) {
   const auto& [a, b, c] = mesh.faces[f];
