@@ -164,6 +164,8 @@ void for_each_generate_option(Options& options, Visitor visit) {
   visit("--around", options.around, 3, 200, "intended number of vertices around a vessel");
   visit("--max-center-distance", options.max_center_distance, 0.01, 10.0,
         "split faces whose centre is farther from the wall than this, in local radii");
+  visit("--simplification", options.simplification, 0.0, 1.0,
+        "leave out nodes that change the vessels by at most this share of what edges across them cut off; 0: none");
   visit("--sweeps", options.sweeps, 0, 1000, "sweeps of the final optimisation; 0: leave the surface as grown");
   visit("--max-vertices", options.max_vertices, 100, 1'000'000'000,
         "refuse a centerline whose length and radii ask for more than this");

@@ -102,6 +102,12 @@ Json to_json(const std::vector<VesselMove>& moves) {
   return {{"count", moves.size()}, {"list", std::move(list)}};
 }
 
+Json to_json(const SimplificationSummary& simplification) {
+  return {{"nodes_left_out", simplification.nodes_left_out},
+          {"max_deviation_mm", simplification.max_deviation},
+          {"max_deviation_relative", simplification.max_deviation_relative}};
+}
+
 Json to_json(const SeparationReport& separation) {
   return {{"rounds", separation.rounds},
           {"nodes_narrowed", separation.nodes_narrowed},
@@ -251,6 +257,7 @@ Json to_json(const GenerateReport& report) {
       {"options", options_json(arguments)},
       {"centerline", to_json(centerline)},
       {"cleaning", to_json(report.cleaned->report)},
+      {"simplification", to_json(report.result->simplification)},
       {"vertices", mesh.vertices.size()},
       {"faces", mesh.faces.size()},
       {"vertices_per_length_in_radii", size > 0 ? Json(static_cast<double>(mesh.vertices.size()) / size) : Json()}};

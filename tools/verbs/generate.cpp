@@ -112,10 +112,35 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
   return loaded;
 }
 
+/// Leaves out the nodes that the surface does not need. Without a value all are needed; or the budget decides, for every
+/// surface that is tried, which are.
+std::optional<SimplifiedCenterline> simplify(const Centerline& centerline, const GenerateArguments& arguments,
+                                             Console& console) {
+  const GenerateOptions& options = arguments.options;
+  if (arguments.budget || options.growth == GrowthMethod::paper || options.simplification == 0) return std::nullopt;
+  std::optional<SimplifiedCenterline> simplified = simplify_for_growth(centerline, options);
+  if (!simplified->is_simpler()) return std::nullopt;
+  console.log(std::to_string(simplified->node.size()) + " of the nodes steer the surface; without the others the " +
+              "vessels are the same up to " + number(100 * simplified->max_deviation_relative, 1) + " % of their radius");
+  return simplified;
+}
+
+/// Options for growth around the simplified centerline; ends that are to be open are found there by its numbers.
+GenerateOptions after_simplification(const GenerateArguments& arguments, const SimplifiedCenterline& simplified) {
+  GenerateOptions options = vmesh::after_simplification(arguments.options, simplified);
+  for (Index& n : options.open_ends.nodes) {
+    const auto it = std::lower_bound(simplified.node.begin(), simplified.node.end(), n);
+    if (it == simplified.node.end() || *it != n)
+      throw InvalidInput("node " + std::to_string(n) + " cannot be left open: it is not an end of the centerline");
+    n = static_cast<Index>(it - simplified.node.begin());
+  }
+  return options;
+}
+
 /// Finds where vessels touch and, when asked to, narrows or moves them. Without a value the vessels stay as they are.
-std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, Console& console) {
+std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, const Centerline& centerline,
+                                                   Console& console) {
   const GenerateArguments& arguments = *report.arguments;
-  const Centerline& centerline = report.cleaned->centerline;
   const auto warn = [&](const std::string& line) {
     console.warn(line);
     report.warnings.push_back(line);
@@ -197,6 +222,29 @@ void renumber(GrowthSummary& growth, const SeparatedCenterline& separated, const
     for (Index& s : note.segments) s = separated.pieces[s].segment;
     std::sort(note.segments.begin(), note.segments.end());
     note.segments.erase(std::unique(note.segments.begin(), note.segments.end()), note.segments.end());
+  }
+}
+
+void refer_to_original(const SimplifiedCenterline& simplified, ContactSide& side) {
+  const auto [segment, t] = simplified.original(side.segment, side.t);
+  side.segment = segment;
+  side.t = t;
+}
+
+/// Contacts and moves of a simplified centerline, as those of the original. Branches are the same.
+void refer_to_original(const SimplifiedCenterline& simplified, GenerateReport& report) {
+  const auto refer = [&](std::vector<Contact>& contacts) {
+    for (Contact& contact : contacts) {
+      for (ContactSide& side : contact.sides) refer_to_original(simplified, side);
+    }
+  };
+  refer(report.contacts);
+  if (!report.separation) return;
+  refer(report.separation->before);
+  refer(report.separation->left);
+  for (VesselMove& move : report.separation->moves) {
+    refer_to_original(simplified, move.moved);
+    refer_to_original(simplified, move.other);
   }
 }
 
@@ -293,20 +341,23 @@ int run(const GenerateArguments& given, Console& console) {
   stop_if_interrupted();
 
   append(report.warnings, loaded.warnings);
-  const std::optional<SeparatedCenterline> separated = handle_contacts(report, console);
-  const Centerline& centerline = separated ? separated->centerline : loaded.cleaned.centerline;
+  const std::optional<SimplifiedCenterline> simplified = simplify(loaded.cleaned.centerline, arguments, console);
+  const Centerline& original = simplified ? simplified->centerline : loaded.cleaned.centerline;
+  const std::optional<SeparatedCenterline> separated = handle_contacts(report, original, console);
+  const Centerline& centerline = separated ? separated->centerline : original;
   report.stages.push_back({separated ? "separate" : "contacts", watch.lap()});
   stop_if_interrupted();
 
   bool kept_budget = true;
   GenerateResult result;
+  const GenerateOptions growth_options = simplified ? after_simplification(arguments, *simplified) : arguments.options;
   if (arguments.budget) {
     BudgetedSurface surface = grow_within_budget(report, centerline, arguments, console);
     kept_budget = surface.met();
     result = std::move(surface.result);
   } else {
     result =
-        naming_file(arguments, [&] { return generate_surface(centerline, arguments.options, console.progress()); });
+        naming_file(arguments, [&] { return generate_surface(centerline, growth_options, console.progress()); });
   }
   report.result = &result;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
@@ -319,9 +370,13 @@ int run(const GenerateArguments& given, Console& console) {
   watch.lap();
   measure(report, centerline, console);
   if (separated) {
-    result.binding = original_binding(result.binding, *separated, loaded.cleaned.centerline);
-    renumber(result.growth, *separated, loaded.cleaned.centerline);
-    renumber(result.defects, *separated, loaded.cleaned.centerline);
+    result.binding = original_binding(result.binding, *separated, original);
+    renumber(result.growth, *separated, original);
+    renumber(result.defects, *separated, original);
+  }
+  if (simplified) {
+    vmesh::refer_to_original(*simplified, result);
+    refer_to_original(*simplified, report);
   }
   report.stages.push_back({"measure", watch.lap()});
   if (!result.is_sound() && !arguments.allow_defects) {

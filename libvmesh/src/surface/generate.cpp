@@ -13,6 +13,7 @@
 
 #include "surface/input/buried_branches.h"
 #include "surface/input/scale_check.h"
+#include "surface/input/simplified.h"
 #include "surface/paper/paper_growth.h"
 #include "surface/pieces/grow_pieces.h"
 #include "surface/proof/defects.h"
@@ -43,6 +44,7 @@ void check_options(const GenerateOptions& o) {
   if (!(o.beta >= 0 && o.beta <= 1)) throw InvalidInput("beta must be in [0, 1]");
   if (!(o.around >= 3 && o.around <= 200)) throw InvalidInput("around must be in [3, 200]");
   if (!(o.max_center_distance > 0)) throw InvalidInput("max_center_distance must be > 0");
+  if (!(o.simplification >= 0 && o.simplification <= 1)) throw InvalidInput("simplification must be in [0, 1]");
   if (o.sweeps < 0) throw InvalidInput("sweeps must be >= 0");
   if (!(o.max_error.mm > 0 && o.max_error.relative > 0)) throw InvalidInput("max_error must be > 0");
   if (o.max_error.is_set() && o.sweeps == 0) throw InvalidInput("max_error needs sweeps to refine in");
@@ -200,9 +202,8 @@ void renumber(const GrowthCenterline& growth, const Centerline& full, GenerateRe
   }
 }
 
-void generate_guided(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
-                     GenerateResult& result) {
-  StageClock clock(result.stages);
+std::vector<std::pair<Index, Index>> grow_guided(const Centerline& centerline, const GenerateOptions& options,
+                                                 const Progress& progress, StageClock& clock, GenerateResult& result) {
   std::optional<GrowthCenterline> growth;
   std::optional<VesselField> field;
   clock.time("volume", [&] {
@@ -214,6 +215,25 @@ void generate_guided(const Centerline& centerline, const GenerateOptions& option
   std::vector<std::pair<Index, Index>> crossings;
   clock.time("grow", [&] { crossings = grow_pieces(*field, open, options, progress, result); });
   renumber(*growth, centerline, result);
+  return crossings;
+}
+
+void generate_guided(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
+                     GenerateResult& result) {
+  StageClock clock(result.stages);
+  std::vector<std::pair<Index, Index>> crossings;
+  std::optional<SimplifiedCenterline> simplified;
+  if (options.simplification > 0)
+    clock.time("simplify", [&] { simplified.emplace(simplify_for_growth(centerline, options)); });
+  if (simplified && simplified->is_simpler()) {
+    GenerateOptions growth_options = after_simplification(options, *simplified);
+    const std::vector<Index> number = numbers_in(*simplified, centerline.nodes().size());
+    for (Index& n : growth_options.open_ends.nodes) n = number[n];
+    crossings = grow_guided(simplified->centerline, growth_options, progress, clock, result);
+    refer_to_original(*simplified, result);
+  } else {
+    crossings = grow_guided(centerline, options, progress, clock, result);
+  }
   warn_of_closed_ends(centerline, options.open_ends, result);
   clock.time("check", [&] { find_defects(centerline, crossings, result); });
 }

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vmesh/centerline/centerline.h"
+#include "vmesh/centerline/simplification.h"
 #include "vmesh/core/progress.h"
 #include "vmesh/mesh/tri_mesh.h"
 #include "vmesh/surface/soundness.h"
@@ -71,6 +71,9 @@ struct GenerateOptions {
   ErrorLimit max_error;
   /// Sweeps of the final optimisation; 0 leaves the surface as it was grown.
   int sweeps = 30;
+  /// Nodes of the centerline are left out where the vessels change by at most this share of the distance that the
+  /// surface keeps from them anyway, in [0, 1]; see simplify_for_growth(). 0: none. Guided growth only.
+  double simplification = 0.15;
   /// A centerline whose length and radii ask for more vertices than this is refused.
   int max_vertices = 20'000'000;
   GrowthMethod growth = GrowthMethod::guided;
@@ -79,6 +82,15 @@ struct GenerateOptions {
   /// Threads to work on; 0: as many as the machine has. The result does not depend on it.
   int threads = 0;
 };
+
+/// A centerline without the nodes that growth does not need: the cost of a surface is that of what comes out, not of
+/// what goes in. Nowhere does the boundary move by more than options.simplification times what edges across a vessel cut
+/// off it, or than a tenth of options.max_error.
+SimplifiedCenterline simplify_for_growth(const Centerline& centerline, const GenerateOptions& options);
+
+/// The options for a surface around simplify_for_growth(): simplified no further, and with a limit on the error that
+/// leaves room for what that changed, if it did.
+GenerateOptions after_simplification(const GenerateOptions& options, const SimplifiedCenterline& simplified);
 
 /// Where on the centerline a surface vertex belongs: segment and parameter in [0, 1] from its node a to its node b.
 /// An isolated node i of the centerline (a sphere) is segment segments().size() + its rank among isolated nodes.
@@ -153,6 +165,12 @@ struct ErrorSummary {
   std::vector<ClosedNotch> closed_notches;     ///< deepest first
 };
 
+/// What simplify_for_growth() changed.
+struct SimplificationSummary {
+  std::size_t nodes_left_out = 0;
+  double max_deviation = 0, max_deviation_relative = 0;  ///< of a boundary from the other, mm and radii there
+};
+
 /// Something about a surface that its user should know.
 struct GrowthWarning {
   enum class Kind {
@@ -180,6 +198,7 @@ struct GenerateResult {
   std::vector<double> radius;              ///< local vessel radius at every vertex's binding (mm)
   std::vector<Opening> openings;           ///< ascending in the nodes
   ErrorSummary error;                      ///< with max_error
+  SimplificationSummary simplification;
   GrowthSummary growth;                    ///< of guided growth; empty after paper growth
   std::vector<Defect> defects;             ///< none: the surface is sound
   SurfaceCheck check;                      ///< what `defects` follows from
@@ -196,6 +215,10 @@ TriMesh with_lids(const GenerateResult& result);
 /// limit in local radii needs along a vessel; and where one in mm needs the most, edges of at most 1.8 times the length
 /// that will be there: refined farther, faces fold.
 int least_around(const Centerline& centerline, const ErrorLimit& limit);
+
+/// From numbers of a simplified centerline to those of the original, and a note of what was left out: for a surface
+/// around the simplified one. What lies on nodes that are not the original's (kNone) stays so.
+void refer_to_original(const SimplifiedCenterline& simplified, GenerateResult& result);
 
 /// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.
 /// Throws InvalidInput for options out of range and for a centerline too long for its radii, Cancelled when `progress`
