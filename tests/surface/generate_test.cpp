@@ -8,6 +8,7 @@
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/deviation.h"
+#include "vmesh/volume/vessel_field.h"
 
 #include "centerlines.h"
 
@@ -293,7 +294,74 @@ TEST(Generate, TellsTheTimeOfEveryStage) {
     names.push_back(stage.stage);
     EXPECT_GE(stage.seconds, 0);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"volume", "grow", "check"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"simplify", "volume", "grow", "check"}));
+}
+
+// The fork with a node every twentieth of a millimetre, as centerline programs write it.
+Centerline oversampled_fork() {
+  const Centerline coarse = fork();
+  std::vector<CenterlineNode> nodes = coarse.nodes();
+  std::vector<CenterlineSegment> segments;
+  for (Index s = 0; s < coarse.segments().size(); ++s) {
+    const int count = static_cast<int>(20 * coarse.length(s));
+    Index last = coarse.segment(s).a;
+    for (int i = 1; i <= count; ++i) {
+      const double t = static_cast<double>(i) / count;
+      Index next = coarse.segment(s).b;
+      if (i < count) {
+        next = static_cast<Index>(nodes.size());
+        nodes.push_back({coarse.point_at(s, t), coarse.radius_at(s, t)});
+      }
+      segments.push_back({last, next});
+      last = next;
+    }
+  }
+  return {std::move(nodes), std::move(segments)};
+}
+
+TEST(Generate, LeavesOutNodesThatItDoesNotNeed) {
+  const Centerline fine = oversampled_fork();
+  GenerateOptions options;
+  options.open_ends.nodes = {5};
+  options.simplification = 1e-6;  // no more than rounding
+  const GenerateResult result = generate_surface(fine, options);
+  EXPECT_TRUE(result.is_sound());
+  EXPECT_EQ(result.simplification.nodes_left_out, fine.nodes().size() - fork().nodes().size());
+  EXPECT_LT(result.simplification.max_deviation_relative, 1e-6);
+  EXPECT_EQ(result.check.nodes_inside, fine.nodes().size());
+  ASSERT_EQ(result.openings.size(), 1u);
+  EXPECT_EQ(result.openings[0].node, 5u);
+  // The same surface as around the coarse one, but bound to the fine one's segments.
+  const GenerateResult coarse = generate_surface(fork(), options);
+  EXPECT_EQ(result.mesh.faces, coarse.mesh.faces);
+  const Centerline few = fork();
+  for (Index v = 0; v < result.mesh.vertices.size(); ++v) {
+    ASSERT_LT(result.binding[v].segment, fine.segments().size());
+    const Vec3 at = fine.point_at(result.binding[v].segment, result.binding[v].t);
+    EXPECT_LT((at - few.point_at(coarse.binding[v].segment, coarse.binding[v].t)).norm(), 1e-6);  // rounding, amplified
+  }
+}
+
+TEST(Generate, KeepsToTheLimitForTheVesselsAsTheyWere) {
+  Centerline wavy = oversampled_fork();
+  std::vector<CenterlineNode> nodes = wavy.nodes();
+  for (CenterlineNode& node : nodes) node.position.z() += 0.02 * std::sin(node.position.x());
+  wavy = {nodes, wavy.segments()};
+  GenerateOptions options;
+  options.max_error.relative = 0.1;
+  const GenerateResult result = generate_surface(wavy, options);
+  EXPECT_GT(result.simplification.nodes_left_out, nodes.size() / 2);
+  EXPECT_EQ(result.error.unproven_faces, 0u);
+  const VesselField field(wavy, options.blend);
+  for (const auto& [a, b, c] : result.mesh.faces) {
+    for (const Vec3& share : {Vec3(1, 1, 1), Vec3(1, 1, 0), Vec3(0, 1, 1), Vec3(1, 0, 1), Vec3(1, 0, 0)}) {
+      const Vec3 p = (share[0] * result.mesh.vertices[a] + share[1] * result.mesh.vertices[b] +
+                      share[2] * result.mesh.vertices[c]) /
+                     share.sum();
+      const FieldSample sample = field.sample(p, result.binding[a].segment);
+      EXPECT_LE(std::abs(sample.distance), options.max_error.at(field.radius_at(sample.cone, sample.t)));
+    }
+  }
 }
 
 TEST(Generate, RefusesOptionsOutOfRange) {
