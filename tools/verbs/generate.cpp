@@ -359,6 +359,11 @@ int run(const GenerateArguments& given, Console& console) {
     result =
         naming_file(arguments, [&] { return generate_surface(centerline, growth_options, console.progress()); });
   }
+  if (simplified && !result.is_sound()) {
+    console.log("that surface is not sound: once more, with all nodes");
+    arguments.options.simplification = 0;
+    return run(arguments, console);
+  }
   report.result = &result;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
   for (const GrowthWarning& warning : result.warnings) {

@@ -218,8 +218,10 @@ std::vector<std::pair<Index, Index>> grow_guided(const Centerline& centerline, c
   return crossings;
 }
 
-void generate_guided(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
-                     GenerateResult& result) {
+// Around the simplified centerline, if it is simpler.
+GenerateResult generate_simplified(const Centerline& centerline, const GenerateOptions& options,
+                                   const Progress& progress) {
+  GenerateResult result;
   StageClock clock(result.stages);
   std::vector<std::pair<Index, Index>> crossings;
   std::optional<SimplifiedCenterline> simplified;
@@ -236,6 +238,17 @@ void generate_guided(const Centerline& centerline, const GenerateOptions& option
   }
   warn_of_closed_ends(centerline, options.open_ends, result);
   clock.time("check", [&] { find_defects(centerline, crossings, result); });
+  return result;
+}
+
+// What is not sound around the simplified centerline, as where a node that was left out is outside, is grown around all
+// of it.
+GenerateResult generate_guided(const Centerline& centerline, const GenerateOptions& options, const Progress& progress) {
+  GenerateResult result = generate_simplified(centerline, options, progress);
+  if (result.is_sound() || result.simplification.nodes_left_out == 0) return result;
+  GenerateOptions whole = options;
+  whole.simplification = 0;
+  return generate_simplified(centerline, whole, progress);
 }
 
 }  // namespace
@@ -264,7 +277,7 @@ GenerateResult generate_surface(const Centerline& centerline, const GenerateOpti
     if (options.growth == GrowthMethod::paper) {
       generate_paper(centerline, options, progress, result);
     } else {
-      generate_guided(centerline, options, progress, result);
+      result = generate_guided(centerline, options, progress);
     }
   });
   return result;

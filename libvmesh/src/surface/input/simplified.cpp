@@ -6,6 +6,9 @@ namespace vmesh {
 namespace {
 
 constexpr double kMostOfLimit = 0.1;
+// Vertices around a vessel that count at least: the surface of three comes near the axis, and what is left out of that
+// should not matter there.
+constexpr int kLeastAround = 6;
 // Of the limit, for the surface around the simplified vessels. Derived: a limit in radii is taken of theirs, which are
 // larger by a hundredth at most.
 constexpr double kLeftOfLimit = 0.88;
@@ -13,7 +16,7 @@ constexpr double kLeftOfLimit = 0.88;
 }  // namespace
 
 SimplifiedCenterline simplify_for_growth(const Centerline& centerline, const GenerateOptions& options) {
-  const double edge = edge_length_per_radius(options.around);
+  const double edge = edge_length_per_radius(std::max(kLeastAround, options.around));
   const double cut_off = edge * edge / 16;  // balanced: half of it is outside
   return simplify(centerline, [&](double radius) {
     const double tolerance = options.simplification * cut_off * radius;
