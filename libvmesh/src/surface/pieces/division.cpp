@@ -14,6 +14,9 @@ namespace vmesh {
 namespace {
 
 constexpr std::size_t kLongest = 96;  // rings between two seams: a piece of some 600 vertices at 6 around
+// Rings of a tube that stay with a junction, where the tube is longer than kShort: what is tried for the junction again
+// and again is not tried for all of its vessels.
+constexpr std::size_t kBeside = 12, kShort = 40;
 constexpr std::size_t kWindow = 3;    // rings before and after the middle that may become the seam instead of it
 
 // Two rings and the faces between them.
@@ -56,22 +59,35 @@ class SeamSearch {
       }
       const std::size_t first = k;
       while (k < rings.size() && rings[k].free) ++k;
-      const bool at_tip = (first == 0 && (axis.starts_at_tip() || axis.periodic())) ||
-                          (k == rings.size() && (axis.ends_at_tip() || axis.periodic()));
-      divide(branch, first, k, at_tip);
+      const bool free_begin = first == 0 && (axis.starts_at_tip() || axis.periodic());
+      const bool free_end = k == rings.size() && (axis.ends_at_tip() || axis.periodic());
+      divide(branch, {first, k}, !free_begin, !free_end);
     }
   }
 
-  // A run of rings [first, end): in equal parts no longer than kLongest, between two junctions in two at least.
-  void divide(Index branch, std::size_t first, std::size_t end, bool at_tip) {
-    const std::size_t count = end - first;
-    const std::size_t parts = std::max<std::size_t>(at_tip ? 1 : 2, (count + kLongest - 1) / kLongest);
-    for (std::size_t i = 1; i < parts; ++i) {
-      const std::size_t middle = first + i * (count - 1) / parts;
-      const std::size_t low = std::max(first + 1, middle - std::min(middle, kWindow));
-      const std::size_t high = std::min(end - 1, middle + kWindow + 1);
-      add_best(branch, middle, low, high);
+  struct Run {
+    std::size_t first, end;
+  };
+
+  // A run of rings, between junctions or not: in equal parts no longer than kLongest, between two junctions in two at
+  // least; if it is long, without what stays with these.
+  void divide(Index branch, const Run& run, bool from_junction, bool to_junction) {
+    const std::size_t count = run.end - run.first;
+    std::size_t begin = run.first, last = run.end - 1;
+    if (count > kShort) {
+      if (from_junction) add_near(branch, run, begin += kBeside);
+      if (to_junction) last -= kBeside;
     }
+    const std::size_t least = count <= kShort && from_junction && to_junction ? 2 : 1;
+    const std::size_t parts = std::max(least, (last + 1 - begin + kLongest - 1) / kLongest);
+    for (std::size_t i = 1; i < parts; ++i) add_near(branch, run, begin + i * (last - begin) / parts);
+    if (last + 1 < run.end) add_near(branch, run, last);
+  }
+
+  void add_near(Index branch, const Run& run, std::size_t middle) {
+    const std::size_t low = std::max(run.first + 1, middle - std::min(middle, kWindow));
+    const std::size_t high = std::min(run.end - 1, middle + kWindow + 1);
+    add_best(branch, middle, low, high);
   }
 
   // Of the rings [low, high) the first that is even, the nearest to the middle before others; none if none is.

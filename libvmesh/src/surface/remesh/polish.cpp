@@ -5,7 +5,6 @@
 namespace vmesh {
 namespace {
 
-constexpr double kGoodEnergy = 1.2;  // of a face, skewness about 0.3: nothing to polish
 constexpr int kRounds = 2, kSweeps = 20;
 constexpr int kPower = 32;                 // of the energies: close to their maximum
 constexpr int kEaseSweeps = 6;             // that give back to all what the worst do not need
@@ -23,8 +22,12 @@ void sort_unique(std::vector<T>& list) {
 
 class Polisher {
  public:
-  Polisher(SweepState& state, Remesher& remesher)
-      : state_(state), remesher_(remesher), surface_(state.surface), mesh_(state.mesh) {}
+  Polisher(SweepState& state, Remesher& remesher, double good_energy)
+      : state_(state),
+        remesher_(remesher),
+        surface_(state.surface),
+        mesh_(state.mesh),
+        good_energy_(good_energy) {}
 
   void polish() {
     for (int round = 0; round < kRounds; ++round) {
@@ -60,7 +63,7 @@ class Polisher {
     sort_unique(moved_);
     state_.stir_all();
     for (int sweep = 0; sweep < kEaseSweeps && state_.next_sweep() > 0; ++sweep)
-      relocate_vertices(state_, active(moved_), {.highest = kGoodEnergy, .noticeable = kNoticeableMove});
+      relocate_vertices(state_, active(moved_), {.highest = good_energy_, .noticeable = kNoticeableMove});
   }
 
   std::vector<Vertex> active(std::vector<Vertex> vertices) const {
@@ -75,7 +78,7 @@ class Polisher {
     std::sort(queue.begin(), queue.end());
     int failures = 0;
     for (const auto& [_, f] : queue) {
-      if (energy(f) < kGoodEnergy) continue;  // a flip nearby has mended it
+      if (energy(f) < good_energy_) continue;  // a flip nearby has mended it
       failures = mend(f) ? 0 : failures + 1;
       if (failures == kPatience) break;
     }
@@ -129,7 +132,7 @@ class Polisher {
 
   // Faces worth polishing. Folded ones are not: what would be an improvement there is not to be told from shape.
   std::vector<Face> bad_faces(std::vector<Face> faces) const {
-    std::erase_if(faces, [&](Face f) { return energy(f) < kGoodEnergy || folded(f); });
+    std::erase_if(faces, [&](Face f) { return energy(f) < good_energy_ || folded(f); });
     return faces;
   }
 
@@ -186,11 +189,14 @@ class Polisher {
   Remesher& remesher_;
   BoundSurface& surface_;
   SurfaceMesh& mesh_;
+  const double good_energy_;
   std::vector<Vertex> moved_;
 };
 
 }  // namespace
 
-void polish(SweepState& state, Remesher& remesher) { Polisher(state, remesher).polish(); }
+void polish(SweepState& state, Remesher& remesher, double good_energy) {
+  Polisher(state, remesher, good_energy).polish();
+}
 
 }  // namespace vmesh
