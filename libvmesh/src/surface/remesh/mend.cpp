@@ -12,8 +12,9 @@ namespace vmesh {
 namespace {
 
 constexpr int kRounds = 20;        // through all bad faces
-constexpr double kPaysOff = 0.99;  // worst skewness around against that before
+constexpr double kPaysOff = 0.998; // worst skewness around against that before
 
+constexpr double kMostOffBoundary = 0.15;  // edge lengths that one step may lead from it
 constexpr double kDiagonal = 0.70710678118654752;
 constexpr std::array<std::array<double, 2>, 8> kDirections = {{{1, 0},
                                                               {kDiagonal, kDiagonal},
@@ -106,7 +107,7 @@ class Mender {
     if (surface_.held(a) || surface_.held(b)) return;
     if (!CGAL::Euler::does_satisfy_link_condition(mesh_.edge(h), mesh_)) return;
     const double before = std::max(worst_around(a), worst_around(b));
-    for (const double t : {0.0, 0.5, 1.0}) {
+    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       const Vec3 place = (1 - t) * mesh_.point(a) + t * mesh_.point(b);
       offer({Kind::collapse, h, {}, place, std::max(worst_with(a, b, place), worst_with(b, a, place))}, before, steps);
     }
@@ -147,7 +148,10 @@ class Mender {
     };
     for (const double share : {0.25, 0.5, 1.0}) offer_place(mesh_.point(v) + share * (center - mesh_.point(v)));
     const Vec3 normal = surface_.gradient[v], side = normal.unitOrthogonal(), across = normal.cross(side);
-    for (const double share : {0.4, 0.2, 0.1, 0.05}) {
+    for (const double share : {0.6, 0.4, 0.2, 0.1, 0.05, 0.02}) {
+      if (share < kMostOffBoundary) {
+        for (const double way : {-share, share}) offer_place(mesh_.point(v) + way * length * normal);
+      }
       for (const auto& [x, y] : kDirections) offer_place(mesh_.point(v) + share * length * (x * side + y * across));
     }
   }
