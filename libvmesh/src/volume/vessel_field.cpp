@@ -1,5 +1,6 @@
 #include "vmesh/volume/vessel_field.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -149,27 +150,47 @@ std::span<VesselField::Candidate> VesselField::at_different_places(std::span<Can
   return candidates.first(kept);
 }
 
-// The least of the pairwise smooth minima: continuous, and the plain minimum where gradients agree.
+// The least of the pairwise smooth minima: continuous, and the plain minimum where gradients agree. Few of the many
+// pairs blend: whether they do is found out for several at a time.
 void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidates, FieldSample& sample) const {
+  constexpr std::size_t kBatch = 32;
+  struct Batch {
+    std::array<double, kBatch> value, reach, x, y, z, room;
+  };
   candidates = at_different_places(candidates);
   for (Candidate& c : candidates) {
     c.radius = radius_at(c.cone, c.t);
     c.gradient = gradient_of(cones_[c.cone], p, c.t);
   }
-  for (const Candidate& low : candidates) {
-    if (low.value - blend_ * low.radius / 2 >= sample.distance) continue;
-    for (const Candidate& high : candidates) {
-      if (high.value < low.value) continue;
-      const double gap = high.value - low.value;
-      const double thinner = blend_ * std::min(low.radius, high.radius);
-      if (gap >= 2 * thinner) continue;
-      const double width = thinner * (1 - low.gradient.dot(high.gradient));
-      if (gap >= width) continue;
-      const double h = 1 - gap / width;
-      const double value = low.value - h * h * width / 4;
-      if (value >= sample.distance) continue;
-      sample.distance = value;
-      sample.gradient = (1 - h / 2) * low.gradient + h / 2 * high.gradient;
+  Batch batch;
+  for (std::size_t begin = 0; begin < candidates.size(); begin += kBatch) {
+    const std::size_t count = std::min(kBatch, candidates.size() - begin);
+    for (std::size_t j = 0; j < count; ++j) {
+      const Candidate& c = candidates[begin + j];
+      batch.value[j] = c.value;
+      batch.reach[j] = blend_ * c.radius;
+      batch.x[j] = c.gradient.x();
+      batch.y[j] = c.gradient.y();
+      batch.z[j] = c.gradient.z();
+    }
+    for (const Candidate& low : candidates) {
+      if (low.value - blend_ * low.radius / 2 >= sample.distance) continue;
+      const double reach = blend_ * low.radius, x = low.gradient.x(), y = low.gradient.y(), z = low.gradient.z();
+      for (std::size_t j = 0; j < count; ++j) {
+        const double thinner = reach < batch.reach[j] ? reach : batch.reach[j];
+        const double width = thinner * (1 - (x * batch.x[j] + y * batch.y[j] + z * batch.z[j]));
+        batch.room[j] = width - (batch.value[j] - low.value);
+      }
+      for (std::size_t j = 0; j < count; ++j) {
+        const double gap = batch.value[j] - low.value;
+        if (batch.room[j] <= 0 || gap < 0) continue;
+        const double width = batch.room[j] + gap;
+        const double h = batch.room[j] / width;
+        const double value = low.value - h * h * width / 4;
+        if (value >= sample.distance) continue;
+        sample.distance = value;
+        sample.gradient = (1 - h / 2) * low.gradient + h / 2 * candidates[begin + j].gradient;
+      }
     }
   }
 }
