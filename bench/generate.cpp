@@ -1,73 +1,139 @@
-// What it costs to ask the vessel field, and to grow and optimise a surface, on synthetic trees.
+// What a surface costs, from a centerline that was read to a mesh that was checked: user CPU on one thread, and the
+// wall clock on one and on two, medians. A table in Markdown, with CGAL's Mesh_3 on the same volume beside tree1560.
+// Usage:
+//   bench_generate [--runs N] [--no-mesh-3] [FILE...]; without files, those of ../shared/data named below.
 #include "vmesh/surface/generate.h"
 
-#include <benchmark/benchmark.h>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
 
-#include "vmesh/centerline/synthetic_tree.h"
-#include "vmesh/volume/vessel_field.h"
+#include <sys/resource.h>
+
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/volume/contacts.h"
+
+#include "mesh_3.h"
 
 namespace {
 
 using namespace vmesh;
 
-Centerline tree_of(benchmark::State& state) {
-  SyntheticTreeOptions options;
-  options.vertices = static_cast<std::size_t>(state.range(0));
-  return synthetic_tree(options);
+const std::vector<std::string> kFiles = {
+    "synthetic_trees/tree1560.swc",
+    "synthetic_trees/tree119.swc",
+    "liver_portal_centerlines/liverModelPatient1__portal1_1.swc",
+    "liver_portal_centerlines/liverModelPatient1__portal3_1.swc",
+    "liver_portal_centerlines/liverModelPatient1__portal15_1.swc",
+    "liver_portal_centerlines/liverModelPatient1__hepatic1_1.swc",
+    "liver_portal_centerlines/liverModelPatient1__hepatic3_1.swc",
+    "liver_portal_centerlines/liverModelPatient1__hepatic15_1.swc",
+    "liver_portal_centerlines/liverModelPatient1__arterial15_1.swc",
+    "liver_portal_centerlines/liverModelPatient1__vessel_portal_1.swc",
+    "liver_portal_centerlines/liverModelPatient1__vessel_hepatic_1.swc",
+    "liver_portal_centerlines/liverModelPatient1__vessel_arterial_1.swc",
+    "pulmonary_aorta_coronary_centerlines/D15_surface_3d_fullres_263_joined.swc",
+    "pulmonary_aorta_coronary_centerlines/0030_H_ABAO_H_joined.swc",
+    "pulmonary_aorta_coronary_centerlines/0052_H_CERE_H_joined.swc",
+    "pulmonary_aorta_coronary_centerlines/0066_H_CORO_H_joined.swc",
+    "pulmonary_aorta_coronary_centerlines/0080_H_PULM_H_joined.swc",
+    "pulmonary_aorta_coronary_centerlines/PA000125_joined.swc",
+};
+
+double user_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
 }
 
-// Points at half and at one and a half radii from the axis, as growth and optimisation ask for.
-template <class Query>
-void ask(benchmark::State& state, const VesselField& field, Query&& query) {
-  Index cone = 0;
-  double sum = 0;
-  for (auto _ : state) {
-    const double r = field.radius_at(cone, 0.5);
-    const Vec3 side = (field.axis_point(cone, 1) - field.axis_point(cone, 0)).unitOrthogonal();
-    const Vec3 p = field.axis_point(cone, 0.5) + (cone % 2 ? 0.5 : 1.5) * r * side;
-    sum += query(p, cone).distance;
-    cone = (cone + 1) % static_cast<Index>(field.cone_count());
+struct Cost {
+  double user, wall;
+};
+
+template <class Work>
+Cost cost_of(Work&& work) {
+  const double user = user_seconds();
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return {user_seconds() - user, wall};
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+template <class Work>
+Cost median_cost(int runs, Work&& work) {
+  std::vector<double> user, wall;
+  for (int run = 0; run < runs; ++run) {
+    const Cost cost = cost_of(work);
+    user.push_back(cost.user);
+    wall.push_back(cost.wall);
   }
-  benchmark::DoNotOptimize(sum);
+  return {median(user), median(wall)};
 }
 
-void field_local(benchmark::State& state) {
-  const Centerline centerline = tree_of(state);
-  const VesselField field(centerline, 0.5);
-  ask(state, field, [&](const Vec3& p, Index cone) { return field.sample(p, cone); });
-}
-
-void field_global(benchmark::State& state) {
-  const Centerline centerline = tree_of(state);
-  const VesselField field(centerline);
-  ask(state, field, [&](const Vec3& p, Index) { return field.sample_global(p); });
-}
-
-void generate(benchmark::State& state) {
-  const Centerline centerline = tree_of(state);
+// As `vmesh generate` does it.
+GenerateResult surface_around(const Centerline& centerline, int threads) {
   GenerateOptions options;
-  options.around = static_cast<int>(state.range(1));
-  std::vector<StageTime> stages;
-  std::size_t vertices = 0;
-  for (auto _ : state) {
-    const GenerateResult result = generate_surface(centerline, options);
-    vertices = result.mesh.vertices.size();
-    if (stages.empty()) {
-      stages = result.stages;
-    } else {
-      for (std::size_t i = 0; i < stages.size(); ++i) stages[i].seconds += result.stages[i].seconds;
-    }
-  }
-  state.counters["vertices"] = static_cast<double>(vertices);
-  for (const StageTime& stage : stages) {
-    state.counters[stage.stage + "_ms"] = 1e3 * stage.seconds / static_cast<double>(state.iterations());
-  }
+  options.threads = threads;
+  const SimplifiedCenterline simplified = simplify_for_growth(centerline, options);
+  SeparationOptions separation;
+  separation.blend = options.blend;
+  const SeparatedCenterline separated = separate_contacts(simplified.centerline, separation);
+  return generate_surface(separated.centerline, after_simplification(options, simplified));
 }
 
-BENCHMARK(field_local)->Arg(119)->Arg(1560);
-BENCHMARK(field_global)->Arg(119)->Arg(1560);
-BENCHMARK(generate)->Args({119, 6})->Args({1560, 6})->Args({119, 12})->Unit(benchmark::kMillisecond);
+void tell(const std::string& name, std::size_t nodes, const TriMesh& mesh, const Cost& one, double two) {
+  const SkewnessSummary skewness = summarize_skewness(mesh);
+  const auto vertices = static_cast<double>(mesh.vertices.size());
+  std::printf("| %s | %zu | %zu | %.3f | %.3f | %.3f | %.0f | %.3f / %.3f |\n", name.c_str(), nodes,
+              mesh.vertices.size(), one.user, one.wall, two, 1e6 * one.user / vertices, skewness.mean, skewness.max);
+  std::fflush(stdout);
+}
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  int runs = 5;
+  bool with_mesh_3 = true;
+  std::vector<std::string> files;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--runs" && i + 1 < argc) {
+      runs = std::max(1, std::atoi(argv[++i]));
+    } else if (word == "--no-mesh-3") {
+      with_mesh_3 = false;
+    } else {
+      files.push_back(word);
+    }
+  }
+  if (files.empty()) {
+    for (const std::string& file : kFiles) files.push_back(std::string(VMESH_SHARED_DATA) + "/" + file);
+  }
+  std::printf(
+      "| centerline | nodes | vertices | user CPU, s | wall, s | wall on two threads, s | us of CPU a vertex | "
+      "skewness "
+      "mean / max |\n|---|--:|--:|--:|--:|--:|--:|--:|\n");
+  for (const std::string& file : files) {
+    try {
+      const Centerline centerline = load_centerline(file).cleaned.centerline;
+      TriMesh mesh;
+      const Cost one = median_cost(runs, [&] { mesh = surface_around(centerline, 1).mesh; });
+      const Cost two = median_cost(runs, [&] { mesh = surface_around(centerline, 2).mesh; });
+      const std::string name = file.substr(file.rfind('/') + 1);
+      tell(name, centerline.nodes().size(), mesh, one, two.wall);
+      if (with_mesh_3 && name == "tree1560.swc") {
+        const Cost theirs = cost_of([&] { mesh = bench::mesh_3(centerline, 6, GenerateOptions().blend); });
+        tell("the same, CGAL Mesh_3", centerline.nodes().size(), mesh, theirs, theirs.wall);
+      }
+    } catch (const std::exception& error) {
+      std::printf("| %s | %s |\n", file.c_str(), error.what());
+    }
+  }
+}

@@ -54,9 +54,8 @@ TEST(Simplification, KeepsEverySphereWithinTheTolerance) {
       for (int k = 0; k <= 200; ++k) {
         const double t = k / 200.0;
         const auto [segment, u] = simplified.original(s, t);
-        const double deviation =
-            (simplified.centerline.point_at(s, t) - original.point_at(segment, u)).norm() +
-            std::abs(simplified.centerline.radius_at(s, t) - original.radius_at(segment, u));
+        const double deviation = (simplified.centerline.point_at(s, t) - original.point_at(segment, u)).norm() +
+                                 std::abs(simplified.centerline.radius_at(s, t) - original.radius_at(segment, u));
         worst = std::max(worst, deviation / original.radius_at(segment, u));
       }
     }

@@ -41,10 +41,10 @@ double axis_distance(const VesselField& field, Index i, Index j) {
   return least;
 }
 
-// The definition, by brute force: spheres half a mean radius apart stand for a cone. Two of them touch where no more than
-// half of the smaller radius is between them, apart from what spheres lack of a cone. Pairs of touching spheres are connected where one sphere stays and the other moves on
-// to its neighbour along the centerline; cones are local to each other where a pair of their spheres is connected to a
-// sphere paired with itself.
+// The definition, by brute force: spheres half a mean radius apart stand for a cone. Two of them touch where no more
+// than half of the smaller radius is between them, apart from what spheres lack of a cone. Pairs of touching spheres
+// are connected where one sphere stays and the other moves on to its neighbour along the centerline; cones are local to
+// each other where a pair of their spheres is connected to a sphere paired with itself.
 class Locality {
  public:
   explicit Locality(const VesselField& field)

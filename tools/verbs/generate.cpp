@@ -112,8 +112,8 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
   return loaded;
 }
 
-/// Leaves out the nodes that the surface does not need. Without a value all are needed; or the budget decides, for every
-/// surface that is tried, which are.
+/// Leaves out the nodes that the surface does not need. Without a value all are needed; or the budget decides, for
+/// every surface that is tried, which are.
 std::optional<SimplifiedCenterline> simplify(const Centerline& centerline, const GenerateArguments& arguments,
                                              Console& console) {
   const GenerateOptions& options = arguments.options;
@@ -121,7 +121,8 @@ std::optional<SimplifiedCenterline> simplify(const Centerline& centerline, const
   std::optional<SimplifiedCenterline> simplified = simplify_for_growth(centerline, options);
   if (!simplified->is_simpler()) return std::nullopt;
   console.log(std::to_string(simplified->node.size()) + " of the nodes steer the surface; without the others the " +
-              "vessels are the same up to " + number(100 * simplified->max_deviation_relative, 1) + " % of their radius");
+              "vessels are the same up to " + number(100 * simplified->max_deviation_relative, 1) +
+              " % of their radius");
   return simplified;
 }
 
@@ -356,8 +357,7 @@ int run(const GenerateArguments& given, Console& console) {
     kept_budget = surface.met();
     result = std::move(surface.result);
   } else {
-    result =
-        naming_file(arguments, [&] { return generate_surface(centerline, growth_options, console.progress()); });
+    result = naming_file(arguments, [&] { return generate_surface(centerline, growth_options, console.progress()); });
   }
   if (simplified && !result.is_sound()) {
     console.log("that surface is not sound: once more, with all nodes");

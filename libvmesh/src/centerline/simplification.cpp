@@ -87,8 +87,8 @@ class Simplifier {
       const CenterlineNode& node = centerline_.node(branch.nodes[i]);
       const double foot = (node.position - a.position).dot(axis) / length2;
       const double t = std::clamp(foot, places_.back(), 1.0);
-      const double deviation = (node.position - a.position - t * axis).norm() +
-                               std::abs(node.radius - ((1 - t) * a.radius + t * b.radius));
+      const double deviation =
+          (node.position - a.position - t * axis).norm() + std::abs(node.radius - ((1 - t) * a.radius + t * b.radius));
       if (deviation > tolerance_(node.radius)) return false;
       worst_ = std::max(worst_, deviation);
       worst_relative_ = std::max(worst_relative_, deviation / node.radius);

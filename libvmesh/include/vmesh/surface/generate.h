@@ -84,8 +84,8 @@ struct GenerateOptions {
 };
 
 /// A centerline without the nodes that growth does not need: the cost of a surface is that of what comes out, not of
-/// what goes in. Nowhere does the boundary move by more than options.simplification times what edges across a vessel cut
-/// off it, or than a tenth of options.max_error.
+/// what goes in. Nowhere does the boundary move by more than options.simplification times what edges across a vessel
+/// cut off it, or than a tenth of options.max_error.
 SimplifiedCenterline simplify_for_growth(const Centerline& centerline, const GenerateOptions& options);
 
 /// The options for a surface around simplify_for_growth(): simplified no further, and with a limit on the error that
@@ -199,9 +199,9 @@ struct GenerateResult {
   std::vector<Opening> openings;           ///< ascending in the nodes
   ErrorSummary error;                      ///< with max_error
   SimplificationSummary simplification;
-  GrowthSummary growth;                    ///< of guided growth; empty after paper growth
-  std::vector<Defect> defects;             ///< none: the surface is sound
-  SurfaceCheck check;                      ///< what `defects` follows from
+  GrowthSummary growth;         ///< of guided growth; empty after paper growth
+  std::vector<Defect> defects;  ///< none: the surface is sound
+  SurfaceCheck check;           ///< what `defects` follows from
   std::vector<StageTime> stages;
   std::vector<GrowthWarning> warnings;
 

@@ -53,8 +53,8 @@ void refer_to_original(const SimplifiedCenterline& simplified, GenerateResult& r
     if (defect.segment != kNone) defect.segment = simplified.original(defect.segment, 0.5).segment;
     if (defect.node != kNone) defect.node = simplified.node[defect.node];
   }
-  result.simplification = {simplified.pieces.size() - simplified.centerline.segments().size(),
-                           simplified.max_deviation, simplified.max_deviation_relative};
+  result.simplification = {simplified.pieces.size() - simplified.centerline.segments().size(), simplified.max_deviation,
+                           simplified.max_deviation_relative};
 }
 
 std::vector<Index> numbers_in(const SimplifiedCenterline& simplified, std::size_t original_nodes) {

@@ -45,7 +45,8 @@ std::vector<LatticeBall> balls_along(const VesselField& field, double cube, doub
       const double radius = field.radius_at(cone, t), finest = std::max(kSpacing * thinnest, kFiner * radius);
       const Vec3 p = field.axis_point(cone, t);
       const double depth = finest < cube ? depth_at(field, p, cone, radius) : 0;
-      if (depth <= 0) balls.push_back({p, kReach * radius, finest});
+      const bool known = t == 0 && !balls.empty() && balls.back().center == p;  // the end of the cone before
+      if (depth <= 0 && !known) balls.push_back({p, kReach * radius, finest});
       if (t == 1) break;
       t = length > 0 ? std::min(1.0, t + std::max(kBallStep * radius, 0.5 * depth) / length) : 1;
     }

@@ -17,7 +17,7 @@ constexpr std::size_t kLongest = 96;  // rings between two seams: a piece of som
 // Rings of a tube that stay with a junction, where the tube is longer than kShort: what is tried for the junction again
 // and again is not tried for all of its vessels.
 constexpr std::size_t kBeside = 12, kShort = 40;
-constexpr std::size_t kWindow = 3;    // rings before and after the middle that may become the seam instead of it
+constexpr std::size_t kWindow = 3;  // rings before and after the middle that may become the seam instead of it
 
 // Two rings and the faces between them.
 struct Band {

@@ -69,7 +69,8 @@ void BoundSurface::guard_crossings() {
     const Vec3 from = field.axis_point(c, 0), to = field.axis_point(c, 1);
     if (from != to) threads.push_back({from, to});
   }
-  guard_ = std::make_unique<CrossingGuard>(mesh, [this](Vertex v) { return role[v] == Role::lid; }, std::move(threads));
+  guard_ = std::make_unique<CrossingGuard>(
+      mesh, [this](Vertex v) { return role[v] == Role::lid; }, std::move(threads));
 }
 
 void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {

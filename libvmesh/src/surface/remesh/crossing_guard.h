@@ -25,8 +25,8 @@ class CrossingGuard {
 
   using Thread = std::array<Vec3, 2>;
 
-  /// `is_lid`: for every vertex, whether it is the middle of a lid; the mesh is kept as a reference. `threads`: straight
-  /// pieces of the axes of the vessels, which belong inside.
+  /// `is_lid`: for every vertex, whether it is the middle of a lid; the mesh is kept as a reference. `threads`:
+  /// straight pieces of the axes of the vessels, which belong inside.
   CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_lid, std::vector<Thread> threads);
 
   /// Whether `v` may go to `p`.

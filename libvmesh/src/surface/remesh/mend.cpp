@@ -11,19 +11,19 @@
 namespace vmesh {
 namespace {
 
-constexpr int kRounds = 20;        // through all bad faces
-constexpr double kPaysOff = 0.998; // worst skewness around against that before
+constexpr int kRounds = 20;         // through all bad faces
+constexpr double kPaysOff = 0.998;  // worst skewness around against that before
 
 constexpr double kMostOffBoundary = 0.15;  // edge lengths that one step may lead from it
 constexpr double kDiagonal = 0.70710678118654752;
 constexpr std::array<std::array<double, 2>, 8> kDirections = {{{1, 0},
-                                                              {kDiagonal, kDiagonal},
-                                                              {0, 1},
-                                                              {-kDiagonal, kDiagonal},
-                                                              {-1, 0},
-                                                              {-kDiagonal, -kDiagonal},
-                                                              {0, -1},
-                                                              {kDiagonal, -kDiagonal}}};
+                                                               {kDiagonal, kDiagonal},
+                                                               {0, 1},
+                                                               {-kDiagonal, kDiagonal},
+                                                               {-1, 0},
+                                                               {-kDiagonal, -kDiagonal},
+                                                               {0, -1},
+                                                               {kDiagonal, -kDiagonal}}};
 
 // Applies to one face after the other the step that helps most.
 class Mender {

@@ -23,11 +23,7 @@ void sort_unique(std::vector<T>& list) {
 class Polisher {
  public:
   Polisher(SweepState& state, Remesher& remesher, double good_energy)
-      : state_(state),
-        remesher_(remesher),
-        surface_(state.surface),
-        mesh_(state.mesh),
-        good_energy_(good_energy) {}
+      : state_(state), remesher_(remesher), surface_(state.surface), mesh_(state.mesh), good_energy_(good_energy) {}
 
   void polish() {
     for (int round = 0; round < kRounds; ++round) {
