@@ -83,6 +83,11 @@ class Mender {
     return std::any_of(steps.begin(), steps.end(), [&](const Step& step) { return take(step); });
   }
 
+  bool any_is_lid(std::initializer_list<Vertex> vertices) const {
+    return std::any_of(vertices.begin(), vertices.end(),
+                       [&](Vertex v) { return surface_.role[v] == BoundSurface::Role::lid; });
+  }
+
   // A step is offered if it lowers the worst skewness of the faces it changes.
   void offer(const Step& step, double before, std::vector<Step>& steps) const {
     if (step.worst < kPaysOff * before) steps.push_back(step);
@@ -92,9 +97,7 @@ class Mender {
     const Halfedge o = mesh_.opposite(h);
     const Vertex a = mesh_.source(h), b = mesh_.target(h);
     const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
-    for (const Vertex v : {a, b, c, d}) {
-      if (surface_.role[v] == BoundSurface::Role::lid) return;
-    }
+    if (any_is_lid({a, b, c, d})) return;
     if ((surface_.held(a) && surface_.held(b)) || (surface_.held(c) && surface_.held(d))) return;
     if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge()) return;
     const double worst = std::max(equiangle_skewness(mesh_.point(c), mesh_.point(d), mesh_.point(b)),
@@ -118,9 +121,7 @@ class Mender {
     const Halfedge o = mesh_.opposite(h);
     const Vertex a = mesh_.source(h), b = mesh_.target(h);
     const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
-    for (const Vertex v : {a, b, c, d}) {
-      if (surface_.role[v] == BoundSurface::Role::lid) return;
-    }
+    if (any_is_lid({a, b, c, d})) return;
     if (surface_.held(a) && surface_.held(b)) return;
     const Vec3 middle = 0.5 * (mesh_.point(a) + mesh_.point(b));
     double worst = 0;
