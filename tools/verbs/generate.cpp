@@ -126,18 +126,6 @@ std::optional<SimplifiedCenterline> simplify(const Centerline& centerline, const
   return simplified;
 }
 
-/// Options for growth around the simplified centerline; ends that are to be open are found there by its numbers.
-GenerateOptions after_simplification(const GenerateArguments& arguments, const SimplifiedCenterline& simplified) {
-  GenerateOptions options = vmesh::after_simplification(arguments.options, simplified);
-  for (Index& n : options.open_ends.nodes) {
-    const auto it = std::lower_bound(simplified.node.begin(), simplified.node.end(), n);
-    if (it == simplified.node.end() || *it != n)
-      throw InvalidInput("node " + std::to_string(n) + " cannot be left open: it is not an end of the centerline");
-    n = static_cast<Index>(it - simplified.node.begin());
-  }
-  return options;
-}
-
 /// Finds where vessels touch and, when asked to, narrows or moves them. Without a value the vessels stay as they are.
 std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, const Centerline& centerline,
                                                    Console& console) {
@@ -351,7 +339,8 @@ int run(const GenerateArguments& given, Console& console) {
 
   bool kept_budget = true;
   GenerateResult result;
-  const GenerateOptions growth_options = simplified ? after_simplification(arguments, *simplified) : arguments.options;
+  const GenerateOptions growth_options =
+      simplified ? after_simplification(arguments.options, *simplified) : arguments.options;
   if (arguments.budget) {
     BudgetedSurface surface = grow_within_budget(report, centerline, arguments, console);
     kept_budget = surface.met();

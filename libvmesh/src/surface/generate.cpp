@@ -13,7 +13,6 @@
 
 #include "surface/input/buried_branches.h"
 #include "surface/input/scale_check.h"
-#include "surface/input/simplified.h"
 #include "surface/paper/paper_growth.h"
 #include "surface/pieces/grow_pieces.h"
 #include "surface/proof/defects.h"
@@ -228,9 +227,7 @@ GenerateResult generate_simplified(const Centerline& centerline, const GenerateO
   if (options.simplification > 0)
     clock.time("simplify", [&] { simplified.emplace(simplify_for_growth(centerline, options)); });
   if (simplified && simplified->is_simpler()) {
-    GenerateOptions growth_options = after_simplification(options, *simplified);
-    const std::vector<Index> number = numbers_in(*simplified, centerline.nodes().size());
-    for (Index& n : growth_options.open_ends.nodes) n = number[n];
+    const GenerateOptions growth_options = after_simplification(options, *simplified);
     crossings = grow_guided(simplified->centerline, growth_options, progress, clock, result);
     refer_to_original(*simplified, result);
   } else {

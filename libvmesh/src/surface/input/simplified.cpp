@@ -1,4 +1,7 @@
-#include "surface/input/simplified.h"
+#include <algorithm>
+
+#include "vmesh/core/error.h"
+#include "vmesh/surface/generate.h"
 
 #include "surface/remesh/sweep_state.h"
 
@@ -12,6 +15,15 @@ constexpr int kLeastAround = 6;
 // Of the limit, for the surface around the simplified vessels. Derived: a limit in radii is taken of theirs, which are
 // larger by a hundredth at most.
 constexpr double kLeftOfLimit = 0.88;
+
+// An end of the original, by its number there.
+Index end_in(const SimplifiedCenterline& simplified, Index node) {
+  const auto it = std::lower_bound(simplified.node.begin(), simplified.node.end(), node);
+  const auto number = static_cast<Index>(it - simplified.node.begin());
+  if (it == simplified.node.end() || *it != node || simplified.centerline.degree(number) != 1)
+    throw InvalidInput("node " + std::to_string(node) + " cannot be left open: it is not an end of the centerline");
+  return number;
+}
 
 }  // namespace
 
@@ -28,6 +40,7 @@ GenerateOptions after_simplification(const GenerateOptions& options, const Simpl
   GenerateOptions result = options;
   result.simplification = 0;
   if (!simplified.is_simpler()) return result;
+  for (Index& n : result.open_ends.nodes) n = end_in(simplified, n);
   result.max_error.mm *= kLeftOfLimit;
   result.max_error.relative *= kLeftOfLimit;
   return result;
@@ -55,12 +68,6 @@ void refer_to_original(const SimplifiedCenterline& simplified, GenerateResult& r
   }
   result.simplification = {simplified.pieces.size() - simplified.centerline.segments().size(), simplified.max_deviation,
                            simplified.max_deviation_relative};
-}
-
-std::vector<Index> numbers_in(const SimplifiedCenterline& simplified, std::size_t original_nodes) {
-  std::vector<Index> numbers(original_nodes, kNone);
-  for (Index n = 0; n < simplified.node.size(); ++n) numbers[simplified.node[n]] = n;
-  return numbers;
 }
 
 }  // namespace vmesh
