@@ -339,8 +339,8 @@ int run(const GenerateArguments& given, Console& console) {
 
   bool kept_budget = true;
   GenerateResult result;
-  const GenerateOptions growth_options =
-      simplified ? after_simplification(arguments.options, *simplified) : arguments.options;
+  const GenerateOptions growth_options = naming_file(
+      arguments, [&] { return simplified ? after_simplification(arguments.options, *simplified) : arguments.options; });
   if (arguments.budget) {
     BudgetedSurface surface = grow_within_budget(report, centerline, arguments, console);
     kept_budget = surface.met();

@@ -193,8 +193,7 @@ void renumber(const GrowthCenterline& growth, const Centerline& full, GenerateRe
     GrowthSimplification note{
         GrowthSimplification::Kind::buried_branch, full.point_at(middle, 0.5), {}, buried.segments, {}};
     std::ostringstream text;
-    text << "the branch of " << buried.segments.size() << " segments around segment " << middle << " at ("
-         << note.position.x() << ", " << note.position.y() << ", " << note.position.z()
+    text << "the branch at (" << note.position.x() << ", " << note.position.y() << ", " << note.position.z()
          << ") was left out: the other vessels cover it";
     note.message = text.str();
     result.growth.simplifications.push_back(std::move(note));
