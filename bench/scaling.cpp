@@ -2,13 +2,16 @@
 // of some runs, and the exponent of the step from one line to the next beside that of n log n. Every run is a process
 // of its own, so that its peak memory is its own; all sizes are run once before one is run again, so that a machine
 // that changes its speed changes it for all. What is measured is told on standard error as it comes. Usage:
-// bench_scaling [--runs=N] [--threads=N] [SEGMENTS...]; 3 runs each on one thread and on two, of 100 to 100,000.
+// bench_scaling [--runs=N] [--threads=N] [--shape=tree|star|chain|walk] [SEGMENTS...]; 3 runs each on one thread and
+// on two, of 100 to 100,000. The other shapes are those of tests/support/hard_vessels.h; vessels that touch are
+// separated first, which counts.
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +24,9 @@
 #include "vmesh/evaluation/vessel_distance.h"
 #include "vmesh/quality/quality_report.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/volume/contacts.h"
+
+#include "hard_vessels.h"
 
 namespace {
 
@@ -45,17 +51,28 @@ double seconds_of(Work&& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-Run measure(int segments, int threads) {
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+Centerline vessels(std::string_view shape, int segments) {
+  if (shape == "star") return testing::star(segments / 3);
+  if (shape == "chain") return testing::uneven_chain(segments + 1, 1);
+  if (shape == "walk") return testing::random_walk(segments + 1, 1);
   SyntheticTreeOptions tree;
   tree.vertices = segments + 1;
-  const Centerline centerline = synthetic_tree(tree);
+  return synthetic_tree(tree);
+}
+
+Run measure(std::string_view shape, int segments, int threads) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  Centerline centerline = vessels(shape, segments);
   GenerateOptions options;
   options.threads = threads;
   options.max_vertices = 1'000'000'000;
   Run run;
   GenerateResult surface;
-  run.generate_s = seconds_of([&] { surface = generate_surface(centerline, options); });
+  run.generate_s = seconds_of([&] {
+    if (shape != "tree") centerline = separate_contacts(centerline).centerline;
+    surface = generate_surface(centerline, options);
+  });
+  if (!surface.is_sound()) throw std::runtime_error(surface.defects.front().message);
   run.generate_mb = peak_mb();
   run.vertices = static_cast<double>(surface.mesh.vertices.size());
   run.evaluate_s = seconds_of([&] {
@@ -68,13 +85,13 @@ Run measure(int segments, int threads) {
 }
 
 // In a process of its own. Without a value it has failed, and said why.
-bool measure_apart(int segments, int threads, Run& run) {
+bool measure_apart(std::string_view shape, int segments, int threads, Run& run) {
   std::array<int, 2> ends;
   if (pipe(ends.data()) != 0) return false;
   const pid_t child = fork();
   if (child == 0) {
     try {
-      run = measure(segments, threads);
+      run = measure(shape, segments, threads);
     } catch (const std::exception& error) {
       std::fprintf(stderr, "%d segments: %s\n", segments, error.what());
       _exit(1);
@@ -104,12 +121,13 @@ Run medians(std::vector<Run> runs) {
 }
 
 // Runs of every size. Empty when one has failed.
-std::vector<std::vector<Run>> measure_all(const std::vector<int>& sizes, int threads, int runs) {
+std::vector<std::vector<Run>> measure_all(std::string_view shape, const std::vector<int>& sizes, int threads,
+                                          int runs) {
   std::vector<std::vector<Run>> measured(sizes.size());
   for (int r = 0; r < runs; ++r) {
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       Run run;
-      if (!measure_apart(sizes[i], threads, run)) return {};
+      if (!measure_apart(shape, sizes[i], threads, run)) return {};
       std::fprintf(stderr, "%d segments, %d threads, run %d: generate %.2f s, evaluate %.2f s\n", sizes[i], threads,
                    r + 1, run.generate_s, run.evaluate_s);
       measured[i].push_back(run);
@@ -134,6 +152,7 @@ void print_line(int segments, int threads, const Run& run) {
 
 int main(int argc, char** argv) {
   std::vector<int> sizes, thread_counts = {1, 2};
+  std::string_view shape = "tree";
   int runs = 3;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
@@ -141,6 +160,8 @@ int main(int argc, char** argv) {
       runs = std::max(1, std::atoi(argv[i] + 7));
     } else if (argument.starts_with("--threads=")) {
       thread_counts = {std::max(1, std::atoi(argv[i] + 10))};
+    } else if (argument.starts_with("--shape=")) {
+      shape = argument.substr(8);
     } else {
       sizes.push_back(std::atoi(argv[i]));
     }
@@ -150,7 +171,7 @@ int main(int argc, char** argv) {
       "| segments | threads | vertices | generate, s | us a vertex | peak MB | evaluate, s | us a vertex | peak MB | "
       "exponents: generate | evaluate | n log n |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   for (const int threads : thread_counts) {
-    const auto measured = measure_all(sizes, threads, runs);
+    const auto measured = measure_all(shape, sizes, threads, runs);
     if (measured.empty()) return 1;
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       const Run run = medians(measured[i]);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hard_vessels.h"
 #include "sound_surface.h"
 
 namespace vmesh {
@@ -150,6 +151,27 @@ TEST(SoundShapes, TwoVesselsAMillionthApart) {
       }
     }
   }
+}
+
+// Node 1 lies within its thick neighbour, so near that a junction's centerline once left the thick one out.
+TEST(SoundShapes, ThickNodesNextToThinOnes) {
+  const Centerline centerline(
+      {{{0, 0, 0}, 0.165}, {{3.5, 0.37, 1.75}, 2.91}, {{3.77, 0.15, 2.01}, 0.139}, {{5.1, -1.22, 1.83}, 1.586}},
+      {{0, 1}, {1, 2}, {2, 3}});
+  const GenerateResult result = generate_surface(centerline, {});
+  ASSERT_TRUE(result.is_sound());
+  const VesselField field(centerline, GenerateOptions().blend);
+  for (const Vec3& v : result.mesh.vertices) EXPECT_GT(field.sample_global(v).distance, -0.3 * 1.586);
+}
+
+TEST(SoundShapes, AHubOfVeryManyBranches) { expect_sound(testing::star(160)); }
+
+TEST(SoundShapes, UnevenChains) {
+  for (const std::uint32_t seed : {1, 2}) expect_sound(testing::uneven_chain(200, seed));
+}
+
+TEST(SoundShapes, RandomWalks) {
+  for (const std::uint32_t seed : {1, 2}) expect_sound_or_refused_with_reason(testing::random_walk(200, seed));
 }
 
 }  // namespace

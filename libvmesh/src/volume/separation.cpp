@@ -16,6 +16,7 @@ namespace {
 // More than the gap is aimed for, so that rounds of narrowing end.
 constexpr double kSpare = 0.02;
 constexpr double kMoved = 1e-9;  // radii: what counts as moved
+constexpr int kAttempts = 3;     // at moving where moves were in vain
 
 void check(const SeparationOptions& options) {
   if (!(options.gap > 0 && options.gap <= 1)) throw InvalidInput("gap must be in (0, 1]");
@@ -271,8 +272,8 @@ SeparatedCenterline narrow_moved(const Centerline& original, const Moving& movin
 }
 
 // Moves vessels apart until narrowing by a moderate share can do the rest, or the rounds run out.
-Moving moved_apart(const Centerline& original, const SeparationOptions& options, const Progress& progress) {
-  Moving moving(original, options.slope);
+void move_vessels(const Centerline& original, const SeparationOptions& options, const Progress& progress,
+                  Moving& moving) {
   const auto look = [&](const DividedCenterline& vessels) {
     return move_apart({original, vessels, options.gap, options.blend, options.move_beyond}, moving) > 0;
   };
@@ -285,7 +286,6 @@ Moving moved_apart(const Centerline& original, const SeparationOptions& options,
       if (!look(composed(moved, narrower.narrowed()))) break;
     }
   }
-  return moving;
 }
 
 // Moves of vessels that still touch where they were moved. Returns whether there were any.
@@ -303,6 +303,24 @@ bool take_back_moves_in_vain(const Centerline& original, Moving& moving, const s
   return moving.shifts().size() < count;
 }
 
+// Where moves were in vain they are taken back, and tried anew beside those that were not.
+SeparatedCenterline moved_and_narrowed(const Centerline& original, const SeparationOptions& options,
+                                       const Progress& progress) {
+  Moving moving(original, options.slope);
+  move_vessels(original, options, progress, moving);
+  SeparatedCenterline best = narrow_moved(original, moving, options, progress);
+  std::vector<Contact> left = best.report.left;
+  for (int attempt = 0; attempt < kAttempts && take_back_moves_in_vain(original, moving, left); ++attempt) {
+    for (const bool anew : {false, true}) {
+      if (anew) move_vessels(original, options, progress, moving);
+      SeparatedCenterline other = narrow_moved(original, moving, options, progress);
+      left = other.report.left;
+      if (left.size() < best.report.left.size() + !anew) best = std::move(other);
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options,
@@ -312,12 +330,7 @@ SeparatedCenterline separate_contacts(const Centerline& centerline, const Separa
   SeparatedCenterline separated = narrow_moved(centerline, Moving(centerline, options.slope), options, progress);
   const bool enough = separated.report.left.empty() && separated.report.max_taken_relative <= options.move_beyond;
   if (!enough && options.move_beyond < options.most_taken && options.max_moves > 0) {
-    Moving moving = moved_apart(centerline, options, progress);
-    SeparatedCenterline moved = narrow_moved(centerline, moving, options, progress);
-    if (take_back_moves_in_vain(centerline, moving, moved.report.left)) {
-      SeparatedCenterline fewer = narrow_moved(centerline, moving, options, progress);
-      if (fewer.report.left.size() <= moved.report.left.size()) moved = std::move(fewer);
-    }
+    SeparatedCenterline moved = moved_and_narrowed(centerline, options, progress);
     const std::size_t left = moved.report.left.size();
     if (left == 0 || left < separated.report.left.size()) separated = std::move(moved);
   }

@@ -45,7 +45,7 @@ struct SeparationOptions {
   /// (0, 1]. From most_taken on, or with max_moves 0, no vessel is moved.
   double move_beyond = 0.5;
   double slope = 0.5;  ///< how fast an axis may go aside, per length of it; in (0, 0.5]
-  int max_moves = 16;  ///< rounds of looking for contacts and moving vessels
+  int max_moves = 40;  ///< rounds of looking for contacts and moving vessels
 };
 
 /// One vessel that was moved away from another at a contact.

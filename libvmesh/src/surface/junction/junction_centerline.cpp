@@ -1,11 +1,24 @@
 #include "surface/junction/junction_centerline.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace vmesh {
 namespace {
 
-constexpr double kShortestPiece = 0.3;  // radii between nodes of a junction's centerline: finer ones do not matter
+// Nodes of a junction's centerline closer than that, radii, are left out where the vessel without them is the same up
+// to kAlike radii.
+constexpr double kShortestPiece = 0.3, kAlike = 0.2;
+
+// Whether the vessel at `place` is another than it would be without a node between `before` and `after`.
+bool sticks_out(const BranchAxis& axis, double before, double place, double after) {
+  const BranchAxis::Point a = axis.at(before), p = axis.at(place), b = axis.at(after);
+  const double t = (place - before) / (after - before);
+  const double aside = (p.position - (1 - t) * a.position - t * b.position).norm();
+  const double thicker = p.radius - (1 - t) * a.radius - t * b.radius;
+  return aside + std::abs(thicker) > kAlike * std::min(p.radius, (1 - t) * a.radius + t * b.radius);
+}
 
 class JunctionCenterlineMaker {
  public:
@@ -37,16 +50,27 @@ class JunctionCenterlineMaker {
     return add_node(point.position, point.radius);
   }
 
+  // Their places along the branch, ascending.
+  static std::vector<double> nodes_within(const BranchAxis& axis, const Gap& gap) {
+    std::vector<double> places;
+    for (double lap = 0; lap <= (axis.periodic() ? axis.length() : 0); lap += axis.length()) {
+      for (std::size_t i = 0; i < axis.branch().nodes.size(); ++i) {
+        const double place = lap + axis.node_place(i);
+        if (place > gap.begin && place < gap.end && (places.empty() || place > places.back())) places.push_back(place);
+      }
+    }
+    return places;
+  }
+
   void add(const Gap& gap, Index number) {
     const BranchAxis& axis = axes_[gap.branch];
+    const std::vector<double> nodes = nodes_within(axis, gap);
     std::vector<double> places = {gap.begin};
-    const auto pass = [&](double place) {
-      const double shortest = kShortestPiece * axis.at(place).radius;
-      if (place > gap.begin + shortest && place < gap.end - shortest && place > places.back() + shortest)
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const double place = nodes[i], after = i + 1 < nodes.size() ? nodes[i + 1] : gap.end;
+      const double alone = std::min(place - places.back(), gap.end - place);
+      if (alone > kShortestPiece * axis.at(place).radius || sticks_out(axis, places.back(), place, after))
         places.push_back(place);
-    };
-    for (double lap = 0; lap <= (axis.periodic() ? axis.length() : 0); lap += axis.length()) {
-      for (std::size_t i = 0; i < axis.branch().nodes.size(); ++i) pass(lap + axis.node_place(i));
     }
     places.push_back(gap.end);
     Index last = end_node(gap, 0);

@@ -1,0 +1,64 @@
+// Centerlines that take longest for their size: everything in one junction, or no vessel anywhere.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "vmesh/centerline/centerline.h"
+
+#include "draw.h"
+
+namespace vmesh::testing {
+
+/// So many equal branches of one node, 120 radii long, evenly in all directions.
+inline Centerline star(int branches) {
+  constexpr double kLength = 60, kRadius = 0.5;
+  std::vector<CenterlineNode> nodes = {{Vec3::Zero(), kRadius}};
+  std::vector<CenterlineSegment> segments;
+  for (int i = 0; i < branches; ++i) {
+    const double z = 1 - (2.0 * i + 1) / branches, angle = i * std::numbers::pi * (3 - std::sqrt(5));
+    const double across = std::sqrt(1 - z * z);
+    Index last = 0;
+    for (const double t : {1.0 / 3, 2.0 / 3, 1.0}) {
+      nodes.push_back({t * kLength * Vec3(across * std::cos(angle), across * std::sin(angle), z), kRadius});
+      segments.push_back({last, static_cast<Index>(nodes.size() - 1)});
+      last = segments.back().b;
+    }
+  }
+  return {nodes, segments};
+}
+
+namespace detail {
+
+template <class Step, class Radius>
+Centerline line_of(int count, const Step& step, const Radius& radius) {
+  std::vector<CenterlineNode> nodes;
+  std::vector<CenterlineSegment> segments;
+  Vec3 at = Vec3::Zero();
+  for (int i = 0; i < count; ++i) {
+    nodes.push_back({at, radius()});
+    if (i > 0) segments.push_back({static_cast<Index>(i - 1), static_cast<Index>(i)});
+    at += step();
+  }
+  return {nodes, segments};
+}
+
+}  // namespace detail
+
+/// A line of nodes of any radius from .05 to 3, mostly within each other; it drifts, so that it does not meet itself.
+inline Centerline uneven_chain(int count, std::uint32_t seed) {
+  Draw draw(seed);
+  return detail::line_of(
+      count, [&] { return Vec3(draw.uniform(0.5, 3) * (0.8 * draw.direction() + Vec3::UnitX())); },
+      [&] { return draw.uniform(0.05, 3); });
+}
+
+/// A line that goes anywhere, through itself too, by steps of two to four diameters.
+inline Centerline random_walk(int count, std::uint32_t seed) {
+  Draw draw(seed);
+  return detail::line_of(
+      count, [&] { return Vec3(2 * draw.direction()); }, [&] { return draw.uniform(0.3, 0.6); });
+}
+
+}  // namespace vmesh::testing
