@@ -6,11 +6,17 @@ namespace vmesh {
 namespace {
 
 constexpr std::size_t kMostLatest = 32;  // faces that are looked at one by one
+constexpr int kPartsOfThread = 8;        // each in a box of its own: that of an aslant thread is mostly empty
+constexpr double kRounding = 1e-15;      // of coordinates, in a point between two others
 constexpr double kRoom = 0.25;           // around a face in its box, in the diagonal of what it needs
 
 std::pair<Vec3, Vec3> box_of(const PlacedFace& f) {
   const auto& [a, b, c] = f.points;
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+}
+
+bool are_apart(const Vec3& low, const Vec3& high, const Vec3& other_low, const Vec3& other_high) {
+  return (low.array() > other_high.array()).any() || (other_low.array() > high.array()).any();
 }
 
 }  // namespace
@@ -19,8 +25,13 @@ CrossingGuard::CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_li
     : mesh_(mesh), is_lid_(std::move(is_lid)), threads_(std::move(threads)) {
   std::vector<Vec3> low, high;
   for (const auto& [from, to] : threads_) {
-    low.push_back(from.cwiseMin(to));
-    high.push_back(from.cwiseMax(to));
+    for (int i = 0; i < kPartsOfThread; ++i) {
+      const double t0 = double(i) / kPartsOfThread, t1 = double(i + 1) / kPartsOfThread;
+      const Vec3 begin = (1 - t0) * from + t0 * to, end = (1 - t1) * from + t1 * to;
+      const double rounding = kRounding * (from.cwiseAbs() + to.cwiseAbs()).maxCoeff();
+      low.push_back(begin.cwiseMin(end).array() - rounding);
+      high.push_back(begin.cwiseMax(end).array() + rounding);
+    }
   }
   thread_tree_ = BoxTree(low, high);
   for (const Face f : mesh.faces()) insert(f);
@@ -28,7 +39,7 @@ CrossingGuard::CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_li
 
 // Its box still holds it.
 bool CrossingGuard::is_current(const Entry& entry) const {
-  return entry.face.idx() < mesh_.num_faces() && box_[entry.face.idx()].number == entry.number &&
+  return box_[entry.face.idx()].number == entry.number && entry.face.idx() < mesh_.num_faces() &&
          !mesh_.is_removed(entry.face);
 }
 
@@ -98,7 +109,8 @@ bool CrossingGuard::cross_threads(const std::vector<PlacedFace>& faces, const st
   return std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
     const auto [low, high] = box_of(face);
     bool crossed = false;
-    thread_tree_.visit_overlapping(low, high, [&](Index thread) {
+    thread_tree_.visit_overlapping(low, high, [&](Index part) {
+      const Index thread = part / kPartsOfThread;
       if (crossed || !meets(face, thread)) return;
       crossed = std::none_of(gone.begin(), gone.end(), [&](Face f) {
         const PlacedFace before = placed(f);
@@ -120,16 +132,17 @@ bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std
   bool crossed = false;
   const auto look_at = [&](const Entry& entry) {
     if (crossed || !is_current(entry)) return;
+    const Box& room = box_[entry.face.idx()];
+    if (are_apart(room.low, room.high, low, high)) return;
     const PlacedFace other = placed(entry.face);
-    const auto [other_low, other_high] = box_of(other);
-    const auto apart_from = [&, first = other_low, last = other_high](const Vec3& from, const Vec3& to) {
-      return (first.array() > to.array()).any() || (from.array() > last.array()).any();
-    };
-    if (apart_from(low, high) || std::find(gone.begin(), gone.end(), entry.face) != gone.end() || is_degenerate(other))
+    const auto other_box = box_of(other);
+    const Vec3 &other_low = other_box.first, &other_high = other_box.second;
+    if (are_apart(other_low, other_high, low, high) || std::find(gone.begin(), gone.end(), entry.face) != gone.end() ||
+        is_degenerate(other))
       return;
     crossed = std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
       const auto box = box_of(face);
-      return !apart_from(box.first, box.second) && intersect(face, other);
+      return !are_apart(other_low, other_high, box.first, box.second) && intersect(face, other);
     });
   };
   for (const Entry& entry : latest_) look_at(entry);

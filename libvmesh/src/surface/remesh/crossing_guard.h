@@ -72,7 +72,7 @@ class CrossingGuard {
   std::vector<Layer> layers_;  // each less than half as large as the one before
   std::vector<Entry> latest_;  // not in a layer yet
   std::vector<Thread> threads_;
-  BoxTree thread_tree_;
+  BoxTree thread_tree_;  // of their parts
 };
 
 }  // namespace vmesh
