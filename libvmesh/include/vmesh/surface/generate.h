@@ -72,8 +72,9 @@ struct GenerateOptions {
   /// Sweeps of the final optimisation; 0 leaves the surface as it was grown.
   int sweeps = 30;
   /// Nodes of the centerline are left out where the vessels change by at most this share of the distance that the
-  /// surface keeps from them anyway, in [0, 1]; see simplify_for_growth(). 0: none. Guided growth only. Measured on 14 trees that are not
-  /// oversampled and six that are: up to 1, mean errors and skewness stay the same to 3 %.
+  /// surface keeps from them anyway, in [0, 1]; see simplify_for_growth(). 0: none. Guided growth only.
+  /// Measured on 14 trees that are not oversampled and six that are: up to 1, mean errors and skewness stay the same
+  /// to 3 %.
   double simplification = 0.5;
   /// A centerline whose length and radii ask for more vertices than this is refused.
   int max_vertices = 20'000'000;
