@@ -43,6 +43,16 @@ VMESH_INLINE void add_diagonal(LanesMatrix& m, Lanes linear, Lanes transverse, L
   m.entries[at(5, 5)] += transverse + excess.z * z.z;
 }
 
+/// An assignment entry by entry: as a whole it would be made by an instruction that is slow to start.
+VMESH_INLINE void copy(const LanesMatrix& from, LanesMatrix& to) {
+#pragma GCC unroll 21
+  for (std::size_t k = 0; k < 21; ++k) to.entries[k] = from.entries[k];
+}
+VMESH_INLINE void clear(LanesMatrix& m) {
+#pragma GCC unroll 21
+  for (std::size_t k = 0; k < 21; ++k) m.entries[k] = all(0);
+}
+
 /// (linear, angular + lever x linear), and the matrix whose product does the same on both sides.
 VMESH_INLINE LanesSpatial carried(const Lanes3& lever, const LanesSpatial& v) {
   return {v.linear, v.angular + cross(lever, v.linear)};
@@ -73,7 +83,8 @@ struct LanesFactors {
   LanesMatrix lower;  ///< L below the diagonal
   Lanes inverse[6];
 
-  VMESH_INLINE explicit LanesFactors(const LanesMatrix& m) : lower(m) {
+  VMESH_INLINE explicit LanesFactors(const LanesMatrix& m) {
+    copy(m, lower);
 #pragma GCC unroll 6
     for (std::size_t k = 0; k < 6; ++k) {
       inverse[k] = 1 / larger(lower.entries[at(k, k)], kLeastPivot * m.entries[at(k, k)]);

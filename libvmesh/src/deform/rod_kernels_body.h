@@ -73,11 +73,12 @@ VMESH_INLINE void reduce_free(const RodBatch& b, const Lanes3& z, LanesMatrix& d
   const Lanes3 lever = b.length * z;
   carry(lever, d);
   f = LanesVector(carried(lever, f.spatial()));
-  LanesMatrix sum = d;
+  LanesMatrix sum, reduced;
+  copy(d, sum);
+  copy(d, reduced);
   add_diagonal(sum, b.w_stretch, b.w_bend, b.w_twist, z);
-  const LanesVector g(f.spatial() + b.spring_gradient);
-  const LanesMatrix copy = d;
-  LanesFactors(sum).subtract_series(copy, g, d, f);
+  LanesFactors(sum).subtract_series(d, LanesVector(f.spatial() + b.spring_gradient), reduced, f);
+  copy(reduced, d);
 }
 
 VMESH_INLINE Lanes3 angular_compliance(const RodBatch& b, const Lanes3& z, const Lanes3& t) {
@@ -166,29 +167,54 @@ VMESH_INLINE void add_children(const RodBatch* batches, const RodBatch& b, const
   }
 }
 
+/// What hangs on the slots, and their own inertia.
+VMESH_INLINE void assemble(const RodBatch* batches, const RodBatch& b, const std::array<Index, kLanes>* children,
+                           const Lanes3& z, LanesMatrix& d, LanesVector& f) {
+  clear(d);
+  add_diagonal(d, b.step_mass, b.step_inertia + b.taut, 2 * b.step_inertia, z);
+  add_children(batches, b, children, d, f);
+}
+
+/// For batches of which some slots are held or roots: what these reduce to instead of `d` and `f`, and x of roots.
+[[gnu::noinline]] void eliminate_special(const RodBatch* batches, RodBatch& b,
+                                         const std::array<Index, kLanes>* children, std::size_t pose, LaneMask m,
+                                         LanesMatrix& d, LanesVector& f) {
+  const Lanes3& z = b.pose[pose].frame.z;
+  LanesMatrix own;
+  LanesVector load(b.gradient);
+  assemble(batches, b, children, z, own, load);
+  const Lanes3 prescribed = b.target - b.pose[pose].position;
+  const LaneMask root = b.is_root != 0, held = holds(b, false);
+  if (b.rooted) b.x = select(m & root, minimum(b, prescribed, own, load), b.x);
+  reduce_held(b, z, prescribed, own, load);
+  for (std::size_t k = 0; k < 21; ++k) d.entries[k] = held ? own.entries[k] : d.entries[k];
+  for (std::size_t k = 0; k < 6; ++k) f[k] = held ? load[k] : f[k];
+}
+
+VMESH_INLINE void store(const LanesMatrix& d, const LanesVector& f, LaneMask m, RodBatch& b) {
+#pragma GCC unroll 21
+  for (std::size_t k = 0; k < 21; ++k) b.reduced.entries[k] = m ? d.entries[k] : b.reduced.entries[k];
+  b.reduced_gradient = select(m, f.spatial(), b.reduced_gradient);
+}
+
 void eliminate(RodBatch* batches, Index batch, const std::array<Index, kLanes>* children, std::size_t pose,
                const char* active) {
   RodBatch& b = batches[batch];
   const LaneMask m = mask_of(active);
   const Lanes3& z = b.pose[pose].frame.z;
-  LanesMatrix d{};
-  add_diagonal(d, b.step_mass, b.step_inertia + b.taut, 2 * b.step_inertia, z);
+  LanesMatrix d;
   LanesVector f(b.gradient);
-  add_children(batches, b, children, d, f);
-  LanesMatrix reduced = d;
-  LanesVector gradient = f;
-  reduce_free(b, z, reduced, gradient);
+  assemble(batches, b, children, z, d, f);
+  reduce_free(b, z, d, f);
   if (b.held || b.rooted) {
-    const Lanes3 prescribed = b.target - b.pose[pose].position;
-    const LaneMask root = b.is_root != 0, held = holds(b, false);
-    if (b.rooted) b.x = select(m & root, minimum(b, prescribed, d, f), b.x);
-    reduce_held(b, z, prescribed, d, f);
-    for (std::size_t k = 0; k < 21; ++k) reduced.entries[k] = held ? d.entries[k] : reduced.entries[k];
-    for (std::size_t k = 0; k < 6; ++k) gradient[k] = held ? f[k] : gradient[k];
+    LanesMatrix special;
+    copy(d, special);
+    LanesVector load = f;
+    eliminate_special(batches, b, children, pose, m, special, load);
+    store(special, load, m, b);
+  } else {
+    store(d, f, m, b);
   }
-#pragma GCC unroll 21
-  for (std::size_t k = 0; k < 21; ++k) b.reduced.entries[k] = m ? reduced.entries[k] : b.reduced.entries[k];
-  b.reduced_gradient = select(m, gradient.spatial(), b.reduced_gradient);
 }
 
 VMESH_INLINE void take(const Lanes3& from, std::size_t lane, Lanes3& to, std::size_t i) {
