@@ -63,8 +63,10 @@ StepReport ImplicitRods::step(RodScene& scene) noexcept {
   pose_ = 0;
   for (const Index batch : visited_batches_) {
     kernels_->begin(batches_.batches[batch], &visited_[batch * kLanes], scene, begin_sums_);
+    eliminate(batch);  // while it is in the cache
     if (batches_.batches[batch].held) note_pulled(batch);
   }
+  eliminated_ = true;
   start_tie_energy_ = tie_energy(scene, false);
   for (int i = 0; i < scene.options.iterations; ++i) {
     report.movement_mm = iterate(scene, i == 0, report);

@@ -43,6 +43,7 @@ class ImplicitRods {
   double iterate(RodScene& scene, bool first, StepReport& report);
   /// Where to move once the solution is known; null: nowhere.
   void solve(const RodScene& scene, const RodMove* then);
+  void eliminate(Index batch);
   void solve_tree(const RodScene& scene, const RodMove* then);
   void solve_growing(const RodScene& scene, const RodMove* then);
   void solve_ties(const RodScene& scene, const RodMove* then);
@@ -70,6 +71,7 @@ class ImplicitRods {
   std::vector<Index> awake_places_, pulled_places_;
   std::size_t awake_count_ = 0, slot_count_ = 0;
   bool all_visited_ = false;
+  bool eliminated_ = false;  // all visited slots, as they are
 
   std::size_t pose_ = 0;  // the current one
   BeginSums begin_sums_;

@@ -35,9 +35,14 @@ void ImplicitRods::solve(const RodScene& scene, const RodMove* then) {
     solve_ties(scene, then);
 }
 
+void ImplicitRods::eliminate(Index batch) {
+  kernels_->eliminate(batches_.batches.data(), batch, batches_.children.data(), pose_, &visited_[batch * kLanes]);
+}
+
 void ImplicitRods::solve_tree(const RodScene& scene, const RodMove* then) {
-  for (const Index batch : visited_batches_)
-    kernels_->eliminate(batches_.batches.data(), batch, batches_.children.data(), pose_, &visited_[batch * kLanes]);
+  if (!eliminated_)
+    for (const Index batch : visited_batches_) eliminate(batch);
+  eliminated_ = false;
   if (all_visited_)
     for (std::size_t i = visited_batches_.size(); i-- > 0;) solve_batch(scene, visited_batches_[i], then);
   else
@@ -124,6 +129,7 @@ void ImplicitRods::solve_loaded(const RodScene& scene, const std::vector<Vec3>& 
       pull(ties[i].slot, sign * load[i]), pull(ties[i].node_slot, -sign * load[i]);
   };
   pull_all(1);
+  eliminated_ = false;
   solve_tree(scene, then);
   if (!then) pull_all(-1);  // moving evaluates the gradients anew
   for (std::size_t i = 0; i < ties.size(); ++i) {

@@ -5,11 +5,18 @@
 namespace vmesh {
 namespace {
 
+/// Slots of one part of the tree are worked on together, so that what they hand on is still in the cache.
+constexpr Index kPart = 2048;
+
+/// Parts follow each other as slots do, so children are in the part of their parent or a later one.
+Index part_of(Index slot) { return slot / kPart; }
+
+/// How many slots of the same part are below on the longest way.
 std::vector<Index> heights_of(const RodScene& scene) {
   std::vector<Index> height(scene.size(), 0);
   for (Index j = static_cast<Index>(scene.size()); j-- > 0;) {
     const Index parent = scene.rods[j].parent;
-    if (parent != kNone) height[parent] = std::max(height[parent], height[j] + 1);
+    if (parent != kNone && part_of(parent) == part_of(j)) height[parent] = std::max(height[parent], height[j] + 1);
   }
   return height;
 }
@@ -21,12 +28,13 @@ std::vector<Index> child_counts_of(const RodScene& scene) {
   return count;
 }
 
-/// By height; those with many children together.
+/// The last part first, each by height; those with many children together.
 std::vector<Index> order_of(const RodScene& scene, const std::vector<Index>& height) {
   const std::vector<Index> children = child_counts_of(scene);
   std::vector<Index> order(scene.size());
   for (Index j = 0; j < order.size(); ++j) order[j] = j;
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    if (part_of(a) != part_of(b)) return part_of(a) > part_of(b);
     return height[a] != height[b] ? height[a] < height[b] : children[a] > children[b];
   });
   return order;
@@ -94,7 +102,8 @@ RodBatches make_rod_batches(const RodScene& scene) {
   all.place_of_slot.resize(scene.size());
   std::size_t lane = kLanes;
   for (std::size_t i = 0; i < order.size(); ++i, ++lane) {
-    if (lane >= kLanes || height[order[i]] != height[order[i - 1]]) {
+    const bool alike = i > 0 && height[order[i]] == height[order[i - 1]] && part_of(order[i]) == part_of(order[i - 1]);
+    if (lane >= kLanes || !alike) {
       all.batches.emplace_back().slot.fill(order[i]);
       lane = 0;
     }
