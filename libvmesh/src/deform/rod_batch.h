@@ -70,9 +70,9 @@ struct alignas(64) RodBatch {
   LanesSpatial reduced_gradient{}, x{};
 };
 
-/// The slots of a tree, large trees in parts, by height: how many of the part are below on the longest way to an end. So
-/// children come before their parents, and what is of one height does not depend on each other. A place is a lane of a
-/// batch, counted through.
+/// The slots of a tree, large trees in parts, by height: how many of the part are below on the longest way to an end.
+/// So children come before their parents, and what is of one height does not depend on each other. A place is a lane of
+/// a batch, counted through.
 struct RodBatches {
   std::vector<RodBatch> batches;  ///< and one more, of zeros
   /// For every batch and rank of a child, the places of these children; the place behind the last batch where there is

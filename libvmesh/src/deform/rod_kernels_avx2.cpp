@@ -1,6 +1,6 @@
 #include "deform/rod_kernels.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
 
 #pragma GCC target("avx2")
 
