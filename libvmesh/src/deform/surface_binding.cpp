@@ -138,7 +138,12 @@ DeformedSurface SurfaceBinding::make_surface(Normals normals) const {
 void SurfaceBinding::apply(const Pose& pose, DeformedSurface& surface) const noexcept { apply(pose, {}, surface); }
 
 void SurfaceBinding::apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface) const noexcept {
-  best_synchroniser()({groups_, rest_, pose, moved}, surface);
+  apply(pose, moved, surface, best_synchroniser());
+}
+
+void SurfaceBinding::apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface,
+                           Synchroniser synchroniser) const noexcept {
+  synchroniser({groups_, rest_, pose, moved}, surface);
 }
 
 }  // namespace vmesh

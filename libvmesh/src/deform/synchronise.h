@@ -14,7 +14,7 @@ struct Attachment {
 
 /// Eq. 10 for all slots that moved, by one set of instructions. All do the same operations in the same order, so the
 /// results are the same to the bit.
-using Synchroniser = void (*)(const Attachment& attachment, DeformedSurface& surface) noexcept;
+using Synchroniser = SurfaceBinding::Synchroniser;
 Synchroniser plain_synchroniser();
 /// Null where the machine, or the compiler, cannot.
 Synchroniser avx2_synchroniser();

@@ -59,6 +59,10 @@ class SurfaceBinding {
   void apply(const Pose& pose, DeformedSurface& surface) const noexcept;
   /// The same where `moved` (one per slot, CenterlineSimulation::moved()) says that something changed.
   void apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface) const noexcept;
+  /// The same by a set of instructions; for tests.
+  using Synchroniser = void (*)(const struct Attachment&, DeformedSurface&) noexcept;
+  void apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface,
+             Synchroniser synchroniser) const noexcept;
 
   /// What is fixed, by lane.
   struct Rest {
