@@ -78,11 +78,14 @@ void step_of_a_twig(benchmark::State& state) {
   state.counters["awake"] = static_cast<double>(awake) / static_cast<double>(steps);
 }
 
+/// Without and with normals.
 void synchronise(benchmark::State& state) {
   Scene scene(static_cast<std::size_t>(state.range(0)), 1);
   const SurfaceBinding binding(scene.tree, scene.simulation.tree(), scene.vertices, scene.normals, scene.places);
   for (int i = 0; i < 5; ++i) scene.simulation.step();
-  DeformedSurface surface = binding.make_surface();
+  const bool normals = state.range(1) != 0;
+  DeformedSurface surface =
+      binding.make_surface(normals ? SurfaceBinding::Normals::with : SurfaceBinding::Normals::without);
   for (auto _ : state) {
     binding.apply(scene.simulation.pose(), surface);
     benchmark::ClobberMemory();
@@ -132,7 +135,7 @@ void bind_to_nearest(benchmark::State& state) {
 
 BENCHMARK(step)->ArgsProduct({{118, 1559, 10'000, 100'000}, {1, 2}})->Unit(benchmark::kMicrosecond);
 BENCHMARK(step_of_a_twig)->Arg(118)->Arg(1559)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
-BENCHMARK(synchronise)->Arg(118)->Arg(1559)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(synchronise)->ArgsProduct({{118, 1559, 10'000, 100'000}, {0, 1}})->Unit(benchmark::kMicrosecond);
 BENCHMARK(synchronise_naive)->Arg(118)->Arg(1559)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(bind_to_nearest)->Arg(1559)->Unit(benchmark::kMicrosecond);
 

@@ -6,6 +6,7 @@
 #include "vmesh/core/error.h"
 
 #include "chains.h"
+#include "deform/synchronise.h"
 #include "draw.h"
 
 namespace vmesh::testing {
@@ -57,19 +58,29 @@ Pose bent_pose(const Centerline& tree) {
   return simulation.pose();
 }
 
+/// What apply() promises of a vertex at `arm` from its place: single precision of arms and of coordinates.
+double precision(const DeformedSurface& surface, const Vec3& arm) {
+  double largest = 0;
+  for (const std::vector<float>* values : {&surface.x, &surface.y, &surface.z})
+    for (const float x : *values) largest = std::max(largest, std::abs(static_cast<double>(x)));
+  return 1e-6 * arm.norm() + 2e-7 * largest;
+}
+
 TEST(SurfaceBinding, IsEquation10) {
   const Centerline tree = tree_of(300);
   const RodTree rods = make_rod_tree(tree);
   const Wall wall(tree, 7);
   const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);
   const Pose pose = bent_pose(tree);
-  DeformedSurface surface = binding.make_surface();
+  DeformedSurface surface = binding.make_surface(SurfaceBinding::Normals::with);
   binding.apply(pose, surface);
   double farthest = 0;
   for (Index v = 0; v < wall.points.size(); ++v) {
-    const double radius = tree.radius_at(wall.places[v].segment, wall.places[v].t);
+    const SurfacePlace& place = wall.places[v];
     const Vec3 p = surface.position(binding.lane_of_vertex()[v]);
-    EXPECT_LE((p - by_the_paper(tree, rods, pose, wall.places[v], wall.points[v])).norm(), 1e-5 * radius) << v;
+    EXPECT_LE((p - by_the_paper(tree, rods, pose, place, wall.points[v])).norm(),
+              precision(surface, wall.points[v] - tree.point_at(place.segment, place.t)))
+        << v;
     EXPECT_NEAR(surface.normal(binding.lane_of_vertex()[v]).norm(), 1, 1e-6) << v;
     farthest = std::max(farthest, (p - wall.points[v]).norm());
   }
@@ -86,14 +97,73 @@ TEST(SurfaceBinding, FollowsARigidMotionExactly) {
   Pose pose = rest_pose(rods);
   for (Vec3& p : pose.position) p = turn * p + shift;
   for (Mat3& frame : pose.frame) frame = turn * frame;
-  DeformedSurface surface = binding.make_surface();
+  DeformedSurface surface = binding.make_surface(SurfaceBinding::Normals::with);
   binding.apply(pose, surface);
   for (Index v = 0; v < wall.points.size(); ++v) {
     const Index lane = binding.lane_of_vertex()[v];
     const double radius = tree.radius_at(wall.places[v].segment, wall.places[v].t);
+    EXPECT_LE((surface.position(lane) - turn * wall.points[v] - shift).norm(), precision(surface, Vec3(radius, 0, 0)))
+        << v;
     // Three products of single precision.
-    EXPECT_LE((surface.position(lane) - turn * wall.points[v] - shift).norm(), 5e-7 * radius) << v;
     EXPECT_LE((surface.normal(lane) - turn * wall.normals[v]).norm(), 5e-7) << v;
+  }
+}
+
+TEST(SurfaceBinding, IsAsPreciseFarFromTheOrigin) {
+  const Centerline near = tree_of(119);
+  std::vector<CenterlineNode> nodes = near.nodes();
+  for (CenterlineNode& node : nodes) node.position += Vec3(1e5, -2e5, 3e5);
+  const Centerline tree(nodes, near.segments());
+  const RodTree rods = make_rod_tree(tree);
+  const Wall wall(tree, 5);
+  const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);
+  const DeformedSurface surface = binding.make_surface();
+  for (Index v = 0; v < wall.points.size(); ++v)
+    // Single precision would be 0.03 mm there.
+    EXPECT_LE((surface.position(binding.lane_of_vertex()[v]) - wall.points[v]).norm(), 1e-4) << v;
+}
+
+TEST(SurfaceBinding, NormalsAreForWhoAsks) {
+  const Centerline tree = tree_of(119);
+  const RodTree rods = make_rod_tree(tree);
+  const Wall wall(tree, 5);
+  const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);
+  const Pose pose = bent_pose(tree);
+  DeformedSurface plain = binding.make_surface(), with = binding.make_surface(SurfaceBinding::Normals::with);
+  binding.apply(pose, plain);
+  binding.apply(pose, with);
+  EXPECT_TRUE(plain.normal_x.empty() && plain.normal_y.empty() && plain.normal_z.empty());
+  EXPECT_EQ(plain.x, with.x);
+  EXPECT_EQ(plain.y, with.y);
+  EXPECT_EQ(plain.z, with.z);
+}
+
+TEST(SurfaceBinding, SameBytesOnEveryMachine) {
+  if (!avx2_synchroniser()) GTEST_SKIP() << "this machine, or this build, has no AVX2 to compare with";
+  const Centerline tree = tree_of(300);
+  const RodTree rods = make_rod_tree(tree);
+  const Wall wall(tree, 7);
+  const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);
+  Pose pose = bent_pose(tree);
+  Draw draw(4);
+  std::vector<char> moved(rods.size());
+  for (char& m : moved) m = draw.chance(0.8);
+  for (const bool scaled : {false, true}) {
+    if (scaled)
+      for (std::size_t j = 0; j < rods.size(); ++j) pose.radial_scale.push_back(draw.uniform(0.5, 2));
+    for (const auto normals : {SurfaceBinding::Normals::without, SurfaceBinding::Normals::with}) {
+      DeformedSurface plain = binding.make_surface(normals), fast = plain;
+      for (const std::span<const char> some : {std::span<const char>(moved), std::span<const char>()}) {
+        binding.apply(pose, some, plain, plain_synchroniser());
+        binding.apply(pose, some, fast, avx2_synchroniser());
+        EXPECT_EQ(plain.x, fast.x);
+        EXPECT_EQ(plain.y, fast.y);
+        EXPECT_EQ(plain.z, fast.z);
+        EXPECT_EQ(plain.normal_x, fast.normal_x);
+        EXPECT_EQ(plain.normal_y, fast.normal_y);
+        EXPECT_EQ(plain.normal_z, fast.normal_z);
+      }
+    }
   }
 }
 
@@ -122,7 +192,7 @@ TEST(SurfaceBinding, LeavesAloneWhatDidNotMove) {
   pose.position[50] += Vec3(1, 0, 0);
   moved[50] = 1;
   DeformedSurface all = binding.make_surface(), some = binding.make_surface();
-  for (double& x : some.x) x += 1000;
+  for (float& x : some.x) x += 1000;
   binding.apply(pose, all);
   binding.apply(pose, moved, some);
   std::size_t written = 0;

@@ -11,65 +11,63 @@ constexpr double kEnergyTolerance = 1e-12;
 constexpr int kMostAttempts = 40;
 /// With more than one in so many slots awake, looking at all of them is faster than sorting.
 constexpr std::size_t kMuchAwake = 8;
-/// Strain up to which tension counts in full: beyond, its stiffness would drown that of the springs in rounding.
-constexpr double kMostTautness = 10;
+
+double sum(const Lanes& lanes) {
+  double total = 0;
+  for (std::size_t i = 0; i < kLanes; ++i) total += lanes[i];
+  return total;
+}
+
+double largest(const Lanes& lanes) {
+  double most = 0;
+  for (std::size_t i = 0; i < kLanes; ++i) most = std::max(most, lanes[i]);
+  return most;
+}
 
 }  // namespace
 
-ImplicitRods::ImplicitRods(const RodScene& scene) : step_s_(scene.options.step_s) {
-  const std::size_t n = scene.size();
-  equations_.resize(n);
-  for (Index j = 0; j < n; ++j) {
-    const Rod& rod = scene.rods[j];
-    RodEquation& e = equations_[j];
-    const double drag = 1 + scene.options.drag_per_s * step_s_, damping = 1 + rod.damping_s / step_s_;
-    e.mass = drag * rod.mass / (step_s_ * step_s_);
-    e.inertia = drag * rod.inertia / (step_s_ * step_s_);
-    if (rod.parent == kNone) continue;
-    e.stretch = rod.stretch * damping;
-    e.bend = (rod.tip_xy + rod.tip_z) * damping;
-    e.twist = 2 * rod.tip_xy * damping;
-    e.stretch_compliance = 1 / e.stretch;
-    e.bend_compliance = 1 / e.bend;
-    e.twist_compliance = 1 / e.twist;
-  }
-  start_position_ = start_velocity_ = base_position_ = predicted_position_ = scene.pose.position;
-  predicted_x_ = predicted_y_ = turn_ = base_turn_ = start_misfit_ = predicted_position_;
-  base_misfit_ = misfit_change_ = predicted_position_;
-  start_frame_ = base_frame_ = scene.pose.frame;
-  elastic_.assign(n, 0);
-  start_elastic_ = start_kinetic_ = elastic_;
-  visited_.assign(n, 0);
-  visited_slots_.reserve(n);
-  awake_slots_.reserve(n);
-  awake_ = quiet_steps_ = visited_;
+ImplicitRods::ImplicitRods(const RodScene& scene, const RodKernels& kernels)
+    : kernels_(&kernels), batches_(make_rod_batches(scene)), slot_count_(scene.size()) {
+  visited_.assign(batches_.size() * kLanes, 0);
+  fresh_ = awake_ = quiet_steps_ = visited_;
+  listed_.assign(batches_.size(), 0);
+  visited_batches_.reserve(batches_.size());
+  grown_batches_.reserve(batches_.size());
+  awake_places_.reserve(slot_count_);
+  pulled_places_.reserve(slot_count_);
   tie_load_.resize(scene.tree.ties.size());
   tie_residual_ = tie_direction_ = tie_image_ = tie_opening_ = tie_load_;
-  for (Index j = 0; j < n; ++j)
-    if (!scene.is_root(j)) elastic_[j] = evaluate_springs(scene, j);
   wake_all();
 }
 
-void ImplicitRods::wake(Index slot) {
-  if (!awake_[slot]) awake_slots_.push_back(slot);
-  awake_count_ += !awake_[slot];
-  awake_[slot] = 1;
-  quiet_steps_[slot] = 0;
+void ImplicitRods::wake(Index slot) { wake_place(batches_.place_of_slot[slot]); }
+
+void ImplicitRods::wake_place(Index place) {
+  if (!awake_[place]) awake_places_.push_back(place);
+  awake_count_ += !awake_[place];
+  awake_[place] = 1;
+  quiet_steps_[place] = 0;
 }
 
 void ImplicitRods::wake_all() {
-  for (Index j = 0; j < awake_.size(); ++j) wake(j);
+  for (const Index place : batches_.place_of_slot) wake_place(place);
 }
 
 StepReport ImplicitRods::step(RodScene& scene) noexcept {
   StepReport report;
   if (awake_count_ == 0) return report;
-  if (!scene.tree.ties.empty() && awake_count_ < awake_.size()) wake_all();
-  choose_visited(scene);
-  value_ = 0;
-  drags_ = false;
-  for (const Index j : visited_slots_) begin(scene, j);
-  start_tie_energy_ = tie_energy(scene);
+  if (!scene.tree.ties.empty() && awake_count_ < slot_count_) wake_all();
+  choose_visited();
+  begin_sums_ = {};
+  pulled_places_.clear();
+  pose_ = 0;
+  for (const Index batch : visited_batches_) {
+    kernels_->begin(batches_.batches[batch], &visited_[batch * kLanes], scene, begin_sums_);
+    eliminate(batch);  // while it is in the cache
+    if (batches_.batches[batch].held) note_pulled(batch);
+  }
+  eliminated_ = true;
+  start_tie_energy_ = tie_energy(scene, false);
   for (int i = 0; i < scene.options.iterations; ++i) {
     report.movement_mm = iterate(scene, i == 0, report);
     ++report.iterations;
@@ -79,202 +77,126 @@ StepReport ImplicitRods::step(RodScene& scene) noexcept {
   return report;
 }
 
-/// What is awake, its children, and all on the way to the root, in ascending order.
-void ImplicitRods::choose_visited(const RodScene& scene) {
-  for (const Index j : visited_slots_) visited_[j] = 0;
-  visited_slots_.clear();
-  if (kMuchAwake * awake_count_ > scene.size()) {
-    for (Index j = static_cast<Index>(scene.size()); j-- > 0;) {
-      const Index parent = scene.tree.parent[j];
-      if (awake_[j] || (parent != kNone && awake_[parent])) visited_[j] = 1;
-      if (visited_[j] && parent != kNone) visited_[parent] = 1;
+/// What is awake, its children, and all on the way to the root.
+void ImplicitRods::choose_visited() {
+  if (all_visited_ && awake_count_ == slot_count_) return;
+  for (const Index batch : visited_batches_) {
+    listed_[batch] = 0;
+    std::fill_n(&visited_[batch * kLanes], kLanes, char{0});
+  }
+  visited_batches_.clear();
+  all_visited_ = awake_count_ == slot_count_;
+  if (kMuchAwake * awake_count_ > slot_count_) {
+    for (Index place = 0; place < visited_.size(); ++place) {
+      const Index parent = batches_.batches[place / kLanes].parent[place % kLanes];
+      if (!visited_[place] && !awake_[place] && !awake_[parent]) continue;
+      visit(place);
+      visit(parent);
     }
-    for (Index j = 0; j < scene.size(); ++j)
-      if (visited_[j]) visited_slots_.push_back(j);
-    return;
+  } else {
+    for (const Index place : awake_places_) {
+      for (Index up = place; !visited_[up]; up = batches_.batches[up / kLanes].parent[up % kLanes]) visit(up);
+      visit_children(place);
+    }
   }
-  for (const Index j : awake_slots_) {
-    for (Index up = j; up != kNone && !visited_[up]; up = scene.tree.parent[up]) visit(up);
-    visit_children(scene, j);
+  std::sort(visited_batches_.begin(), visited_batches_.end());
+}
+
+void ImplicitRods::visit(Index place) {
+  visited_[place] = 1;
+  const Index batch = place / kLanes;
+  if (listed_[batch]) return;
+  listed_[batch] = 1;
+  visited_batches_.push_back(batch);
+}
+
+void ImplicitRods::visit_children(Index place) {
+  for_children(place, [this](Index child) { visit(child); });
+}
+
+void ImplicitRods::note_pulled(Index batch) {
+  for (Index place = batch * kLanes; place < (batch + 1) * kLanes; ++place)
+    if (visited_[place] && pull(place) != Vec3::Zero()) pulled_places_.push_back(place);
+}
+
+/// What a held slot is to be moved by.
+Vec3 ImplicitRods::pull(Index place) const {
+  const RodBatch& b = batches_.batches[place / kLanes];
+  const std::size_t i = place % kLanes;
+  if (b.hold[i] == Hold::free) return Vec3::Zero();
+  return Vec3(b.target.x[i], b.target.y[i], b.target.z[i]) - position(place, 0);
+}
+
+Vec3 ImplicitRods::position(Index place, std::size_t pose) const {
+  const Lanes3& p = batches_.batches[place / kLanes].pose[pose].position;
+  return {p.x[place % kLanes], p.y[place % kLanes], p.z[place % kLanes]};
+}
+
+/// What the sum to minimise grows by when dragged slots are put where they go, all else standing still: the springs to
+/// their parents and children are stretched.
+double ImplicitRods::drag_energy() const {
+  const auto stretch = [this](Index place, const Vec3& by) {
+    const RodBatch& b = batches_.batches[place / kLanes];
+    const std::size_t i = place % kLanes;
+    const Lanes3& m = b.pose[0].misfit;
+    const Vec3 misfit{m.x[i], m.y[i], m.z[i]};
+    return 0.5 * b.stretch[i] * (by.dot(2 * misfit + by) + b.damping_rate[i] * by.squaredNorm());
+  };
+  double energy = 0;
+  for (const Index place : pulled_places_) {
+    const RodBatch& b = batches_.batches[place / kLanes];
+    const Vec3 by = pull(place);
+    if (b.is_root[place % kLanes] == 0) energy += stretch(place, by - pull(b.parent[place % kLanes]));
+    for_children(place, [&](Index child) {
+      if (pull(child) == Vec3::Zero()) energy += stretch(child, -by);
+    });
   }
-  std::sort(visited_slots_.begin(), visited_slots_.end());
+  return energy;
 }
 
-void ImplicitRods::visit(Index j) {
-  visited_[j] = 1;
-  visited_slots_.push_back(j);
-}
-
-void ImplicitRods::visit_children(const RodScene& scene, Index j) {
-  for (Index c = scene.rods[j].first_child; c != kNone; c = scene.rods[c].next_sibling)
-    if (!visited_[c]) visit(c);
-}
-
-void ImplicitRods::begin(const RodScene& scene, Index j) {
-  const Rod& rod = scene.rods[j];
-  const Vec3& p = scene.pose.position[j];
-  const Mat3& frame = scene.pose.frame[j];
-  start_position_[j] = p;
-  start_frame_[j] = frame;
-  start_velocity_[j] = scene.velocity[j];
-  start_elastic_[j] = elastic_[j];
-  start_kinetic_[j] = kinetic_energy(scene, j);
-  turn_[j] = Vec3::Zero();
-  start_misfit_[j] = equations_[j].elastic_gradient.linear * (scene.is_root(j) ? 0 : 1 / rod.stretch);
-
-  const double reach = step_s_ / (1 + scene.options.drag_per_s * step_s_);
-  const Vec3 z = frame.col(2), torque = scene.torque[j];
-  const Vec3 velocity = scene.velocity[j] + step_s_ * (scene.options.gravity_mm_s2 + scene.force[j] / rod.mass);
-  const Vec3 spin = scene.spin[j] + step_s_ / rod.inertia * (torque - 0.5 * z.dot(torque) * z);
-  predicted_position_[j] = p + reach * velocity;
-  predicted_x_[j] = frame.col(0) + reach * spin.cross(Vec3(frame.col(0)));
-  predicted_y_[j] = frame.col(1) + reach * spin.cross(Vec3(frame.col(1)));
-  equations_[j].spring_gradient = equations_[j].elastic_gradient;
-  value_ += evaluate_inertia(scene, j) + elastic_[j];
-  drags_ = drags_ || dragged(scene, j);
-}
-
-double ImplicitRods::evaluate(const RodScene& scene, Index j) {
-  const double inertia = evaluate_inertia(scene, j);
-  if (scene.is_root(j)) return inertia;
-  elastic_[j] = evaluate_springs(scene, j);
-  return inertia + elastic_[j] + evaluate_damping(scene, j);
-}
-
-double ImplicitRods::evaluate_inertia(const RodScene& scene, Index j) {
-  RodEquation& e = equations_[j];
-  const Mat3& frame = scene.pose.frame[j];
-  const Vec3 x = frame.col(0), y = frame.col(1);
-  e.z = frame.col(2);
-  e.lever = scene.rods[j].length * e.z;
-  e.hold = scene.hold[j];
-  e.prescribed = e.hold == Hold::free ? Vec3(Vec3::Zero()) : Vec3(scene.target[j] - scene.pose.position[j]);
-  const Vec3 off = scene.pose.position[j] - predicted_position_[j];
-  e.gradient.linear = e.mass * off;
-  e.gradient.angular = -e.inertia * (x.cross(predicted_x_[j]) + y.cross(predicted_y_[j]));
-  // A held slot goes where it is told: its inertia is no part of the sum to minimise.
-  const double linear = e.hold == Hold::free ? e.mass * off.squaredNorm() : 0;
-  return 0.5 * (linear + e.inertia * ((x - predicted_x_[j]).squaredNorm() + (y - predicted_y_[j]).squaredNorm()));
-}
-
-double ImplicitRods::evaluate_springs(const RodScene& scene, Index j) {
-  const Rod& rod = scene.rods[j];
-  const Mat3& own = scene.pose.frame[j];
-  const Mat3 wanted = product(scene.pose.frame[rod.parent], rod.turn);
-  const Vec3 stretch = misfit(scene, j);
-  const Vec3 x = own.col(0), y = own.col(1), z = own.col(2);
-  Spatial& gradient = equations_[j].elastic_gradient;
-  gradient.linear = rod.stretch * stretch;
-  equations_[j].taut = rod.length * rod.stretch * std::clamp(stretch.dot(z), 0.0, kMostTautness * rod.length);
-  gradient.angular = -rod.tip_xy * (x.cross(Vec3(wanted.col(0))) + y.cross(Vec3(wanted.col(1)))) -
-                     rod.tip_z * z.cross(Vec3(wanted.col(2)));
-  const Mat3 apart = wanted - own;
-  return 0.5 *
-         (rod.stretch * stretch.squaredNorm() + rod.tip_xy * (apart.col(0).squaredNorm() + apart.col(1).squaredNorm()) +
-          rod.tip_z * apart.col(2).squaredNorm());
-}
-
-/// Springs are damped against stretch and against turning with respect to the parent since the step's start, not
-/// against turning as a whole.
-double ImplicitRods::evaluate_damping(const RodScene& scene, Index j) {
-  const Rod& rod = scene.rods[j];
-  RodEquation& e = equations_[j];
-  e.spring_gradient = e.elastic_gradient;
-  if (rod.damping_s == 0) return 0;
-  const double rate = rod.damping_s / step_s_;
-  const Vec3 stretched = misfit(scene, j) - start_misfit_[j], pull = rate * rod.stretch * stretched;
-  const Vec3 z = start_frame_[j].col(2), turn = turn_[j] - turn_[rod.parent];
-  const Vec3 torque = rate * ((rod.tip_xy + rod.tip_z) * turn + (rod.tip_xy - rod.tip_z) * z.dot(turn) * z);
-  e.spring_gradient.linear += pull;
-  e.spring_gradient.angular += torque;
-  return 0.5 * (pull.dot(stretched) + turn.dot(torque));
-}
-
-bool ImplicitRods::dragged(const RodScene& scene, Index j) const {
-  return scene.hold[j] != Hold::free && scene.target[j] != scene.pose.position[j];
-}
-
-/// Asks for what will be worked on soon after visited_slots_[i]: in large trees it comes from far.
-void ImplicitRods::fetch_ahead(const RodScene& scene, std::size_t i) const {
-  if (i + kAhead >= visited_slots_.size()) return;
-  const Index j = visited_slots_[i + kAhead];
-  fetch(equations_[j]);
-  fetch(scene.rods[j]);
-  fetch(scene.pose.frame[j]);
-  fetch(base_frame_[j]);
+/// Of the springs that close loops, uJ; before or after dragging.
+double ImplicitRods::tie_energy(const RodScene& scene, bool pulled) const {
+  double energy = 0;
+  for (const auto& [slot, node_slot] : scene.tree.ties) {
+    const Index a = batches_.place_of_slot[slot], b = batches_.place_of_slot[node_slot];
+    Vec3 gap = position(a, pose_) - position(b, pose_);
+    if (pulled) gap += pull(a) - pull(b);
+    energy += 0.5 * scene.tie_stretch * gap.squaredNorm();
+  }
+  return energy;
 }
 
 /// One Gauss-Newton iteration. Returns the largest displacement.
 double ImplicitRods::iterate(RodScene& scene, bool first, StepReport& report) {
-  solve(scene);
-  if (first && drags_) drag(scene);
-  const double before = value_ + tie_energy(scene);
+  double before = drag_energy();
+  if (!first) {
+    before = sum(move_sums_.value);
+    begin_sums_.value = Lanes{};
+  }
+  before += tie_energy(scene, first);
+  RodMove by{pose_, pose_ == 1 ? std::size_t{2} : std::size_t{1}};
+  move_sums_ = {};
+  solve(scene, &by);
+  before += sum(begin_sums_.value);  // of all slots, or of those that the solution took in
   if (first) energy_bound_ = before;
-  double part = 1, largest = 0;
-  for (int attempt = 0;; ++attempt) {
-    if (attempt == kMostAttempts) part = 0;
-    const bool chained = attempt % 2 == 0;
-    largest = move(scene, part, chained);
-    if (part == 0 || value_ + tie_energy(scene) <= before * (1 + kEnergyTolerance)) break;
-    if (!chained) part /= 2;
+  pose_ = by.to;
+  for (int attempt = 1; by.part > 0; ++attempt) {
+    if (sum(move_sums_.value) + tie_energy(scene, false) <= before * (1 + kEnergyTolerance)) break;
     ++report.rejections;
+    if (!by.chained) by.part /= 2;
+    if (attempt == kMostAttempts) by.part = 0;
+    by.chained = !by.chained;
+    move(by);
   }
-  return part * largest;
+  return by.part * std::sqrt(largest(move_sums_.largest));
 }
 
-/// From where slot j moves, and where the solution would have its segment against its axis if turning by an angle did
-/// not lengthen it.
-void ImplicitRods::set_base(const RodScene& scene, Index j) {
-  base_position_[j] = scene.pose.position[j];
-  base_frame_[j] = scene.pose.frame[j];
-  base_turn_[j] = turn_[j];
-  if (scene.is_root(j)) return;
-  const RodEquation& e = equations_[j];
-  base_misfit_[j] = e.elastic_gradient.linear / scene.rods[j].stretch;
-  misfit_change_[j] = e.x.linear + e.lever.cross(e.x.angular) - equations_[scene.rods[j].parent].x.linear;
-}
-
-/// Puts dragged slots where they go, all else standing still.
-void ImplicitRods::drag(RodScene& scene) {
-  for (const Index j : visited_slots_) {
-    const Index parent = scene.rods[j].parent;
-    const bool pulled = scene.hold[j] != Hold::free && scene.target[j] != base_position_[j];
-    const bool parent_pulled =
-        parent != kNone && scene.hold[parent] != Hold::free && scene.target[parent] != base_position_[parent];
-    if (!pulled && !parent_pulled) continue;
-    value_ -= evaluate_inertia(scene, j) + elastic_[j];
-    if (pulled) scene.pose.position[j] = scene.target[j];
-    value_ += evaluate(scene, j);
+void ImplicitRods::move(const RodMove& by) {
+  move_sums_ = {};
+  for (std::size_t i = visited_batches_.size(); i-- > 0;) {
+    const Index batch = visited_batches_[i];
+    kernels_->move(batches_.batches.data(), batch, &visited_[batch * kLanes], by, move_sums_);
   }
-}
-
-/// From the base by a part of the solution; held slots go all the way. Chained, segments turn with their frames, and
-/// what hangs on them follows; otherwise nodes move straight. Returns the solution's largest displacement.
-double ImplicitRods::move(RodScene& scene, double part, bool chained) {
-  value_ = 0;
-  double largest = 0;
-  for (std::size_t i = 0; i < visited_slots_.size(); ++i) {
-    const Index j = visited_slots_[i];
-    fetch_ahead(scene, i);
-    const Rod& rod = scene.rods[j];
-    const Spatial& x = equations_[j].x;
-    largest = std::max(largest, x.linear.squaredNorm());
-    if (scene.hold[j] != Hold::clamped) {
-      scene.pose.frame[j] = product(cayley(part * x.angular), base_frame_[j]);
-      turn_[j] = base_turn_[j] + part * x.angular;
-    }
-    Vec3& p = scene.pose.position[j];
-    if (scene.hold[j] != Hold::free) {
-      p = scene.target[j];
-    } else if (chained && rod.parent != kNone && x.linear != Vec3::Zero()) {
-      p = scene.pose.position[rod.parent] + rod.length * scene.pose.frame[j].col(2) + base_misfit_[j] +
-          part * misfit_change_[j];
-    } else {
-      p = base_position_[j] + part * x.linear;
-    }
-    value_ += evaluate(scene, j);
-  }
-  return std::sqrt(largest);
 }
 
 }  // namespace vmesh

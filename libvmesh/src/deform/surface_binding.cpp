@@ -10,8 +10,6 @@
 namespace vmesh {
 namespace {
 
-using Block = SurfaceBinding::Block;
-
 /// A place in terms of the tree: from the slot's parent (t = 0) to the slot (t = 1).
 struct SlotPlace {
   Index slot;
@@ -42,15 +40,44 @@ class SlotPlaces {
   std::vector<Index> isolated_;
 };
 
-void set_lane(const RodTree& tree, const SlotPlace& place, const Vec3& vertex, const Vec3& normal, Block& block,
-              std::size_t lane) {
+void resize(SurfaceBinding::Rest& rest, std::size_t size) {
+  for (std::vector<float>* values :
+       {&rest.t, &rest.x, &rest.y, &rest.z, &rest.normal_x, &rest.normal_y, &rest.normal_z})
+    values->assign(size, 0);
+}
+
+void set_lane(const RodTree& tree, const SlotPlace& place, const Vec3& vertex, const Vec3& normal,
+              SurfaceBinding::Rest& rest, Index lane) {
   const Index parent = tree.parent[place.slot] == kNone ? place.slot : tree.parent[place.slot];
-  const Vec3 axis = (1 - place.t) * tree.position[parent] + place.t * tree.position[place.slot];
+  // The vector is from where single precision puts the parameter.
+  rest.t[lane] = static_cast<float>(place.t);
+  const double t = rest.t[lane];
+  const Vec3 axis = (1 - t) * tree.position[parent] + t * tree.position[place.slot];
   const Eigen::Vector3f v = (tree.frame[place.slot].transpose() * (vertex - axis)).cast<float>();
   const Eigen::Vector3f n = (tree.frame[place.slot].transpose() * normal).cast<float>();
-  block.t[lane] = place.t;
-  block.x[lane] = v.x(), block.y[lane] = v.y(), block.z[lane] = v.z();
-  block.normal_x[lane] = n.x(), block.normal_y[lane] = n.y(), block.normal_z[lane] = n.z();
+  rest.x[lane] = v.x(), rest.y[lane] = v.y(), rest.z[lane] = v.z();
+  rest.normal_x[lane] = n.x(), rest.normal_y[lane] = n.y(), rest.normal_z[lane] = n.z();
+}
+
+/// Slots that have vertices, in order, but for this: of some in a row those with as many vertices follow each other.
+std::vector<Index> group_order(const std::vector<std::vector<Index>>& of_slot) {
+  constexpr std::size_t kWindow = 512;
+  std::vector<Index> order;
+  for (Index slot = 0; slot < of_slot.size(); ++slot)
+    if (!of_slot[slot].empty()) order.push_back(slot);
+  for (std::size_t first = 0; first < order.size(); first += kWindow) {
+    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(first);
+    std::stable_sort(begin, begin + static_cast<std::ptrdiff_t>(std::min(kWindow, order.size() - first)),
+                     [&](Index a, Index b) { return of_slot[a].size() < of_slot[b].size(); });
+  }
+  return order;
+}
+
+Vec3 middle_of(const std::vector<Vec3>& points) {
+  if (points.empty()) return Vec3::Zero();
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  return 0.5 * (low + high);
 }
 
 void check(std::span<const Vec3> vertices, std::span<const Vec3> normals, std::span<const SurfacePlace> places) {
@@ -67,7 +94,7 @@ void check(std::span<const Vec3> vertices, std::span<const Vec3> normals, std::s
 
 SurfaceBinding::SurfaceBinding(const Centerline& centerline, const RodTree& tree, std::span<const Vec3> vertices,
                                std::span<const Vec3> normals, std::span<const SurfacePlace> places)
-    : lane_of_vertex_(vertices.size()), rest_(rest_pose(tree)) {
+    : lane_of_vertex_(vertices.size()), rest_pose_(rest_pose(tree)), origin_(middle_of(tree.position)) {
   check(vertices, normals, places);
   const SlotPlaces slot_places(centerline, tree);
   std::vector<std::vector<Index>> of_slot(tree.size());
@@ -76,35 +103,47 @@ SurfaceBinding::SurfaceBinding(const Centerline& centerline, const RodTree& tree
     at.push_back(slot_places.at(places[v], v));
     of_slot[at[v].slot].push_back(v);
   }
-  for (Index slot = 0; slot < tree.size(); ++slot) {
-    const std::vector<Index>& own = of_slot[slot];
-    if (own.empty()) continue;
-    const Index first = static_cast<Index>(blocks_.size()),
-                count = static_cast<Index>((own.size() + kLanes - 1) / kLanes);
-    const Index parent = tree.parent[slot] == kNone ? slot : tree.parent[slot];
-    runs_.push_back({slot, parent, first, count, tree.turn[slot]});
-    blocks_.resize(first + count);
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      set_lane(tree, at[own[i]], vertices[own[i]], normals[own[i]], blocks_[first + i / kLanes], i % kLanes);
-      lane_of_vertex_[own[i]] = static_cast<Index>(first * kLanes + i);
+  const std::vector<Index> order = group_order(of_slot);
+  std::size_t blocks = 0;
+  for (std::size_t first = 0; first < order.size(); first += kLanes) {
+    Group& group = groups_.emplace_back();
+    group.first_block = blocks;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const bool used = first + i < order.size();  // the last group repeats its first slot
+      const Index slot = order[used ? first + i : first];
+      group.slot[i] = slot;
+      group.parent[i] = tree.parent[slot] == kNone ? slot : tree.parent[slot];
+      for (std::size_t k = 0; k < 9; ++k) group.turn[kLanes * k + i] = static_cast<float>(tree.turn[slot].data()[k]);
+      if (!used) continue;
+      for (std::size_t k = 0; k < of_slot[slot].size(); ++k)
+        lane_of_vertex_[of_slot[slot][k]] = static_cast<Index>((blocks + k) * kLanes + i);
+      group.block_count = std::max(group.block_count, of_slot[slot].size());
     }
+    blocks += group.block_count;
   }
+  resize(rest_, blocks * kLanes);
+  for (Index v = 0; v < vertices.size(); ++v) set_lane(tree, at[v], vertices[v], normals[v], rest_, lane_of_vertex_[v]);
 }
 
-DeformedSurface SurfaceBinding::make_surface() const {
+DeformedSurface SurfaceBinding::make_surface(Normals normals) const {
   DeformedSurface surface;
+  surface.origin = origin_;
   surface.x.resize(lane_count());
   surface.y = surface.z = surface.x;
-  surface.normal_x.resize(lane_count());
-  surface.normal_y = surface.normal_z = surface.normal_x;
-  apply(rest_, surface);
+  if (normals == Normals::with) surface.normal_x = surface.normal_y = surface.normal_z = surface.x;
+  apply(rest_pose_, surface);
   return surface;
 }
 
 void SurfaceBinding::apply(const Pose& pose, DeformedSurface& surface) const noexcept { apply(pose, {}, surface); }
 
 void SurfaceBinding::apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface) const noexcept {
-  synchronise({runs_, blocks_.data(), pose, moved}, surface);
+  apply(pose, moved, surface, best_synchroniser());
+}
+
+void SurfaceBinding::apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface,
+                           Synchroniser synchroniser) const noexcept {
+  synchroniser({groups_, rest_, pose, moved}, surface);
 }
 
 }  // namespace vmesh

@@ -4,15 +4,20 @@
 
 namespace vmesh {
 
-/// What synchronise() reads.
+/// What is synchronised.
 struct Attachment {
-  std::span<const SurfaceBinding::Run> runs;
-  const SurfaceBinding::Block* blocks;
+  std::span<const SurfaceBinding::Group> groups;
+  const SurfaceBinding::Rest& rest;
   const Pose& pose;
   std::span<const char> moved;  ///< by slot; empty: everything
 };
 
-/// Eq. 10 for all runs that moved.
-void synchronise(const Attachment& attachment, DeformedSurface& surface) noexcept;
+/// Eq. 10 for all slots that moved, by one set of instructions. All do the same operations in the same order, so the
+/// results are the same to the bit.
+using Synchroniser = SurfaceBinding::Synchroniser;
+Synchroniser plain_synchroniser();
+/// Null where the machine, or the compiler, cannot.
+Synchroniser avx2_synchroniser();
+Synchroniser best_synchroniser();
 
 }  // namespace vmesh

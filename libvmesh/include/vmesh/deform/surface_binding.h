@@ -18,20 +18,23 @@ struct SurfacePlace {
 /// The nearest point of the centerline for every point, by a hierarchy of boxes over the segments; O(n log n).
 std::vector<SurfacePlace> nearest_places(const Centerline& centerline, std::span<const Vec3> points);
 
-/// A surface as it moves: arrays by lane, not by vertex (SurfaceBinding::lane_of_vertex()). Positions in mm; normals of
-/// unit length. Lanes without a vertex hold numbers of no meaning.
+/// A surface as it moves: arrays by lane, not by vertex (SurfaceBinding::lane_of_vertex()). Positions in mm, relative
+/// to `origin`, so that single precision is that of the vessel's size wherever it lies; normals of unit length, or
+/// none. Lanes without a vertex hold numbers of no meaning.
 struct DeformedSurface {
-  std::vector<double> x, y, z;
+  Vec3 origin = Vec3::Zero();
+  std::vector<float> x, y, z;
   std::vector<float> normal_x, normal_y, normal_z;
 
-  Vec3 position(Index lane) const { return {x[lane], y[lane], z[lane]}; }
+  Vec3 position(Index lane) const { return origin + Vec3(x[lane], y[lane], z[lane]); }
   Vec3 normal(Index lane) const { return {normal_x[lane], normal_y[lane], normal_z[lane]}; }
 };
 
 /// Keeps a surface attached to a centerline that moves (Eqs. 1, 2, 9 and 10). A vertex is the point at its parameter of
 /// its segment plus a vector that is carried by two frames, that of the segment and that of the parent's segment, and
 /// is the mean of both: as the vector's rest coordinates in the two differ by Eq. 3's rotation, one matrix per segment
-/// does it. Vertices are stored by segment, in blocks of eight lanes.
+/// does it. Segments with like numbers of vertices are worked on eight at once, in blocks of eight lanes: a vertex of
+/// each.
 class SurfaceBinding {
  public:
   static constexpr std::size_t kLanes = 8;
@@ -41,35 +44,45 @@ class SurfaceBinding {
   SurfaceBinding(const Centerline& centerline, const RodTree& tree, std::span<const Vec3> vertices,
                  std::span<const Vec3> normals, std::span<const SurfacePlace> places);
 
-  std::size_t lane_count() const { return blocks_.size() * kLanes; }
+  std::size_t lane_count() const { return rest_.t.size(); }
   const std::vector<Index>& lane_of_vertex() const { return lane_of_vertex_; }
 
-  /// Arrays of the right length, filled with the surface at rest.
-  DeformedSurface make_surface() const;
+  /// Whether a surface has normals, which cost as much as positions.
+  enum class Normals { without, with };
 
-  /// Writes the surface around `pose`. Within 1e-6 times the connecting vector of Eq. 10 in double; the bytes do not
-  /// depend on the processor's vectors.
+  /// Arrays of the right length, filled with the surface at rest. The origin is the middle of the tree at rest.
+  DeformedSurface make_surface(Normals normals = Normals::without) const;
+
+  /// Writes the surface around `pose`, with normals if it has any. In single precision: within 1e-6 times the
+  /// connecting vector of Eq. 10 and 2e-7 times the largest coordinate from the origin; the bytes do not depend on the
+  /// processor's vectors.
   void apply(const Pose& pose, DeformedSurface& surface) const noexcept;
   /// The same where `moved` (one per slot, CenterlineSimulation::moved()) says that something changed.
   void apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface) const noexcept;
+  /// The same by a set of instructions; for tests.
+  using Synchroniser = void (*)(const struct Attachment&, DeformedSurface&) noexcept;
+  void apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface,
+             Synchroniser synchroniser) const noexcept;
 
-  struct alignas(64) Block {
-    std::array<double, kLanes> t{};                                ///< from the parent's position to the slot's
-    std::array<float, kLanes> x{}, y{}, z{};                       ///< connecting vector in the slot's frame
-    std::array<float, kLanes> normal_x{}, normal_y{}, normal_z{};  ///< in the slot's frame
+  /// What is fixed, by lane.
+  struct Rest {
+    std::vector<float> t;                             ///< from the parent's position to the slot's
+    std::vector<float> x, y, z;                       ///< connecting vector in the slot's frame
+    std::vector<float> normal_x, normal_y, normal_z;  ///< in the slot's frame
   };
-  /// The blocks of one slot.
-  struct Run {
-    Index slot, parent;  ///< equal for an isolated node
-    Index first_block, block_count;
-    Mat3 turn;
+  /// Eight slots and their blocks, which have a lane of each.
+  struct Group {
+    std::array<Index, kLanes> slot, parent;  ///< equal for an isolated node
+    std::size_t first_block, block_count;
+    std::array<float, 9 * kLanes> turn;  ///< RodTree::turn, entry by entry, by columns
   };
 
  private:
-  std::vector<Run> runs_;
-  std::vector<Block> blocks_;
+  std::vector<Group> groups_;
+  Rest rest_;
   std::vector<Index> lane_of_vertex_;
-  Pose rest_;
+  Pose rest_pose_;
+  Vec3 origin_ = Vec3::Zero();
 };
 
 }  // namespace vmesh
