@@ -1,0 +1,261 @@
+#include "vmesh/fit/fit_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "vmesh/core/error.h"
+#include "vmesh/mesh/topology.h"
+
+#include "fit/correspondence.h"
+#include "fit/guarded_step.h"
+#include "fit/least_squares.h"
+#include "fit/reshaping.h"
+#include "fit/resizing.h"
+#include "fit/unmatched.h"
+
+namespace vmesh {
+namespace {
+
+constexpr double kLongestStep = 0.35;     // of the edges around
+constexpr double kSamplesPerFace = 9;     // of the reference
+constexpr int kDivision = 3;              // of the surface's faces: 9 samples
+constexpr double kLeastMatched = 0.02;    // of the surface's area, for a reference that is somewhere else
+constexpr int kRelaxations = 2;
+
+std::string text_of(const Vec3& p) {
+  char text[128];
+  std::snprintf(text, sizeof text, "(%.3f, %.3f, %.3f)", p.x(), p.y(), p.z());
+  return text;
+}
+
+void check(const FitOptions& options) {
+  if (options.rounds < 1 || options.rounds > 100) throw InvalidInput("rounds of a fit are 1 to 100");
+  if (!(options.max_skewness >= 0.1 && options.max_skewness <= 0.9))
+    throw InvalidInput("the skewness that a fit may come to is 0.1 to 0.9");
+  if (!(options.error >= 0 && std::isfinite(options.error)))
+    throw InvalidInput("the error of a fit is 0 or more, and finite");
+}
+
+void check(const VesselSurface& surface, const VesselField& field) {
+  if (surface.mesh.faces.empty()) throw InvalidInput("the surface to fit has no faces");
+  if (surface.binding.size() != surface.mesh.vertices.size())
+    throw InvalidInput("the surface has " + std::to_string(surface.mesh.vertices.size()) + " vertices, but " +
+                       std::to_string(surface.binding.size()) + " of them are bound to the centerline");
+  for (std::size_t v = 0; v < surface.binding.size(); ++v) {
+    if (surface.binding[v].segment >= field.cone_count())
+      throw InvalidInput("vertex " + std::to_string(v) + " is bound to segment " +
+                         std::to_string(surface.binding[v].segment) + ", which the centerline does not have");
+  }
+  const Topology topology = measure_topology(surface.mesh);
+  if (!topology.manifold || !topology.oriented)
+    throw InvalidInput("the surface to fit is not manifold and oriented; vmesh evaluate tells where");
+  const auto crossing = self_intersections(surface.mesh);
+  if (!crossing.empty()) {
+    const Index v = surface.mesh.faces[crossing.front().first][0];
+    throw InvalidInput("the surface to fit has " + std::to_string(crossing.size()) +
+                       " pairs of faces that cross, the first at " + text_of(surface.mesh.vertices[v]) +
+                       "; make one without (--overlap separate)");
+  }
+}
+
+class Fit {
+ public:
+  Fit(const VesselSurface& surface, const VesselField& field, const TriMesh& reference, const FitOptions& options)
+      : field_(field),
+        options_(options),
+        reference_(reference, field),
+        surface_(surface.mesh, vertices_of(surface)),
+        openings_(surface.openings) {
+    guard_.max_skewness = options.max_skewness;
+    const double count = kSamplesPerFace * static_cast<double>(surface_.faces.size());
+    samples_ = reference_.samples(field, static_cast<std::size_t>(count));
+    most_vertices_ = options.max_vertices > 0 ? options.max_vertices : surface.mesh.vertices.size();
+    for (const Opening& opening : openings_) opening_normals_.push_back(opening.normal.normalized());
+    for (Index v = 0; v < surface_.vertices.size(); ++v) surface_.vertices[v].base_size = surface_.mean_edge(v);
+  }
+
+  const FitReference& reference() const { return reference_; }
+  const FitMesh& surface() const { return surface_; }
+
+  void run(const Progress& progress) {
+    const int rounds = options_.rounds;
+    for (int round = 0; round < rounds; ++round) {
+      report_progress(progress, "fit", static_cast<double>(round) / rounds);
+      const Matches matches = find_matches(surface_, reference_, samples_, field_, kDivision);
+      if (round == 0) check_matched(matches);
+      const bool resizes = options_.resize && round >= 3 && round < rounds - 4;
+      if (resizes) {
+        resize(matches);
+        continue;
+      }
+      step(matches, round);
+      if (round < rounds - 2) reshape(getenv("REL")?atoi(getenv("REL")):round < rounds - 4 ? 1 : 2);
+    }
+  }
+
+  FitResult result() {
+    FitResult result;
+    for (const FitMesh::Vertex& v : surface_.vertices) {
+      const FieldSample sample = field_.sample(v.position, v.cone);
+      result.surface.binding.push_back({sample.cone, sample.t});
+      result.radius.push_back(field_.radius_at(sample.cone, sample.t));
+    }
+    result.surface.mesh = surface_.tri_mesh();
+    result.surface.openings = openings_;
+    return result;
+  }
+
+ private:
+  static std::vector<FitMesh::Vertex> vertices_of(const VesselSurface& surface) {
+    std::vector<FitMesh::Vertex> vertices;
+    for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v)
+      vertices.push_back({surface.mesh.vertices[v], surface.binding[v].segment, kNone, 0, 0});
+    for (Index i = 0; i < surface.openings.size(); ++i) {
+      for (const Index v : surface.openings[i].ring) vertices[v].opening = i;
+    }
+    return vertices;
+  }
+
+  void check_matched(const Matches& matches) const {
+    double all = 0, matched = 0;
+    for (const Match& match : matches.from_surface) {
+      all += 1;
+      if (match.face != kNone) matched += 1;
+    }
+    if (matched < kLeastMatched * all)
+      throw InvalidInput("the reference is nowhere near the surface; do both have the same unit and frame?");
+  }
+
+  void step(const Matches& matches, int round) {
+    if (getenv("STEP")) limits_.step = atof(getenv("STEP"));
+    if (getenv("FINE")) limits_.finest = atof(getenv("FINE"));
+    if (getenv("COARSE")) limits_.coarsest = atof(getenv("COARSE"));
+    if (getenv("GRADE")) limits_.grading = atof(getenv("GRADE"));
+    if (getenv("TURN")) guard_.turn = atof(getenv("TURN"));
+    if (getenv("FOLD")) guard_.fold = atof(getenv("FOLD"));
+    static const double wt = getenv("WT") ? atof(getenv("WT")) : 0.1, ws = getenv("WS") ? atof(getenv("WS")) : 0.02;
+    const LeastSquaresWeights weights{wt, ws};
+    std::vector<Vec3> steps =
+        least_squares_steps(surface_, matches, shape_steps(surface_, getenv("PULL")?atoi(getenv("PULL")):2), opening_normals_, weights);
+    for (Index v = 0; v < steps.size(); ++v) {
+      const double longest = kLongestStep * surface_.mean_edge(v), norm = steps[v].norm();
+      if (norm > longest) steps[v] *= longest / norm;
+    }
+    const double taken = take_steps(surface_, steps, guard_);
+    if (getenv("FITLOG")) log(matches, round, taken);
+    find_cones();
+  }
+
+  void log(const Matches& matches, int round, double taken) const {
+    const auto mean = [](const std::vector<Match>& list) {
+      double sum = 0, area = 0;
+      for (const Match& m : list) {
+        if (m.face == kNone) continue;
+        sum += m.area * std::abs(m.distance);
+        area += m.area;
+      }
+      return sum / area;
+    };
+    double skew = 0, worst = 0;
+    for (Index f = 0; f < surface_.faces.size(); ++f) {
+      const double s = skewness_of(surface_, f);
+      skew += s;
+      worst = std::max(worst, s);
+    }
+    std::fprintf(stderr, "round %d: %zu vertices, %.4f %.4f before, taken %.3f, skew %.4f %.3f\n", round,
+                 surface_.vertices.size(), mean(matches.from_surface), mean(matches.from_reference), taken,
+                 skew / static_cast<double>(surface_.faces.size()), worst);
+  }
+
+  void find_cones() {
+    tbb::parallel_for(std::size_t{0}, surface_.vertices.size(), [&](std::size_t v) {
+      surface_.vertices[v].cone = field_.sample(surface_.vertices[v].position, surface_.vertices[v].cone).cone;
+    });
+  }
+
+  void reshape(int power) {
+    change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
+      flip_edges(surface, frozen, guard_);
+      for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, power);
+    });
+  }
+
+  void resize(const Matches& matches) {
+    if (getenv("FITLOG")) log(matches, -1, 0);
+    const std::vector<double> errors = errors_around(surface_, matches);
+    const double wanted = aim_ * static_cast<double>(most_vertices_);
+    set_sizes(surface_, errors, options_.error > 0 ? 0 : static_cast<std::size_t>(wanted), options_.error, limits_);
+    change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
+      split_edges(surface, frozen);
+      flip_edges(surface, frozen, guard_);
+      collapse_edges(surface, frozen, guard_);
+      flip_edges(surface, frozen, guard_);
+      for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, 1);
+      flip_edges(surface, frozen, guard_);
+      for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, 1);
+    });
+    pack();
+    // What the edges' lengths come to differs a little from what they are meant to be.
+    aim_ = std::clamp(aim_ * std::pow(static_cast<double>(most_vertices_) / static_cast<double>(surface_.vertices.size()), 0.7), 0.8, 1.25);
+    find_cones();
+    step(find_matches(surface_, reference_, samples_, field_, kDivision), -1);
+    step(find_matches(surface_, reference_, samples_, field_, kDivision), -1);
+  }
+
+  void pack() {
+    const std::vector<Index> number = surface_.pack();
+    for (Opening& opening : openings_) {
+      for (Index& v : opening.ring) v = number[v];
+    }
+  }
+
+  const VesselField& field_;
+  const FitOptions& options_;
+  FitReference reference_;
+  FitMesh surface_;
+  std::vector<Opening> openings_;
+  std::vector<Vec3> opening_normals_;
+  std::vector<ReferenceSample> samples_;
+  std::size_t most_vertices_ = 0;
+  double aim_ = 1;  // vertices to ask for, to get as many as wanted
+  StepGuard guard_;
+  SizeLimits limits_;
+};
+
+FitDistance distance_between(const TriMesh& surface, const TriMesh& reference, const FitOptions& options) {
+  HausdorffOptions hausdorff_options;
+  hausdorff_options.tolerance = options.tolerance;
+  return {hausdorff(surface, reference, hausdorff_options),
+          sample_distance(surface, ClosestPointIndex(reference), options.samples),
+          sample_distance(reference, ClosestPointIndex(surface), options.samples)};
+}
+
+}  // namespace
+
+FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline, const TriMesh& reference,
+                      const FitOptions& options, const Progress& progress) {
+  check(options);
+  const VesselField field(centerline);
+  check(surface, field);
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  return arena.execute([&] {
+    Fit fit(surface, field, reference, options);
+    fit.run(progress);
+    FitResult result = fit.result();
+    FitReport& report = result.report;
+    report.turned = fit.reference().turned();
+    report.rounds = options.rounds;
+    report.before = distance_between(surface.mesh, fit.reference().mesh(), options);
+    report.after = distance_between(result.surface.mesh, fit.reference().mesh(), options);
+    report.uncovered = uncovered_parts(fit.surface(), fit.reference(), field);
+    report.unsupported = unsupported_parts(fit.surface(), fit.reference(), field);
+    return result;
+  });
+}
+
+}  // namespace vmesh
