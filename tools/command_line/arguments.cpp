@@ -21,6 +21,7 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate tree.swc -o fine.ply --preset high
   vmesh generate tree.swc -o exact.ply --max-error 5%
   vmesh generate tree.swc -o game.obj --budget vertices=5000
+  vmesh generate portal.swc -o portal.ply --fit liver.nii.gz --label 2 --spacing 1 --smooth 1
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
@@ -139,6 +140,9 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
                 "self-intersections, of the expected topology, and holds every centerline node");
   verb.add_flag("--allow-defects", arguments.allow_defects,
                 "write the surface even if it is not sound; the summary lists what is wrong with it, and where");
+  verb.add_option("--fit", arguments.fitting.reference.path,
+                  "fit the surface to this one, or to an image: the vessels' own walls instead of round cones");
+  add_fitting(verb, arguments.fitting);
   add_common(verb, arguments.common);
   verb.footer(kGenerateExamples);
 }
@@ -273,6 +277,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   TradeoffArguments tradeoff;
   DeformArguments deform;
   Table1Arguments table1;
+  FitArguments fit;
   add_generate(app, generate);
   add_info(app, info);
   add_synth(app, synth);
@@ -286,6 +291,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   add_tradeoff(app, tradeoff);
   add_deform(app, deform);
   add_table1(app, table1);
+  add_fit(app, fit);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -304,6 +310,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   if (app.got_subcommand("tradeoff")) return tradeoff;
   if (app.got_subcommand("deform")) return deform;
   if (app.got_subcommand("table1")) return table1;
+  if (app.got_subcommand("fit")) return fit;
   if (app.got_subcommand("evaluate")) return evaluate;
   return render;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -70,12 +71,15 @@ class Fit {
         options_(options),
         reference_(reference, field),
         surface_(surface.mesh, vertices_of(surface)),
-        openings_(surface.openings) {
+        openings_(surface.openings.empty() ? find_openings(surface.mesh) : surface.openings) {
     guard_.max_skewness = options.max_skewness;
     const double count = kSamplesPerFace * static_cast<double>(surface_.faces.size());
     samples_ = reference_.samples(field, static_cast<std::size_t>(count));
     most_vertices_ = options.max_vertices > 0 ? options.max_vertices : surface.mesh.vertices.size();
-    for (const Opening& opening : openings_) opening_normals_.push_back(opening.normal.normalized());
+    for (Index i = 0; i < openings_.size(); ++i) {
+      opening_normals_.push_back(openings_[i].normal.normalized());
+      for (const Index v : openings_[i].ring) surface_.vertices[v].opening = i;
+    }
     for (Index v = 0; v < surface_.vertices.size(); ++v) surface_.vertices[v].base_size = surface_.mean_edge(v);
   }
 
@@ -94,7 +98,7 @@ class Fit {
         continue;
       }
       step(matches, round);
-      if (round < rounds - 2) reshape(getenv("REL")?atoi(getenv("REL")):round < rounds - 4 ? 1 : 2);
+      if (round < rounds - 2) reshape(round < rounds - 4 ? 1 : 2, round >= rounds - 4);
     }
   }
 
@@ -115,9 +119,6 @@ class Fit {
     std::vector<FitMesh::Vertex> vertices;
     for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v)
       vertices.push_back({surface.mesh.vertices[v], surface.binding[v].segment, kNone, 0, 0});
-    for (Index i = 0; i < surface.openings.size(); ++i) {
-      for (const Index v : surface.openings[i].ring) vertices[v].opening = i;
-    }
     return vertices;
   }
 
@@ -132,16 +133,8 @@ class Fit {
   }
 
   void step(const Matches& matches, int round) {
-    if (getenv("STEP")) limits_.step = atof(getenv("STEP"));
-    if (getenv("FINE")) limits_.finest = atof(getenv("FINE"));
-    if (getenv("COARSE")) limits_.coarsest = atof(getenv("COARSE"));
-    if (getenv("GRADE")) limits_.grading = atof(getenv("GRADE"));
-    if (getenv("TURN")) guard_.turn = atof(getenv("TURN"));
-    if (getenv("FOLD")) guard_.fold = atof(getenv("FOLD"));
-    static const double wt = getenv("WT") ? atof(getenv("WT")) : 0.1, ws = getenv("WS") ? atof(getenv("WS")) : 0.02;
-    const LeastSquaresWeights weights{wt, ws};
     std::vector<Vec3> steps =
-        least_squares_steps(surface_, matches, shape_steps(surface_, getenv("PULL")?atoi(getenv("PULL")):2), opening_normals_, weights);
+        least_squares_steps(surface_, matches, shape_steps(surface_, 2), opening_normals_, {});
     for (Index v = 0; v < steps.size(); ++v) {
       const double longest = kLongestStep * surface_.mean_edge(v), norm = steps[v].norm();
       if (norm > longest) steps[v] *= longest / norm;
@@ -178,9 +171,25 @@ class Fit {
     });
   }
 
-  void reshape(int power) {
+  // How far a point on an edge is from the reference.
+  double distance_at(const FitMesh& surface, Index a, Index b, const Vec3& p) const {
+    const Index cone = surface.vertices[a].cone;
+    const Vec3 normal = surface.vertex_normal(a) + surface.vertex_normal(b);
+    const auto accepts = [&](Index g) {
+      return reference_.normal(g).dot(normal) > 0 && same_vessel(field_, cone, reference_.cone(g));
+    };
+    const auto found = reference_.index().closest_among(p, 1.5 * widest_radius(field_, cone), accepts);
+    return found ? found->distance : -1;
+  }
+
+  void reshape(int power, bool closer) {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
-      flip_edges(surface, frozen, guard_);
+      if (closer) {
+        flip_edges_closer(surface, frozen,
+                          [&](Index a, Index b, const Vec3& p) { return distance_at(surface, a, b, p); });
+      } else {
+        flip_edges(surface, frozen, guard_);
+      }
       for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, power);
     });
   }
@@ -237,6 +246,36 @@ FitDistance distance_between(const TriMesh& surface, const TriMesh& reference, c
 
 }  // namespace
 
+std::vector<Opening> find_openings(const TriMesh& mesh) {
+  std::vector<Index> next(mesh.vertices.size(), kNone);  // along the border, as a lid would run
+  std::vector<std::array<Index, 2>> edges;
+  for (const Triangle& face : mesh.faces) {
+    for (int i = 0; i < 3; ++i) edges.push_back({face[i], face[(i + 1) % 3]});
+  }
+  std::sort(edges.begin(), edges.end());
+  for (const auto& [a, b] : edges) {
+    if (!std::binary_search(edges.begin(), edges.end(), std::array<Index, 2>{b, a})) next[b] = a;
+  }
+  std::vector<Opening> openings;
+  for (Index first = 0; first < next.size(); ++first) {
+    if (next[first] == kNone) continue;
+    Opening opening;
+    for (Index v = first; next[v] != kNone;) {
+      opening.ring.push_back(v);
+      v = std::exchange(next[v], kNone);
+    }
+    for (const Index v : opening.ring) opening.center += mesh.vertices[v] / static_cast<double>(opening.ring.size());
+    for (std::size_t i = 0; i < opening.ring.size(); ++i) {
+      const Vec3 a = mesh.vertices[opening.ring[i]] - opening.center;
+      const Vec3 b = mesh.vertices[opening.ring[(i + 1) % opening.ring.size()]] - opening.center;
+      opening.normal += a.cross(b);
+    }
+    opening.normal.normalize();
+    openings.push_back(std::move(opening));
+  }
+  return openings;
+}
+
 FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline, const TriMesh& reference,
                       const FitOptions& options, const Progress& progress) {
   check(options);
@@ -248,6 +287,7 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
     fit.run(progress);
     FitResult result = fit.result();
     FitReport& report = result.report;
+    report.vertices_before = surface.mesh.vertices.size();
     report.turned = fit.reference().turned();
     report.rounds = options.rounds;
     report.before = distance_between(surface.mesh, fit.reference().mesh(), options);

@@ -11,6 +11,9 @@ using Mat3 = Eigen::Matrix3d;
 constexpr double kHold = 1e-3;       // of a vertex' area: keeps what no match holds
 constexpr double kInPlane = 100;     // of a vertex' area
 constexpr double kAccuracy = 1e-4;   // of the residual; steps are corrected in the next round anyway
+// Large distances count more, up to this many times the RMS distance: what is far off is brought near.
+constexpr double kEmphasis = 0.5;
+constexpr double kMostEmphasized = 4;
 constexpr int kMostIterations = 200;
 
 // The normal equations of the steps.
@@ -21,11 +24,10 @@ class Equations {
     diagonal_.assign(surface.vertices.size(), Mat3::Zero());
   }
 
-  void add(const Match& match) {
-    if (match.face == kNone) return;
+  void add(const Match& match, double weight) {
     const Triangle& face = surface_.faces[match.face];
-    const Mat3 square = match.area * match.direction * match.direction.transpose();
-    const Vec3 pull = -match.area * match.distance * match.direction;
+    const Mat3 square = weight * match.direction * match.direction.transpose();
+    const Vec3 pull = -weight * match.distance * match.direction;
     for (int i = 0; i < 3; ++i) {
       diagonal_[face[i]] += match.weights[i] * match.weights[i] * square;
       faces_[match.face][i] += match.weights[(i + 1) % 3] * match.weights[(i + 2) % 3] * square;
@@ -92,13 +94,34 @@ class Equations {
   Eigen::VectorXd right_;
 };
 
+template <class Visit>
+void for_each_match(const Matches& matches, Visit&& visit) {
+  for (const auto* list : {&matches.from_surface, &matches.from_reference}) {
+    for (const Match& match : *list) {
+      if (match.face != kNone) visit(match);
+    }
+  }
+}
+
+double rms_distance(const Matches& matches) {
+  double sum = 0, area = 0;
+  for_each_match(matches, [&](const Match& match) {
+    sum += match.area * match.distance * match.distance;
+    area += match.area;
+  });
+  return area > 0 && sum > 0 ? std::sqrt(sum / area) : 1;
+}
+
 }  // namespace
 
 std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& matches, const std::vector<Vec3>& pull,
                                       const std::vector<Vec3>& opening_normals, const LeastSquaresWeights& weights) {
   Equations equations(surface);
-  for (const Match& match : matches.from_surface) equations.add(match);
-  for (const Match& match : matches.from_reference) equations.add(match);
+  const double rms = rms_distance(matches);
+  for_each_match(matches, [&](const Match& match) {
+    const double emphasis = 1 + kEmphasis * std::min(kMostEmphasized, std::abs(match.distance) / rms);
+    equations.add(match, match.area * emphasis);
+  });
   std::vector<double> area(surface.vertices.size(), 0);
   std::vector<Vec3> normal(surface.vertices.size(), Vec3::Zero());
   for (Index f = 0; f < surface.faces.size(); ++f) {

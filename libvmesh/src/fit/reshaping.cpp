@@ -18,6 +18,9 @@ constexpr double kLongestStep = 0.3;  // of the shortest edge
 constexpr double kGain = 0.02;        // of skewness, that a flip must bring
 constexpr double kBent = 0.6;         // cosine between the normals before and after a flip, at least
 constexpr double kFlippedSkewness = 0.45;
+constexpr double kCloser = 0.02;  // of the edge: what a flip must bring the middle closer
+constexpr double kCloserSkewness = 0.35;
+constexpr int kLessEven = 6;      // squares of valences' deviations that it may cost
 
 Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
@@ -110,7 +113,6 @@ void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const st
     const TriMesh mesh = packed.tri_mesh();
     const auto crossing = self_intersections(mesh);
     if (crossing.empty()) return;
-    if (getenv("FITLOG")) std::fprintf(stderr, "  attempt %d: %zu crossings at %.1f %.1f %.1f\n", attempt, crossing.size(), mesh.vertices[mesh.faces[crossing[0].first][0]].x(), mesh.vertices[mesh.faces[crossing[0].first][0]].y(), mesh.vertices[mesh.faces[crossing[0].first][0]].z());
     // By place, as numbers have changed.
     std::vector<Vec3> places;
     std::vector<double> reach;
@@ -134,6 +136,33 @@ void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGua
   for (const auto& [a, b] : surface.edges()) {
     if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
     if (should_flip(surface, a, b, guard)) surface.flip(a, b);
+  }
+}
+
+void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen,
+                       const std::function<double(Index, Index, const Vec3&)>& distance) {
+  for (const auto& [a, b] : surface.edges()) {
+    if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
+    const Index f = surface.face_of(a, b), g = surface.face_of(b, a);
+    if (f == kNone || g == kNone) continue;
+    const Index c = FitMesh::apex(surface.faces[f], a, b), d = FitMesh::apex(surface.faces[g], a, b);
+    if (c == d || surface.are_neighbours(c, d)) continue;
+    const auto valence = [&](Index v) { return surface.faces_around(v).size() + (surface.on_border(v) ? 3 : 0); };
+    if (surface.faces_around(a).size() <= 4 || surface.faces_around(b).size() <= 4) continue;
+    const int before = deviation(valence(a)) + deviation(valence(b)) + deviation(valence(c)) + deviation(valence(d));
+    const int after =
+        deviation(valence(a) - 1) + deviation(valence(b) - 1) + deviation(valence(c) + 1) + deviation(valence(d) + 1);
+    if (after > before + kLessEven) continue;
+    const Vec3 &pa = surface.position(a), &pb = surface.position(b), &pc = surface.position(c), &pd = surface.position(d);
+    const double worst_before = std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd));
+    const double worst_after = std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc));
+    if (worst_after > std::max(kCloserSkewness, worst_before)) continue;
+    const Vec3 n1 = unit_normal(pa, pb, pc), n2 = unit_normal(pb, pa, pd);
+    const Vec3 m1 = unit_normal(pc, pa, pd), m2 = unit_normal(pd, pb, pc);
+    if (std::min({m1.dot(n1), m1.dot(n2), m2.dot(n1), m2.dot(n2)}) < 0 || m1.dot(m2) < 0) continue;
+    const double now = distance(a, b, 0.5 * (pa + pb)), then = distance(c, d, 0.5 * (pc + pd));
+    if (now < 0 || then < 0 || then > now - kCloser * (pa - pb).norm()) continue;
+    surface.flip(a, b);
   }
 }
 

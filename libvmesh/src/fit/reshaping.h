@@ -19,6 +19,11 @@ inline bool is_frozen(const std::vector<char>& frozen, Index v) { return v < fro
 /// Flips edges for even valences and for better triangles. Leaves alone the edges with a frozen end.
 void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard);
 
+/// Flips edges where the other diagonal's middle is closer to the reference: `distance(edge's ends, middle)` tells how
+/// far a point is, mm, negative when that is not known.
+void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen,
+                       const std::function<double(Index, Index, const Vec3&)>& distance);
+
 /// For every vertex, the step in the tangent plane that is best for its triangles (a Newton step of their inverse mean
 /// ratios), at most 0.3 of the shortest edge.
 std::vector<Vec3> shape_steps(const FitMesh& surface, int power);

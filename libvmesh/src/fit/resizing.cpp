@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 #include "vmesh/mesh/triangle_quality.h"
 
@@ -10,7 +12,6 @@
 namespace vmesh {
 namespace {
 
-constexpr int kSmoothing = 2;
 constexpr double kLong = 4.0 / 3, kShort = 4.0 / 5;  // of the intended length (Botsch, Kobbelt 2004)
 constexpr double kCollapsedSkewness = 0.5;
 constexpr double kBent = 0.5;  // cosine between a triangle's normals before and after a collapse, at least
@@ -51,7 +52,7 @@ double face_count(const FitMesh& surface, const std::vector<double>& size) {
 
 // Sizes never grow faster than `grading` over distance.
 void grade(const FitMesh& surface, std::vector<double>& size, double grading) {
-  std::vector<Index> near, order(size.size());
+  std::vector<Index> near;
   for (bool changed = true; changed;) {
     changed = false;
     for (Index v = 0; v < size.size(); ++v) {
@@ -94,6 +95,11 @@ bool may_collapse_to(const FitMesh& surface, Index a, Index b, const Vec3& p, co
   return worst <= std::max({kCollapsedSkewness, guard.max_skewness, worst_before});
 }
 
+FitMesh::Vertex middle_of(const FitMesh::Vertex& a, const FitMesh::Vertex& b) {
+  return {0.5 * (a.position + b.position), std::min(a.cone, b.cone), kNone, 0.5 * (a.size + b.size),
+          0.5 * (a.base_size + b.base_size)};
+}
+
 struct LengthOfEdge {
   double ratio;  // to the intended one
   Index a, b;
@@ -121,15 +127,15 @@ std::vector<double> errors_around(const FitMesh& surface, const Matches& matches
     if (match.face == kNone) return;
     for (int i = 0; i < 3; ++i) {
       const double weight = match.area * match.weights[i];
-      sum[surface.faces[match.face][i]] += weight * match.distance * match.distance;
+      sum[surface.faces[match.face][i]] += weight * std::abs(match.distance * match.distance * match.distance);
       area[surface.faces[match.face][i]] += weight;
     }
   };
   for (const Match& match : matches.from_surface) add(match);
   for (const Match& match : matches.from_reference) add(match);
   for (std::size_t v = 0; v < sum.size(); ++v) sum[v] = area[v] > 0 ? sum[v] / area[v] : -1;
-  for (int i = 0; i < kSmoothing; ++i) smooth(surface, sum);
-  for (double& value : sum) value = value < 0 ? value : std::sqrt(value);
+  smooth(surface, sum);
+  for (double& value : sum) value = value < 0 ? value : std::cbrt(value);
   return sum;
 }
 
@@ -138,7 +144,7 @@ void set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t 
   const std::size_t count = surface.vertices.size();
   std::vector<double> now(count), size(count);
   for (Index v = 0; v < count; ++v) now[v] = surface.mean_edge(v);
-  for (int i = 0; i < 1; ++i) smooth(surface, now);
+  smooth(surface, now);
   const double faces_per_unit = static_cast<double>(surface.faces.size()) / face_count(surface, now);
   const auto sizes_for = [&](double target) {
     for (Index v = 0; v < count; ++v) {
@@ -172,10 +178,7 @@ void split_edges(FitMesh& surface, const std::vector<char>& frozen) {
   for (auto edge = edges.rbegin(); edge != edges.rend() && edge->ratio > kLong; ++edge) {
     const auto [ratio, a, b] = *edge;
     if (surface.face_of(a, b) == kNone || surface.face_of(b, a) == kNone) continue;
-    const FitMesh::Vertex &va = surface.vertices[a], &vb = surface.vertices[b];
-    surface.split(a, b,
-                  {0.5 * (va.position + vb.position), std::min(va.cone, vb.cone), kNone, 0.5 * (va.size + vb.size),
-                   0.5 * (va.base_size + vb.base_size)});
+    surface.split(a, b, middle_of(surface.vertices[a], surface.vertices[b]));
   }
 }
 

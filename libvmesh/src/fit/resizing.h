@@ -8,7 +8,8 @@
 
 namespace vmesh {
 
-/// RMS distance of the matches around every vertex of a packed surface, mm, smoothed; negative where there are none.
+/// Mean of the third power of the distances of the matches around every vertex of a packed surface, its root (mm),
+/// smoothed: between a mean and a maximum. Negative where there are no matches.
 std::vector<double> errors_around(const FitMesh& surface, const Matches& matches);
 
 struct SizeLimits {

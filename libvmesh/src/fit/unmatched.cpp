@@ -15,6 +15,7 @@ struct FarFace {
   Vec3 position = Vec3::Zero();
   double distance = -1;  // mm; negative: near
   double area = 0;
+  bool inside = false;
   Index cone = kNone;
 };
 
@@ -42,16 +43,20 @@ std::vector<UnmatchedPart> parts_of(const std::vector<FarFace>& faces, Across&& 
     if (faces[f].distance < whole.distance) continue;
     whole.distance = faces[f].distance;
     whole.position = faces[f].position;
+    whole.inside = faces[f].inside;
     whole.segment = faces[f].cone;
   }
   std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.area > b.area; });
   return parts;
 }
 
-FarFace far_face(const Vec3& p, double area, Index cone, const ClosestPointIndex& to, const VesselField& field) {
-  const double distance = to.closest(p).distance;
-  if (distance <= kFar * widest_radius(field, cone)) return {};
-  return {p, distance, area, cone};
+// `normal(face)`: of the other surface.
+template <class Normal>
+FarFace far_face(const Vec3& p, double area, Index cone, const ClosestPointIndex& to, const VesselField& field,
+                 Normal&& normal) {
+  const ClosestPoint found = to.closest(p);
+  if (found.distance <= kFar * widest_radius(field, cone)) return {};
+  return {p, found.distance, area, normal(found.face).dot(p - found.point) < 0, cone};
 }
 
 }  // namespace
@@ -61,7 +66,8 @@ std::vector<UnmatchedPart> uncovered_parts(const FitMesh& surface, const FitRefe
   const ClosestPointIndex index(surface.tri_mesh());
   std::vector<FarFace> faces(reference.mesh().faces.size());
   tbb::parallel_for(Index{0}, static_cast<Index>(faces.size()), [&](Index f) {
-    faces[f] = far_face(reference.center(f), reference.area(f), reference.cone(f), index, field);
+    faces[f] = far_face(reference.center(f), reference.area(f), reference.cone(f), index, field,
+                        [&](Index g) { return surface.area_normal(g); });
   });
   return parts_of(faces, [&](Index f) { return reference.across(f); });
 }
@@ -72,7 +78,7 @@ std::vector<UnmatchedPart> unsupported_parts(const FitMesh& surface, const FitRe
   tbb::parallel_for(Index{0}, static_cast<Index>(faces.size()), [&](Index f) {
     const auto [a, b, c] = surface.corners(f);
     faces[f] = far_face((a + b + c) / 3, surface.area_normal(f).norm() / 2, surface.vertices[surface.faces[f][0]].cone,
-                        reference.index(), field);
+                        reference.index(), field, [&](Index g) { return reference.normal(g); });
   });
   return parts_of(faces, [&](Index f) {
     const Triangle& face = surface.faces[f];

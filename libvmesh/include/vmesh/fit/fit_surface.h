@@ -22,7 +22,7 @@ struct VesselSurface {
 /// How a surface is fitted to another one.
 struct FitOptions {
   /// Rounds of correspondence, least squares and repair, 1 to 100; in the first half the size of triangles changes too.
-  int rounds = 12;
+  int rounds = 14;
   /// Triangles become finer where the error is large and coarser where it is small. Otherwise every triangle stays.
   bool resize = true;
   /// Most vertices; 0: as many as the surface has.
@@ -55,15 +55,17 @@ struct UnmatchedPart {
   Vec3 position = Vec3::Zero();  ///< of its point farthest from the other surface, mm
   double distance = 0;           ///< of that point, mm
   double area = 0;               ///< mm^2
+  bool inside = false;           ///< the point lies inside of the other surface
   Index segment = kNone;         ///< of the centerline, the nearest
 };
 
-/// Two legs of a vessel in one wide lumen of the reference: walls of the surface that the reference does not have.
 struct FitReport {
+  std::size_t vertices_before = 0;
   FitDistance before, after;
   /// Of the reference, what no vessel covers: missing twigs, neighbours. Not chased. Largest first.
   std::vector<UnmatchedPart> uncovered;
-  /// Of the surface, what the reference does not have: vessels beyond its end, walls between legs of a hairpin.
+  /// Of the surface, what the reference does not have: vessels beyond its end; inside of it, walls between the legs of
+  /// a hairpin in one wide lumen.
   std::vector<UnmatchedPart> unsupported;
   bool turned = false;  ///< the reference faced inwards, and was turned
   int rounds = 0;
@@ -74,6 +76,10 @@ struct FitResult {
   std::vector<double> radius;  ///< local vessel radius at every vertex's binding, mm
   FitReport report;
 };
+
+/// The openings of a surface with borders, by their lowest vertices; Opening::node and radius are not known (kNone, 0).
+/// The mesh is manifold and oriented.
+std::vector<Opening> find_openings(const TriMesh& mesh);
 
 /// Moves `surface` onto `reference` by least squares: vertices and, with options.resize, the size of the triangles.
 /// The surface stays sound: what it has of components, holes and openings, and no faces that cross. Faces that crossed
