@@ -34,6 +34,12 @@ Json to_json(const std::vector<UnmatchedPart>& parts) {
   return {{"count", parts.size()}, {"list", std::move(list)}};
 }
 
+Json outside_json(const std::vector<Defect>& defects) {
+  std::size_t count = 0;
+  for (const Defect& defect : defects) count += defect.count;
+  return count;
+}
+
 std::string line(const char* format, auto... values) {
   char text[512];
   std::snprintf(text, sizeof text, format, values...);
@@ -62,6 +68,7 @@ Json to_json(const FitReport& report) {
   return {{"vertices_before", report.vertices_before},
           {"before", to_json(report.before)},
           {"after", to_json(report.after)},
+          {"nodes_outside", outside_json(report.nodes_outside)},
           {"reference_turned", report.turned},
           {"rounds", report.rounds},
           {"uncovered", to_json(report.uncovered)},
@@ -74,6 +81,10 @@ void log_fit(const FitReport& report, std::vector<std::string>& warnings, Consol
   console.log(line("distance to the reference, the larger way, mm: mean %.3f, was %.3f; 95 %% %.3f, was %.3f; Hausdorff "
                    "%.3f, was %.3f",
                    b.mean(), a.mean(), b.p95(), a.p95(), b.hausdorff.upper(), a.hausdorff.upper()));
+  for (const Defect& defect : report.nodes_outside) {
+    console.warn(defect.message);
+    warnings.push_back(defect.message);
+  }
   name_parts(report.uncovered, "the reference has what no vessel covers", warnings, console);
   std::vector<UnmatchedPart> inside, outside;
   for (const UnmatchedPart& part : report.unsupported) (part.inside ? inside : outside).push_back(part);

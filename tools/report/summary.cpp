@@ -10,6 +10,7 @@
 #include "vmesh/core/version.h"
 
 #include "command_line/outputs.h"
+#include "report/fit_report.h"
 
 namespace vmesh::tool {
 namespace {
@@ -273,6 +274,10 @@ Json to_json(const GenerateReport& report) {
   json["rounding"] = to_json(report.rounding);
   if (arguments.options.max_error.is_set()) json["error_bound"] = error_bound_json(arguments, *report.result);
   if (arguments.budget) json["budget"] = budget_json(*arguments.budget, arguments.options, report.tried);
+  if (report.fit) {
+    json["fit"] = to_json(*report.fit);
+    json["fit"]["reference"] = arguments.fitting.reference.path.string();
+  }
   json["contacts"] = to_json(report.contacts);
   if (report.separation) json["separation"] = to_json(*report.separation);
   json["seconds"] = stages_json(report.stages);
@@ -342,6 +347,8 @@ std::string describe(const GenerateArguments& arguments) {
   for (std::size_t i = 0; i < options.open_ends.nodes.size(); ++i)
     text << (i == 0 ? " --open-ends " : ",") << options.open_ends.nodes[i];
   text << " --overlap " << to_string(arguments.overlap) << " --gap " << exact_text(arguments.gap);
+  if (!arguments.fitting.reference.path.empty())
+    text << " --fit " << arguments.fitting.reference.path.string() << describe(arguments.fitting);
   if (arguments.input.unit) text << " --unit " << to_string(*arguments.input.unit);
   if (arguments.input.space) text << " --space " << to_string(*arguments.input.space);
   return text.str();

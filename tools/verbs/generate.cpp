@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "vmesh/centerline/branches.h"
 #include "vmesh/io/sha256.h"
@@ -9,7 +10,10 @@
 #include "command_line/inputs.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
+#include "command_line/usage_error.h"
+#include "report/fit_report.h"
 #include "report/summary.h"
+#include "verbs/fitting.h"
 #include "verbs/verbs.h"
 
 namespace vmesh::tool {
@@ -277,6 +281,39 @@ BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& cen
   return surface;
 }
 
+/// With a reference, a budget is the fit's: of vertices or of the distance to the reference.
+void apply_budget_to_fit(GenerateArguments& arguments) {
+  FittingArguments& fitting = arguments.fitting;
+  if (fitting.reference.path.empty()) {
+    if (fitting.options.error > 0) throw UsageError("--fit-error needs --fit REFERENCE");
+    return;
+  }
+  if (arguments.options.max_error.is_set())
+    throw UsageError("--max-error is a limit on the distance to round cones; with --fit see --fit-error");
+  fitting.options.threads = arguments.options.threads;
+  if (!arguments.budget) return;
+  const Budget budget = *arguments.budget;
+  if (budget.kind == Budget::Kind::vertices) {
+    fitting.options.max_vertices = budget.vertices;  // what is grown keeps to it as well
+    return;
+  }
+  if (budget.kind != Budget::Kind::error || !std::isfinite(budget.error.mm) || std::isfinite(budget.error.relative))
+    throw UsageError("--fit takes budgets such as vertices=5000 and error=0.2mm, not " + to_string(budget));
+  fitting.options.error = budget.error.mm;
+  arguments.budget.reset();
+}
+
+void fit(GenerateReport& report, GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
+         Console& console) {
+  Stopwatch watch;
+  const FittingArguments& fitting = report.arguments->fitting;
+  report.fit = naming(fitting.reference.path, [&] {
+    return fit_surface(result, centerline, reference, fitting.options, console.progress());
+  });
+  log_fit(*report.fit, report.warnings, console);
+  report.stages.push_back({"fit", watch.lap()});
+}
+
 /// Fills in what is measured of the surface around `grown` and what is wrong with it.
 void measure(GenerateReport& report, const Centerline& grown, Console& console) {
   const GenerateResult& result = *report.result;
@@ -290,8 +327,9 @@ void measure(GenerateReport& report, const Centerline& grown, Console& console) 
   stop_if_interrupted();
   report.grown_nodes = grown.nodes().size();
   report.nodes_inside = result.check.nodes_inside;
-  report.problems =
-      problems_of(report.measurement, expected_surface(grown, result), report.nodes_inside, report.grown_nodes);
+  // A vessel that is not round may leave its axis outside.
+  const std::size_t nodes_due = report.fit ? report.nodes_inside.value_or(0) : report.grown_nodes;
+  report.problems = problems_of(report.measurement, expected_surface(grown, result), report.nodes_inside, nodes_due);
   for (const std::string& problem : report.problems) console.warn("surface: " + problem);
 }
 
@@ -322,10 +360,13 @@ int run(const GenerateArguments& given, Console& console) {
   Stopwatch watch;
   GenerateReport report;
   report.arguments = &arguments;
+  apply_budget_to_fit(arguments);
 
   const LoadedCenterline loaded = load(arguments.input, console);
   report.input_sha256 = sha256_of_file(arguments.input.path);
   report.cleaned = &loaded.cleaned;
+  std::optional<TriMesh> reference;
+  if (!arguments.fitting.reference.path.empty()) reference = load_fit_reference(arguments.fitting, console);
   report.stages.push_back({"read", watch.lap()});
   stop_if_interrupted();
 
@@ -360,6 +401,7 @@ int run(const GenerateArguments& given, Console& console) {
     report.warnings.push_back(warning.message);
   }
   warn_of_error(report, console);
+  if (reference && (result.is_sound() || arguments.allow_defects)) fit(report, result, centerline, *reference, console);
 
   watch.lap();
   measure(report, centerline, console);

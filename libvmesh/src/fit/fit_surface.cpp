@@ -18,6 +18,7 @@
 #include "fit/reshaping.h"
 #include "fit/resizing.h"
 #include "fit/unmatched.h"
+#include "surface/proof/defects.h"
 
 namespace vmesh {
 namespace {
@@ -76,6 +77,10 @@ class Fit {
     const double count = kSamplesPerFace * static_cast<double>(surface_.faces.size());
     samples_ = reference_.samples(field, static_cast<std::size_t>(count));
     most_vertices_ = options.max_vertices > 0 ? options.max_vertices : surface.mesh.vertices.size();
+    const double refinement = options.error > 0 ? 4 : std::sqrt(static_cast<double>(most_vertices_) /
+                                                               static_cast<double>(surface_.vertices.size()));
+    limits_.finest = std::min(limits_.finest, 0.5 / refinement);
+    limits_.coarsest = std::max(limits_.coarsest, options.error > 0 ? 4 : 1.5 / refinement);
     for (Index i = 0; i < openings_.size(); ++i) {
       opening_normals_.push_back(openings_[i].normal.normalized());
       for (const Index v : openings_[i].ring) surface_.vertices[v].opening = i;
@@ -296,6 +301,24 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
     report.unsupported = unsupported_parts(fit.surface(), fit.reference(), field);
     return result;
   });
+}
+
+FitReport fit_surface(GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
+                      const FitOptions& options, const Progress& progress) {
+  FitResult fitted =
+      fit_surface(VesselSurface{result.mesh, result.binding, result.openings}, centerline, reference, options, progress);
+  result.mesh = std::move(fitted.surface.mesh);
+  result.binding = std::move(fitted.surface.binding);
+  result.openings = std::move(fitted.surface.openings);
+  result.radius = std::move(fitted.radius);
+  result.defects.clear();
+  find_defects(centerline, self_intersections(result.mesh), result);
+  std::erase_if(result.defects, [&](const Defect& defect) {
+    if (defect.kind != DefectKind::node_outside) return false;
+    fitted.report.nodes_outside.push_back(defect);
+    return true;
+  });
+  return std::move(fitted.report);
 }
 
 }  // namespace vmesh

@@ -67,7 +67,8 @@ struct FitReport {
   /// Of the surface, what the reference does not have: vessels beyond its end; inside of it, walls between the legs of
   /// a hairpin in one wide lumen.
   std::vector<UnmatchedPart> unsupported;
-  bool turned = false;  ///< the reference faced inwards, and was turned
+  std::vector<Defect> nodes_outside;  ///< of the centerline, outside of the fitted surface; of a GenerateResult only
+  bool turned = false;                ///< the reference faced inwards, and was turned
   int rounds = 0;
 };
 
@@ -96,6 +97,11 @@ std::vector<Opening> find_openings(const TriMesh& mesh);
 /// disagree about the outside, one that is nowhere near the surface, a surface that is not manifold and oriented or
 /// whose binding does not fit, and options out of range; Cancelled.
 FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline, const TriMesh& reference,
+                      const FitOptions& options = {}, const Progress& progress = {});
+
+/// The same for a generated surface: mesh, binding, radii, openings, check and defects become those of the fitted one.
+/// A node of the centerline that is outside of it is no defect, but reported.
+FitReport fit_surface(GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
                       const FitOptions& options = {}, const Progress& progress = {});
 
 }  // namespace vmesh
