@@ -134,4 +134,26 @@ Matches find_matches(const FitMesh& surface, const FitReference& reference,
   return matches;
 }
 
+double matched_distance(const Matches& matches, double share) {
+  double result = 0;
+  for (const auto* list : {&matches.from_surface, &matches.from_reference}) {
+    std::vector<std::pair<double, double>> distances;  // and the areas they stand for
+    double total = 0;
+    for (const Match& match : *list) {
+      if (match.face == kNone) continue;
+      distances.emplace_back(std::abs(match.distance), match.area);
+      total += match.area;
+    }
+    std::sort(distances.begin(), distances.end());
+    double sum = 0;
+    for (const auto& [distance, area] : distances) {
+      sum += area;
+      if (sum < share * total) continue;
+      result = std::max(result, distance);
+      break;
+    }
+  }
+  return result;
+}
+
 }  // namespace vmesh

@@ -29,4 +29,10 @@ struct Matches {
 Matches find_matches(const FitMesh& surface, const FitReference& reference,
                      const std::vector<ReferenceSample>& samples, const VesselField& field, int division);
 
+/// The distance that a share of the matches' area is nearer than, mm, the larger of both ways; 0 without matches.
+double matched_distance(const Matches& matches, double share);
+
+/// The distance that a share of the matches' area is nearer than, mm, the larger of both ways; 0 without matches.
+double matched_distance(const Matches& matches, double share);
+
 }  // namespace vmesh

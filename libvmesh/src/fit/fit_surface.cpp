@@ -25,9 +25,16 @@ namespace {
 
 constexpr double kLongestStep = 0.35;     // of the edges around
 constexpr double kSamplesPerFace = 9;     // of the reference
-constexpr int kDivision = 3;              // of the surface's faces: 9 samples
+constexpr int kDivision = 3, kCoarseDivision = 2;  // of the surface's faces: 9 or 4 samples
+constexpr int kFewer = 2;                           // samples of the reference to one, where coarse will do
 constexpr double kLeastMatched = 0.02;    // of the surface's area, for a reference that is somewhere else
 constexpr int kRelaxations = 2;
+constexpr double kEvenShare = 0.5;  // of the error that 95 % keep to: what it is around most vertices
+constexpr double kAim = 0.92;       // of the error, while resizing: with few samples a little is missed
+constexpr int kFirstRounds = 3, kLastRounds = 4;
+constexpr int kMoreRounds = 12;       // at most, to find the size for an error
+constexpr int kCorrections = 3;
+constexpr double kCorrection = 0.93;  // of the even error, when 95 % do not keep to theirs
 
 std::string text_of(const Vec3& p) {
   char text[128];
@@ -74,10 +81,15 @@ class Fit {
         surface_(surface.mesh, vertices_of(surface)),
         openings_(surface.openings.empty() ? find_openings(surface.mesh) : surface.openings) {
     guard_.max_skewness = options.max_skewness;
+    if (options.error > 0) limits_.step = 1.4;
     const double count = kSamplesPerFace * static_cast<double>(surface_.faces.size());
     samples_ = reference_.samples(field, static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < samples_.size(); i += kFewer) {
+      few_samples_.push_back(samples_[i]);
+      few_samples_.back().area *= kFewer;
+    }
     most_vertices_ = options.max_vertices > 0 ? options.max_vertices : surface.mesh.vertices.size();
-    const double refinement = options.error > 0 ? 4 : std::sqrt(static_cast<double>(most_vertices_) /
+    const double refinement = options.error > 0 ? 8 : std::sqrt(static_cast<double>(most_vertices_) /
                                                                static_cast<double>(surface_.vertices.size()));
     limits_.finest = std::min(limits_.finest, 0.5 / refinement);
     limits_.coarsest = std::max(limits_.coarsest, options.error > 0 ? 4 : 1.5 / refinement);
@@ -90,20 +102,23 @@ class Fit {
 
   const FitReference& reference() const { return reference_; }
   const FitMesh& surface() const { return surface_; }
+  int rounds() const { return rounds_; }
+
 
   void run(const Progress& progress) {
-    const int rounds = options_.rounds;
-    for (int round = 0; round < rounds; ++round) {
-      report_progress(progress, "fit", static_cast<double>(round) / rounds);
-      const Matches matches = find_matches(surface_, reference_, samples_, field_, kDivision);
-      if (round == 0) check_matched(matches);
-      const bool resizes = options_.resize && round >= 3 && round < rounds - 4;
-      if (resizes) {
-        resize(matches);
-        continue;
-      }
-      step(matches, round);
-      if (round < rounds - 2) reshape(round < rounds - 4 ? 1 : 2, round >= rounds - 4);
+    progress_ = &progress;
+    for (int i = 0; i < kFirstRounds; ++i) {
+      const Matches matches = next_matches();
+      if (i == 0) check_matched(matches);
+      step(matches);
+      reshape(1, false);
+    }
+    if (options_.resize) resize();
+    finish();
+    for (int i = 0; options_.resize && options_.error > 0 && i < kCorrections && !keeps_error(); ++i) {
+      even_error_ *= kCorrection;
+      for (int round = 0; round < 2; ++round) resize_once(next_matches());
+      finish();
     }
   }
 
@@ -137,7 +152,28 @@ class Fit {
       throw InvalidInput("the reference is nowhere near the surface; do both have the same unit and frame?");
   }
 
-  void step(const Matches& matches, int round) {
+  Matches next_matches() {
+    ++rounds_;
+    const double share = static_cast<double>(rounds_) / (rounds_ + kFirstRounds);  // not known beforehand
+    report_progress(*progress_, "fit", share);
+    return find_matches(surface_, reference_, samples_, field_, kDivision);
+  }
+
+  // The last rounds: shape gives way to nearness.
+  void finish() {
+    for (int i = 0; i < kLastRounds; ++i) {
+      step(next_matches());
+      if (i < kLastRounds - 2) reshape(2, true);
+    }
+  }
+
+  bool keeps_error() const {
+    const TriMesh mesh = surface_.tri_mesh();
+    return sample_distance(mesh, reference_.index(), options_.samples).distance.p95 <= options_.error &&
+           sample_distance(reference_.mesh(), ClosestPointIndex(mesh), options_.samples).distance.p95 <= options_.error;
+  }
+
+  void step(const Matches& matches) {
     std::vector<Vec3> steps =
         least_squares_steps(surface_, matches, shape_steps(surface_, 2), opening_normals_, {});
     for (Index v = 0; v < steps.size(); ++v) {
@@ -145,7 +181,7 @@ class Fit {
       if (norm > longest) steps[v] *= longest / norm;
     }
     const double taken = take_steps(surface_, steps, guard_);
-    if (getenv("FITLOG")) log(matches, round, taken);
+    if (getenv("FITLOG")) log(matches, rounds_, taken);
     find_cones();
   }
 
@@ -199,26 +235,48 @@ class Fit {
     });
   }
 
-  void resize(const Matches& matches) {
-    if (getenv("FITLOG")) log(matches, -1, 0);
-    const std::vector<double> errors = errors_around(surface_, matches);
+  // For an error, until the number of vertices has settled.
+  void resize() {
+    const bool to_error = options_.error > 0;
+    const int rounds = std::max(1, options_.rounds - kFirstRounds - kLastRounds);
+    for (int i = 0; i < (to_error ? rounds + kMoreRounds : rounds); ++i) {
+      const Matches matches = next_matches();
+      const std::size_t before = surface_.vertices.size();
+      const double p95 = to_error ? matched_distance(matches, 0.95) : 0;
+      if (to_error && settled_ && i >= rounds && p95 <= 0.95 * options_.error && p95 > 0.88 * options_.error) return;
+      if (to_error) aim_at_error(p95);
+      resize_once(matches);
+      const double change = static_cast<double>(surface_.vertices.size()) / static_cast<double>(before);
+      settled_ = change > 0.95 && change < 1.05;
+    }
+  }
+
+  void resize_once(const Matches& matches) {
     const double wanted = aim_ * static_cast<double>(most_vertices_);
-    set_sizes(surface_, errors, options_.error > 0 ? 0 : static_cast<std::size_t>(wanted), options_.error, limits_);
+    set_sizes(surface_, errors_around(surface_, matches),
+              options_.error > 0 ? 0 : static_cast<std::size_t>(wanted), even_error_, limits_);
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       split_edges(surface, frozen);
       flip_edges(surface, frozen, guard_);
       collapse_edges(surface, frozen, guard_);
-      flip_edges(surface, frozen, guard_);
-      for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, 1);
-      flip_edges(surface, frozen, guard_);
-      for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, 1);
+      for (int i = 0; i < 2; ++i) {
+        flip_edges(surface, frozen, guard_);
+        for (int k = 0; k < kRelaxations; ++k) relax(surface, frozen, guard_, 1);
+      }
     });
     pack();
     // What the edges' lengths come to differs a little from what they are meant to be.
-    aim_ = std::clamp(aim_ * std::pow(static_cast<double>(most_vertices_) / static_cast<double>(surface_.vertices.size()), 0.7), 0.8, 1.25);
+    aim_ = std::clamp(aim_ * std::pow(static_cast<double>(most_vertices_) /
+                                          static_cast<double>(surface_.vertices.size()), 0.7), 0.8, 1.25);
     find_cones();
-    step(find_matches(surface_, reference_, samples_, field_, kDivision), -1);
-    step(find_matches(surface_, reference_, samples_, field_, kDivision), -1);
+    step(find_matches(surface_, reference_, few_samples_, field_, kCoarseDivision));
+    step(find_matches(surface_, reference_, samples_, field_, kDivision));
+  }
+
+  // What the error around vertices should be for 95 % of the distances to be below options.error.
+  void aim_at_error(double p95) {
+    if (even_error_ == 0) even_error_ = kEvenShare * options_.error;
+    if (settled_ && p95 > 0) even_error_ *= std::clamp(std::sqrt(kAim * options_.error / p95), 0.8, 1.25);
   }
 
   void pack() {
@@ -234,8 +292,12 @@ class Fit {
   FitMesh surface_;
   std::vector<Opening> openings_;
   std::vector<Vec3> opening_normals_;
-  std::vector<ReferenceSample> samples_;
+  std::vector<ReferenceSample> samples_, few_samples_;
   std::size_t most_vertices_ = 0;
+  double even_error_ = 0;  // mm, to have everywhere
+  bool settled_ = false;   // the number of vertices
+  int rounds_ = 0;
+  const Progress* progress_ = nullptr;
   double aim_ = 1;  // vertices to ask for, to get as many as wanted
   StepGuard guard_;
   SizeLimits limits_;
@@ -294,7 +356,7 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
     FitReport& report = result.report;
     report.vertices_before = surface.mesh.vertices.size();
     report.turned = fit.reference().turned();
-    report.rounds = options.rounds;
+    report.rounds = fit.rounds();
     report.before = distance_between(surface.mesh, fit.reference().mesh(), options);
     report.after = distance_between(result.surface.mesh, fit.reference().mesh(), options);
     report.uncovered = uncovered_parts(fit.surface(), fit.reference(), field);
