@@ -71,6 +71,7 @@ Json to_json(const FitReport& report) {
           {"nodes_outside", outside_json(report.nodes_outside)},
           {"reference_turned", report.turned},
           {"rounds", report.rounds},
+          {"parts_apart", {{"count", report.parts_apart}, {"area_mm2", report.area_apart}}},
           {"uncovered", to_json(report.uncovered)},
           {"unsupported", to_json(report.unsupported)}};
 }
@@ -81,6 +82,9 @@ void log_fit(const FitReport& report, std::vector<std::string>& warnings, Consol
   console.log(line("distance to the reference, the larger way, mm: mean %.3f, was %.3f; 95 %% %.3f, was %.3f; Hausdorff "
                    "%.3f, was %.3f",
                    b.mean(), a.mean(), b.p95(), a.p95(), b.hausdorff.upper(), a.hausdorff.upper()));
+  if (report.parts_apart > 0)
+    console.log(line("%zu parts of the reference, %.1f mm^2, belong to no vessel and were left out of that",
+                     report.parts_apart, report.area_apart));
   for (const Defect& defect : report.nodes_outside) {
     console.warn(defect.message);
     warnings.push_back(defect.message);

@@ -10,6 +10,9 @@ namespace {
 
 constexpr double kSameWay = 0.2;       // cosine of the angle between normals, at least
 constexpr double kFarthest = 1.5;      // local radii
+// Farther apart than the first, in local radii, two points are counterparts only when neither has one much nearer: with
+// less than the second, in their distance.
+constexpr double kNear = 0.25, kMutual = 0.2;
 constexpr double kNoDistance = 1e-9;   // of a radius: below it the line between two points has no direction
 constexpr double kOnEdge = 1e-9;       // a corner's weight on the edge opposite to it
 constexpr std::size_t kGrain = 256;    // samples in a row, each of which helps the next
@@ -58,13 +61,15 @@ class Matcher {
     weights.maxCoeff(&corner);
     const Index cone = surface_.vertices[surface_.faces[f][corner]].cone;
     const double radius = widest_radius(field_, cone);
-    const auto accepts = [&](Index g) {
-      return reference_.normal(g).dot(normals_[f]) > kSameWay && same_vessel(field_, cone, reference_.cone(g));
-    };
-    const auto found = reference_.index().closest_among(p, kFarthest * radius, accepts, near);
+    const auto found = on_reference(p, normals_[f], cone, kFarthest * radius, near);
     if (!found) return {};
     near = found->face;
     if (reference_.on_border(found->face, found->point)) return {};
+    if (found->distance > kNear * radius) {  // is that point's own counterpart much nearer, then it is not this one
+      const Index there = reference_.cone(found->face);
+      const double limit = kMutual * found->distance;
+      if (on_surface(found->point, reference_.normal(found->face), there, limit, f)) return {};
+    }
     return match(f, weights, p, found->point, reference_.normal(found->face), radius, area);
   }
 
@@ -72,21 +77,39 @@ class Matcher {
     const Index cone = reference_.cone(sample.face);
     const double radius = widest_radius(field_, cone);
     const Vec3& normal = reference_.normal(sample.face);
+    const auto found = on_surface(sample.position, normal, cone, kFarthest * radius, near);
+    if (!found) return {};
+    near = found->face;
+    const Vec3 weights = weights_at(surface_.corners(found->face), found->point);
+    if (on_border(found->face, weights)) return {};
+    if (found->distance > kNear * radius) {
+      const Index there = surface_.vertices[surface_.faces[found->face][0]].cone;
+      const double limit = kMutual * found->distance;
+      if (on_reference(found->point, normals_[found->face], there, limit, sample.face)) return {};
+    }
+    return match(found->face, weights, found->point, sample.position, normal, radius, sample.area);
+  }
+
+ private:
+  std::optional<ClosestPoint> on_reference(const Vec3& p, const Vec3& normal, Index cone, double limit,
+                                           Index near) const {
+    const auto accepts = [&](Index g) {
+      return reference_.normal(g).dot(normal) > kSameWay && same_vessel(field_, cone, reference_.cone(g));
+    };
+    return reference_.index().closest_among(p, limit, accepts, near);
+  }
+
+  std::optional<ClosestPoint> on_surface(const Vec3& p, const Vec3& normal, Index cone, double limit,
+                                         Index near) const {
     const auto accepts = [&](Index f) {
       if (!(normal.dot(normals_[f]) > kSameWay)) return false;
       const Triangle& face = surface_.faces[f];
       return std::any_of(face.begin(), face.end(),
                          [&](Index v) { return same_vessel(field_, cone, surface_.vertices[v].cone); });
     };
-    const auto found = index_.closest_among(sample.position, kFarthest * radius, accepts, near);
-    if (!found) return {};
-    near = found->face;
-    const Vec3 weights = weights_at(surface_.corners(found->face), found->point);
-    if (on_border(found->face, weights)) return {};
-    return match(found->face, weights, found->point, sample.position, normal, radius, sample.area);
+    return index_.closest_among(p, limit, accepts, near);
   }
 
- private:
   bool on_border(Index f, const Vec3& weights) const {
     for (int i = 0; i < 3; ++i) {
       const Index a = surface_.faces[f][(i + 1) % 3], b = surface_.faces[f][(i + 2) % 3];

@@ -10,6 +10,7 @@
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/mesh/components.h"
 #include "vmesh/mesh/topology.h"
 
 #include "fit/correspondence.h"
@@ -103,6 +104,17 @@ class Fit {
   const FitReference& reference() const { return reference_; }
   const FitMesh& surface() const { return surface_; }
   int rounds() const { return rounds_; }
+
+  TriMesh reference_without_apart(FitReport& report) const {
+    const std::vector<char> apart = faces_apart(
+        find_matches(surface_, reference_, samples_, field_, kCoarseDivision), samples_, reference_);
+    TriMesh rest{reference_.mesh().vertices, {}}, others = rest;
+    for (Index f = 0; f < apart.size(); ++f)
+      (apart[f] ? others : rest).faces.push_back(reference_.mesh().faces[f]);
+    report.parts_apart = split_components(others).size();
+    report.area_apart = surface_area(others);
+    return rest.faces.empty() ? reference_.mesh() : rest;
+  }
 
 
   void run(const Progress& progress) {
@@ -357,8 +369,9 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
     report.vertices_before = surface.mesh.vertices.size();
     report.turned = fit.reference().turned();
     report.rounds = fit.rounds();
-    report.before = distance_between(surface.mesh, fit.reference().mesh(), options);
-    report.after = distance_between(result.surface.mesh, fit.reference().mesh(), options);
+    const TriMesh compared = fit.reference_without_apart(report);
+    report.before = distance_between(surface.mesh, compared, options);
+    report.after = distance_between(result.surface.mesh, compared, options);
     report.uncovered = uncovered_parts(fit.surface(), fit.reference(), field);
     report.unsupported = unsupported_parts(fit.surface(), fit.reference(), field);
     return result;

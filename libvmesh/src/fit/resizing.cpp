@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLong = 4.0 / 3, kShort = 4.0 / 5;  // of the intended length (Botsch, Kobbelt 2004)
 constexpr int kBisections = 16;  // of an interval of 1000: to 0.01 %
-constexpr double kCollapsedSkewness = 0.5;
+constexpr double kCollapsedSkewness = 0.45;
 constexpr double kBent = 0.5;  // cosine between a triangle's normals before and after a collapse, at least
 
 using Neighbours = std::vector<std::vector<Index>>;

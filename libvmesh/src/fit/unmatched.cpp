@@ -61,6 +61,29 @@ FarFace far_face(const Vec3& p, double area, Index cone, const ClosestPointIndex
 
 }  // namespace
 
+std::vector<char> faces_apart(const Matches& matches, const std::vector<ReferenceSample>& samples,
+                              const FitReference& reference) {
+  const auto count = static_cast<Index>(reference.mesh().faces.size());
+  DisjointSets sets(count);
+  for (Index f = 0; f < count; ++f) {
+    for (const Index g : reference.across(f)) {
+      if (g != kNone) sets.join(f, g);
+    }
+  }
+  std::vector<double> matched(count, 0), all(count, 0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Index component = sets.find(samples[i].face);
+    all[component] += samples[i].area;
+    if (matches.from_reference[i].face != kNone) matched[component] += samples[i].area;
+  }
+  std::vector<char> apart(count);
+  for (Index f = 0; f < count; ++f) {
+    const Index component = sets.find(f);
+    apart[f] = !(matched[component] > 0.5 * all[component]);
+  }
+  return apart;
+}
+
 std::vector<UnmatchedPart> uncovered_parts(const FitMesh& surface, const FitReference& reference,
                                            const VesselField& field) {
   const ClosestPointIndex index(surface.tri_mesh());

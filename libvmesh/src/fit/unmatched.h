@@ -8,6 +8,11 @@
 
 namespace vmesh {
 
+/// For every face of the reference, whether it belongs to a component that lies apart: less than half of its samples
+/// have a match on the surface.
+std::vector<char> faces_apart(const Matches& matches, const std::vector<ReferenceSample>& samples,
+                              const FitReference& reference);
+
 /// Parts of the reference that the packed surface is farther from than half of the local radius; largest first.
 std::vector<UnmatchedPart> uncovered_parts(const FitMesh& surface, const FitReference& reference,
                                            const VesselField& field);

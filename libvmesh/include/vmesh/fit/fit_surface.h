@@ -61,7 +61,10 @@ struct UnmatchedPart {
 
 struct FitReport {
   std::size_t vertices_before = 0;
-  FitDistance before, after;
+  FitDistance before, after;  ///< parts of the reference that lie apart left out
+  /// Components of the reference most of which belongs to no vessel, and their area, mm^2.
+  std::size_t parts_apart = 0;
+  double area_apart = 0;
   /// Of the reference, what no vessel covers: missing twigs, neighbours. Not chased. Largest first.
   std::vector<UnmatchedPart> uncovered;
   /// Of the surface, what the reference does not have: vessels beyond its end; inside of it, walls between the legs of
