@@ -22,6 +22,7 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate tree.swc -o exact.ply --max-error 5%
   vmesh generate tree.swc -o game.obj --budget vertices=5000
   vmesh generate portal.swc -o portal.ply --fit liver.nii.gz --label 2 --spacing 1 --smooth 1
+  vmesh generate liver.nii.gz --label 2 --spacing 1 --smooth 1 --tree -o portal.ply --centerline-output portal.swc
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
@@ -71,7 +72,7 @@ void add_preset(CLI::App& verb, GenerateOptions& options) {
 
 void add_generate(CLI::App& app, GenerateArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
-  add_input(verb, arguments.input, "centerline");
+  add_input(verb, arguments.input, "centerline, or image (.nii, .nii.gz, .nrrd, .mha) to extract it from and to fit to");
   add_output(verb, arguments.output, "surface");
   for_each_generate_option(arguments.options,
                            [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
@@ -143,6 +144,9 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   verb.add_option("--fit", arguments.fitting.reference.path,
                   "fit the surface to this one, or to an image: the vessels' own walls instead of round cones");
   add_fitting(verb, arguments.fitting);
+  verb.add_option("--centerline-output", arguments.centerline_output,
+                  "of an image: the centerline that was extracted, to keep it");
+  add_extraction(verb, arguments.extraction);
   add_common(verb, arguments.common);
   verb.footer(kGenerateExamples);
 }

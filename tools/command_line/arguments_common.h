@@ -46,6 +46,8 @@ void add_fit(CLI::App& app, FitArguments& arguments);
 
 /// What makes a surface of an image.
 void add_image_options(CLI::App& verb, ReferenceOptions& options);
+/// How a centerline is extracted.
+void add_extraction(CLI::App& verb, ExtractOptions& options);
 /// How a surface is fitted, and to what.
 void add_fitting(CLI::App& verb, FittingArguments& arguments);
 

@@ -28,17 +28,6 @@ constexpr const char* kFitExamples = R"(Examples:
 constexpr const char* kTradeoffExamples = R"(Examples:
   vmesh tradeoff tree.swc --report tradeoff.md --plot tradeoff.svg --json tradeoff.json)";
 
-void add_extraction(CLI::App& verb, ExtractOptions& options) {
-  verb.add_option("--step", options.spacing, "distance between nodes along a vessel, in local radii")
-      ->check(in_range(0.1, 10.0))
-      ->capture_default_str();
-  verb.add_option("--join", options.join,
-                  "join parts whose vessels are closer than this times the smaller of their radii")
-      ->check(in_range(0.0, 1e6))
-      ->capture_default_str();
-  verb.add_flag("--tree", options.tree, "break all loops");
-}
-
 }  // namespace
 
 void add_image_options(CLI::App& verb, ReferenceOptions& options) {
@@ -50,6 +39,17 @@ void add_image_options(CLI::App& verb, ReferenceOptions& options) {
   verb.add_option("--smooth", options.smooth, "smooth with a Gaussian of this standard deviation, mm; 0: not at all")
       ->check(in_range(0.0, 1e6))
       ->capture_default_str();
+}
+
+void add_extraction(CLI::App& verb, ExtractOptions& options) {
+  verb.add_option("--step", options.spacing, "distance between nodes along a vessel, in local radii")
+      ->check(in_range(0.1, 10.0))
+      ->capture_default_str();
+  verb.add_option("--join", options.join,
+                  "join parts whose vessels are closer than this times the smaller of their radii")
+      ->check(in_range(0.0, 1e6))
+      ->capture_default_str();
+  verb.add_flag("--tree", options.tree, "break all loops");
 }
 
 void add_fitting(CLI::App& verb, FittingArguments& arguments) {

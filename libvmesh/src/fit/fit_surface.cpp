@@ -30,6 +30,7 @@ constexpr int kDivision = 3, kCoarseDivision = 2;  // of the surface's faces: 9 
 constexpr int kFewer = 2;                           // samples of the reference to one, where coarse will do
 constexpr double kLeastMatched = 0.02;    // of the surface's area, for a reference that is somewhere else
 constexpr int kRelaxations = 2;
+constexpr int kRepairs = 4, kRepairPower = 8;  // of the triangles that a split or collapse left too skew
 constexpr double kEvenShare = 0.5;  // of the error that 95 % keep to: what it is around most vertices
 constexpr double kAim = 0.92;       // of the error, while resizing: with few samples a little is missed
 constexpr int kFirstRounds = 3, kLastRounds = 4;
@@ -275,6 +276,7 @@ class Fit {
         flip_edges(surface, frozen, guard_);
         for (int k = 0; k < kRelaxations; ++k) relax(surface, frozen, guard_, 1);
       }
+      for (int k = 0; k < kRepairs; ++k) relax(surface, frozen, guard_, kRepairPower, guard_.max_skewness);
     });
     pack();
     // What the edges' lengths come to differs a little from what they are meant to be.

@@ -13,7 +13,7 @@
 namespace vmesh {
 namespace {
 
-constexpr int kAttempts = 4;
+constexpr int kAttempts = 6;
 constexpr double kLongestStep = 0.3;  // of the shortest edge
 constexpr double kGain = 0.02;        // of skewness, that a flip must bring
 constexpr double kBent = 0.6;         // cosine between the normals before and after a flip, at least
@@ -120,7 +120,7 @@ void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const st
       for (const Index face : {f, g}) {
         for (const Index v : mesh.faces[face]) {
           places.push_back(mesh.vertices[v]);
-          reach.push_back(2 * packed.mean_edge(v));
+          reach.push_back((2 + attempt) * packed.mean_edge(v));
         }
       }
     }
@@ -174,9 +174,12 @@ std::vector<Vec3> shape_steps(const FitMesh& surface, int power) {
   return steps;
 }
 
-void relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power) {
+void relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above) {
   for (Index v = 0; v < surface.vertices.size(); ++v) {
     if (!surface.has_vertex(v) || surface.on_border(v) || is_frozen(frozen, v)) continue;
+    const auto& around = surface.faces_around(v);
+    if (above > 0 && std::none_of(around.begin(), around.end(), [&](Index f) { return skewness_of(surface, f) > above; }))
+      continue;
     Vec3 step = shape_step(surface, v, power);
     for (int halving = 0; halving < 3; ++halving, step /= 2) {
       if (!may_place(surface, v, surface.position(v) + step, guard)) continue;

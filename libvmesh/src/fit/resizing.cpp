@@ -81,10 +81,10 @@ bool may_collapse_to(const FitMesh& surface, Index a, Index b, const Vec3& p, co
     for (const Index f : surface.faces_around(end)) {
       const Triangle& face = surface.faces[f];
       std::array<Vec3, 3> corners = surface.corners(f);
-      worst_before = std::max(worst_before, equiangle_skewness(corners[0], corners[1], corners[2]));
       const bool both = std::find(face.begin(), face.end(), a) != face.end() &&
                         std::find(face.begin(), face.end(), b) != face.end();
       if (both) continue;
+      worst_before = std::max(worst_before, equiangle_skewness(corners[0], corners[1], corners[2]));
       const Vec3 before = surface.unit_normal(f);
       for (int i = 0; i < 3; ++i) {
         if (face[i] == end) corners[i] = p;
