@@ -72,7 +72,8 @@ void add_preset(CLI::App& verb, GenerateOptions& options) {
 
 void add_generate(CLI::App& app, GenerateArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
-  add_input(verb, arguments.input, "centerline, or image (.nii, .nii.gz, .nrrd, .mha) to extract it from and to fit to");
+  add_input(verb, arguments.input,
+            "centerline, or image (.nii, .nii.gz, .nrrd, .mha) to extract it from and to fit to");
   add_output(verb, arguments.output, "surface");
   for_each_generate_option(arguments.options,
                            [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {

@@ -55,8 +55,8 @@ struct GenerateArguments {
   double gap = 0.1;            ///< vessels closer than this times the smaller radius count as touching
   bool check = false;          ///< exit code 1 unless the surface is flawless
   bool allow_defects = false;  ///< a surface that is not sound is written all the same
-  FittingArguments fitting;    ///< of the surface that was grown; the image's options are the input's without a reference
-  ExtractOptions extraction;   ///< of the centerline, from an input that is an image
+  FittingArguments fitting;  ///< of the surface that was grown; the image's options are the input's without a reference
+  ExtractOptions extraction;                ///< of the centerline, from an input that is an image
   std::filesystem::path centerline_output;  ///< for it; empty: none
 };
 

@@ -79,9 +79,10 @@ Json to_json(const FitReport& report) {
 void log_fit(const FitReport& report, std::vector<std::string>& warnings, Console& console) {
   const FitDistance &a = report.before, &b = report.after;
   if (report.turned) console.log("the reference faced inwards and was turned");
-  console.log(line("distance to the reference, the larger way, mm: mean %.3f, was %.3f; 95 %% %.3f, was %.3f; Hausdorff "
-                   "%.3f, was %.3f",
-                   b.mean(), a.mean(), b.p95(), a.p95(), b.hausdorff.upper(), a.hausdorff.upper()));
+  console.log(
+      line("distance to the reference, the larger way, mm: mean %.3f, was %.3f; 95 %% %.3f, was %.3f; Hausdorff "
+           "%.3f, was %.3f",
+           b.mean(), a.mean(), b.p95(), a.p95(), b.hausdorff.upper(), a.hausdorff.upper()));
   if (report.parts_apart > 0)
     console.log(line("%zu parts of the reference, %.1f mm^2, belong to no vessel and were left out of that",
                      report.parts_apart, report.area_apart));
@@ -94,6 +95,16 @@ void log_fit(const FitReport& report, std::vector<std::string>& warnings, Consol
   for (const UnmatchedPart& part : report.unsupported) (part.inside ? inside : outside).push_back(part);
   name_parts(inside, "walls within the reference, as of a hairpin in a wide vessel", warnings, console);
   name_parts(outside, "the surface has what the reference does not", warnings, console);
+}
+
+bool keeps_error(const FitReport& report, double error, std::vector<std::string>& warnings, Console& console) {
+  if (error == 0 || report.after.p95() <= error) return true;
+  warnings.push_back(
+      line("95 %% of the surfaces are nearer than %.3f mm to each other, not %.3f: parts that the other "
+           "surface does not have count as well",
+           report.after.p95(), error));
+  console.warn(warnings.back());
+  return false;
 }
 
 std::string describe(const FittingArguments& arguments) {

@@ -352,7 +352,8 @@ std::string describe(const GenerateArguments& arguments) {
   if (!reference.empty()) text << " --fit " << reference.string();
   if (!reference.empty() || is_image_path(arguments.input.path)) text << describe(arguments.fitting);
   if (is_image_path(arguments.input.path)) {
-    text << " --step " << exact_text(arguments.extraction.spacing) << " --join " << exact_text(arguments.extraction.join);
+    text << " --step " << exact_text(arguments.extraction.spacing) << " --join "
+         << exact_text(arguments.extraction.join);
     if (arguments.extraction.tree) text << " --tree";
   }
   if (arguments.input.unit) text << " --unit " << to_string(*arguments.input.unit);

@@ -24,13 +24,15 @@ std::vector<CenterlineBinding> binding_of(const LoadedSurface& surface, const Ce
   const std::vector<double>* segment = find(surface.attributes.vertex, "segment");
   const std::vector<double>* t = find(surface.attributes.vertex, "parameter");
   if (!segment || !t)
-    throw InvalidInput("the surface has no places on a centerline (vertex attributes segment and parameter); take one "
-                       "that vmesh generate wrote as .ply or .vtp");
+    throw InvalidInput(
+        "the surface has no places on a centerline (vertex attributes segment and parameter); take one "
+        "that vmesh generate wrote as .ply or .vtp");
   std::vector<CenterlineBinding> binding;
   for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
     const double s = (*segment)[v];
     if (!(s >= 0 && s < static_cast<double>(centerline.segments().size() + centerline.nodes().size())))
-      throw InvalidInput("vertex " + std::to_string(v) + " is bound to a segment that the centerline does not have; is "
+      throw InvalidInput("vertex " + std::to_string(v) +
+                         " is bound to a segment that the centerline does not have; is "
                          "it the one that the surface was grown around?");
     binding.push_back({static_cast<Index>(s), std::clamp((*t)[v], 0.0, 1.0)});
   }
@@ -79,18 +81,19 @@ int run(const FitArguments& arguments, Console& console) {
   });
   const TriMesh reference = load_fit_reference(arguments.fitting, console);
   stop_if_interrupted();
-  const FitResult result = naming(path, [&] {
-    return fit_surface(surface, centerline, reference, arguments.fitting.options, console.progress());
-  });
+  const FitResult result = naming(
+      path, [&] { return fit_surface(surface, centerline, reference, arguments.fitting.options, console.progress()); });
   std::vector<std::string> warnings;
   log_fit(result.report, warnings, console);
+  const bool near = keeps_error(result.report, arguments.fitting.options.error, warnings, console);
   const std::string sha256 = sha256_of_file(path);
   const std::string options = "fit" + describe(arguments.fitting);
   write_surface(arguments.output, result.surface.mesh, attributes_of(result, centerline),
                 {generator_name(), options, path.filename().string(), sha256});
   const SurfaceMeasurement measurement = measure_surface(result.surface.mesh);
   console.log(std::to_string(result.surface.mesh.vertices.size()) + " vertices, skewness " +
-              std::to_string(measurement.skewness.mean) + " mean, " + std::to_string(measurement.skewness.max) + " max");
+              std::to_string(measurement.skewness.mean) + " mean, " + std::to_string(measurement.skewness.max) +
+              " max");
   console.log("wrote " + arguments.output.string());
   if (!arguments.common.json.empty()) {
     Json json = {{"schema", "vmesh.fit/1"},
@@ -106,7 +109,7 @@ int run(const FitArguments& arguments, Console& console) {
     json.update(to_json(measurement));
     write_json(arguments.common.json, json);
   }
-  return kOk;
+  return near ? kOk : kNotConverged;
 }
 
 }  // namespace vmesh::tool

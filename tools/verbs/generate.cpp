@@ -122,9 +122,8 @@ LoadedCenterline extract(GenerateArguments& arguments, std::optional<TriMesh>& r
   image.reference = arguments.input;
   TriMesh surface = load_fit_reference(image, console);
   stop_if_interrupted();
-  const ExtractedCenterline extracted = naming(arguments.input.path, [&] {
-    return extract_centerline(surface, arguments.extraction, console.progress());
-  });
+  const ExtractedCenterline extracted = naming(
+      arguments.input.path, [&] { return extract_centerline(surface, arguments.extraction, console.progress()); });
   const Centerline& centerline = extracted.centerline;
   console.log(std::to_string(centerline.nodes().size()) + " nodes, " + std::to_string(centerline.segments().size()) +
               " segments, " + std::to_string(centerline.component_count()) + " components, " +
@@ -314,8 +313,9 @@ void check_input(const GenerateArguments& arguments) {
   if (has_image(arguments)) {
     if (fits && (image.label || image.threshold || image.spacing > 0 || image.smooth > 0) &&
         is_image_path(arguments.fitting.reference.path))
-      throw UsageError("--label, --threshold, --spacing and --smooth would be for two images; extract the centerline "
-                       "first (vmesh centerline), or leave --fit out: the surface is fitted to the image it is from");
+      throw UsageError(
+          "--label, --threshold, --spacing and --smooth would be for two images; extract the centerline "
+          "first (vmesh centerline), or leave --fit out: the surface is fitted to the image it is from");
     return;
   }
   if (!arguments.centerline_output.empty())
@@ -354,15 +354,16 @@ const std::filesystem::path& fit_reference(const GenerateArguments& arguments) {
   return path.empty() ? arguments.input.path : path;
 }
 
-void fit(GenerateReport& report, GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
+/// Returns whether the error that was asked for is kept.
+bool fit(GenerateReport& report, GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
          Console& console) {
   Stopwatch watch;
   const FittingArguments& fitting = report.arguments->fitting;
-  report.fit = naming(fit_reference(*report.arguments), [&] {
-    return fit_surface(result, centerline, reference, fitting.options, console.progress());
-  });
+  report.fit = naming(fit_reference(*report.arguments),
+                      [&] { return fit_surface(result, centerline, reference, fitting.options, console.progress()); });
   log_fit(*report.fit, report.warnings, console);
   report.stages.push_back({"fit", watch.lap()});
+  return keeps_error(*report.fit, fitting.options.error, report.warnings, console);
 }
 
 /// Fills in what is measured of the surface around `grown` and what is wrong with it.
@@ -409,7 +410,8 @@ int run(const GenerateArguments& given, Console& console) {
   check_input(given);
   std::vector<PlannedOutput> outputs = {{given.output, Kind::surface}, {given.common.json, Kind::summary}};
   if (!given.centerline_output.empty()) {
-    for (const std::filesystem::path& file : files_of(given.centerline_output)) outputs.push_back({file, Kind::centerline});
+    for (const std::filesystem::path& file : files_of(given.centerline_output))
+      outputs.push_back({file, Kind::centerline});
   }
   std::vector<std::filesystem::path> inputs = files_of(given.input.path);
   if (!given.fitting.reference.path.empty()) inputs.push_back(given.fitting.reference.path);
@@ -464,7 +466,7 @@ int run(const GenerateArguments& given, Console& console) {
     report.warnings.push_back(warning.message);
   }
   warn_of_error(report, console);
-  if (reference && (result.is_sound() || arguments.allow_defects)) fit(report, result, centerline, *reference, console);
+  if (reference && result.is_sound()) kept_budget &= fit(report, result, centerline, *reference, console);
 
   watch.lap();
   measure(report, centerline, console);

@@ -8,14 +8,14 @@
 namespace vmesh {
 namespace {
 
-constexpr double kSameWay = 0.2;       // cosine of the angle between normals, at least
-constexpr double kFarthest = 1.5;      // local radii
+constexpr double kSameWay = 0.2;   // cosine of the angle between normals, at least
+constexpr double kFarthest = 1.5;  // local radii
 // Farther apart than the first, in local radii, two points are counterparts only when neither has one much nearer: with
 // less than the second, in their distance.
 constexpr double kNear = 0.25, kMutual = 0.2;
-constexpr double kNoDistance = 1e-9;   // of a radius: below it the line between two points has no direction
-constexpr double kOnEdge = 1e-9;       // a corner's weight on the edge opposite to it
-constexpr std::size_t kGrain = 256;    // samples in a row, each of which helps the next
+constexpr double kNoDistance = 1e-9;  // of a radius: below it the line between two points has no direction
+constexpr double kOnEdge = 1e-9;      // a corner's weight on the edge opposite to it
+constexpr std::size_t kGrain = 256;   // samples in a row, each of which helps the next
 
 // Centres of the triangles that a face is divided into, as weights of its corners.
 std::vector<Vec3> pattern(int division) {
@@ -74,6 +74,7 @@ class Matcher {
   }
 
   Match from_reference(const ReferenceSample& sample, Index& near) const {
+    if (!reference_.is_near(sample.face)) return {};
     const Index cone = reference_.cone(sample.face);
     const double radius = widest_radius(field_, cone);
     const Vec3& normal = reference_.normal(sample.face);
@@ -94,7 +95,8 @@ class Matcher {
   std::optional<ClosestPoint> on_reference(const Vec3& p, const Vec3& normal, Index cone, double limit,
                                            Index near) const {
     const auto accepts = [&](Index g) {
-      return reference_.normal(g).dot(normal) > kSameWay && same_vessel(field_, cone, reference_.cone(g));
+      return reference_.normal(g).dot(normal) > kSameWay && reference_.is_near(g) &&
+             same_vessel(field_, cone, reference_.cone(g));
     };
     return reference_.index().closest_among(p, limit, accepts, near);
   }
@@ -135,8 +137,8 @@ class Matcher {
 
 }  // namespace
 
-Matches find_matches(const FitMesh& surface, const FitReference& reference,
-                     const std::vector<ReferenceSample>& samples, const VesselField& field, int division) {
+Matches find_matches(const FitMesh& surface, const FitReference& reference, const std::vector<ReferenceSample>& samples,
+                     const VesselField& field, int division) {
   const Matcher matcher(surface, reference, field);
   const std::vector<Vec3> points = pattern(division);
   Matches matches;

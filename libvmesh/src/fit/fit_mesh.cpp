@@ -47,9 +47,8 @@ void FitMesh::neighbours(Index v, std::vector<Index>& result) const {
 }
 
 bool FitMesh::are_neighbours(Index a, Index b) const {
-  return std::any_of(around_[a].begin(), around_[a].end(), [&](Index f) {
-    return std::find(faces[f].begin(), faces[f].end(), b) != faces[f].end();
-  });
+  return std::any_of(around_[a].begin(), around_[a].end(),
+                     [&](Index f) { return std::find(faces[f].begin(), faces[f].end(), b) != faces[f].end(); });
 }
 
 Index FitMesh::face_of(Index a, Index b) const {

@@ -16,6 +16,7 @@ namespace vmesh {
 namespace {
 
 // Roberts' R2, as sample_surface() does.
+constexpr double kReach = 1;  // local radii from the round cones: as far as bulges go
 constexpr double kPlastic = 1.32471795724474602596;
 
 struct HalfEdge {
@@ -62,9 +63,11 @@ bool same_vessel(const VesselField& field, Index a, Index b) {
   return std::binary_search(local.begin(), local.end(), b);
 }
 
-FitReference::FitReference(const TriMesh& mesh, const VesselField& field) : mesh_(welded(mesh)), index_(mesh_) {
+FitReference::FitReference(const TriMesh& mesh, const VesselField& field) : mesh_(welded(mesh)) {
+  if (mesh_.faces.empty()) throw InvalidInput("the reference has no faces");
   connect();
   turn_outwards(field);
+  index_.emplace(mesh_);
   normals_.reserve(mesh_.faces.size());
   for (Index f = 0; f < mesh_.faces.size(); ++f) {
     const Vec3 normal = area_normal(mesh_, f);
@@ -72,6 +75,7 @@ FitReference::FitReference(const TriMesh& mesh, const VesselField& field) : mesh
     normals_.push_back(norm > 0 ? Vec3(normal / norm) : Vec3(Vec3::Zero()));
   }
   find_cones(field);
+  find_near(field);
 }
 
 void FitReference::connect() {
@@ -90,8 +94,8 @@ void FitReference::connect() {
     if (end - first != 2) continue;  // a border, or an edge that many faces share
     const HalfEdge &a = edges[first], &b = edges[first + 1];
     if (a.from == b.from)
-      throw InvalidInput("the faces of the reference disagree about the outside, at " + text_of(mesh_.vertices[a.from]) +
-                         "; orient them first");
+      throw InvalidInput("the faces of the reference disagree about the outside, at " +
+                         text_of(mesh_.vertices[a.from]) + "; orient them first");
     across_[a.face][a.side] = b.face;
     across_[b.face][b.side] = a.face;
   }
@@ -147,6 +151,13 @@ void FitReference::find_cones(const VesselField& field) {
       queue.push_back(g);
     }
   }
+}
+
+void FitReference::find_near(const VesselField& field) {
+  near_.resize(mesh_.faces.size());
+  tbb::parallel_for(Index{0}, static_cast<Index>(mesh_.faces.size()), [&](Index f) {
+    near_[f] = field.sample(center(f), cones_[f]).distance <= kReach * widest_radius(field, cones_[f]);
+  });
 }
 
 bool FitReference::on_border(Index f, const Vec3& p) const {

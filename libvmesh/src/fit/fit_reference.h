@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "vmesh/mesh/tri_mesh.h"
@@ -22,9 +23,11 @@ class FitReference {
   FitReference(const TriMesh& mesh, const VesselField& field);
 
   const TriMesh& mesh() const { return mesh_; }
-  const ClosestPointIndex& index() const { return index_; }
+  const ClosestPointIndex& index() const { return *index_; }
   const Vec3& normal(Index f) const { return normals_[f]; }
   Index cone(Index f) const { return cones_[f]; }
+  /// Whether a face is so near its vessel that it can be the vessel's wall; if not, it is not chased.
+  bool is_near(Index f) const { return near_[f]; }
   bool turned() const { return turned_; }
   /// Whether `p`, a point of face `f`, lies on the border of an open reference.
   bool on_border(Index f, const Vec3& p) const;
@@ -40,13 +43,15 @@ class FitReference {
   void connect();
   void turn_outwards(const VesselField& field);
   void find_cones(const VesselField& field);
+  void find_near(const VesselField& field);
 
   TriMesh mesh_;
   bool turned_ = false;
   std::vector<Triangle> across_;
-  ClosestPointIndex index_;
+  std::optional<ClosestPointIndex> index_;  // once the faces are turned
   std::vector<Vec3> normals_;
   std::vector<Index> cones_;
+  std::vector<char> near_;
 };
 
 /// The larger radius of a cone's ends, mm.

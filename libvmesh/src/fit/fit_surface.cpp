@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 #include <tbb/parallel_for.h>
@@ -24,17 +23,18 @@
 namespace vmesh {
 namespace {
 
-constexpr double kLongestStep = 0.35;     // of the edges around
-constexpr double kSamplesPerFace = 9;     // of the reference
+constexpr double kLongestStep = 0.35;              // of the edges around
+constexpr double kSamplesPerFace = 9;              // of the reference
 constexpr int kDivision = 3, kCoarseDivision = 2;  // of the surface's faces: 9 or 4 samples
-constexpr int kFewer = 2;                           // samples of the reference to one, where coarse will do
-constexpr double kLeastMatched = 0.02;    // of the surface's area, for a reference that is somewhere else
+constexpr int kFewer = 2;                          // samples of the reference to one, where coarse will do
+constexpr double kLeastMatched = 0.02;             // of the surface's area, for a reference that is somewhere else
 constexpr int kRelaxations = 2;
 constexpr int kRepairs = 4, kRepairPower = 8;  // of the triangles that a split or collapse left too skew
-constexpr double kEvenShare = 0.5;  // of the error that 95 % keep to: what it is around most vertices
-constexpr double kAim = 0.92;       // of the error, while resizing: with few samples a little is missed
+constexpr double kEvenShare = 0.5;             // of the error that 95 % keep to: what it is around most vertices
+constexpr double kAim = 0.92;                  // of the error, while resizing: with few samples a little is missed
 constexpr int kFirstRounds = 3, kLastRounds = 4;
-constexpr int kMoreRounds = 12;       // at most, to find the size for an error
+constexpr int kMoreRounds = 12;           // at most, to find the size for an error
+constexpr double kOfMostVertices = 0.98;  // to aim at: the count is a matter of luck
 constexpr int kCorrections = 3;
 constexpr double kCorrection = 0.93;  // of the even error, when 95 % do not keep to theirs
 
@@ -90,9 +90,13 @@ class Fit {
       few_samples_.push_back(samples_[i]);
       few_samples_.back().area *= kFewer;
     }
-    most_vertices_ = options.max_vertices > 0 ? options.max_vertices : surface.mesh.vertices.size();
-    const double refinement = options.error > 0 ? 8 : std::sqrt(static_cast<double>(most_vertices_) /
-                                                               static_cast<double>(surface_.vertices.size()));
+    most_vertices_ = options.max_vertices;
+    if (most_vertices_ == 0) most_vertices_ = surface.mesh.vertices.size() * 21 / 20;
+    wanted_vertices_ = static_cast<std::size_t>(kOfMostVertices * static_cast<double>(most_vertices_));
+    const double refinement =
+        options.error > 0
+            ? 8
+            : std::sqrt(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()));
     limits_.finest = std::min(limits_.finest, 0.5 / refinement);
     limits_.coarsest = std::max(limits_.coarsest, options.error > 0 ? 4 : 1.5 / refinement);
     for (Index i = 0; i < openings_.size(); ++i) {
@@ -107,16 +111,14 @@ class Fit {
   int rounds() const { return rounds_; }
 
   TriMesh reference_without_apart(FitReport& report) const {
-    const std::vector<char> apart = faces_apart(
-        find_matches(surface_, reference_, samples_, field_, kCoarseDivision), samples_, reference_);
+    const std::vector<char> apart =
+        faces_apart(find_matches(surface_, reference_, samples_, field_, kCoarseDivision), samples_, reference_);
     TriMesh rest{reference_.mesh().vertices, {}}, others = rest;
-    for (Index f = 0; f < apart.size(); ++f)
-      (apart[f] ? others : rest).faces.push_back(reference_.mesh().faces[f]);
+    for (Index f = 0; f < apart.size(); ++f) (apart[f] ? others : rest).faces.push_back(reference_.mesh().faces[f]);
     report.parts_apart = split_components(others).size();
     report.area_apart = surface_area(others);
     return rest.faces.empty() ? reference_.mesh() : rest;
   }
-
 
   void run(const Progress& progress) {
     progress_ = &progress;
@@ -127,6 +129,7 @@ class Fit {
       reshape(1, false);
     }
     if (options_.resize) resize();
+    if (options_.resize && options_.error == 0) keep_to_most_vertices();
     finish();
     for (int i = 0; options_.resize && options_.error > 0 && i < kCorrections && !keeps_error(); ++i) {
       even_error_ *= kCorrection;
@@ -187,36 +190,13 @@ class Fit {
   }
 
   void step(const Matches& matches) {
-    std::vector<Vec3> steps =
-        least_squares_steps(surface_, matches, shape_steps(surface_, 2), opening_normals_, {});
+    std::vector<Vec3> steps = least_squares_steps(surface_, matches, shape_steps(surface_, 2), opening_normals_, {});
     for (Index v = 0; v < steps.size(); ++v) {
       const double longest = kLongestStep * surface_.mean_edge(v), norm = steps[v].norm();
       if (norm > longest) steps[v] *= longest / norm;
     }
-    const double taken = take_steps(surface_, steps, guard_);
-    if (getenv("FITLOG")) log(matches, rounds_, taken);
+    take_steps(surface_, steps, guard_);
     find_cones();
-  }
-
-  void log(const Matches& matches, int round, double taken) const {
-    const auto mean = [](const std::vector<Match>& list) {
-      double sum = 0, area = 0;
-      for (const Match& m : list) {
-        if (m.face == kNone) continue;
-        sum += m.area * std::abs(m.distance);
-        area += m.area;
-      }
-      return sum / area;
-    };
-    double skew = 0, worst = 0;
-    for (Index f = 0; f < surface_.faces.size(); ++f) {
-      const double s = skewness_of(surface_, f);
-      skew += s;
-      worst = std::max(worst, s);
-    }
-    std::fprintf(stderr, "round %d: %zu vertices, %.4f %.4f before, taken %.3f, skew %.4f %.3f\n", round,
-                 surface_.vertices.size(), mean(matches.from_surface), mean(matches.from_reference), taken,
-                 skew / static_cast<double>(surface_.faces.size()), worst);
   }
 
   void find_cones() {
@@ -264,10 +244,17 @@ class Fit {
     }
   }
 
+  void keep_to_most_vertices() {
+    for (int i = 0; i < kCorrections && surface_.vertices.size() > most_vertices_; ++i) {
+      aim_ *= kCorrection;
+      resize_once(next_matches());
+    }
+  }
+
   void resize_once(const Matches& matches) {
-    const double wanted = aim_ * static_cast<double>(most_vertices_);
-    set_sizes(surface_, errors_around(surface_, matches),
-              options_.error > 0 ? 0 : static_cast<std::size_t>(wanted), even_error_, limits_);
+    const double wanted = aim_ * static_cast<double>(wanted_vertices_);
+    set_sizes(surface_, errors_around(surface_, matches), options_.error > 0 ? 0 : static_cast<std::size_t>(wanted),
+              even_error_, limits_);
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       split_edges(surface, frozen);
       flip_edges(surface, frozen, guard_);
@@ -280,8 +267,9 @@ class Fit {
     });
     pack();
     // What the edges' lengths come to differs a little from what they are meant to be.
-    aim_ = std::clamp(aim_ * std::pow(static_cast<double>(most_vertices_) /
-                                          static_cast<double>(surface_.vertices.size()), 0.7), 0.8, 1.25);
+    aim_ = std::clamp(
+        aim_ * std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()), 0.7),
+        0.8, 1.25);
     find_cones();
     step(find_matches(surface_, reference_, few_samples_, field_, kCoarseDivision));
     step(find_matches(surface_, reference_, samples_, field_, kDivision));
@@ -307,7 +295,7 @@ class Fit {
   std::vector<Opening> openings_;
   std::vector<Vec3> opening_normals_;
   std::vector<ReferenceSample> samples_, few_samples_;
-  std::size_t most_vertices_ = 0;
+  std::size_t most_vertices_ = 0, wanted_vertices_ = 0;
   double even_error_ = 0;  // mm, to have everywhere
   bool settled_ = false;   // the number of vertices
   int rounds_ = 0;
@@ -382,8 +370,8 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
 
 FitReport fit_surface(GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
                       const FitOptions& options, const Progress& progress) {
-  FitResult fitted =
-      fit_surface(VesselSurface{result.mesh, result.binding, result.openings}, centerline, reference, options, progress);
+  FitResult fitted = fit_surface(VesselSurface{result.mesh, result.binding, result.openings}, centerline, reference,
+                                 options, progress);
   result.mesh = std::move(fitted.surface.mesh);
   result.binding = std::move(fitted.surface.binding);
   result.openings = std::move(fitted.surface.openings);

@@ -96,7 +96,8 @@ class Step {
     for (int i = 0; i < 3; ++i) {
       const Index g = surface_.face_of(face[(i + 1) % 3], face[i]);
       if (g == kNone) continue;
-      if (!may_fold(normal.dot(normal_of(surface_.corners(g))), normals_[f].dot(normals_[g]), guard_.fold)) return false;
+      if (!may_fold(normal.dot(normal_of(surface_.corners(g))), normals_[f].dot(normals_[g]), guard_.fold))
+        return false;
     }
     return true;
   }

@@ -8,11 +8,11 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
-constexpr double kHold = 1e-3;       // of a vertex' area: keeps what no match holds
-constexpr double kInPlane = 100;     // of a vertex' area
-constexpr double kAccuracy = 1e-4;   // of the residual; steps are corrected in the next round anyway
+constexpr double kHold = 1e-3;      // of a vertex' area: keeps what no match holds
+constexpr double kInPlane = 100;    // of a vertex' area
+constexpr double kAccuracy = 1e-4;  // of the residual; steps are corrected in the next round anyway
 // Large distances count more, up to this many times the RMS distance: what is far off is brought near.
-constexpr double kEmphasis = 0.5;
+constexpr double kEmphasis = 0.8;
 constexpr double kMostEmphasized = 4;
 constexpr int kMostIterations = 200;
 
@@ -68,7 +68,8 @@ class Equations {
     entries.reserve(9 * diagonal_.size() + 54 * faces_.size());
     const auto add_block = [&](Index v, Index w, const Mat3& block) {
       for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) entries.emplace_back(static_cast<int>(3 * v + i), static_cast<int>(3 * w + j), block(i, j));
+        for (int j = 0; j < 3; ++j)
+          entries.emplace_back(static_cast<int>(3 * v + i), static_cast<int>(3 * w + j), block(i, j));
       }
     };
     for (Index v = 0; v < diagonal_.size(); ++v) add_block(v, v, diagonal_[v]);

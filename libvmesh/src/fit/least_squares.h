@@ -8,8 +8,8 @@ namespace vmesh {
 
 /// Weights against the squared distances, in their area.
 struct LeastSquaresWeights {
-  double tangential = 0.13;  ///< of the pull to where triangles are well shaped
-  double smooth = 0.03;     ///< of the difference of neighbours' steps along the normal
+  double tangential = 0.16;  ///< of the pull to where triangles are well shaped
+  double smooth = 0.03;      ///< of the difference of neighbours' steps along the normal
 };
 
 /// The steps of all vertices (mm) that make the squared distances of the matches least. `pull`: for every vertex the

@@ -20,7 +20,7 @@ constexpr double kBent = 0.6;         // cosine between the normals before and a
 constexpr double kFlippedSkewness = 0.42;
 constexpr double kCloser = 0.02;  // of the edge: what a flip must bring the middle closer
 constexpr double kCloserSkewness = 0.35;
-constexpr int kLessEven = 6;      // squares of valences' deviations that it may cost
+constexpr int kLessEven = 6;  // squares of valences' deviations that it may cost
 
 Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
@@ -94,7 +94,8 @@ bool should_flip(const FitMesh& surface, Index a, Index b, const StepGuard& guar
   const double worst_before = std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd));
   const double worst_after = std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc));
   const bool more_even = after < before && worst_after <= std::max(kFlippedSkewness, worst_before);
-  const bool better = after <= before + 2 && worst_after < worst_before - kGain && worst_before > guard.max_skewness / 2;
+  const bool better =
+      after <= before + 2 && worst_after < worst_before - kGain && worst_before > guard.max_skewness / 2;
   if (!more_even && !better) return false;
   const Vec3 n1 = unit_normal(pa, pb, pc), n2 = unit_normal(pb, pa, pd);
   const Vec3 m1 = unit_normal(pc, pa, pd), m2 = unit_normal(pd, pb, pc);
@@ -153,7 +154,8 @@ void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen,
     const int after =
         deviation(valence(a) - 1) + deviation(valence(b) - 1) + deviation(valence(c) + 1) + deviation(valence(d) + 1);
     if (after > before + kLessEven) continue;
-    const Vec3 &pa = surface.position(a), &pb = surface.position(b), &pc = surface.position(c), &pd = surface.position(d);
+    const Vec3 &pa = surface.position(a), &pb = surface.position(b), &pc = surface.position(c),
+               &pd = surface.position(d);
     const double worst_before = std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd));
     const double worst_after = std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc));
     if (worst_after > std::max(kCloserSkewness, worst_before)) continue;
@@ -178,7 +180,8 @@ void relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& g
   for (Index v = 0; v < surface.vertices.size(); ++v) {
     if (!surface.has_vertex(v) || surface.on_border(v) || is_frozen(frozen, v)) continue;
     const auto& around = surface.faces_around(v);
-    if (above > 0 && std::none_of(around.begin(), around.end(), [&](Index f) { return skewness_of(surface, f) > above; }))
+    if (above > 0 &&
+        std::none_of(around.begin(), around.end(), [&](Index f) { return skewness_of(surface, f) > above; }))
       continue;
     Vec3 step = shape_step(surface, v, power);
     for (int halving = 0; halving < 3; ++halving, step /= 2) {

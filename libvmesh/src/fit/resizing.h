@@ -13,15 +13,15 @@ namespace vmesh {
 std::vector<double> errors_around(const FitMesh& surface, const Matches& matches);
 
 struct SizeLimits {
-  double step = 1.25;                    ///< most that a size changes by at once
-  double finest = 0.4, coarsest = 1.6;   ///< of the sizes that the surface came with
-  double grading = 0.4;                  ///< difference of sizes over distance, at most
+  double step = 1.25;                   ///< most that a size changes by at once
+  double finest = 0.4, coarsest = 1.6;  ///< of the sizes that the surface came with
+  double grading = 0.4;                 ///< difference of sizes over distance, at most
 };
 
 /// Sets the intended sizes so that errors become even at about `vertices` vertices, if that is not 0, else so that they
 /// become `error`: an error goes with the square of the edges.
-void set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t vertices,
-               double error, const SizeLimits& limits);
+void set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t vertices, double error,
+               const SizeLimits& limits);
 
 /// Splits edges that are too long for their ends' sizes, collapses those that are too short.
 void split_edges(FitMesh& surface, const std::vector<char>& frozen);

@@ -16,8 +16,8 @@
 namespace vmesh {
 
 /// The surfaces of a comparison: those of the paper's Table 2 in its order, that is marching cubes, which is the
-/// reference, truncated cones and the paper's two resolutions; then vmesh's presets where they are finer than these, the
-/// presets fitted to the reference, and the preset low grown as published.
+/// reference, truncated cones and the paper's two resolutions; then vmesh's presets where they are finer than these,
+/// the presets fitted to the reference, and the preset low grown as published.
 enum class SurfaceMethod {
   marching_cubes,
   truncated_cones,

@@ -22,10 +22,10 @@ struct VesselSurface {
 /// How a surface is fitted to another one.
 struct FitOptions {
   /// Rounds of correspondence, least squares and repair, 1 to 100; in the first half the size of triangles changes too.
-  int rounds = 14;
+  int rounds = 16;
   /// Triangles become finer where the error is large and coarser where it is small. Otherwise every triangle stays.
   bool resize = true;
-  /// Most vertices; 0: as many as the surface has.
+  /// Most vertices, unless `error` decides; 0: a twentieth more than the surface has.
   std::size_t max_vertices = 0;
   /// Error to reach with as few vertices as it takes, mm: 95 % of both surfaces are nearer to the other than this. 0:
   /// none; then the number of vertices is kept.
@@ -72,7 +72,7 @@ struct FitReport {
   std::vector<UnmatchedPart> unsupported;
   std::vector<Defect> nodes_outside;  ///< of the centerline, outside of the fitted surface; of a GenerateResult only
   bool turned = false;                ///< the reference faced inwards, and was turned
-  int rounds = 0;
+  int rounds = 0;                     ///< of correspondence
 };
 
 struct FitResult {
