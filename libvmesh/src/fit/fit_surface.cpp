@@ -123,7 +123,7 @@ class Fit {
   void run(const Progress& progress) {
     progress_ = &progress;
     for (int i = 0; i < kFirstRounds; ++i) {
-      const Matches matches = next_matches();
+      const Matches matches = next_matches(true);
       if (i == 0) check_matched(matches);
       step(matches);
       reshape(1, false);
@@ -168,10 +168,15 @@ class Fit {
       throw InvalidInput("the reference is nowhere near the surface; do both have the same unit and frame?");
   }
 
-  Matches next_matches() {
+  Matches next_matches(bool coarse = false) {
     ++rounds_;
     const double share = static_cast<double>(rounds_) / (rounds_ + kFirstRounds);  // not known beforehand
     report_progress(*progress_, "fit", share);
+    return matches_now(coarse);
+  }
+
+  Matches matches_now(bool coarse) const {
+    if (coarse) return find_matches(surface_, reference_, few_samples_, field_, kCoarseDivision);
     return find_matches(surface_, reference_, samples_, field_, kDivision);
   }
 
@@ -271,8 +276,8 @@ class Fit {
         aim_ * std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()), 0.7),
         0.8, 1.25);
     find_cones();
-    step(find_matches(surface_, reference_, few_samples_, field_, kCoarseDivision));
-    step(find_matches(surface_, reference_, samples_, field_, kDivision));
+    step(matches_now(true));
+    step(matches_now(false));
   }
 
   // What the error around vertices should be for 95 % of the distances to be below options.error.
