@@ -21,6 +21,8 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate tree.swc -o fine.ply --preset high
   vmesh generate tree.swc -o exact.ply --max-error 5%
   vmesh generate tree.swc -o game.obj --budget vertices=5000
+  vmesh generate portal.swc -o portal.ply --fit liver.nii.gz --label 2 --spacing 1 --smooth 1
+  vmesh generate liver.nii.gz --label 2 --spacing 1 --smooth 1 --tree -o portal.ply --centerline-output portal.swc
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
@@ -70,7 +72,8 @@ void add_preset(CLI::App& verb, GenerateOptions& options) {
 
 void add_generate(CLI::App& app, GenerateArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
-  add_input(verb, arguments.input, "centerline");
+  add_input(verb, arguments.input,
+            "centerline, or image (.nii, .nii.gz, .nrrd, .mha) to extract it from and to fit to");
   add_output(verb, arguments.output, "surface");
   for_each_generate_option(arguments.options,
                            [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
@@ -139,6 +142,12 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
                 "self-intersections, of the expected topology, and holds every centerline node");
   verb.add_flag("--allow-defects", arguments.allow_defects,
                 "write the surface even if it is not sound; the summary lists what is wrong with it, and where");
+  verb.add_option("--fit", arguments.fitting.reference.path,
+                  "fit the surface to this one, or to an image: the vessels' own walls instead of round cones");
+  add_fitting(verb, arguments.fitting);
+  verb.add_option("--centerline-output", arguments.centerline_output,
+                  "of an image: the centerline that was extracted, to keep it");
+  add_extraction(verb, arguments.extraction);
   add_common(verb, arguments.common);
   verb.footer(kGenerateExamples);
 }
@@ -273,6 +282,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   TradeoffArguments tradeoff;
   DeformArguments deform;
   Table1Arguments table1;
+  FitArguments fit;
   add_generate(app, generate);
   add_info(app, info);
   add_synth(app, synth);
@@ -286,6 +296,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   add_tradeoff(app, tradeoff);
   add_deform(app, deform);
   add_table1(app, table1);
+  add_fit(app, fit);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -304,6 +315,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   if (app.got_subcommand("tradeoff")) return tradeoff;
   if (app.got_subcommand("deform")) return deform;
   if (app.got_subcommand("table1")) return table1;
+  if (app.got_subcommand("fit")) return fit;
   if (app.got_subcommand("evaluate")) return evaluate;
   return render;
 }

@@ -10,6 +10,7 @@
 #include "vmesh/centerline/raw_centerline.h"
 #include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/comparison/method_comparison.h"
+#include "vmesh/fit/fit_surface.h"
 #include "vmesh/reference/reference_surface.h"
 #include "vmesh/render/render.h"
 #include "vmesh/skeleton/extract_centerline.h"
@@ -37,6 +38,13 @@ enum class OverlapHandling { keep, separate };
 
 std::string_view to_string(OverlapHandling overlap);
 
+/// What a surface is fitted to, and how.
+struct FittingArguments {
+  InputArguments reference;  ///< surface or image; empty path: none
+  ReferenceOptions image;    ///< how an image becomes a surface
+  FitOptions options;
+};
+
 struct GenerateArguments {
   CommonArguments common;
   InputArguments input;
@@ -47,6 +55,17 @@ struct GenerateArguments {
   double gap = 0.1;            ///< vessels closer than this times the smaller radius count as touching
   bool check = false;          ///< exit code 1 unless the surface is flawless
   bool allow_defects = false;  ///< a surface that is not sound is written all the same
+  FittingArguments fitting;  ///< of the surface that was grown; the image's options are the input's without a reference
+  ExtractOptions extraction;                ///< of the centerline, from an input that is an image
+  std::filesystem::path centerline_output;  ///< for it; empty: none
+};
+
+struct FitArguments {
+  CommonArguments common;
+  InputArguments input;       ///< surface
+  InputArguments centerline;  ///< that the surface was grown around
+  std::filesystem::path output;
+  FittingArguments fitting;
 };
 
 struct InfoArguments {
@@ -153,7 +172,7 @@ struct Table1Arguments {
 
 using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments,
                                EvaluateArguments, ReferenceArguments, ConesArguments, CenterlineArguments,
-                               Table2Arguments, TradeoffArguments, DeformArguments, Table1Arguments>;
+                               Table2Arguments, TradeoffArguments, DeformArguments, Table1Arguments, FitArguments>;
 
 /// Calls `visit(flag, member, low, high, help)` for every option of the growth. The one list behind the command line
 /// and the summary.

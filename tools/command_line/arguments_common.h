@@ -42,6 +42,14 @@ void add_cones(CLI::App& app, ConesArguments& arguments);
 void add_centerline(CLI::App& app, CenterlineArguments& arguments);
 void add_table2(CLI::App& app, Table2Arguments& arguments);
 void add_tradeoff(CLI::App& app, TradeoffArguments& arguments);
+void add_fit(CLI::App& app, FitArguments& arguments);
+
+/// What makes a surface of an image.
+void add_image_options(CLI::App& verb, ReferenceOptions& options);
+/// How a centerline is extracted.
+void add_extraction(CLI::App& verb, ExtractOptions& options);
+/// How a surface is fitted, and to what.
+void add_fitting(CLI::App& verb, FittingArguments& arguments);
 
 /// The verbs that deal with motion.
 void add_deform(CLI::App& app, DeformArguments& arguments);

@@ -1,3 +1,7 @@
+#include <cmath>
+
+#include "vmesh/core/error.h"
+
 #include "command_line/arguments_common.h"
 
 namespace vmesh::tool {
@@ -18,8 +22,13 @@ constexpr const char* kTable2Examples = R"(Examples:
   vmesh table2 --centerline tree.swc --voxel 0.5 --format markdown
   vmesh table2 --reference liver.nii.gz --label 2 --spacing 1 --smooth 0.8 --report table.md --surfaces folder
   vmesh table2 --reference portal.ply --tree)";
+constexpr const char* kFitExamples = R"(Examples:
+  vmesh fit tree.ply scan.stl --centerline tree.swc -o fitted.ply
+  vmesh fit portal.ply liver.nii.gz --label 2 --spacing 1 --smooth 1 --centerline portal.swc -o fitted.ply)";
 constexpr const char* kTradeoffExamples = R"(Examples:
   vmesh tradeoff tree.swc --report tradeoff.md --plot tradeoff.svg --json tradeoff.json)";
+
+}  // namespace
 
 void add_image_options(CLI::App& verb, ReferenceOptions& options) {
   CLI::Option* label = verb.add_option("--label", options.label, "image: voxels of this value are inside");
@@ -43,7 +52,49 @@ void add_extraction(CLI::App& verb, ExtractOptions& options) {
   verb.add_flag("--tree", options.tree, "break all loops");
 }
 
-}  // namespace
+void add_fitting(CLI::App& verb, FittingArguments& arguments) {
+  add_reading(verb, arguments.reference, "reference-");
+  add_image_options(verb, arguments.image);
+  verb.add_option_function<std::string>(
+          "--fit-error",
+          [&arguments](const std::string& text) {
+            try {
+              const ErrorLimit limit = parse_error_limit(text);
+              if (std::isfinite(limit.relative)) throw InvalidInput("give millimetres, such as 0.3mm");
+              arguments.options.error = limit.mm;
+            } catch (const InvalidInput& error) {
+              throw CLI::ValidationError("--fit-error", error.what());
+            }
+          },
+          "as many vertices as it takes for 95 % of both surfaces to be nearer than this to the other")
+      ->type_name("Xmm");
+  verb.add_option("--fit-rounds", arguments.options.rounds, "rounds of the fit")
+      ->check(in_range(1, 100))
+      ->capture_default_str();
+  verb.add_flag("!--keep-triangles", arguments.options.resize,
+                "move the vertices alone; otherwise triangles become finer where the error is large, and coarser where "
+                "it is small");
+}
+
+void add_fit(CLI::App& app, FitArguments& arguments) {
+  CLI::App& verb =
+      *app.add_subcommand("fit", "Move a surface that vmesh grew onto a segmentation's own: a surface or an image");
+  add_input(verb, arguments.input, "surface, with places on the centerline (.ply, .vtp)");
+  verb.add_option("REFERENCE", arguments.fitting.reference.path, "surface, or image (.nii, .nii.gz, .nrrd, .mha)")
+      ->required();
+  add_output(verb, arguments.output, "surface");
+  verb.add_option("--centerline", arguments.centerline.path, "that the surface was grown around")->required();
+  add_reading(verb, arguments.centerline, "centerline-");
+  add_fitting(verb, arguments.fitting);
+  verb.add_option("--max-vertices", arguments.fitting.options.max_vertices, "0: a twentieth more than the surface has")
+      ->capture_default_str();
+  verb.add_option("--threads", arguments.fitting.options.threads,
+                  "to work on; 0: as many as there are; the result is the same")
+      ->check(in_range(0, 4096))
+      ->capture_default_str();
+  add_common(verb, arguments.common);
+  verb.footer(kFitExamples);
+}
 
 void add_reference(CLI::App& app, ReferenceArguments& arguments) {
   CLI::App& verb = *app.add_subcommand(

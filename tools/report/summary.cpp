@@ -10,6 +10,7 @@
 #include "vmesh/core/version.h"
 
 #include "command_line/outputs.h"
+#include "report/fit_report.h"
 
 namespace vmesh::tool {
 namespace {
@@ -273,6 +274,11 @@ Json to_json(const GenerateReport& report) {
   json["rounding"] = to_json(report.rounding);
   if (arguments.options.max_error.is_set()) json["error_bound"] = error_bound_json(arguments, *report.result);
   if (arguments.budget) json["budget"] = budget_json(*arguments.budget, arguments.options, report.tried);
+  if (report.fit) {
+    json["fit"] = to_json(*report.fit);
+    const std::filesystem::path& reference = arguments.fitting.reference.path;
+    json["fit"]["reference"] = (reference.empty() ? arguments.input.path : reference).string();
+  }
   json["contacts"] = to_json(report.contacts);
   if (report.separation) json["separation"] = to_json(*report.separation);
   json["seconds"] = stages_json(report.stages);
@@ -342,6 +348,14 @@ std::string describe(const GenerateArguments& arguments) {
   for (std::size_t i = 0; i < options.open_ends.nodes.size(); ++i)
     text << (i == 0 ? " --open-ends " : ",") << options.open_ends.nodes[i];
   text << " --overlap " << to_string(arguments.overlap) << " --gap " << exact_text(arguments.gap);
+  const std::filesystem::path& reference = arguments.fitting.reference.path;
+  if (!reference.empty()) text << " --fit " << reference.string();
+  if (!reference.empty() || is_image_path(arguments.input.path)) text << describe(arguments.fitting);
+  if (is_image_path(arguments.input.path)) {
+    text << " --step " << exact_text(arguments.extraction.spacing) << " --join "
+         << exact_text(arguments.extraction.join);
+    if (arguments.extraction.tree) text << " --tree";
+  }
   if (arguments.input.unit) text << " --unit " << to_string(*arguments.input.unit);
   if (arguments.input.space) text << " --space " << to_string(*arguments.input.space);
   return text.str();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vmesh/centerline/cleaning.h"
+#include "vmesh/fit/fit_surface.h"
 #include "vmesh/surface/deviation.h"
 #include "vmesh/volume/contacts.h"
 
@@ -30,6 +31,7 @@ struct GenerateReport {
   std::optional<std::size_t> nodes_inside;  ///< of them
   Deviation deviation;            ///< from the vessels that were grown: the narrowed and moved ones after a separation
   Deviation rounding;             ///< of the boundary at branches, against the plain union
+  std::optional<FitReport> fit;   ///< with a reference to fit to
   std::vector<StageTime> stages;  ///< of the whole run
   std::vector<std::string> warnings, problems;
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "vmesh/centerline/branches.h"
 #include "vmesh/io/sha256.h"
@@ -9,7 +10,10 @@
 #include "command_line/inputs.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
+#include "command_line/usage_error.h"
+#include "report/fit_report.h"
 #include "report/summary.h"
+#include "verbs/fitting.h"
 #include "verbs/verbs.h"
 
 namespace vmesh::tool {
@@ -111,6 +115,31 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
               std::to_string(centerline.cycle_rank()) + " loops");
   return loaded;
 }
+
+/// The centerline of the vessels in an image, and their surface, which is what the one that grows is fitted to.
+LoadedCenterline extract(GenerateArguments& arguments, std::optional<TriMesh>& reference, Console& console) {
+  FittingArguments image = arguments.fitting;
+  image.reference = arguments.input;
+  TriMesh surface = load_fit_reference(image, console);
+  stop_if_interrupted();
+  const ExtractedCenterline extracted = naming(
+      arguments.input.path, [&] { return extract_centerline(surface, arguments.extraction, console.progress()); });
+  const Centerline& centerline = extracted.centerline;
+  console.log(std::to_string(centerline.nodes().size()) + " nodes, " + std::to_string(centerline.segments().size()) +
+              " segments, " + std::to_string(centerline.component_count()) + " components, " +
+              std::to_string(centerline.cycle_rank()) + " loops extracted");
+  if (!arguments.centerline_output.empty())
+    write_centerline(arguments.centerline_output, centerline,
+                     {generator_name(), "extracted by generate", arguments.input.path.filename().string(),
+                      sha256_of_file(arguments.input.path)});
+  if (!reference) reference = std::move(surface);
+  LoadedCenterline loaded{{centerline, {}, {}, {}}, {}};
+  for (Index n = 0; n < centerline.nodes().size(); ++n) loaded.cleaned.raw_node.push_back(n);
+  for (Index s = 0; s < centerline.segments().size(); ++s) loaded.cleaned.raw_segment.push_back(s);
+  return loaded;
+}
+
+bool has_image(const GenerateArguments& arguments) { return is_image_path(arguments.input.path); }
 
 /// Leaves out the nodes that the surface does not need. Without a value all are needed; or the budget decides, for
 /// every surface that is tried, which are.
@@ -277,6 +306,66 @@ BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& cen
   return surface;
 }
 
+/// What only an image or a reference gives a meaning to.
+void check_input(const GenerateArguments& arguments) {
+  const ReferenceOptions& image = arguments.fitting.image;
+  const bool fits = !arguments.fitting.reference.path.empty();
+  if (has_image(arguments)) {
+    if (fits && (image.label || image.threshold || image.spacing > 0 || image.smooth > 0) &&
+        is_image_path(arguments.fitting.reference.path))
+      throw UsageError(
+          "--label, --threshold, --spacing and --smooth would be for two images; extract the centerline "
+          "first (vmesh centerline), or leave --fit out: the surface is fitted to the image it is from");
+    return;
+  }
+  if (!arguments.centerline_output.empty())
+    throw UsageError("--centerline-output is for an input that is an image; this is taken for a centerline");
+  const ExtractOptions plain;
+  if (arguments.extraction.tree || arguments.extraction.spacing != plain.spacing ||
+      arguments.extraction.join != plain.join)
+    throw UsageError("--step, --join and --tree are for an input that is an image; this is taken for a centerline");
+  if (fits) return;
+  if (arguments.fitting.options.error > 0) throw UsageError("--fit-error needs --fit REFERENCE");
+  if (image.label || image.threshold || image.spacing > 0 || image.smooth > 0)
+    throw UsageError("--label, --threshold, --spacing and --smooth are for images; none is given");
+}
+
+/// With a reference, a budget is the fit's: of vertices or of the distance to the reference.
+void apply_budget_to_fit(GenerateArguments& arguments) {
+  FittingArguments& fitting = arguments.fitting;
+  if (fitting.reference.path.empty() && !has_image(arguments)) return;
+  if (arguments.options.max_error.is_set())
+    throw UsageError("--max-error is a limit on the distance to round cones; with --fit see --fit-error");
+  fitting.options.threads = arguments.options.threads;
+  if (!arguments.budget) return;
+  const Budget budget = *arguments.budget;
+  if (budget.kind == Budget::Kind::vertices) {
+    fitting.options.max_vertices = budget.vertices;  // what is grown keeps to it as well
+    return;
+  }
+  if (budget.kind != Budget::Kind::error || !std::isfinite(budget.error.mm) || std::isfinite(budget.error.relative))
+    throw UsageError("--fit takes budgets such as vertices=5000 and error=0.2mm, not " + to_string(budget));
+  fitting.options.error = budget.error.mm;
+  arguments.budget.reset();
+}
+
+const std::filesystem::path& fit_reference(const GenerateArguments& arguments) {
+  const std::filesystem::path& path = arguments.fitting.reference.path;
+  return path.empty() ? arguments.input.path : path;
+}
+
+/// Returns whether the error that was asked for is kept.
+bool fit(GenerateReport& report, GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
+         Console& console) {
+  Stopwatch watch;
+  const FittingArguments& fitting = report.arguments->fitting;
+  report.fit = naming(fit_reference(*report.arguments),
+                      [&] { return fit_surface(result, centerline, reference, fitting.options, console.progress()); });
+  log_fit(*report.fit, report.warnings, console);
+  report.stages.push_back({"fit", watch.lap()});
+  return keeps_error(*report.fit, fitting.options.error, report.warnings, console);
+}
+
 /// Fills in what is measured of the surface around `grown` and what is wrong with it.
 void measure(GenerateReport& report, const Centerline& grown, Console& console) {
   const GenerateResult& result = *report.result;
@@ -290,8 +379,9 @@ void measure(GenerateReport& report, const Centerline& grown, Console& console) 
   stop_if_interrupted();
   report.grown_nodes = grown.nodes().size();
   report.nodes_inside = result.check.nodes_inside;
-  report.problems =
-      problems_of(report.measurement, expected_surface(grown, result), report.nodes_inside, report.grown_nodes);
+  // A vessel that is not round may leave its axis outside.
+  const std::size_t nodes_due = report.fit ? report.nodes_inside.value_or(0) : report.grown_nodes;
+  report.problems = problems_of(report.measurement, expected_surface(grown, result), report.nodes_inside, nodes_due);
   for (const std::string& problem : report.problems) console.warn("surface: " + problem);
 }
 
@@ -317,13 +407,29 @@ void write(const GenerateReport& report) {
 
 int run(const GenerateArguments& given, Console& console) {
   using Kind = PlannedOutput::Kind;
-  check_outputs({{given.output, Kind::surface}, {given.common.json, Kind::summary}}, files_of(given.input.path));
+  check_input(given);
+  std::vector<PlannedOutput> outputs = {{given.output, Kind::surface}, {given.common.json, Kind::summary}};
+  if (!given.centerline_output.empty()) {
+    for (const std::filesystem::path& file : files_of(given.centerline_output))
+      outputs.push_back({file, Kind::centerline});
+  }
+  std::vector<std::filesystem::path> inputs = files_of(given.input.path);
+  if (!given.fitting.reference.path.empty()) inputs.push_back(given.fitting.reference.path);
+  check_outputs(outputs, inputs);
   GenerateArguments arguments = given;  // a budget chooses some of them
   Stopwatch watch;
   GenerateReport report;
   report.arguments = &arguments;
+  apply_budget_to_fit(arguments);
 
-  const LoadedCenterline loaded = load(arguments.input, console);
+  std::optional<TriMesh> reference;
+  if (!arguments.fitting.reference.path.empty()) {
+    FittingArguments fitting = arguments.fitting;
+    if (has_image(arguments) && !is_image_path(fitting.reference.path)) fitting.image = {};  // the input's
+    reference = load_fit_reference(fitting, console);
+  }
+  const LoadedCenterline loaded =
+      has_image(arguments) ? extract(arguments, reference, console) : load(arguments.input, console);
   report.input_sha256 = sha256_of_file(arguments.input.path);
   report.cleaned = &loaded.cleaned;
   report.stages.push_back({"read", watch.lap()});
@@ -360,6 +466,7 @@ int run(const GenerateArguments& given, Console& console) {
     report.warnings.push_back(warning.message);
   }
   warn_of_error(report, console);
+  if (reference && result.is_sound()) kept_budget &= fit(report, result, centerline, *reference, console);
 
   watch.lap();
   measure(report, centerline, console);

@@ -150,7 +150,10 @@ Table2Report make_table(const Table2Arguments& arguments, Console& console) {
   vessels.source.centerline = source_file(arguments.centerline.path);
   const auto& named = arguments.reference.path.empty() ? arguments.centerline.path : arguments.reference.path;
   MethodComparison comparison = naming(named, [&] {
-    return compare_methods(std::move(vessels.reference), vessels.centerline, arguments.methods, console.progress());
+    MethodOptions methods = arguments.methods;
+    methods.fitted = !arguments.reference.path.empty();  // round cones are what is grown around anyway
+    methods.paper_growth = true;
+    return compare_methods(std::move(vessels.reference), vessels.centerline, methods, console.progress());
   });
   Table2Report report{
       std::move(vessels.source), std::move(vessels.centerline), arguments.methods.tolerance, std::move(comparison), {}};

@@ -19,5 +19,6 @@ int run(const Table2Arguments& arguments, Console& console);
 int run(const TradeoffArguments& arguments, Console& console);
 int run(const DeformArguments& arguments, Console& console);
 int run(const Table1Arguments& arguments, Console& console);
+int run(const FitArguments& arguments, Console& console);
 
 }  // namespace vmesh::tool

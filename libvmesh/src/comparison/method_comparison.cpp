@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "vmesh/comparison/paper_table.h"
+#include "vmesh/core/error.h"
+#include "vmesh/fit/fit_surface.h"
 #include "vmesh/reference/cones.h"
 #include "vmesh/surface/generate.h"
 
@@ -50,6 +52,29 @@ class Grower {
     for (MethodRow& row : presets_) comparison_.rows.push_back(std::move(row));
   }
 
+  void add_fitted(Preset preset) {
+    const SurfaceMethod method = preset == Preset::low ? SurfaceMethod::low_fitted : SurfaceMethod::high_fitted;
+    GenerateOptions options;
+    options.around = vertices_around(preset);
+    GenerateResult result = generate_surface(centerline_, options, progress_);
+    // What crosses itself cannot be fitted; the row then has the surface as it was grown, and says why.
+    std::string refused;
+    try {
+      fit_surface(result, centerline_, comparison_.rows[0].mesh, {}, progress_);
+    } catch (const InvalidInput& error) {
+      refused = std::string("not fitted: ") + error.what();
+    }
+    MethodRow row = row_of_result(method, options, std::move(result));
+    if (!refused.empty()) row.warnings.push_back(refused);
+    comparison_.rows.push_back(std::move(row));
+  }
+
+  void add_paper_growth() {
+    GenerateOptions options;
+    options.growth = GrowthMethod::paper;
+    comparison_.rows.push_back(grow(SurfaceMethod::paper_growth, options));
+  }
+
  private:
   double most_vertices(SurfaceMethod method) const {
     double most = std::numeric_limits<double>::infinity();
@@ -66,7 +91,10 @@ class Grower {
   }
 
   MethodRow grow(SurfaceMethod method, const GenerateOptions& options) const {
-    GenerateResult result = generate_surface(centerline_, options, progress_);
+    return row_of_result(method, options, generate_surface(centerline_, options, progress_));
+  }
+
+  static MethodRow row_of_result(SurfaceMethod method, const GenerateOptions& options, GenerateResult result) {
     MethodRow row;
     row.method = method;
     row.around = options.around;
@@ -108,6 +136,12 @@ std::string_view to_string(SurfaceMethod method) {
       return "preset low";
     case SurfaceMethod::high_preset:
       return "preset high";
+    case SurfaceMethod::low_fitted:
+      return "low, fitted";
+    case SurfaceMethod::high_fitted:
+      return "high, fitted";
+    case SurfaceMethod::paper_growth:
+      return "growth as published";
   }
   return "";
 }
@@ -123,6 +157,11 @@ MethodComparison compare_methods(TriMesh reference, const Centerline& centerline
   Grower grower(centerline, comparison, progress);
   for (const Preset preset : {Preset::low, Preset::high}) grower.add_resolution(preset);
   grower.add_presets();
+  if (options.fitted) {
+    grower.add_fitted(Preset::low);
+    grower.add_fitted(Preset::high);
+  }
+  if (options.paper_growth) grower.add_paper_growth();
   for (MethodRow& row : comparison.rows) {
     row.skewness = summarize_skewness(row.mesh);
     if (row.method == SurfaceMethod::marching_cubes) continue;

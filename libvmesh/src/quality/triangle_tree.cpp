@@ -38,6 +38,7 @@ RTCPointQuery point_query(const Vec3& local, double radius) {
 
 struct NearestSearch {
   const TriangleFrame* frames;
+  const std::function<bool(Index)>* accepts;  // null: all faces
   Vec3 p;
   double slack;
   double squared;
@@ -47,6 +48,7 @@ struct NearestSearch {
     auto& search = *static_cast<NearestSearch*>(arguments->userPtr);
     const double squared = search.frames[arguments->primID].squared_distance(search.p);
     if (!(squared < search.squared)) return false;
+    if (search.accepts && !(*search.accepts)(arguments->primID)) return false;
     search.squared = squared;
     search.face = arguments->primID;
     arguments->query->radius = up(std::sqrt(squared) + search.slack);
@@ -77,6 +79,13 @@ struct TriangleTree::Embree {
   ~Embree() {
     if (scene) rtcReleaseScene(scene);
     if (device) rtcReleaseDevice(device);
+  }
+
+  void walk(const Vec3& local, NearestSearch& search) const {
+    RTCPointQuery query = point_query(local, std::sqrt(search.squared) + search.slack);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene, &query, &context, NearestSearch::visit, &search);
   }
 
   void build(const TriMesh& mesh, const Vec3& center) {
@@ -126,12 +135,24 @@ double TriangleTree::float_slack(const Vec3& local) const { return kFloatSlack *
 
 NearestFace TriangleTree::nearest(const Vec3& p, Index near) const {
   const Vec3 local = p - center_;
-  NearestSearch search{frames_.data(), p, float_slack(local), 0, near == kNone ? 0 : near};
+  NearestSearch search{frames_.data(), nullptr, p, float_slack(local), 0, near == kNone ? 0 : near};
   search.squared = frames_[search.face].squared_distance(p);
-  RTCPointQuery query = point_query(local, std::sqrt(search.squared) + search.slack);
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(embree_->scene, &query, &context, NearestSearch::visit, &search);
+  embree_->walk(local, search);
+  return {search.face, std::sqrt(search.squared)};
+}
+
+NearestFace TriangleTree::nearest_among(const Vec3& p, double limit, const std::function<bool(Index)>& accepts,
+                                        Index near) const {
+  const Vec3 local = p - center_;
+  NearestSearch search{frames_.data(), &accepts, p, float_slack(local), limit * limit, kNone};
+  if (near != kNone) {
+    const double squared = frames_[near].squared_distance(p);
+    if (squared < search.squared && accepts(near)) {
+      search.squared = squared;
+      search.face = near;
+    }
+  }
+  embree_->walk(local, search);
   return {search.face, std::sqrt(search.squared)};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -40,6 +41,9 @@ class TriangleTree {
 
   /// The face closest to `p`. `near`: a face that bounds the search.
   NearestFace nearest(const Vec3& p, Index near = kNone) const;
+  /// The face closest to `p` of those that `accepts` takes and that are nearer than `limit`; kNone: there is none.
+  NearestFace nearest_among(const Vec3& p, double limit, const std::function<bool(Index)>& accepts,
+                            Index near = kNone) const;
 
   std::size_t face_count() const { return frames_.size(); }
   const TriangleFrame& frame(Index face) const { return frames_[face]; }

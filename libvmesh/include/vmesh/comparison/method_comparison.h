@@ -16,10 +16,22 @@
 namespace vmesh {
 
 /// The surfaces of a comparison: those of the paper's Table 2 in its order, that is marching cubes, which is the
-/// reference, truncated cones and the paper's two resolutions; then vmesh's presets where they are finer than these.
-enum class SurfaceMethod { marching_cubes, truncated_cones, low_resolution, high_resolution, low_preset, high_preset };
+/// reference, truncated cones and the paper's two resolutions; then vmesh's presets where they are finer than these,
+/// the presets fitted to the reference, and the preset low grown as published.
+enum class SurfaceMethod {
+  marching_cubes,
+  truncated_cones,
+  low_resolution,
+  high_resolution,
+  low_preset,
+  high_preset,
+  low_fitted,
+  high_fitted,
+  paper_growth
+};
 
-/// "marching cubes", "truncated cones", "low resolution", "high resolution", "preset low", "preset high".
+/// "marching cubes", "truncated cones", "low resolution", "high resolution", "preset low", "preset high",
+/// "low, fitted", "high, fitted", "growth as published".
 std::string_view to_string(SurfaceMethod method);
 
 /// A surface against the reference, both ways.
@@ -46,7 +58,7 @@ struct MethodRow {
 };
 
 struct MethodComparison {
-  std::vector<MethodRow> rows;  ///< in the order of SurfaceMethod: the first four, then presets as needed
+  std::vector<MethodRow> rows;  ///< in the order of SurfaceMethod: the first four, then those that are needed
 
   /// One of the first four.
   const MethodRow& row(SurfaceMethod method) const { return rows.at(static_cast<std::size_t>(method)); }
@@ -56,6 +68,8 @@ struct MethodOptions {
   int sides = 18;                 ///< of a truncated cone
   double tolerance = 1e-4;        ///< of the Hausdorff distances, mm
   std::size_t samples = 100'000;  ///< on each surface
+  bool fitted = false;            ///< both presets once more, fitted to the reference
+  bool paper_growth = false;      ///< the preset low once more, grown as published
 };
 
 /// Puts truncated cones and vmesh's surfaces around `centerline` and measures all of them against `reference`, which

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "vmesh/mesh/tri_mesh.h"
 
@@ -29,6 +31,11 @@ class ClosestPointIndex {
   /// may ask at once. Of equally close faces, which one is found may depend on `near`. Throws InvalidInput when `p` is
   /// not finite or farther than 1e15 mm from the origin.
   ClosestPoint closest(const Vec3& p, Index near = kNone) const;
+
+  /// The closest of the faces that `accepts` takes, when one is nearer than `limit` (mm). `accepts` is asked about few
+  /// faces, each of them nearer than what was found before.
+  std::optional<ClosestPoint> closest_among(const Vec3& p, double limit, const std::function<bool(Index)>& accepts,
+                                            Index near = kNone) const;
 
  private:
   std::unique_ptr<class TriangleTree> tree_;

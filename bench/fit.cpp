@@ -1,0 +1,115 @@
+// What fitting brings and costs, beside edge collapse of the reference (Lindstrom and Turk, CGAL) to as many vertices:
+// a table in Markdown. Distances are the larger of both ways, mm; time is user CPU on one thread, the report's own
+// measuring included. Usage:
+//   bench_fit; cases are those of ../shared/data named below.
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include <sys/resource.h>
+
+#include "vmesh/fit/fit_surface.h"
+#include "vmesh/image/image_io.h"
+#include "vmesh/io/surface_io.h"
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/reference/reference_surface.h"
+#include "vmesh/skeleton/extract_centerline.h"
+#include "vmesh/volume/contacts.h"
+
+#include "peers.h"
+
+namespace {
+
+using namespace vmesh;
+
+struct Case {
+  const char* name;
+  std::string file;
+  std::optional<double> label;  // of an image, contoured at 1 mm, smoothed by 1 mm
+  int around = vertices_around(Preset::low);
+};
+
+const Case kCases[] = {
+    {"portal vein 002", "liver_segmentations/hepaticvessel_002_vsnet.nii.gz", 2},
+    {"portal vein 008", "liver_segmentations/hepaticvessel_008_vsnet.nii.gz", 2},
+    {"portal vein 008, high", "liver_segmentations/hepaticvessel_008_vsnet.nii.gz", 2, vertices_around(Preset::high)},
+    {"hepatic veins 002", "liver_segmentations/hepaticvessel_002_vsnet.nii.gz", 1},
+    {"hepatic veins 008", "liver_segmentations/hepaticvessel_008_vsnet.nii.gz", 1},
+    {"pulmonary arteries SU201", "pairs_centerline_surface/generate-1d-mesh_example_SU201_2005_RPA1_exterior.vtp", {}},
+    {"aorta", "pairs_centerline_surface/aorta-surface.stl", {}},
+};
+
+double user_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+}
+
+TriMesh reference_of(const Case& c) {
+  const std::string path = std::string(VMESH_SHARED_DATA) + "/" + c.file;
+  if (!c.label) return read_surface(path).mesh;
+  ReferenceOptions options;
+  options.label = c.label;
+  options.spacing = options.smooth = 1;
+  return reference_surface(read_image(path), options).mesh;
+}
+
+struct Distances {
+  double hausdorff, mean, p95;
+};
+
+Distances distances(const TriMesh& surface, const TriMesh& reference) {
+  const ClosestPointIndex to_reference(reference), to_surface(surface);
+  const Distribution a = sample_distance(surface, to_reference, 100'000).distance;
+  const Distribution b = sample_distance(reference, to_surface, 100'000).distance;
+  return {hausdorff(surface, reference, {1e-3, {}}).upper(), std::max(a.mean, b.mean), std::max(a.p95, b.p95)};
+}
+
+void print(const char* name, const char* method, const TriMesh& mesh, const Distances& d, double seconds) {
+  const SkewnessSummary skewness = summarize_skewness(mesh);
+  const bool closed = measure_topology(mesh).closed;
+  std::printf("| %s | %s | %zu | %.2f | %.3f | %.3f | %.3f / %.3f | %s, %zu | ", name, method, mesh.vertices.size(),
+              d.hausdorff, d.mean, d.p95, skewness.mean, skewness.max, closed ? "yes" : "no",
+              self_intersections(mesh).size());
+  if (seconds > 0) std::printf("%.2f", seconds);
+  std::printf(" |\n");
+}
+
+void measure(const Case& c) {
+  const TriMesh reference = reference_of(c);
+  ExtractOptions extraction;
+  extraction.tree = c.label.has_value();
+  const Centerline centerline = separate_contacts(extract_centerline(reference, extraction).centerline).centerline;
+  GenerateOptions options;
+  options.around = c.around;
+  GenerateResult result = generate_surface(centerline, options);
+  print(c.name, "round cones", result.mesh, distances(result.mesh, reference), 0);
+  FitOptions fit;
+  fit.threads = 1;
+  const double begin = user_seconds();
+  fit_surface(result, centerline, reference, fit);
+  const double seconds = user_seconds() - begin;
+  const Distances fitted = distances(result.mesh, reference);
+  print("", "fitted", result.mesh, fitted, seconds);
+  const double share =
+      static_cast<double>(result.mesh.vertices.size()) / static_cast<double>(reference.vertices.size());
+  const TriMesh collapsed = bench::CgalMesh(reference).decimated(share);
+  print("", "edge collapse", collapsed, distances(collapsed, reference), 0);
+}
+
+}  // namespace
+
+int main() {
+  std::printf(
+      "| vessels | surface | vertices | Hausdorff | mean | 95 %% | skewness mean / max | closed, crossing pairs | "
+      "CPU, s |\n|---|---|--:|--:|--:|--:|--:|--:|--:|\n");
+  for (const Case& c : kCases) {
+    try {
+      measure(c);
+    } catch (const std::exception& error) {
+      std::printf("| %s | %s | | | | | | | |\n", c.name, error.what());
+    }
+    std::fflush(stdout);
+  }
+}

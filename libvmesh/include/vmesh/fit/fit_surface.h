@@ -1,0 +1,110 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vmesh/centerline/centerline.h"
+#include "vmesh/core/progress.h"
+#include "vmesh/mesh/tri_mesh.h"
+#include "vmesh/quality/hausdorff.h"
+#include "vmesh/quality/sampled_distance.h"
+#include "vmesh/surface/generate.h"
+
+namespace vmesh {
+
+/// A surface around a centerline, as generate_surface() makes it.
+struct VesselSurface {
+  TriMesh mesh;
+  std::vector<CenterlineBinding> binding;  ///< one per vertex
+  std::vector<Opening> openings;
+};
+
+/// How a surface is fitted to another one.
+struct FitOptions {
+  /// Rounds of correspondence, least squares and repair, 1 to 100; in the first half the size of triangles changes too.
+  int rounds = 16;
+  /// Triangles become finer where the error is large and coarser where it is small. Otherwise every triangle stays.
+  bool resize = true;
+  /// Most vertices, unless `error` decides; 0: a twentieth more than the surface has.
+  std::size_t max_vertices = 0;
+  /// Error to reach with as few vertices as it takes, mm: 95 % of both surfaces are nearer to the other than this. 0:
+  /// none; then the number of vertices is kept.
+  double error = 0;
+  /// Equiangle skewness that no step makes a triangle worse than; 0.1 to 0.9.
+  double max_skewness = 0.4;
+  /// Points on each surface for mean, RMS and percentiles of the report.
+  std::size_t samples = 100'000;
+  /// Width of the interval that holds a Hausdorff distance, mm.
+  double tolerance = 1e-3;
+  /// Threads to work on; 0: as many as the machine has. The result does not depend on it.
+  int threads = 0;
+};
+
+/// The distance between a surface and the reference, both ways.
+struct FitDistance {
+  Hausdorff hausdorff;  ///< forward: from the surface to the reference
+  SampledDistance from_surface, from_reference;
+
+  double mean() const { return std::max(from_surface.distance.mean, from_reference.distance.mean); }
+  double rms() const { return std::max(from_surface.distance.rms, from_reference.distance.rms); }
+  double p95() const { return std::max(from_surface.distance.p95, from_reference.distance.p95); }
+};
+
+/// A part of one surface that nothing of the other answers to: faces joined by edges.
+struct UnmatchedPart {
+  Vec3 position = Vec3::Zero();  ///< of its point farthest from the other surface, mm
+  double distance = 0;           ///< of that point, mm
+  double area = 0;               ///< mm^2
+  bool inside = false;           ///< the point lies inside of the other surface
+  Index segment = kNone;         ///< of the centerline, the nearest
+};
+
+struct FitReport {
+  std::size_t vertices_before = 0;
+  FitDistance before, after;  ///< parts of the reference that lie apart left out
+  /// Components of the reference most of which belongs to no vessel, and their area, mm^2.
+  std::size_t parts_apart = 0;
+  double area_apart = 0;
+  /// Of the reference, what no vessel covers: missing twigs, neighbours. Not chased. Largest first.
+  std::vector<UnmatchedPart> uncovered;
+  /// Of the surface, what the reference does not have: vessels beyond its end; inside of it, walls between the legs of
+  /// a hairpin in one wide lumen.
+  std::vector<UnmatchedPart> unsupported;
+  std::vector<Defect> nodes_outside;  ///< of the centerline, outside of the fitted surface; of a GenerateResult only
+  bool turned = false;                ///< the reference faced inwards, and was turned
+  int rounds = 0;                     ///< of correspondence
+};
+
+struct FitResult {
+  VesselSurface surface;
+  std::vector<double> radius;  ///< local vessel radius at every vertex's binding, mm
+  FitReport report;
+};
+
+/// The openings of a surface with borders, by their lowest vertices; Opening::node and radius are not known (kNone, 0).
+/// The mesh is manifold and oriented.
+std::vector<Opening> find_openings(const TriMesh& mesh);
+
+/// Moves `surface` onto `reference` by least squares: vertices and, with options.resize, the size of the triangles.
+/// The surface stays sound: what it has of components, holes and openings, and no faces that cross. Faces that crossed
+/// before may still do.
+///
+/// Points of both surfaces go to the closest point of the other that faces the same way and belongs to the same vessel,
+/// along the graph, within 1.5 local radii; squared distances along the line between the two are minimised over all
+/// vertices at once (tangent distances; Pottmann, Huang, Yang, Hu, "Geometry and convergence analysis of algorithms for
+/// registration of 3D shapes", 2006), with tangential springs and smooth increments. A step is taken as far as
+/// triangles keep their shape and no faces cross.
+///
+/// `surface` is bound to `centerline`. `reference` faces outwards or inwards as a whole; it may be open and may have
+/// parts that belong to no vessel. Deterministic. Throws InvalidInput for a reference without faces, one whose faces
+/// disagree about the outside, one that is nowhere near the surface, a surface that is not manifold and oriented or
+/// whose binding does not fit, and options out of range; Cancelled.
+FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline, const TriMesh& reference,
+                      const FitOptions& options = {}, const Progress& progress = {});
+
+/// The same for a generated surface: mesh, binding, radii, openings, check and defects become those of the fitted one.
+/// A node of the centerline that is outside of it is no defect, but reported.
+FitReport fit_surface(GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
+                      const FitOptions& options = {}, const Progress& progress = {});
+
+}  // namespace vmesh

@@ -1,0 +1,184 @@
+#include "fit/correspondence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+namespace vmesh {
+namespace {
+
+constexpr double kSameWay = 0.2;   // cosine of the angle between normals, at least
+constexpr double kFarthest = 1.5;  // local radii
+// Farther apart than the first, in local radii, two points are counterparts only when neither has one much nearer: with
+// less than the second, in their distance.
+constexpr double kNear = 0.25, kMutual = 0.2;
+constexpr double kNoDistance = 1e-9;  // of a radius: below it the line between two points has no direction
+constexpr double kOnEdge = 1e-9;      // a corner's weight on the edge opposite to it
+constexpr std::size_t kGrain = 256;   // samples in a row, each of which helps the next
+
+// Centres of the triangles that a face is divided into, as weights of its corners.
+std::vector<Vec3> pattern(int division) {
+  std::vector<Vec3> points;
+  const double n = 3.0 * division;
+  for (int i = 0; i < division; ++i) {
+    for (int j = 0; i + j < division; ++j) {
+      const double u = (3 * i + 1) / n, v = (3 * j + 1) / n;
+      points.emplace_back(1 - u - v, u, v);
+      if (i + j + 1 < division) {
+        const double s = (3 * i + 2) / n, t = (3 * j + 2) / n;
+        points.emplace_back(1 - s - t, s, t);
+      }
+    }
+  }
+  return points;
+}
+
+Vec3 weights_at(const std::array<Vec3, 3>& corners, const Vec3& p) {
+  const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const double area2 = normal.squaredNorm();
+  if (!(area2 > 0)) return Vec3::Constant(1.0 / 3);
+  Vec3 weights;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 &a = corners[(i + 1) % 3], &b = corners[(i + 2) % 3];
+    weights[i] = std::max(0.0, (b - a).cross(p - a).dot(normal) / area2);
+  }
+  return weights / weights.sum();
+}
+
+class Matcher {
+ public:
+  Matcher(const FitMesh& surface, const FitReference& reference, const VesselField& field)
+      : surface_(surface), reference_(reference), field_(field), index_(surface.tri_mesh()) {
+    normals_.reserve(surface.faces.size());
+    for (Index f = 0; f < surface.faces.size(); ++f) normals_.push_back(surface.unit_normal(f));
+  }
+
+  Match from_surface(Index f, const Vec3& weights, double area, Index& near) const {
+    const auto [a, b, c] = surface_.corners(f);
+    const Vec3 p = weights[0] * a + weights[1] * b + weights[2] * c;
+    int corner = 0;
+    weights.maxCoeff(&corner);
+    const Index cone = surface_.vertices[surface_.faces[f][corner]].cone;
+    const double radius = widest_radius(field_, cone);
+    const auto found = on_reference(p, normals_[f], cone, kFarthest * radius, near);
+    if (!found) return {};
+    near = found->face;
+    if (reference_.on_border(found->face, found->point)) return {};
+    if (found->distance > kNear * radius) {  // is that point's own counterpart much nearer, then it is not this one
+      const Index there = reference_.cone(found->face);
+      const double limit = kMutual * found->distance;
+      if (on_surface(found->point, reference_.normal(found->face), there, limit, f)) return {};
+    }
+    return match(f, weights, p, found->point, reference_.normal(found->face), radius, area);
+  }
+
+  Match from_reference(const ReferenceSample& sample, Index& near) const {
+    if (!reference_.is_near(sample.face)) return {};
+    const Index cone = reference_.cone(sample.face);
+    const double radius = widest_radius(field_, cone);
+    const Vec3& normal = reference_.normal(sample.face);
+    const auto found = on_surface(sample.position, normal, cone, kFarthest * radius, near);
+    if (!found) return {};
+    near = found->face;
+    const Vec3 weights = weights_at(surface_.corners(found->face), found->point);
+    if (on_border(found->face, weights)) return {};
+    if (found->distance > kNear * radius) {
+      const Index there = surface_.vertices[surface_.faces[found->face][0]].cone;
+      const double limit = kMutual * found->distance;
+      if (on_reference(found->point, normals_[found->face], there, limit, sample.face)) return {};
+    }
+    return match(found->face, weights, found->point, sample.position, normal, radius, sample.area);
+  }
+
+ private:
+  std::optional<ClosestPoint> on_reference(const Vec3& p, const Vec3& normal, Index cone, double limit,
+                                           Index near) const {
+    const auto accepts = [&](Index g) {
+      return reference_.normal(g).dot(normal) > kSameWay && reference_.is_near(g) &&
+             same_vessel(field_, cone, reference_.cone(g));
+    };
+    return reference_.index().closest_among(p, limit, accepts, near);
+  }
+
+  std::optional<ClosestPoint> on_surface(const Vec3& p, const Vec3& normal, Index cone, double limit,
+                                         Index near) const {
+    const auto accepts = [&](Index f) {
+      if (!(normal.dot(normals_[f]) > kSameWay)) return false;
+      const Triangle& face = surface_.faces[f];
+      return std::any_of(face.begin(), face.end(),
+                         [&](Index v) { return same_vessel(field_, cone, surface_.vertices[v].cone); });
+    };
+    return index_.closest_among(p, limit, accepts, near);
+  }
+
+  bool on_border(Index f, const Vec3& weights) const {
+    for (int i = 0; i < 3; ++i) {
+      const Index a = surface_.faces[f][(i + 1) % 3], b = surface_.faces[f][(i + 2) % 3];
+      if (weights[i] < kOnEdge && surface_.on_border(a) && surface_.on_border(b)) return true;
+    }
+    return false;
+  }
+
+  static Match match(Index f, const Vec3& weights, const Vec3& on_surface, const Vec3& on_reference, const Vec3& normal,
+                     double radius, double area) {
+    const Vec3 away = on_surface - on_reference;
+    const double distance = away.norm();
+    if (distance < kNoDistance * radius) return {f, weights, normal, away.dot(normal), area};
+    return {f, weights, away / distance, distance, area};
+  }
+
+  const FitMesh& surface_;
+  const FitReference& reference_;
+  const VesselField& field_;
+  ClosestPointIndex index_;
+  std::vector<Vec3> normals_;
+};
+
+}  // namespace
+
+Matches find_matches(const FitMesh& surface, const FitReference& reference, const std::vector<ReferenceSample>& samples,
+                     const VesselField& field, int division) {
+  const Matcher matcher(surface, reference, field);
+  const std::vector<Vec3> points = pattern(division);
+  Matches matches;
+  matches.per_face = static_cast<int>(points.size());
+  matches.from_surface.resize(surface.faces.size() * points.size());
+  tbb::parallel_for(Index{0}, static_cast<Index>(surface.faces.size()), [&](Index f) {
+    const double area = surface.area_normal(f).norm() / (2 * static_cast<double>(points.size()));
+    Index near = kNone;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      matches.from_surface[f * points.size() + i] = matcher.from_surface(f, points[i], area, near);
+  });
+  matches.from_reference.resize(samples.size());
+  tbb::parallel_for(std::size_t{0}, (samples.size() + kGrain - 1) / kGrain, [&](std::size_t block) {
+    Index near = kNone;
+    for (std::size_t i = block * kGrain; i < std::min(samples.size(), (block + 1) * kGrain); ++i)
+      matches.from_reference[i] = matcher.from_reference(samples[i], near);
+  });
+  return matches;
+}
+
+double matched_distance(const Matches& matches, double share) {
+  double result = 0;
+  for (const auto* list : {&matches.from_surface, &matches.from_reference}) {
+    std::vector<std::pair<double, double>> distances;  // and the areas they stand for
+    double total = 0;
+    for (const Match& match : *list) {
+      if (match.face == kNone) continue;
+      distances.emplace_back(std::abs(match.distance), match.area);
+      total += match.area;
+    }
+    std::sort(distances.begin(), distances.end());
+    double sum = 0;
+    for (const auto& [distance, area] : distances) {
+      sum += area;
+      if (sum < share * total) continue;
+      result = std::max(result, distance);
+      break;
+    }
+  }
+  return result;
+}
+
+}  // namespace vmesh

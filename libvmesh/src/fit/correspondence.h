@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "vmesh/volume/vessel_field.h"
+
+#include "fit/fit_mesh.h"
+#include "fit/fit_reference.h"
+
+namespace vmesh {
+
+/// A point of the surface and one of the reference that belong together.
+struct Match {
+  Index face = kNone;             ///< of the surface; kNone: the point has no counterpart
+  Vec3 weights = Vec3::Zero();    ///< of the face's corners at the surface's point
+  Vec3 direction = Vec3::Zero();  ///< unit, from the reference's point to the surface's, or against it
+  double distance = 0;            ///< along the direction, mm
+  double area = 0;                ///< mm^2 that it stands for
+};
+
+struct Matches {
+  std::vector<Match> from_surface;    ///< `per_face` for every face, in the order of the faces
+  std::vector<Match> from_reference;  ///< one for every sample
+  int per_face = 0;
+};
+
+/// Counterparts of division^2 points on every face of the packed surface and of all samples of the reference: the
+/// closest point that faces the same way and belongs to the same vessel, within 1.5 local radii.
+Matches find_matches(const FitMesh& surface, const FitReference& reference, const std::vector<ReferenceSample>& samples,
+                     const VesselField& field, int division);
+
+/// The distance that a share of the matches' area is nearer than, mm, the larger of both ways; 0 without matches.
+double matched_distance(const Matches& matches, double share);
+
+/// The distance that a share of the matches' area is nearer than, mm, the larger of both ways; 0 without matches.
+double matched_distance(const Matches& matches, double share);
+
+}  // namespace vmesh

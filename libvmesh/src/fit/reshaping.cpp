@@ -1,0 +1,195 @@
+#include "fit/reshaping.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_quality.h"
+
+#include "surface/remesh/triangle_energy.h"
+
+namespace vmesh {
+namespace {
+
+constexpr int kAttempts = 6;
+constexpr double kLongestStep = 0.3;  // of the shortest edge
+constexpr double kGain = 0.02;        // of skewness, that a flip must bring
+constexpr double kBent = 0.6;         // cosine between the normals before and after a flip, at least
+constexpr double kFlippedSkewness = 0.42;
+constexpr double kCloser = 0.02;  // of the edge: what a flip must bring the middle closer
+constexpr double kCloserSkewness = 0.35;
+constexpr int kLessEven = 6;  // squares of valences' deviations that it may cost
+
+Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = (b - a).cross(c - a);
+  const double norm = normal.norm();
+  return norm > 0 ? Vec3(normal / norm) : Vec3(Vec3::Zero());
+}
+
+Vec3 shape_step(const FitMesh& surface, Index v, int power) {
+  const Vec3 n = surface.vertex_normal(v), &x = surface.position(v);
+  const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
+  PlanarEnergy energy;
+  energy.power = power;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Index f : surface.faces_around(v)) {
+    const Triangle& face = surface.faces[f];
+    const int i = face[0] == v ? 0 : face[1] == v ? 1 : 2;
+    const Vec3 &b = surface.position(face[(i + 1) % 3]), &c = surface.position(face[(i + 2) % 3]);
+    energy.add(x, b, c, u, w);
+    shortest = std::min({shortest, (b - x).norm(), (c - x).norm()});
+  }
+  if (!std::isfinite(energy.value)) return Vec3::Zero();
+  const Eigen::Vector2d step = -energy.hessian.inverse() * energy.gradient;
+  if (!step.allFinite()) return Vec3::Zero();
+  Vec3 result = step.x() * u + step.y() * w;
+  const double longest = kLongestStep * shortest, norm = result.norm();
+  if (norm > longest) result *= longest / norm;
+  return result;
+}
+
+bool may_place(const FitMesh& surface, Index v, const Vec3& p, const StepGuard& guard) {
+  double worst_before = 0, worst = 0;
+  for (const Index f : surface.faces_around(v)) {
+    std::array<Vec3, 3> corners = surface.corners(f);
+    const Vec3 before = unit_normal(corners[0], corners[1], corners[2]);
+    worst_before = std::max(worst_before, equiangle_skewness(corners[0], corners[1], corners[2]));
+    for (int i = 0; i < 3; ++i) {
+      if (surface.faces[f][i] == v) corners[i] = p;
+    }
+    const Vec3 after = unit_normal(corners[0], corners[1], corners[2]);
+    if (!(after.dot(before) >= guard.turn)) return false;
+    worst = std::max(worst, equiangle_skewness(corners[0], corners[1], corners[2]));
+    for (int i = 0; i < 3; ++i) {
+      const Index a = surface.faces[f][i], b = surface.faces[f][(i + 1) % 3];
+      const Index g = surface.face_of(b, a);
+      if (g == kNone) continue;
+      const Vec3 across = surface.unit_normal(g);
+      const auto& around = surface.faces_around(v);
+      if (std::binary_search(around.begin(), around.end(), g)) continue;
+      if (!may_fold(after.dot(across), before.dot(across), guard.fold)) return false;
+    }
+  }
+  return worst <= std::max(worst_before, 0.0);
+}
+
+int deviation(std::size_t valence) {
+  const int d = static_cast<int>(valence) - 6;
+  return d * d;
+}
+
+bool should_flip(const FitMesh& surface, Index a, Index b, const StepGuard& guard) {
+  const Index f = surface.face_of(a, b), g = surface.face_of(b, a);
+  if (f == kNone || g == kNone) return false;
+  const Index c = FitMesh::apex(surface.faces[f], a, b), d = FitMesh::apex(surface.faces[g], a, b);
+  if (c == d || surface.are_neighbours(c, d)) return false;
+  const auto valence = [&](Index v) { return surface.faces_around(v).size() + (surface.on_border(v) ? 3 : 0); };
+  if (surface.faces_around(a).size() <= 3 || surface.faces_around(b).size() <= 3) return false;
+  const int before = deviation(valence(a)) + deviation(valence(b)) + deviation(valence(c)) + deviation(valence(d));
+  const int after =
+      deviation(valence(a) - 1) + deviation(valence(b) - 1) + deviation(valence(c) + 1) + deviation(valence(d) + 1);
+  const Vec3 &pa = surface.position(a), &pb = surface.position(b), &pc = surface.position(c), &pd = surface.position(d);
+  const double worst_before = std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd));
+  const double worst_after = std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc));
+  const bool more_even = after < before && worst_after <= std::max(kFlippedSkewness, worst_before);
+  const bool better =
+      after <= before + 2 && worst_after < worst_before - kGain && worst_before > guard.max_skewness / 2;
+  if (!more_even && !better) return false;
+  const Vec3 n1 = unit_normal(pa, pb, pc), n2 = unit_normal(pb, pa, pd);
+  const Vec3 m1 = unit_normal(pc, pa, pd), m2 = unit_normal(pd, pb, pc);
+  return std::min({m1.dot(n1), m1.dot(n2), m2.dot(n1), m2.dot(n2)}) > kBent && m1.dot(m2) > kBent;
+}
+
+}  // namespace
+
+void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const std::vector<char>&)>& change) {
+  const FitMesh before = surface;
+  std::vector<char> frozen(surface.vertices.size(), 0);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    change(surface, frozen);
+    FitMesh packed = surface;
+    packed.pack();
+    const TriMesh mesh = packed.tri_mesh();
+    const auto crossing = self_intersections(mesh);
+    if (crossing.empty()) return;
+    // By place, as numbers have changed.
+    std::vector<Vec3> places;
+    std::vector<double> reach;
+    for (const auto& [f, g] : crossing) {
+      for (const Index face : {f, g}) {
+        for (const Index v : mesh.faces[face]) {
+          places.push_back(mesh.vertices[v]);
+          reach.push_back((2 + attempt) * packed.mean_edge(v));
+        }
+      }
+    }
+    surface = before;
+    for (Index v = 0; v < frozen.size(); ++v) {
+      for (std::size_t i = 0; i < places.size() && !frozen[v]; ++i)
+        frozen[v] = (places[i] - before.position(v)).squaredNorm() <= reach[i] * reach[i];
+    }
+  }
+}
+
+void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard) {
+  for (const auto& [a, b] : surface.edges()) {
+    if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
+    if (should_flip(surface, a, b, guard)) surface.flip(a, b);
+  }
+}
+
+void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen,
+                       const std::function<double(Index, Index, const Vec3&)>& distance) {
+  for (const auto& [a, b] : surface.edges()) {
+    if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
+    const Index f = surface.face_of(a, b), g = surface.face_of(b, a);
+    if (f == kNone || g == kNone) continue;
+    const Index c = FitMesh::apex(surface.faces[f], a, b), d = FitMesh::apex(surface.faces[g], a, b);
+    if (c == d || surface.are_neighbours(c, d)) continue;
+    const auto valence = [&](Index v) { return surface.faces_around(v).size() + (surface.on_border(v) ? 3 : 0); };
+    if (surface.faces_around(a).size() <= 4 || surface.faces_around(b).size() <= 4) continue;
+    const int before = deviation(valence(a)) + deviation(valence(b)) + deviation(valence(c)) + deviation(valence(d));
+    const int after =
+        deviation(valence(a) - 1) + deviation(valence(b) - 1) + deviation(valence(c) + 1) + deviation(valence(d) + 1);
+    if (after > before + kLessEven) continue;
+    const Vec3 &pa = surface.position(a), &pb = surface.position(b), &pc = surface.position(c),
+               &pd = surface.position(d);
+    const double worst_before = std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd));
+    const double worst_after = std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc));
+    if (worst_after > std::max(kCloserSkewness, worst_before)) continue;
+    const Vec3 n1 = unit_normal(pa, pb, pc), n2 = unit_normal(pb, pa, pd);
+    const Vec3 m1 = unit_normal(pc, pa, pd), m2 = unit_normal(pd, pb, pc);
+    if (std::min({m1.dot(n1), m1.dot(n2), m2.dot(n1), m2.dot(n2)}) < 0 || m1.dot(m2) < 0) continue;
+    const double now = distance(a, b, 0.5 * (pa + pb)), then = distance(c, d, 0.5 * (pc + pd));
+    if (now < 0 || then < 0 || then > now - kCloser * (pa - pb).norm()) continue;
+    surface.flip(a, b);
+  }
+}
+
+std::vector<Vec3> shape_steps(const FitMesh& surface, int power) {
+  std::vector<Vec3> steps(surface.vertices.size(), Vec3::Zero());
+  for (Index v = 0; v < steps.size(); ++v) {
+    if (surface.has_vertex(v) && !surface.on_border(v)) steps[v] = shape_step(surface, v, power);
+  }
+  return steps;
+}
+
+void relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above) {
+  for (Index v = 0; v < surface.vertices.size(); ++v) {
+    if (!surface.has_vertex(v) || surface.on_border(v) || is_frozen(frozen, v)) continue;
+    const auto& around = surface.faces_around(v);
+    if (above > 0 &&
+        std::none_of(around.begin(), around.end(), [&](Index f) { return skewness_of(surface, f) > above; }))
+      continue;
+    Vec3 step = shape_step(surface, v, power);
+    for (int halving = 0; halving < 3; ++halving, step /= 2) {
+      if (!may_place(surface, v, surface.position(v) + step, guard)) continue;
+      surface.vertices[v].position += step;
+      break;
+    }
+  }
+}
+
+}  // namespace vmesh

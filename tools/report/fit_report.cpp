@@ -1,0 +1,123 @@
+#include "report/fit_report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+#include "report/evaluation_report.h"
+
+namespace vmesh::tool {
+namespace {
+
+constexpr std::size_t kListedParts = 1000;
+constexpr std::size_t kNamed = 5;
+
+Json to_json(const FitDistance& distance) {
+  return {{"hausdorff_mm", {{"lower", distance.hausdorff.lower()}, {"upper", distance.hausdorff.upper()}}},
+          {"mean_mm", distance.mean()},
+          {"rms_mm", distance.rms()},
+          {"p95_mm", distance.p95()},
+          {"from_surface", side_json(distance.hausdorff.forward, distance.from_surface)},
+          {"from_reference", side_json(distance.hausdorff.backward, distance.from_reference)}};
+}
+
+Json to_json(const std::vector<UnmatchedPart>& parts) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(parts.size(), kListedParts); ++i) {
+    const UnmatchedPart& part = parts[i];
+    list.push_back({{"at", {part.position.x(), part.position.y(), part.position.z()}},
+                    {"distance_mm", part.distance},
+                    {"area_mm2", part.area},
+                    {"inside", part.inside},
+                    {"segment", part.segment == kNone ? Json() : Json(part.segment)}});
+  }
+  return {{"count", parts.size()}, {"list", std::move(list)}};
+}
+
+Json outside_json(const std::vector<Defect>& defects) {
+  std::size_t count = 0;
+  for (const Defect& defect : defects) count += defect.count;
+  return count;
+}
+
+std::string line(const char* format, auto... values) {
+  char text[512];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+std::string text_of(const UnmatchedPart& part) {
+  const Vec3& p = part.position;
+  return line("%.1f mm^2 as far as %.2f mm at (%.3f, %.3f, %.3f)", part.area, part.distance, p.x(), p.y(), p.z());
+}
+
+void name_parts(const std::vector<UnmatchedPart>& parts, const std::string& what, std::vector<std::string>& warnings,
+                Console& console) {
+  const auto tell = [&](const std::string& text) {
+    console.warn(text);
+    warnings.push_back(text);
+  };
+  for (std::size_t i = 0; i < std::min(parts.size(), kNamed); ++i) tell(what + ": " + text_of(parts[i]));
+  if (parts.size() > kNamed)
+    tell(what + ", " + std::to_string(parts.size() - kNamed) + " parts more: the summary lists them");
+}
+
+}  // namespace
+
+Json to_json(const FitReport& report) {
+  return {{"vertices_before", report.vertices_before},
+          {"before", to_json(report.before)},
+          {"after", to_json(report.after)},
+          {"nodes_outside", outside_json(report.nodes_outside)},
+          {"reference_turned", report.turned},
+          {"rounds", report.rounds},
+          {"parts_apart", {{"count", report.parts_apart}, {"area_mm2", report.area_apart}}},
+          {"uncovered", to_json(report.uncovered)},
+          {"unsupported", to_json(report.unsupported)}};
+}
+
+void log_fit(const FitReport& report, std::vector<std::string>& warnings, Console& console) {
+  const FitDistance &a = report.before, &b = report.after;
+  if (report.turned) console.log("the reference faced inwards and was turned");
+  console.log(
+      line("distance to the reference, the larger way, mm: mean %.3f, was %.3f; 95 %% %.3f, was %.3f; Hausdorff "
+           "%.3f, was %.3f",
+           b.mean(), a.mean(), b.p95(), a.p95(), b.hausdorff.upper(), a.hausdorff.upper()));
+  if (report.parts_apart > 0)
+    console.log(line("%zu parts of the reference, %.1f mm^2, belong to no vessel and were left out of that",
+                     report.parts_apart, report.area_apart));
+  for (const Defect& defect : report.nodes_outside) {
+    console.warn(defect.message);
+    warnings.push_back(defect.message);
+  }
+  name_parts(report.uncovered, "the reference has what no vessel covers", warnings, console);
+  std::vector<UnmatchedPart> inside, outside;
+  for (const UnmatchedPart& part : report.unsupported) (part.inside ? inside : outside).push_back(part);
+  name_parts(inside, "walls within the reference, as of a hairpin in a wide vessel", warnings, console);
+  name_parts(outside, "the surface has what the reference does not", warnings, console);
+}
+
+bool keeps_error(const FitReport& report, double error, std::vector<std::string>& warnings, Console& console) {
+  if (error == 0 || report.after.p95() <= error) return true;
+  warnings.push_back(
+      line("95 %% of the surfaces are nearer than %.3f mm to each other, not %.3f: parts that the other "
+           "surface does not have count as well",
+           report.after.p95(), error));
+  console.warn(warnings.back());
+  return false;
+}
+
+std::string describe(const FittingArguments& arguments) {
+  std::ostringstream text;
+  const ReferenceOptions& image = arguments.image;
+  if (image.label) text << " --label " << *image.label;
+  if (image.threshold) text << " --threshold " << *image.threshold;
+  if (image.spacing > 0) text << " --spacing " << image.spacing;
+  if (image.smooth > 0) text << " --smooth " << image.smooth;
+  if (arguments.options.error > 0) text << " --fit-error " << arguments.options.error << "mm";
+  text << " --fit-rounds " << arguments.options.rounds;
+  if (!arguments.options.resize) text << " --keep-triangles";
+  return text.str();
+}
+
+}  // namespace vmesh::tool

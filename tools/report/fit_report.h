@@ -1,0 +1,20 @@
+#pragma once
+
+#include "command_line/console.h"
+#include "report/summary.h"
+
+namespace vmesh::tool {
+
+/// What a fit did, for a summary.
+Json to_json(const FitReport& report);
+
+/// The same in a few lines; what is not matched is a warning each.
+void log_fit(const FitReport& report, std::vector<std::string>& warnings, Console& console);
+
+/// Whether 95 % keep to the error that was asked for; says so when they do not.
+bool keeps_error(const FitReport& report, double error, std::vector<std::string>& warnings, Console& console);
+
+/// "--fit-error 0.3mm ...": how a surface was fitted.
+std::string describe(const FittingArguments& arguments);
+
+}  // namespace vmesh::tool

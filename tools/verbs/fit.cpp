@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <sstream>
+
+#include "vmesh/io/sha256.h"
+#include "vmesh/surface/branch_labels.h"
+
+#include "command_line/exit_code.h"
+#include "command_line/inputs.h"
+#include "command_line/interrupt.h"
+#include "command_line/outputs.h"
+#include "report/fit_report.h"
+#include "verbs/fitting.h"
+#include "verbs/verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+const std::vector<double>* find(const std::vector<MeshAttribute>& attributes, const std::string& name) {
+  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
+  return found == attributes.end() ? nullptr : &found->values;
+}
+
+std::vector<CenterlineBinding> binding_of(const LoadedSurface& surface, const Centerline& centerline) {
+  const std::vector<double>* segment = find(surface.attributes.vertex, "segment");
+  const std::vector<double>* t = find(surface.attributes.vertex, "parameter");
+  if (!segment || !t)
+    throw InvalidInput(
+        "the surface has no places on a centerline (vertex attributes segment and parameter); take one "
+        "that vmesh generate wrote as .ply or .vtp");
+  std::vector<CenterlineBinding> binding;
+  for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
+    const double s = (*segment)[v];
+    if (!(s >= 0 && s < static_cast<double>(centerline.segments().size() + centerline.nodes().size())))
+      throw InvalidInput("vertex " + std::to_string(v) +
+                         " is bound to a segment that the centerline does not have; is "
+                         "it the one that the surface was grown around?");
+    binding.push_back({static_cast<Index>(s), std::clamp((*t)[v], 0.0, 1.0)});
+  }
+  return binding;
+}
+
+MeshAttributes attributes_of(const FitResult& result, const Centerline& centerline) {
+  const VesselSurface& surface = result.surface;
+  const BranchLabels branch = label_branches(surface.mesh, surface.binding, centerline);
+  MeshAttribute segment{"segment", {}, true}, parameter{"parameter", {}};
+  for (const CenterlineBinding& binding : surface.binding) {
+    segment.values.push_back(binding.segment);
+    parameter.values.push_back(binding.t);
+  }
+  MeshAttributes attributes;
+  attributes.vertex = {{"radius", result.radius},
+                       std::move(segment),
+                       std::move(parameter),
+                       {"branch", {branch.vertex.begin(), branch.vertex.end()}, true}};
+  if (!surface.openings.empty()) {
+    MeshAttribute labels{"opening", std::vector<double>(surface.mesh.vertices.size(), 0), true};
+    for (std::size_t i = 0; i < surface.openings.size(); ++i) {
+      for (const Index v : surface.openings[i].ring) labels.values[v] = static_cast<double>(i + 1);
+    }
+    attributes.vertex.push_back(std::move(labels));
+  }
+  attributes.face = {{"EquiangleSkewness", equiangle_skewness(surface.mesh)},
+                     {"branch", {branch.face.begin(), branch.face.end()}, true}};
+  return attributes;
+}
+
+}  // namespace
+
+int run(const FitArguments& arguments, Console& console) {
+  using Kind = PlannedOutput::Kind;
+  const std::filesystem::path& path = arguments.input.path;
+  std::vector<std::filesystem::path> inputs = files_of(arguments.centerline.path);
+  inputs.push_back(path);
+  inputs.push_back(arguments.fitting.reference.path);
+  check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, inputs);
+  LoadedSurface loaded = load_surface(arguments.input);
+  console.warn(loaded.warnings);
+  const Centerline centerline = load_clean_centerline(arguments.centerline, console).cleaned.centerline;
+  const VesselSurface surface = naming(path, [&] {
+    return VesselSurface{loaded.mesh, binding_of(loaded, centerline), {}};
+  });
+  const TriMesh reference = load_fit_reference(arguments.fitting, console);
+  stop_if_interrupted();
+  const FitResult result = naming(
+      path, [&] { return fit_surface(surface, centerline, reference, arguments.fitting.options, console.progress()); });
+  std::vector<std::string> warnings;
+  log_fit(result.report, warnings, console);
+  const bool near = keeps_error(result.report, arguments.fitting.options.error, warnings, console);
+  const std::string sha256 = sha256_of_file(path);
+  const std::string options = "fit" + describe(arguments.fitting);
+  write_surface(arguments.output, result.surface.mesh, attributes_of(result, centerline),
+                {generator_name(), options, path.filename().string(), sha256});
+  const SurfaceMeasurement measurement = measure_surface(result.surface.mesh);
+  console.log(std::to_string(result.surface.mesh.vertices.size()) + " vertices, skewness " +
+              std::to_string(measurement.skewness.mean) + " mean, " + std::to_string(measurement.skewness.max) +
+              " max");
+  console.log("wrote " + arguments.output.string());
+  if (!arguments.common.json.empty()) {
+    Json json = {{"schema", "vmesh.fit/1"},
+                 {"generator", generator_json()},
+                 {"input", {{"file", path.string()}, {"sha256", sha256}}},
+                 {"reference", arguments.fitting.reference.path.string()},
+                 {"output", arguments.output.string()},
+                 {"options", options},
+                 {"vertices", result.surface.mesh.vertices.size()},
+                 {"faces", result.surface.mesh.faces.size()},
+                 {"fit", to_json(result.report)},
+                 {"warnings", warnings}};
+    json.update(to_json(measurement));
+    write_json(arguments.common.json, json);
+  }
+  return near ? kOk : kNotConverged;
+}
+
+}  // namespace vmesh::tool

@@ -1,0 +1,26 @@
+#include "verbs/fitting.h"
+
+#include "command_line/inputs.h"
+#include "command_line/usage_error.h"
+
+namespace vmesh::tool {
+
+TriMesh load_fit_reference(const FittingArguments& arguments, Console& console) {
+  const std::filesystem::path& path = arguments.reference.path;
+  const ReferenceOptions& image = arguments.image;
+  if (is_image_path(path)) {
+    return naming(path, [&] {
+      ReferenceOptions options = image;
+      options.all_components = true;  // what belongs to a vessel, the fit decides
+      return reference_surface(load_image(arguments.reference, console), options).mesh;
+    });
+  }
+  if (image.label || image.threshold || image.spacing > 0 || image.smooth > 0)
+    throw UsageError(path.string() +
+                     ": --label, --threshold, --spacing and --smooth are for images; this is taken for a surface");
+  LoadedSurface surface = load_surface(arguments.reference);
+  console.warn(surface.warnings);
+  return std::move(surface.mesh);
+}
+
+}  // namespace vmesh::tool

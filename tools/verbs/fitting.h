@@ -1,0 +1,11 @@
+#pragma once
+
+#include "command_line/arguments.h"
+#include "command_line/console.h"
+
+namespace vmesh::tool {
+
+/// The surface to fit to: of a file, or contoured from an image. Options that do not apply are refused (UsageError).
+TriMesh load_fit_reference(const FittingArguments& arguments, Console& console);
+
+}  // namespace vmesh::tool
