@@ -229,90 +229,89 @@ class Fit {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       if (closer) {
         flip_closer(surface, frozen);
-      });
       } else {
-      flip_edges(surface, frozen, guard_);
+        flip_edges(surface, frozen, guard_);
       }
       for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, power);
-  });
-}
+    });
+  }
 
   // For an error, until the number of vertices has settled.
   void resize() {
-  const bool to_error = options_.error > 0;
-  const int rounds = std::max(1, options_.rounds - kFirstRounds - kLastRounds);
-  for (int i = 0; i < (to_error ? rounds + kMoreRounds : rounds); ++i) {
-    const Matches matches = next_matches();
-    const std::size_t before = surface_.vertices.size();
-    const double p95 = to_error ? matched_distance(matches, 0.95) : 0;
-    if (to_error && settled_ && i >= rounds && p95 <= 0.95 * options_.error && p95 > 0.88 * options_.error) return;
-    if (to_error) aim_at_error(p95);
-    resize_once(matches);
-    const double change = static_cast<double>(surface_.vertices.size()) / static_cast<double>(before);
-    settled_ = change > 0.95 && change < 1.05;
-  }
-}
-
-void keep_to_most_vertices() {
-  for (int i = 0; i < kCorrections && surface_.vertices.size() > most_vertices_; ++i) {
-    aim_ *= kCorrection;
-    resize_once(next_matches());
-  }
-}
-
-void resize_once(const Matches& matches) {
-  const double wanted = aim_ * static_cast<double>(wanted_vertices_);
-  set_sizes(surface_, errors_around(surface_, matches), options_.error > 0 ? 0 : static_cast<std::size_t>(wanted),
-            even_error_, limits_);
-  change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
-    split_edges(surface, frozen);
-    flip_edges(surface, frozen, guard_);
-    collapse_edges(surface, frozen, guard_);
-    for (int i = 0; i < 2; ++i) {
-      flip_edges(surface, frozen, guard_);
-      for (int k = 0; k < kRelaxations; ++k) relax(surface, frozen, guard_, 1);
+    const bool to_error = options_.error > 0;
+    const int rounds = std::max(1, options_.rounds - kFirstRounds - kLastRounds);
+    for (int i = 0; i < (to_error ? rounds + kMoreRounds : rounds); ++i) {
+      const Matches matches = next_matches();
+      const std::size_t before = surface_.vertices.size();
+      const double p95 = to_error ? matched_distance(matches, 0.95) : 0;
+      if (to_error && settled_ && i >= rounds && p95 <= 0.95 * options_.error && p95 > 0.88 * options_.error) return;
+      if (to_error) aim_at_error(p95);
+      resize_once(matches);
+      const double change = static_cast<double>(surface_.vertices.size()) / static_cast<double>(before);
+      settled_ = change > 0.95 && change < 1.05;
     }
-    for (int k = 0; k < kRepairs; ++k) relax(surface, frozen, guard_, kRepairPower, guard_.max_skewness);
-  });
-  pack();
-  // What the edges' lengths come to differs a little from what they are meant to be.
-  aim_ = std::clamp(
-      aim_ * std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()), 0.7), 0.8,
-      1.25);
-  find_cones();
-  step(matches_now(true));
-  change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) { flip_closer(surface, frozen); });
-  step(matches_now(false));
-}
-
-// What the error around vertices should be for 95 % of the distances to be below options.error.
-void aim_at_error(double p95) {
-  if (even_error_ == 0) even_error_ = kEvenShare * options_.error;
-  if (settled_ && p95 > 0) even_error_ *= std::clamp(std::sqrt(kAim * options_.error / p95), 0.8, 1.25);
-}
-
-void pack() {
-  const std::vector<Index> number = surface_.pack();
-  for (Opening& opening : openings_) {
-    for (Index& v : opening.ring) v = number[v];
   }
-}
 
-const VesselField& field_;
-const FitOptions& options_;
-FitReference reference_;
-FitMesh surface_;
-std::vector<Opening> openings_;
-std::vector<Vec3> opening_normals_;
-std::vector<ReferenceSample> samples_, few_samples_;
-std::size_t most_vertices_ = 0, wanted_vertices_ = 0;
-double even_error_ = 0;  // mm, to have everywhere
-bool settled_ = false;   // the number of vertices
-int rounds_ = 0;
-const Progress* progress_ = nullptr;
-double aim_ = 1;  // vertices to ask for, to get as many as wanted
-StepGuard guard_;
-SizeLimits limits_;
+  void keep_to_most_vertices() {
+    for (int i = 0; i < kCorrections && surface_.vertices.size() > most_vertices_; ++i) {
+      aim_ *= kCorrection;
+      resize_once(next_matches());
+    }
+  }
+
+  void resize_once(const Matches& matches) {
+    const double wanted = aim_ * static_cast<double>(wanted_vertices_);
+    set_sizes(surface_, errors_around(surface_, matches), options_.error > 0 ? 0 : static_cast<std::size_t>(wanted),
+              even_error_, limits_);
+    change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
+      split_edges(surface, frozen);
+      flip_edges(surface, frozen, guard_);
+      collapse_edges(surface, frozen, guard_);
+      for (int i = 0; i < 2; ++i) {
+        flip_edges(surface, frozen, guard_);
+        for (int k = 0; k < kRelaxations; ++k) relax(surface, frozen, guard_, 1);
+      }
+      for (int k = 0; k < kRepairs; ++k) relax(surface, frozen, guard_, kRepairPower, guard_.max_skewness);
+    });
+    pack();
+    // What the edges' lengths come to differs a little from what they are meant to be.
+    aim_ = std::clamp(
+        aim_ * std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()), 0.7),
+        0.8, 1.25);
+    find_cones();
+    step(matches_now(true));
+    change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) { flip_closer(surface, frozen); });
+    step(matches_now(false));
+  }
+
+  // What the error around vertices should be for 95 % of the distances to be below options.error.
+  void aim_at_error(double p95) {
+    if (even_error_ == 0) even_error_ = kEvenShare * options_.error;
+    if (settled_ && p95 > 0) even_error_ *= std::clamp(std::sqrt(kAim * options_.error / p95), 0.8, 1.25);
+  }
+
+  void pack() {
+    const std::vector<Index> number = surface_.pack();
+    for (Opening& opening : openings_) {
+      for (Index& v : opening.ring) v = number[v];
+    }
+  }
+
+  const VesselField& field_;
+  const FitOptions& options_;
+  FitReference reference_;
+  FitMesh surface_;
+  std::vector<Opening> openings_;
+  std::vector<Vec3> opening_normals_;
+  std::vector<ReferenceSample> samples_, few_samples_;
+  std::size_t most_vertices_ = 0, wanted_vertices_ = 0;
+  double even_error_ = 0;  // mm, to have everywhere
+  bool settled_ = false;   // the number of vertices
+  int rounds_ = 0;
+  const Progress* progress_ = nullptr;
+  double aim_ = 1;  // vertices to ask for, to get as many as wanted
+  StepGuard guard_;
+  SizeLimits limits_;
 };
 
 FitDistance distance_between(const TriMesh& surface, const TriMesh& reference, const FitOptions& options) {
