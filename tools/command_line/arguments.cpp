@@ -297,7 +297,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 /// Throws UsageError for a first word that is no verb: with the one that was meant, perhaps, and all.
 void check_verb(const CLI::App& app, std::string_view word) {
   std::string nearest, all;
-  std::size_t least = word.size();  // nothing in common with it
+  std::size_t least = word.size() / 2 + 1;  // beyond that, nothing was meant
   for (const CLI::App* verb : app.get_subcommands({})) {
     const std::string& name = verb->get_name();
     if (name == word) return;
