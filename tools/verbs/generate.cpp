@@ -313,6 +313,8 @@ void check_input(const GenerateArguments& arguments) {
   const ReferenceOptions& image = arguments.fitting.image;
   const bool fits = !arguments.fitting.reference.path.empty();
   if (has_image(arguments)) {
+    if (!arguments.input.more.empty())
+      throw UsageError(arguments.input.more.front().string() + ": beside an image nothing else makes a centerline");
     if (fits && (image.label || image.threshold || image.spacing > 0 || image.smooth > 0) &&
         is_image_path(arguments.fitting.reference.path))
       throw UsageError(
