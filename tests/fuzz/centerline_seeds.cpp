@@ -1,7 +1,32 @@
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <initializer_list>
+
 #include "seeds.h"
 
 namespace vmesh::testing {
 namespace {
+
+/// The numbers as bytes, the most significant first or last.
+template <class Number>
+std::string bytes_of(std::initializer_list<Number> numbers, std::endian order) {
+  std::string all;
+  for (const Number number : numbers) {
+    std::string one(reinterpret_cast<const char*>(&number), sizeof number);
+    if (order != std::endian::native) std::reverse(one.begin(), one.end());
+    all += one;
+  }
+  return all;
+}
+
+/// Three times the number 1 in big-endian single precision, packed by zlib.
+constexpr char kPackedOnes[] = "\170\332\263\157\140\140\260\207\142\000\020\164\002\076";
+
+template <class Number>
+std::string big(std::initializer_list<Number> numbers) {
+  return bytes_of(numbers, std::endian::big);
+}
 
 /// A VTP file of two polylines and five points; `arrays` stands for the three pieces of data that follow the points.
 std::string vtp_text(const std::string& radius, const std::string& points, const std::string& lines,
@@ -41,6 +66,12 @@ std::vector<std::string> json_seeds() {
   return {R"({"schema": "vmesh.centerline/1", "space": "LPS", "unit": "mm",
  "nodes": [[0, 0, 0, 2], [8, 0, 0, 1.5], [12, 4, 0, 1], [12, -4, 0, 1]],
  "segments": [[0, 1], [1, 2], [1, 3]]})",
+          R"({"markups": [{"type": "Fiducial"}, {"type": "Curve", "coordinateSystem": "RAS", "coordinateUnits": "cm",
+ "controlPoints": [{"position": [0, 0, 0]}, {"position": [0, 0, 9], "positionStatus": "defined"},
+ {"positionStatus": "undefined", "position": []}],
+ "measurements": [{"name": "length"}, {"name": "Radius", "controlPointValues": [2, 1.5, 0]}]},
+ {"type": "Line", "coordinateSystem": "RAS", "coordinateUnits": ["cm"], "measurements": [{"name": "radius",
+ "controlPointValues": [1, 1]}], "controlPoints": [{"position": [0, 0, 5]}, {"position": [5, 0, 5]}]}]})",
           R"({"schema": "vmesh.centerline/1", "unit": "um", "options": "\u00e4\n", "more": {"a": [true, null, {}]},
  "nodes": [[1e3, -0.5, 1e-9, 2]], "segments": []})"};
 }
@@ -60,7 +91,84 @@ std::vector<std::string> vtk_seeds() {
       "CONNECTIVITY vtktypeint64\n2\nLINES 2 2\nOFFSETS vtktypeint64\n0 2\nCONNECTIVITY vtktypeint64\n0 1\n"
       "POLYGONS 1 4\n3 0 1 2\nCELL_DATA 2\nSCALARS c int\nLOOKUP_TABLE default\n1 2\nPOINT_DATA 3\n"
       "COLOR_SCALARS k 1\n0 0 1\nTEXTURE_COORDINATES t 2 float\n0 0 1 1 0 0\nLOOKUP_TABLE l 1\n0 0 0 1\n"
-      "FIELD f 2\nradius 1 3 double\n1 1 1\nother 2 1 int\n1 2\n"};
+      "FIELD f 2\nradius 1 3 double\n1 1 1\nother 2 1 int\n1 2\n",
+      "# vtk DataFile Version 4.2\nSPACE=LPS\nBINARY\nDATASET POLYDATA\nPOINTS 3 float\n" +
+          big<float>({0, 0, 0, 1, 0, 0, 2, 0, 0}) + "\nMETADATA\nINFORMATION 0\n\nLINES 1 4\n" +
+          big<std::int32_t>({3, 0, 1, 2}) + "\nVERTICES 1 2\n" + big<std::int32_t>({1, 2}) +
+          "\nCELL_DATA 2\nFIELD FieldData 2\nDiameter 1 2 unsigned_char\n\2\1\nname 1 2 string\n\xc2no\xc1x\n" +
+          "POINT_DATA 3\nSCALARS flag bit\nLOOKUP_TABLE default\n\xa0\nCOLOR_SCALARS c 1\n\1\2\3\n"
+          "VECTORS v short\n" +
+          big<std::int16_t>({0, 0, 1, 0, 0, 1, 0, 0, 1}) + "\nSCALARS Radius double\n" + "LOOKUP_TABLE default\n" +
+          big<double>({1, 1, 0.5}) + "\n",
+      "# vtk DataFile Version 5.1\nt\nBINARY\nDATASET POLYDATA\nPOINTS 2 double\n" + big<double>({0, 0, 0, 0, 9, 0}) +
+          "\nLINES 2 2\nOFFSETS vtktypeint64\n" + big<std::int64_t>({0, 2}) + "\nCONNECTIVITY vtktypeint64\n" +
+          big<std::int64_t>({0, 1}) + "\nCELL_DATA 1\nSCALARS Radius float\nLOOKUP_TABLE default\n" + big<float>({1}) +
+          "\n"};
+}
+
+std::vector<std::string> ctgr_seeds() {
+  const std::string head = "<?xml version=\"1.0\"?>\n<format version=\"1.0\" />\n<contourgroup><timestep id=\"0\">";
+  const auto contour = [](const std::string& z) {
+    return "<contour><contour_points><point x=\"1\" y=\"1\" z=\"" + z + "\"/><point x=\"-1\" y=\"1\" z=\"" + z +
+           "\"/><point x=\"-1\" y=\"-1\" z=\"" + z + "\"/><point x=\"1\" y=\"-1\" z=\"" + z +
+           "\"/></contour_points></contour>";
+  };
+  return {head + contour("0") + contour("2.5") + "<contour/>" + contour("5e0") + "</timestep></contourgroup>",
+          head + contour("-1") + contour("1") + "</timestep><timestep/></contourgroup>"};
+}
+
+std::vector<std::string> pth_seeds() {
+  return {
+      "<format version=\"1.0\" />\n<path id=\"1\"><timestep id=\"0\"><path_element><control_points/><path_points>"
+      "<path_point id=\"0\"><pos x=\"0\" y=\"1\" z=\"2\"/></path_point>"
+      "<path_point id=\"1\"><pos x=\"0.5\" y=\"1\" z=\"9\"/><tangent x=\"0\" y=\"0\" z=\"1\"/></path_point>"
+      "</path_points></path_element></timestep></path>"};
+}
+
+std::vector<std::string> gxl_seeds() {
+  const auto node = [](const std::string& id, const std::string& position) {
+    return "<node id=\"" + id +
+           "\"><attr name=\" nodeType\"><string> bifurication </string></attr>"
+           "<attr name=\" position\"><tup>" +
+           position + "</tup></attr></node>";
+  };
+  return {"<gxl><graph id=\"g\">" + node("n0", "<float>0</float><float> 5 </float><float>5</float>") +
+          node("n1", "<float>30</float><float>5</float><float>5</float>") +
+          node("n2", "<float>50</float><float>15</float><float>5</float>") +
+          "<edge id=\"e0\" from=\"n0\" to=\"n1\"><attr name=\" flow\"><float>9</float></attr><attr name=\" radius\">"
+          "<float>2.5</float></attr></edge><edge id=\"e1\" to=\"n2\" from=\"n1\"><attr name=\" radius\">"
+          "<float>1</float></attr></edge></graph></gxl>"};
+}
+
+std::vector<std::string> amira_seeds() {
+  const auto little = [](auto numbers) { return bytes_of(numbers, std::endian::little); };
+  using Ints = std::initializer_list<std::int32_t>;
+  using Floats = std::initializer_list<float>;
+  const std::string header =
+      "\n\ndefine VERTEX 2\ndefine EDGE 1\ndefine POINT 3\n\nParameters {\n Units {\n  Coordinates \"um\"\n }\n "
+      "ContentType \"HxSpatialGraph\"\n}\n\nVERTEX { float[3] VertexCoordinates } @1\nEDGE { int[2] EdgeConnectivity } "
+      "@2\nEDGE { int NumEdgePoints } @3\nPOINT { float[3] EdgePointCoordinates } @4\n";
+  return {
+      "# AmiraMesh 3D ASCII 2.0" + header +
+          "POINT { float thickness } @5\nVERTEX { byte label } = @6\n\n# Data section follows\n@1\n0 0 0\n9 0 0\n\n@2\n"
+          "0 1\n\n@3\n3\n@4\n0 0 0\n5 1 0\n9 0 0\n@5\n1 1.5\n1\n@6\n1\n2\n",
+      "# AmiraMesh BINARY-LITTLE-ENDIAN 2.1" + header +
+          "EDGE { float Diameter } @5\nVERTEX { byte l } @6(HxByteRLE,2)\n@1\n" + little(Floats{0, 0, 0, 9, 0, 0}) +
+          "\n@2\n" + little(Ints{0, 1}) + "\n@3\n" + little(Ints{3}) + "\n@4\n" +
+          little(Floats{0, 0, 0, 5, 1, 0, 9, 0, 0}) + "\n@5\n" + little(Floats{3}) + "\n@6\n\2\7\n",
+      // The radius packed: 1, 1, 1.
+      "# Avizo BINARY 2.0" + header + "POINT { float Radius } @5(HxZip,14)\n@1\n" + big<float>({0, 0, 0, 9, 0, 0}) +
+          "\n@2\n" + big<std::int32_t>({0, 1}) + "\n@3\n" + big<std::int32_t>({3}) + "\n@4\n" +
+          big<float>({0, 0, 0, 5, 1, 0, 9, 0, 0}) + "\n@5\n" + std::string(kPackedOnes, sizeof kPackedOnes - 1) + "\n"};
+}
+
+std::vector<std::string> network_seeds() {
+  return {
+      "Network\n550. 550. 230. box dimensions in microns\n32 32 14 number of tissue points\n20. outer bound\n"
+      "40. max. segment length\n50 maximum segments per node\n3 total number of segments\n"
+      "name type from to diam flow hd\n1 5 1 2 12.5 3 .4\n2 5 2 3 8 1.5 .4\n3 5 2 4 8 1.5 .4\n"
+      "4 total number of nodes\nname x y z\n1 0 0 0\n2 100 0 0\n3 150 60 0\n4 150 -60 0\n"
+      "1 total number of boundary nodes\nnode bctype press\n1 0 30 .4\n"};
 }
 
 std::vector<std::string> vtp_seeds() {

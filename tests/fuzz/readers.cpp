@@ -59,10 +59,13 @@ Verdict read_centerline_as(std::string_view content) {
       second = content.substr(std::min(end + 1, content.size()));
       content = content.substr(0, end);
     }
-    RawCenterline raw = parse_centerline(content, Format, source, {}, second);
+    CenterlineReadOptions options;
+    if (Format == CenterlineFormat::pth) options.radius = 1.5;
+    if (Format == CenterlineFormat::gxl) options.voxel_size = Vec3(1, 1, 2);
+    RawCenterline raw = parse_centerline(content, Format, source, options, second);
     check(raw);
     std::vector<std::string> warnings;
-    const CleanedCenterline cleaned = clean(convert_to_internal(std::move(raw), {}, {}, warnings));
+    const CleanedCenterline cleaned = clean(convert_read(std::move(raw), options, {}, {}, warnings));
     require(cleaned.raw_node.size() == cleaned.centerline.nodes().size(), "cleaned nodes of unknown origin");
   });
 }
@@ -102,6 +105,11 @@ constexpr Reader kReaders[] = {
     {"csv", ".csv", read_centerline_as<CenterlineFormat::csv>, csv_seeds},
     {"vtk", ".vtk", read_centerline_as<CenterlineFormat::vtk>, vtk_seeds},
     {"vtp", ".vtp", read_centerline_as<CenterlineFormat::vtp>, vtp_seeds},
+    {"ctgr", ".ctgr", read_centerline_as<CenterlineFormat::ctgr>, ctgr_seeds},
+    {"pth", ".pth", read_centerline_as<CenterlineFormat::pth>, pth_seeds},
+    {"gxl", ".gxl", read_centerline_as<CenterlineFormat::gxl>, gxl_seeds},
+    {"amira", ".am", read_centerline_as<CenterlineFormat::amira>, amira_seeds},
+    {"network", ".dat", read_centerline_as<CenterlineFormat::network>, network_seeds},
     {"surface_vtp", ".vtp", read_surface_as<SurfaceFormat::vtp>, surface_vtp_seeds},
     {"ply", ".ply", read_surface_as<SurfaceFormat::ply>, ply_seeds},
     {"stl", ".stl", read_surface_as<SurfaceFormat::stl>, stl_seeds},

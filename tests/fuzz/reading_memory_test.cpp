@@ -86,6 +86,15 @@ std::string numbered(const std::string& unit, const std::string& head = "", cons
 
 const std::string kLie = "353535235358";
 
+/// Of a spatial graph with as many of everything.
+std::string amira_head(const std::string& count, const std::string& packing = "", const std::string& kind = "ASCII") {
+  return "# AmiraMesh " + kind + " 2.0\ndefine VERTEX " + count + "\ndefine EDGE " + count + "\ndefine POINT " + count +
+         "\nVERTEX { float[3] VertexCoordinates } @1" + packing +
+         "\nEDGE { int[2] EdgeConnectivity } @2\nEDGE { int NumEdgePoints } @3\nPOINT { float[3] EdgePointCoordinates "
+         "} @4\n"
+         "POINT { float Radius } @5\n";
+}
+
 TEST(ReadingMemory, HeadersThatLieAreErrors) {
   const std::string vtp_head = "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"";
   const std::string cells = "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0</DataArray></Points>";
@@ -104,6 +113,10 @@ TEST(ReadingMemory, HeadersThatLieAreErrors) {
       {"vtk", vtk_head + kLie + " float\n0 0 0\n"},
       {"vtk", vtk_head + "1 float\n0 0 0\nLINES " + kLie + " " + kLie + "\n"},
       {"vtk", vtk_head + "1 float\n0 0 0\nLINES 1 2\n" + kLie + " 0\n"},
+      {"vtk", "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\nPOINTS " + kLie + " float\nabc\n"},
+      {"amira", amira_head(kLie) + "@1\n0 0 0\n"},
+      {"amira", amira_head("3", "(HxZip,9)", "BINARY") + "@1\nabcdefghi\n"},
+      {"network", "t\n1 1 1\n1 1 1\n1\n1\n1\n" + kLie + "\nhead\n1 5 1 2 9\n"},
       {"vtp",
        vtp_head + kLie + "\"><Points><DataArray NumberOfComponents=\"3\" type=\"Int8\">0</DataArray></Points>" + end},
       {"vtp", vtp_head + "1\" NumberOfLines=\"" + kLie + "\">" + cells + "<Lines>" + offsets + "</Lines>" + end},
@@ -151,6 +164,28 @@ TEST(ReadingMemory, OfCenterlinesIsAMultipleOfTheFile) {
   expect_bounded("csv", many(","));
   expect_bounded("csv", numbered("%,%,0,0,1\n", "id,x,y,z,radius\n"));
   expect_bounded("csv", many("0,0\n", "id,x,y,z,radius\n0,0,0,0,1\n\fa,b\n"));
+}
+
+TEST(ReadingMemory, OfOtherProgramsFilesIsAMultipleOfTheFile) {
+  const std::string curve = R"({"markups": [{"type": "Curve", "controlPoints": [)";
+  expect_bounded("json", many("{},", curve, "{}]}]}"));
+  expect_bounded("json", many("{\"type\": \"Line\"},", "{\"markups\": [", "{}]}"));
+  expect_bounded("ctgr", many("<contour/>", "<contourgroup><timestep>", "</timestep></contourgroup>"));
+  expect_bounded(
+      "pth", many("<path_point><pos x=\"1\" y=\"1\" z=\"1\"/></path_point>",
+                  "<path><timestep><path_element><path_points>", "</path_points></path_element></timestep></path>"));
+  const std::string position =
+      "<attr name=\"position\"><tup><float>1</float><float>1</float><float>1</float></tup></attr>";
+  expect_bounded("gxl", numbered("<node id=\"%\">" + position + "</node>", "<gxl><graph>", "</graph></gxl>"));
+  expect_bounded("gxl", many("<edge from=\"a\" to=\"b\"><attr name=\"radius\"><float>1</float></attr></edge>",
+                             "<gxl><graph><node id=\"a\">" + position + "</node><node id=\"b\">" + position + "</node>",
+                             "</graph></gxl>"));
+  const std::string network = "t\n1 1 1\n1 1 1\n1\n1\n1\n";
+  expect_bounded("network", many("1 5 1 2 9\n", network + "99999\nhead\n"));
+  expect_bounded("network", numbered("% 1 1 1\n", network + "0\nhead\n999999\nhead\n"));
+  expect_bounded("amira", many("0 ", amira_head("300000") + "@1\n"));
+  expect_bounded("amira", numbered("VERTEX { byte a } @%\n", "# AmiraMesh ASCII\n"));
+  expect_bounded("amira", numbered("define a% 1\n", "# AmiraMesh ASCII\n"));
 }
 
 TEST(ReadingMemory, OfJsonIsAMultipleOfTheFile) {

@@ -12,6 +12,11 @@ std::vector<std::string> json_seeds();
 std::vector<std::string> csv_seeds();
 std::vector<std::string> vtk_seeds();
 std::vector<std::string> vtp_seeds();
+std::vector<std::string> ctgr_seeds();
+std::vector<std::string> pth_seeds();
+std::vector<std::string> gxl_seeds();
+std::vector<std::string> amira_seeds();
+std::vector<std::string> network_seeds();
 
 std::vector<std::string> surface_vtp_seeds();
 std::vector<std::string> ply_seeds();

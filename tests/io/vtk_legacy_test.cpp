@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <bit>
+
 #include "vmesh/io/centerline_io.h"
 
 #include "io_support.h"
@@ -16,7 +19,9 @@ const std::string kRadius = "POINT_DATA 5\nFIELD FieldData 1\nRadius 1 5 double\
 const std::string kFile = kHeader + kPoints + kLines + kRadius;
 
 RawCenterline parse(const std::string& text, const std::string& radius = {}) {
-  return parse_centerline(text, CenterlineFormat::vtk, "t.vtk", {radius});
+  CenterlineReadOptions options;
+  options.radius_array = radius;
+  return parse_centerline(text, CenterlineFormat::vtk, "t.vtk", options);
 }
 
 std::string error(const std::string& text) {
@@ -32,6 +37,31 @@ std::string with(const std::string& from, const std::string& to) {
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
 }
+
+/// The number's bytes, the most significant first.
+template <class Number>
+std::string big(Number number) {
+  std::string bytes(reinterpret_cast<const char*>(&number), sizeof number);
+  if (std::endian::native == std::endian::little) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+template <class Number>
+std::string big(std::initializer_list<double> numbers) {
+  std::string bytes;
+  for (const double number : numbers) bytes += big(static_cast<Number>(number));
+  return bytes;
+}
+
+/// kFile in the binary variant; `lines` and `attributes` stand for its cells and radii.
+std::string binary(const std::string& lines, const std::string& attributes) {
+  return "# vtk DataFile Version 4.2\nvtk output SPACE=RAS\nBINARY\nDATASET POLYDATA\nPOINTS 5 float\n" +
+         big<float>({0, 0, 0, 1, 0, 0, 2, 0, 0, 5, 5, 5, 2, 1, -.5}) + "\n" + lines + attributes;
+}
+
+const std::string kBinaryLines = "LINES 2 7\n" + big<std::int32_t>({3, 0, 1, 2, 2, 2, 4}) + "\n";
+const std::string kBinaryRadius =
+    "POINT_DATA 5\nFIELD FieldData 1\nRadius 1 5 double\n" + big<double>({1, 2, 3, 4, 5}) + "\n";
 
 void expect_is_the_file(const RawCenterline& raw) {
   ASSERT_EQ(raw.nodes.size(), 4u);
@@ -51,6 +81,59 @@ TEST(ReadLegacyVtk, ReadsPolylinesAndLeavesUnusedPointsOut) {
   EXPECT_EQ(raw.name_of_segment(2), "t.vtk: line cell 1");
   EXPECT_EQ(raw.unit, LengthUnit::unknown);
   EXPECT_TRUE(raw.loose_branches);
+}
+
+TEST(ReadLegacyVtk, ReadsTheBinaryVariant) {
+  const RawCenterline raw = parse(binary(kBinaryLines, kBinaryRadius));
+  expect_is_the_file(raw);
+  EXPECT_EQ(raw.space, Space::ras);
+  expect_is_the_file(
+      parse(binary("METADATA\nINFORMATION 0\n\nLINES 3 5\nOFFSETS vtktypeint64\n" + big<std::int64_t>({0, 3, 5}) +
+                       "\nCONNECTIVITY vtktypeint64\n" + big<std::int64_t>({0, 1, 2, 2, 4}) + "\n",
+                   kBinaryRadius)));
+}
+
+TEST(ReadLegacyVtk, SkipsInTheBinaryVariantWhatIsNoCenterline) {
+  const std::string ten(10, '\n');  // bytes that look like the ends of lines
+  const std::string others = "CELL_DATA 2\nSCALARS Radius short\nLOOKUP_TABLE default\n" + big<std::int16_t>({9, 9}) +
+                             "\nPOINT_DATA 5\nSCALARS flag bit\nLOOKUP_TABLE default\n\x0a\nCOLOR_SCALARS c 2\n" + ten +
+                             "\nLOOKUP_TABLE mine 2\n" + ten.substr(2) + "\nNORMALS n char\n" + ten + ten.substr(5) +
+                             "\nFIELD FieldData 2\nnames 1 2 string\n\xc2no\x80\x03" + "abc\nRadius 1 5 float\n" +
+                             big<float>({1, 2, 3, 4, 5}) + "\n";
+  expect_is_the_file(parse(binary("FIELD FieldData 1\nSPACE 1 1 string\n\xc3LPS\n" + kBinaryLines, others)));
+}
+
+TEST(ReadLegacyVtk, SaysWhatIsWrongInTheBinaryVariant) {
+  const std::string file = binary(kBinaryLines, kBinaryRadius);
+  for (std::size_t size = 1; size + 1 < file.size(); ++size) {
+    SCOPED_TRACE(size);
+    expect_contains(message_of<Error>([&] { parse(file.substr(0, size)); }), "t.vtk: ");
+  }
+  expect_contains(error(binary("LINES 2 7\n" + big<std::int32_t>({3, 0, 1, 2, 2, 2, 5}) + "\n", kBinaryRadius)),
+                  "there is no point 5");
+  expect_contains(error(binary("LINES 2 7\n" + big<std::int32_t>({9, 0, 1, 2, 2, 2, 4}) + "\n", kBinaryRadius)),
+                  "the cells do not have the 7 numbers");
+  expect_contains(error(binary(kBinaryLines, "POINT_DATA 5\nSCALARS Radius quaternion\nLOOKUP_TABLE t\n")),
+                  "the type \"quaternion\" is not known");
+}
+
+TEST(ReadLegacyVtk, TakesRadiiOfLinesAndHalvesDiameters) {
+  const std::string cells = "CELL_DATA 2\nSCALARS Diameter double\nLOOKUP_TABLE default\n4 2\n";
+  const RawCenterline raw = parse(kHeader + kPoints + kLines + cells, "Diameter");
+  // The lines meet in a point, which has the smaller radius; the thick line gets a node that radius away.
+  ASSERT_EQ(raw.nodes.size(), 4u + 1u);
+  EXPECT_EQ(raw.nodes[0].radius, 2);
+  EXPECT_EQ(raw.nodes[1].radius, 2);
+  EXPECT_EQ(raw.nodes[2].radius, 1);
+  EXPECT_EQ(raw.nodes[3].radius, 1);
+  EXPECT_EQ(raw.nodes[4].radius, 2);
+  EXPECT_EQ(raw.nodes[4].position, Vec3(1.5, 0, 0));
+  EXPECT_EQ(raw.path_starts, (std::vector<Index>{0, 3}));
+  expect_contains(error(kHeader + kPoints + kLines + cells), "none of points and Diameter of lines");
+  CenterlineReadOptions one_for_all;
+  one_for_all.radius = 3;
+  EXPECT_EQ(parse_centerline(kHeader + kPoints + kLines, CenterlineFormat::vtk, "t.vtk", one_for_all).nodes[0].radius,
+            0);
 }
 
 TEST(ReadLegacyVtk, ReadsCellsWithOffsets) {
@@ -113,7 +196,7 @@ TEST(ReadLegacyVtk, EveryCutFileIsRefused) {
 }
 
 TEST(ReadLegacyVtk, SaysWhatIsNotSupported) {
-  expect_contains(message_of<Unsupported>([] { parse(with("ASCII", "BINARY")); }), "save it as .vtp");
+  expect_contains(error(with("ASCII", "OCTAL")), "ASCII or BINARY");
   expect_contains(message_of<Unsupported>([] { parse(with("POLYDATA", "UNSTRUCTURED_GRID")); }), "UNSTRUCTURED_GRID");
 }
 

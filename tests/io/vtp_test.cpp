@@ -28,7 +28,9 @@ std::string vtp(const std::string& radius_name = "Radius", const std::string& po
 }
 
 RawCenterline parse(const std::string& text, const std::string& radius = {}) {
-  return parse_centerline(text, CenterlineFormat::vtp, "t.vtp", {radius});
+  CenterlineReadOptions options;
+  options.radius_array = radius;
+  return parse_centerline(text, CenterlineFormat::vtp, "t.vtp", options);
 }
 
 std::string error(const std::string& text) {

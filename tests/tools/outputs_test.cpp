@@ -1,4 +1,12 @@
 // Inputs are never touched, outputs appear complete or not at all, and what cannot be written is refused at once.
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include "vmesh/core/memory.h"
 #include "vmesh/io/surface_io.h"
 
 #include "run_vmesh.h"
@@ -78,6 +86,97 @@ TEST_F(Outputs, TheSecondFileOfACsvPairIsAnInputToo) {
 
 TEST_F(Outputs, SurfaceAndSummaryMayNotShareAFile) {
   expect_refused({"generate", "@y.swc", "-o", "@y.ply", "--json", "@y.ply"}, 2, "named for");
+}
+
+TEST_F(Outputs, LinksInACircleAndNamesTooLongCannotBeWritten) {
+  fs::create_symlink("b.ply", path("a.ply"));
+  fs::create_symlink("a.ply", path("b.ply"));
+  expect_refused({"generate", "@y.swc", "-o", "@a.ply"}, 5, "a.ply");
+  expect_refused({"generate", "@y.swc", "-o", "@y.ply", "--json", "@a.ply"}, 5, "a.ply");
+  const std::string longest = std::string(251, 'a') + ".ply";
+  expect_refused({"generate", "@y.swc", "-o", "@a" + longest}, 5, "too long");
+  const Outcome run = vmesh({"generate", "@y.swc", "-o", "@" + longest});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(exists(longest));
+}
+
+TEST_F(Outputs, AFileBeyondTheLimitOfSizesCannotBeWritten) {
+  rlimit before = {};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit limit = {4096, before.rlim_max};  // enough for what is said
+  setrlimit(RLIMIT_FSIZE, &limit);
+  const Outcome run = vmesh({"generate", "@y.swc", "-o", "@y.ply"});
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(run.exit_code, 5) << run.err;
+  EXPECT_NE(run.err.find("y.ply"), std::string::npos) << run.err;
+  EXPECT_EQ(files(), std::vector<std::string>{"y.swc"});
+}
+
+TEST_F(Outputs, ThePermissionsOfAReplacedFileAreKept) {
+  write("y.ply", "old");
+  fs::permissions(path("y.ply"), fs::perms::owner_read | fs::perms::owner_write);
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply"}).exit_code, 0);
+  EXPECT_EQ(fs::status(path("y.ply")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(Outputs, ASignalEndsTheWaitForThePipesReader) {
+  ASSERT_EQ(::mkfifo(path("y.ply").c_str(), 0600), 0);
+  for (const int signal : {SIGTERM, SIGINT}) {
+    Process process = start({"generate", "@y.swc", "-o", "@y.ply"});
+    // It waits once the last log line before writing is out and nothing follows.
+    for (int i = 0; i < 3000 && process.err().find("segments") == std::string::npos; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    process.send(signal);
+    const Outcome run = process.finish();
+    EXPECT_EQ(run.exit_code, 130) << run.err;
+  }
+  EXPECT_EQ(files(), (std::vector<std::string>{"y.ply", "y.swc"}));
+}
+
+TEST_F(Outputs, APipeTakesASurface) {
+  ASSERT_EQ(::mkfifo(path("pipe.ply").c_str(), 0600), 0);
+  std::string content;
+  std::thread reader([&] { content = read_file(path("pipe.ply")); });
+  const Outcome run = vmesh({"generate", "@y.swc", "-o", "@pipe.ply"});
+  reader.join();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply"}).exit_code, 0);
+  EXPECT_FALSE(content.empty());
+  EXPECT_EQ(content, read("y.ply"));
+}
+
+TEST_F(Outputs, PipesAndDevicesAreNoInput) {
+  ASSERT_EQ(::mkfifo(path("pipe.swc").c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo(path("pipe.ply").c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", path("endless.swc"));
+  expect_refused({"generate", "@pipe.swc", "-o", "@y.ply"}, 3, "pipe");
+  expect_refused({"info", "@pipe.ply"}, 3, "pipe");
+  expect_refused({"generate", "@endless.swc", "-o", "@y.ply"}, 3, "device");
+}
+
+TEST_F(Outputs, ControlCharactersInNamesAreNotPrinted) {
+  const std::string name = "a\x1b[31m\nvmesh: all is well\x7f\xc2\x9b.swc";
+  const Outcome missing = vmesh({"generate", "@" + name, "-o", "@y.ply"});
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_NE(missing.err.find("a?[31m?vmesh: all is well??.swc"), std::string::npos) << missing.err;
+  EXPECT_EQ(std::count(missing.err.begin(), missing.err.end(), '\n'), 1) << missing.err;
+
+  write_y(name);
+  const Outcome told = vmesh({"info", "@" + name});
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  const Outcome misspelt = vmesh({"generate", "--\x1b[31m"});
+  EXPECT_EQ(misspelt.exit_code, 2);
+  for (const std::string& text : {missing.err, told.out, told.err, misspelt.err})
+    EXPECT_EQ(text.find_first_of("\x1b\x7f"), std::string::npos) << text;
+}
+
+TEST_F(Outputs, WhatNoMachinesMemoryHoldsIsRefusedBeforeItStarts) {
+  constexpr std::uint64_t kAsked = 400'000'000'000;  // less than the thread below needs
+  if (available_memory().value_or(kAsked) >= kAsked) GTEST_SKIP() << "this machine has memory for all of it";
+  write("thread.swc", "# SPACE=LPS\n# UNIT=mm\n1 0 0 0 0 0.001 -1\n2 0 0 0 2800 0.001 1\n");
+  expect_refused({"generate", "@thread.swc", "-o", "@y.ply", "--around", "40", "--max-vertices", "1000000000"}, 4,
+                 "of memory");
 }
 
 TEST_F(Outputs, AnOlderFileIsReplacedOnSuccessOnly) {

@@ -8,7 +8,9 @@
 #include "vmesh/core/version.h"
 
 #include "command_line/arguments_common.h"
+#include "command_line/console.h"
 #include "command_line/exit_code.h"
+#include "command_line/usage_error.h"
 #include "report/requirements.h"
 
 namespace vmesh::tool {
@@ -18,6 +20,9 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate tree.swc -o tree.ply
   vmesh generate tree.vtp -o tree.vtp --around 8 --blend 0.8 --json summary.json
   vmesh generate network.csv -o network.stl --unit um --check
+  vmesh generate branch-*.mrk.json -o tree.ply
+  vmesh generate tree.vtk -o tree.ply --radius-array Thickness
+  vmesh generate aorta.pth -o aorta.ply --unit cm --radius 9
   vmesh generate tree.swc -o fine.ply --preset high
   vmesh generate tree.swc -o exact.ply --max-error 5%
   vmesh generate tree.swc -o game.obj --budget vertices=5000
@@ -72,8 +77,8 @@ void add_preset(CLI::App& verb, GenerateOptions& options) {
 
 void add_generate(CLI::App& app, GenerateArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
-  add_input(verb, arguments.input,
-            "centerline, or image (.nii, .nii.gz, .nrrd, .mha) to extract it from and to fit to");
+  add_centerline_input(verb, arguments.input,
+                       "centerline, or image (.nii, .nii.gz, .nrrd, .mha) to extract it from and to fit to");
   add_output(verb, arguments.output, "surface");
   for_each_generate_option(arguments.options,
                            [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
@@ -149,12 +154,16 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
                   "of an image: the centerline that was extracted, to keep it");
   add_extraction(verb, arguments.extraction);
   add_common(verb, arguments.common);
+  group(verb, "Resolution", {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification"});
+  group(verb, "Shape", {"--blend", "--placement", "--open-ends", "--overlap", "--gap"});
+  group(verb, "How it is made", {"--growth", "--beta", "--max-center-distance", "--sweeps", "--threads"});
+  group(verb, "Checks", {"--check", "--allow-defects"});
   verb.footer(kGenerateExamples);
 }
 
 void add_info(CLI::App& app, InfoArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("info", "Tell what is in a centerline or surface, and what is wrong with it");
-  add_input(verb, arguments.input, "centerline or surface");
+  add_centerline_input(verb, arguments.input, "centerline or surface");
   verb.add_flag("--check", arguments.check, "exit with 1 when there is a problem");
   add_common(verb, arguments.common);
   verb.footer(kInfoExamples);
@@ -174,7 +183,7 @@ void add_synth(CLI::App& app, SynthArguments& arguments) {
 void add_convert(CLI::App& app, ConvertArguments& arguments) {
   CLI::App& verb = *app.add_subcommand(
       "convert", "Convert between centerline formats or between surface formats; writes millimetres and LPS");
-  add_input(verb, arguments.input, "centerline or surface");
+  add_centerline_input(verb, arguments.input, "centerline or surface");
   add_output(verb, arguments.output, "file of the same kind");
   add_common(verb, arguments.common, false);
   verb.footer(kConvertExamples);
@@ -193,9 +202,14 @@ void add_render_view(CLI::App& verb, RenderOptions& options) {
         }
       },
       "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees");
-  verb.add_option_function<std::array<double, 3>>(
-      "--look-at", [&options](const std::array<double, 3>& p) { options.look_at = Vec3(p[0], p[1], p[2]); },
-      "point in the middle of the picture, mm; default: the middle of the mesh");
+  verb.add_option_function<std::string>(
+          "--look-at",
+          [&options](const std::string& text) {
+            const std::vector<double> p = parse_numbers("--look-at", text, 3);
+            options.look_at = Vec3(p[0], p[1], p[2]);
+          },
+          "point in the middle of the picture, mm; default: the middle of the mesh")
+      ->type_name("X,Y,Z");
   verb.add_option("--view-height", options.view_height_mm, "height of the scene in the picture, mm; 0: the whole mesh")
       ->check(in_range(0.0, 1e9))
       ->capture_default_str();
@@ -217,9 +231,14 @@ void add_render_look(CLI::App& verb, RenderArguments& arguments) {
       ->capture_default_str();
   verb.add_option("--color", arguments.color,
                   "colour by this attribute of the file, or by skewness; branch: a colour for each");
-  verb.add_option_function<std::pair<double, double>>(
-      "--range", [&options](const std::pair<double, double>& range) { options.range = range; },
-      "attribute values at the ends of the colour scale");
+  verb.add_option_function<std::string>(
+          "--range",
+          [&options](const std::string& text) {
+            const std::vector<double> ends = parse_numbers("--range", text, 2);
+            options.range = std::pair(ends[0], ends[1]);
+          },
+          "attribute values at the ends of the colour scale")
+      ->type_name("A,B");
 }
 
 void add_render(CLI::App& app, RenderArguments& arguments) {
@@ -229,6 +248,10 @@ void add_render(CLI::App& app, RenderArguments& arguments) {
   add_render_view(verb, arguments.options);
   add_render_look(verb, arguments);
   add_common(verb, arguments.common, false);
+  group(verb, "How to read the input", {"--unit", "--space"});
+  group(verb, "View", {"--width", "--height", "--view", "--look-at", "--view-height", "--zoom", "--field-of-view"});
+  group(verb, "Look",
+        {"--edges", "--edge-width", "--flat", "--no-back-faces", "--no-legend", "--occlusion", "--color", "--range"});
   verb.footer(kRenderExamples);
 }
 
@@ -242,6 +265,7 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
   verb.add_option("--centerline", arguments.centerline.path,
                   "compare with the exact volume of its round cones, both ways, in mm and in local radii");
   add_reading(verb, arguments.centerline, "centerline-");
+  add_centerline_reading(verb, arguments.centerline, "centerline-");
   verb.add_option("-o,--output", arguments.output,
                   "the surface with the skewness of its faces, and its vertices' distance to the reference and "
                   "volume_distance (.ply, .vtp)");
@@ -252,6 +276,41 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
       ->type_name("LIST");
   add_common(verb, arguments.common);
   verb.footer(kEvaluateExamples);
+}
+
+/// How many letters it takes to make `b` of `a`: put in, taken out or replaced.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+/// Throws UsageError for a first word that is no verb: with the one that was meant, perhaps, and all.
+void check_verb(const CLI::App& app, std::string_view word) {
+  std::string nearest, all;
+  std::size_t least = word.size() / 2 + 1;  // beyond that, nothing was meant
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    const std::string& name = verb->get_name();
+    if (name == word) return;
+    const std::size_t distance = name.starts_with(word) ? 0 : edit_distance(word, name);
+    if (distance < least) {
+      least = distance;
+      nearest = name;
+    }
+    all += (all.empty() ? "" : ", ") + name;
+  }
+  throw UsageError("there is no verb " + std::string(word) +
+                   (nearest.empty() ? "" : "; did you mean " + nearest + "?") + (nearest.empty() ? "; " : " ") +
+                   "The verbs are " + all);
 }
 
 }  // namespace
@@ -297,11 +356,15 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   add_deform(app, deform);
   add_table1(app, table1);
   add_fit(app, fit);
+  if (argc > 1 && argv[1][0] != '-') check_verb(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    std::ostringstream complaint;  // with what was typed in it
     // CLI11's own codes run from 100 to 127.
-    exit_code = app.exit(error, std::cout, std::cerr) == 0 ? kOk : kUsage;
+    exit_code = app.exit(error, std::cout, complaint) == 0 ? kOk : kUsage;
+    std::istringstream lines(complaint.str());
+    for (std::string line; std::getline(lines, line);) std::cerr << printable(line) << "\n";
     return std::nullopt;
   }
   if (app.got_subcommand("generate")) return generate;

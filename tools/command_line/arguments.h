@@ -6,11 +6,13 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "vmesh/centerline/raw_centerline.h"
 #include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/comparison/method_comparison.h"
 #include "vmesh/fit/fit_surface.h"
+#include "vmesh/io/centerline_io.h"
 #include "vmesh/reference/reference_surface.h"
 #include "vmesh/render/render.h"
 #include "vmesh/skeleton/extract_centerline.h"
@@ -29,6 +31,8 @@ struct CommonArguments {
 /// A centerline or surface file and how to read its numbers.
 struct InputArguments {
   std::filesystem::path path;
+  std::vector<std::filesystem::path> more;  ///< further files that make one centerline with it
+  CenterlineReadOptions read;               ///< of centerlines
   std::optional<LengthUnit> unit;
   std::optional<Space> space;
 };

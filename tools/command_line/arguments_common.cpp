@@ -1,5 +1,7 @@
 #include "command_line/arguments_common.h"
 
+#include <cmath>
+
 namespace vmesh::tool {
 
 void add_common(CLI::App& verb, CommonArguments& common, bool with_json) {
@@ -25,6 +27,61 @@ void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
 void add_input(CLI::App& verb, InputArguments& input, const std::string& help) {
   verb.add_option("IN", input.path, help)->required();
   add_reading(verb, input, "");
+}
+
+void group(CLI::App& verb, const std::string& heading, std::initializer_list<const char*> options) {
+  for (const char* option : options) verb.get_option(option)->group(heading);
+}
+
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {
+  std::vector<double> numbers;
+  std::istringstream list(text);
+  for (std::string item; std::getline(list, item, ',');) {
+    double number = 0;
+    if (!CLI::detail::lexical_cast(item, number) || !std::isfinite(number))
+      throw CLI::ValidationError(option, "\"" + item + "\" is no number");
+    numbers.push_back(number);
+  }
+  if (numbers.size() != count || text.ends_with(','))
+    throw CLI::ValidationError(option, "needs " + std::to_string(count) + " numbers, separated by commas: " + text);
+  return numbers;
+}
+
+void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
+  verb.add_option("--" + of + "radius-array", input.read.radius_array,
+                  "array of the file that holds the radius; the diameter if \"diam\" is in its name")
+      ->type_name("NAME");
+  verb.add_option_function<double>(
+          "--" + of + "radius", [&input](const double& radius) { input.read.radius = radius; },
+          "radius of all nodes of a file that holds none, mm")
+      ->check(in_range(1e-9, 1e9));
+  verb.add_option_function<std::string>(
+          "--" + of + "voxel-size",
+          [&input, option = "--" + of + "voxel-size"](const std::string& text) {
+            const bool cube = text.find(',') == std::string::npos;
+            std::vector<double> sides = parse_numbers(option, text, cube ? 1 : 3);
+            sides.resize(3, sides[0]);
+            input.read.voxel_size = Vec3(sides[0], sides[1], sides[2]);
+            if (!(input.read.voxel_size->minCoeff() > 0))
+              throw CLI::ValidationError(option, "must be above 0: " + text);
+          },
+          "sides of the voxels that a GXL file of VascuSynth counts in, in the unit of its radii")
+      ->type_name("S|SX,SY,SZ");
+}
+
+void add_centerline_input(CLI::App& verb, InputArguments& input, const std::string& help) {
+  verb.add_option_function<std::vector<std::string>>(
+          "IN",
+          [&input](const std::vector<std::string>& paths) {
+            input.path = paths.front();
+            input.more.assign(paths.begin() + 1, paths.end());
+          },
+          help + "; several files with a branch each make one")
+      ->required()
+      ->type_name("FILE");
+  add_reading(verb, input, "");
+  add_centerline_reading(verb, input, "");
+  group(verb, "How to read the input", {"--unit", "--space", "--radius-array", "--radius", "--voxel-size"});
 }
 
 void add_report(CLI::App& verb, std::filesystem::path& report, std::string& format) {

@@ -30,6 +30,18 @@ void add_reading(CLI::App& verb, InputArguments& input, const std::string& of);
 
 void add_input(CLI::App& verb, InputArguments& input, const std::string& help);
 
+/// The same for centerlines, which several files may make, and which may need a radius.
+void add_centerline_input(CLI::App& verb, InputArguments& input, const std::string& help);
+
+/// Options for centerlines that do not say all of themselves; `of` as above.
+void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::string& of);
+
+/// Puts options under a heading of their own in the help.
+void group(CLI::App& verb, const std::string& heading, std::initializer_list<const char*> options);
+
+/// `count` finite numbers, separated by commas. Throws CLI::ValidationError in the name of `option`.
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
+
 /// Where a report goes besides stdout, and its format there.
 void add_report(CLI::App& verb, std::filesystem::path& report, std::string& format);
 

@@ -15,6 +15,7 @@ constexpr const char* kTable1Examples = R"(Examples:
 void add_deform(CLI::App& app, DeformArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("deform", "Move a centerline under forces, its surface with it");
   add_input(verb, arguments.input, "centerline");
+  add_centerline_reading(verb, arguments.input, "");
   verb.add_option("SURFACE", arguments.surface.path, "surface around it: grown by vmesh, or any other")->required();
   add_reading(verb, arguments.surface, "surface-");
   verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (README.md, Deforming)")

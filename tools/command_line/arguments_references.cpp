@@ -114,7 +114,7 @@ void add_reference(CLI::App& app, ReferenceArguments& arguments) {
 void add_cones(CLI::App& app, ConesArguments& arguments) {
   CLI::App& verb =
       *app.add_subcommand("cones", "Put a truncated cone around every segment of a centerline, not joined");
-  add_input(verb, arguments.input, "centerline");
+  add_centerline_input(verb, arguments.input, "centerline");
   add_output(verb, arguments.output, "surface");
   verb.add_option("--sides", arguments.sides, "of a cone")->check(in_range(3, 1000))->capture_default_str();
   add_common(verb, arguments.common);
@@ -168,7 +168,7 @@ void add_table2(CLI::App& app, Table2Arguments& arguments) {
 void add_tradeoff(CLI::App& app, TradeoffArguments& arguments) {
   CLI::App& verb = *app.add_subcommand(
       "tradeoff", "Grow a centerline's surface with many settings and show what time and vertices buy in accuracy");
-  add_input(verb, arguments.input, "centerline");
+  add_centerline_input(verb, arguments.input, "centerline");
   add_report(verb, arguments.report, arguments.format);
   verb.add_option("--plot", arguments.plot, "error against time and against vertices, as a picture (.svg)");
   verb.add_option("--samples", arguments.options.samples, "points on each surface and on the vessels")

@@ -9,22 +9,43 @@
 #include "command_line/interrupt.h"
 
 namespace vmesh::tool {
+namespace {
+
+constexpr std::chrono::seconds kBetweenLines(3);
+
+}  // namespace
 
 Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void Console::set_quiet(bool quiet) { quiet_ = quiet; }
 
+std::string printable(std::string_view text) {
+  std::string shown;
+  shown.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+    const bool wide = byte == 0xc2 && next >= 0x80 && next < 0xa0;  // U+0080 to U+009F in UTF-8
+    if (wide) ++i;
+    const bool listed = byte == '\n' && text.substr(i + 1).starts_with("  ");
+    shown += !listed && (wide || byte < 0x20 || byte == 0x7f) ? '?' : text[i];
+  }
+  return shown;
+}
+
 void Console::print(std::string_view prefix, std::string_view line) {
   clear_bar();
-  std::fprintf(stderr, "%.*s%.*s\n", static_cast<int>(prefix.size()), prefix.data(), static_cast<int>(line.size()),
-               line.data());
+  const std::string text = std::string(prefix) + printable(line) + "\n";
+  std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
 void Console::log(std::string_view line) {
   if (!quiet_) print("", line);
 }
 
-void Console::warn(std::string_view line) { print("warning: ", line); }
+void Console::warn(std::string_view line) {
+  if (warned_.emplace(line).second) print("warning: ", line);
+}
 
 void Console::warn(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) warn(line);
@@ -33,11 +54,19 @@ void Console::warn(const std::vector<std::string>& lines) {
 void Console::error(std::string_view line) { print("vmesh: ", line); }
 
 Progress Console::progress() {
-  const bool visible = terminal_ && !quiet_;
-  return [this, visible](std::string_view stage, double fraction) {
-    if (visible) draw_bar(stage, fraction);
+  return [this](std::string_view stage, double fraction) {
+    if (!quiet_) terminal_ ? draw_bar(stage, fraction) : tell_progress(stage, fraction);
     return !interrupted();
   };
+}
+
+void Console::tell_progress(std::string_view stage, double fraction) {
+  const auto now = std::chrono::steady_clock::now();
+  if (next_draw_ == std::chrono::steady_clock::time_point()) next_draw_ = now + kBetweenLines;
+  if (now < next_draw_) return;
+  next_draw_ = now + kBetweenLines;
+  const double done = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
+  print("", std::string(stage) + ": " + std::to_string(static_cast<int>(100 * done)) + " %");
 }
 
 void Console::draw_bar(std::string_view stage, double fraction) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,7 +10,11 @@
 
 namespace vmesh::tool {
 
-/// Everything the command says that is not data. All of it goes to stderr.
+/// `text` with a ? for every control character, as names of files may hold what moves a terminal's cursor. Lines that
+/// begin with two blanks remain: those of a list in a message.
+std::string printable(std::string_view text);
+
+/// Everything the command says that is not data. All of it goes to stderr, each line printable().
 class Console {
  public:
   /// Quiet: neither log lines nor progress; warnings and errors remain.
@@ -20,16 +25,18 @@ class Console {
 
   void set_quiet(bool quiet);
   void log(std::string_view line);
+  /// Every warning is told once, however often it comes.
   void warn(std::string_view line);
   void warn(const std::vector<std::string>& lines);
   void error(std::string_view line);
 
-  /// Asks to stop once the process was interrupted; draws a bar when stderr is a terminal. Must not outlive the
-  /// console.
+  /// Asks to stop once the process was interrupted; draws a bar when stderr is a terminal, and writes a line every
+  /// few seconds when it is none. Must not outlive the console.
   Progress progress();
 
  private:
   void draw_bar(std::string_view stage, double fraction);
+  void tell_progress(std::string_view stage, double fraction);
   void clear_bar();
   void print(std::string_view prefix, std::string_view line);
 
@@ -37,6 +44,7 @@ class Console {
   bool terminal_;
   bool bar_drawn_ = false;
   std::string bar_;
+  std::set<std::string, std::less<>> warned_;
   std::chrono::steady_clock::time_point next_draw_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "vmesh/io/sha256.h"
+
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
 
@@ -27,6 +29,12 @@ void scale(LoadedSurface& surface, double factor) {
         for (double& value : attribute.values) value *= factor;
 }
 
+std::vector<std::filesystem::path> paths_of(const InputArguments& input) {
+  std::vector<std::filesystem::path> paths = {input.path};
+  paths.insert(paths.end(), input.more.begin(), input.more.end());
+  return paths;
+}
+
 void convert_to_internal(LoadedSurface& surface, const InputArguments& input) {
   if (input.unit) surface.unit = *input.unit;
   if (input.space) surface.space = *input.space;
@@ -46,25 +54,90 @@ void convert_to_internal(LoadedSurface& surface, const InputArguments& input) {
   surface.space = Space::lps;
 }
 
-}  // namespace
-
-RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings) {
-  RawCenterline raw = read_centerline(input.path);
-  warnings.insert(warnings.end(), raw.warnings.begin(), raw.warnings.end());
-  return convert_to_internal(std::move(raw), input.unit, input.space, warnings);
+bool has_centerline_extension(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  for (const char* known : {".swc", ".json", ".csv", ".vmv", ".ctgr", ".pth", ".gxl", ".am", ".dat"})
+    if (extension == known) return true;
+  return false;
 }
 
-LoadedSurface load_surface(const InputArguments& input) {
-  LoadedSurface surface = read_surface(input.path);
-  convert_to_internal(surface, input);
-  return surface;
+/// "wall.stl: this is a surface; ...": what to do with a file of another kind, and the command for it.
+std::string make_centerline_first(const std::filesystem::path& path, const std::string& kind) {
+  const std::string made = path.stem().stem().string() + ".centerline.json";
+  return path.string() + ": this is " + kind + ", and a centerline is needed; extract one first: vmesh centerline " +
+         path.string() + " -o " + made;
+}
+
+std::string make_surface_first(const std::filesystem::path& path, const std::string& kind, const std::string& verb) {
+  return path.string() + ": this is " + kind + ", and a surface is needed; make one first: vmesh " + verb + " " +
+         path.string() + " -o " + path.stem().stem().string() + ".ply";
+}
+
+bool holds_centerline(const std::filesystem::path& path) {
+  try {
+    CenterlineReadOptions any;
+    any.radius = 1;
+    return !read_centerline(path, any).segments.empty();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+bool holds_surface(const std::filesystem::path& path) {
+  try {
+    return !read_surface(path).mesh.faces.empty();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+RawCenterline read_centerline_of(const InputArguments& input) {
+  const std::vector<std::filesystem::path> paths = paths_of(input);
+  for (const std::filesystem::path& path : paths) {
+    if (has_surface_extension(path)) throw Unsupported(make_centerline_first(path, "a surface"));
+    if (is_image_path(path)) throw Unsupported(make_centerline_first(path, "an image"));
+  }
+  try {
+    return read_centerline(paths, input.read);
+  } catch (const InvalidInput&) {
+    for (const std::filesystem::path& path : paths) {
+      if (is_vtp(path) && !holds_centerline(path) && holds_surface(path))
+        throw InvalidInput(make_centerline_first(path, "a surface"));
+    }
+    throw;
+  }
+}
+
+}  // namespace
+
+RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said) {
+  RawCenterline raw = read_centerline_of(input);
+  if (said != nullptr) *said = {raw.unit, raw.space};
+  return convert_read(std::move(raw), input.read, input.unit, input.space, warnings);
+}
+
+LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
+  if (!input.more.empty())
+    throw UsageError(input.more.front().string() + ": several files make a centerline, no surface");
+  if (is_image_path(input.path)) throw Unsupported(make_surface_first(input.path, "an image", "reference"));
+  if (has_centerline_extension(input.path))
+    throw Unsupported(make_surface_first(input.path, "a centerline", "generate"));
+  try {
+    LoadedSurface surface = read_surface(input.path);
+    if (said != nullptr) *said = {surface.unit, surface.space};
+    convert_to_internal(surface, input);
+    return surface;
+  } catch (const InvalidInput&) {
+    if (is_vtp(input.path) && holds_centerline(input.path))
+      throw InvalidInput(make_surface_first(input.path, "a centerline", "generate"));
+    throw;
+  }
 }
 
 LoadedCenterline load_clean_centerline(const InputArguments& input, Console& console) {
-  CenterlineLoadOptions options;
-  options.unit = input.unit;
-  options.space = input.space;
-  LoadedCenterline loaded = load_centerline(input.path, options);
+  std::vector<std::string> warnings;
+  CleanedCenterline cleaned = clean(load_raw_centerline(input, warnings));
+  LoadedCenterline loaded{std::move(cleaned), std::move(warnings)};
   console.warn(loaded.warnings);
   for (const std::string& line : loaded.cleaned.report.summary()) console.log("cleaning: " + line);
   return loaded;
@@ -78,22 +151,43 @@ LoadedImage load_image(const InputArguments& input, Console& console) {
   return loaded;
 }
 
-AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings) {
-  if (is_vtp(input.path) || has_surface_extension(input.path)) {
+AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said) {
+  if (input.more.empty() && (is_vtp(input.path) || has_surface_extension(input.path))) {
     try {
-      LoadedSurface surface = load_surface(input);
+      LoadedSurface surface = load_surface(input, said);
       warnings.insert(warnings.end(), surface.warnings.begin(), surface.warnings.end());
       return surface;
     } catch (const InvalidInput&) {
       if (!is_vtp(input.path)) throw;  // a VTP without faces may be a centerline
     }
   }
-  return load_raw_centerline(input, warnings);
+  return load_raw_centerline(input, warnings, said);
 }
 
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& input) {
   if (extension_of(input) == ".csv") return {input, csv_segments_path(input)};
   return {input};
+}
+
+std::vector<std::filesystem::path> files_of(const InputArguments& input) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& path : paths_of(input)) {
+    for (const std::filesystem::path& file : files_of(path)) files.push_back(file);
+  }
+  return files;
+}
+
+std::string file_name_of(const InputArguments& input) {
+  std::string names = input.path.filename().string();
+  for (const std::filesystem::path& path : input.more) names += ", " + path.filename().string();
+  return names;
+}
+
+std::string sha256_of(const InputArguments& input) {
+  if (input.more.empty()) return sha256_of_file(input.path);
+  std::string all;
+  for (const std::filesystem::path& path : paths_of(input)) all += sha256_of_file(path);
+  return vmesh::sha256_of(all);
 }
 
 }  // namespace vmesh::tool

@@ -14,11 +14,19 @@
 
 namespace vmesh::tool {
 
-/// A centerline as its file tells it, in mm and LPS; warnings are appended.
-RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings);
+/// What a file says of its numbers.
+struct FileFrame {
+  LengthUnit unit = LengthUnit::unknown;
+  Space space = Space::unknown;
+};
 
-/// A surface in mm and LPS. Attributes that are lengths are converted too.
-LoadedSurface load_surface(const InputArguments& input);
+/// A centerline as its file tells it, in mm and LPS; warnings are appended, what the file says of its
+/// numbers goes to `said`. Files of another kind are refused with the command that makes a centerline of them.
+RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings,
+                                  FileFrame* said = nullptr);
+
+/// A surface in mm and LPS, likewise. Attributes that are lengths are converted too.
+LoadedSurface load_surface(const InputArguments& input, FileFrame* said = nullptr);
 
 /// The same, cleaned; warnings and what cleaning did are told.
 LoadedCenterline load_clean_centerline(const InputArguments& input, Console& console);
@@ -26,9 +34,10 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
 /// An image; --unit and --space are refused, as images say where they lie. Throws UsageError.
 LoadedImage load_image(const InputArguments& input, Console& console);
 
-/// Either of the two, by extension; what a .vtp holds, its content decides.
+/// Either of the two, by extension; what a .vtp holds, its content decides. What the file says of itself goes to
+/// `said`.
 using AnyInput = std::variant<RawCenterline, LoadedSurface>;
-AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings);
+AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said = nullptr);
 
 /// Calls `function` and names the file in what it finds wrong with it.
 template <class Function>
@@ -43,5 +52,11 @@ auto naming(const std::filesystem::path& path, Function function) {
 
 /// All files behind an input: a CSV centerline has two.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& input);
+std::vector<std::filesystem::path> files_of(const InputArguments& input);
+
+/// For metadata: the name of the file, or the names of all; its SHA-256, or the SHA-256 of all theirs, one after
+/// another.
+std::string file_name_of(const InputArguments& input);
+std::string sha256_of(const InputArguments& input);
 
 }  // namespace vmesh::tool

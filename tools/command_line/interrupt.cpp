@@ -18,10 +18,11 @@ extern "C" void set_interrupt_flag(int) { interrupt_flag = true; }
 void catch_interrupts() {
   struct sigaction action = {};
   action.sa_handler = set_interrupt_flag;
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // not SA_RESTART: a wait for a pipe ends
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file too large for its limit is an error of the write
 }
 
 bool interrupted() noexcept { return interrupt_flag; }

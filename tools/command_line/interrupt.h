@@ -2,7 +2,8 @@
 
 namespace vmesh::tool {
 
-/// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the process at once.
+/// From now on the first SIGINT or SIGTERM only sets a flag, and ends waits for a pipe; a second one ends the process
+/// at once. Writing beyond the limit of file sizes fails instead of ending the process.
 void catch_interrupts();
 
 /// Whether the flag is set.

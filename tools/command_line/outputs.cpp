@@ -64,11 +64,6 @@ void check_format(const PlannedOutput& output) {
     throw Unsupported(output.path.string() + ": this vmesh was built without VTK and cannot write .vtp");
 }
 
-void check_writable(const fs::path& path) {
-  if (fs::exists(path) && !fs::is_regular_file(path) && !fs::is_directory(path)) return;  // a device or a pipe
-  const AtomicFile probe(path);  // throws WriteError; removed as it is not committed
-}
-
 }  // namespace
 
 std::string extension_of(const fs::path& path) {
@@ -89,7 +84,7 @@ void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<
     for (auto other = outputs.begin(); other != output; ++other)
       if (!needs_no_check(*other) && same_file(output->path, other->path))
         throw UsageError(name + ": named for the " + name_of(other->kind) + " and for the " + name_of(output->kind));
-    check_writable(output->path);
+    check_can_be_written(output->path);
   }
 }
 

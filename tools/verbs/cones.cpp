@@ -22,12 +22,12 @@ MeshAttributes attributes_of(const TruncatedCones& cones) {
 int run(const ConesArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
-  check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, files_of(path));
+  check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, files_of(arguments.input));
   const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
   const TruncatedCones cones = truncated_cones(centerline, arguments.sides);
-  const std::string how = "cones --sides " + std::to_string(arguments.sides), sha256 = sha256_of_file(path);
+  const std::string how = "cones --sides " + std::to_string(arguments.sides), sha256 = sha256_of(arguments.input);
   write_surface(arguments.output, cones.mesh, attributes_of(cones),
-                {generator_name(), how, path.filename().string(), sha256});
+                {generator_name(), how, file_name_of(arguments.input), sha256});
   console.log("wrote " + arguments.output.string() + ": " + std::to_string(centerline.segments().size()) + " cones, " +
               std::to_string(cones.mesh.vertices.size()) + " vertices");
   if (!arguments.common.json.empty())

@@ -16,7 +16,8 @@ using Kind = PlannedOutput::Kind;
 std::optional<Kind> kind_of(const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
   if (extension == ".vtp") return std::nullopt;
-  for (const char* centerline : {".swc", ".json", ".csv", ".vmv", ".vtk"})
+  for (const char* centerline :
+       {".swc", ".json", ".csv", ".vmv", ".vtk", ".ctgr", ".pth", ".gxl", ".xml", ".am", ".dat"})
     if (extension == centerline) return Kind::centerline;
   surface_format(path);  // throws Unsupported
   return Kind::surface;
@@ -42,22 +43,20 @@ void convert(const RawCenterline& raw, const ConvertArguments& arguments, Consol
   options.canonical_order = false;
   const CleanedCenterline cleaned = clean(raw, options);
   for (const std::string& line : cleaned.report.summary()) console.log("cleaning: " + line);
-  write_centerline(
-      arguments.output, cleaned.centerline,
-      {generator_name(), "convert", arguments.input.path.filename().string(), sha256_of_file(arguments.input.path)});
+  write_centerline(arguments.output, cleaned.centerline,
+                   {generator_name(), "convert", file_name_of(arguments.input), sha256_of(arguments.input)});
 }
 
 void convert(const LoadedSurface& surface, const ConvertArguments& arguments, Console&) {
-  write_surface(
-      arguments.output, surface.mesh, surface.attributes,
-      {generator_name(), "convert", arguments.input.path.filename().string(), sha256_of_file(arguments.input.path)});
+  write_surface(arguments.output, surface.mesh, surface.attributes,
+                {generator_name(), "convert", file_name_of(arguments.input), sha256_of(arguments.input)});
 }
 
 }  // namespace
 
 int run(const ConvertArguments& arguments, Console& console) {
   check_kinds(arguments);
-  check_outputs(planned_outputs(arguments.output), files_of(arguments.input.path));
+  check_outputs(planned_outputs(arguments.output), files_of(arguments.input));
   std::vector<std::string> warnings;
   const AnyInput input = load_any(arguments.input, warnings);
   console.warn(warnings);

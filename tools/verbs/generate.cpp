@@ -285,8 +285,10 @@ void log_choice(const BudgetedSurface& surface, const GenerateArguments& argumen
                 number(point.error.max_mm) + " mm), skewness " + number(point.skewness.mean) + " mean, " +
                 number(point.skewness.max) + " max" + (point.within_budget ? "" : "; beyond the budget"));
   }
-  console.log("the same again: vmesh generate " + arguments.input.path.string() + " -o " + arguments.output.string() +
-              " " + describe(arguments));
+  std::string inputs = arguments.input.path.string();
+  for (const std::filesystem::path& path : arguments.input.more) inputs += " " + path.string();
+  console.log("the same again: vmesh generate " + inputs + " -o " + arguments.output.string() + " " +
+              describe(arguments));
 }
 
 /// Chooses the options that make the most of the budget.
@@ -311,6 +313,8 @@ void check_input(const GenerateArguments& arguments) {
   const ReferenceOptions& image = arguments.fitting.image;
   const bool fits = !arguments.fitting.reference.path.empty();
   if (has_image(arguments)) {
+    if (!arguments.input.more.empty())
+      throw UsageError(arguments.input.more.front().string() + ": beside an image nothing else makes a centerline");
     if (fits && (image.label || image.threshold || image.spacing > 0 || image.smooth > 0) &&
         is_image_path(arguments.fitting.reference.path))
       throw UsageError(
@@ -400,7 +404,7 @@ void refuse(const GenerateReport& report, Console& console) {
 void write(const GenerateReport& report) {
   const GenerateArguments& arguments = *report.arguments;
   write_surface(arguments.output, report.result->mesh, attributes_of(*report.result, report.cleaned->centerline),
-                {generator_name(), describe(arguments), arguments.input.path.filename().string(), report.input_sha256});
+                {generator_name(), describe(arguments), file_name_of(arguments.input), report.input_sha256});
 }
 
 }  // namespace
@@ -413,7 +417,7 @@ int run(const GenerateArguments& given, Console& console) {
     for (const std::filesystem::path& file : files_of(given.centerline_output))
       outputs.push_back({file, Kind::centerline});
   }
-  std::vector<std::filesystem::path> inputs = files_of(given.input.path);
+  std::vector<std::filesystem::path> inputs = files_of(given.input);
   if (!given.fitting.reference.path.empty()) inputs.push_back(given.fitting.reference.path);
   check_outputs(outputs, inputs);
   GenerateArguments arguments = given;  // a budget chooses some of them
@@ -430,7 +434,7 @@ int run(const GenerateArguments& given, Console& console) {
   }
   const LoadedCenterline loaded =
       has_image(arguments) ? extract(arguments, reference, console) : load(arguments.input, console);
-  report.input_sha256 = sha256_of_file(arguments.input.path);
+  report.input_sha256 = sha256_of(arguments.input);
   report.cleaned = &loaded.cleaned;
   report.stages.push_back({"read", watch.lap()});
   stop_if_interrupted();

@@ -1,17 +1,24 @@
+#include <algorithm>
 #include <iostream>
 #include <sstream>
 
 #include "vmesh/io/sha256.h"
+#include "vmesh/quality/sampled_distance.h"
 
 #include "command_line/exit_code.h"
 #include "command_line/inputs.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
+#include "report/openings.h"
 #include "report/summary.h"
 #include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
+
+std::string text_of(const Json& value) {
+  return value.is_string() ? printable(value.get<std::string>()) : value.dump();
+}
 
 /// One value per line, as "name: value"; members of members as "name.member: value".
 void print(std::ostream& out, const Json& json, const std::string& prefix = "") {
@@ -20,10 +27,9 @@ void print(std::ostream& out, const Json& json, const std::string& prefix = "") 
     if (value.is_object()) {
       print(out, value, name + ".");
     } else if (value.is_array()) {
-      for (const Json& element : value)
-        out << name << ": " << (element.is_string() ? element.get<std::string>() : element.dump()) << "\n";
+      for (const Json& element : value) out << name << ": " << text_of(element) << "\n";
     } else {
-      out << name << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << "\n";
+      out << name << ": " << text_of(value) << "\n";
     }
   }
 }
@@ -50,12 +56,29 @@ void describe(const RawCenterline& raw, Json& json) {
   json["problems"] = messages_of(validate(raw.nodes, raw.segments));
 }
 
+Json numbers(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+/// The box around the surface, and its holes.
+void describe_place(const TriMesh& mesh, Json& json) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : mesh.vertices) box.extend(p);
+  json["box_mm"] = {{"from", numbers(box.min())}, {"to", numbers(box.max())}};
+  constexpr std::size_t kNamed = 100;
+  const std::vector<BoundaryLoop> loops = boundary_loops(mesh);
+  json["openings"] = {{"count", loops.size()}, {"largest", Json::array()}};
+  for (std::size_t i = 0; i < std::min(loops.size(), kNamed); ++i)
+    json["openings"]["largest"].push_back(
+        {{"center_mm", numbers(loops[i].center)}, {"area_mm2", loops[i].area_mm2}, {"edges", loops[i].edges}});
+}
+
 void describe(const LoadedSurface& surface, Json& json) {
   json["kind"] = "surface";
   json["vertices"] = surface.mesh.vertices.size();
   json["faces"] = surface.mesh.faces.size();
   const SurfaceMeasurement measurement = measure_surface(surface.mesh);
   json.update(to_json(measurement));
+  json["area_mm2"] = surface_area(surface.mesh);
+  describe_place(surface.mesh, json);
   if (measurement.topology.closed && measurement.topology.oriented)
     json["enclosed_volume_mm3"] = enclosed_volume(surface.mesh);
   for (const auto& [name, list] : {std::pair{"vertex_attributes", &surface.attributes.vertex},
@@ -69,15 +92,18 @@ void describe(const LoadedSurface& surface, Json& json) {
 }  // namespace
 
 int run(const InfoArguments& arguments, Console& console) {
-  check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, files_of(arguments.input.path));
+  check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, files_of(arguments.input));
   std::vector<std::string> warnings;
-  const AnyInput input = load_any(arguments.input, warnings);
+  FileFrame frame;
+  const AnyInput input = load_any(arguments.input, warnings, &frame);
   console.warn(warnings);
   Json json = {{"schema", "vmesh.info/1"},
                {"generator", generator_json()},
                {"file", arguments.input.path.string()},
-               {"sha256", sha256_of_file(arguments.input.path)}};
+               {"sha256", sha256_of(arguments.input)}};
   std::visit([&json](const auto& content) { describe(content, json); }, input);
+  json["unit_in_file"] = to_string(frame.unit);
+  json["space_in_file"] = to_string(frame.space);
   json["warnings"] = warnings;
   stop_if_interrupted();
 

@@ -1,13 +1,13 @@
 #include "verbs/scene.h"
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/input_file.h"
 
 namespace vmesh::tool {
 namespace {
@@ -207,11 +207,7 @@ Scene read(const Element& root, std::size_t nodes) {
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& path, std::size_t nodes) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  if (!std::filesystem::is_regular_file(path) || !file || !(text << file.rdbuf()))
-    throw ReadError(path.string() + ": cannot be read; name a scene file");
-  return parse_scene(text.str(), path.string(), nodes);
+  return parse_scene(read_file(path), path.string(), nodes);
 }
 
 Scene parse_scene(const std::string& text, const std::string& source, std::size_t nodes) {

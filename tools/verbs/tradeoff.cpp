@@ -77,7 +77,7 @@ Json report_json(const TradeoffArguments& arguments, const Centerline& centerlin
   const std::filesystem::path& path = arguments.input.path;
   return {{"schema", "vmesh.tradeoff/1"},
           {"generator", generator_json()},
-          {"input", {{"file", path.string()}, {"sha256", sha256_of_file(path)}}},
+          {"input", {{"file", path.string()}, {"sha256", sha256_of(arguments.input)}}},
           {"centerline", to_json(centerline)},
           {"points", std::move(list)}};
 }
@@ -88,7 +88,7 @@ int run(const TradeoffArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   check_outputs(
       {{arguments.report, Kind::report}, {arguments.plot, Kind::plot}, {arguments.common.json, Kind::summary}},
-      files_of(arguments.input.path));
+      files_of(arguments.input));
   const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
   const std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, arguments.options, console.progress());
   write_report({points_table(points), peers_table(points)}, report_json(arguments, centerline, points),

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
+#include <sstream>
 #include <utility>
 
 #include "vmesh/core/error.h"
@@ -37,6 +40,43 @@ Value choose(Value in_file, std::optional<Value> override_value, Value fallback,
   warnings.push_back(prefix + "the file does not say its " + what + "; taken as " + std::string(to_string(fallback)) +
                      " (set it with " + option + ")");
   return fallback;
+}
+
+std::string separator(const std::string& source) { return source.empty() ? "" : ": "; }
+
+/// That of the parts which holds element `i`.
+const RawCenterline::Part& part_of(const std::vector<RawCenterline::Part>& parts, Index RawCenterline::Part::*first,
+                                   Index i) {
+  const auto after = std::upper_bound(parts.begin(), parts.end(), i,
+                                      [first](Index wanted, const auto& part) { return wanted < part.*first; });
+  return after == parts.begin() ? parts.front() : *std::prev(after);
+}
+
+template <class Value>
+void check_agreement(const std::string& what, const std::string& first, Value firsts, const std::string& other,
+                     Value others) {
+  if (firsts == others) return;
+  throw InvalidInput(other + ": its " + what + " is " + std::string(to_string(others)) + ", that of " + first + " is " +
+                     std::string(to_string(firsts)) + "; convert one of them first");
+}
+
+void append_numbers(const std::vector<std::uint64_t>& numbers, std::size_t count, std::vector<std::uint64_t>& all) {
+  for (std::size_t i = 0; i < count; ++i) all.push_back(i < numbers.size() ? numbers[i] : i);
+}
+
+void append(const RawCenterline& file, bool has_paths, RawCenterline& all) {
+  const auto first_node = static_cast<Index>(all.nodes.size());
+  const auto first_segment = static_cast<Index>(all.segments.size());
+  all.parts.push_back({first_node, first_segment, file.source, file.node_word, file.segment_word});
+  all.nodes.insert(all.nodes.end(), file.nodes.begin(), file.nodes.end());
+  append_numbers(file.node_numbers, file.nodes.size(), all.node_numbers);
+  append_numbers(file.segment_numbers, file.segments.size(), all.segment_numbers);
+  for (Index s = 0; s < file.segments.size(); ++s) {
+    all.segments.push_back({file.segments[s].a + first_node, file.segments[s].b + first_node});
+    if (has_paths && file.path_starts.empty()) all.path_starts.push_back(first_segment + s);
+  }
+  for (const Index s : file.path_starts) all.path_starts.push_back(first_segment + s);
+  all.warnings.insert(all.warnings.end(), file.warnings.begin(), file.warnings.end());
 }
 
 }  // namespace
@@ -93,16 +133,62 @@ double millimetres_per(LengthUnit unit) {
 }
 
 std::string RawCenterline::name_of_node(Index n) const {
-  return (source.empty() ? "" : source + ": ") + place_of_node(n);
+  return (parts.empty() ? source : part_of(parts, &Part::first_node, n).source) + separator(source) +
+         place(parts.empty() ? node_word : part_of(parts, &Part::first_node, n).node_word, node_numbers, n);
 }
 
 std::string RawCenterline::name_of_segment(Index s) const {
-  return (source.empty() ? "" : source + ": ") + place_of_segment(s);
+  return (parts.empty() ? source : part_of(parts, &Part::first_segment, s).source) + separator(source) +
+         place(parts.empty() ? segment_word : part_of(parts, &Part::first_segment, s).segment_word, segment_numbers, s);
 }
 
-std::string RawCenterline::place_of_node(Index n) const { return place(node_word, node_numbers, n); }
+std::string RawCenterline::place_of_node(Index n) const {
+  if (parts.empty()) return place(node_word, node_numbers, n);
+  const Part& part = part_of(parts, &Part::first_node, n);
+  return place(part.node_word, node_numbers, n) + " of " + part.source;
+}
 
-std::string RawCenterline::place_of_segment(Index s) const { return place(segment_word, segment_numbers, s); }
+std::string RawCenterline::place_of_segment(Index s) const {
+  if (parts.empty()) return place(segment_word, segment_numbers, s);
+  const Part& part = part_of(parts, &Part::first_segment, s);
+  return place(part.segment_word, segment_numbers, s) + " of " + part.source;
+}
+
+RawCenterline merge(std::vector<RawCenterline> files) {
+  if (files.empty()) throw InvalidInput("there is no centerline to merge");
+  if (files.size() == 1) return std::move(files.front());
+  RawCenterline all;
+  all.unit = files.front().unit;
+  all.space = files.front().space;
+  all.source = files.front().source + " and " + std::to_string(files.size() - 1) + " more";
+  all.loose_branches = true;
+  all.tree_only = std::all_of(files.begin(), files.end(), [](const RawCenterline& file) { return file.tree_only; });
+  const bool has_paths =
+      std::any_of(files.begin(), files.end(), [](const RawCenterline& file) { return !file.path_starts.empty(); });
+  for (const RawCenterline& file : files) {
+    check_agreement("unit", files.front().source, all.unit, file.source, file.unit);
+    check_agreement("frame", files.front().source, all.space, file.source, file.space);
+    append(file, has_paths, all);
+  }
+  return all;
+}
+
+std::optional<std::string> implausible_radii(const RawCenterline& raw) {
+  constexpr double kThinnest = 0.05, kThickest = 40;  // mm: arterioles; an aneurysm of the aorta
+  std::vector<double> radii;
+  for (const CenterlineNode& node : raw.nodes) {
+    if (std::isfinite(node.radius) && node.radius > 0) radii.push_back(node.radius);
+  }
+  if (radii.empty()) return std::nullopt;
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  if (*middle >= kThinnest && *middle <= kThickest) return std::nullopt;
+  std::ostringstream text;
+  text << (raw.source.empty() ? "" : raw.source + ": ") << "half of the radii are "
+       << (*middle < kThinnest ? "below " : "above ") << *middle
+       << " mm; if these are no millimetres, give the unit with --unit";
+  return text.str();
+}
 
 RawCenterline convert_to_internal(RawCenterline raw, std::optional<LengthUnit> unit_override,
                                   std::optional<Space> space_override, std::vector<std::string>& warnings) {

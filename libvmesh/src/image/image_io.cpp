@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <string_view>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/input_file.h"
 
 #include "image_header.h"
 #include "unpack.h"
@@ -20,21 +19,6 @@ namespace {
 
 using image::ImageHeader;
 using image::NumberType;
-
-std::string read_file(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw ReadError(name + ": there is no such file; check the name");
-  if (std::filesystem::is_directory(status)) throw ReadError(name + ": this is a folder; give a file");
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw ReadError(name + ": cannot be opened: " + std::strerror(errno));
-  std::string content(std::istreambuf_iterator<char>(in), {});
-  if (in.bad()) throw ReadError(name + ": cannot be read: " + std::strerror(errno));
-  if (content.empty()) throw InvalidInput(name + ": the file is empty");
-  return content;
-}
 
 ImageHeader parse_header(std::string_view content, const std::string& file_name, const std::string& name) {
   if (file_name.ends_with(".nrrd")) return image::parse_nrrd_header(content, name);

@@ -5,6 +5,7 @@
 
 #include "vmesh/core/atomic_file.h"
 #include "vmesh/core/error.h"
+#include "vmesh/core/input_file.h"
 
 #include "formats.h"
 #include "text.h"
@@ -19,13 +20,23 @@ CenterlineFormat centerline_format(const std::filesystem::path& path) {
   if (extension == ".csv") return CenterlineFormat::csv;
   if (extension == ".vmv") return CenterlineFormat::vmv;
   if (extension == ".vtk") return CenterlineFormat::vtk;
-  throw Unsupported(path.string() + ": centerlines are .swc, .vtp, .json, .csv, .vmv or .vtk; \"" + extension +
-                    "\" is not supported");
+  if (extension == ".ctgr") return CenterlineFormat::ctgr;
+  if (extension == ".pth") return CenterlineFormat::pth;
+  if (extension == ".gxl" || extension == ".xml") return CenterlineFormat::gxl;
+  if (extension == ".am") return CenterlineFormat::amira;
+  if (extension == ".dat") return CenterlineFormat::network;
+  throw Unsupported(path.string() +
+                    ": centerlines are .swc, .vtp, .json, .csv, .vmv, .vtk, .mrk.json, .ctgr, .pth, .gxl, .am or .dat; "
+                    "\"" +
+                    extension + "\" is not supported");
 }
 
 CenterlineFormat centerline_output_format(const std::filesystem::path& path) {
   const CenterlineFormat format = centerline_format(path);
-  if (format == CenterlineFormat::vmv || format == CenterlineFormat::vtk) {
+  const bool of_slicer = io::lower(path.stem().extension().string()) == ".mrk";
+  const bool is_written = format == CenterlineFormat::swc || format == CenterlineFormat::vtp ||
+                          (format == CenterlineFormat::json && !of_slicer) || format == CenterlineFormat::csv;
+  if (!is_written) {
     throw Unsupported(path.string() +
                       ": files of this kind are read, not written; write the centerline as .json, .csv or .vtp");
   }
@@ -53,26 +64,36 @@ RawCenterline parse_centerline(std::string_view content, CenterlineFormat format
     case CenterlineFormat::swc:
       return io::parse_swc(content, source);
     case CenterlineFormat::vtp:
-      return io::parse_centerline_vtp(content, source, options.radius_array);
+      return io::parse_centerline_vtp(content, source, options);
     case CenterlineFormat::json:
-      return io::parse_centerline_json(content, source);
+      return io::parse_centerline_json(content, source, options);
     case CenterlineFormat::csv:
       return io::parse_centerline_csv(content, csv_segments, source);
     case CenterlineFormat::vmv:
       return io::parse_vmv(content, source);
     case CenterlineFormat::vtk:
-      return io::parse_centerline_vtk(content, source, options.radius_array);
+      return io::parse_centerline_vtk(content, source, options);
+    case CenterlineFormat::ctgr:
+      return io::parse_contours(content, source);
+    case CenterlineFormat::pth:
+      return io::parse_path(content, source, options);
+    case CenterlineFormat::gxl:
+      return io::parse_gxl(content, source, options);
+    case CenterlineFormat::amira:
+      return io::parse_amira(content, source, options);
+    case CenterlineFormat::network:
+      return io::parse_network(content, source);
   }
   throw Unsupported(source + ": unknown centerline format");
 }
 
 RawCenterline read_centerline(const std::filesystem::path& path, const CenterlineReadOptions& options) {
   const CenterlineFormat format = centerline_format(path);
-  const std::string content = io::read_file(path);
+  const std::string content = read_file(path);
   std::string segments;
   if (format == CenterlineFormat::csv) {
     check_is_nodes_file(path);
-    segments = io::read_file(csv_segments_path(path));
+    segments = read_file(csv_segments_path(path));
   }
   return parse_centerline(content, format, path.string(), options, segments);
 }
@@ -85,12 +106,46 @@ RawCenterline read_centerline(std::istream& in, CenterlineFormat format, const s
   return parse_centerline(content, format, source, options);
 }
 
-LoadedCenterline load_centerline(const std::filesystem::path& path, const CenterlineLoadOptions& options) {
-  RawCenterline raw = read_centerline(path, options.read);
-  std::vector<std::string> warnings = std::move(raw.warnings);
+RawCenterline read_centerline(const std::vector<std::filesystem::path>& paths, const CenterlineReadOptions& options) {
+  std::vector<RawCenterline> files;
+  for (const std::filesystem::path& path : paths) files.push_back(read_centerline(path, options));
+  return merge(std::move(files));
+}
+
+RawCenterline convert_read(RawCenterline raw, const CenterlineReadOptions& options, std::optional<LengthUnit> unit,
+                           std::optional<Space> space, std::vector<std::string>& warnings) {
+  warnings.insert(warnings.end(), raw.warnings.begin(), raw.warnings.end());
   raw.warnings.clear();
-  raw = convert_to_internal(std::move(raw), options.unit, options.space, warnings);
+  const bool may_be_wrong = !unit && raw.unit != LengthUnit::um;
+  raw = convert_to_internal(std::move(raw), unit, space, warnings);
+  if (may_be_wrong) {
+    if (const auto hint = implausible_radii(raw)) warnings.push_back(*hint);
+  }
+  if (!options.radius) return raw;
+  if (!(*options.radius > 0)) throw InvalidInput("the radius given must be above 0");
+  std::size_t given = 0;
+  for (CenterlineNode& node : raw.nodes) {
+    if (node.radius != 0) continue;
+    node.radius = *options.radius;
+    ++given;
+  }
+  if (given < raw.nodes.size()) {
+    warnings.push_back(raw.source + ": " + std::to_string(raw.nodes.size() - given) +
+                       " nodes have radii of their own, which they keep");
+  }
+  return raw;
+}
+
+LoadedCenterline load_centerline(const std::vector<std::filesystem::path>& paths,
+                                 const CenterlineLoadOptions& options) {
+  std::vector<std::string> warnings;
+  const RawCenterline raw =
+      convert_read(read_centerline(paths, options.read), options.read, options.unit, options.space, warnings);
   return {clean(raw, options.cleaning), std::move(warnings)};
+}
+
+LoadedCenterline load_centerline(const std::filesystem::path& path, const CenterlineLoadOptions& options) {
+  return load_centerline(std::vector{path}, options);
 }
 
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
@@ -118,8 +173,7 @@ void write_centerline(const std::filesystem::path& path, const Centerline& cente
       segments.commit();
       break;
     }
-    case CenterlineFormat::vmv:
-    case CenterlineFormat::vtk:
+    default:
       break;  // refused above
   }
   file.commit();

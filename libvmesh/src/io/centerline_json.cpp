@@ -4,6 +4,7 @@
 
 #include "comments.h"
 #include "formats.h"
+#include "slicer_markups.h"
 #include "text.h"
 
 namespace vmesh::io {
@@ -108,7 +109,8 @@ std::string string_member(const char* key, const std::string& value) {
 
 }  // namespace
 
-RawCenterline parse_centerline_json(std::string_view content, const std::string& source) {
+RawCenterline parse_centerline_json(std::string_view content, const std::string& source,
+                                    const CenterlineReadOptions& options) {
   Json document;
   try {
     document = Json::parse(content);
@@ -117,6 +119,7 @@ RawCenterline parse_centerline_json(std::string_view content, const std::string&
     throw InvalidInput(source +
                        ": this is no valid JSON: " + one_line(std::string_view(error.what()).substr(0, kMostShown)));
   }
+  if (document.is_object() && document.contains("markups")) return read_markups(document, source, options);
   return JsonReader(document, source).run();
 }
 

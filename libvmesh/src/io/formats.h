@@ -13,12 +13,18 @@ namespace vmesh::io {
 
 RawCenterline parse_swc(std::string_view content, const std::string& source);
 RawCenterline parse_vmv(std::string_view content, const std::string& source);
-RawCenterline parse_centerline_json(std::string_view content, const std::string& source);
+RawCenterline parse_centerline_json(std::string_view content, const std::string& source,
+                                    const CenterlineReadOptions& options);
 RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source);
 RawCenterline parse_centerline_vtp(std::string_view content, const std::string& source,
-                                   const std::string& radius_array);
+                                   const CenterlineReadOptions& options);
 RawCenterline parse_centerline_vtk(std::string_view content, const std::string& source,
-                                   const std::string& radius_array);
+                                   const CenterlineReadOptions& options);
+RawCenterline parse_contours(std::string_view content, const std::string& source);
+RawCenterline parse_path(std::string_view content, const std::string& source, const CenterlineReadOptions& options);
+RawCenterline parse_gxl(std::string_view content, const std::string& source, const CenterlineReadOptions& options);
+RawCenterline parse_amira(std::string_view content, const std::string& source, const CenterlineReadOptions& options);
+RawCenterline parse_network(std::string_view content, const std::string& source);
 
 void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);
 void write_centerline_json(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);

@@ -4,6 +4,7 @@
 
 #include "vmesh/core/error.h"
 
+#include "edge_radii.h"
 #include "text.h"
 
 namespace vmesh::io {
@@ -65,28 +66,86 @@ class Converter {
   std::vector<Index> node_of_;
 };
 
-}  // namespace
-
-RawCenterline to_raw_centerline(const PolyLines& data, const std::string& source) {
-  return Converter(data, source).run();
-}
-
 std::vector<std::string> radius_names(const std::string& wanted) {
   if (!wanted.empty()) return {wanted};
   return {"MaximumInscribedSphereRadius", "Radius", "radius"};
 }
 
-void fail_without_radius(const std::string& source, const std::string& wanted,
-                         const std::vector<std::string>& present) {
+void name_arrays(const ScalarArrays& arrays, std::string& names) {
   constexpr std::size_t kMostNamed = 8;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(present.size(), kMostNamed); ++i) {
-    names += (names.empty() ? "" : ", ") + one_line(present[i].substr(0, 40));
+  std::size_t named = 0;
+  for (const auto& [name, values] : arrays) {
+    if (named++ < kMostNamed) names += (names.empty() ? "" : ", ") + one_line(name.substr(0, 40));
   }
-  if (present.size() > kMostNamed) names += " and " + std::to_string(present.size() - kMostNamed) + " more";
-  throw InvalidInput(source + ": there is no point array " +
-                     (wanted.empty() ? "MaximumInscribedSphereRadius, Radius or radius" : wanted) + "; it has " +
-                     (names.empty() ? "none" : names) + "; name the one that holds the radius");
+  if (named > kMostNamed) names += " and " + std::to_string(named - kMostNamed) + " more";
+}
+
+[[noreturn]] void fail_without_radius(const std::string& source, const std::string& wanted,
+                                      const Attributes& attributes) {
+  std::string of_points, of_cells;
+  name_arrays(attributes.point, of_points);
+  name_arrays(attributes.cell, of_cells);
+  throw InvalidInput(source + ": there is no array " +
+                     (wanted.empty() ? "MaximumInscribedSphereRadius, Radius or radius" : one_line(wanted)) +
+                     " of points or lines; it has " + (of_points.empty() ? "none" : of_points) + " of points and " +
+                     (of_cells.empty() ? "none" : of_cells) +
+                     " of lines; name the one that holds the radius with --radius-array, or give one radius for all "
+                     "with --radius");
+}
+
+/// Diameters are halved.
+double scale_of(const std::string& name) { return lower(name).find("diam") != std::string::npos ? 0.5 : 1; }
+
+/// The array that holds the radius and its name; null when there is none.
+const std::pair<const std::string, std::vector<double>>* find_radius(const ScalarArrays& arrays,
+                                                                     const std::string& wanted, std::size_t count,
+                                                                     const std::string& source, const char* element) {
+  for (const std::string& name : radius_names(wanted)) {
+    const auto found = arrays.find(name);
+    if (found == arrays.end()) continue;
+    if (found->second.size() == count) return &*found;
+    throw InvalidInput(source + ": the " + element + " array " + cite(name) + " must hold one number for every " +
+                       element);
+  }
+  return nullptr;
+}
+
+/// Radii of segments from those of the lines that they are of.
+std::vector<double> radii_of_segments(const RawCenterline& raw, const std::vector<double>& of_cells, double scale) {
+  std::vector<double> radii;
+  for (const std::uint64_t cell : raw.segment_numbers) radii.push_back(scale * of_cells[cell]);
+  return radii;
+}
+
+}  // namespace
+
+RawCenterline to_raw_centerline(PolyLines data, const std::string& source, const Attributes& attributes,
+                                const CenterlineReadOptions& options) {
+  const std::string& wanted = options.radius_array;
+  if (const auto* radius = find_radius(attributes.point, wanted, data.points.size(), source, "point")) {
+    const double scale = scale_of(radius->first);
+    for (std::size_t i = 0; i < data.points.size(); ++i) data.points[i].radius = scale * radius->second[i];
+    return Converter(data, source).run();
+  }
+  std::size_t cells = 0;
+  for (const auto& [name, values] : attributes.cell) cells = std::max(cells, values.size());
+  const std::size_t least = data.vertices.size() + data.lines.size();
+  if (const auto* radius = find_radius(attributes.cell, wanted, std::max(cells, least), source, "cell")) {
+    const double scale = scale_of(radius->first);
+    // A vertex is a sphere of its own, a line a vessel of one radius.
+    for (std::size_t c = 0; c < data.vertices.size(); ++c) {
+      for (const Index point : data.vertices[c]) data.points[point].radius = scale * radius->second[c];
+    }
+    RawCenterline raw = Converter(data, source).run();
+    const std::vector<CenterlineNode> before = raw.nodes;
+    set_radii_of_segments(raw, radii_of_segments(raw, radius->second, scale));
+    for (std::size_t n = 0; n < before.size(); ++n) {
+      if (raw.nodes[n].radius == 0) raw.nodes[n].radius = before[n].radius;
+    }
+    return raw;
+  }
+  if (!options.radius || !wanted.empty()) fail_without_radius(source, wanted, attributes);
+  return Converter(data, source).run();
 }
 
 }  // namespace vmesh::io

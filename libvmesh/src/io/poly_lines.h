@@ -1,10 +1,11 @@
 // Centerlines in VTK's data model, internal to the module.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
-#include "vmesh/centerline/raw_centerline.h"
+#include "vmesh/io/centerline_io.h"
 
 namespace vmesh::io {
 
@@ -15,15 +16,19 @@ struct PolyLines {
   std::vector<std::vector<Index>> lines, vertices;
 };
 
-/// Leaves out points without a cell and lines of fewer than two points, and says so. Throws InvalidInput when nothing
-/// remains.
-RawCenterline to_raw_centerline(const PolyLines& data, const std::string& source);
+/// Arrays by name: one number per element, or empty where an array has another number of them.
+using ScalarArrays = std::map<std::string, std::vector<double>>;
 
-/// Names under which the radius may be found, best first: `wanted` alone unless it is empty.
-std::vector<std::string> radius_names(const std::string& wanted);
+/// Those of points, and those of cells: of vertices first, then of lines, then of what else there is.
+struct Attributes {
+  const ScalarArrays& point;
+  const ScalarArrays& cell;
+};
 
-/// Throws InvalidInput that tells the names searched for and those present.
-[[noreturn]] void fail_without_radius(const std::string& source, const std::string& wanted,
-                                      const std::vector<std::string>& present);
+/// Leaves out points without a cell and lines of fewer than two points, and says so. Radii are those of points, or else
+/// those of cells, under the name in `options` or a usual one; 0 where the options give one for all instead.
+/// Throws InvalidInput when nothing remains, and when there is no radius: with the names that are there.
+RawCenterline to_raw_centerline(PolyLines data, const std::string& source, const Attributes& attributes,
+                                const CenterlineReadOptions& options);
 
 }  // namespace vmesh::io

@@ -1,15 +1,13 @@
 #include "vmesh/io/sha256.h"
 
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <memory>
 #include <vector>
 
 #include <openssl/evp.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/input_file.h"
 
 namespace vmesh {
 namespace {
@@ -52,15 +50,10 @@ std::string sha256_of(std::string_view bytes) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw ReadError(path.string() + ": cannot be opened: " + std::strerror(errno));
+  InputFile file(path);
   Sha256 hash;
   std::vector<char> block(1 << 16);
-  while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
-    hash.add(block.data(), static_cast<std::size_t>(in.gcount()));
-  }
-  if (in.bad() || std::filesystem::is_directory(path)) throw ReadError(path.string() + ": cannot be read");
+  while (const std::size_t count = file.read(block)) hash.add(block.data(), count);
   return hash.finish();
 }
 

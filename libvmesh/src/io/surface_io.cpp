@@ -2,6 +2,7 @@
 
 #include "vmesh/core/atomic_file.h"
 #include "vmesh/core/error.h"
+#include "vmesh/core/input_file.h"
 
 #include "formats.h"
 #include "text.h"
@@ -90,7 +91,7 @@ LoadedSurface parse_surface(std::string_view content, SurfaceFormat format, cons
 
 LoadedSurface read_surface(const std::filesystem::path& path) {
   const SurfaceFormat format = surface_format(path);
-  return parse_surface(io::read_file(path), format, path.string());
+  return parse_surface(read_file(path), format, path.string());
 }
 
 }  // namespace vmesh

@@ -1,12 +1,8 @@
 #include "text.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <system_error>
 
 namespace vmesh::io {
 namespace {
@@ -26,26 +22,6 @@ std::string_view value_after(std::string_view text, std::string_view key) {
 
 }  // namespace
 
-std::string read_file(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw ReadError(name + ": there is no such file; check the name");
-  if (std::filesystem::is_directory(status)) throw ReadError(name + ": this is a folder; give a file");
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw ReadError(name + ": cannot be opened: " + std::strerror(errno));
-  std::string content;
-  if (std::filesystem::is_regular_file(status)) content.reserve(std::filesystem::file_size(path, error));
-  std::vector<char> block(1 << 16);
-  while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
-    content.append(block.data(), static_cast<std::size_t>(in.gcount()));
-  }
-  if (in.bad()) throw ReadError(name + ": cannot be read: " + std::strerror(errno));
-  if (content.empty()) throw InvalidInput(name + ": the file is empty");
-  return content;
-}
-
 LineReader::LineReader(std::string_view text) : text_(text) {
   if (text_.substr(0, 3) == "\xEF\xBB\xBF") text_.remove_prefix(3);
 }
@@ -63,6 +39,12 @@ bool LineReader::next(std::string_view& line) {
   const bool crlf = text_[end] == '\r' && end + 1 < text_.size() && text_[end + 1] == '\n';
   text_.remove_prefix(end + (crlf ? 2 : 1));
   return true;
+}
+
+std::string_view LineReader::take(std::size_t count) {
+  const std::string_view bytes = text_.substr(0, count);
+  text_.remove_prefix(bytes.size());
+  return bytes;
 }
 
 std::string_view trim(std::string_view text) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,9 +12,6 @@
 
 namespace vmesh::io {
 
-/// The whole file. Throws ReadError when it is missing, a folder, or cannot be read, InvalidInput when it is empty.
-std::string read_file(const std::filesystem::path& path);
-
 /// A line at a time; ends with LF, CRLF or CR.
 class LineReader {
  public:
@@ -23,6 +19,8 @@ class LineReader {
   bool next(std::string_view& line);
   std::uint64_t number() const { return number_; }  ///< of the last line, from 1
   std::string_view rest() const { return text_; }
+  /// The next `count` bytes, of which there must be as many, whatever they are.
+  std::string_view take(std::size_t count);
 
  private:
   std::string_view text_;

@@ -1,25 +1,27 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "formats.h"
+#include "number_types.h"
 #include "poly_lines.h"
 #include "text.h"
 
 namespace vmesh::io {
 namespace {
 
-/// Reads the text variant of the format (VTK File Formats, "Simple Legacy Formats") up to version 5.1. After four lines
-/// of header it is a stream of words.
+/// Reads the format (VTK File Formats, "Simple Legacy Formats") up to version 5.1. After four lines of header it is a
+/// stream of words; in the binary variant, numbers and texts of arrays are bytes, the most significant first.
 class LegacyVtkReader {
  public:
-  LegacyVtkReader(std::string_view content, const std::string& source, const std::string& radius_array)
-      : lines_(content), source_(source), radius_array_(radius_array) {}
+  LegacyVtkReader(std::string_view content, const std::string& source, const CenterlineReadOptions& options)
+      : lines_(content), source_(source), options_(options) {}
 
   RawCenterline run() {
     read_header();
     for (std::string keyword; next_word(keyword);) read_block(keyword);
-    set_radii();
-    RawCenterline raw = to_raw_centerline(data_, source_);
+    if (data_.points.empty()) fail("there is no point in it");
+    RawCenterline raw = to_raw_centerline(data_, source_, {point_arrays_, cell_arrays_}, options_);
     raw.unit = unit_;
     raw.space = space_;
     return raw;
@@ -41,11 +43,9 @@ class LegacyVtkReader {
       fail("this is no legacy VTK file: it does not begin with \"# vtk DataFile Version\"");
     }
     read_tags(header_line("the title"), unit_, space_);  // 3D Slicer puts SPACE=... there
-    const std::string format = lower(header_line("the word ASCII"));
-    if (format == "binary") {
-      throw Unsupported(source_ + ": binary legacy VTK is not supported; save it as .vtp, or as .vtk in text (ASCII)");
-    }
-    if (format != "ascii") fail("the word ASCII should be here, not " + cite(format));
+    const std::string format = lower(header_line("the word ASCII or BINARY"));
+    binary_ = format == "binary";
+    if (!binary_ && format != "ascii") fail("the word ASCII or BINARY should be here, not " + cite(format));
     if (const std::string keyword = lower(word()); keyword != "dataset")
       fail(cite(keyword) + " stands where DATASET should");
     const std::string kind(word());
@@ -78,12 +78,65 @@ class LegacyVtkReader {
 
   bool next_is(std::string_view keyword) { return skip_to_word() && lower(fields_[field_]) == keyword; }
 
+  /// The same where the bytes of an array may follow at once.
+  bool next_is_or_bytes(std::string_view keyword) {
+    if (!binary_ || field_ != fields_.size()) return next_is(keyword);
+    return lower(lines_.rest().substr(0, keyword.size())) == keyword;
+  }
+
   double number() {
     const std::string_view text = word();
     const auto value = parse_double(text);
     if (!value) fail(cite(text) + " is no number");
     return *value;
   }
+
+  /// The numbers of an array, behind the line that announces them.
+  std::vector<double> numbers(std::size_t count, const std::string& type) {
+    std::vector<double> values;
+    if (!binary_) {
+      for (std::size_t i = 0; i < count; ++i) values.push_back(number());
+      return values;
+    }
+    if (type == "bit") {  // eight in a byte; nothing that is read is of this type
+      bytes((count + 7) / 8);
+      return values;
+    }
+    const NumberType kind = number_type(type);
+    const std::string_view stored = bytes(count * size_of(kind));
+    values.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) values.push_back(number_at(&stored[i * size_of(kind)], kind, true));
+    return values;
+  }
+
+  std::string_view bytes(std::size_t count) {
+    if (field_ != fields_.size()) fail(cite(fields_[field_]) + " stands where the line should end");
+    if (count > lines_.rest().size()) fail("the file ends too early; it is cut off, get the whole file");
+    return lines_.take(count);
+  }
+
+  NumberType number_type(const std::string& name) const {
+    static const std::map<std::string, NumberType> kTypes = {{"unsigned_char", NumberType::uint8},
+                                                             {"char", NumberType::int8},
+                                                             {"signed_char", NumberType::int8},
+                                                             {"unsigned_short", NumberType::uint16},
+                                                             {"short", NumberType::int16},
+                                                             {"unsigned_int", NumberType::uint32},
+                                                             {"int", NumberType::int32},
+                                                             {"vtkidtype", NumberType::int32},
+                                                             {"unsigned_long", NumberType::uint64},
+                                                             {"long", NumberType::int64},
+                                                             {"vtktypeint64", NumberType::int64},
+                                                             {"vtktypeuint64", NumberType::uint64},
+                                                             {"float", NumberType::float32},
+                                                             {"double", NumberType::float64}};
+    const auto found = kTypes.find(name);
+    if (found == kTypes.end()) fail("the type " + cite(name) + " is not known");
+    return found->second;
+  }
+
+  /// The word that names the type of numbers.
+  std::string type_word() { return lower(word()); }
 
   std::int64_t integer() {
     const std::string_view text = word();
@@ -92,11 +145,11 @@ class LegacyVtkReader {
     return *value;
   }
 
-  /// How many of something that takes at least a character and a blank each are to come.
+  /// How many of something that takes at least a character and a blank each, or a bit, are to come.
   std::size_t count(std::size_t numbers_each = 1) {
     const std::int64_t value = integer();
     if (value < 0) fail("the count " + std::to_string(value) + " is negative");
-    const std::size_t most = lines_.rest().size() / 2 + 1;
+    const std::size_t most = binary_ ? lines_.rest().size() * 8 + 1 : lines_.rest().size() / 2 + fields_.size() + 1;
     if (static_cast<std::size_t>(value) > most || static_cast<std::size_t>(value) * numbers_each > most) {
       fail("the count " + std::to_string(value) + " is more than the file can hold");
     }
@@ -118,63 +171,81 @@ class LegacyVtkReader {
   void read_points() {
     if (!data_.points.empty()) fail("the points were there before");
     const std::size_t size = count(3);
-    word();  // their type
-    for (std::size_t i = 0; i < size; ++i) {
-      const double x = number(), y = number();
-      data_.points.push_back({{x, y, number()}, 0});
-    }
+    const std::vector<double> x = numbers(3 * size, type_word());
+    for (std::size_t i = 0; i + 2 < x.size(); i += 3) data_.points.push_back({{x[i], x[i + 1], x[i + 2]}, 0});
   }
 
   void read_cells(std::vector<std::vector<Index>>& cells) {
     if (!cells.empty()) fail("cells of this kind were there before");
     const std::size_t rows = count(), size = count();
-    next_is("offsets") ? read_offset_cells(cells, rows, size) : read_counted_cells(cells, rows, size);
+    next_is_or_bytes("offsets") ? read_offset_cells(cells, rows, size) : read_counted_cells(cells, rows, size);
   }
 
   /// Up to version 4: every cell is its number of points and the points; `size` counts all these numbers.
   void read_counted_cells(std::vector<std::vector<Index>>& cells, std::size_t rows, std::size_t size) {
+    if (binary_) return read_counted_cells(cells, rows, numbers(size, "int"));
     std::size_t read = 0;
     for (std::size_t c = 0; c < rows; ++c) {
       const std::size_t points = count();
       read += 1 + points;
       if (read > size) break;
       auto& cell = cells.emplace_back();
-      for (std::size_t i = 0; i < points; ++i) cell.push_back(point_index());
+      for (std::size_t i = 0; i < points; ++i) cell.push_back(point_index(number()));
     }
-    if (read != size) fail("the cells do not have the " + std::to_string(size) + " numbers that are announced");
+    if (read != size) fail_of_cells(size);
+  }
+
+  void read_counted_cells(std::vector<std::vector<Index>>& cells, std::size_t rows, const std::vector<double>& all) {
+    std::size_t read = 0;
+    for (std::size_t c = 0; c < rows && read < all.size(); ++c) {
+      const double points = all[read++];
+      if (!(points >= 0 && points <= static_cast<double>(all.size() - read))) fail_of_cells(all.size());
+      auto& cell = cells.emplace_back();
+      for (double i = 0; i < points; ++i) cell.push_back(point_index(all[read++]));
+    }
+    if (cells.size() != rows || read != all.size()) fail_of_cells(all.size());
+  }
+
+  [[noreturn]] void fail_of_cells(std::size_t size) const {
+    fail("the cells do not have the " + std::to_string(size) + " numbers that are announced");
   }
 
   /// From version 5: where every cell begins, and the end, in a list of points.
   void read_offset_cells(std::vector<std::vector<Index>>& cells, std::size_t rows, std::size_t size) {
-    read_array_head("offsets");
     std::vector<std::size_t> offsets;
-    for (std::size_t i = 0; i < rows; ++i) {
-      const std::int64_t offset = integer();
+    for (const double offset : numbers(rows, array_head("offsets"))) {
       const std::size_t least = offsets.empty() ? 0 : offsets.back();
-      if (offset < static_cast<std::int64_t>(least) || offset > static_cast<std::int64_t>(size)) {
-        fail("the offset " + std::to_string(offset) + " is out of range; it must be from " + std::to_string(least) +
-             " to " + std::to_string(size));
+      if (!(offset >= static_cast<double>(least) && offset <= static_cast<double>(size)) ||
+          offset != std::floor(offset)) {
+        fail("the offset " + exact(offset) + " is out of range; it must be from " + std::to_string(least) + " to " +
+             std::to_string(size));
       }
       offsets.push_back(static_cast<std::size_t>(offset));
     }
-    read_array_head("connectivity");
     std::vector<Index> points;
-    for (std::size_t i = 0; i < size; ++i) points.push_back(point_index());
+    for (const double id : numbers(size, array_head("connectivity"))) points.push_back(point_index(id));
+    if (points.size() != size) fail_of_cells(size);
     for (std::size_t c = 0; c + 1 < offsets.size(); ++c) {
       cells.emplace_back(points.data() + offsets[c], points.data() + offsets[c + 1]);
     }
   }
 
-  void read_array_head(std::string_view name) {
+  /// Reads the head of an array of that name; its type.
+  std::string array_head(std::string_view name) {
     if (!next_is(name)) fail("the word " + std::string(name) + " should follow");
     word();
-    word();  // the type
+    return type_word();
   }
 
-  Index point_index() {
-    const std::int64_t index = integer();
-    if (index < 0 || index >= static_cast<std::int64_t>(data_.points.size())) {
-      fail("there is no point " + std::to_string(index) + "; there are " + std::to_string(data_.points.size()) +
+  static std::string exact(double value) {
+    std::string text;
+    append(text, value);
+    return text;
+  }
+
+  Index point_index(double index) const {
+    if (!(index >= 0 && index < static_cast<double>(data_.points.size())) || index != std::floor(index)) {
+      fail("there is no point " + exact(index) + "; there are " + std::to_string(data_.points.size()) +
            " before this line, the first is 0");
     }
     return static_cast<Index>(index);
@@ -187,7 +258,7 @@ class LegacyVtkReader {
 
   void begin_attributes(bool of_points) {
     tuples_ = count();
-    of_points_ = of_points;
+    of_ = of_points ? Of::points : Of::cells;
     if (of_points && tuples_ != data_.points.size()) {
       fail("there must be data for every one of the " + std::to_string(data_.points.size()) + " points");
     }
@@ -199,11 +270,11 @@ class LegacyVtkReader {
     for (std::size_t a = 0; a < arrays; ++a) {
       const std::string name = field_array_name();
       const std::size_t components = count(), tuples = count(components);
-      const std::string type = lower(word());
+      const std::string type = type_word();
       if (type == "string" || type == "utf8_string" || type == "variant") {
         read_texts(name, components * tuples);
       } else {
-        read_numbers(name, components, tuples);
+        read_numbers(name, components, tuples, type);
       }
     }
   }
@@ -217,6 +288,7 @@ class LegacyVtkReader {
   }
 
   void read_texts(const std::string& name, std::size_t lines) {
+    if (binary_) return read_stored_texts(name, lines);
     std::string_view line;
     for (std::size_t i = 0; i < lines; ++i) {
       if (!lines_.next(line)) fail("the file ends too early; it is cut off, get the whole file");
@@ -226,27 +298,46 @@ class LegacyVtkReader {
     field_ = 0;
   }
 
+  /// Binary: the length of every text stands before it, in 1, 2, 4 or 8 bytes; the first two bits tell how many.
+  void read_stored_texts(const std::string& name, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (lines_.rest().empty()) bytes(1);  // fails
+      const unsigned kind = static_cast<unsigned char>(lines_.rest()[0]) >> 6u;
+      std::uint64_t length = 0;
+      for (const char c : bytes(std::size_t{8} >> kind)) length = length << 8u | static_cast<unsigned char>(c);
+      length &= (std::uint64_t{1} << ((64u >> kind) - 2)) - 1;
+      if (length > lines_.rest().size()) fail("the file ends too early; it is cut off, get the whole file");
+      const std::string_view text = bytes(static_cast<std::size_t>(length));
+      if (i == 0) read_tags(name + "=" + std::string(text), unit_, space_);
+    }
+  }
+
   void read_scalars() {
     const std::string name(word());
-    word();  // the type
-    const std::size_t components = next_is("lookup_table") ? 1 : component_count();
-    if (next_is("lookup_table")) {
+    const std::string type = type_word();
+    const bool is_one = binary_ ? field_ == fields_.size() : next_is("lookup_table");
+    const std::size_t components = is_one ? 1 : component_count();
+    if (next_is_or_bytes("lookup_table")) {
       word();
       word();  // the name of the table
     }
-    read_numbers(name, components, tuples_);
+    read_numbers(name, components, tuples_, type);
   }
 
-  void read_numbers(const std::string& name, std::size_t components, std::size_t tuples) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < components * tuples; ++i) values.push_back(number());
-    if (!of_points_) return;
-    const bool is_scalar = components == 1 && tuples == data_.points.size();
-    point_arrays_[name] = is_scalar ? std::move(values) : std::vector<double>();
+  void read_numbers(const std::string& name, std::size_t components, std::size_t tuples, const std::string& type) {
+    std::vector<double> values = numbers(components * tuples, type);
+    if (of_ == Of::nothing) return;
+    auto& arrays = of_ == Of::points ? point_arrays_ : cell_arrays_;
+    const bool is_scalar = components == 1 && tuples == tuples_ && values.size() == tuples;
+    arrays[name] = is_scalar ? std::move(values) : std::vector<double>();
   }
 
-  void skip_numbers(std::size_t components, std::size_t tuples) {
-    for (std::size_t i = 0; i < components * tuples; ++i) number();
+  void skip_numbers(std::size_t components, std::size_t tuples, const std::string& type) {
+    if (!binary_) {
+      for (std::size_t i = 0; i < components * tuples; ++i) number();
+    } else {
+      bytes(type == "bit" ? (components * tuples + 7) / 8 : components * tuples * size_of(number_type(type)));
+    }
   }
 
   void skip_attribute(const std::string& keyword) {
@@ -255,19 +346,17 @@ class LegacyVtkReader {
         {"global_ids", 1}, {"pedigree_ids", 1}, {"edge_flags", 1}};
     if (const auto known = kComponents.find(keyword); known != kComponents.end()) {
       word();  // its name
-      word();  // its type
-      skip_numbers(known->second, tuples_);
+      skip_numbers(known->second, tuples_, type_word());
     } else if (keyword == "texture_coordinates") {
       word();
       const std::size_t components = component_count();
-      word();
-      skip_numbers(components, tuples_);
+      skip_numbers(components, tuples_, type_word());
     } else if (keyword == "color_scalars") {
       word();
-      skip_numbers(component_count(), tuples_);
+      skip_numbers(component_count(), tuples_, "unsigned_char");
     } else if (keyword == "lookup_table") {
       word();
-      skip_numbers(4, count(4));
+      skip_numbers(4, count(4), "unsigned_char");
     } else {
       fail(cite(keyword) + " is no keyword of a legacy VTK file, or more numbers are there than announced");
     }
@@ -285,40 +374,26 @@ class LegacyVtkReader {
     field_ = 0;
   }
 
-  void set_radii() {
-    if (data_.points.empty()) fail("there is no point in it");
-    for (const std::string& name : radius_names(radius_array_)) {
-      const auto found = point_arrays_.find(name);
-      if (found == point_arrays_.end()) continue;
-      if (found->second.empty()) {
-        throw InvalidInput(source_ + ": the point array " + cite(name) + " must hold one number for every point");
-      }
-      for (std::size_t i = 0; i < data_.points.size(); ++i) data_.points[i].radius = found->second[i];
-      return;
-    }
-    std::vector<std::string> present;
-    for (const auto& [name, values] : point_arrays_) present.push_back(name);
-    fail_without_radius(source_, radius_array_, present);
-  }
-
   LineReader lines_;
   const std::string& source_;
-  const std::string& radius_array_;
+  const CenterlineReadOptions& options_;
+  bool binary_ = false;
   std::vector<std::string_view> fields_;  ///< of the line at hand
   std::size_t field_ = 0;                 ///< the next of them
   LengthUnit unit_ = LengthUnit::unknown;
   Space space_ = Space::unknown;
   PolyLines data_;
-  bool of_points_ = false;                                   ///< whether attributes at hand belong to points
-  std::size_t tuples_ = 0;                                   ///< how many elements they belong to
-  std::map<std::string, std::vector<double>> point_arrays_;  ///< empty when not one number per point
+  enum class Of { nothing, points, cells };
+  Of of_ = Of::nothing;     ///< what the attributes at hand belong to
+  std::size_t tuples_ = 0;  ///< how many of that there are
+  ScalarArrays point_arrays_, cell_arrays_;
 };
 
 }  // namespace
 
 RawCenterline parse_centerline_vtk(std::string_view content, const std::string& source,
-                                   const std::string& radius_array) {
-  return LegacyVtkReader(content, source, radius_array).run();
+                                   const CenterlineReadOptions& options) {
+  return LegacyVtkReader(content, source, options).run();
 }
 
 }  // namespace vmesh::io

@@ -184,16 +184,12 @@ class VtpReader {
   VtpData data_;
 };
 
-const VtpArray& find_radius(const VtpData& data, const std::string& wanted, const std::string& source) {
-  for (const std::string& name : radius_names(wanted)) {
-    const VtpArray* found = data.point_arrays.find(name);
-    if (!found) continue;
-    if (found->values.size() == data.points.size()) return *found;
-    throw InvalidInput(source + ": the point array " + cite(name) + " must hold one number for every point");
-  }
-  std::vector<std::string> present;
-  for (const VtpArray& array : data.point_arrays.arrays) present.push_back(array.name);
-  fail_without_radius(source, wanted, present);
+/// Arrays with another number of elements are empty.
+ScalarArrays scalars(VtpArrayList& list, std::size_t count) {
+  ScalarArrays arrays;
+  for (VtpArray& array : list.arrays)
+    arrays[array.name] = array.values.size() == count ? std::move(array.values) : std::vector<double>();
+  return arrays;
 }
 
 /// Of arrays of one number per element, those of the elements `kept`.
@@ -234,16 +230,16 @@ std::vector<std::size_t> add_faces(const VtpData& data, FaceCollector& faces) {
 }  // namespace
 
 RawCenterline parse_centerline_vtp(std::string_view content, const std::string& source,
-                                   const std::string& radius_array) {
-  const VtpData data = VtpReader(content, source).run();
-  const VtpArray& radius = find_radius(data, radius_array, source);
+                                   const CenterlineReadOptions& options) {
+  VtpData data = VtpReader(content, source).run();
   PolyLines poly_lines;
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
-    poly_lines.points.push_back({data.points[i], radius.values[i]});
-  }
+  for (const Vec3& point : data.points) poly_lines.points.push_back({point, 0});
   poly_lines.lines = data.lines.lists();
   poly_lines.vertices = data.vertices.lists();
-  RawCenterline raw = to_raw_centerline(poly_lines, source);
+  const std::size_t cells = data.cell_count();
+  const ScalarArrays of_points = scalars(data.point_arrays, data.points.size());
+  const ScalarArrays of_cells = scalars(data.cell_arrays, cells);
+  RawCenterline raw = to_raw_centerline(std::move(poly_lines), source, {of_points, of_cells}, options);
   raw.unit = data.unit;
   raw.space = data.space;
   return raw;

@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include "bytes.h"
+#include "number_types.h"
 #include "text.h"
 
 namespace vmesh::io {
@@ -14,45 +15,12 @@ namespace {
 constexpr std::string_view kBlank = " \t\r\n\v\f";
 constexpr std::uint64_t kBestRatio = 1032;  // of zlib's format: what a byte can unpack to
 
-enum class VtkType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
-
-std::optional<VtkType> type_of(std::string_view name) {
+std::optional<NumberType> type_of(std::string_view name) {
   static constexpr std::array<std::string_view, 10> kNames = {"Int8",   "UInt8", "Int16",  "UInt16",  "Int32",
                                                               "UInt32", "Int64", "UInt64", "Float32", "Float64"};
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) return std::nullopt;
-  return static_cast<VtkType>(found - kNames.begin());
-}
-
-std::size_t size_of(VtkType type) {
-  constexpr std::array<std::size_t, 10> kSizes = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
-}
-
-double number_at(const char* bytes, VtkType type, bool big) {
-  switch (type) {
-    case VtkType::int8:
-      return load<std::int8_t>(bytes);
-    case VtkType::uint8:
-      return load<std::uint8_t>(bytes);
-    case VtkType::int16:
-      return load<std::int16_t>(bytes, big);
-    case VtkType::uint16:
-      return load<std::uint16_t>(bytes, big);
-    case VtkType::int32:
-      return load<std::int32_t>(bytes, big);
-    case VtkType::uint32:
-      return load<std::uint32_t>(bytes, big);
-    case VtkType::int64:
-      return static_cast<double>(load<std::int64_t>(bytes, big));
-    case VtkType::uint64:
-      return static_cast<double>(load<std::uint64_t>(bytes, big));
-    case VtkType::float32:
-      return load<float>(bytes, big);
-    case VtkType::float64:
-      return load<double>(bytes, big);
-  }
-  return 0;
+  return static_cast<NumberType>(found - kNames.begin());
 }
 
 int base64_digit(char c) {

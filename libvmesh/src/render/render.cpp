@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/memory.h"
 
 #include "render/camera.h"
 #include "render/canvas.h"
@@ -176,6 +177,8 @@ class PixelSampler {
 };
 
 Image draw(const TriMesh& mesh, const RenderOptions& options, Coloring coloring, bool with_legend) {
+  constexpr double kBytesPerPixel = 28;
+  require_memory(double(options.width) * options.height * kBytesPerPixel, "a picture of this size", "make it smaller");
   const int reserved = with_legend ? legend_width(coloring.legend, options.width, options.height) : 0;
   const Camera camera(mesh, options, reserved);
   const RayScene scene(mesh);

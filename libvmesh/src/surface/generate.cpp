@@ -8,6 +8,7 @@
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/error_bound.h"
 
@@ -51,6 +52,9 @@ void check_options(const GenerateOptions& o) {
   if (o.threads < 0) throw InvalidInput("threads must be >= 0");
 }
 
+/// Peak memory of a run per vertex that is expected: measured on surfaces of 4,000 to 600,000 vertices.
+constexpr double kBytesPerVertex = 600;
+
 /// The vessel thinnest for its length, in words.
 std::string thinnest_vessel(const Centerline& centerline) {
   Index longest = kNone;
@@ -72,12 +76,15 @@ std::string thinnest_vessel(const Centerline& centerline) {
 
 void check_size(const Centerline& centerline, const GenerateOptions& options) {
   const double expected = expected_vertices(centerline, options.around, options.max_error);
-  if (expected <= options.max_vertices) return;
-  std::ostringstream text;
-  text << "about " << expected << " vertices would be needed, more than the " << options.max_vertices << " allowed; "
-       << thinnest_vessel(centerline) << "ask for fewer vertices around"
-       << (options.max_error.is_set() ? " or a larger error" : "") << ", or allow more in all";
-  throw InvalidInput(text.str());
+  std::ostringstream count, fewer;
+  count << "about " << expected << " vertices";
+  fewer << thinnest_vessel(centerline) << "ask for fewer vertices around"
+        << (options.max_error.is_set() ? " or a larger error" : "");
+  if (expected > options.max_vertices) {
+    throw InvalidInput(count.str() + " would be needed, more than the " + std::to_string(options.max_vertices) +
+                       " allowed; " + fewer.str() + ", or allow more in all");
+  }
+  require_memory(expected * kBytesPerVertex, "a surface of " + count.str(), fewer.str());
 }
 
 using WarningKind = GrowthWarning::Kind;

@@ -48,10 +48,17 @@ struct RawCenterline {
   std::vector<std::uint64_t> segment_numbers;  ///< the same for segments
   std::vector<std::string> warnings;           ///< what the reader left out or assumed
 
+  /// Of a centerline that several files make, what each of them holds, ascending; see merge(). Empty for one file.
+  struct Part {
+    Index first_node, first_segment;
+    std::string source, node_word, segment_word;
+  };
+  std::vector<Part> parts;
+
   /// "tree.swc: line 12": how messages name node `n` or segment `s`.
   std::string name_of_node(Index n) const;
   std::string name_of_segment(Index s) const;
-  /// "line 12": the same without the file.
+  /// "line 12": the same without the file, or "line 12 of tree.swc" where there are several.
   std::string place_of_node(Index n) const;
   std::string place_of_segment(Index s) const;
 };
@@ -60,5 +67,13 @@ struct RawCenterline {
 /// are taken and a line in `warnings` says so; it also says so when an override contradicts the file.
 RawCenterline convert_to_internal(RawCenterline raw, std::optional<LengthUnit> unit_override,
                                   std::optional<Space> space_override, std::vector<std::string>& warnings);
+
+/// Several files, one vessel each, say, as one centerline: side by side, and for clean() to join where ends of branches
+/// come close. Throws InvalidInput when there is none or when they disagree on unit or frame.
+RawCenterline merge(std::vector<RawCenterline> files);
+
+/// A hint when radii (mm) are not those of vessels that a surface is wanted of: half of them below .05 or above 40 mm.
+/// Nothing when they are plausible.
+std::optional<std::string> implausible_radii(const RawCenterline& raw);
 
 }  // namespace vmesh

@@ -13,12 +13,17 @@
 namespace vmesh {
 
 enum class CenterlineFormat {
-  swc,   ///< .swc; rows `id type x y z radius parent`
-  vtp,   ///< .vtp; lines with a radius per point; writing needs a build with VTK
-  json,  ///< .json; schema "vmesh.centerline/1"
-  csv,   ///< .csv; a pair of files, see csv_segments_path()
-  vmv,   ///< .vmv; VessMorphoVis: vertices `id x y z radius`, strands `id vertex vertex ...`; read only
-  vtk,   ///< .vtk; legacy VTK in text: POLYDATA with lines and a radius per point; read only
+  swc,      ///< .swc; rows `id type x y z radius parent`
+  vtp,      ///< .vtp; lines with a radius per point; writing needs a build with VTK
+  json,     ///< .json; schema "vmesh.centerline/1"; read also curves of 3D Slicer, .mrk.json
+  csv,      ///< .csv; a pair of files, see csv_segments_path()
+  vmv,      ///< .vmv; VessMorphoVis: vertices `id x y z radius`, strands `id vertex vertex ...`; read only
+  vtk,      ///< .vtk; legacy VTK, text or binary: POLYDATA with lines and a radius per point or line; read only
+  ctgr,     ///< .ctgr; SimVascular's contours along a path, as wide as their area; read only
+  pth,      ///< .pth; SimVascular's path, without radii; read only
+  gxl,      ///< .gxl, .xml; VascuSynth: nodes in voxels, a radius per edge; read only
+  amira,    ///< .am; Amira's spatial graph, text or binary; read only
+  network,  ///< .dat; Secomb's network.dat: segments with a diameter, in um; read only
 };
 
 /// By the file's extension, upper or lower case. Throws Unsupported, with the extensions that are.
@@ -32,8 +37,13 @@ CenterlineFormat centerline_output_format(const std::filesystem::path& path);
 std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path);
 
 struct CenterlineReadOptions {
-  /// VTP and VTK: name of the point array that holds the radius. Empty: MaximumInscribedSphereRadius, Radius or radius.
+  /// VTP, VTK, Amira: name of the array of points, or of lines, that holds the radius, or the diameter if "diam" is in
+  /// the name. Empty: MaximumInscribedSphereRadius, Radius or radius; of Amira's also thickness.
   std::string radius_array;
+  /// Radius (mm, above 0) of all nodes where the file holds none. Files without one are refused otherwise.
+  std::optional<double> radius;
+  /// GXL: sides of a voxel, in the unit of the radii. Such files are refused without it.
+  std::optional<Vec3> voxel_size;
 };
 
 /// Reads a centerline as it is in the file; see clean() for the way to a Centerline. It takes at most 128 times
@@ -41,6 +51,10 @@ struct CenterlineReadOptions {
 /// Throws ReadError (missing, a directory, unreadable), InvalidInput (content; names the line or element), Unsupported
 /// (format, or VTP packed by other than zlib).
 RawCenterline read_centerline(const std::filesystem::path& path, const CenterlineReadOptions& options = {});
+
+/// Several files that make one centerline, a vessel each, say: see merge(). One file is read as it is.
+RawCenterline read_centerline(const std::vector<std::filesystem::path>& paths,
+                              const CenterlineReadOptions& options = {});
 
 /// The same from memory; `source` names it in messages. A CSV pair has its second part in `csv_segments`.
 RawCenterline parse_centerline(std::string_view content, CenterlineFormat format, const std::string& source,
@@ -50,7 +64,12 @@ RawCenterline parse_centerline(std::string_view content, CenterlineFormat format
 RawCenterline read_centerline(std::istream& in, CenterlineFormat format, const std::string& source,
                               const CenterlineReadOptions& options = {});
 
-/// From file to valid centerline in one call: read_centerline, convert_to_internal, clean.
+/// convert_to_internal() of what was read; nodes without a radius get the one in `options` if it has one. Warns where
+/// radii are implausible for the unit that was assumed or read.
+RawCenterline convert_read(RawCenterline raw, const CenterlineReadOptions& options, std::optional<LengthUnit> unit,
+                           std::optional<Space> space, std::vector<std::string>& warnings);
+
+/// From file to valid centerline in one call: read_centerline, convert_read, clean.
 struct CenterlineLoadOptions {
   CenterlineReadOptions read;
   std::optional<LengthUnit> unit;  ///< wins over the file's
@@ -62,6 +81,8 @@ struct LoadedCenterline {
   std::vector<std::string> warnings;  ///< of reader and conversion; what cleaning did is in cleaned.report
 };
 LoadedCenterline load_centerline(const std::filesystem::path& path, const CenterlineLoadOptions& options = {});
+LoadedCenterline load_centerline(const std::vector<std::filesystem::path>& paths,
+                                 const CenterlineLoadOptions& options = {});
 
 struct CenterlineMetadata {
   std::string generator;     ///< program and version

@@ -223,8 +223,8 @@ int least_around(const Centerline& centerline, const ErrorLimit& limit);
 void refer_to_original(const SimplifiedCenterline& simplified, GenerateResult& result);
 
 /// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.
-/// Throws InvalidInput for options out of range and for a centerline too long for its radii, Cancelled when `progress`
-/// asks to stop.
+/// Throws InvalidInput for options out of range and for a centerline too long for its radii, Unsupported when the
+/// surface would need more memory than is free (see available_memory()), Cancelled when `progress` asks to stop.
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options = {},
                                 const Progress& progress = {});
 

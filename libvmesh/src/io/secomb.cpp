@@ -1,0 +1,138 @@
+// Networks of the Secomb group's programs (network.dat): blocks of rows behind their counts.
+#include <unordered_map>
+
+#include "edge_radii.h"
+#include "formats.h"
+#include "text.h"
+
+namespace vmesh::io {
+namespace {
+
+class NetworkReader {
+ public:
+  NetworkReader(std::string_view content, const std::string& source) : lines_(content) {
+    raw_.source = source;
+    raw_.node_word = raw_.segment_word = "line";
+    raw_.unit = LengthUnit::um;
+  }
+
+  RawCenterline run() {
+    next_line("the title");
+    read_numbers(3, "the sides of the box");
+    read_numbers(3, "the numbers of grid points");
+    read_numbers(1, "the outer bound");
+    read_numbers(1, "the longest segment");
+    read_numbers(1, "the most segments at a node");
+    read_segments();
+    read_nodes();
+    connect();
+    return std::move(raw_);
+  }
+
+ private:
+  struct Segment {
+    std::int64_t from, to;
+    double diameter;
+    std::uint64_t line;
+  };
+
+  [[noreturn]] void fail(std::uint64_t line, const std::string& what) const {
+    throw InvalidInput(raw_.source + ": line " + std::to_string(line) + ": " + what);
+  }
+  [[noreturn]] void fail(const std::string& what) const { fail(lines_.number(), what); }
+
+  /// The next line that is not blank, split.
+  void next_line(const std::string& wanted) {
+    std::string_view line;
+    do {
+      if (!lines_.next(line))
+        fail("the file ends where " + wanted + " should be; this is no network.dat, or it is cut off");
+      split_blank(line, fields_);
+    } while (fields_.empty());
+  }
+
+  /// A line that begins with `count` numbers, and what they mean behind them.
+  void read_numbers(std::size_t count, const std::string& wanted) {
+    next_line(wanted);
+    for (std::size_t i = 0; i < count; ++i) real(i, wanted);
+  }
+
+  std::size_t read_count(const std::string& wanted) {
+    next_line(wanted);
+    const std::int64_t value = integer(0, wanted);
+    if (value < 0) fail(wanted + " is negative");
+    return static_cast<std::size_t>(value);
+  }
+
+  void read_segments() {
+    const std::size_t count = read_count("the number of segments");
+    next_line("the head of the segments");
+    for (std::size_t i = 0; i < count; ++i) {
+      next_line("a segment");
+      constexpr std::size_t kColumns = 5;
+      if (fields_.size() < kColumns) fail("a segment is: name, type, from, to, diameter, flow, hematocrit");
+      segments_.push_back({integer(2, "the node"), integer(3, "the node"), real(4, "the diameter"), lines_.number()});
+    }
+  }
+
+  void read_nodes() {
+    const std::size_t count = read_count("the number of nodes");
+    next_line("the head of the nodes");
+    for (std::size_t i = 0; i < count; ++i) {
+      next_line("a node");
+      constexpr std::size_t kColumns = 4;
+      if (fields_.size() < kColumns) fail("a node is: name, x, y, z");
+      const std::int64_t name = integer(0, "the name");
+      if (!node_of_.try_emplace(name, static_cast<Index>(raw_.nodes.size())).second)
+        fail("the node " + std::to_string(name) + " was there before");
+      raw_.nodes.push_back({{real(1, "x"), real(2, "y"), real(3, "z")}, 0});
+      raw_.node_numbers.push_back(lines_.number());
+    }
+  }
+
+  void connect() {
+    std::vector<double> radii;
+    for (const Segment& segment : segments_) {
+      const Index from = node(segment.from, segment.line);
+      raw_.segments.push_back({from, node(segment.to, segment.line)});
+      raw_.segment_numbers.push_back(segment.line);
+      radii.push_back(segment.diameter / 2);
+    }
+    if (raw_.segments.empty()) fail("there is no segment in it");
+    set_radii_of_segments(raw_, radii);
+  }
+
+  Index node(std::int64_t name, std::uint64_t line) const {
+    const auto found = node_of_.find(name);
+    if (found == node_of_.end()) fail(line, "there is no node " + std::to_string(name));
+    return found->second;
+  }
+
+  double real(std::size_t column, const std::string& what) const {
+    const std::string_view field = column < fields_.size() ? fields_[column] : std::string_view();
+    const auto value = parse_double(field);
+    if (!value) fail(cite(field) + " is no number; " + what + " should be here");
+    return *value;
+  }
+
+  std::int64_t integer(std::size_t column, const std::string& what) const {
+    const std::string_view field = column < fields_.size() ? fields_[column] : std::string_view();
+    const auto value = parse_integer(field);
+    if (!value) fail(cite(field) + " is no whole number; " + what + " should be here");
+    return *value;
+  }
+
+  LineReader lines_;
+  RawCenterline raw_;
+  std::vector<std::string_view> fields_;
+  std::vector<Segment> segments_;
+  std::unordered_map<std::int64_t, Index> node_of_;
+};
+
+}  // namespace
+
+RawCenterline parse_network(std::string_view content, const std::string& source) {
+  return NetworkReader(content, source).run();
+}
+
+}  // namespace vmesh::io
