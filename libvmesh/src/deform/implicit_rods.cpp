@@ -104,7 +104,7 @@ void ImplicitRods::choose_visited() {
 
 void ImplicitRods::visit(Index place) {
   visited_[place] = 1;
-  const Index batch = place / kLanes;
+  const auto batch = static_cast<Index>(place / kLanes);
   if (listed_[batch]) return;
   listed_[batch] = 1;
   visited_batches_.push_back(batch);

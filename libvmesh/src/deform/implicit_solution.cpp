@@ -101,7 +101,7 @@ void ImplicitRods::wake_children(Index batch) {
     for_children(place, [this](Index child) {
       if (visited_[child]) return;
       visited_[child] = fresh_[child] = 1;
-      const Index other = child / kLanes;
+      const auto other = static_cast<Index>(child / kLanes);
       if (listed_[other]) return;
       listed_[other] = 1;
       grown_batches_.push_back(other);
