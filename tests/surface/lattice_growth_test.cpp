@@ -99,10 +99,16 @@ TEST(LatticeGrowth, EntersAVesselThinnerByAnyFactor) {
   EXPECT_LT(surface.vertices.size(), 20'000u);  // an even lattice that fine would have a billion around the ball
 }
 
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kTangles = 10;  // three seconds each
+#else
+constexpr int kTangles = 40;
+#endif
+
 // Whatever the volume, the surface is a sphere.
 TEST(LatticeGrowth, MakesASphereOfAnyTangle) {
   Draw draw(5);
-  for (int trial = 0; trial < 40; ++trial) {
+  for (int trial = 0; trial < kTangles; ++trial) {
     std::vector<CenterlineNode> nodes = {{Vec3::Zero(), draw.uniform(0.3, 1)}};
     std::vector<CenterlineSegment> segments;
     for (Index i = 1; i < 12; ++i) {
