@@ -188,6 +188,18 @@ TEST(Topology, DoesNotDependOnTheOrderOfFacesAndVertices) {
   }
 }
 
+TEST(Topology, BoundaryEdgesRunAsTheirFacesDo) {
+  using Edges = std::vector<std::array<Index, 2>>;
+  EXPECT_TRUE(boundary_edges(cube()).empty());
+  const TriMesh strip{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{2, 0, 1}, {2, 1, 3}}};
+  EXPECT_EQ(boundary_edges(strip), (Edges{{0, 1}, {2, 0}, {1, 3}, {3, 2}}));
+  TriMesh crowded = strip;
+  crowded.vertices.emplace_back(0, 0, 1);
+  crowded.faces.push_back({1, 2, 4});  // the edge 1-2 has three faces, and is none of the boundary
+  EXPECT_EQ(boundary_edges(crowded), (Edges{{0, 1}, {2, 0}, {1, 3}, {4, 1}, {3, 2}, {2, 4}}));
+  EXPECT_THROW(boundary_edges({strip.vertices, {{0, 1, 9}}}), InvalidInput);
+}
+
 TEST(Topology, CountsLoopsOfTheBoundaryAndCrowdedEdges) {
   EXPECT_EQ(measure_topology(cube()).boundary_loops, 0u);
   TriMesh tube = cube();

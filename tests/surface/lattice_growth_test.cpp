@@ -99,16 +99,15 @@ TEST(LatticeGrowth, EntersAVesselThinnerByAnyFactor) {
   EXPECT_LT(surface.vertices.size(), 20'000u);  // an even lattice that fine would have a billion around the ball
 }
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kTangles = 10;  // three seconds each
-#else
-constexpr int kTangles = 40;
-#endif
+/// In parts, which run at the same time.
+class Tangles : public ::testing::TestWithParam<std::uint32_t> {};
+
+INSTANTIATE_TEST_SUITE_P(LatticeGrowth, Tangles, ::testing::Range(5u, 9u));
 
 // Whatever the volume, the surface is a sphere.
-TEST(LatticeGrowth, MakesASphereOfAnyTangle) {
-  Draw draw(5);
-  for (int trial = 0; trial < kTangles; ++trial) {
+TEST_P(Tangles, BecomeSpheres) {
+  Draw draw(GetParam());
+  for (int trial = 0; trial < 10; ++trial) {
     std::vector<CenterlineNode> nodes = {{Vec3::Zero(), draw.uniform(0.3, 1)}};
     std::vector<CenterlineSegment> segments;
     for (Index i = 1; i < 12; ++i) {

@@ -1,4 +1,5 @@
-// What guided growth guarantees, on graphs made to break it. VMESH_RANDOM_GRAPHS of them.
+// What guided growth guarantees, on graphs made to break it. VMESH_RANDOM_GRAPHS of them, in eight tests that run at
+// the same time.
 #include "random_graphs.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@ namespace vmesh {
 namespace {
 
 constexpr std::uint32_t kCount = VMESH_RANDOM_GRAPHS;
+constexpr std::uint32_t kParts = 8;
 constexpr double kPerNode = 40;  // vertices: a junction of one node with its docked ends, or a cap
 
 // Whatever touches: the topology is right, and it is sound or says what it is not.
@@ -31,8 +33,12 @@ void expect_guarantees(const Centerline& centerline) {
             8 * centerline.length_in_radii() + kPerNode * static_cast<double>(centerline.nodes().size()));
 }
 
-TEST(RandomGraphs, BecomeSurfacesOfTheirTopology) {
-  for (std::uint32_t seed = 0; seed < kCount; ++seed) {
+class RandomGraphs : public ::testing::TestWithParam<std::uint32_t> {};
+
+INSTANTIATE_TEST_SUITE_P(Part, RandomGraphs, ::testing::Range(0u, kParts));
+
+TEST_P(RandomGraphs, BecomeSurfacesOfTheirTopology) {
+  for (std::uint32_t seed = GetParam(); seed < kCount; seed += kParts) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::optional<Centerline> centerline;
     try {

@@ -86,7 +86,8 @@ void add_fit(CLI::App& app, FitArguments& arguments) {
   verb.add_option("--centerline", arguments.centerline.path, "that the surface was grown around")->required();
   add_reading(verb, arguments.centerline, "centerline-");
   add_fitting(verb, arguments.fitting);
-  verb.add_option("--max-vertices", arguments.fitting.options.max_vertices, "0: a twentieth more than the surface has")
+  verb.add_option("--max-vertices", arguments.fitting.options.max_vertices,
+                  "0: a twentieth more than the surface has, or as many as --fit-error takes")
       ->capture_default_str();
   verb.add_option("--threads", arguments.fitting.options.threads,
                   "to work on; 0: as many as there are; the result is the same")

@@ -54,11 +54,10 @@ void convert_to_internal(LoadedSurface& surface, const InputArguments& input) {
   surface.space = Space::lps;
 }
 
-bool has_centerline_extension(const std::filesystem::path& path) {
-  const std::string extension = extension_of(path);
-  for (const char* known : {".swc", ".json", ".csv", ".vmv", ".ctgr", ".pth", ".gxl", ".am", ".dat"})
-    if (extension == known) return true;
-  return false;
+/// Not of a kind that may hold a surface as well.
+bool holds_only_a_centerline(const std::filesystem::path& path) {
+  const auto format = find_centerline_format(path);
+  return format && format != CenterlineFormat::vtp && format != CenterlineFormat::vtk;
 }
 
 /// "wall.stl: this is a surface; ...": what to do with a file of another kind, and the command for it.
@@ -120,7 +119,7 @@ LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
   if (!input.more.empty())
     throw UsageError(input.more.front().string() + ": several files make a centerline, no surface");
   if (is_image_path(input.path)) throw Unsupported(make_surface_first(input.path, "an image", "reference"));
-  if (has_centerline_extension(input.path))
+  if (holds_only_a_centerline(input.path))
     throw Unsupported(make_surface_first(input.path, "a centerline", "generate"));
   try {
     LoadedSurface surface = read_surface(input.path);

@@ -4,38 +4,13 @@
 #include <map>
 
 #include "vmesh/core/disjoint_sets.h"
+#include "vmesh/mesh/topology.h"
 
 namespace vmesh::tool {
-namespace {
-
-struct Edge {
-  Index from, to;
-};
-
-/// Edges with one face, as it runs along them.
-std::vector<Edge> boundary_edges(const TriMesh& mesh) {
-  std::vector<Edge> edges;
-  for (const Triangle& face : mesh.faces) {
-    for (std::size_t i = 0; i < 3; ++i) edges.push_back({face[i], face[(i + 1) % 3]});
-  }
-  const auto key = [](const Edge& edge) { return std::minmax(edge.from, edge.to); };
-  std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
-  std::vector<Edge> alone;
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t end = i + 1;
-    while (end < edges.size() && key(edges[end]) == key(edges[i])) ++end;
-    if (end == i + 1) alone.push_back(edges[i]);
-    i = end;
-  }
-  return alone;
-}
-
-}  // namespace
-
 std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh) {
-  const std::vector<Edge> edges = boundary_edges(mesh);
+  const auto edges = boundary_edges(mesh);
   DisjointSets joined(mesh.vertices.size());
-  for (const Edge& edge : edges) joined.join(edge.from, edge.to);
+  for (const auto& [from, to] : edges) joined.join(from, to);
   struct Sum {
     BoundaryLoop loop;
     Vec3 origin = Vec3::Zero(), area = Vec3::Zero();

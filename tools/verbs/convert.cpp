@@ -14,11 +14,9 @@ using Kind = PlannedOutput::Kind;
 
 /// What a file of that name holds; nothing for .vtp, which may hold both.
 std::optional<Kind> kind_of(const std::filesystem::path& path) {
-  const std::string extension = extension_of(path);
-  if (extension == ".vtp") return std::nullopt;
-  for (const char* centerline :
-       {".swc", ".json", ".csv", ".vmv", ".vtk", ".ctgr", ".pth", ".gxl", ".xml", ".am", ".dat"})
-    if (extension == centerline) return Kind::centerline;
+  const auto centerline = find_centerline_format(path);
+  if (centerline == CenterlineFormat::vtp) return std::nullopt;
+  if (centerline) return Kind::centerline;
   surface_format(path);  // throws Unsupported
   return Kind::surface;
 }

@@ -2,13 +2,13 @@
 #include <sstream>
 
 #include "vmesh/io/sha256.h"
-#include "vmesh/surface/branch_labels.h"
 
 #include "command_line/exit_code.h"
 #include "command_line/inputs.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "report/fit_report.h"
+#include "report/surface_attributes.h"
 #include "verbs/fitting.h"
 #include "verbs/verbs.h"
 
@@ -39,31 +39,6 @@ std::vector<CenterlineBinding> binding_of(const LoadedSurface& surface, const Ce
   return binding;
 }
 
-MeshAttributes attributes_of(const FitResult& result, const Centerline& centerline) {
-  const VesselSurface& surface = result.surface;
-  const BranchLabels branch = label_branches(surface.mesh, surface.binding, centerline);
-  MeshAttribute segment{"segment", {}, true}, parameter{"parameter", {}};
-  for (const CenterlineBinding& binding : surface.binding) {
-    segment.values.push_back(binding.segment);
-    parameter.values.push_back(binding.t);
-  }
-  MeshAttributes attributes;
-  attributes.vertex = {{"radius", result.radius},
-                       std::move(segment),
-                       std::move(parameter),
-                       {"branch", {branch.vertex.begin(), branch.vertex.end()}, true}};
-  if (!surface.openings.empty()) {
-    MeshAttribute labels{"opening", std::vector<double>(surface.mesh.vertices.size(), 0), true};
-    for (std::size_t i = 0; i < surface.openings.size(); ++i) {
-      for (const Index v : surface.openings[i].ring) labels.values[v] = static_cast<double>(i + 1);
-    }
-    attributes.vertex.push_back(std::move(labels));
-  }
-  attributes.face = {{"EquiangleSkewness", equiangle_skewness(surface.mesh)},
-                     {"branch", {branch.face.begin(), branch.face.end()}, true}};
-  return attributes;
-}
-
 }  // namespace
 
 int run(const FitArguments& arguments, Console& console) {
@@ -88,9 +63,16 @@ int run(const FitArguments& arguments, Console& console) {
   const bool near = keeps_error(result.report, arguments.fitting.options.error, warnings, console);
   const std::string sha256 = sha256_of_file(path);
   const std::string options = "fit" + describe(arguments.fitting);
-  write_surface(arguments.output, result.surface.mesh, attributes_of(result, centerline),
+  const VesselSurface& fitted = result.surface;
+  const SurfaceMeasurement measurement = measure_surface(fitted.mesh);
+  if (measurement.self_intersections > 0) {
+    console.error(path.string() + ": fitted, " + std::to_string(measurement.self_intersections) +
+                  " pairs of its faces cross; nothing is written");
+    return kDefective;
+  }
+  write_surface(arguments.output, fitted.mesh,
+                surface_attributes(fitted.mesh, fitted.binding, result.radius, fitted.openings, centerline),
                 {generator_name(), options, path.filename().string(), sha256});
-  const SurfaceMeasurement measurement = measure_surface(result.surface.mesh);
   console.log(std::to_string(result.surface.mesh.vertices.size()) + " vertices, skewness " +
               std::to_string(measurement.skewness.mean) + " mean, " + std::to_string(measurement.skewness.max) +
               " max");

@@ -5,6 +5,10 @@
 
 namespace vmesh::tool {
 
+bool has_options(const ReferenceOptions& image) {
+  return image.label || image.threshold || image.spacing > 0 || image.smooth > 0;
+}
+
 TriMesh load_fit_reference(const FittingArguments& arguments, Console& console) {
   const std::filesystem::path& path = arguments.reference.path;
   const ReferenceOptions& image = arguments.image;
@@ -15,7 +19,7 @@ TriMesh load_fit_reference(const FittingArguments& arguments, Console& console) 
       return reference_surface(load_image(arguments.reference, console), options).mesh;
     });
   }
-  if (image.label || image.threshold || image.spacing > 0 || image.smooth > 0)
+  if (has_options(image))
     throw UsageError(path.string() +
                      ": --label, --threshold, --spacing and --smooth are for images; this is taken for a surface");
   LoadedSurface surface = load_surface(arguments.reference);

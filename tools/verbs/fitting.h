@@ -5,6 +5,9 @@
 
 namespace vmesh::tool {
 
+/// Whether any of --label, --threshold, --spacing, --smooth is given.
+bool has_options(const ReferenceOptions& image);
+
 /// The surface to fit to: of a file, or contoured from an image. Options that do not apply are refused (UsageError).
 TriMesh load_fit_reference(const FittingArguments& arguments, Console& console);
 

@@ -13,6 +13,7 @@
 #include "command_line/usage_error.h"
 #include "report/fit_report.h"
 #include "report/summary.h"
+#include "report/surface_attributes.h"
 #include "verbs/fitting.h"
 #include "verbs/verbs.h"
 
@@ -26,34 +27,6 @@ std::string number(double value, int digits = 3) {
 }
 
 std::string percent(double share) { return number(100 * share, 0) + " %"; }
-
-MeshAttribute branch_attribute(const std::vector<Index>& labels) {
-  return {"branch", {labels.begin(), labels.end()}, true};
-}
-
-// 0: not at an opening.
-MeshAttribute opening_labels(const GenerateResult& result) {
-  MeshAttribute labels{"opening", std::vector<double>(result.mesh.vertices.size(), 0), true};
-  for (std::size_t i = 0; i < result.openings.size(); ++i) {
-    for (const Index v : result.openings[i].ring) labels.values[v] = static_cast<double>(i + 1);
-  }
-  return labels;
-}
-
-MeshAttributes attributes_of(const GenerateResult& result, const Centerline& centerline) {
-  MeshAttributes attributes;
-  const BranchLabels branch = label_branches(result.mesh, result.binding, centerline);
-  MeshAttribute segment{"segment", {}, true}, parameter{"parameter", {}};
-  for (const CenterlineBinding& binding : result.binding) {
-    segment.values.push_back(binding.segment);
-    parameter.values.push_back(binding.t);
-  }
-  attributes.vertex = {
-      {"radius", result.radius}, std::move(segment), std::move(parameter), branch_attribute(branch.vertex)};
-  if (!result.openings.empty()) attributes.vertex.push_back(opening_labels(result));
-  attributes.face = {{"EquiangleSkewness", equiangle_skewness(result.mesh)}, branch_attribute(branch.face)};
-  return attributes;
-}
 
 std::string text_of(const Vec3& p) { return "(" + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()) + ")"; }
 
@@ -266,16 +239,6 @@ void refer_to_original(const SimplifiedCenterline& simplified, GenerateReport& r
   }
 }
 
-/// What is wrong with the centerline is said with the name of its file.
-template <class Grow>
-auto naming_file(const GenerateArguments& arguments, Grow&& grow) {
-  try {
-    return grow();
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(arguments.input.path.string() + ": " + error.what());
-  }
-}
-
 void log_choice(const BudgetedSurface& surface, const GenerateArguments& arguments, Console& console) {
   console.log("for " + to_string(*arguments.budget) + " there were:");
   for (const OperatingPoint& point : surface.tried) {
@@ -294,8 +257,9 @@ void log_choice(const BudgetedSurface& surface, const GenerateArguments& argumen
 /// Chooses the options that make the most of the budget.
 BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& centerline, GenerateArguments& arguments,
                                    Console& console) {
-  BudgetedSurface surface = naming_file(
-      arguments, [&] { return generate_within(*arguments.budget, centerline, arguments.options, console.progress()); });
+  BudgetedSurface surface = naming(arguments.input.path, [&] {
+    return generate_within(*arguments.budget, centerline, arguments.options, console.progress());
+  });
   arguments.options = surface.choice().options;
   report.tried = surface.tried;
   log_choice(surface, arguments, console);
@@ -315,8 +279,7 @@ void check_input(const GenerateArguments& arguments) {
   if (has_image(arguments)) {
     if (!arguments.input.more.empty())
       throw UsageError(arguments.input.more.front().string() + ": beside an image nothing else makes a centerline");
-    if (fits && (image.label || image.threshold || image.spacing > 0 || image.smooth > 0) &&
-        is_image_path(arguments.fitting.reference.path))
+    if (fits && has_options(image) && is_image_path(arguments.fitting.reference.path))
       throw UsageError(
           "--label, --threshold, --spacing and --smooth would be for two images; extract the centerline "
           "first (vmesh centerline), or leave --fit out: the surface is fitted to the image it is from");
@@ -330,7 +293,7 @@ void check_input(const GenerateArguments& arguments) {
     throw UsageError("--step, --join and --tree are for an input that is an image; this is taken for a centerline");
   if (fits) return;
   if (arguments.fitting.options.error > 0) throw UsageError("--fit-error needs --fit REFERENCE");
-  if (image.label || image.threshold || image.spacing > 0 || image.smooth > 0)
+  if (has_options(image))
     throw UsageError("--label, --threshold, --spacing and --smooth are for images; none is given");
 }
 
@@ -403,8 +366,11 @@ void refuse(const GenerateReport& report, Console& console) {
 
 void write(const GenerateReport& report) {
   const GenerateArguments& arguments = *report.arguments;
-  write_surface(arguments.output, report.result->mesh, attributes_of(*report.result, report.cleaned->centerline),
-                {generator_name(), describe(arguments), file_name_of(arguments.input), report.input_sha256});
+  const GenerateResult& result = *report.result;
+  write_surface(
+      arguments.output, result.mesh,
+      surface_attributes(result.mesh, result.binding, result.radius, result.openings, report.cleaned->centerline),
+      {generator_name(), describe(arguments), file_name_of(arguments.input), report.input_sha256});
 }
 
 }  // namespace
@@ -449,14 +415,16 @@ int run(const GenerateArguments& given, Console& console) {
 
   bool kept_budget = true;
   GenerateResult result;
-  const GenerateOptions growth_options = naming_file(
-      arguments, [&] { return simplified ? after_simplification(arguments.options, *simplified) : arguments.options; });
+  const GenerateOptions growth_options = naming(arguments.input.path, [&] {
+    return simplified ? after_simplification(arguments.options, *simplified) : arguments.options;
+  });
   if (arguments.budget) {
     BudgetedSurface surface = grow_within_budget(report, centerline, arguments, console);
     kept_budget = surface.met();
     result = std::move(surface.result);
   } else {
-    result = naming_file(arguments, [&] { return generate_surface(centerline, growth_options, console.progress()); });
+    result =
+        naming(arguments.input.path, [&] { return generate_surface(centerline, growth_options, console.progress()); });
   }
   if (simplified && !result.is_sound()) {
     console.log("that surface is not sound: once more, with all nodes");

@@ -1,6 +1,7 @@
+#include "deform/avx2_build.h"
 #include "deform/rod_kernels.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
+#if VMESH_AVX2_BUILD
 
 #pragma GCC target("avx2")
 
@@ -13,7 +14,7 @@ namespace {
 }  // namespace
 }  // namespace avx2
 
-const RodKernels* avx2_rod_kernels() { return __builtin_cpu_supports("avx2") ? &avx2::kKernels : nullptr; }
+const RodKernels* avx2_rod_kernels() { return has_avx2() ? &avx2::kKernels : nullptr; }
 
 }  // namespace vmesh
 

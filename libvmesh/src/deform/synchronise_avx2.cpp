@@ -1,8 +1,9 @@
 #include <cmath>
 
+#include "deform/avx2_build.h"
 #include "deform/synchronise.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
+#if VMESH_AVX2_BUILD
 
 #pragma GCC target("avx2")
 
@@ -15,7 +16,7 @@ namespace {
 }  // namespace
 }  // namespace avx2
 
-Synchroniser avx2_synchroniser() { return __builtin_cpu_supports("avx2") ? avx2::run : nullptr; }
+Synchroniser avx2_synchroniser() { return has_avx2() ? avx2::run : nullptr; }
 
 }  // namespace vmesh
 

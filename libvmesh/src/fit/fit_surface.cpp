@@ -79,6 +79,7 @@ class Fit {
   Fit(const VesselSurface& surface, const VesselField& field, const TriMesh& reference, const FitOptions& options)
       : field_(field),
         options_(options),
+        to_error_(options.error > 0),
         reference_(reference, field),
         surface_(surface.mesh, vertices_of(surface)),
         openings_(surface.openings.empty() ? find_openings(surface.mesh) : surface.openings) {
@@ -129,11 +130,12 @@ class Fit {
       reshape(1, false);
     }
     if (options_.resize) resize();
-    if (options_.resize && options_.error == 0) keep_to_most_vertices();
+    if (options_.resize && !to_error_) keep_to_most_vertices();
     finish();
-    for (int i = 0; options_.resize && options_.error > 0 && i < kCorrections && !keeps_error(); ++i) {
+    for (int i = 0; options_.resize && to_error_ && i < kCorrections && !keeps_error(); ++i) {
       even_error_ *= kCorrection;
       for (int round = 0; round < 2; ++round) resize_once(next_matches());
+      if (!to_error_) keep_to_most_vertices();
       finish();
     }
   }
@@ -238,14 +240,13 @@ class Fit {
 
   // For an error, until the number of vertices has settled.
   void resize() {
-    const bool to_error = options_.error > 0;
     const int rounds = std::max(1, options_.rounds - kFirstRounds - kLastRounds);
-    for (int i = 0; i < (to_error ? rounds + kMoreRounds : rounds); ++i) {
+    for (int i = 0; i < (to_error_ ? rounds + kMoreRounds : rounds); ++i) {
       const Matches matches = next_matches();
       const std::size_t before = surface_.vertices.size();
-      const double p95 = to_error ? matched_distance(matches, 0.95) : 0;
-      if (to_error && settled_ && i >= rounds && p95 <= 0.95 * options_.error && p95 > 0.88 * options_.error) return;
-      if (to_error) aim_at_error(p95);
+      const double p95 = to_error_ ? matched_distance(matches, 0.95) : 0;
+      if (to_error_ && settled_ && i >= rounds && p95 <= 0.95 * options_.error && p95 > 0.88 * options_.error) return;
+      if (to_error_) aim_at_error(p95);
       resize_once(matches);
       const double change = static_cast<double>(surface_.vertices.size()) / static_cast<double>(before);
       settled_ = change > 0.95 && change < 1.05;
@@ -261,8 +262,8 @@ class Fit {
 
   void resize_once(const Matches& matches) {
     const double wanted = aim_ * static_cast<double>(wanted_vertices_);
-    set_sizes(surface_, errors_around(surface_, matches), options_.error > 0 ? 0 : static_cast<std::size_t>(wanted),
-              even_error_, limits_);
+    set_sizes(surface_, errors_around(surface_, matches), to_error_ ? 0 : static_cast<std::size_t>(wanted), even_error_,
+              limits_);
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       split_edges(surface, frozen);
       flip_edges(surface, frozen, guard_);
@@ -274,6 +275,7 @@ class Fit {
       for (int k = 0; k < kRepairs; ++k) relax(surface, frozen, guard_, kRepairPower, guard_.max_skewness);
     });
     pack();
+    if (options_.max_vertices > 0 && surface_.vertices.size() > most_vertices_) to_error_ = false;
     // What the edges' lengths come to differs a little from what they are meant to be.
     aim_ = std::clamp(
         aim_ * std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()), 0.7),
@@ -299,6 +301,7 @@ class Fit {
 
   const VesselField& field_;
   const FitOptions& options_;
+  bool to_error_;  // sizes are those for an error; or for a number of vertices, without one or where that is exceeded
   FitReference reference_;
   FitMesh surface_;
   std::vector<Opening> openings_;
@@ -326,14 +329,7 @@ FitDistance distance_between(const TriMesh& surface, const TriMesh& reference, c
 
 std::vector<Opening> find_openings(const TriMesh& mesh) {
   std::vector<Index> next(mesh.vertices.size(), kNone);  // along the border, as a lid would run
-  std::vector<std::array<Index, 2>> edges;
-  for (const Triangle& face : mesh.faces) {
-    for (int i = 0; i < 3; ++i) edges.push_back({face[i], face[(i + 1) % 3]});
-  }
-  std::sort(edges.begin(), edges.end());
-  for (const auto& [a, b] : edges) {
-    if (!std::binary_search(edges.begin(), edges.end(), std::array<Index, 2>{b, a})) next[b] = a;
-  }
+  for (const auto& [from, to] : boundary_edges(mesh)) next[to] = from;
   std::vector<Opening> openings;
   for (Index first = 0; first < next.size(); ++first) {
     if (next[first] == kNone) continue;

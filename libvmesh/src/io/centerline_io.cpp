@@ -12,7 +12,7 @@
 
 namespace vmesh {
 
-CenterlineFormat centerline_format(const std::filesystem::path& path) {
+std::optional<CenterlineFormat> find_centerline_format(const std::filesystem::path& path) {
   const std::string extension = io::lower(path.extension().string());
   if (extension == ".swc") return CenterlineFormat::swc;
   if (extension == ".vtp") return CenterlineFormat::vtp;
@@ -25,10 +25,15 @@ CenterlineFormat centerline_format(const std::filesystem::path& path) {
   if (extension == ".gxl" || extension == ".xml") return CenterlineFormat::gxl;
   if (extension == ".am") return CenterlineFormat::amira;
   if (extension == ".dat") return CenterlineFormat::network;
+  return std::nullopt;
+}
+
+CenterlineFormat centerline_format(const std::filesystem::path& path) {
+  if (const auto format = find_centerline_format(path)) return *format;
   throw Unsupported(path.string() +
                     ": centerlines are .swc, .vtp, .json, .csv, .vmv, .vtk, .mrk.json, .ctgr, .pth, .gxl, .am or .dat; "
                     "\"" +
-                    extension + "\" is not supported");
+                    io::lower(path.extension().string()) + "\" is not supported");
 }
 
 CenterlineFormat centerline_output_format(const std::filesystem::path& path) {

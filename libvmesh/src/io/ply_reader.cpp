@@ -3,8 +3,8 @@
 #include <limits>
 #include <unordered_set>
 
-#include "bytes.h"
 #include "formats.h"
+#include "number_types.h"
 #include "ply.h"
 #include "text.h"
 #include "triangulation.h"
@@ -12,13 +12,11 @@
 namespace vmesh::io {
 namespace {
 
-enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::float32;
+  NumberType type = NumberType::float32;
   bool is_list = false;
-  PlyType count_type = PlyType::uint8;
+  NumberType count_type = NumberType::uint8;
 };
 
 struct PlyElement {
@@ -27,29 +25,24 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
-std::size_t size_of(PlyType type) {
-  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
-}
-
-std::optional<PlyType> type_of(std::string_view name) {
-  static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kNames = {{
-      {"char", PlyType::int8},
-      {"int8", PlyType::int8},
-      {"uchar", PlyType::uint8},
-      {"uint8", PlyType::uint8},
-      {"short", PlyType::int16},
-      {"int16", PlyType::int16},
-      {"ushort", PlyType::uint16},
-      {"uint16", PlyType::uint16},
-      {"int", PlyType::int32},
-      {"int32", PlyType::int32},
-      {"uint", PlyType::uint32},
-      {"uint32", PlyType::uint32},
-      {"float", PlyType::float32},
-      {"float32", PlyType::float32},
-      {"double", PlyType::float64},
-      {"float64", PlyType::float64},
+std::optional<NumberType> type_of(std::string_view name) {
+  static constexpr std::array<std::pair<std::string_view, NumberType>, 16> kNames = {{
+      {"char", NumberType::int8},
+      {"int8", NumberType::int8},
+      {"uchar", NumberType::uint8},
+      {"uint8", NumberType::uint8},
+      {"short", NumberType::int16},
+      {"int16", NumberType::int16},
+      {"ushort", NumberType::uint16},
+      {"uint16", NumberType::uint16},
+      {"int", NumberType::int32},
+      {"int32", NumberType::int32},
+      {"uint", NumberType::uint32},
+      {"uint32", NumberType::uint32},
+      {"float", NumberType::float32},
+      {"float32", NumberType::float32},
+      {"double", NumberType::float64},
+      {"float64", NumberType::float64},
   }};
   for (const auto& [key, type] : kNames) {
     if (key == name) return type;
@@ -66,35 +59,16 @@ class PlyValues {
       : body_(body), encoding_(encoding), source_(source) {}
 
   /// A value takes at least this many bytes.
-  std::size_t least_size(PlyType type) const { return encoding_ == Encoding::text ? 2 : size_of(type); }
+  std::size_t least_size(NumberType type) const { return encoding_ == Encoding::text ? 2 : size_of(type); }
   std::size_t left() const { return body_.size() - at_ + 1; }  // + 1: the last text value needs no separator
 
-  double next(PlyType type, const std::string& element, std::uint64_t index) {
+  double next(NumberType type, const std::string& element, std::uint64_t index) {
     if (encoding_ == Encoding::text) return next_text(element, index);
     const std::size_t size = size_of(type);
     if (body_.size() - at_ < size) fail_short(element, index);
     const char* bytes = body_.data() + at_;
     at_ += size;
-    const bool big = encoding_ == Encoding::big_endian;
-    switch (type) {
-      case PlyType::int8:
-        return load<std::int8_t>(bytes);
-      case PlyType::uint8:
-        return load<std::uint8_t>(bytes);
-      case PlyType::int16:
-        return load<std::int16_t>(bytes, big);
-      case PlyType::uint16:
-        return load<std::uint16_t>(bytes, big);
-      case PlyType::int32:
-        return load<std::int32_t>(bytes, big);
-      case PlyType::uint32:
-        return load<std::uint32_t>(bytes, big);
-      case PlyType::float32:
-        return load<float>(bytes, big);
-      case PlyType::float64:
-        return load<double>(bytes, big);
-    }
-    return 0;
+    return number_at(bytes, type, encoding_ == Encoding::big_endian);
   }
 
  private:
@@ -194,7 +168,7 @@ class PlyReader {
     elements_.push_back({std::string(fields_[1]), static_cast<std::uint64_t>(*count), {}});
   }
 
-  PlyType type(std::string_view name) const {
+  NumberType type(std::string_view name) const {
     const auto result = type_of(name);
     if (!result) fail("the type " + cite(name) + " is not known");
     return *result;
@@ -258,7 +232,7 @@ class PlyReader {
     std::vector<MeshAttribute> attributes;
     for (const auto& p : element.properties) {
       if (!is_attribute(p)) continue;
-      attributes.push_back({p.name, {}, p.type != PlyType::float32 && p.type != PlyType::float64});
+      attributes.push_back({p.name, {}, p.type != NumberType::float32 && p.type != NumberType::float64});
       attributes.back().values.reserve(count);
     }
     return attributes;

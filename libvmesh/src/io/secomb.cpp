@@ -64,30 +64,32 @@ class NetworkReader {
     return static_cast<std::size_t>(value);
   }
 
-  void read_segments() {
-    const std::size_t count = read_count("the number of segments");
-    next_line("the head of the segments");
+  /// A count, a head, and as many rows with at least `columns` fields; each is handed to `keep`.
+  template <typename Keep>
+  void read_rows(const std::string& plural, const std::string& row, std::size_t columns, Keep keep) {
+    const std::size_t count = read_count("the number of " + plural);
+    next_line("the head of the " + plural);
     for (std::size_t i = 0; i < count; ++i) {
-      next_line("a segment");
-      constexpr std::size_t kColumns = 5;
-      if (fields_.size() < kColumns) fail("a segment is: name, type, from, to, diameter, flow, hematocrit");
-      segments_.push_back({integer(2, "the node"), integer(3, "the node"), real(4, "the diameter"), lines_.number()});
+      next_line("a row of the " + plural);
+      if (fields_.size() < columns) fail("a row of the " + plural + " is: " + row);
+      keep();
     }
   }
 
+  void read_segments() {
+    read_rows("segments", "name, type, from, to, diameter, flow, hematocrit", 5, [&] {
+      segments_.push_back({integer(2, "the node"), integer(3, "the node"), real(4, "the diameter"), lines_.number()});
+    });
+  }
+
   void read_nodes() {
-    const std::size_t count = read_count("the number of nodes");
-    next_line("the head of the nodes");
-    for (std::size_t i = 0; i < count; ++i) {
-      next_line("a node");
-      constexpr std::size_t kColumns = 4;
-      if (fields_.size() < kColumns) fail("a node is: name, x, y, z");
+    read_rows("nodes", "name, x, y, z", 4, [&] {
       const std::int64_t name = integer(0, "the name");
       if (!node_of_.try_emplace(name, static_cast<Index>(raw_.nodes.size())).second)
         fail("the node " + std::to_string(name) + " was there before");
       raw_.nodes.push_back({{real(1, "x"), real(2, "y"), real(3, "z")}, 0});
       raw_.node_numbers.push_back(lines_.number());
-    }
+    });
   }
 
   void connect() {

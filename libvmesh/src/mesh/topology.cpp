@@ -60,12 +60,24 @@ bool one_fan_each(const TriMesh& mesh, const std::vector<Side>& sides) {
   return true;
 }
 
+// Edges of one side, as its face runs along them.
+std::vector<std::array<Index, 2>> boundary_of(const std::vector<Side>& sides) {
+  std::vector<std::array<Index, 2>> boundary;
+  for (std::size_t i = 0, next; i < sides.size(); i = next) {
+    for (next = i + 1; next < sides.size() && sides[next].key() == sides[i].key(); ++next) {
+    }
+    const Side& side = sides[i];
+    if (next - i == 1) boundary.push_back({side.forward ? side.low : side.high, side.forward ? side.high : side.low});
+  }
+  return boundary;
+}
+
 // Of a graph, isolated vertices not counted.
-std::size_t count_pieces(const std::vector<Side>& edges, std::size_t vertices) {
+std::size_t count_pieces(const std::vector<std::array<Index, 2>>& edges, std::size_t vertices) {
   DisjointSets sets(edges.empty() ? 0 : vertices);
-  for (const Side& edge : edges) sets.join(edge.low, edge.high);
+  for (const auto& [from, to] : edges) sets.join(from, to);
   std::vector<Index> roots;
-  for (const Side& edge : edges) roots.push_back(sets.find(edge.low));
+  for (const auto& [from, to] : edges) roots.push_back(sets.find(from));
   std::sort(roots.begin(), roots.end());
   return static_cast<std::size_t>(std::unique(roots.begin(), roots.end()) - roots.begin());
 }
@@ -76,7 +88,7 @@ Topology measure_topology(const TriMesh& mesh) {
   check_indices(mesh);
   Topology topology;
   const std::vector<Side> sides = sorted_sides(mesh);
-  std::vector<Side> boundary;
+  const std::vector<std::array<Index, 2>> boundary = boundary_of(sides);
   std::int64_t edges = 0;
   bool edge_manifold = true;
   topology.oriented = true;
@@ -84,7 +96,6 @@ Topology measure_topology(const TriMesh& mesh) {
     for (next = i + 1; next < sides.size() && sides[next].key() == sides[i].key(); ++next) {
     }
     ++edges;
-    if (next - i == 1) boundary.push_back(sides[i]);
     if (next - i > 2) ++topology.crowded_edges;
     if (next - i > 2 || sides[i].low == sides[i].high) edge_manifold = false;
     if (next - i == 2 && sides[i].forward == sides[i + 1].forward) topology.oriented = false;
@@ -125,6 +136,11 @@ Topology measure_topology(const TriMesh& mesh) {
     }
   }
   return topology;
+}
+
+std::vector<std::array<Index, 2>> boundary_edges(const TriMesh& mesh) {
+  check_indices(mesh);
+  return boundary_of(sorted_sides(mesh));
 }
 
 std::vector<Index> valences(const TriMesh& mesh) {

@@ -11,8 +11,9 @@ namespace {
 // A shift fades out over at least so many radii, however short it is.
 constexpr double kShortestFading = 2;
 
-// Of all shifts together, per length: less than 1, so that an axis does not fold. Measured on eleven random walks that
-// go through themselves at every seventh node: 8 of some 1,100 contacts are left at 0.8, 2 at 0.95.
+// Of all shifts together, per length: less than 1, so that an axis does not fold. Measured on three random walks
+// of 500 to 2,000 nodes that go through themselves at every seventh: 8 contacts are left at 0.8 with 8 extensions and
+// 16 rounds of moves, 1 at 0.95 with 24 and 40. Of eleven such walks, 2 contacts are left.
 constexpr double kSteepest = 0.95;
 
 constexpr double kLeastMore = 0.01;  // of a shift's distance: less is not worth another look

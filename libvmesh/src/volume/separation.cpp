@@ -316,6 +316,7 @@ SeparatedCenterline moved_and_narrowed(const Centerline& original, const Separat
       SeparatedCenterline other = narrow_moved(original, moving, options, progress);
       left = other.report.left;
       if (left.size() < best.report.left.size() + !anew) best = std::move(other);
+      if (left.empty()) return best;
     }
   }
   return best;

@@ -25,7 +25,7 @@ struct FitOptions {
   int rounds = 16;
   /// Triangles become finer where the error is large and coarser where it is small. Otherwise every triangle stays.
   bool resize = true;
-  /// Most vertices, unless `error` decides; 0: a twentieth more than the surface has.
+  /// Most vertices; 0: a twentieth more than the surface has, or as many as `error` takes.
   std::size_t max_vertices = 0;
   /// Error to reach with as few vertices as it takes, mm: 95 % of both surfaces are nearer to the other than this. 0:
   /// none; then the number of vertices is kept.
@@ -86,8 +86,7 @@ struct FitResult {
 std::vector<Opening> find_openings(const TriMesh& mesh);
 
 /// Moves `surface` onto `reference` by least squares: vertices and, with options.resize, the size of the triangles.
-/// The surface stays sound: what it has of components, holes and openings, and no faces that cross. Faces that crossed
-/// before may still do.
+/// The surface stays sound: what it has of components, holes and openings, and no faces that cross.
 ///
 /// Points of both surfaces go to the closest point of the other that faces the same way and belongs to the same vessel,
 /// along the graph, within 1.5 local radii; squared distances along the line between the two are minimised over all
@@ -97,8 +96,8 @@ std::vector<Opening> find_openings(const TriMesh& mesh);
 ///
 /// `surface` is bound to `centerline`. `reference` faces outwards or inwards as a whole; it may be open and may have
 /// parts that belong to no vessel. Deterministic. Throws InvalidInput for a reference without faces, one whose faces
-/// disagree about the outside, one that is nowhere near the surface, a surface that is not manifold and oriented or
-/// whose binding does not fit, and options out of range; Cancelled.
+/// disagree about the outside, one that is nowhere near the surface, a surface that is not manifold and oriented, that
+/// has faces that cross or whose binding does not fit, and options out of range; Cancelled.
 FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline, const TriMesh& reference,
                       const FitOptions& options = {}, const Progress& progress = {});
 

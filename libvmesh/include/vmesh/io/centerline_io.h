@@ -26,7 +26,10 @@ enum class CenterlineFormat {
   network,  ///< .dat; Secomb's network.dat: segments with a diameter, in um; read only
 };
 
-/// By the file's extension, upper or lower case. Throws Unsupported, with the extensions that are.
+/// By the file's extension, upper or lower case; none if centerlines are never in such files.
+std::optional<CenterlineFormat> find_centerline_format(const std::filesystem::path& path);
+
+/// The same; throws Unsupported, with the extensions that are.
 CenterlineFormat centerline_format(const std::filesystem::path& path);
 
 /// The same for a file to be written; also throws Unsupported for formats that are read only.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -38,6 +39,10 @@ std::vector<Index> degenerate_faces(const TriMesh& mesh);
 
 /// Faces with the same three vertices as an earlier face, in whatever order, ascending.
 std::vector<Index> duplicate_faces(const TriMesh& mesh);
+
+/// Edges with one face, as it runs along them: from, to; ascending by the lower vertex, then the higher. Throws
+/// InvalidInput when a face names a vertex that does not exist.
+std::vector<std::array<Index, 2>> boundary_edges(const TriMesh& mesh);
 
 /// Number of edges at every vertex; 0 for a vertex without a face.
 std::vector<Index> valences(const TriMesh& mesh);

@@ -1,0 +1,99 @@
+// A surface that was grown goes onto another one, by the command and in one go with its growth.
+#include <nlohmann/json.hpp>
+
+#include "vmesh/io/surface_io.h"
+#include "vmesh/mesh/topology.h"
+
+#include "run_vmesh.h"
+
+namespace vmesh::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The surface of the small tree, and one as a scan would have it: a tenth wider, oval, finer.
+class Fit : public CommandTest {
+ protected:
+  Fit() {
+    write_y("y.swc");
+    EXPECT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply", "-q"}).exit_code, 0);
+    EXPECT_EQ(vmesh({"generate", "@y.swc", "-o", "@fine.off", "--around", "14", "-q"}).exit_code, 0);
+    LoadedSurface scan = read_surface(path("fine.off"));
+    for (Vec3& p : scan.mesh.vertices) p = Vec3(1.15 * p.x(), 1.05 * p.y(), p.z());
+    write_surface(path("scan.stl"), scan.mesh);
+  }
+
+  Outcome fit(std::vector<std::string> more, const std::string& surface = "@y.ply") const {
+    more.insert(more.begin(), {"fit", surface, "@scan.stl", "--reference-unit", "mm", "--reference-space", "LPS",
+                               "--centerline", "@y.swc", "-o", "@fitted.ply"});
+    return vmesh(more);
+  }
+};
+
+TEST_F(Fit, HalvesTheDistanceAndStaysSound) {
+  const Outcome run = fit({"--json", "@fit.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json summary = Json::parse(read("fit.json"));
+  EXPECT_LT(summary["fit"]["after"]["p95_mm"].get<double>(), 0.5 * summary["fit"]["before"]["p95_mm"].get<double>());
+  const LoadedSurface before = read_surface(path("y.ply")), after = read_surface(path("fitted.ply"));
+  EXPECT_LE(after.mesh.vertices.size(), before.mesh.vertices.size() * 21 / 20);
+  EXPECT_TRUE(measure_topology(after.mesh).closed);
+  EXPECT_TRUE(self_intersections(after.mesh).empty());
+  const auto names = [](const LoadedSurface& surface) {
+    std::string text;
+    for (const MeshAttribute& a : surface.attributes.vertex) text += a.name + " ";
+    return text;
+  };
+  EXPECT_EQ(names(after), names(before));
+  ASSERT_EQ(vmesh({"fit", "@fitted.ply", "@scan.stl", "--centerline", "@y.swc", "-o", "@again.ply"}).exit_code, 0)
+      << "what it writes can be fitted again";
+}
+
+TEST_F(Fit, KeepTrianglesMovesVerticesAlone) {
+  ASSERT_EQ(fit({"--keep-triangles"}).exit_code, 0);
+  EXPECT_EQ(read_surface(path("fitted.ply")).mesh.faces, read_surface(path("y.ply")).mesh.faces);
+}
+
+TEST_F(Fit, AnErrorThatIsNotReachedIsToldByTheExitCode) {
+  const Outcome loose = fit({"--fit-error", "0.4mm", "--json", "@loose.json"});
+  ASSERT_EQ(loose.exit_code, 0) << loose.err;
+  const Outcome tight = fit({"--fit-error", "0.001mm", "--max-vertices", "700", "--json", "@tight.json"});
+  EXPECT_EQ(tight.exit_code, 6) << tight.err;
+  EXPECT_LE(Json::parse(read("loose.json"))["fit"]["after"]["p95_mm"].get<double>(), 0.4);
+  EXPECT_GT(Json::parse(read("tight.json"))["fit"]["after"]["p95_mm"].get<double>(), 0.001);
+  EXPECT_LE(read_surface(path("fitted.ply")).mesh.vertices.size(), 700u) << "the limit on vertices holds";
+}
+
+TEST_F(Fit, GrowsAndFitsInOneGo) {
+  const Outcome run = vmesh({"generate", "@y.swc", "--fit", "@scan.stl", "-o", "@one.ply", "--json", "@one.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json fit = Json::parse(read("one.json"))["fit"];
+  EXPECT_LT(fit["after"]["p95_mm"].get<double>(), 0.5 * fit["before"]["p95_mm"].get<double>());
+  EXPECT_TRUE(self_intersections(read_surface(path("one.ply")).mesh).empty());
+}
+
+TEST_F(Fit, WhatCannotBeFittedIsRefusedAndNothingWritten) {
+  const auto expect_refused = [&](const Outcome& run, int exit_code, const std::string& text) {
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_NE(run.err.find(text), std::string::npos) << run.err;
+    EXPECT_FALSE(exists("fitted.ply"));
+  };
+  expect_refused(fit({}, "@fine.off"), 3, "no places on a centerline");
+  expect_refused(fit({"--label", "2"}), 2, "for images");
+  write("short.swc", "# SPACE=LPS\n# UNIT=mm\n1 0 0 0 0 1 -1\n2 0 0 0 9 1 1\n");
+  expect_refused(vmesh({"fit", "@y.ply", "@scan.stl", "--centerline", "@short.swc", "-o", "@fitted.ply"}), 3,
+                 "y.ply: vertex");
+  LoadedSurface crossing = read_surface(path("y.ply"));
+  std::swap(crossing.mesh.vertices[0], crossing.mesh.vertices.back());
+  write_surface(path("crossing.ply"), crossing.mesh, crossing.attributes);
+  expect_refused(fit({}, "@crossing.ply"), 3, "cross");
+  expect_refused(vmesh({"generate", "@y.swc", "--fit-error", "0.1mm", "-o", "@fitted.ply"}), 2, "--fit");
+  expect_refused(vmesh({"generate", "@y.swc", "--fit", "@scan.stl", "--max-error", "5%", "-o", "@fitted.ply"}), 2,
+                 "--fit-error");
+  expect_refused(vmesh({"generate", "@y.swc", "--fit", "@scan.stl", "--budget", "time=1s", "-o", "@fitted.ply"}), 2,
+                 "budgets");
+  expect_refused(vmesh({"generate", "@y.swc", "--centerline-output", "@c.json", "-o", "@fitted.ply"}), 2, "image");
+}
+
+}  // namespace
+}  // namespace vmesh::testing

@@ -1,0 +1,39 @@
+#include "report/surface_attributes.h"
+
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/branch_labels.h"
+
+namespace vmesh::tool {
+namespace {
+
+MeshAttribute branch_attribute(const std::vector<Index>& labels) {
+  return {"branch", {labels.begin(), labels.end()}, true};
+}
+
+MeshAttribute opening_labels(const TriMesh& mesh, const std::vector<Opening>& openings) {
+  MeshAttribute labels{"opening", std::vector<double>(mesh.vertices.size(), 0), true};
+  for (std::size_t i = 0; i < openings.size(); ++i) {
+    for (const Index v : openings[i].ring) labels.values[v] = static_cast<double>(i + 1);
+  }
+  return labels;
+}
+
+}  // namespace
+
+MeshAttributes surface_attributes(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
+                                  const std::vector<double>& radius, const std::vector<Opening>& openings,
+                                  const Centerline& centerline) {
+  MeshAttributes attributes;
+  const BranchLabels branch = label_branches(mesh, binding, centerline);
+  MeshAttribute segment{"segment", {}, true}, parameter{"parameter", {}};
+  for (const CenterlineBinding& place : binding) {
+    segment.values.push_back(place.segment);
+    parameter.values.push_back(place.t);
+  }
+  attributes.vertex = {{"radius", radius}, std::move(segment), std::move(parameter), branch_attribute(branch.vertex)};
+  if (!openings.empty()) attributes.vertex.push_back(opening_labels(mesh, openings));
+  attributes.face = {{"EquiangleSkewness", equiangle_skewness(mesh)}, branch_attribute(branch.face)};
+  return attributes;
+}
+
+}  // namespace vmesh::tool
