@@ -1,6 +1,7 @@
 #include "surface/junction/junction_piece.h"
 
 #include <optional>
+#include <span>
 
 #include "surface/junction/junction_growth.h"
 #include "surface/remesh/optimize.h"
@@ -22,6 +23,14 @@ struct Variant {
 };
 constexpr Variant kVariants[] = {{1, true, false}, {1.5, true, false}, {1.5, true, false, 0.67}, {2, true, false, 0.5}};
 constexpr Variant kGuardedVariants[] = {{1, true, false}, {1, true, true}, {1, false, true}};
+// Measured on stars of 250, 500 and 1,000 branches: no variant brings every vertex onto the boundary there; as they
+// were cut, rims do not cross.
+constexpr Variant kHubVariants[] = {{1, false, true}, {1, true, true}};
+
+std::span<const Variant> variants_of(bool guarded, bool hub) {
+  if (hub) return kHubVariants;
+  return guarded ? std::span<const Variant>(kGuardedVariants) : std::span<const Variant>(kVariants);
+}
 
 class PieceMaker {
  public:
@@ -178,11 +187,12 @@ JunctionPiece make_junction_piece(const VesselTubes& tubes, const GrowthSkeleton
   // With the guard, what is refined for the limit on the error is refined on the whole piece.
   GenerateOptions piece_options = options;
   if (guarded) piece_options.max_error = {};
-  for (const Variant& variant :
-       guarded ? std::span<const Variant>(kGuardedVariants) : std::span<const Variant>(kVariants)) {
+  const bool hub = guarded && openings.size() >= kHub;
+  for (const Variant& variant : variants_of(guarded, hub)) {
     JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, piece_options, progress).make(variant);
     if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);
     if (best->tangles == 0 && best->unproven == 0) break;
+    if (hub && best->crossings == 0) break;
   }
   return *std::move(best);
 }

@@ -26,10 +26,10 @@ constexpr double kMended = 0.5;  // skewness above which triangles are mended at
 // Where there are faults, nothing is refined for the limit on the error any more once the guard is there, radii around
 // them. The boundary may have a step there, at which finer triangles prove nothing and stand on edge.
 constexpr double kCalm = 2;
-// Branches of a node from which on the rungs without the guard are passed over. Measured on stars of equal branches:
-// with 64 the first rung is sound, with 100 the second, with 250 the fifth.
-constexpr std::size_t kHub = 160;
-constexpr int kFirstGuarded = 4;
+constexpr int kFirstGuarded = 4;  // of the rungs below: where a hub starts
+// Free rings at a hub that are left to it. Measured on stars of 500 and 1,000: rims cross without, with 2 and 4 none
+// do.
+constexpr int kRoomAtHub = 2;
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 constexpr Rung kLadder[kRungs] = {{0, 0, false}, {2, 0, false}, {3, 0, false},  {3, 1, false},
                                   {3, 0, true},  {3, 1, true},  {5, 0.5, true}, {kEverywhere, 0.5, true}};
@@ -95,6 +95,7 @@ class PieceMaker {
     PieceSurface best;
     std::vector<PieceFault> last;
     const int first = is_hub() ? kFirstGuarded : 0;
+    leave_room_at_hubs();
     for (int rung = first; rung < kRungs; ++rung) {
       if (rung > 0 && !climb(kLadder[rung], last)) continue;
       PieceSurface piece = make(kLadder[rung]);
@@ -111,6 +112,26 @@ class PieceMaker {
   bool is_hub() const {
     return std::any_of(plan_.nodes.begin(), plan_.nodes.end(),
                        [&](Index n) { return tubes_.centerline().degree(n) >= kHub; });
+  }
+
+  // Where very many vessels part, the rounding between them ends in webs right where the first rings are free.
+  void leave_room_at_hubs() {
+    for (const Stretch& stretch : plan_.stretches) {
+      const std::vector<Ring>& rings = tubes_.rings(stretch.branch);
+      const std::vector<Index>& nodes = tubes_.axes()[stretch.branch].branch().nodes;
+      for (const bool at_end : {false, true}) {
+        if (at_end ? stretch.seam_at_last : stretch.seam_at_first) continue;
+        if (tubes_.centerline().degree(at_end ? nodes.back() : nodes.front()) < kHub) continue;
+        int left = kRoomAtHub;
+        for (Index k = 0; k < stretch.count && left > 0; ++k) {
+          const auto number = static_cast<Index>((stretch.first + (at_end ? stretch.count - 1 - k : k)) % rings.size());
+          if (!rings[number].free) continue;
+          covered_.push_back({stretch.branch, number});
+          --left;
+        }
+      }
+    }
+    std::sort(covered_.begin(), covered_.end());
   }
 
   // Whether that changes anything against what was made last.
