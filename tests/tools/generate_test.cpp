@@ -222,6 +222,7 @@ TEST_F(Overlap, IsRefusedWhenKept) {
   EXPECT_FALSE(exists("x.ply"));
   EXPECT_FALSE(exists("x.json"));
   EXPECT_NE(run.err.find("crossing_faces: "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("nearest to line "), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("on branch "), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("--allow-defects"), std::string::npos) << run.err;
 

@@ -135,8 +135,9 @@ LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
 
 LoadedCenterline load_clean_centerline(const InputArguments& input, Console& console) {
   std::vector<std::string> warnings;
-  CleanedCenterline cleaned = clean(load_raw_centerline(input, warnings));
-  LoadedCenterline loaded{std::move(cleaned), std::move(warnings)};
+  RawCenterline raw = load_raw_centerline(input, warnings);
+  CleanedCenterline cleaned = clean(raw);
+  LoadedCenterline loaded{std::move(cleaned), std::move(warnings), names_of(std::move(raw))};
   console.warn(loaded.warnings);
   for (const std::string& line : loaded.cleaned.report.summary()) console.log("cleaning: " + line);
   return loaded;

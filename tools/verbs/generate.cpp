@@ -106,7 +106,7 @@ LoadedCenterline extract(GenerateArguments& arguments, std::optional<TriMesh>& r
                      {generator_name(), "extracted by generate", arguments.input.path.filename().string(),
                       sha256_of_file(arguments.input.path)});
   if (!reference) reference = std::move(surface);
-  LoadedCenterline loaded{{centerline, {}, {}, {}}, {}};
+  LoadedCenterline loaded{{centerline, {}, {}, {}}, {}, {}};
   for (Index n = 0; n < centerline.nodes().size(); ++n) loaded.cleaned.raw_node.push_back(n);
   for (Index s = 0; s < centerline.segments().size(); ++s) loaded.cleaned.raw_segment.push_back(s);
   return loaded;
@@ -352,6 +352,15 @@ void measure(GenerateReport& report, const Centerline& grown, Console& console) 
   for (const std::string& problem : report.problems) console.warn("surface: " + problem);
 }
 
+/// Adds the nodes that are nearest, as the file names them, and the branches.
+void name_nodes(std::vector<Defect>& defects, const LoadedCenterline& loaded) {
+  for (Defect& defect : defects) {
+    if (defect.node < loaded.cleaned.raw_node.size())
+      defect.message += ", nearest to " + loaded.file.place_of_node(loaded.cleaned.raw_node[defect.node]);
+    if (defect.branch != kNone) defect.message += ", on branch " + std::to_string(defect.branch);
+  }
+}
+
 /// Says why nothing is written.
 void refuse(const GenerateReport& report, Console& console) {
   constexpr std::size_t kNamed = 8;
@@ -451,6 +460,7 @@ int run(const GenerateArguments& given, Console& console) {
     vmesh::refer_to_original(*simplified, result);
     refer_to_original(*simplified, report);
   }
+  name_nodes(result.defects, loaded);
   report.stages.push_back({"measure", watch.lap()});
   if (!result.is_sound() && !arguments.allow_defects) {
     refuse(report, console);

@@ -117,6 +117,13 @@ RawCenterline read_centerline(const std::vector<std::filesystem::path>& paths, c
   return merge(std::move(files));
 }
 
+RawCenterline names_of(RawCenterline raw) {
+  raw.nodes = {};
+  raw.segments = {};
+  raw.path_starts = {};
+  return raw;
+}
+
 RawCenterline convert_read(RawCenterline raw, const CenterlineReadOptions& options, std::optional<LengthUnit> unit,
                            std::optional<Space> space, std::vector<std::string>& warnings) {
   warnings.insert(warnings.end(), raw.warnings.begin(), raw.warnings.end());
@@ -144,9 +151,10 @@ RawCenterline convert_read(RawCenterline raw, const CenterlineReadOptions& optio
 LoadedCenterline load_centerline(const std::vector<std::filesystem::path>& paths,
                                  const CenterlineLoadOptions& options) {
   std::vector<std::string> warnings;
-  const RawCenterline raw =
+  RawCenterline raw =
       convert_read(read_centerline(paths, options.read), options.read, options.unit, options.space, warnings);
-  return {clean(raw, options.cleaning), std::move(warnings)};
+  CleanedCenterline cleaned = clean(raw, options.cleaning);
+  return {std::move(cleaned), std::move(warnings), names_of(std::move(raw))};
 }
 
 LoadedCenterline load_centerline(const std::filesystem::path& path, const CenterlineLoadOptions& options) {

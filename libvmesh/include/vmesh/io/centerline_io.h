@@ -72,6 +72,9 @@ RawCenterline read_centerline(std::istream& in, CenterlineFormat format, const s
 RawCenterline convert_read(RawCenterline raw, const CenterlineReadOptions& options, std::optional<LengthUnit> unit,
                            std::optional<Space> space, std::vector<std::string>& warnings);
 
+/// What names nodes and segments in messages, without them.
+RawCenterline names_of(RawCenterline raw);
+
 /// From file to valid centerline in one call: read_centerline, convert_read, clean.
 struct CenterlineLoadOptions {
   CenterlineReadOptions read;
@@ -82,6 +85,7 @@ struct CenterlineLoadOptions {
 struct LoadedCenterline {
   CleanedCenterline cleaned;
   std::vector<std::string> warnings;  ///< of reader and conversion; what cleaning did is in cleaned.report
+  RawCenterline file;                 ///< names what `cleaned` stems from (place_of_node); without nodes and segments
 };
 LoadedCenterline load_centerline(const std::filesystem::path& path, const CenterlineLoadOptions& options = {});
 LoadedCenterline load_centerline(const std::vector<std::filesystem::path>& paths,

@@ -43,7 +43,7 @@ struct Defect {
   Index segment = kNone;         ///< of the centerline, where the vertex nearest to the place is bound
   Index branch = kNone;          ///< in find_branches(), of that segment
   Index node = kNone;            ///< the centerline's node nearest to the place
-  std::string message;           ///< what, how many, where
+  std::string message;           ///< what, how many, at which position
 };
 
 }  // namespace vmesh

@@ -71,8 +71,6 @@ class DefectSearch {
       defect.node = n;
     }
     defect.branch = branch_of(defect.segment);
-    text << ", near node " << defect.node;
-    if (defect.branch != kNone) text << " on branch " << defect.branch;
     defect.message = text.str();
     defects.push_back(std::move(defect));
   }
@@ -177,7 +175,7 @@ class DefectSearch {
       const bool listed =
           !segments.empty() && std::all_of(segments.begin(), segments.end(), [&](Index s) { return left_out[s] != 0; });
       if (!inside[n] && !listed)
-        add(DefectKind::node_outside, positions[n], 1, "node " + std::to_string(n) + " is not inside");
+        add(DefectKind::node_outside, positions[n], 1, "a node of the centerline is not inside");
     }
   }
 
