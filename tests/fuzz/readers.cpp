@@ -111,6 +111,7 @@ constexpr Reader kReaders[] = {
     {"amira", ".am", read_centerline_as<CenterlineFormat::amira>, amira_seeds},
     {"network", ".dat", read_centerline_as<CenterlineFormat::network>, network_seeds},
     {"surface_vtp", ".vtp", read_surface_as<SurfaceFormat::vtp>, surface_vtp_seeds},
+    {"surface_vtk", ".vtk", read_surface_as<SurfaceFormat::vtk>, surface_vtk_seeds},
     {"ply", ".ply", read_surface_as<SurfaceFormat::ply>, ply_seeds},
     {"stl", ".stl", read_surface_as<SurfaceFormat::stl>, stl_seeds},
     {"obj", ".obj", read_surface_as<SurfaceFormat::obj>, obj_seeds},

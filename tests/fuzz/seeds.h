@@ -19,6 +19,7 @@ std::vector<std::string> amira_seeds();
 std::vector<std::string> network_seeds();
 
 std::vector<std::string> surface_vtp_seeds();
+std::vector<std::string> surface_vtk_seeds();
 std::vector<std::string> ply_seeds();
 std::vector<std::string> stl_seeds();
 std::vector<std::string> obj_seeds();

@@ -24,6 +24,17 @@ std::string binary_ply() {
   return text;
 }
 
+/// The most significant byte first.
+template <class T>
+std::string big(std::initializer_list<T> values) {
+  std::string text;
+  for (const T value : values) {
+    const std::string little = bytes(value);
+    text.append(little.rbegin(), little.rend());
+  }
+  return text;
+}
+
 std::string binary_stl() {
   std::string text = "SPACE=LPS UNIT=mm";
   text.resize(80, ' ');
@@ -69,6 +80,19 @@ std::vector<std::string> obj_seeds() {
 std::vector<std::string> off_seeds() {
   return {"OFF\n# SPACE=RAS\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n4 0 1 3 2 255 0 0\n",
           "COFF 3 1\n0 0 0 1 1 1\n1 0 0\n0 1 0\n\n3 0 1 2\n"};
+}
+
+std::vector<std::string> surface_vtk_seeds() {
+  const std::string head = "# vtk DataFile Version 4.2\nwall SPACE=LPS\n", kind = "\nDATASET POLYDATA\n";
+  return {head + "ASCII" + kind +
+              "POINTS 6 float\n0 0 0 2 0 0 2 2 0 1 .5 0\n0 2 0 5 5 5\nLINES 1 3\n2 0 5\n"
+              "POLYGONS 2 10\n5 0 1 2 3 4\n3 0 1 5\nTRIANGLE_STRIPS 1 5\n4 0 1 4 5\n"
+              "CELL_DATA 4\nSCALARS GroupIds int 1\nLOOKUP_TABLE default\n7 8 9 10\n"
+              "POINT_DATA 6\nFIELD f 1\nDistance 1 6 float\n1 2 3 4 5 6\n",
+          head + "BINARY" + kind + "POINTS 4 double\n" + big({0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., .5}) +
+              "\nPOLYGONS 3 4\nOFFSETS vtktypeint64\n" + big<std::int64_t>({0, 4, 4}) +
+              "\nCONNECTIVITY vtktypeint64\n" + big<std::int64_t>({0, 1, 2, 3}) + "\nTRIANGLE_STRIPS 1 5\n" +
+              big<std::int32_t>({4, 0, 1, 3, 2}) + "\n"};
 }
 
 std::vector<std::string> surface_vtp_seeds() {

@@ -1,4 +1,7 @@
+#include <cmath>
+#include <numbers>
 #include <set>
+#include <sstream>
 
 #include "vmesh/io/surface_io.h"
 
@@ -112,6 +115,44 @@ TEST(ReadObj, TakesAllKindsOfCorners) {
   EXPECT_EQ(surface.mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 3, 2}}));
   EXPECT_EQ(surface.unit, LengthUnit::cm);
   EXPECT_EQ(surface.warnings.size(), 1u) << "the face with a repeated corner";
+}
+
+std::string obj_polygon(const std::vector<Vec3>& corners) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const Vec3& p : corners) text << "v " << p.x() << " " << p.y() << " " << p.z() << "\n";
+  text << "f";
+  for (std::size_t i = 1; i <= corners.size(); ++i) text << " " << i;
+  text << "\n";
+  return text.str();
+}
+
+// A fan of it would cover four times its area.
+TEST(ReadObj, TriangulatesAConcavePolygonWithinIt) {
+  const Vec3 u = Vec3(1, 2, -1).normalized(), v = u.unitOrthogonal(), normal = u.cross(v);
+  for (const double sense : {1.0, -1.0}) {
+    std::vector<Vec3> star;
+    Vec3 area = Vec3::Zero();
+    for (int i = 0; i < 14; ++i) {
+      const double angle = sense * std::numbers::pi * i / 7, r = i % 2 == 0 ? 0.2 : 3;
+      star.push_back(Vec3(5, 6, 7) + r * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+    for (int i = 0; i < 14; ++i) area += star[i].cross(star[(i + 1) % 14]) / 2;
+    const TriMesh mesh = parse(SurfaceFormat::obj, obj_polygon(star)).mesh;
+    ASSERT_EQ(mesh.faces.size(), 12u);
+    double sum = 0;
+    for (Index f = 0; f < 12; ++f) {
+      EXPECT_GT(sense * area_normal(mesh, f).dot(normal), 0) << f;
+      sum += area_normal(mesh, f).norm() / 2;
+    }
+    EXPECT_NEAR(sum, area.norm(), 1e-12);  // rounding of coordinates of about 10
+  }
+}
+
+TEST(ReadObj, MakesAFanOfAPolygonThatIsNotSimple) {
+  const std::vector<Triangle> fan = {{0, 1, 2}, {0, 2, 3}};
+  EXPECT_EQ(parse(SurfaceFormat::obj, obj_polygon({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}})).mesh.faces, fan);
+  EXPECT_EQ(parse(SurfaceFormat::obj, obj_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}})).mesh.faces, fan);
 }
 
 TEST(ReadObj, NamesTheLineThatIsWrong) {

@@ -2,6 +2,7 @@
 #include <bit>
 
 #include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
 
 #include "io_support.h"
 #include "shared_data.h"
@@ -223,6 +224,45 @@ TEST(SharedData, LegacyVtkIsTheSameCenterlineAsItsVtp) {
     EXPECT_EQ(vtk.path_starts, vtp.path_starts);
     EXPECT_EQ(vtk.segment_numbers, vtp.segment_numbers);
   }
+}
+
+LoadedSurface surface_of(const std::string& text) { return parse_surface(text, SurfaceFormat::vtk, "t.vtk"); }
+
+TEST(ReadLegacyVtkSurface, ReadsPolygonsAndStripsWithWhatBelongsToThem) {
+  const LoadedSurface surface =
+      surface_of(kHeader +
+                 "POINTS 5 float\n0 0 0 1 0 0 1 1 0 0 1 0 2 1 0\nVERTICES 1 2\n1 0\nLINES 1 3\n2 0 1\n"
+                 "POLYGONS 1 4\n3 0 1 2\nTRIANGLE_STRIPS 1 5\n4 3 0 2 4\nPOINT_DATA 5\n"
+                 "SCALARS MaximumInscribedSphereRadius double\nLOOKUP_TABLE default\n1 2 3 4 5.5\n"
+                 "CELL_DATA 4\nFIELD f 2\nGroupIds 1 4 int\n1 2 3 4\nlate 1 3 int\n1 2 3\n");
+  EXPECT_EQ(surface.mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {3, 0, 2}, {2, 0, 4}}));
+  ASSERT_EQ(surface.attributes.vertex.size(), 1u);
+  EXPECT_EQ(surface.attributes.vertex[0].name, "radius");
+  EXPECT_EQ(surface.attributes.vertex[0].values, (std::vector<double>{1, 2, 3, 4, 5.5}));
+  ASSERT_EQ(surface.attributes.face.size(), 1u);
+  EXPECT_EQ(surface.attributes.face[0].name, "group");
+  EXPECT_TRUE(surface.attributes.face[0].integer);
+  EXPECT_EQ(surface.attributes.face[0].values, (std::vector<double>{3, 4, 4}));
+}
+
+TEST(ReadLegacyVtkSurface, ReadsTheBinaryVariant) {
+  const std::string head = "# vtk DataFile Version 5.1\nwall SPACE=RAS\nBINARY\nDATASET POLYDATA\nPOINTS 4 float\n" +
+                           big<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) + "\n";
+  const LoadedSurface old = surface_of(head + "POLYGONS 2 8\n" + big<std::int32_t>({3, 0, 1, 2, 3, 0, 2, 3}) + "\n");
+  const LoadedSurface recent =
+      surface_of(head + "POLYGONS 3 6\nOFFSETS vtktypeint64\n" + big<std::int64_t>({0, 3, 6}) +
+                 "\nCONNECTIVITY vtktypeint64\n" + big<std::int64_t>({0, 1, 2, 0, 2, 3}) + "\n");
+  for (const LoadedSurface& surface : {old, recent}) {
+    EXPECT_EQ(surface.mesh.vertices[2], Vec3(1, 1, 0));
+    EXPECT_EQ(surface.mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_EQ(surface.space, Space::ras);
+  }
+}
+
+TEST(ReadLegacyVtkSurface, RefusesAFileWithoutFaces) {
+  expect_contains(message_of<InvalidInput>([] { surface_of(kFile); }), "no triangle");
+  expect_contains(message_of<InvalidInput>([] { surface_of(kHeader + kPoints + "POLYGONS 1 4\n3 0 1 5\n"); }),
+                  "there is no point 5");
 }
 
 }  // namespace

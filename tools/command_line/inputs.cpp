@@ -10,7 +10,11 @@
 namespace vmesh::tool {
 namespace {
 
-bool is_vtp(const std::filesystem::path& path) { return extension_of(path) == ".vtp"; }
+/// VTK's files may hold a surface or a centerline.
+bool may_be_both(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  return extension == ".vtp" || extension == ".vtk";
+}
 
 bool has_surface_extension(const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
@@ -100,7 +104,7 @@ RawCenterline read_centerline_of(const InputArguments& input) {
     return read_centerline(paths, input.read);
   } catch (const InvalidInput&) {
     for (const std::filesystem::path& path : paths) {
-      if (is_vtp(path) && !holds_centerline(path) && holds_surface(path))
+      if (may_be_both(path) && !holds_centerline(path) && holds_surface(path))
         throw InvalidInput(make_centerline_first(path, "a surface"));
     }
     throw;
@@ -127,7 +131,7 @@ LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
     convert_to_internal(surface, input);
     return surface;
   } catch (const InvalidInput&) {
-    if (is_vtp(input.path) && holds_centerline(input.path))
+    if (may_be_both(input.path) && holds_centerline(input.path))
       throw InvalidInput(make_surface_first(input.path, "a centerline", "generate"));
     throw;
   }
@@ -152,13 +156,13 @@ LoadedImage load_image(const InputArguments& input, Console& console) {
 }
 
 AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said) {
-  if (input.more.empty() && (is_vtp(input.path) || has_surface_extension(input.path))) {
+  if (input.more.empty() && (may_be_both(input.path) || has_surface_extension(input.path))) {
     try {
       LoadedSurface surface = load_surface(input, said);
       warnings.insert(warnings.end(), surface.warnings.begin(), surface.warnings.end());
       return surface;
     } catch (const InvalidInput&) {
-      if (!is_vtp(input.path)) throw;  // a VTP without faces may be a centerline
+      if (!may_be_both(input.path)) throw;  // a file without faces may hold a centerline
     }
   }
   return load_raw_centerline(input, warnings, said);

@@ -50,7 +50,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 void check_format(const PlannedOutput& output) {
   if (output.kind == Kind::summary) return;
-  if (output.kind == Kind::surface) surface_format(output.path);
+  if (output.kind == Kind::surface) surface_output_format(output.path);
   if (output.kind == Kind::centerline) centerline_output_format(output.path);
   const std::string extension = extension_of(output.path);
   if (output.kind == Kind::report && extension != ".txt" && extension != ".md" && extension != ".csv" &&

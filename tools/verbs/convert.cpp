@@ -12,10 +12,10 @@ namespace {
 
 using Kind = PlannedOutput::Kind;
 
-/// What a file of that name holds; nothing for .vtp, which may hold both.
+/// What a file of that name holds; nothing for VTK's, which may hold both.
 std::optional<Kind> kind_of(const std::filesystem::path& path) {
   const auto centerline = find_centerline_format(path);
-  if (centerline == CenterlineFormat::vtp) return std::nullopt;
+  if (centerline == CenterlineFormat::vtp || centerline == CenterlineFormat::vtk) return std::nullopt;
   if (centerline) return Kind::centerline;
   surface_format(path);  // throws Unsupported
   return Kind::surface;

@@ -187,7 +187,7 @@ void check_files(const DeformArguments& arguments) {
   inputs.push_back(arguments.surface.path);
   inputs.push_back(arguments.script);
   check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, inputs);
-  surface_format("frame." + arguments.format);
+  surface_output_format("frame." + arguments.format);
   if (arguments.format == "vtp" && !VMESH_TOOL_WITH_VTK)
     throw Unsupported("this vmesh was built without VTK and cannot write .vtp; choose --format obj");
 }

@@ -37,6 +37,7 @@ LoadedSurface parse_obj(std::string_view content, const std::string& source);
 LoadedSurface parse_stl(std::string_view content, const std::string& source);
 LoadedSurface parse_ply(std::string_view content, const std::string& source);
 LoadedSurface parse_surface_vtp(std::string_view content, const std::string& source);
+LoadedSurface parse_surface_vtk(std::string_view content, const std::string& source);
 
 void write_off(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);
 void write_obj(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);

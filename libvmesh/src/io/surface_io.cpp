@@ -44,13 +44,21 @@ SurfaceFormat surface_format(const std::filesystem::path& path) {
   if (extension == ".stl") return SurfaceFormat::stl;
   if (extension == ".ply") return SurfaceFormat::ply;
   if (extension == ".vtp") return SurfaceFormat::vtp;
-  throw Unsupported(path.string() + ": surfaces are .off, .obj, .stl, .ply or .vtp; \"" + extension +
+  if (extension == ".vtk") return SurfaceFormat::vtk;
+  throw Unsupported(path.string() + ": surfaces are .off, .obj, .stl, .ply, .vtp or .vtk; \"" + extension +
                     "\" is not supported");
+}
+
+SurfaceFormat surface_output_format(const std::filesystem::path& path) {
+  const SurfaceFormat format = surface_format(path);
+  if (format == SurfaceFormat::vtk)
+    throw Unsupported(path.string() + ": legacy VTK files are read, not written; write a .vtp file");
+  return format;
 }
 
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes,
                    const SurfaceMetadata& metadata) {
-  const SurfaceFormat format = surface_format(path);
+  const SurfaceFormat format = surface_output_format(path);
   check(path, mesh, attributes);
   AtomicFile file(path);
   switch (format) {
@@ -69,6 +77,8 @@ void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const
     case SurfaceFormat::vtp:
       io::write_surface_vtp(file.stream(), mesh, attributes, metadata);
       break;
+    case SurfaceFormat::vtk:
+      break;  // refused above
   }
   file.commit();
 }
@@ -85,6 +95,8 @@ LoadedSurface parse_surface(std::string_view content, SurfaceFormat format, cons
       return io::parse_ply(content, source);
     case SurfaceFormat::vtp:
       return io::parse_surface_vtp(content, source);
+    case SurfaceFormat::vtk:
+      return io::parse_surface_vtk(content, source);
   }
   throw Unsupported(source + ": unknown surface format");
 }

@@ -1,6 +1,7 @@
 #include "triangulation.h"
 
 #include "vmesh/core/error.h"
+#include "vmesh/mesh/polygon_triangulation.h"
 
 #include "formats.h"
 
@@ -16,16 +17,23 @@ void FaceCollector::add(const std::vector<std::int64_t>& corners, const std::str
   const auto face = static_cast<Index>(faces_++);
   if (corners.size() > 3) ++polygons_;
   if (corners.size() < 3) ++degenerate_;
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    const Triangle triangle = {static_cast<Index>(corners[0]), static_cast<Index>(corners[i - 1]),
-                               static_cast<Index>(corners[i])};
-    if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
-      ++degenerate_;
-      continue;
-    }
-    surface_.mesh.faces.push_back(triangle);
-    face_of_triangle_.push_back(face);
+  const auto corner = [&](Index i) { return static_cast<Index>(corners[i]); };
+  if (corners.size() == 3 || corners.size() > static_cast<std::size_t>(count)) {  // a triangle, or corners repeat
+    for (Index i = 2; i < corners.size(); ++i) add_triangle({corner(0), corner(i - 1), corner(i)}, face);
+    return;
   }
+  polygon_.clear();
+  for (const std::int64_t c : corners) polygon_.push_back(surface_.mesh.vertices[static_cast<std::size_t>(c)]);
+  for (const auto& [a, b, c] : triangulate_polygon(polygon_)) add_triangle({corner(a), corner(b), corner(c)}, face);
+}
+
+void FaceCollector::add_triangle(const Triangle& triangle, Index face) {
+  if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
+    ++degenerate_;
+    return;
+  }
+  surface_.mesh.faces.push_back(triangle);
+  face_of_triangle_.push_back(face);
 }
 
 void FaceCollector::finish() {

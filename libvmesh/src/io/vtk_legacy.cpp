@@ -1,30 +1,44 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <set>
 
 #include "formats.h"
 #include "number_types.h"
 #include "poly_lines.h"
 #include "text.h"
+#include "triangulation.h"
+#include "vtp_names.h"
 
 namespace vmesh::io {
 namespace {
+
+using Cells = std::vector<std::vector<Index>>;
+
+/// What a file holds.
+struct LegacyVtkData {
+  std::vector<Vec3> points;
+  Cells vertices, lines, polygons, strips;
+  ScalarArrays point_arrays, cell_arrays;
+  std::set<std::string> whole_numbers;  ///< the names of arrays that hold such
+  LengthUnit unit = LengthUnit::unknown;
+  Space space = Space::unknown;
+};
 
 /// Reads the format (VTK File Formats, "Simple Legacy Formats") up to version 5.1. After four lines of header it is a
 /// stream of words; in the binary variant, numbers and texts of arrays are bytes, the most significant first.
 class LegacyVtkReader {
  public:
-  LegacyVtkReader(std::string_view content, const std::string& source, const CenterlineReadOptions& options)
-      : lines_(content), source_(source), options_(options) {}
+  /// `wanted`: what the file should hold, for messages.
+  LegacyVtkReader(std::string_view content, const std::string& source, const char* wanted)
+      : lines_(content), source_(source), wanted_(wanted) {}
 
-  RawCenterline run() {
+  LegacyVtkData run() {
     read_header();
     for (std::string keyword; next_word(keyword);) read_block(keyword);
     if (data_.points.empty()) fail("there is no point in it");
-    RawCenterline raw = to_raw_centerline(data_, source_, {point_arrays_, cell_arrays_}, options_);
-    raw.unit = unit_;
-    raw.space = space_;
-    return raw;
+    return std::move(data_);
   }
 
  private:
@@ -42,7 +56,7 @@ class LegacyVtkReader {
     if (!header_line("the header").starts_with("# vtk DataFile Version")) {
       fail("this is no legacy VTK file: it does not begin with \"# vtk DataFile Version\"");
     }
-    read_tags(header_line("the title"), unit_, space_);  // 3D Slicer puts SPACE=... there
+    read_tags(header_line("the title"), data_.unit, data_.space);  // 3D Slicer puts SPACE=... there
     const std::string format = lower(header_line("the word ASCII or BINARY"));
     binary_ = format == "binary";
     if (!binary_ && format != "ascii") fail("the word ASCII or BINARY should be here, not " + cite(format));
@@ -50,7 +64,7 @@ class LegacyVtkReader {
       fail(cite(keyword) + " stands where DATASET should");
     const std::string kind(word());
     if (lower(kind) != "polydata") {
-      throw Unsupported(source_ + ": this is a data set of the kind " + cite(kind) + "; a centerline is POLYDATA");
+      throw Unsupported(source_ + ": this is a data set of the kind " + cite(kind) + "; " + wanted_ + " is POLYDATA");
     }
   }
 
@@ -160,7 +174,8 @@ class LegacyVtkReader {
     if (keyword == "points") return read_points();
     if (keyword == "lines") return read_cells(data_.lines);
     if (keyword == "vertices") return read_cells(data_.vertices);
-    if (keyword == "polygons" || keyword == "triangle_strips") return skip_cells();
+    if (keyword == "polygons") return read_cells(data_.polygons);
+    if (keyword == "triangle_strips") return read_cells(data_.strips);
     if (keyword == "point_data" || keyword == "cell_data") return begin_attributes(keyword == "point_data");
     if (keyword == "field") return read_field();
     if (keyword == "scalars") return read_scalars();
@@ -172,17 +187,17 @@ class LegacyVtkReader {
     if (!data_.points.empty()) fail("the points were there before");
     const std::size_t size = count(3);
     const std::vector<double> x = numbers(3 * size, type_word());
-    for (std::size_t i = 0; i + 2 < x.size(); i += 3) data_.points.push_back({{x[i], x[i + 1], x[i + 2]}, 0});
+    for (std::size_t i = 0; i + 2 < x.size(); i += 3) data_.points.emplace_back(x[i], x[i + 1], x[i + 2]);
   }
 
-  void read_cells(std::vector<std::vector<Index>>& cells) {
+  void read_cells(Cells& cells) {
     if (!cells.empty()) fail("cells of this kind were there before");
     const std::size_t rows = count(), size = count();
     next_is_or_bytes("offsets") ? read_offset_cells(cells, rows, size) : read_counted_cells(cells, rows, size);
   }
 
   /// Up to version 4: every cell is its number of points and the points; `size` counts all these numbers.
-  void read_counted_cells(std::vector<std::vector<Index>>& cells, std::size_t rows, std::size_t size) {
+  void read_counted_cells(Cells& cells, std::size_t rows, std::size_t size) {
     if (binary_) return read_counted_cells(cells, rows, numbers(size, "int"));
     std::size_t read = 0;
     for (std::size_t c = 0; c < rows; ++c) {
@@ -195,7 +210,7 @@ class LegacyVtkReader {
     if (read != size) fail_of_cells(size);
   }
 
-  void read_counted_cells(std::vector<std::vector<Index>>& cells, std::size_t rows, const std::vector<double>& all) {
+  void read_counted_cells(Cells& cells, std::size_t rows, const std::vector<double>& all) {
     std::size_t read = 0;
     for (std::size_t c = 0; c < rows && read < all.size(); ++c) {
       const double points = all[read++];
@@ -211,7 +226,7 @@ class LegacyVtkReader {
   }
 
   /// From version 5: where every cell begins, and the end, in a list of points.
-  void read_offset_cells(std::vector<std::vector<Index>>& cells, std::size_t rows, std::size_t size) {
+  void read_offset_cells(Cells& cells, std::size_t rows, std::size_t size) {
     std::vector<std::size_t> offsets;
     for (const double offset : numbers(rows, array_head("offsets"))) {
       const std::size_t least = offsets.empty() ? 0 : offsets.back();
@@ -251,11 +266,6 @@ class LegacyVtkReader {
     return static_cast<Index>(index);
   }
 
-  void skip_cells() {
-    std::vector<std::vector<Index>> cells;
-    read_cells(cells);
-  }
-
   void begin_attributes(bool of_points) {
     tuples_ = count();
     of_ = of_points ? Of::points : Of::cells;
@@ -292,7 +302,7 @@ class LegacyVtkReader {
     std::string_view line;
     for (std::size_t i = 0; i < lines; ++i) {
       if (!lines_.next(line)) fail("the file ends too early; it is cut off, get the whole file");
-      if (i == 0) read_tags(name + "=" + std::string(trim(line)), unit_, space_);
+      if (i == 0) read_tags(name + "=" + std::string(trim(line)), data_.unit, data_.space);
     }
     fields_.clear();
     field_ = 0;
@@ -308,7 +318,7 @@ class LegacyVtkReader {
       length &= (std::uint64_t{1} << ((64u >> kind) - 2)) - 1;
       if (length > lines_.rest().size()) fail("the file ends too early; it is cut off, get the whole file");
       const std::string_view text = bytes(static_cast<std::size_t>(length));
-      if (i == 0) read_tags(name + "=" + std::string(text), unit_, space_);
+      if (i == 0) read_tags(name + "=" + std::string(text), data_.unit, data_.space);
     }
   }
 
@@ -327,8 +337,9 @@ class LegacyVtkReader {
   void read_numbers(const std::string& name, std::size_t components, std::size_t tuples, const std::string& type) {
     std::vector<double> values = numbers(components * tuples, type);
     if (of_ == Of::nothing) return;
-    auto& arrays = of_ == Of::points ? point_arrays_ : cell_arrays_;
+    auto& arrays = of_ == Of::points ? data_.point_arrays : data_.cell_arrays;
     const bool is_scalar = components == 1 && tuples == tuples_ && values.size() == tuples;
+    if (type != "float" && type != "double") data_.whole_numbers.insert(name);
     arrays[name] = is_scalar ? std::move(values) : std::vector<double>();
   }
 
@@ -376,24 +387,66 @@ class LegacyVtkReader {
 
   LineReader lines_;
   const std::string& source_;
-  const CenterlineReadOptions& options_;
+  const std::string wanted_;
   bool binary_ = false;
   std::vector<std::string_view> fields_;  ///< of the line at hand
   std::size_t field_ = 0;                 ///< the next of them
-  LengthUnit unit_ = LengthUnit::unknown;
-  Space space_ = Space::unknown;
-  PolyLines data_;
+  LegacyVtkData data_;
   enum class Of { nothing, points, cells };
   Of of_ = Of::nothing;     ///< what the attributes at hand belong to
   std::size_t tuples_ = 0;  ///< how many of that there are
-  ScalarArrays point_arrays_, cell_arrays_;
 };
+
+/// Of the arrays with as many numbers as there are elements, those of the elements `kept`.
+template <class Names>
+std::vector<MeshAttribute> attributes_of(const ScalarArrays& arrays, const LegacyVtkData& data, const Names& names,
+                                         std::size_t count, const std::vector<std::size_t>& kept) {
+  std::vector<MeshAttribute> result;
+  for (const auto& [name, values] : arrays) {
+    if (values.size() != count) continue;
+    MeshAttribute attribute{from_vtk(names, name), {}, data.whole_numbers.contains(name)};
+    attribute.values.reserve(kept.size());
+    for (const std::size_t i : kept) attribute.values.push_back(values[i]);
+    result.push_back(std::move(attribute));
+  }
+  return result;
+}
 
 }  // namespace
 
 RawCenterline parse_centerline_vtk(std::string_view content, const std::string& source,
                                    const CenterlineReadOptions& options) {
-  return LegacyVtkReader(content, source, options).run();
+  LegacyVtkData data = LegacyVtkReader(content, source, "a centerline").run();
+  PolyLines lines;
+  for (const Vec3& point : data.points) lines.points.push_back({point, 0});
+  lines.lines = std::move(data.lines);
+  lines.vertices = std::move(data.vertices);
+  RawCenterline raw = to_raw_centerline(std::move(lines), source, {data.point_arrays, data.cell_arrays}, options);
+  raw.unit = data.unit;
+  raw.space = data.space;
+  return raw;
+}
+
+LoadedSurface parse_surface_vtk(std::string_view content, const std::string& source) {
+  LegacyVtkData data = LegacyVtkReader(content, source, "a surface").run();
+  LoadedSurface surface;
+  surface.unit = data.unit;
+  surface.space = data.space;
+  surface.mesh.vertices = std::move(data.points);
+  FaceCollector faces(surface, source);
+  const std::size_t first_cell = data.vertices.size() + data.lines.size();
+  const std::vector<std::size_t> cell_of_face = faces.add_cells(data.polygons, data.strips, first_cell);
+  faces.finish();
+  const std::size_t count = surface.mesh.vertices.size(),
+                    cells = first_cell + data.polygons.size() + data.strips.size();
+  std::vector<std::size_t> kept(count);
+  std::iota(kept.begin(), kept.end(), 0);
+  surface.attributes.vertex = attributes_of(data.point_arrays, data, kPointNames, count, kept);
+  kept.clear();
+  for (const Index f : faces.face_of_triangle()) kept.push_back(cell_of_face[f]);
+  surface.attributes.face = attributes_of(data.cell_arrays, data, kCellNames, cells, kept);
+  warn_without_tags(surface, source);
+  return surface;
 }
 
 }  // namespace vmesh::io

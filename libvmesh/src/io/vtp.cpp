@@ -207,26 +207,6 @@ std::vector<MeshAttribute> attributes_of(const VtpArrayList& list, const Names& 
   return result;
 }
 
-/// Adds polygons and strips; the cell that every face added comes from.
-std::vector<std::size_t> add_faces(const VtpData& data, FaceCollector& faces) {
-  std::vector<std::size_t> cell_of_face;
-  const std::size_t first_cell = data.vertices.size() + data.lines.size();
-  for (std::size_t c = 0; c < data.polygons.size(); ++c) {
-    const auto polygon = data.polygons[c];
-    cell_of_face.push_back(first_cell + c);
-    faces.add({polygon.begin(), polygon.end()}, "polygon " + std::to_string(c));
-  }
-  for (std::size_t c = 0; c < data.strips.size(); ++c) {
-    const auto strip = data.strips[c];
-    for (std::size_t i = 2; i < strip.size(); ++i) {
-      cell_of_face.push_back(first_cell + data.polygons.size() + c);
-      const bool odd = i % 2 == 1;
-      faces.add({strip[i - (odd ? 1 : 2)], strip[i - (odd ? 2 : 1)], strip[i]}, "strip " + std::to_string(c));
-    }
-  }
-  return cell_of_face;
-}
-
 }  // namespace
 
 RawCenterline parse_centerline_vtp(std::string_view content, const std::string& source,
@@ -252,7 +232,8 @@ LoadedSurface parse_surface_vtp(std::string_view content, const std::string& sou
   surface.space = data.space;
   surface.mesh.vertices = std::move(data.points);
   FaceCollector faces(surface, source);
-  const std::vector<std::size_t> cell_of_face = add_faces(data, faces);
+  const std::vector<std::size_t> cell_of_face =
+      faces.add_cells(data.polygons, data.strips, data.vertices.size() + data.lines.size());
   faces.finish();
   std::vector<std::size_t> kept(surface.mesh.vertices.size());
   for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = i;

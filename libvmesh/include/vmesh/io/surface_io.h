@@ -10,10 +10,13 @@
 
 namespace vmesh {
 
-enum class SurfaceFormat { off, obj, stl, ply, vtp };
+enum class SurfaceFormat { off, obj, stl, ply, vtp, vtk };
 
 /// By the file's extension, upper or lower case. Throws Unsupported, with the extensions that are.
 SurfaceFormat surface_format(const std::filesystem::path& path);
+
+/// The same for a file to be written; legacy VTK files (.vtk) are read only.
+SurfaceFormat surface_output_format(const std::filesystem::path& path);
 
 /// Where a surface comes from; written as comments or field data where the format has room (all but STL; STL has 80
 /// bytes for frame, unit and generator).
@@ -39,17 +42,16 @@ void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const
 
 struct LoadedSurface {
   TriMesh mesh;
-  MeshAttributes attributes;              ///< of PLY and VTP files, under the names write_surface() takes
+  MeshAttributes attributes;              ///< of PLY, VTP and VTK files, under the names write_surface() takes
   LengthUnit unit = LengthUnit::unknown;  ///< as tagged in the file; positions are not converted
   Space space = Space::unknown;           ///< as tagged in the file; positions are not converted
   std::vector<std::string> warnings;      ///< what was left out or changed
 };
 
-/// Reads a surface by extension. Polygons become fans of triangles, lines and loose points are left out, equal corners
-/// of an STL file become one vertex. It takes at most 128 times as much memory as the file is large (packed VTP: as its
-/// data are unpacked) and a megabyte, whatever the file says.
-/// Throws ReadError (missing, a directory, unreadable), InvalidInput (content; also when there is no face at all),
-/// Unsupported.
+/// Reads a surface by extension. Polygons are triangulated (triangulate_polygon()), lines and loose points are left
+/// out, equal corners of an STL file become one vertex. It takes at most 128 times as much memory as the file is large
+/// (packed VTP: as its data are unpacked) and a megabyte, whatever the file says. Throws ReadError (missing, a
+/// directory, unreadable), InvalidInput (content; also when there is no face at all), Unsupported.
 LoadedSurface read_surface(const std::filesystem::path& path);
 
 /// The same from memory; `source` names it in messages.
