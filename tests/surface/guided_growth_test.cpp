@@ -1,8 +1,11 @@
 // Guided growth on graphs of every shape that its construction tells apart.
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/flat_ends.h"
 #include "vmesh/surface/generate.h"
 
 #include "centerlines.h"
@@ -243,6 +246,96 @@ TEST(OpenEnds, StayClosedWhereOtherVesselsCoverThem) {
   EXPECT_EQ(result.openings.size(), 2u);
   ASSERT_FALSE(result.warnings.empty());
   EXPECT_NE(result.warnings[0].message.find("node 3"), std::string::npos) << result.warnings[0].message;
+}
+
+class FlatEndsOf : public ::testing::TestWithParam<int> {
+ protected:
+  static GenerateResult open_fork() {
+    GenerateOptions options;
+    options.around = GetParam();
+    options.open_ends.all = true;
+    return generate_surface(fork(), options);
+  }
+};
+
+TEST_P(FlatEndsOf, AForkAreCappedByGoodTrianglesOfTheVesselsCrossSection) {
+  const Centerline centerline = fork();
+  GenerateResult result = open_fork();
+  const std::size_t wall = result.mesh.faces.size();
+  const FlatEnds flat = finish_ends(result, centerline);
+  EXPECT_TRUE(result.is_sound() && result.openings.empty());
+  EXPECT_EQ(result.binding.size(), result.mesh.vertices.size());
+  EXPECT_EQ(result.radius.size(), result.mesh.vertices.size());
+  const Topology topology = measure_topology(result.mesh);
+  EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented && topology.outward);
+  EXPECT_EQ(topology.genus, 0);
+  EXPECT_TRUE(self_intersections(result.mesh).empty());
+  ASSERT_EQ(flat.cap_label.size(), result.mesh.faces.size());
+  EXPECT_EQ(std::count(flat.cap_label.begin(), flat.cap_label.end(), 0u), static_cast<std::ptrdiff_t>(wall));
+  ASSERT_EQ(flat.ends.size(), 3u);
+  const std::vector<double> skewness = equiangle_skewness(result.mesh);
+  for (std::size_t i = 0; i < flat.ends.size(); ++i) {
+    const FlatEnd& end = flat.ends[i];
+    EXPECT_EQ(end.label, i + 1);
+    EXPECT_TRUE(end.capped);
+    const CenterlineNode& node = centerline.node(end.node);
+    EXPECT_NEAR(end.area, std::numbers::pi * node.radius * node.radius, 1e-9);
+    EXPECT_LT((end.center - node.position).norm(), 0.01 * node.radius);
+    Vec3 area = Vec3::Zero();
+    for (Index f = 0; f < flat.cap_label.size(); ++f) {
+      if (flat.cap_label[f] != end.label) continue;
+      EXPECT_GT(area_normal(result.mesh, f).normalized().dot(end.normal), 1 - 1e-9) << f;
+      EXPECT_LT(skewness[f], 0.5) << f;  // what walls that grew well reach
+      area += area_normal(result.mesh, f) / 2;
+    }
+    EXPECT_LT((area - end.area * end.normal).norm(), 1e-9);
+  }
+}
+
+TEST_P(FlatEndsOf, AForkGoOnStraight) {
+  const Centerline centerline = fork();
+  GenerateResult result = open_fork();
+  FlatEndOptions options;
+  options.extension = 4;
+  options.left_open = {result.openings[1].node};
+  const FlatEnds flat = finish_ends(result, centerline, options);
+  EXPECT_TRUE(result.is_sound());
+  ASSERT_EQ(result.openings.size(), 1u);
+  EXPECT_EQ(measure_topology(result.mesh).boundary_edges, result.openings[0].ring.size());
+  EXPECT_LE(summarize_skewness(result.mesh).max, 0.70);
+  for (const FlatEnd& end : flat.ends) {
+    const CenterlineNode& node = centerline.node(end.node);
+    EXPECT_EQ(end.capped, end.node != options.left_open[0]);
+    EXPECT_LT((end.center - node.position - 4 * node.radius * end.normal).norm(), 0.01 * node.radius);
+    EXPECT_NEAR(end.area, std::numbers::pi * node.radius * node.radius, 1e-9);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Resolutions, FlatEndsOf, ::testing::Values(3, 4, 6, 9, 16, 40));
+
+TEST(FlatEnds, KeepTheirNumbersWhicheverAreCapped) {
+  GenerateOptions options;
+  options.open_ends.nodes = {5};
+  GenerateResult result = generate_surface(fork(), options);
+  const FlatEnds flat = finish_ends(result, fork());
+  ASSERT_EQ(flat.ends.size(), 1u);
+  EXPECT_EQ(flat.ends[0].label, 3u);
+}
+
+// Two vessels end opposite each other: tubes that go on from there cross.
+TEST(FlatEnds, ThatRunIntoAVesselAreDefects) {
+  const Centerline centerline({{{0, 0, 0}, 1}, {{10, 0, 0}, 1}, {{14, 0, 0}, 1}, {{24, 0, 0}, 1}}, {{0, 1}, {2, 3}});
+  GenerateOptions open;
+  open.open_ends.all = true;
+  GenerateResult result = generate_surface(centerline, open);
+  ASSERT_TRUE(result.is_sound());
+  FlatEndOptions options;
+  options.extension = 5;
+  finish_ends(result, centerline, options);
+  ASSERT_FALSE(result.is_sound());
+  EXPECT_EQ(result.defects[0].kind, DefectKind::crossing_faces);
+  options.extension = -1;
+  EXPECT_THROW(finish_ends(result, centerline, options), InvalidInput);
 }
 
 }  // namespace

@@ -67,6 +67,46 @@ TEST_F(Generate, FacesKnowTheirBranch) {
   }
 }
 
+TEST_F(Generate, CapsEndsForFlow) {
+  const std::string name = VMESH_TEST_WITH_VTK ? "y.vtp" : "y.ply";
+  const Outcome run = vmesh({"generate", "@y.swc", "-o", "@" + name, "--ends", "flat", "--flow-extensions", "3",
+                             "--json", "@y.json", "--check"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const LoadedSurface surface = read_surface(path(name));
+  ASSERT_EQ(surface.attributes.face.size(), 4u);
+  const auto &face = surface.attributes.face[2], &cap = surface.attributes.face[3];
+  EXPECT_EQ(face.name, "ModelFaceID");
+  EXPECT_EQ(cap.name, "CapID");
+  EXPECT_TRUE(face.integer && cap.integer);
+  const json caps = json::parse(read("y.json")).at("caps");
+  ASSERT_EQ(caps.size(), 3u);
+  for (const json& listed : caps) {
+    double area = 0;
+    for (Index f = 0; f < surface.mesh.faces.size(); ++f) {
+      if (face.values[f] != listed.at("model_face_id").get<double>()) continue;
+      EXPECT_EQ(cap.values[f], listed.at("cap_id").get<double>());
+      area += area_normal(surface.mesh, f).norm() / 2;
+    }
+    EXPECT_NEAR(area, listed.at("area_mm2").get<double>(), 1e-9 * area);
+  }
+  for (Index f = 0; f < surface.mesh.faces.size(); ++f) EXPECT_EQ(face.values[f] == 1, cap.values[f] == -1);
+}
+
+TEST_F(Generate, LeavesEndsOpenBesideFlatOnes) {
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply", "--ends", "flat", "--open-ends", "0", "--json", "@y.json"})
+                .exit_code,
+            0);
+  std::size_t open = 0;
+  for (const json& cap : json::parse(read("y.json")).at("caps")) {
+    EXPECT_EQ(cap.at("capped"), cap.at("node") != 0);
+    open += cap.at("capped") ? 0 : 1;
+  }
+  EXPECT_EQ(open, 1u);
+  EXPECT_EQ(vmesh({"generate", "@y.swc", "-o", "@z.ply", "--ends", "flat", "--open-ends", "1"}).exit_code, 3);
+  EXPECT_EQ(vmesh({"generate", "@y.swc", "-o", "@z.ply", "--flow-extensions", "3"}).exit_code, 2);
+  EXPECT_FALSE(exists("z.ply"));
+}
+
 TEST_F(Generate, SummaryTellsWhatCameOut) {
   const Outcome run = vmesh({"generate", "@y.swc", "-o", "@y.ply", "--json", "@y.json", "--beta", "0.25"});
   ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -28,6 +28,7 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate tree.swc -o game.obj --budget vertices=5000
   vmesh generate portal.swc -o portal.ply --fit liver.nii.gz --label 2 --spacing 1 --smooth 1
   vmesh generate liver.nii.gz --label 2 --spacing 1 --smooth 1 --tree -o portal.ply --centerline-output portal.swc
+  vmesh generate aorta.vtp -o aorta-flow.vtp --ends flat --flow-extensions 5 --json caps.json
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
@@ -62,6 +63,39 @@ OpenEnds parse_open_ends(const std::string& text) {
     ends.nodes.push_back(node);
   }
   return ends;
+}
+
+void add_ends(CLI::App& verb, GenerateArguments& arguments) {
+  verb.add_option_function<std::string>(
+          "--ends",
+          [&arguments](const std::string& text) {
+            arguments.ends = text == "flat" ? EndShape::flat : text == "open" ? EndShape::open : EndShape::round;
+          },
+          "how vessels end: round; flat: closed by flat caps, numbered for flow solvers (ModelFaceID, CapID in .vtp "
+          "and .ply); open: not closed")
+      ->check(CLI::IsMember({"round", "flat", "open"}))
+      ->default_str("round");
+  verb.add_option_function<std::string>(
+          "--open-ends", [&arguments](const std::string& text) { arguments.options.open_ends = parse_open_ends(text); },
+          "leave the surface open at these ends of the centerline, whatever --ends says: all, or node numbers as in "
+          "the summary, separated by commas")
+      ->type_name("all|N,N,...");
+  verb.add_option("--flow-extensions", arguments.flow_extension,
+                  "length of straight tubes that go on from ends that are not round, in radii; 0: none")
+      ->check(in_range(0.0, 1000.0))
+      ->capture_default_str();
+}
+
+/// With --ends flat or open all ends are grown open; `left_open` are those to stay so.
+GenerateArguments settled(GenerateArguments arguments) {
+  OpenEnds& open = arguments.options.open_ends;
+  if (arguments.flow_extension > 0 && arguments.ends == EndShape::round && !open.all && open.nodes.empty())
+    throw UsageError("--flow-extensions needs ends to go on from: --ends flat, or --ends open");
+  if (arguments.ends == EndShape::round) return arguments;
+  if (open.all) arguments.ends = EndShape::open;
+  arguments.left_open = std::move(open.nodes);
+  open = {true, {}};
+  return arguments;
 }
 
 // What the presets stand for can be overridden by its own option, wherever that is on the line.
@@ -122,11 +156,7 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "inscribed: vertices on the boundary; balanced: lifted off it, so that volume is kept")
       ->check(CLI::IsMember({"inscribed", "balanced"}))
       ->default_str("balanced");
-  verb.add_option_function<std::string>(
-          "--open-ends", [&arguments](const std::string& text) { arguments.options.open_ends = parse_open_ends(text); },
-          "leave the surface open at these ends of the centerline: all, or node numbers as in the summary, "
-          "separated by commas")
-      ->type_name("all|N,N,...");
+  add_ends(verb, arguments);
   verb.add_option("--threads", arguments.options.threads, "to work on; 0: as many as there are; the result is the same")
       ->check(in_range(0, 4096))
       ->capture_default_str();
@@ -155,7 +185,8 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   add_extraction(verb, arguments.extraction);
   add_common(verb, arguments.common);
   group(verb, "Resolution", {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification"});
-  group(verb, "Shape", {"--blend", "--placement", "--open-ends", "--overlap", "--gap"});
+  group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
+  group(verb, "Ends", {"--ends", "--open-ends", "--flow-extensions"});
   group(verb, "How it is made", {"--growth", "--beta", "--max-center-distance", "--sweeps", "--threads"});
   group(verb, "Checks", {"--check", "--allow-defects"});
   verb.footer(kGenerateExamples);
@@ -319,6 +350,10 @@ std::string_view to_string(OverlapHandling overlap) {
   return overlap == OverlapHandling::separate ? "separate" : "keep";
 }
 
+std::string_view to_string(EndShape shape) {
+  return shape == EndShape::flat ? "flat" : shape == EndShape::open ? "open" : "round";
+}
+
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int& exit_code) {
   CLI::App app("vmesh turns vessel centerlines into surfaces.", "vmesh");
   app.set_version_flag("--version", "vmesh " + std::string(version()));
@@ -367,7 +402,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
     for (std::string line; std::getline(lines, line);) std::cerr << printable(line) << "\n";
     return std::nullopt;
   }
-  if (app.got_subcommand("generate")) return generate;
+  if (app.got_subcommand("generate")) return settled(generate);
   if (app.got_subcommand("info")) return info;
   if (app.got_subcommand("synth")) return synth;
   if (app.got_subcommand("convert")) return convert;

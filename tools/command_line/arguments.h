@@ -42,6 +42,11 @@ enum class OverlapHandling { keep, separate };
 
 std::string_view to_string(OverlapHandling overlap);
 
+/// How vessels end: in a hemisphere, a flat cap, or a hole.
+enum class EndShape { round, flat, open };
+
+std::string_view to_string(EndShape shape);
+
 /// What a surface is fitted to, and how.
 struct FittingArguments {
   InputArguments reference;  ///< surface or image; empty path: none
@@ -56,9 +61,12 @@ struct GenerateArguments {
   GenerateOptions options;
   std::optional<Budget> budget;  ///< chooses options.around, and max_error for a budget of error
   OverlapHandling overlap = OverlapHandling::separate;
-  double gap = 0.1;            ///< vessels closer than this times the smaller radius count as touching
-  bool check = false;          ///< exit code 1 unless the surface is flawless
-  bool allow_defects = false;  ///< a surface that is not sound is written all the same
+  double gap = 0.1;  ///< vessels closer than this times the smaller radius count as touching
+  EndShape ends = EndShape::round;
+  std::vector<Index> left_open;  ///< nodes of --open-ends beside --ends
+  double flow_extension = 0;     ///< length of tubes at ends that are not round, in radii
+  bool check = false;            ///< exit code 1 unless the surface is flawless
+  bool allow_defects = false;    ///< a surface that is not sound is written all the same
   FittingArguments fitting;  ///< of the surface that was grown; the image's options are the input's without a reference
   ExtractOptions extraction;                ///< of the centerline, from an input that is an image
   std::filesystem::path centerline_output;  ///< for it; empty: none

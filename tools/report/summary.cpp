@@ -48,6 +48,8 @@ Json options_json(const GenerateArguments& arguments) {
   json["max_error"] = to_json(arguments.options.max_error);
   json["overlap"] = to_string(arguments.overlap);
   json["gap"] = arguments.gap;
+  json["ends"] = to_string(arguments.ends);
+  json["flow_extensions"] = arguments.flow_extension;
   json["unit"] = arguments.input.unit ? Json(to_string(*arguments.input.unit)) : Json();
   json["space"] = arguments.input.space ? Json(to_string(*arguments.input.space)) : Json();
   return json;
@@ -266,6 +268,7 @@ Json to_json(const GenerateReport& report) {
   json["topology"]["expected_components"] = expected.components;
   json["topology"]["expected_genus"] = expected.genus;
   json["openings"] = openings_json(*report.result);
+  json["caps"] = caps_json(report.ends);
   json["growth"] = arguments.options.growth == GrowthMethod::guided ? to_json(report.result->growth) : Json();
   json["nodes_inside"] = report.nodes_inside ? Json(*report.nodes_inside) : Json();
   json["nodes_inside_of"] = {{"centerline", measured_centerline(report)}, {"nodes", report.grown_nodes}};
@@ -314,6 +317,20 @@ Json openings_json(const GenerateResult& result) {
   return json;
 }
 
+Json caps_json(const FlatEnds& ends) {
+  Json json = Json::array();
+  for (const FlatEnd& end : ends.ends) {
+    json.push_back({{"cap_id", end.label},
+                    {"model_face_id", end.label + 1},
+                    {"node", end.node},
+                    {"center", to_json(end.center)},
+                    {"normal", to_json(end.normal)},
+                    {"area_mm2", end.area},
+                    {"capped", end.capped}});
+  }
+  return json;
+}
+
 Json to_json(const GrowthSummary& growth) {
   Json simplifications = Json::array();
   for (const GrowthSimplification& s : growth.simplifications) {
@@ -344,9 +361,12 @@ std::string describe(const GenerateArguments& arguments) {
   const GenerateOptions& options = arguments.options;
   text << " --growth " << to_string(options.growth) << " --placement " << to_string(options.placement);
   if (options.max_error.is_set()) text << " --max-error " << to_string(options.max_error);
-  if (options.open_ends.all) text << " --open-ends all";
-  for (std::size_t i = 0; i < options.open_ends.nodes.size(); ++i)
-    text << (i == 0 ? " --open-ends " : ",") << options.open_ends.nodes[i];
+  const bool round = arguments.ends == EndShape::round;
+  if (!round) text << " --ends " << to_string(arguments.ends);
+  if (round && options.open_ends.all) text << " --open-ends all";
+  const std::vector<Index>& open = round ? options.open_ends.nodes : arguments.left_open;
+  for (std::size_t i = 0; i < open.size(); ++i) text << (i == 0 ? " --open-ends " : ",") << open[i];
+  if (arguments.flow_extension > 0) text << " --flow-extensions " << exact_text(arguments.flow_extension);
   text << " --overlap " << to_string(arguments.overlap) << " --gap " << exact_text(arguments.gap);
   const std::filesystem::path& reference = arguments.fitting.reference.path;
   if (!reference.empty()) text << " --fit " << reference.string();

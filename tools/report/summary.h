@@ -7,6 +7,7 @@
 #include "vmesh/centerline/cleaning.h"
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/surface/deviation.h"
+#include "vmesh/surface/flat_ends.h"
 #include "vmesh/volume/contacts.h"
 
 #include "command_line/arguments.h"
@@ -25,6 +26,7 @@ struct GenerateReport {
   std::vector<Contact> contacts;               ///< of the cleaned centerline
   std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed or moved
   const GenerateResult* result = nullptr;
+  FlatEnds ends;                      ///< those that are not round
   std::vector<OperatingPoint> tried;  ///< for a budget
   SurfaceMeasurement measurement;
   std::size_t grown_nodes = 0;              ///< of the centerline that was grown: with those a separation added
@@ -44,6 +46,7 @@ Json to_json(const CleaningReport& report);
 Json to_json(const GrowthSummary& growth);
 Json to_json(const ExtractionReport& report);
 Json openings_json(const GenerateResult& result);
+Json caps_json(const FlatEnds& ends);
 Json to_json(const SurfaceMeasurement& measurement);
 Json generator_json();
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "vmesh/centerline/branches.h"
+#include "vmesh/fit/flat_reference.h"
 #include "vmesh/io/sha256.h"
 #include "vmesh/surface/branch_labels.h"
 #include "vmesh/volume/vessel_field.h"
@@ -27,6 +28,17 @@ std::string number(double value, int digits = 3) {
 }
 
 std::string percent(double share) { return number(100 * share, 0) + " %"; }
+
+/// As SimVascular has them: the wall is face 1, and no cap.
+void add_cap_labels(const FlatEnds& ends, MeshAttributes& attributes) {
+  MeshAttribute face{"ModelFaceID", {}, true}, cap{"CapID", {}, true};
+  for (const Index label : ends.cap_label) {
+    face.values.push_back(1.0 + label);
+    cap.values.push_back(label > 0 ? label : -1.0);
+  }
+  attributes.face.push_back(std::move(face));
+  attributes.face.push_back(std::move(cap));
+}
 
 std::string text_of(const Vec3& p) { return "(" + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()) + ")"; }
 
@@ -297,6 +309,14 @@ void check_input(const GenerateArguments& arguments) {
     throw UsageError("--label, --threshold, --spacing and --smooth are for images; none is given");
 }
 
+void check_left_open(const GenerateArguments& arguments, const Centerline& centerline) {
+  for (const Index n : arguments.left_open) {
+    if (n >= centerline.nodes().size() || centerline.degree(n) != 1)
+      throw InvalidInput(arguments.input.path.string() + ": node " + std::to_string(n) +
+                         " cannot be left open: it is not an end of the centerline");
+  }
+}
+
 /// With a reference, a budget is the fit's: of vertices or of the distance to the reference.
 void apply_budget_to_fit(GenerateArguments& arguments) {
   FittingArguments& fitting = arguments.fitting;
@@ -326,17 +346,20 @@ bool fit(GenerateReport& report, GenerateResult& result, const Centerline& cente
          Console& console) {
   Stopwatch watch;
   const FittingArguments& fitting = report.arguments->fitting;
-  report.fit = naming(fit_reference(*report.arguments),
-                      [&] { return fit_surface(result, centerline, reference, fitting.options, console.progress()); });
+  report.fit = naming(fit_reference(*report.arguments), [&] {
+    const FlatReference flat = end_at_caps(result, reference);
+    FitReport fitted = fit_surface(result, centerline, flat.mesh, fitting.options, console.progress());
+    match_cap_areas(result, centerline, flat.caps);
+    return fitted;
+  });
   log_fit(*report.fit, report.warnings, console);
   report.stages.push_back({"fit", watch.lap()});
   return keeps_error(*report.fit, fitting.options.error, report.warnings, console);
 }
 
-/// Fills in what is measured of the surface around `grown` and what is wrong with it.
-void measure(GenerateReport& report, const Centerline& grown, Console& console) {
+/// Fills in how far the surface around `grown` is from its vessels.
+void measure_distance(GenerateReport& report, const Centerline& grown) {
   const GenerateResult& result = *report.result;
-  report.measurement = measurement_of(result);
   stop_if_interrupted();
   const GenerateOptions& options = report.arguments->options;
   const VesselField field(grown, options.blend);
@@ -344,6 +367,25 @@ void measure(GenerateReport& report, const Centerline& grown, Console& console) 
   if (!report.arguments->common.json.empty())  // nothing else tells of it
     report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown), options.threads);
   stop_if_interrupted();
+}
+
+/// Caps and extends ends, whose nodes are those of the original centerline.
+void finish_ends(GenerateReport& report, GenerateResult& result) {
+  const GenerateArguments& arguments = *report.arguments;
+  const Centerline& centerline = report.cleaned->centerline;
+  if (result.openings.empty() && arguments.ends == EndShape::round) return;
+  FlatEndOptions options;
+  options.cap = arguments.ends == EndShape::flat;
+  options.left_open = arguments.left_open;
+  options.extension = arguments.flow_extension;
+  options.keep_area = !report.fit && arguments.options.placement == Placement::balanced;
+  report.ends = vmesh::finish_ends(result, centerline, options);
+}
+
+/// Fills in what the surface around `grown` is like and what is wrong with it.
+void judge(GenerateReport& report, const Centerline& grown, Console& console) {
+  const GenerateResult& result = *report.result;
+  report.measurement = measurement_of(result);
   report.grown_nodes = grown.nodes().size();
   report.nodes_inside = result.check.nodes_inside;
   // A vessel that is not round may leave its axis outside.
@@ -376,10 +418,11 @@ void refuse(const GenerateReport& report, Console& console) {
 void write(const GenerateReport& report) {
   const GenerateArguments& arguments = *report.arguments;
   const GenerateResult& result = *report.result;
-  write_surface(
-      arguments.output, result.mesh,
-      surface_attributes(result.mesh, result.binding, result.radius, result.openings, report.cleaned->centerline),
-      {generator_name(), describe(arguments), file_name_of(arguments.input), report.input_sha256});
+  MeshAttributes attributes =
+      surface_attributes(result.mesh, result.binding, result.radius, result.openings, report.cleaned->centerline);
+  if (!report.ends.ends.empty()) add_cap_labels(report.ends, attributes);
+  write_surface(arguments.output, result.mesh, attributes,
+                {generator_name(), describe(arguments), file_name_of(arguments.input), report.input_sha256});
 }
 
 }  // namespace
@@ -415,6 +458,7 @@ int run(const GenerateArguments& given, Console& console) {
   stop_if_interrupted();
 
   append(report.warnings, loaded.warnings);
+  check_left_open(arguments, loaded.cleaned.centerline);
   const std::optional<SimplifiedCenterline> simplified = simplify(loaded.cleaned.centerline, arguments, console);
   const Centerline& original = simplified ? simplified->centerline : loaded.cleaned.centerline;
   const std::optional<SeparatedCenterline> separated = handle_contacts(report, original, console);
@@ -450,7 +494,7 @@ int run(const GenerateArguments& given, Console& console) {
   if (reference && result.is_sound()) kept_budget &= fit(report, result, centerline, *reference, console);
 
   watch.lap();
-  measure(report, centerline, console);
+  measure_distance(report, centerline);
   if (separated) {
     result.binding = original_binding(result.binding, *separated, original);
     renumber(result.growth, *separated, original);
@@ -460,7 +504,9 @@ int run(const GenerateArguments& given, Console& console) {
     vmesh::refer_to_original(*simplified, result);
     refer_to_original(*simplified, report);
   }
+  finish_ends(report, result);
   name_nodes(result.defects, loaded);
+  judge(report, centerline, console);
   report.stages.push_back({"measure", watch.lap()});
   if (!result.is_sound() && !arguments.allow_defects) {
     refuse(report, console);

@@ -42,10 +42,14 @@ class DefectSearch {
       : centerline_(centerline), result_(result), mesh_(result.mesh), closed_(with_lids(result)) {}
 
   void run(const std::vector<std::pair<Index, Index>>& crossings) {
+    run_on_faces(crossings);
+    nodes_outside();
+  }
+
+  void run_on_faces(const std::vector<std::pair<Index, Index>>& crossings) {
     topology();
     faces_that_cross(crossings);
     bad_triangles();
-    nodes_outside();
   }
 
   std::vector<Defect> defects;
@@ -191,6 +195,18 @@ void find_defects(const Centerline& centerline, const std::vector<std::pair<Inde
                   GenerateResult& result) {
   DefectSearch search(centerline, result);
   search.run(crossings);
+  result.defects = std::move(search.defects);
+  result.check = search.check;
+}
+
+void find_defects_again(const Centerline& centerline, const std::vector<std::pair<Index, Index>>& crossings,
+                        GenerateResult& result) {
+  DefectSearch search(centerline, result);
+  search.run_on_faces(crossings);
+  for (Defect& defect : result.defects) {
+    if (defect.kind == DefectKind::node_outside) search.defects.push_back(std::move(defect));
+  }
+  search.check.nodes_inside = result.check.nodes_inside;
   result.defects = std::move(search.defects);
   result.check = search.check;
 }

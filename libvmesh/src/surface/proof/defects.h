@@ -10,4 +10,8 @@ namespace vmesh {
 void find_defects(const Centerline& centerline, const std::vector<std::pair<Index, Index>>& crossings,
                   GenerateResult& result);
 
+/// The same after faces were added to a surface whose nodes are known to be inside or not: all but that.
+void find_defects_again(const Centerline& centerline, const std::vector<std::pair<Index, Index>>& crossings,
+                        GenerateResult& result);
+
 }  // namespace vmesh
