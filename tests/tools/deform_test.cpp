@@ -65,6 +65,13 @@ TEST_F(Deform, ErrorsNameTheElementAndLeaveNothing) {
       {R"({"schema": "vmesh.scene/1", "force": [{"node": 1, "force_N": []}]})", "force[0].force_N"},
       {R"({"schema": "vmesh.scene/1", "material": {"young_Pa": "soft"}})", "material.young_Pa"},
       {R"({"schema": "vmesh.scene/1", "duration_s": 1e6, "step_s": 1e-6})", "ten million"},
+      {R"({"schema": "vmesh.scene/1", "material": {"wall_mm": 1, "wall_ratio": 0.5}})", "material.wall_ratio"},
+      {R"({"schema": "vmesh.scene/1", "fix": [3], "drag": [{"node": 3, "path": [[0, 0, 0, 0]]}]})", "drag[0].node"},
+      {R"({"schema": "vmesh.scene/1", "drag": [{"node": 3, "path": [[0, 0, 0, 0]]}, {"node": 3, "path": [[0, 1, 0, 0]]}]})",
+       "drag[1].node"},
+      {R"({"schema": "vmesh.scene/1", "clamp": [0], "material": {"young_Pa": 1e-3},
+           "force": [{"node": 3, "force_N": [[0, 1e9, 0, 0]]}]})",
+       "physical range at 0.02 s"},
   };
   for (const auto& [scene, named] : wrong) {
     const Outcome run = deform(scene);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <sstream>
 
 #include "vmesh/deform/surface_binding.h"
 #include "vmesh/io/sha256.h"
@@ -104,6 +105,7 @@ class Stage {
     for (const Scene::Profile& scale : scene_.scales) simulation_.set_radial_scale(scale.node, scale.value.at(time));
     for (const Scene::Profile& squeeze : scene_.squeezes) simulation_.set_squeeze(squeeze.node, squeeze.value.at(time));
     const StepReport report = simulation_.step();
+    check_range(time);
     work_J_ += report.work_J;
     last_movement_mm_ = report.movement_mm;
   }
@@ -119,6 +121,30 @@ class Stage {
       simulation_.drag(drag.node, from + drag.offset_mm.at(time));
     else if (time - step <= drag.release_s)
       simulation_.release(drag.node);
+  }
+
+  /// Segments stretched by more than this, in what is longer, their length or radius, are no vessels any more.
+  static constexpr double kMostStretched = 100;
+
+  void check_range(double time) const {
+    const RodTree& tree = simulation_.tree();
+    const std::vector<Vec3>& position = simulation_.pose().position;
+    for (Index j = 0; j < tree.size(); ++j) {
+      const Index parent = tree.parent[j];
+      const bool is_root = parent == kNone;
+      const double stretch =
+          is_root ? 0 : (position[j] - position[parent]).norm() / std::max(tree.length[j], tree.radius[j]);
+      if (position[j].allFinite() && stretch <= kMostStretched) continue;
+      std::ostringstream text;
+      text << "the motion leaves its physical range at " << time << " s, at node " << tree.node[j] << ": ";
+      if (position[j].allFinite()) {
+        text << "segment " << tree.segment[j] << " is stretched to " << stretch << " times its length or radius";
+      } else {
+        text << "its position is not finite";
+      }
+      text << "; shorten step_s, or look at the forces, the paths and the material";
+      throw InvalidInput(text.str());
+    }
   }
 
   const Scene& scene_;
@@ -206,7 +232,8 @@ int run(const DeformArguments& arguments, Console& console) {
   stop_if_interrupted();
   Series series(arguments.output, "." + arguments.format);
   FrameWriter writer(arguments, rest, binding);
-  const Timing timing = play(scene, stage, binding, writer, series, console.progress());
+  const Timing timing =
+      naming(arguments.script, [&] { return play(scene, stage, binding, writer, series, console.progress()); });
   series.keep();
   console.log("wrote " + std::to_string(series.size()) + " frames to " + arguments.output.string());
   if (!arguments.common.json.empty())

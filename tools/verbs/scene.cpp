@@ -1,5 +1,6 @@
 #include "verbs/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -141,6 +142,8 @@ Material read_material(const Element& element) {
   element.take("young_Pa", 1e-3, 1e13, material.young_Pa);
   element.take("density_kg_m3", 1e-3, 1e6, material.density_kg_m3);
   element.take("poisson_ratio", 0, 0.5, material.poisson_ratio);
+  if (element.has("wall_mm") && element.has("wall_ratio"))
+    element.member("wall_ratio").fail("the wall is given as wall_mm already; leave one of them out");
   element.take("wall_mm", 0, 1e6, material.wall_mm);
   element.take("wall_ratio", 1e-6, 1, material.wall_ratio);
   element.take("damping_s", 0, 1e6, material.damping_s);
@@ -178,6 +181,19 @@ Scene::Drag read_drag(const Element& element, std::size_t nodes) {
   return drag;
 }
 
+/// The last drag against what else holds or drags its node.
+void check_drag(const Element& element, const Scene& scene) {
+  const Index node = scene.drags.back().node;
+  const std::string name = "node " + std::to_string(node);
+  const auto holds = [&](const std::vector<Index>& nodes) {
+    return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
+  };
+  if (holds(scene.fix)) element.member("node").fail(name + " is fixed, too; leave out one of the two");
+  const auto dragged =
+      std::count_if(scene.drags.begin(), scene.drags.end(), [&](const auto& d) { return d.node == node; });
+  if (dragged > 1) element.member("node").fail(name + " is dragged already; make one path of both");
+}
+
 Scene read(const Element& root, std::size_t nodes) {
   root.allow({"schema", "material", "integrator", "step_s", "iterations", "drag_per_s", "squeeze_response_s",
               "duration_s", "frame_every", "gravity_m_s2", "fix", "clamp", "drag", "force", "radial_scale", "squeeze"});
@@ -188,7 +204,10 @@ Scene read(const Element& root, std::size_t nodes) {
   read_options(root, scene);
   for (const Element& item : root.items("fix")) scene.fix.push_back(item.node(nodes));
   for (const Element& item : root.items("clamp")) scene.clamp.push_back(item.node(nodes));
-  for (const Element& item : root.items("drag")) scene.drags.push_back(read_drag(item, nodes));
+  for (const Element& item : root.items("drag")) {
+    scene.drags.push_back(read_drag(item, nodes));
+    check_drag(item, scene);
+  }
   for (const Element& item : root.items("force")) {
     item.allow({"node", "force_N"});
     scene.forces.push_back({item.member("node").node(nodes), vector_course(item.member("force_N"))});
