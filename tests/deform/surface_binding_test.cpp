@@ -4,6 +4,7 @@
 
 #include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/error.h"
+#include "vmesh/deform/linear_skin.h"
 
 #include "chains.h"
 #include "deform/avx2_build.h"
@@ -230,6 +231,50 @@ TEST(SurfaceBinding, RefusesWhatIsNoPlace) {
        {SurfacePlace{2, 0.5}, SurfacePlace{0, 1.5}, SurfacePlace{kNone, 0}, SurfacePlace{0, NAN}})
     EXPECT_THROW(SurfaceBinding(rod, rods, one, one, std::vector{wrong}), InvalidInput);
   EXPECT_THROW(SurfaceBinding(rod, rods, one, {}, std::vector{SurfacePlace{0, 0}}), InvalidInput);
+}
+
+TEST(LinearSkin, PutsVerticesWhereTheBindingDoes) {
+  const Centerline tree = tree_of(300);
+  const RodTree rods = make_rod_tree(tree);
+  const Wall wall(tree, 7);
+  const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);
+  const SurfaceSkin skin = make_linear_skin(tree, rods, wall.places);
+  const Pose pose = bent_pose(tree);
+  const std::vector<JointPose> joints = joint_poses(rods, pose);
+  ASSERT_EQ(joints.size(), skin.joints.size());
+  ASSERT_EQ(skin.joint_of_vertex.size(), wall.points.size());
+  DeformedSurface surface = binding.make_surface();
+  binding.apply(pose, surface);
+  double farthest = 0;
+  for (Index v = 0; v < wall.points.size(); ++v) {
+    Vec3 sum = Vec3::Zero();
+    float weights = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const JointPose& joint = joints[skin.joint_of_vertex[v][i]];
+      const Vec3& rest = skin.joints[skin.joint_of_vertex[v][i]].position;
+      sum += skin.weight[v][i] * (joint.rotation * (wall.points[v] - rest) + joint.position);
+      weights += skin.weight[v][i];
+    }
+    EXPECT_NEAR(weights, 1, 1e-6f);
+    const auto& [segment, t] = wall.places[v];
+    const Vec3 arm = wall.points[v] - tree.point_at(segment, t);
+    // The weights have single precision, too: of a segment's length.
+    const double allowed = precision(surface, arm) + 1e-7 * tree.length(segment) + 1e-6 * arm.norm();
+    EXPECT_LT((sum - surface.position(binding.lane_of_vertex()[v])).norm(), allowed) << v;
+    farthest = std::max(farthest, (sum - wall.points[v]).norm());
+  }
+  EXPECT_GT(farthest, 1);  // it did bend
+}
+
+TEST(LinearSkin, HasBonesForIsolatedNodesAndRefusesPlacesThatDoNotExist) {
+  const Centerline two({{{0, 0, 0}, 1}, {{5, 0, 0}, 1}, {{0, 9, 0}, 1}}, {{0, 1}});
+  const std::vector<SurfacePlace> places = {{0, 0}, {0, 1}, {1, 0}};
+  const SurfaceSkin skin = make_linear_skin(two, make_rod_tree(two), places);
+  ASSERT_EQ(skin.joints.size(), 5u);
+  EXPECT_EQ(skin.joints[skin.joint_of_vertex[2][0]].name, "node 2");
+  EXPECT_EQ(skin.weight[2][0], 1);
+  for (const SurfacePlace wrong : {SurfacePlace{2, 0}, SurfacePlace{0, 1.5}})
+    EXPECT_THROW(make_linear_skin(two, make_rod_tree(two), std::vector{wrong}), InvalidInput);
 }
 
 }  // namespace

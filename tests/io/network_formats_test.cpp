@@ -2,6 +2,7 @@
 #include "vmesh/io/centerline_io.h"
 
 #include "io_support.h"
+#include "shared_data.h"
 
 namespace vmesh {
 namespace {
@@ -126,6 +127,49 @@ TEST(ReadNetwork, NamesTheLineThatIsWrong) {
   expect_contains(wrong("3 total number of nodes", "9 total number of nodes"), "t.dat: line 17");
   expect_contains(wrong(kNetwork, "1 2 3\n"), "the file ends where");
 }
+
+#if VMESH_WITH_HDF5
+// The other formats of the files were made of them elsewhere, with ends that sections share as one point.
+TEST(ReadHdf5, NetworksOfMorphIoAreThoseInVtp) {
+  VMESH_NEED_SHARED_DATA("microvascular_loops");
+  for (const std::string name : {"vasculature1", "vasculature2"}) {
+    SCOPED_TRACE(name);
+    CenterlineLoadOptions um;
+    um.unit = LengthUnit::um;
+    const Centerline ours =
+        load_centerline(testing::shared_data("microvascular_loops/" + name + ".h5")).cleaned.centerline;
+    const Centerline theirs =
+        load_centerline(testing::shared_data("microvascular_loops/" + name + ".vtp"), um).cleaned.centerline;
+    EXPECT_EQ(ours.nodes().size(), theirs.nodes().size());
+    EXPECT_EQ(ours.segments().size(), theirs.segments().size());
+    EXPECT_EQ(ours.cycle_rank(), theirs.cycle_rank());
+    EXPECT_NEAR(ours.length_in_radii(), theirs.length_in_radii(), 1e-6 * theirs.length_in_radii());
+  }
+}
+
+TEST(ReadHdf5, DamagedFilesAreRefusedOrRead) {
+  VMESH_NEED_SHARED_DATA("microvascular_loops");
+  const testing::TemporaryFolder folder;
+  const std::string whole = testing::content_of(testing::shared_data("microvascular_loops/vasculature1.h5"));
+  for (std::size_t i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    std::string damaged = whole;
+    damaged[(i * 7919 + 13) % damaged.size()] = static_cast<char>(i * 31);
+    if (i % 4 == 0) damaged.resize(damaged.size() * (i + 1) / 41);
+    try {
+      EXPECT_FALSE(read_centerline(folder.write("d.h5", damaged)).nodes.empty());
+    } catch (const InvalidInput& problem) {
+      testing::expect_contains(problem.what(), "d.h5");
+    }
+  }
+}
+#else
+TEST(ReadHdf5, NeedsHdf5) {
+  const testing::TemporaryFolder folder;
+  testing::expect_contains(testing::message_of<Unsupported>([&] { read_centerline(folder.write("t.h5", "\x89HDF")); }),
+                           "VMESH_WITH_HDF5");
+}
+#endif
 
 }  // namespace
 }  // namespace vmesh

@@ -203,6 +203,67 @@ TEST(ReadSurface, EveryCutFileIsRefusedOrRead) {
   }
 }
 
+#if VMESH_WITH_ASSIMP
+constexpr const char* kCollada =
+    "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><asset><unit name=\"cm\" "
+    "meter=\"0.01\"/><up_axis>Z_UP</up_axis></asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
+    "<float_array id=\"a\" count=\"12\">0 0 0 4 0 0 4 4 0 0 4 2</float_array><technique_common><accessor source=\"#a\" "
+    "count=\"4\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/><param name=\"Z\" "
+    "type=\"float\"/></accessor></technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" "
+    "source=\"#p\"/></vertices><triangles count=\"2\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>"
+    "<p>0 1 2 0 2 3</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene "
+    "id=\"s\">"
+    "<node id=\"n\"><translate>1 0 0</translate><instance_geometry url=\"#g\"/></node></visual_scene>"
+    "</library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>";
+constexpr const char* kX3d =
+    "<X3D version=\"3.2\"><Scene><Shape><IndexedFaceSet coordIndex=\"0 1 2 -1 0 2 3 -1\"><Coordinate point=\"0 0 0 1 0 "
+    "0 1 "
+    "1 0 0 1 1\"/></IndexedFaceSet></Shape></Scene></X3D>";
+
+TEST(ReadScene, TakesNodesAndUnitsInGlbAndCollada) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = {{{10, 20, 30}, {11, 20, 30}, {10, 22, 30}, {10, 20, 33}},
+                        {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  write_surface(folder / "t.glb", mesh);
+  const LoadedSurface glb = read_surface(folder / "t.glb");
+  EXPECT_EQ(glb.unit, LengthUnit::m);
+  EXPECT_EQ(glb.mesh.faces, mesh.faces);
+  ASSERT_EQ(glb.mesh.vertices.size(), 4u);
+  for (std::size_t v = 0; v < 4; ++v)
+    EXPECT_LT((1000 * glb.mesh.vertices[v] - mesh.vertices[v]).norm(), 1e-5);  // float
+  const LoadedSurface collada = read_surface(folder.write("t.dae", kCollada));
+  EXPECT_EQ(collada.unit, LengthUnit::m);
+  ASSERT_EQ(collada.mesh.vertices.size(), 4u);
+  EXPECT_EQ(collada.mesh.faces.size(), 2u);
+  EXPECT_LT((collada.mesh.vertices[collada.mesh.faces[1][2]] - Vec3(0.01, 0.04, 0.02)).norm(), 1e-7);
+}
+
+TEST(ReadScene, DamagedFilesAreRefusedOrRead) {
+  const TemporaryFolder folder;
+  write_surface(folder / "t.glb", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+  const std::string whole = testing::content_of(folder / "t.glb");
+  for (const std::string name : {"d.glb", "d.dae", "d.fbx", "d.x3d", "d.3mf", "d.gltf"}) {
+    const std::string base = name == "d.dae" ? kCollada : name == "d.x3d" ? kX3d : whole;
+    for (std::size_t i = 0; i < 12; ++i) {
+      SCOPED_TRACE(name + " " + std::to_string(i));
+      std::string damaged = base;
+      damaged[(i * 7919 + 13) % damaged.size()] = static_cast<char>(i * 31);
+      if (i % 3 == 0) damaged.resize(damaged.size() * (i + 1) / 13);
+      try {
+        EXPECT_FALSE(read_surface(folder.write(name, damaged)).mesh.faces.empty());
+      } catch (const InvalidInput& problem) {
+        expect_contains(problem.what(), name);
+      }
+    }
+  }
+}
+#else
+TEST(ReadScene, NeedsAssimp) {
+  const TemporaryFolder folder;
+  expect_contains(message_of<Unsupported>([&] { read_surface(folder.write("t.glb", "glTF")); }), "VMESH_WITH_ASSIMP");
+}
+#endif
+
 TEST(SharedData, EveryAdversarialMeshIsReadOrRefusedWithItsName) {
   VMESH_NEED_SHARED_DATA("adversarial_mesh_trimesh");
   std::set<std::string> refused;

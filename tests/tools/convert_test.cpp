@@ -17,6 +17,14 @@ class Convert : public CommandTest {
   }
 };
 
+void expect_near(const Centerline& a, const Centerline& b) {
+  ASSERT_EQ(a.nodes().size(), b.nodes().size());
+  for (Index n = 0; n < a.nodes().size(); ++n) {
+    EXPECT_LT((a.node(n).position - b.node(n).position).norm(), 1e-9) << n;
+    EXPECT_NEAR(a.node(n).radius, b.node(n).radius, 1e-9) << n;
+  }
+}
+
 TEST_F(Convert, CenterlinesGoThroughEveryFormatUnchanged) {
   std::vector<std::string> names = {"a.json", "a.csv", "a.swc"};
   if (VMESH_TEST_WITH_VTK) names.insert(names.begin(), "a.vtp");
@@ -80,6 +88,50 @@ TEST_F(Convert, SurfaceUnitsScaleLengthsToo) {
   EXPECT_NEAR((after.mesh.vertices[5] - 10 * before.mesh.vertices[5]).norm(), 0, 1e-9);
   EXPECT_EQ(after.attributes.vertex[0].name, "radius");
   EXPECT_NEAR(after.attributes.vertex[0].values[5], 10 * before.attributes.vertex[0].values[5], 1e-9);
+}
+
+TEST_F(Convert, WritesTheUnitAndFrameAskedFor) {
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.ply"}).exit_code, 0);
+  std::vector<std::string> names = {"c.ply", "c.obj", "c.off", "c.stl"};
+  if (VMESH_TEST_WITH_VTK) names.push_back("c.vtp");
+  const LoadedSurface before = read_surface(path("y.ply"));
+  for (const std::string& name : names) {
+    SCOPED_TRACE(name);
+    const Outcome run = vmesh({"convert", "@y.ply", "@" + name, "--output-unit", "cm", "--output-space", "RAS"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const LoadedSurface after = read_surface(path(name));
+    EXPECT_EQ(after.unit, LengthUnit::cm);
+    EXPECT_EQ(after.space, Space::ras);
+    const Vec3& p = before.mesh.vertices[before.mesh.faces[5][1]];
+    EXPECT_LT((10 * after.mesh.vertices[after.mesh.faces[5][1]] - Vec3(-p.x(), -p.y(), p.z())).norm(), 1e-5);  // float
+    for (const MeshAttribute& a : after.attributes.vertex) {
+      if (a.name != "radius") continue;
+      EXPECT_NEAR(a.values[5], before.attributes.vertex[0].values[5] / 10, 1e-12);
+    }
+  }
+  ASSERT_EQ(vmesh({"convert", "@y.swc", "@um.json", "--output-unit", "um", "--output-space", "RAS"}).exit_code, 0);
+  EXPECT_NE(read("um.json").find("\"unit\": \"um\""), std::string::npos);
+  expect_near(centerline("um.json"), centerline("y.swc"));
+}
+
+TEST_F(Convert, LeavesAttributesOut) {
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.ply"}).exit_code, 0);
+  ASSERT_EQ(vmesh({"convert", "@y.ply", "@vertex.ply", "--attributes", "vertex"}).exit_code, 0);
+  ASSERT_EQ(vmesh({"convert", "@y.ply", "@none.ply", "--attributes", "none"}).exit_code, 0);
+  const MeshAttributes vertex = read_surface(path("vertex.ply")).attributes;
+  EXPECT_TRUE(vertex.face.empty());
+  EXPECT_EQ(vertex.vertex.size(), read_surface(path("y.ply")).attributes.vertex.size());
+  const MeshAttributes none = read_surface(path("none.ply")).attributes;
+  EXPECT_TRUE(none.face.empty() && none.vertex.empty());
+}
+
+TEST_F(Convert, NeedsAnOutput) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"convert", "@y.swc"}, {"render", "@y.swc"}, {"synth"}})
+    EXPECT_EQ(vmesh(arguments).exit_code, 2);
+  EXPECT_EQ(vmesh({"synth", "@s.swc", "--vertices", "9"}).exit_code, 0);
+  EXPECT_EQ(vmesh({"cones", "@s.swc", "@s.ply"}).exit_code, 0);
+  EXPECT_EQ(vmesh({"render", "@s.ply", "@s.png", "--width", "32", "--height", "32"}).exit_code, 0);
 }
 
 #if VMESH_TEST_WITH_VTK

@@ -38,10 +38,14 @@ TEST_F(Generate, VerticesKeepTheirPlaceOnTheCenterline) {
     names.push_back(attribute.name);
     ASSERT_EQ(attribute.values.size(), surface.mesh.vertices.size());
     const auto [low, high] = std::minmax_element(attribute.values.begin(), attribute.values.end());
+    if (attribute.name == "red" || attribute.name == "green" || attribute.name == "blue") {
+      EXPECT_TRUE(*low >= 0 && *high <= 255 && *high > *low) << attribute.name;
+      continue;
+    }
     const double most = attribute.name == "segment" || attribute.name == "branch" ? 2
                         : attribute.name == "parameter"                           ? 1
                                                                                   : 3 + 1e-9;
-    EXPECT_GE(*low, attribute.name == "radius" ? 2.1 - 1e-9 : 0) << attribute.name;
+    EXPECT_GE(*low, attribute.name == "radius" || attribute.name == "quality" ? 2.1 - 1e-9 : 0) << attribute.name;
     EXPECT_LE(*high, most) << attribute.name;
   }
   for (const char* name : {"radius", "segment", "parameter", "branch"})
@@ -65,6 +69,48 @@ TEST_F(Generate, FacesKnowTheirBranch) {
     for (const double label : {0, 1, 2}) EXPECT_GT(std::count(branch.values.begin(), branch.values.end(), label), 10);
     EXPECT_EQ(*std::max_element(branch.values.begin(), branch.values.end()), 2);
   }
+}
+
+/// The JSON of a .glb, whose sizes are checked.
+json glb_json(const std::string& file) {
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) value = value << 8u | static_cast<unsigned char>(file.at(at + i));
+    return std::size_t{value};
+  };
+  EXPECT_EQ(file.substr(0, 4), "glTF");
+  EXPECT_EQ(word(4), 2u);
+  EXPECT_EQ(word(8), file.size());
+  EXPECT_EQ(file.substr(16, 4), "JSON");
+  const std::size_t text = word(12);
+  EXPECT_EQ(file.substr(24 + text, 4), std::string("BIN\0", 4));
+  EXPECT_EQ(28 + text + word(20 + text), file.size());
+  return json::parse(file.substr(20, text));
+}
+
+TEST_F(Generate, WritesGlbWithColorsAndBones) {
+  for (const bool bones : {false, true}) {
+    std::vector<std::string> arguments = {"generate", "@y.swc", "@y.glb", "--json", "@y.json"};
+    if (bones) arguments.push_back("--bones");
+    const Outcome run = vmesh(arguments);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json glb = glb_json(read("y.glb"));
+    const std::size_t vertices = json::parse(read("y.json")).at("vertices");
+    const json& primitive = glb.at("meshes").at(0).at("primitives").at(0);
+    const json& attributes = primitive.at("attributes");
+    for (const char* name : {"POSITION", "NORMAL", "COLOR_0", "_RADIUS", "_SEGMENT", "_PARAMETER", "_BRANCH"})
+      EXPECT_EQ(glb.at("accessors").at(attributes.at(name).get<std::size_t>()).at("count"), vertices) << name;
+    EXPECT_EQ(attributes.contains("JOINTS_0") && attributes.contains("WEIGHTS_0"), bones);
+    EXPECT_EQ(glb.contains("skins"), bones);
+    // Three for each of the three segments, and the root's.
+    EXPECT_EQ(glb.at("nodes").size(), bones ? 12u : 1u);
+    for (const json& view : glb.at("bufferViews"))
+      EXPECT_LE(view.at("byteOffset").get<std::size_t>() + view.at("byteLength").get<std::size_t>(),
+                glb.at("buffers").at(0).at("byteLength").get<std::size_t>());
+  }
+  EXPECT_EQ(vmesh({"generate", "@y.swc", "@z.ply", "--bones"}).exit_code, 2);
+  EXPECT_EQ(vmesh({"generate", "@y.swc", "@z.glb", "--output-unit", "cm"}).exit_code, 2);
+  EXPECT_FALSE(exists("z.ply") || exists("z.glb"));
 }
 
 TEST_F(Generate, CapsEndsForFlow) {

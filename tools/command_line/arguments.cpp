@@ -29,6 +29,7 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate portal.swc -o portal.ply --fit liver.nii.gz --label 2 --spacing 1 --smooth 1
   vmesh generate liver.nii.gz --label 2 --spacing 1 --smooth 1 --tree -o portal.ply --centerline-output portal.swc
   vmesh generate aorta.vtp -o aorta-flow.vtp --ends flat --flow-extensions 5 --json caps.json
+  vmesh generate tree.swc tree.glb --bones
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
@@ -40,7 +41,8 @@ constexpr const char* kSynthExamples = R"(Examples:
 constexpr const char* kConvertExamples = R"(Examples:
   vmesh convert tree.swc -o tree.vtp
   vmesh convert tree.swc -o tree.json --unit um
-  vmesh convert tree.ply -o tree.stl)";
+  vmesh convert tree.ply -o tree.stl
+  vmesh convert tree.ply tree.obj --output-unit cm --output-space RAS)";
 constexpr const char* kRenderExamples = R"(Examples:
   vmesh render tree.ply -o tree.png
   vmesh render tree.ply -o tree.png --edges --color radius --view left --width 1200 --height 900)";
@@ -113,7 +115,9 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
   add_centerline_input(verb, arguments.input,
                        "centerline, or image (.nii, .nii.gz, .nrrd, .mha) to extract it from and to fit to");
-  add_output(verb, arguments.output, "surface");
+  add_output_after_several(verb, arguments.output, "surface (.ply, .vtp, .stl, .obj, .off, .glb)");
+  add_writing(verb, arguments.writing);
+  verb.add_flag("--bones", arguments.bones, "a .glb gets bones along the centerline, to bend it by");
   for_each_generate_option(arguments.options,
                            [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
                              verb.add_option(flag, member, help)->check(in_range(low, high))->capture_default_str();
@@ -212,10 +216,10 @@ void add_synth(CLI::App& app, SynthArguments& arguments) {
 }
 
 void add_convert(CLI::App& app, ConvertArguments& arguments) {
-  CLI::App& verb = *app.add_subcommand(
-      "convert", "Convert between centerline formats or between surface formats; writes millimetres and LPS");
+  CLI::App& verb = *app.add_subcommand("convert", "Convert between centerline formats or between surface formats");
   add_centerline_input(verb, arguments.input, "centerline or surface");
-  add_output(verb, arguments.output, "file of the same kind");
+  add_output_after_several(verb, arguments.output, "file of the same kind");
+  add_writing(verb, arguments.writing);
   add_common(verb, arguments.common, false);
   verb.footer(kConvertExamples);
 }
@@ -402,6 +406,15 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
     for (std::string line; std::getline(lines, line);) std::cerr << printable(line) << "\n";
     return std::nullopt;
   }
+  if (app.got_subcommand("generate")) settle_output(generate);
+  if (app.got_subcommand("synth")) settle_output(synth);
+  if (app.got_subcommand("convert")) settle_output(convert);
+  if (app.got_subcommand("render")) settle_output(render);
+  if (app.got_subcommand("reference")) settle_output(reference);
+  if (app.got_subcommand("cones")) settle_output(cones);
+  if (app.got_subcommand("centerline")) settle_output(centerline);
+  if (app.got_subcommand("deform")) settle_output(deform);
+  if (app.got_subcommand("fit")) settle_output(fit);
   if (app.got_subcommand("generate")) return settled(generate);
   if (app.got_subcommand("info")) return info;
   if (app.got_subcommand("synth")) return synth;

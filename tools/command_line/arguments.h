@@ -42,6 +42,13 @@ enum class OverlapHandling { keep, separate };
 
 std::string_view to_string(OverlapHandling overlap);
 
+/// How the numbers of an output are written.
+struct WritingArguments {
+  LengthUnit unit = LengthUnit::mm;
+  Space space = Space::lps;
+  std::string attributes = "all";  ///< of surfaces: "all", "vertex" or "none"
+};
+
 /// How vessels end: in a hemisphere, a flat cap, or a hole.
 enum class EndShape { round, flat, open };
 
@@ -58,6 +65,7 @@ struct GenerateArguments {
   CommonArguments common;
   InputArguments input;
   std::filesystem::path output;
+  WritingArguments writing;
   GenerateOptions options;
   std::optional<Budget> budget;  ///< chooses options.around, and max_error for a budget of error
   OverlapHandling overlap = OverlapHandling::separate;
@@ -65,6 +73,7 @@ struct GenerateArguments {
   EndShape ends = EndShape::round;
   std::vector<Index> left_open;  ///< nodes of --open-ends beside --ends
   double flow_extension = 0;     ///< length of tubes at ends that are not round, in radii
+  bool bones = false;            ///< a .glb gets some along the centerline
   bool check = false;            ///< exit code 1 unless the surface is flawless
   bool allow_defects = false;    ///< a surface that is not sound is written all the same
   FittingArguments fitting;  ///< of the surface that was grown; the image's options are the input's without a reference
@@ -77,6 +86,7 @@ struct FitArguments {
   InputArguments input;       ///< surface
   InputArguments centerline;  ///< that the surface was grown around
   std::filesystem::path output;
+  WritingArguments writing;
   FittingArguments fitting;
 };
 
@@ -96,6 +106,7 @@ struct ConvertArguments {
   CommonArguments common;
   InputArguments input;
   std::filesystem::path output;
+  WritingArguments writing;
 };
 
 struct RenderArguments {

@@ -10,7 +10,29 @@ void add_common(CLI::App& verb, CommonArguments& common, bool with_json) {
 }
 
 void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& help) {
-  verb.add_option("-o,--output", output, help)->required();
+  verb.add_option("-o,--output,OUT", output, help);
+}
+
+void add_output_after_several(CLI::App& verb, std::filesystem::path& output, const std::string& help) {
+  verb.add_option("-o,--output", output, help + "; without -o, the last of the files");
+}
+
+void add_writing(CLI::App& verb, WritingArguments& writing) {
+  verb.add_option_function<std::string>(
+          "--output-unit", [&writing](const std::string& text) { writing.unit = *parse_length_unit(text); },
+          "unit of the output")
+      ->check(CLI::IsMember({"um", "mm", "cm", "m"}))
+      ->default_str("mm");
+  verb.add_option_function<std::string>(
+          "--output-space", [&writing](const std::string& text) { writing.space = *parse_space(text); },
+          "patient frame of the output")
+      ->check(CLI::IsMember({"LPS", "RAS"}))
+      ->default_str("LPS");
+  verb.add_option("--attributes", writing.attributes,
+                  "of a surface: all; vertex: none of faces, which some readers of PLY do not take; or none")
+      ->check(CLI::IsMember({"all", "vertex", "none"}))
+      ->capture_default_str();
+  group(verb, "How to write the output", {"--output-unit", "--output-space", "--attributes"});
 }
 
 void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command_line/arguments.h"
+#include "command_line/usage_error.h"
 
 namespace vmesh::tool {
 
@@ -23,7 +24,26 @@ CLI::Validator in_range(Number low, Number high) {
 
 void add_common(CLI::App& verb, CommonArguments& common, bool with_json = true);
 
+/// -o, or the last word: see settle_output().
 void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& help);
+
+/// The same for verbs whose input may be several files.
+void add_output_after_several(CLI::App& verb, std::filesystem::path& output, const std::string& help);
+
+/// Of several inputs without -o, the last one is the output. Throws UsageError when none is left.
+template <class Arguments>
+void settle_output(Arguments& arguments) {
+  if constexpr (requires { arguments.input; }) {
+    if (arguments.output.empty() && !arguments.input.more.empty()) {
+      arguments.output = std::move(arguments.input.more.back());
+      arguments.input.more.pop_back();
+    }
+  }
+  if (arguments.output.empty()) throw UsageError("name the file to write: at the end, or with -o");
+}
+
+/// In what unit and frame the output is written, and which attributes a surface gets.
+void add_writing(CLI::App& verb, WritingArguments& writing);
 
 /// Options that tell how to read a file; `of`: "" for the input, else "reference-" or the like.
 void add_reading(CLI::App& verb, InputArguments& input, const std::string& of);

@@ -20,9 +20,9 @@ void add_deform(CLI::App& app, DeformArguments& arguments) {
   add_reading(verb, arguments.surface, "surface-");
   verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (README.md, Deforming)")
       ->required();
-  verb.add_option("-o,--output", arguments.output, "new or empty folder for the frames")->required();
+  add_output(verb, arguments.output, "new or empty folder for the frames");
   verb.add_option("--format", arguments.format, "of the frames")
-      ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off"}))
+      ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off", "glb"}))
       ->capture_default_str();
   add_common(verb, arguments.common);
   verb.footer(kDeformExamples);

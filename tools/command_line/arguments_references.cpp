@@ -83,6 +83,7 @@ void add_fit(CLI::App& app, FitArguments& arguments) {
   verb.add_option("REFERENCE", arguments.fitting.reference.path, "surface, or image (.nii, .nii.gz, .nrrd, .mha)")
       ->required();
   add_output(verb, arguments.output, "surface");
+  add_writing(verb, arguments.writing);
   verb.add_option("--centerline", arguments.centerline.path, "that the surface was grown around")->required();
   add_reading(verb, arguments.centerline, "centerline-");
   add_fitting(verb, arguments.fitting);
@@ -116,7 +117,7 @@ void add_cones(CLI::App& app, ConesArguments& arguments) {
   CLI::App& verb =
       *app.add_subcommand("cones", "Put a truncated cone around every segment of a centerline, not joined");
   add_centerline_input(verb, arguments.input, "centerline");
-  add_output(verb, arguments.output, "surface");
+  add_output_after_several(verb, arguments.output, "surface");
   verb.add_option("--sides", arguments.sides, "of a cone")->check(in_range(3, 1000))->capture_default_str();
   add_common(verb, arguments.common);
   verb.footer(kConesExamples);

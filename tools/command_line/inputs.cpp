@@ -18,7 +18,9 @@ bool may_be_both(const std::filesystem::path& path) {
 
 bool has_surface_extension(const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
-  return extension == ".ply" || extension == ".stl" || extension == ".obj" || extension == ".off";
+  for (const char* known : {".ply", ".stl", ".obj", ".off", ".glb", ".gltf", ".3mf", ".dae", ".x3d", ".fbx"})
+    if (extension == known) return true;
+  return false;
 }
 
 bool is_length(const std::string& attribute) {

@@ -8,6 +8,7 @@
 #include "vmesh/core/version.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/render/render.h"
 
 #include "command_line/usage_error.h"
 
@@ -97,6 +98,55 @@ void write_text(const fs::path& path, const std::string& text) {
   AtomicFile file(path);
   file.write(text);
   file.commit();
+}
+
+namespace {
+
+const MeshAttribute* find(const std::vector<MeshAttribute>& attributes, const std::string& name) {
+  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
+  return found == attributes.end() ? nullptr : &*found;
+}
+
+void add_colors(std::vector<MeshAttribute>& attributes) {
+  const MeshAttribute* branch = find(attributes, "branch");
+  if (!branch || find(attributes, "red")) return;
+  std::vector<MeshAttribute> color = {{"red", {}, true}, {"green", {}, true}, {"blue", {}, true}};
+  for (const double label : branch->values) {
+    const Color of_label = label_color(label);
+    for (std::size_t i = 0; i < 3; ++i) color[i].values.push_back(of_label[i]);
+  }
+  attributes.insert(attributes.end(), color.begin(), color.end());
+}
+
+void add_quality(std::vector<MeshAttribute>& attributes) {
+  for (const char* name : {"displacement", "volume_distance", "distance", "radius"}) {
+    const MeshAttribute* source = find(attributes, name);
+    if (!source) continue;
+    MeshAttribute quality{"quality", source->values};
+    std::erase_if(attributes, [](const MeshAttribute& a) { return a.name == "quality"; });
+    attributes.push_back(std::move(quality));
+    return;
+  }
+}
+
+}  // namespace
+
+void write_surface(const fs::path& path, const TriMesh& mesh, MeshAttributes attributes, SurfaceMetadata metadata,
+                   const WritingArguments& writing, const SurfaceSkin* skin) {
+  const std::string extension = extension_of(path);
+  if (writing.attributes != "all") attributes.face.clear();
+  if (writing.attributes == "none") attributes.vertex.clear();
+  if (extension == ".ply" || extension == ".glb") add_colors(attributes.vertex);
+  if (extension == ".ply") add_quality(attributes.vertex);
+  metadata.unit = writing.unit;
+  metadata.space = writing.space;
+  vmesh::write_surface(path, mesh, attributes, metadata, skin);
+}
+
+void check_writing(const fs::path& path, const WritingArguments& writing) {
+  if (extension_of(path) == ".glb" && (writing.unit != LengthUnit::mm || writing.space != Space::lps))
+    throw UsageError(path.string() +
+                     ": GLB is always in metres with y up; --output-unit and --output-space do not apply");
 }
 
 std::string generator_name() { return "vmesh " + std::string(version()); }

@@ -4,6 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "vmesh/io/surface_io.h"
+
+#include "command_line/arguments.h"
+
 namespace vmesh::tool {
 
 /// Lower-case extension with its dot.
@@ -23,6 +27,14 @@ void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<
 
 /// Writes `text` to stdout when `path` is "-", else to the file: complete or not at all. Throws WriteError.
 void write_text(const std::filesystem::path& path, const std::string& text);
+
+/// write_surface() as the command line asks for it. In PLY and GLB, vertices with a `branch` get a colour for each; in
+/// PLY, what MeshLab shows by itself, `quality`: the distance or displacement, else the radius.
+void write_surface(const std::filesystem::path& path, const TriMesh& mesh, MeshAttributes attributes,
+                   SurfaceMetadata metadata, const WritingArguments& writing, const SurfaceSkin* skin = nullptr);
+
+/// Throws UsageError for a unit or frame that the format does not have.
+void check_writing(const std::filesystem::path& path, const WritingArguments& writing);
 
 /// "vmesh 0.1.0", for metadata.
 std::string generator_name();

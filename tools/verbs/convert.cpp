@@ -42,18 +42,21 @@ void convert(const RawCenterline& raw, const ConvertArguments& arguments, Consol
   const CleanedCenterline cleaned = clean(raw, options);
   for (const std::string& line : cleaned.report.summary()) console.log("cleaning: " + line);
   write_centerline(arguments.output, cleaned.centerline,
-                   {generator_name(), "convert", file_name_of(arguments.input), sha256_of(arguments.input)});
+                   {generator_name(), "convert", file_name_of(arguments.input), sha256_of(arguments.input),
+                    arguments.writing.unit, arguments.writing.space});
 }
 
 void convert(const LoadedSurface& surface, const ConvertArguments& arguments, Console&) {
   write_surface(arguments.output, surface.mesh, surface.attributes,
-                {generator_name(), "convert", file_name_of(arguments.input), sha256_of(arguments.input)});
+                {generator_name(), "convert", file_name_of(arguments.input), sha256_of(arguments.input)},
+                arguments.writing);
 }
 
 }  // namespace
 
 int run(const ConvertArguments& arguments, Console& console) {
   check_kinds(arguments);
+  check_writing(arguments.output, arguments.writing);
   check_outputs(planned_outputs(arguments.output), files_of(arguments.input));
   std::vector<std::string> warnings;
   const AnyInput input = load_any(arguments.input, warnings);

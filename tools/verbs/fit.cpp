@@ -47,6 +47,7 @@ int run(const FitArguments& arguments, Console& console) {
   std::vector<std::filesystem::path> inputs = files_of(arguments.centerline.path);
   inputs.push_back(path);
   inputs.push_back(arguments.fitting.reference.path);
+  check_writing(arguments.output, arguments.writing);
   check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, inputs);
   LoadedSurface loaded = load_surface(arguments.input);
   console.warn(loaded.warnings);
@@ -72,7 +73,7 @@ int run(const FitArguments& arguments, Console& console) {
   }
   write_surface(arguments.output, fitted.mesh,
                 surface_attributes(fitted.mesh, fitted.binding, result.radius, fitted.openings, centerline),
-                {generator_name(), options, path.filename().string(), sha256});
+                {generator_name(), options, path.filename().string(), sha256}, arguments.writing);
   console.log(std::to_string(result.surface.mesh.vertices.size()) + " vertices, skewness " +
               std::to_string(measurement.skewness.mean) + " mean, " + std::to_string(measurement.skewness.max) +
               " max");

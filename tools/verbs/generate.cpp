@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "vmesh/centerline/branches.h"
+#include "vmesh/deform/linear_skin.h"
 #include "vmesh/fit/flat_reference.h"
 #include "vmesh/io/sha256.h"
 #include "vmesh/surface/branch_labels.h"
@@ -415,14 +416,23 @@ void refuse(const GenerateReport& report, Console& console) {
                 "--around or --blend, or take the surface as it is with --allow-defects");
 }
 
+SurfaceSkin bones(const GenerateResult& result, const Centerline& centerline) {
+  std::vector<SurfacePlace> places;
+  for (const auto& [segment, t] : result.binding) places.push_back({segment, t});
+  return make_linear_skin(centerline, make_rod_tree(centerline), places);
+}
+
 void write(const GenerateReport& report) {
   const GenerateArguments& arguments = *report.arguments;
   const GenerateResult& result = *report.result;
   MeshAttributes attributes =
       surface_attributes(result.mesh, result.binding, result.radius, result.openings, report.cleaned->centerline);
   if (!report.ends.ends.empty()) add_cap_labels(report.ends, attributes);
-  write_surface(arguments.output, result.mesh, attributes,
-                {generator_name(), describe(arguments), file_name_of(arguments.input), report.input_sha256});
+  std::optional<SurfaceSkin> skin;
+  if (arguments.bones) skin = bones(result, report.cleaned->centerline);
+  write_surface(arguments.output, result.mesh, std::move(attributes),
+                {generator_name(), describe(arguments), file_name_of(arguments.input), report.input_sha256},
+                arguments.writing, skin ? &*skin : nullptr);
 }
 
 }  // namespace
@@ -430,6 +440,9 @@ void write(const GenerateReport& report) {
 int run(const GenerateArguments& given, Console& console) {
   using Kind = PlannedOutput::Kind;
   check_input(given);
+  check_writing(given.output, given.writing);
+  if (given.bones && extension_of(given.output) != ".glb")
+    throw UsageError(given.output.string() + ": --bones are for .glb only");
   std::vector<PlannedOutput> outputs = {{given.output, Kind::surface}, {given.common.json, Kind::summary}};
   if (!given.centerline_output.empty()) {
     for (const std::filesystem::path& file : files_of(given.centerline_output))

@@ -25,15 +25,17 @@ std::optional<CenterlineFormat> find_centerline_format(const std::filesystem::pa
   if (extension == ".gxl" || extension == ".xml") return CenterlineFormat::gxl;
   if (extension == ".am") return CenterlineFormat::amira;
   if (extension == ".dat") return CenterlineFormat::network;
+  if (extension == ".h5") return CenterlineFormat::hdf5;
   return std::nullopt;
 }
 
 CenterlineFormat centerline_format(const std::filesystem::path& path) {
   if (const auto format = find_centerline_format(path)) return *format;
-  throw Unsupported(path.string() +
-                    ": centerlines are .swc, .vtp, .json, .csv, .vmv, .vtk, .mrk.json, .ctgr, .pth, .gxl, .am or .dat; "
-                    "\"" +
-                    io::lower(path.extension().string()) + "\" is not supported");
+  throw Unsupported(
+      path.string() +
+      ": centerlines are .swc, .vtp, .json, .csv, .vmv, .vtk, .mrk.json, .ctgr, .pth, .gxl, .am, .dat or .h5; "
+      "\"" +
+      io::lower(path.extension().string()) + "\" is not supported");
 }
 
 CenterlineFormat centerline_output_format(const std::filesystem::path& path) {
@@ -88,12 +90,15 @@ RawCenterline parse_centerline(std::string_view content, CenterlineFormat format
       return io::parse_amira(content, source, options);
     case CenterlineFormat::network:
       return io::parse_network(content, source);
+    case CenterlineFormat::hdf5:
+      throw Unsupported(source + ": HDF5 is read from files only");
   }
   throw Unsupported(source + ": unknown centerline format");
 }
 
 RawCenterline read_centerline(const std::filesystem::path& path, const CenterlineReadOptions& options) {
   const CenterlineFormat format = centerline_format(path);
+  if (format == CenterlineFormat::hdf5) return io::read_hdf5_network(path);
   const std::string content = read_file(path);
   std::string segments;
   if (format == CenterlineFormat::csv) {
@@ -161,8 +166,24 @@ LoadedCenterline load_centerline(const std::filesystem::path& path, const Center
   return load_centerline(std::vector{path}, options);
 }
 
-void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
-                      const CenterlineMetadata& metadata) {
+namespace {
+
+Centerline converted(const Centerline& centerline, const CenterlineMetadata& metadata) {
+  const double scale = 1 / millimetres_per(metadata.unit);
+  const Vec3 axes = metadata.space == Space::ras ? Vec3(-scale, -scale, scale) : Vec3(scale, scale, scale);
+  std::vector<CenterlineNode> nodes = centerline.nodes();
+  for (CenterlineNode& node : nodes) {
+    node.position = node.position.cwiseProduct(axes);
+    node.radius *= scale;
+  }
+  return {std::move(nodes), centerline.segments()};
+}
+
+}  // namespace
+
+void write_centerline(const std::filesystem::path& path, const Centerline& given, const CenterlineMetadata& metadata) {
+  const bool converts = metadata.unit != LengthUnit::mm || metadata.space != Space::lps;
+  const Centerline& centerline = converts ? converted(given, metadata) : given;
   const CenterlineFormat format = centerline_output_format(path);
   if (format == CenterlineFormat::swc && centerline.cycle_rank() > 0) {
     throw Unsupported(path.string() + ": SWC holds trees only and this centerline has " +

@@ -124,7 +124,8 @@ RawCenterline parse_centerline_json(std::string_view content, const std::string&
 }
 
 void write_centerline_json(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata) {
-  out << "{\n  \"schema\": \"" << kSchema << "\",\n  \"space\": \"LPS\",\n  \"unit\": \"mm\",\n"
+  out << "{\n  \"schema\": \"" << kSchema << "\",\n  \"space\": \"" << to_string(metadata.space)
+      << "\",\n  \"unit\": \"" << to_string(metadata.unit) << "\",\n"
       << string_member("generator", metadata.generator) << string_member("options", metadata.options)
       << string_member("input", metadata.input_name) << string_member("input_sha256", metadata.input_sha256)
       << "  \"nodes\": [";

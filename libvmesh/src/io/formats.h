@@ -2,6 +2,7 @@
 // messages; writers write to a stream whose state the caller checks.
 #pragma once
 
+#include <filesystem>
 #include <iosfwd>
 #include <string>
 #include <string_view>
@@ -25,6 +26,8 @@ RawCenterline parse_path(std::string_view content, const std::string& source, co
 RawCenterline parse_gxl(std::string_view content, const std::string& source, const CenterlineReadOptions& options);
 RawCenterline parse_amira(std::string_view content, const std::string& source, const CenterlineReadOptions& options);
 RawCenterline parse_network(std::string_view content, const std::string& source);
+/// Throws Unsupported in a build without HDF5.
+RawCenterline read_hdf5_network(const std::filesystem::path& path);
 
 void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);
 void write_centerline_json(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);
@@ -38,12 +41,16 @@ LoadedSurface parse_stl(std::string_view content, const std::string& source);
 LoadedSurface parse_ply(std::string_view content, const std::string& source);
 LoadedSurface parse_surface_vtp(std::string_view content, const std::string& source);
 LoadedSurface parse_surface_vtk(std::string_view content, const std::string& source);
+/// By the file, as some name others: GLB, glTF, 3MF, COLLADA, X3D, FBX. Throws Unsupported in a build without assimp.
+LoadedSurface read_scene(const std::filesystem::path& path);
 
 void write_off(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);
 void write_obj(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);
 void write_stl(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);
 void write_ply(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
                const SurfaceMetadata& metadata);
+void write_glb(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+               const SurfaceMetadata& metadata, const SurfaceSkin* skin);
 void write_surface_vtp(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
                        const SurfaceMetadata& metadata);
 

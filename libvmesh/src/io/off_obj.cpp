@@ -25,6 +25,9 @@ class OffReader {
     FaceCollector faces(surface_, source_);
     for (std::size_t f = 0; f < face_count_; ++f) read_face(faces);
     faces.finish();
+    for (std::string_view line; lines_.next(line);) {
+      if (line.starts_with('#')) read_tags(line, surface_.unit, surface_.space);
+    }
     warn_without_tags(surface_, source_);
     return std::move(surface_);
   }
@@ -195,8 +198,7 @@ LoadedSurface parse_obj(std::string_view content, const std::string& source) {
 }
 
 void write_off(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata) {
-  out << "OFF\n" + comments(metadata, "# ") + std::to_string(mesh.vertices.size()) + " " +
-             std::to_string(mesh.faces.size()) + " 0\n";
+  out << "OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.faces.size()) + " 0\n";
   std::string row;
   for (const Vec3& p : mesh.vertices) {
     row.clear();
@@ -206,6 +208,7 @@ void write_off(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& me
   for (const auto& [a, b, c] : mesh.faces) {
     out << "3 " + std::to_string(a) + ' ' + std::to_string(b) + ' ' + std::to_string(c) + '\n';
   }
+  out << comments(metadata, "# ");  // where readers that take no comments do not look any more
 }
 
 void write_obj(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <ostream>
 
 #include "bytes.h"
@@ -8,12 +9,19 @@
 namespace vmesh::io {
 namespace {
 
+bool is_color(const MeshAttribute& attribute) {
+  return attribute.name == "red" || attribute.name == "green" || attribute.name == "blue" || attribute.name == "alpha";
+}
+
 void declare(std::string& header, const MeshAttribute& attribute, const std::string& name) {
-  header += std::string("property ") + (attribute.integer ? "int " : "double ") + name + "\n";
+  const char* type = is_color(attribute) ? "uchar " : attribute.integer ? "int " : "double ";
+  header += std::string("property ") + type + name + "\n";
 }
 
 void store_value(std::string& bytes, const MeshAttribute& attribute, std::size_t i) {
-  if (attribute.integer) {
+  if (is_color(attribute)) {
+    store(bytes, static_cast<std::uint8_t>(std::clamp(attribute.values[i], 0.0, 255.0)));
+  } else if (attribute.integer) {
     store(bytes, static_cast<std::int32_t>(attribute.values[i]));
   } else {
     store(bytes, attribute.values[i]);

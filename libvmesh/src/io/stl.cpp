@@ -120,7 +120,8 @@ LoadedSurface parse_stl(std::string_view content, const std::string& source) {
 }
 
 void write_stl(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata) {
-  std::string bytes = "SPACE=LPS UNIT=mm " + one_line(metadata.generator);
+  std::string bytes = "SPACE=" + std::string(to_string(metadata.space)) +
+                      " UNIT=" + std::string(to_string(metadata.unit)) + " " + one_line(metadata.generator);
   bytes.resize(kHeaderSize, ' ');
   store(bytes, static_cast<std::uint32_t>(mesh.faces.size()));
   for (Index f = 0; f < mesh.faces.size(); ++f) {

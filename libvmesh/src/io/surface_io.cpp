@@ -35,6 +35,33 @@ void check(const std::filesystem::path& path, const TriMesh& mesh, const MeshAtt
   check_all(attributes.face, mesh.faces.size(), "face");
 }
 
+void check(const std::filesystem::path& path, SurfaceFormat format, const TriMesh& mesh, const SurfaceSkin& skin) {
+  constexpr std::size_t kMostJoints = 0xffff;  // numbers of joints have 16 bits
+  const std::string name = path.string();
+  if (format != SurfaceFormat::glb) throw Unsupported(name + ": bones are written to .glb only");
+  if (skin.joints.size() > kMostJoints)
+    throw Unsupported(name + ": " + std::to_string(skin.joints.size()) + " bones are more than the " +
+                      std::to_string(kMostJoints) + " that glTF can number; leave out nodes of the centerline");
+  bool good = skin.joint_of_vertex.size() == mesh.vertices.size() && skin.weight.size() == mesh.vertices.size();
+  for (const auto& joints : skin.joint_of_vertex) {
+    for (const Index joint : joints) good = good && joint < skin.joints.size();
+  }
+  if (!good) throw InvalidInput(name + ": the skin does not fit the surface: joints and weights are one per vertex");
+}
+
+void convert(TriMesh& mesh, MeshAttributes& attributes, const SurfaceMetadata& metadata) {
+  const double scale = 1 / millimetres_per(metadata.unit);
+  const Vec3 axes = metadata.space == Space::ras ? Vec3(-scale, -scale, scale) : Vec3(scale, scale, scale);
+  for (Vec3& p : mesh.vertices) p = p.cwiseProduct(axes);
+  for (auto* list : {&attributes.vertex, &attributes.face}) {
+    for (MeshAttribute& a : *list) {
+      if (a.name != "radius" && a.name != "distance" && a.name != "displacement" && a.name != "volume_distance")
+        continue;
+      for (double& value : a.values) value *= scale;
+    }
+  }
+}
+
 }  // namespace
 
 SurfaceFormat surface_format(const std::filesystem::path& path) {
@@ -45,21 +72,40 @@ SurfaceFormat surface_format(const std::filesystem::path& path) {
   if (extension == ".ply") return SurfaceFormat::ply;
   if (extension == ".vtp") return SurfaceFormat::vtp;
   if (extension == ".vtk") return SurfaceFormat::vtk;
-  throw Unsupported(path.string() + ": surfaces are .off, .obj, .stl, .ply, .vtp or .vtk; \"" + extension +
-                    "\" is not supported");
+  if (extension == ".glb") return SurfaceFormat::glb;
+  for (const char* scene : {".gltf", ".3mf", ".dae", ".x3d", ".fbx"}) {
+    if (extension == scene) return SurfaceFormat::scene;
+  }
+  throw Unsupported(path.string() +
+                    ": surfaces are .off, .obj, .stl, .ply, .vtp, .vtk, .glb, .gltf, .3mf, .dae, .x3d or .fbx; \"" +
+                    extension + "\" is not supported");
 }
 
 SurfaceFormat surface_output_format(const std::filesystem::path& path) {
   const SurfaceFormat format = surface_format(path);
   if (format == SurfaceFormat::vtk)
     throw Unsupported(path.string() + ": legacy VTK files are read, not written; write a .vtp file");
+  if (format == SurfaceFormat::scene)
+    throw Unsupported(path.string() + ": scenes of this kind are read, not written; write a .glb file");
   return format;
 }
 
-void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes,
-                   const SurfaceMetadata& metadata) {
+void write_surface(const std::filesystem::path& path, const TriMesh& given, const MeshAttributes& given_attributes,
+                   const SurfaceMetadata& metadata, const SurfaceSkin* skin) {
   const SurfaceFormat format = surface_output_format(path);
-  check(path, mesh, attributes);
+  check(path, given, given_attributes);
+  if (skin) check(path, format, given, *skin);
+  TriMesh converted;
+  MeshAttributes converted_attributes;
+  const bool converts =
+      format != SurfaceFormat::glb && (metadata.unit != LengthUnit::mm || metadata.space != Space::lps);
+  if (converts) {
+    converted = given;
+    converted_attributes = given_attributes;
+    convert(converted, converted_attributes, metadata);
+  }
+  const TriMesh& mesh = converts ? converted : given;
+  const MeshAttributes& attributes = converts ? converted_attributes : given_attributes;
   AtomicFile file(path);
   switch (format) {
     case SurfaceFormat::off:
@@ -77,7 +123,11 @@ void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const
     case SurfaceFormat::vtp:
       io::write_surface_vtp(file.stream(), mesh, attributes, metadata);
       break;
+    case SurfaceFormat::glb:
+      io::write_glb(file.stream(), mesh, attributes, metadata, skin);
+      break;
     case SurfaceFormat::vtk:
+    case SurfaceFormat::scene:
       break;  // refused above
   }
   file.commit();
@@ -97,12 +147,16 @@ LoadedSurface parse_surface(std::string_view content, SurfaceFormat format, cons
       return io::parse_surface_vtp(content, source);
     case SurfaceFormat::vtk:
       return io::parse_surface_vtk(content, source);
+    case SurfaceFormat::glb:
+    case SurfaceFormat::scene:
+      throw Unsupported(source + ": scenes are read from files only");
   }
   throw Unsupported(source + ": unknown surface format");
 }
 
 LoadedSurface read_surface(const std::filesystem::path& path) {
   const SurfaceFormat format = surface_format(path);
+  if (format == SurfaceFormat::glb || format == SurfaceFormat::scene) return io::read_scene(path);
   return parse_surface(read_file(path), format, path.string());
 }
 

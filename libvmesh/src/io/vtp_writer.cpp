@@ -86,8 +86,8 @@ void add_text(vtkPolyData& data, const char* name, const std::string& value) {
 
 template <class Metadata>
 void add_metadata(vtkPolyData& data, const Metadata& metadata) {
-  add_text(data, "SPACE", "LPS");
-  add_text(data, "UNIT", "mm");
+  add_text(data, "SPACE", std::string(to_string(metadata.space)));
+  add_text(data, "UNIT", std::string(to_string(metadata.unit)));
   add_text(data, "Generator", metadata.generator);
   add_text(data, "Options", metadata.options);
   add_text(data, "Input", metadata.input_name);
@@ -175,6 +175,11 @@ void write_surface_vtp(std::ostream& out, const TriMesh& mesh, const MeshAttribu
   }
   for (const auto& a : attributes.face)
     add_numbers(*data->GetCellData(), to_vtk(kCellNames, a.name), a.values, a.integer);
+  // What a viewer colours by at first.
+  if (!attributes.vertex.empty())
+    data->GetPointData()->SetActiveScalars(to_vtk(kPointNames, attributes.vertex.front().name).c_str());
+  if (!attributes.face.empty())
+    data->GetCellData()->SetActiveScalars(to_vtk(kCellNames, attributes.face.front().name).c_str());
   add_metadata(*data, metadata);
   write_poly_data(out, *data);
 }

@@ -69,4 +69,6 @@ Vec3 category_color(double label) {
   return linear_from_oklab(kLightness[level], kChroma * std::cos(hue), kChroma * std::sin(hue));
 }
 
+Color label_color(double label) { return srgb_from_linear(category_color(label)); }
+
 }  // namespace vmesh

@@ -24,6 +24,7 @@ enum class CenterlineFormat {
   gxl,      ///< .gxl, .xml; VascuSynth: nodes in voxels, a radius per edge; read only
   amira,    ///< .am; Amira's spatial graph, text or binary; read only
   network,  ///< .dat; Secomb's network.dat: segments with a diameter, in um; read only
+  hdf5,     ///< .h5; network of MorphIO and VessMorphoVis: sections with diameters, in um; read only, from files
 };
 
 /// By the file's extension, upper or lower case; none if centerlines are never in such files.
@@ -92,16 +93,18 @@ LoadedCenterline load_centerline(const std::vector<std::filesystem::path>& paths
                                  const CenterlineLoadOptions& options = {});
 
 struct CenterlineMetadata {
-  std::string generator;     ///< program and version
-  std::string options;       ///< how it was made, free text
-  std::string input_name;    ///< what it was made from
-  std::string input_sha256;  ///< see sha256_of_file()
+  std::string generator;             ///< program and version
+  std::string options;               ///< how it was made, free text
+  std::string input_name;            ///< what it was made from
+  std::string input_sha256;          ///< see sha256_of_file()
+  LengthUnit unit = LengthUnit::mm;  ///< that it is written in
+  Space space = Space::lps;          ///< likewise
 };
 
-/// Writes a centerline, in mm and LPS and saying so, by extension: JSON, SWC, VTP, CSV pair. Numbers round-trip
-/// exactly, the bytes depend on the arguments alone, and the file appears complete or not at all. Node order is kept.
-/// Throws Unsupported for a centerline with loops in SWC (a tree format), see centerline_output_format(), and for VTP
-/// without VTK; WriteError when the file cannot be written.
+/// Writes a centerline given in mm and LPS, by extension, in the unit and frame of `metadata` and saying so: JSON, SWC,
+/// VTP, CSV pair. Numbers round-trip exactly, the bytes depend on the arguments alone, and the file appears complete or
+/// not at all. Node order is kept. Throws Unsupported for a centerline with loops in SWC (a tree format), see
+/// centerline_output_format(), and for VTP without VTK; WriteError when the file cannot be written.
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
                       const CenterlineMetadata& metadata = {});
 

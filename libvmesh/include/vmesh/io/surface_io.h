@@ -6,39 +6,49 @@
 #include <vector>
 
 #include "vmesh/centerline/raw_centerline.h"
+#include "vmesh/mesh/surface_skin.h"
 #include "vmesh/mesh/tri_mesh.h"
 
 namespace vmesh {
 
-enum class SurfaceFormat { off, obj, stl, ply, vtp, vtk };
+enum class SurfaceFormat { off, obj, stl, ply, vtp, vtk, glb, scene };
 
-/// By the file's extension, upper or lower case. Throws Unsupported, with the extensions that are.
+/// scene: glTF, 3MF, COLLADA, X3D or FBX, see read_surface(). By the file's extension, upper or lower case. Throws
+/// Unsupported, with the extensions that are.
 SurfaceFormat surface_format(const std::filesystem::path& path);
 
-/// The same for a file to be written; legacy VTK files (.vtk) are read only.
+/// The same for a file to be written; legacy VTK files (.vtk) and scenes other than GLB are read only.
 SurfaceFormat surface_output_format(const std::filesystem::path& path);
 
 /// Where a surface comes from; written as comments or field data where the format has room (all but STL; STL has 80
 /// bytes for frame, unit and generator).
 struct SurfaceMetadata {
-  std::string generator;     ///< program and version
-  std::string options;       ///< how it was made, free text
-  std::string input_name;    ///< what it was made from
-  std::string input_sha256;  ///< see sha256_of_file()
+  std::string generator;             ///< program and version
+  std::string options;               ///< how it was made, free text
+  std::string input_name;            ///< what it was made from
+  std::string input_sha256;          ///< see sha256_of_file()
+  LengthUnit unit = LengthUnit::mm;  ///< that positions and lengths are written in
+  Space space = Space::lps;          ///< likewise; neither applies to GLB, which is in metres with y up
 };
 
-/// Writes a surface, in mm and LPS and saying so (SPACE=LPS, UNIT=mm), by extension. The bytes depend on the arguments
-/// alone, and the file appears complete or not at all.
+/// Writes a surface given in mm and LPS, by extension, in the unit and frame of `metadata` and saying so (SPACE=LPS,
+/// UNIT=mm). Attributes named radius, distance, displacement and volume_distance are lengths. The bytes depend on the
+/// arguments alone, and the file appears complete or not at all.
 ///   PLY  binary little-endian; positions and normals in double, so that they come back to the bit; every attribute;
-///        the face attribute EquiangleSkewness is named "quality", which MeshLab shows
+///        the face attribute EquiangleSkewness is named "quality", which MeshLab shows; attributes named red, green and
+///        blue are bytes, which all programs take for a colour
 ///   VTP  through VTK; every attribute; "radius" is named MaximumInscribedSphereRadius, "distance" Distance,
-///        "group" GroupIds, face "quality" Quality; point array Normals
+///        "group" GroupIds, face "quality" Quality; point array Normals; the first attributes are the active ones
 ///   OBJ, OFF  positions with the digits they need to come back to the bit; no attributes
 ///   STL  binary; float; no attributes
-/// Throws InvalidInput when an attribute has a wrong length or a face names a vertex that does not exist, Unsupported
-/// (extension, or VTP without VTK), WriteError.
+///   GLB  binary glTF 2.0 in metres, y up (superior), z towards the front (anterior); vertices are shared by faces;
+///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; with
+///        `skin`, bones
+/// Throws InvalidInput when an attribute or the skin has a wrong length or a face names a vertex that does not exist,
+/// Unsupported (extension, VTP without VTK, a skin in another format than GLB or of more than 65,535 joints),
+/// WriteError.
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes = {},
-                   const SurfaceMetadata& metadata = {});
+                   const SurfaceMetadata& metadata = {}, const SurfaceSkin* skin = nullptr);
 
 struct LoadedSurface {
   TriMesh mesh;
@@ -50,11 +60,15 @@ struct LoadedSurface {
 
 /// Reads a surface by extension. Polygons are triangulated (triangulate_polygon()), lines and loose points are left
 /// out, equal corners of an STL file become one vertex. It takes at most 128 times as much memory as the file is large
-/// (packed VTP: as its data are unpacked) and a megabyte, whatever the file says. Throws ReadError (missing, a
-/// directory, unreadable), InvalidInput (content; also when there is no face at all), Unsupported.
+/// (packed VTP: as its data are unpacked) and a megabyte, whatever the file says.
+/// GLB and scenes are read by assimp, in a child of this process, as assimp may crash on damaged files, and without
+/// that bound: all meshes of a scene, their nodes' transformations applied, as one surface without attributes, whose
+/// vertices are those at different places. What has y up is turned, so that z is.
+/// Throws ReadError (missing, a directory, unreadable), InvalidInput (content; also when there is no face at all),
+/// Unsupported (a scene in a build without assimp).
 LoadedSurface read_surface(const std::filesystem::path& path);
 
-/// The same from memory; `source` names it in messages.
+/// The same from memory, but no scenes; `source` names it in messages.
 LoadedSurface parse_surface(std::string_view content, SurfaceFormat format, const std::string& source);
 
 }  // namespace vmesh

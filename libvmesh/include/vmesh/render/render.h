@@ -51,6 +51,9 @@ struct RenderOptions {
   bool categories = false;
 };
 
+/// The colour of a label (rounded to a whole number) in a picture of categories.
+Color label_color(double label);
+
 /// Draws a mesh without a display, by casting rays. The same input gives the same picture.
 /// Throws InvalidInput for a mesh without faces, with faces that name vertices which do not exist, with positions
 /// that are not finite, and for options out of range.

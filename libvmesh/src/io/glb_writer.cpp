@@ -1,0 +1,240 @@
+// Binary glTF 2.0 (Khronos, "glTF 2.0 Specification").
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+#include "bytes.h"
+#include "formats.h"
+#include "text.h"
+
+namespace vmesh::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+enum ComponentType { kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
+enum Target { kVertices = 34962, kIndices = 34963, kNoTarget = 0 };
+
+/// From LPS to y up (superior) and z towards the viewer (anterior).
+Vec3 turned(const Vec3& p) { return {p.x(), p.z(), -p.y()}; }
+Vec3 metres(const Vec3& p) { return 1e-3 * turned(p); }
+
+double linear_from_srgb(double byte) {
+  const double v = byte / 255;
+  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+const MeshAttribute* find(const std::vector<MeshAttribute>& attributes, std::string_view name) {
+  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
+  return found == attributes.end() ? nullptr : &*found;
+}
+
+bool is_color(const std::string& name) { return name == "red" || name == "green" || name == "blue" || name == "alpha"; }
+
+/// "volume distance" -> "_VOLUME_DISTANCE", as the specification wants names of one's own.
+std::string custom_name(const std::string& name) {
+  std::string result = "_";
+  for (const char c : name) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    result += letter ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : '_';
+  }
+  return result;
+}
+
+class GlbWriter {
+ public:
+  GlbWriter(const TriMesh& mesh, const MeshAttributes& attributes, const SurfaceMetadata& metadata,
+            const SurfaceSkin* skin)
+      : mesh_(mesh), attributes_(attributes), skin_(skin) {
+    json_["asset"] = {{"version", "2.0"}, {"generator", one_line(metadata.generator)}};
+    Json extras = Json::object();
+    for (const auto& [key, value] : {std::pair{"options", &metadata.options},
+                                     {"input", &metadata.input_name},
+                                     {"inputSHA256", &metadata.input_sha256}}) {
+      if (!value->empty()) extras[key] = one_line(*value);
+    }
+    extras["frame"] = "metres; x to the left, y superior, z anterior; from LPS in mm: (x, z, -y) / 1000";
+    json_["asset"]["extras"] = std::move(extras);
+    Vec3 low = mesh.vertices.front(), high = low;
+    for (const Vec3& p : mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    origin_ = (low + high) / 2;
+  }
+
+  void run(std::ostream& out) {
+    Json attributes = Json::object();
+    attributes["POSITION"] = positions();
+    attributes["NORMAL"] = normals();
+    if (find(attributes_.vertex, "red") && find(attributes_.vertex, "green") && find(attributes_.vertex, "blue"))
+      attributes["COLOR_0"] = colors();
+    for (const MeshAttribute& a : attributes_.vertex) {
+      if (!is_color(a.name)) attributes[custom_name(a.name)] = scalars(a);
+    }
+    if (skin_) add_weights(attributes);
+    const Json primitive = {{"attributes", std::move(attributes)}, {"indices", indices()}, {"material", 0}};
+    json_["meshes"].push_back({{"name", "surface"}, {"primitives", Json::array({primitive})}});
+    json_["materials"].push_back({{"name", "vessel"},
+                                  {"doubleSided", true},
+                                  {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.6}}}});
+    add_nodes();
+    write(out);
+  }
+
+ private:
+  std::size_t view(Target target) {
+    bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');
+    Json& view = json_["bufferViews"].emplace_back();
+    view = {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", 0}};
+    if (target != kNoTarget) view["target"] = static_cast<int>(target);
+    return json_["bufferViews"].size() - 1;
+  }
+
+  /// Of all bytes since the last view(); returns its number.
+  std::size_t accessor(std::size_t view, ComponentType type, const char* kind, std::size_t count) {
+    Json& described = json_["bufferViews"][view];
+    described["byteLength"] = bytes_.size() - described["byteOffset"].get<std::size_t>();
+    json_["accessors"].push_back(
+        {{"bufferView", view}, {"componentType", static_cast<int>(type)}, {"count", count}, {"type", kind}});
+    return json_["accessors"].size() - 1;
+  }
+
+  void store_vector(const Vec3& v) {
+    for (const double x : v) store(bytes_, static_cast<float>(x));
+  }
+
+  std::size_t positions() {
+    const std::size_t at = view(kVertices);
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    Eigen::Vector3f low(kFar, kFar, kFar), high = -low;
+    for (const Vec3& vertex : mesh_.vertices) {
+      const Eigen::Vector3f p = metres(vertex - origin_).cast<float>();
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+      for (const float x : p) store(bytes_, x);
+    }
+    const std::size_t number = accessor(at, kFloat, "VEC3", mesh_.vertices.size());
+    json_["accessors"][number]["min"] = Json::array({low.x(), low.y(), low.z()});
+    json_["accessors"][number]["max"] = Json::array({high.x(), high.y(), high.z()});
+    return number;
+  }
+
+  std::size_t normals() {
+    const std::size_t at = view(kVertices);
+    for (const Vec3& n : vertex_normals(mesh_)) store_vector(n.squaredNorm() > 0 ? turned(n) : Vec3(Vec3::UnitY()));
+    return accessor(at, kFloat, "VEC3", mesh_.vertices.size());
+  }
+
+  std::size_t colors() {
+    const std::size_t at = view(kVertices);
+    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+      for (const char* name : {"red", "green", "blue"}) {
+        const double value = std::clamp(find(attributes_.vertex, name)->values[v], 0.0, 255.0);
+        store(bytes_, static_cast<std::uint8_t>(std::lround(255 * linear_from_srgb(value))));
+      }
+      store(bytes_, std::uint8_t{255});
+    }
+    const std::size_t number = accessor(at, kUnsignedByte, "VEC4", mesh_.vertices.size());
+    json_["accessors"][number]["normalized"] = true;
+    return number;
+  }
+
+  std::size_t scalars(const MeshAttribute& attribute) {
+    const std::size_t at = view(kVertices);
+    for (const double value : attribute.values) store(bytes_, static_cast<float>(std::isfinite(value) ? value : 0));
+    return accessor(at, kFloat, "SCALAR", attribute.values.size());
+  }
+
+  std::size_t indices() {
+    const std::size_t at = view(kIndices);
+    for (const Triangle& face : mesh_.faces) {
+      for (const Index v : face) store(bytes_, v);
+    }
+    return accessor(at, kUnsignedInt, "SCALAR", 3 * mesh_.faces.size());
+  }
+
+  void add_weights(Json& attributes) {
+    const std::size_t joints = view(kVertices);
+    for (const auto& of_vertex : skin_->joint_of_vertex) {
+      for (const Index joint : of_vertex) store(bytes_, static_cast<std::uint16_t>(joint));
+    }
+    attributes["JOINTS_0"] = accessor(joints, kUnsignedShort, "VEC4", mesh_.vertices.size());
+    const std::size_t weights = view(kVertices);
+    for (const auto& of_vertex : skin_->weight) {
+      for (const float weight : of_vertex) store(bytes_, weight);
+    }
+    attributes["WEIGHTS_0"] = accessor(weights, kFloat, "VEC4", mesh_.vertices.size());
+  }
+
+  /// The mesh at the root of the scene; its bones flat under one node, each with the axes of the scene at rest.
+  void add_nodes() {
+    const Vec3 origin = metres(origin_);
+    const Json translation = Json::array({origin.x(), origin.y(), origin.z()});
+    // Programs that do not know of bones take the surface to where it is at rest by its own node.
+    json_["nodes"].push_back({{"name", "surface"}, {"mesh", 0}, {"translation", translation}});
+    if (!skin_) {
+      json_["scenes"].push_back({{"nodes", Json::array({0})}});
+    } else {
+      add_joints(translation);
+      json_["scenes"].push_back({{"nodes", Json::array({0, 1})}});
+    }
+    json_["scene"] = 0;
+  }
+
+  void add_joints(const Json& translation) {
+    Json numbers = Json::array();
+    const std::size_t at = view(kNoTarget);
+    json_["nodes"][0]["skin"] = 0;
+    json_["nodes"].push_back({{"name", "bones"}, {"translation", translation}});
+    for (const SurfaceSkin::Joint& joint : skin_->joints) {
+      const Vec3 p = metres(joint.position - origin_);
+      numbers.push_back(json_["nodes"].size());
+      json_["nodes"].push_back({{"name", joint.name}, {"translation", Json::array({p.x(), p.y(), p.z()})}});
+      for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row)
+          store(bytes_, static_cast<float>(row == column ? 1 : column == 3 ? -p[row] : 0));
+      }
+    }
+    json_["nodes"][1]["children"] = numbers;
+    json_["skins"].push_back({{"inverseBindMatrices", accessor(at, kFloat, "MAT4", skin_->joints.size())},
+                              {"skeleton", 1},
+                              {"joints", std::move(numbers)}});
+  }
+
+  void write(std::ostream& out) {
+    constexpr std::size_t kLargest = std::numeric_limits<std::uint32_t>::max();
+    bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');
+    json_["buffers"].push_back({{"byteLength", bytes_.size()}});
+    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const std::size_t size = 12 + 8 + text.size() + 8 + bytes_.size();
+    if (size > kLargest) throw Unsupported("the surface is too large for a GLB file (4 GB); write it as .ply");
+    std::string head = "glTF";
+    for (const std::size_t word : {std::size_t{2}, size, text.size()}) store(head, static_cast<std::uint32_t>(word));
+    out << head << "JSON" << text;
+    head.clear();
+    store(head, static_cast<std::uint32_t>(bytes_.size()));
+    head.append("BIN\0", 4);
+    out << head;
+    out.write(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
+  }
+
+  const TriMesh& mesh_;
+  const MeshAttributes& attributes_;
+  const SurfaceSkin* skin_;
+  Vec3 origin_ = Vec3::Zero();  ///< in the middle, for the digits
+  Json json_;
+  std::string bytes_;
+};
+
+}  // namespace
+
+void write_glb(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+               const SurfaceMetadata& metadata, const SurfaceSkin* skin) {
+  if (mesh.vertices.empty() || mesh.faces.empty())
+    throw InvalidInput("a surface without faces cannot be written as GLB");
+  GlbWriter(mesh, attributes, metadata, skin).run(out);
+}
+
+}  // namespace vmesh::io

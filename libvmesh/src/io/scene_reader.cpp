@@ -1,0 +1,162 @@
+// What other programs exchange scenes in, through assimp: GLB, glTF, 3MF, COLLADA, X3D and FBX.
+#include <array>
+#include <map>
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include "vmesh/core/input_file.h"
+
+#include "bytes.h"
+#include "child_process.h"
+#include "formats.h"
+#include "text.h"
+#include "triangulation.h"
+
+namespace vmesh::io {
+namespace {
+
+/// The faces of a scene, its nodes' transformations applied; corners at one place are one vertex.
+class SceneFaces {
+ public:
+  void add(const aiScene& scene) { add_node(scene, *scene.mRootNode, aiMatrix4x4()); }
+
+  /// Counts of vertices, faces and corners; vertices; for every face its number of corners and these.
+  std::string bytes() const {
+    std::string result;
+    for (const std::size_t count : {vertices_.size(), faces_, corners_.size()})
+      store(result, static_cast<std::uint64_t>(count));
+    for (const auto& vertex : vertices_) {
+      for (const float x : vertex) store(result, x);
+    }
+    for (const std::uint32_t number : corners_) store(result, number);
+    return result;
+  }
+
+ private:
+  void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above) {
+    const aiMatrix4x4 transformation = above * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(*scene.mMeshes[node.mMeshes[i]], transformation);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(scene, *node.mChildren[i], transformation);
+  }
+
+  void add_mesh(const aiMesh& mesh, const aiMatrix4x4& transformation) {
+    std::vector<std::uint32_t> number;
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D p = transformation * mesh.mVertices[v];
+      const std::array<float, 3> key = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // no -0
+      const auto [at, is_new] = number_.emplace(key, static_cast<std::uint32_t>(vertices_.size()));
+      if (is_new) vertices_.push_back(key);
+      number.push_back(at->second);
+    }
+    const bool mirrored = transformation.Determinant() < 0;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices < 3) continue;
+      ++faces_;
+      corners_.push_back(face.mNumIndices);
+      for (unsigned i = 0; i < face.mNumIndices; ++i)
+        corners_.push_back(number.at(face.mIndices[mirrored ? face.mNumIndices - 1 - i : i]));
+    }
+  }
+
+  std::map<std::array<float, 3>, std::uint32_t> number_;
+  std::vector<std::array<float, 3>> vertices_;
+  std::vector<std::uint32_t> corners_;
+  std::size_t faces_ = 0;
+};
+
+/// How a format's numbers are meant.
+struct SceneFrame {
+  bool y_up = false;
+  LengthUnit unit = LengthUnit::unknown;
+  float scale = 1;  ///< to that unit
+};
+
+SceneFrame frame_of(const std::string& extension, const aiScene& scene) {
+  if (extension == ".3mf") return {};
+  if (extension != ".fbx") return {true, LengthUnit::m, 1};  // glTF and X3D say so, assimp converts COLLADA
+  double factor = 1;                                         // centimetres
+  int up = 1;
+  if (scene.mMetaData) {
+    float single = 0;
+    if (scene.mMetaData->Get("UnitScaleFactor", single))
+      factor = single;
+    else
+      scene.mMetaData->Get("UnitScaleFactor", factor);
+    scene.mMetaData->Get("UpAxis", up);
+  }
+  return {up == 1, LengthUnit::cm, static_cast<float>(factor)};
+}
+
+std::string imported(const std::filesystem::path& path, const std::string& content, const std::string& extension) {
+  const std::string source = path.string();
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  // A .gltf names other files beside it.
+  const aiScene* scene = extension == ".gltf"
+                             ? importer.ReadFile(path.string(), 0)
+                             : importer.ReadFileFromMemory(content.data(), content.size(), 0, extension.c_str() + 1);
+  if (!scene || !scene->mRootNode)
+    throw InvalidInput(source + ": " + one_line(std::string_view(importer.GetErrorString()).substr(0, 300)));
+  SceneFaces faces;
+  faces.add(*scene);
+  const SceneFrame frame = frame_of(extension, *scene);
+  std::string answer;
+  store(answer, static_cast<std::uint8_t>(frame.y_up));
+  store(answer, static_cast<std::uint8_t>(frame.unit));
+  store(answer, frame.scale);
+  return answer + faces.bytes();
+}
+
+/// Takes numbers from the answer of the child.
+class Answer {
+ public:
+  explicit Answer(const std::string& bytes) : bytes_(bytes) {}
+
+  template <class T>
+  T take() {
+    if (bytes_.size() - at_ < sizeof(T)) throw InvalidInput("the answer of the library is cut off");
+    at_ += sizeof(T);
+    return load<T>(bytes_.data() + at_ - sizeof(T));
+  }
+
+ private:
+  const std::string& bytes_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+LoadedSurface read_scene(const std::filesystem::path& path) {
+  const std::string source = path.string(), extension = lower(path.extension().string());
+  const std::string content = read_file(path);
+  const std::string bytes =
+      in_child_process(source, content.size(), [&] { return imported(path, content, extension); });
+  Answer answer(bytes);
+  LoadedSurface surface;
+  const bool y_up = answer.take<std::uint8_t>() != 0;
+  surface.unit = static_cast<LengthUnit>(answer.take<std::uint8_t>());
+  const double scale = answer.take<float>();
+  const auto vertices = answer.take<std::uint64_t>(), faces = answer.take<std::uint64_t>();
+  answer.take<std::uint64_t>();
+  for (std::uint64_t v = 0; v < vertices; ++v) {
+    Vec3 p;
+    for (double& x : p) x = scale * answer.take<float>();
+    surface.mesh.vertices.push_back(y_up ? Vec3(p.x(), -p.z(), p.y()) : p);
+  }
+  FaceCollector collector(surface, source);
+  std::vector<std::int64_t> corners;
+  for (std::uint64_t f = 0; f < faces; ++f) {
+    corners.resize(answer.take<std::uint32_t>());
+    for (std::int64_t& corner : corners) corner = answer.take<std::uint32_t>();
+    collector.add(corners, "face " + std::to_string(f));
+  }
+  collector.finish();
+  warn_without_tags(surface, source);
+  return surface;
+}
+
+}  // namespace vmesh::io
