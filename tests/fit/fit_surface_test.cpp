@@ -1,13 +1,16 @@
 #include "vmesh/fit/fit_surface.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/fit/flat_reference.h"
 #include "vmesh/mesh/components.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/flat_ends.h"
 
 namespace vmesh {
 namespace {
@@ -285,6 +288,69 @@ TEST(FitSurface, RenewsAGeneratedSurface) {
   EXPECT_EQ(result.binding.size(), result.mesh.vertices.size());
   EXPECT_EQ(result.check.crossing_pairs, 0u);
   EXPECT_LT(report.after.mean(), 0.5 * report.before.mean());
+}
+
+/// The same vessel, wider by a quarter, cut 2.5 mm farther on by planes that are 15 degrees off.
+TriMesh capped_tube(const Centerline& centerline) {
+  std::vector<CenterlineNode> nodes = centerline.nodes();
+  for (CenterlineNode& node : nodes) node.radius *= 1.25;
+  GenerateOptions options;
+  options.around = 30;
+  options.threads = 1;
+  options.open_ends.all = true;
+  const Centerline wide(nodes, centerline.segments());
+  GenerateResult result = generate_surface(wide, options);
+  FlatEndOptions flat;
+  flat.extension = 2.5 / 2.5;
+  finish_ends(result, wide, flat);
+  const double tilt = std::tan(15 * std::numbers::pi / 180);
+  for (Vec3& p : result.mesh.vertices) {
+    if (p.z() > 10 || p.z() < -10) p.z() += tilt * p.x() * (std::abs(p.z()) - 10) / 3.5;
+  }
+  return result.mesh;
+}
+
+TEST(FlatReference, EndsTheSurfaceInThePlanesOfItsCapsToTheirArea) {
+  const Centerline centerline({{{0, 0, -11}, 2}, {{0, 0, 0}, 2}, {{0, 0, 11}, 2}}, {{0, 1}, {1, 2}});
+  const TriMesh reference = capped_tube(centerline);
+  GenerateOptions options;
+  options.around = 12;
+  options.threads = 1;
+  options.open_ends.all = true;
+  GenerateResult result = generate_surface(centerline, options);
+  const FlatReference flat = end_at_caps(result, reference);
+  ASSERT_EQ(flat.caps.size(), 2u);
+  EXPECT_LT(flat.mesh.faces.size(), reference.faces.size());
+  EXPECT_EQ(measure_topology(flat.mesh).boundary_loops, 2u);
+  fit_surface(result, centerline, flat.mesh, quick());
+  match_cap_areas(result, centerline, flat.caps);
+  EXPECT_TRUE(result.is_sound());
+  FlatEndOptions ends;
+  ends.keep_area = false;
+  const FlatEnds found = finish_ends(result, centerline, ends);
+  EXPECT_TRUE(result.is_sound());
+  EXPECT_TRUE(measure_topology(result.mesh).closed);
+  ASSERT_EQ(found.ends.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(found.ends[i].area, flat.caps[i].area, 1e-9 * flat.caps[i].area);
+    EXPECT_GT(found.ends[i].normal.dot(flat.caps[i].normal), 1 - 1e-9);
+    EXPECT_NEAR((found.ends[i].center - flat.caps[i].center).dot(flat.caps[i].normal), 0, 1e-9);
+    EXPECT_LT((found.ends[i].center - flat.caps[i].center).norm(), 0.1);  // mm; the vessel's radius is 2.5
+  }
+}
+
+TEST(FlatReference, LeavesEndsWithoutACapAlone) {
+  const Centerline centerline = fork();
+  GenerateOptions options;
+  options.threads = 1;
+  options.open_ends.all = true;
+  GenerateResult result = generate_surface(centerline, options);
+  const std::vector<Vec3> before = result.mesh.vertices;
+  const TriMesh reference = wall(centerline);  // round ends
+  const FlatReference flat = end_at_caps(result, reference);
+  EXPECT_TRUE(flat.caps.empty());
+  EXPECT_EQ(flat.mesh.faces, reference.faces);
+  EXPECT_EQ(result.mesh.vertices, before);
 }
 
 }  // namespace

@@ -1,11 +1,18 @@
 // Walls of real vessels, with the figures that were asked for.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "vmesh/fit/fit_surface.h"
+#include "vmesh/fit/flat_reference.h"
+#include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/skeleton/extract_centerline.h"
+#include "vmesh/surface/flat_ends.h"
 #include "vmesh/volume/contacts.h"
 
 #include "shared_data.h"
@@ -44,6 +51,63 @@ TEST(FitRealSurfaces, Aorta) {
   const char* const file = "pairs_centerline_surface/aorta-surface.stl";
   VMESH_NEED_SHARED_DATA(file);
   expect_fitted(file, {0.19, 0.49, 1.0});
+}
+
+/// The caps of the models that flow is computed in, by their ModelFaceID.
+std::map<int, ReferenceCap> caps_of(const LoadedSurface& model) {
+  const auto id = std::find_if(model.attributes.face.begin(), model.attributes.face.end(),
+                               [](const MeshAttribute& a) { return a.name == "ModelFaceID"; });
+  std::map<int, ReferenceCap> caps;
+  for (Index f = 0; f < model.mesh.faces.size(); ++f) {
+    ReferenceCap& cap = caps[static_cast<int>(id->values[f])];
+    const Vec3 area = area_normal(model.mesh, f) / 2;
+    const auto& [a, b, c] = model.mesh.faces[f];
+    cap.normal += area;
+    cap.area += area.norm();
+    cap.center += area.norm() * (model.mesh.vertices[a] + model.mesh.vertices[b] + model.mesh.vertices[c]) / 3;
+  }
+  std::erase_if(caps, [](const auto& cap) { return cap.second.normal.norm() < 0.95 * cap.second.area; });  // walls
+  for (auto& [number, cap] : caps) cap.center /= cap.area;
+  return caps;
+}
+
+void expect_caps(const std::string& name, const std::string& model_name, std::size_t count) {
+  SCOPED_TRACE(model_name);
+  const std::string folder = "pairs_centerline_surface/";
+  const LoadedSurface model = read_surface(testing::shared_data(folder + model_name));
+  const Centerline centerline =
+      separate_contacts(load_centerline(testing::shared_data(folder + name)).cleaned.centerline).centerline;
+  GenerateOptions options;
+  options.open_ends.all = true;
+  GenerateResult result = generate_surface(centerline, options);
+  const FlatReference flat = end_at_caps(result, model.mesh);
+  fit_surface(result, centerline, flat.mesh);
+  match_cap_areas(result, centerline, flat.caps);
+  FlatEndOptions ends;
+  ends.keep_area = false;
+  const FlatEnds found = finish_ends(result, centerline, ends);
+  EXPECT_TRUE(result.is_sound());
+  ASSERT_EQ(found.ends.size(), count);
+  std::map<int, ReferenceCap> theirs = caps_of(model);
+  ASSERT_EQ(theirs.size(), count);
+  for (const FlatEnd& end : found.ends) {
+    const auto nearest = std::min_element(theirs.begin(), theirs.end(), [&](const auto& a, const auto& b) {
+      return (a.second.center - end.center).norm() < (b.second.center - end.center).norm();
+    });
+    ASSERT_NE(nearest, theirs.end());
+    EXPECT_NEAR(end.area, nearest->second.area, 0.05 * nearest->second.area) << "their face " << nearest->first;
+    EXPECT_LT((end.center - nearest->second.center).norm(), 0.1 * std::sqrt(nearest->second.area));
+    EXPECT_GT(end.normal.dot(nearest->second.normal.normalized()), 0.99);
+    theirs.erase(nearest);
+  }
+}
+
+TEST(FitRealSurfaces, EndInTheCapsOfTheModelsThatFlowIsComputedIn) {
+  VMESH_NEED_SHARED_DATA("pairs_centerline_surface");
+  expect_caps("generate-1d-mesh_example_SU201_2005_RPA1_cl.vtp",
+              "generate-1d-mesh_example_SU201_2005_RPA1_exterior.vtp", 6);
+  expect_caps("centerline-based-material-props_c++_aorta_cl.vtp", "centerline-based-material-props_c++_aorta.vtp", 3);
+  expect_caps("project-node-onto-centerline_c++_demo-centerlines.vtp", "sv-paths_python_demo.vtp", 3);
 }
 
 }  // namespace
