@@ -178,6 +178,7 @@ void move_to(GenerateResult& result, Opening& opening, const ReferenceCap& cap) 
 }  // namespace
 
 FlatReference end_at_caps(GenerateResult& result, const TriMesh& reference) {
+  if (result.openings.empty()) return {reference, {}};
   FlatReference flat;
   CapFinder finder(reference);
   for (std::size_t i = 0; i < result.openings.size(); ++i) {
