@@ -6,6 +6,7 @@
 #include <cstring>
 #include <new>
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,6 +65,9 @@ std::string answer_of(const std::function<std::string()>& work) {
 
 [[noreturn]] void work_in_child(int to, std::size_t file_size, const std::function<std::string()>& work) {
   for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGXCPU}) ::signal(signal, SIG_DFL);
+  // What a library says as it fails, and what this process had not written yet, is not to come out here.
+  const int nowhere = ::open("/dev/null", O_WRONLY);
+  for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, 30 + 2 * (file_size >> 20u));
   if (const auto available = available_memory()) limit(RLIMIT_DATA, static_cast<std::size_t>(*available) / 2);
