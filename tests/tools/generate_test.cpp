@@ -145,7 +145,7 @@ TEST_F(Generate, LeavesEndsOpenBesideFlatOnes) {
   std::size_t open = 0;
   for (const json& cap : json::parse(read("y.json")).at("caps")) {
     EXPECT_EQ(cap.at("capped"), cap.at("node") != 0);
-    open += cap.at("capped") ? 0 : 1;
+    open += cap.at("capped").get<bool>() ? 0 : 1;
   }
   EXPECT_EQ(open, 1u);
   EXPECT_EQ(vmesh({"generate", "@y.swc", "-o", "@z.ply", "--ends", "flat", "--open-ends", "1"}).exit_code, 3);
