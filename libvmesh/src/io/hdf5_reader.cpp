@@ -5,6 +5,7 @@
 
 #include <hdf5.h>
 
+#include "vmesh/core/disjoint_sets.h"
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 
@@ -114,13 +115,20 @@ class Network {
 
   RawCenterline run() {
     PolyLines lines;
+    for (std::size_t c = 0; c < structure_.rows; ++c) lines.lines.push_back(section(c));
+    DisjointSets same(points_.rows);
+    for (std::size_t c = 0; c < connectivity_.rows; ++c) connect(c, same, lines.lines);
     std::vector<double> radii;
-    for (std::size_t i = 0; i < points_.rows; ++i) {
-      lines.points.push_back({{points_.at(i, 0), points_.at(i, 1), points_.at(i, 2)}, 0});
+    std::vector<Index> number(points_.rows, kNone);
+    for (Index i = 0; i < points_.rows; ++i) {
+      if (same.find(i) != i) continue;
+      number[i] = static_cast<Index>(lines.points.size());
+      lines.points.push_back({position(i), 0});
       radii.push_back(points_.at(i, 3) / 2);
     }
-    for (std::size_t s = 0; s < structure_.rows; ++s) lines.lines.push_back(section(s));
-    for (std::size_t c = 0; c < connectivity_.rows; ++c) connect(c, lines);
+    for (std::vector<Index>& line : lines.lines) {
+      for (Index& i : line) i = number[same.find(i)];
+    }
     const ScalarArrays of_points = {{"radius", std::move(radii)}}, none;
     RawCenterline raw = to_raw_centerline(std::move(lines), source_, {of_points, none}, {});
     raw.unit = LengthUnit::um;
@@ -149,17 +157,18 @@ class Network {
     return line;
   }
 
+  Vec3 position(std::size_t i) const { return {points_.at(i, 0), points_.at(i, 1), points_.at(i, 2)}; }
+
   /// The second section begins at the point where the first one ends; where that is not so in the file, by a step.
-  void connect(std::size_t c, PolyLines& lines) const {
+  void connect(std::size_t c, DisjointSets& same, std::vector<std::vector<Index>>& lines) const {
     const std::string what = "section of connection " + std::to_string(c);
     const std::size_t first = index(connectivity_.at(c, 0), structure_.rows, "the first " + what);
     const std::size_t second = index(connectivity_.at(c, 1), structure_.rows, "the second " + what);
-    const Index end = lines.lines[first].back(), begin = lines.lines[second].front();
-    if (end == begin) return;
-    if (lines.points[end].position == lines.points[begin].position) {
-      lines.lines[second].front() = end;
+    const Index end = lines[first].back(), begin = lines[second].front();
+    if (position(end) == position(begin)) {
+      same.join(end, begin);
     } else {
-      lines.lines.push_back({end, begin});
+      lines.push_back({end, begin});
     }
   }
 
