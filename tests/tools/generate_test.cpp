@@ -143,7 +143,8 @@ TEST_F(Generate, LeavesEndsOpenBesideFlatOnes) {
                 .exit_code,
             0);
   std::size_t open = 0;
-  for (const json& cap : json::parse(read("y.json")).at("caps")) {
+  const json summary = json::parse(read("y.json"));
+  for (const json& cap : summary.at("caps")) {
     EXPECT_EQ(cap.at("capped"), cap.at("node") != 0);
     open += cap.at("capped").get<bool>() ? 0 : 1;
   }
