@@ -6,7 +6,7 @@
 #include "vmesh/core/error.h"
 
 #include "chains.h"
-#include "deform/avx2_build.h"
+#include "core/avx2_build.h"
 #include "deform/implicit_rods.h"
 #include "draw.h"
 

@@ -7,7 +7,7 @@
 #include "vmesh/deform/linear_skin.h"
 
 #include "chains.h"
-#include "deform/avx2_build.h"
+#include "core/avx2_build.h"
 #include "deform/synchronise.h"
 #include "draw.h"
 

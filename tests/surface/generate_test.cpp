@@ -267,9 +267,9 @@ TEST(Generate, MovesWithTheCenterline) {
   ASSERT_EQ(moved.mesh.faces, original.mesh.faces);
   for (std::size_t v = 0; v < original.mesh.vertices.size(); ++v) {
     const Vec3 expected = rotation * original.mesh.vertices[v] + shift;
-    // Rounding is 1e-15 of the coordinates; the iteration from the seed to the last sweep may amplify it, observed
-    // below 1e-9.
-    EXPECT_LT((moved.mesh.vertices[v] - expected).norm(), 1e-7) << "vertex " << v;
+    // The field is asked in single precision: rounding is 6e-8 of the distance from the middle of a cone, some mm; the
+    // iteration from the lattice to the last sweep may amplify it, observed below 1e-6.
+    EXPECT_LT((moved.mesh.vertices[v] - expected).norm(), 1e-4) << "vertex " << v;
   }
 }
 

@@ -1,4 +1,4 @@
-#include "deform/avx2_build.h"
+#include "core/avx2_build.h"
 #include "deform/rod_kernels.h"
 
 #if VMESH_AVX2_BUILD

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "deform/avx2_build.h"
+#include "core/avx2_build.h"
 #include "deform/synchronise.h"
 
 #if VMESH_AVX2_BUILD

@@ -195,14 +195,6 @@ void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidate
   }
 }
 
-double VesselField::distance_to_others(const Vec3& p, Index cone, double limit) const {
-  const std::span<const Index> local = local_cones(cone);
-  visit_near(p, limit, [&](Index c) {
-    if (!std::binary_search(local.begin(), local.end(), c)) limit = std::min(limit, distance_to(cones_[c], p).value);
-  });
-  return limit;
-}
-
 FieldSample VesselField::sample_global(const Vec3& p) const {
   const double rounding = kRounding * p.norm();
   Index best = 0;

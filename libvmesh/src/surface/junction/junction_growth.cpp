@@ -32,7 +32,7 @@ Index widest_node(const Centerline& centerline) {
 // How far below the walls of thicker vessels the axis runs, beyond the depth from which neither the vessel nor its
 // blend reaches them.
 double depth_at(const VesselField& field, const Vec3& p, Index cone, double radius) {
-  return -field.sample(p, cone).distance - (1 + 2 * field.blend()) * radius;
+  return -field.sample_fast(p, cone).distance - (1 + 2 * field.blend()) * radius;
 }
 
 // Balls along the vessels, in which the lattice is as fine as their radius asks for; but where its cubes are that fine
@@ -71,7 +71,7 @@ GradedLattice lattice_around(const VesselField& field, Index start) {
 void fill(BoundSurface& surface, const LatticeSurface& lattice) {
   for (std::size_t i = 0; i < lattice.vertices.size(); ++i) {
     const Vertex v = surface.mesh.add_vertex(lattice.vertices[i]);
-    surface.place(v, lattice.vertices[i], surface.field.sample(lattice.vertices[i], lattice.cones[i]));
+    surface.place(v, lattice.vertices[i], surface.field.sample_fast(lattice.vertices[i], lattice.cones[i]));
   }
   for (const auto& [a, b, c] : lattice.faces) surface.mesh.add_face(Vertex(a), Vertex(b), Vertex(c));
 }

@@ -92,7 +92,7 @@ class PieceMaker {
 
   Vertex add_vertex(const Vec3& position, Index cone) {
     const Vertex v = surface_.mesh.add_vertex(position);
-    surface_.place(v, position, surface_.field.sample(position, cone));
+    surface_.place(v, position, surface_.field.sample_fast(position, cone));
     return v;
   }
 

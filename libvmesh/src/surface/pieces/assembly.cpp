@@ -77,7 +77,7 @@ std::vector<PieceLoop> Assembly::build(BoundSurface& surface) const {
       if (vertex[v] != SurfaceMesh::null_vertex()) continue;
       const SurfacePoint& p = vertices_[v];
       vertex[v] = surface.mesh.add_vertex(p.position);
-      surface.place(vertex[v], p.position, surface.field.sample(p.position, p.cone));
+      surface.place(vertex[v], p.position, surface.field.sample_fast(p.position, p.cone));
       surface.fineness[vertex[v]] = p.fineness;
       surface.lift[vertex[v]] = p.lift == kAsLaid ? surface.distance[vertex[v]] : p.lift;
     }

@@ -1,0 +1,158 @@
+// Local queries of a VesselField in single precision, several cones at once.
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "vmesh/volume/vessel_field.h"
+
+#include "volume/cone_lanes.h"
+
+namespace vmesh {
+namespace {
+
+// Radii from the hint up to which single precision will do: there it is good to a few 1e-5 of them.
+constexpr double kFar = 128;
+constexpr double kLargest = 1e30;
+constexpr int kMostSteps = 64;      // from hint to hint, until what is nearest is found; then double precision decides
+constexpr double kLonely = 2.5;     // radii around an axis in which it is noted if there are no other cones
+constexpr float kNowhere = -1e30f;  // the radius of a cone that is near nothing
+
+// Relative: covers the rounding in a distance and in the bound by which lanes are skipped.
+constexpr float kMargin = 1e-5f;
+
+}  // namespace
+
+// The local cones of a hint, relative to its middle, in a power of two near its size.
+struct VesselField::Surroundings {
+  std::uint64_t field = 0;
+  Index hint = kNone;
+  Vec3 center = Vec3::Zero();
+  double unit = 1, per_unit = 1;  // mm
+  double range = 0;               // units from the center; 0: only double precision will do
+  std::size_t first = 0;          // the hint's number
+  std::vector<ConeLanes> lanes;
+  Vec3 lonely_low = Vec3::Zero(), lonely_high = Vec3::Zero();  // a box in which there are no other cones; or empty
+};
+
+std::uint64_t VesselField::new_number() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
+// Every thread keeps those it has asked for last: of many queries in a row nearly all are near each other.
+const VesselField::Surroundings& VesselField::surroundings(Index hint) const {
+  constexpr std::size_t kKept = 256;
+  thread_local std::vector<Surroundings> kept(kKept);
+  Surroundings& s = kept[hint % kKept];
+  if (s.field != number_ || s.hint != hint) survey(hint, s);
+  return s;
+}
+
+void VesselField::survey(Index hint, Surroundings& s) const {
+  const std::span<const Index> local = local_cones(hint);
+  const Cone& own = cones_[hint];
+  s.field = number_;
+  s.hint = hint;
+  const double around = kLonely * max_radius(hint);
+  s.lonely_low = (own.origin.cwiseMin(own.origin + own.axis).array() - around).matrix();
+  s.lonely_high = (own.origin.cwiseMax(own.origin + own.axis).array() + around).matrix();
+  bool lonely = true;
+  tree_.visit_overlapping(s.lonely_low, s.lonely_high, [&](Index item) {
+    lonely = lonely && std::binary_search(local.begin(), local.end(), cone_of_item_[item]);
+  });
+  if (!lonely) s.lonely_high = s.lonely_low;
+  s.range = 0;
+  if (local.size() > kMostConeLanes * ConeLanes::kCount) return;
+  s.center = own.origin + 0.5 * own.axis;
+  s.unit = std::exp2(std::ilogb(std::max(own.axis.norm(), max_radius(hint))));
+  s.per_unit = 1 / s.unit;
+  double range = std::numeric_limits<double>::infinity();
+  for (const Index c : local) {
+    const Cone& cone = cones_[c];
+    const double within = kFar * std::min(cone.r0, cone.r1) * s.per_unit;
+    const double extent = ((cone.origin - s.center).norm() + cone.axis.norm()) * s.per_unit;
+    const bool fits = extent <= within && within < kLargest && cone.inv_length2 * s.unit * s.unit < kLargest &&
+                      std::abs(cone.lag) * s.unit < kLargest;
+    if (!fits) return;
+    range = std::min(range, within);
+  }
+  s.range = range;
+  s.first = static_cast<std::size_t>(std::lower_bound(local.begin(), local.end(), hint) - local.begin());
+  s.lanes.resize((local.size() + ConeLanes::kCount - 1) / ConeLanes::kCount);
+  for (std::size_t b = 0; b < s.lanes.size(); ++b)
+    fill_lanes(local.subspan(b * ConeLanes::kCount, std::min(ConeLanes::kCount, local.size() - b * ConeLanes::kCount)),
+               s.center, s.per_unit, s.lanes[b]);
+}
+
+double VesselField::distance_to_others(const Vec3& p, Index cone, double limit) const {
+  const Surroundings& s = surroundings(cone);
+  const double reach = std::max(limit, 0.0);
+  if ((p.array() - reach > s.lonely_low.array()).all() && (p.array() + reach < s.lonely_high.array()).all())
+    return limit;
+  const std::span<const Index> local = local_cones(cone);
+  visit_near(p, limit, [&](Index c) {
+    if (!std::binary_search(local.begin(), local.end(), c)) limit = std::min(limit, distance_to(cones_[c], p).value);
+  });
+  return limit;
+}
+
+void VesselField::fill_lanes(std::span<const Index> cones, const Vec3& center, double per_unit,
+                             ConeLanes& lanes) const {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (std::size_t i = 0; i < ConeLanes::kCount; ++i) {
+    const bool is_one = i < cones.size();
+    const Cone cone = is_one ? cones_[cones[i]] : Cone();
+    const Vec3 origin = is_one ? Vec3(per_unit * (cone.origin - center)) : Vec3(Vec3::Zero());
+    const Vec3 axis = is_one ? Vec3(per_unit * cone.axis) : Vec3(Vec3::Zero());
+    lanes.origin_x[i] = static_cast<float>(origin.x());
+    lanes.origin_y[i] = static_cast<float>(origin.y());
+    lanes.origin_z[i] = static_cast<float>(origin.z());
+    lanes.axis_x[i] = static_cast<float>(axis.x());
+    lanes.axis_y[i] = static_cast<float>(axis.y());
+    lanes.axis_z[i] = static_cast<float>(axis.z());
+    lanes.r0[i] = is_one ? static_cast<float>(per_unit * cone.r0) : kNowhere;
+    lanes.taper[i] = static_cast<float>(per_unit * (cone.r1 - cone.r0));
+    lanes.inv_length2[i] = static_cast<float>(cone.inv_length2 / (per_unit * per_unit));
+    lanes.lag[i] = static_cast<float>(cone.lag / per_unit);
+    lanes.t_low[i] = static_cast<float>(cone.t_low);
+    lanes.t_high[i] = static_cast<float>(cone.t_high);
+    lanes.reach[i] = is_one ? static_cast<float>(2 * blend_ * per_unit * max_radius(cones[i])) : 0;
+    if (!is_one) continue;
+    low = low.cwiseMin(origin).cwiseMin(origin + axis);
+    high = high.cwiseMax(origin).cwiseMax(origin + axis);
+  }
+  const Vec3 middle = 0.5 * (low + high);
+  double radius = 0;
+  for (const Index c : cones) {
+    const double widest = (1 + 2 * blend_) * max_radius(c);
+    for (const double t : {0.0, 1.0})
+      radius = std::max(radius, (per_unit * (axis_point(c, t) - center) - middle).norm() + per_unit * widest);
+  }
+  lanes.center_x = static_cast<float>(middle.x());
+  lanes.center_y = static_cast<float>(middle.y());
+  lanes.center_z = static_cast<float>(middle.z());
+  lanes.radius = static_cast<float>(radius * (1 + kMargin) + kMargin * middle.norm());
+}
+
+FieldSample VesselField::sample_fast(const Vec3& p, Index hint) const {
+  static const LaneSampler run = best_lane_sampler();
+  Index before = kNone;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Surroundings& s = surroundings(hint);
+    const Vec3 q = s.per_unit * (p - s.center);
+    if (!(q.squaredNorm() <= s.range * s.range)) break;
+    const LaneSample found = run(s.lanes.data(), s.lanes.size(),
+                                 {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
+                                  static_cast<float>(blend_), s.first});
+    const Index nearest = local_cones(hint)[found.nearest];
+    // Distances are rounded differently around every hint: of two as near each may see the other.
+    if (nearest == hint || nearest == before)
+      return {s.unit * found.distance, Vec3(found.gradient_x, found.gradient_y, found.gradient_z), nearest, found.t};
+    before = hint;
+    hint = nearest;
+  }
+  return sample(p, hint);
+}
+
+}  // namespace vmesh
