@@ -87,6 +87,21 @@ TEST(SelfIntersections, FindDuplicates) {
   EXPECT_EQ(self_intersections(mesh), (Pairs{{3, 4}, {3, 5}, {4, 5}}));
 }
 
+TEST(SelfIntersections, BetweenPartsAreThoseOfTheirFaces) {
+  // Three spheres in a row, each into the next, and the last folded into itself.
+  TriMesh last = moved(icosphere(2), {3, 0.1, 0});
+  last.vertices[0] = 2 * Vec3(3, 0.1, 0) - last.vertices[0];
+  const TriMesh sphere = icosphere(2), mesh = sphere + moved(sphere, {1.5, 0, 0.1}) + last;
+  const auto size = static_cast<Index>(sphere.faces.size());
+  for (const std::vector<Index>& first : {std::vector<Index>{0}, {0, size}, {0, size, 2 * size}, {0, 7, size, size}}) {
+    const auto part = [&](Index f) { return std::upper_bound(first.begin(), first.end(), f); };
+    Pairs expected = self_intersections(mesh);
+    EXPECT_GT(expected.size(), 100u);
+    std::erase_if(expected, [&](const auto& pair) { return part(pair.first) == part(pair.second); });
+    EXPECT_EQ(intersections_between(mesh, first), expected);
+  }
+}
+
 TEST(SelfIntersections, LeaveDegenerateFacesOut) {
   TriMesh mesh = tetrahedron();
   mesh.vertices.insert(mesh.vertices.end(), {{-1, 0.25, 0.25}, {0.5, 0.25, 0.25}, {2, 0.25, 0.25}});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace vmesh {
 namespace {
@@ -47,7 +48,32 @@ CloseFaces::Box CloseFaces::box_of(const TriMesh& mesh, Index face) {
 }
 
 CloseFaces::CloseFaces(const TriMesh& mesh, std::vector<Index> faces) : faces_(std::move(faces)) {
-  sort(mesh);
+  sort(mesh, 0, faces_.size());
+  build(mesh);
+}
+
+CloseFaces::CloseFaces(const TriMesh& mesh, std::vector<Index> faces, const std::vector<Index>& parts)
+    : faces_(std::move(faces)), part_(parts) {
+  for (std::size_t begin = 0, end = 0; begin < faces_.size(); begin = end) {
+    while (end < faces_.size() && part_[end] == part_[begin]) ++end;
+    sort(mesh, begin, end);
+  }
+  build(mesh);
+  note_parts();
+}
+
+void CloseFaces::note_parts() {
+  part_below_.assign(2 * leaves_, kNone);
+  for (std::size_t block = 0; block < blocks_; ++block) {
+    if (part_[block * kBlock] == part_[end_of(block) - 1]) part_below_[leaves_ + block] = part_[block * kBlock];
+  }
+  for (std::size_t node = leaves_; --node > 0;) {
+    const std::size_t left = 2 * node, right = 2 * node + 1;
+    if (last_block_[right] == 0 || part_below_[left] == part_below_[right]) part_below_[node] = part_below_[left];
+  }
+}
+
+void CloseFaces::build(const TriMesh& mesh) {
   for (const Index f : faces_) boxes_.push_back(box_of(mesh, f));
   blocks_ = (faces_.size() + kBlock - 1) / kBlock;
   while (leaves_ < blocks_) leaves_ *= 2;
@@ -67,29 +93,30 @@ CloseFaces::CloseFaces(const TriMesh& mesh, std::vector<Index> faces) : faces_(s
 }
 
 // Along the Z curve, by the faces' middles.
-void CloseFaces::sort(const TriMesh& mesh) {
-  if (faces_.empty()) return;
+void CloseFaces::sort(const TriMesh& mesh, std::size_t begin, std::size_t end) {
+  if (begin == end) return;
+  const std::span<Index> faces(faces_.data() + begin, end - begin);
   const auto middle = [&](Index f) -> Vec3 {
     const auto& [a, b, c] = mesh.faces[f];
     return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
   };
-  Vec3 low = middle(faces_.front()), high = low;
-  for (const Index f : faces_) {
+  Vec3 low = middle(faces.front()), high = low;
+  for (const Index f : faces) {
     low = low.cwiseMin(middle(f));
     high = high.cwiseMax(middle(f));
   }
   const double size = (high - low).maxCoeff();
   const double scale = size > 0 ? ((1 << kBits) - 1) / size : 0;
   std::vector<std::pair<std::uint64_t, Index>> order;
-  order.reserve(faces_.size());
-  for (const Index f : faces_) {
+  order.reserve(faces.size());
+  for (const Index f : faces) {
     const Vec3 at = scale * (middle(f) - low);
     std::uint64_t key = 0;
     for (int i = 0; i < 3; ++i) key |= spread(static_cast<std::uint64_t>(at[i])) << i;
     order.emplace_back(key, f);
   }
   std::sort(order.begin(), order.end());
-  for (std::size_t i = 0; i < order.size(); ++i) faces_[i] = order[i].second;
+  for (std::size_t i = 0; i < order.size(); ++i) faces[i] = order[i].second;
 }
 
 }  // namespace vmesh

@@ -15,6 +15,8 @@ class CloseFaces {
  public:
   /// `faces`: the numbers of those that take part. O(n log n).
   CloseFaces(const TriMesh& mesh, std::vector<Index> faces);
+  /// The same, for faces of different parts only. `parts`: that of every face in `faces`, ascending.
+  CloseFaces(const TriMesh& mesh, std::vector<Index> faces, const std::vector<Index>& parts);
 
   /// Calls visit(face, face) once for every two faces whose boxes meet, and for some whose boxes nearly do.
   template <class Visit>
@@ -39,15 +41,23 @@ class CloseFaces {
   };
 
   static Box box_of(const TriMesh& mesh, Index face);
-  void sort(const TriMesh& mesh);
+  // Those from number `begin` to `end`.
+  void sort(const TriMesh& mesh, std::size_t begin, std::size_t end);
+  void build(const TriMesh& mesh);
+  void note_parts();
+  bool are_apart(std::size_t i, std::size_t j) const { return part_.empty() || part_[i] != part_[j]; }
+  bool are_one_part(std::size_t node, std::size_t other) const {
+    return !part_.empty() && part_below_[node] != kNone && part_below_[node] == part_below_[other];
+  }
 
   std::size_t end_of(std::size_t block) const { return std::min(faces_.size(), (block + 1) * kBlock); }
 
   template <class Visit>
   void visit_within(std::size_t block, Visit& visit) const {
+    if (are_one_part(leaves_ + block, leaves_ + block)) return;
     for (std::size_t i = block * kBlock; i < end_of(block); ++i) {
       for (std::size_t j = block * kBlock; j < i; ++j) {
-        if (boxes_[i].meets(boxes_[j])) visit(faces_[i], faces_[j]);
+        if (boxes_[i].meets(boxes_[j]) && are_apart(i, j)) visit(faces_[i], faces_[j]);
       }
     }
   }
@@ -56,6 +66,7 @@ class CloseFaces {
   template <class Visit>
   void visit_later(std::size_t node, std::size_t block, Visit& visit) const {
     if (last_block_[node] <= block + 1 || !nodes_[node].meets(nodes_[leaves_ + block])) return;
+    if (are_one_part(node, leaves_ + block)) return;
     if (node < leaves_) {
       visit_later(2 * node, block, visit);
       visit_later(2 * node + 1, block, visit);
@@ -65,7 +76,7 @@ class CloseFaces {
     for (std::size_t i = block * kBlock; i < end_of(block); ++i) {
       if (!boxes_[i].meets(nodes_[node])) continue;
       for (std::size_t j = other * kBlock; j < end_of(other); ++j) {
-        if (boxes_[i].meets(boxes_[j])) visit(faces_[i], faces_[j]);
+        if (boxes_[i].meets(boxes_[j]) && are_apart(i, j)) visit(faces_[i], faces_[j]);
       }
     }
   }
@@ -76,6 +87,8 @@ class CloseFaces {
   // Node 1 is the root, those below node n are 2 n and 2 n + 1; from leaves_ on they are blocks.
   std::vector<Box> nodes_;
   std::vector<std::size_t> last_block_;  // below a node, counted from one; 0: none
+  std::vector<Index> part_;              // of every face; empty: all count
+  std::vector<Index> part_below_;        // a node, if it is one
 };
 
 }  // namespace vmesh

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,10 @@ double enclosed_volume(const TriMesh& mesh);
 /// Pairs of faces that intersect other than in their common vertices or edge, each pair in ascending order, the
 /// list sorted. Degenerate faces are not tested. Exact predicates (CGAL).
 std::vector<std::pair<Index, Index>> self_intersections(const TriMesh& mesh);
+
+/// Those of them whose faces belong to different parts. Part k ends where part k + 1 begins, at face `first_face[k +
+/// 1]`; `first_face` is ascending and begins with 0.
+std::vector<std::pair<Index, Index>> intersections_between(const TriMesh& mesh, std::span<const Index> first_face);
 
 /// Faces without area, ascending: corners in common, at one place or on one line. Exact predicates. Throws InvalidInput
 /// when a face names a vertex that does not exist, as does the next.

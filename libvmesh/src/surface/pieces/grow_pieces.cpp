@@ -33,7 +33,7 @@ class PieceGrower {
     make_pieces({});
     for (int round = 0;; ++round) {
       gathered_ = gather(tubes_, division_, pieces_);
-      crossings_ = self_intersections(gathered_.mesh);
+      crossings_ = find_crossings();
       if (options_.max_error.is_set())
         unproven_ = unproven_faces(gathered_.mesh, gathered_.binding, tubes_.field(), options_.max_error,
                                    Shells::along_normals);
@@ -65,6 +65,15 @@ class PieceGrower {
       const std::lock_guard lock(reporting_);
       ++done_;
     });
+  }
+
+  // Pieces were looked at on their own.
+  std::vector<std::pair<Index, Index>> find_crossings() const {
+    const bool all_right = std::all_of(pieces_.begin(), pieces_.end(), [](const PieceSurface& piece) {
+      return std::none_of(piece.faults.begin(), piece.faults.end(),
+                          [](const PieceFault& fault) { return fault.kind == DefectKind::crossing_faces; });
+    });
+    return all_right ? intersections_between(gathered_.mesh, gathered_.first_face) : self_intersections(gathered_.mesh);
   }
 
   // Joins pieces at what is wrong between them. Returns whether there was something that this may mend.
