@@ -23,7 +23,7 @@ FaceErrors face_errors(const SweepState& state) {
     if (surface.is_lid(f)) continue;
     const auto [a, b, c] = state.corners(f);
     const Vec3 center = (state.point(a) + state.point(b) + state.point(c)) / 3;
-    errors.at_center[f.idx()] = state.field.sample(center, surface.cone[a]).distance;
+    errors.at_center[f.idx()] = state.field.sample_fast(center, surface.cone[a]).distance;
     errors.area[f.idx()] = surface.face_area_normal(f).norm();
   }
   return errors;
@@ -55,8 +55,9 @@ void update_lifts(SweepState& state, const ErrorLimit& limit) {
 
 bool may_move(const SweepState& state, Vertex v, const BoundaryPoint& target) {
   if ((target.position - state.point(v)).norm() > state.size[v]) return false;
+  const Landing landing(target);
   for (const Halfedge h : state.mesh.halfedges_around_target(state.mesh.halfedge(v))) {
-    if (!state.stays_upright(v, state.mesh.target(state.mesh.next(h)), state.mesh.source(h), target)) return false;
+    if (!state.stays_upright(v, state.mesh.target(state.mesh.next(h)), state.mesh.source(h), landing)) return false;
   }
   return state.surface.may_place(v, target.position);
 }
@@ -69,7 +70,7 @@ void balance(SweepState& state, const ErrorLimit& limit) {
   update_lifts(state, limit);
   for (const Vertex v : state.mesh.vertices()) {
     if (state.surface.held(v) || strays[v.idx()]) continue;
-    const BoundaryPoint target = state.project(v, state.point(v));
+    const BoundaryPoint target = state.project(v);
     if (may_move(state, v, target)) state.surface.place(v, target.position, target.sample);
     state.surface.lift[v] = state.surface.distance[v];
   }
@@ -79,7 +80,7 @@ void sink(SweepState& state, const std::vector<Vertex>& vertices) {
   const auto sink_one = [&state](Vertex v) {
     if (state.surface.held(v) || state.surface.lift[v] <= 0) return;
     state.surface.lift[v] = 0;
-    const BoundaryPoint target = state.project(v, state.point(v));
+    const BoundaryPoint target = state.project(v);
     if (may_move(state, v, target)) state.surface.place(v, target.position, target.sample);
   };
   for (const Vertex v : vertices) {

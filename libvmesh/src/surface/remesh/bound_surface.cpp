@@ -6,11 +6,19 @@ namespace vmesh {
 namespace {
 
 constexpr int kMaxProjectionSteps = 12;
+constexpr double kRoughTolerance = 1e-4;  // radii: from there on single precision will do
+
+FieldSample sample(const VesselField& field, const Vec3& p, Index hint, double tolerance) {
+  return tolerance >= kRoughTolerance ? field.sample_fast(p, hint) : field.sample(p, hint);
+}
 
 }  // namespace
 
 BoundaryPoint project_to_boundary(const VesselField& field, const Vec3& p, Index hint, double tolerance, double lift) {
-  BoundaryPoint point{p, field.sample(p, hint)};
+  return project_to_boundary(field, {p, sample(field, p, hint, tolerance)}, tolerance, lift);
+}
+
+BoundaryPoint project_to_boundary(const VesselField& field, BoundaryPoint point, double tolerance, double lift) {
   for (int step = 0; step < kMaxProjectionSteps; ++step) {
     const FieldSample& s = point.sample;
     const double off = s.distance - lift;
@@ -18,7 +26,7 @@ BoundaryPoint project_to_boundary(const VesselField& field, const Vec3& p, Index
     const double slope2 = s.gradient.squaredNorm();
     if (slope2 < 0.01) break;  // on an axis, or in the valley between two blended cones: no direction to follow
     point.position -= off / slope2 * s.gradient;
-    point.sample = field.sample(point.position, s.cone);
+    point.sample = sample(field, point.position, s.cone, tolerance);
   }
   return point;
 }

@@ -72,6 +72,8 @@ class BoundSurface {
   }
 
   const Vec3& position(Vertex v) const { return mesh.point(v); }
+  /// What is known since it was placed. The gradient is a unit vector.
+  FieldSample sample(Vertex v) const { return {distance[v], gradient[v], cone[v], t[v]}; }
   double radius(Vertex v) const { return field.radius_at(cone[v], t[v]); }
 
   /// Places `v` at `p` and binds it to what `sample` says.
@@ -110,5 +112,8 @@ struct BoundaryPoint {
 /// most `tolerance` local radii, or no longer comes closer.
 BoundaryPoint project_to_boundary(const VesselField& field, const Vec3& p, Index hint, double tolerance = 1e-6,
                                   double lift = 0);
+
+/// The same from a point about which something is known already.
+BoundaryPoint project_to_boundary(const VesselField& field, BoundaryPoint start, double tolerance, double lift);
 
 }  // namespace vmesh

@@ -49,10 +49,11 @@ class Relocator {
   bool improves(Vertex v, const BoundaryPoint& target, double old_energy) const {
     // A vertex that is not on the boundary yet must get there, at any price in shape that keeps its faces upright.
     if (state_.off_boundary(v)) old_energy = std::numeric_limits<double>::infinity();
+    const Landing landing(target);
     double sum = 0;
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
-      if (!state_.stays_upright(v, b, c, target)) return false;
+      if (!state_.stays_upright(v, b, c, landing)) return false;
       const double energy = SweepState::energy(target.position, state_.point(b), state_.point(c));
       if (energy > options_.highest && energy > state_.energy(v, b, c)) return false;
       sum += whole_power(energy, options_.power);

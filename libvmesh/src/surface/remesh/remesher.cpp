@@ -64,18 +64,19 @@ Vertex Remesher::split(Edge e) {
 
 void Remesher::move_to_boundary(Vertex v) {
   const BoundaryPoint target = state_.project(v, state_.point(v));
+  const Landing landing(target);
   const bool far = (target.position - state_.point(v)).norm() > state_.size[v];
   for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
     const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
-    if (far || state_.agreement(target, b, c) < std::min(SweepState::kMinAgreement, state_.agreement(v, b, c))) {
-      surface_.place(v, state_.point(v), field_.sample(state_.point(v), surface_.cone[v]));
+    if (far || state_.agreement(landing, b, c) < std::min(SweepState::kMinAgreement, state_.agreement(v, b, c))) {
+      surface_.place(v, state_.point(v), field_.sample_fast(state_.point(v), surface_.cone[v]));
       return;
     }
   }
   if (surface_.may_place(v, target.position)) {
     surface_.place(v, target.position, target.sample);
   } else {
-    surface_.place(v, state_.point(v), field_.sample(state_.point(v), surface_.cone[v]));
+    surface_.place(v, state_.point(v), field_.sample_fast(state_.point(v), surface_.cone[v]));
   }
 }
 
@@ -136,14 +137,15 @@ double Remesher::worst_energy(Vertex v, Vertex other, const Vec3& p) const {
 }
 
 bool Remesher::collapsible_to(Vertex v, Vertex other, const BoundaryPoint& target) const {
+  const Landing landing(target);
   for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
     const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
     if (b == other || c == other) continue;
     const double reach = (state_.point(c) - target.position).norm();
     const double size = 0.5 * (state_.size[c] + state_.size[v]);
-    if (reach > kSplitLength * size || !state_.stays_upright(v, b, c, target)) return false;
+    if (reach > kSplitLength * size || !state_.stays_upright(v, b, c, landing)) return false;
     if (reach > kCannotStray * size &&
-        std::abs(field_.sample(0.5 * (state_.point(c) + target.position), target.sample.cone).distance) >
+        std::abs(field_.sample_fast(0.5 * (state_.point(c) + target.position), target.sample.cone).distance) >
             kMaxBulge * reach) {
       return false;
     }
@@ -159,7 +161,7 @@ void Remesher::split_far_faces(double max_distance) {
     const std::array<Vertex, 3> corner = state_.corners(f);
     if (std::count_if(corner.begin(), corner.end(), [&](Vertex v) { return surface_.held(v); }) > 1) continue;
     const Vec3 center = (state_.point(corner[0]) + state_.point(corner[1]) + state_.point(corner[2])) / 3;
-    const FieldSample s = field_.sample(center, surface_.cone[corner[0]]);
+    const FieldSample s = field_.sample_fast(center, surface_.cone[corner[0]]);
     if (std::abs(s.distance) <= max_distance * field_.radius_at(s.cone, s.t)) continue;
     double longest = 0, target = 0;
     for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
@@ -179,7 +181,7 @@ void Remesher::split_far_faces(double max_distance) {
 
 double Remesher::bulge(Vertex a, Vertex b) const {
   const Vec3 middle = 0.5 * (state_.point(a) + state_.point(b));
-  return std::abs(field_.sample(middle, surface_.cone[a]).distance) / (state_.point(a) - state_.point(b)).norm();
+  return std::abs(field_.sample_fast(middle, surface_.cone[a]).distance) / (state_.point(a) - state_.point(b)).norm();
 }
 
 void Remesher::repair_strays() {

@@ -77,11 +77,11 @@ std::size_t SweepState::next_sweep() {
 
 double SweepState::agreement(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& gradient_sum) {
   const Vec3 normal = (b - a).cross(c - a);
-  const double norm = normal.norm() * gradient_sum.norm();
+  const double norm = std::sqrt(normal.squaredNorm() * gradient_sum.squaredNorm());
   return norm > 0 ? normal.dot(gradient_sum) / norm : -1;
 }
 
-bool SweepState::stays_upright(Vertex v, Vertex b, Vertex c, const BoundaryPoint& target) const {
+bool SweepState::stays_upright(Vertex v, Vertex b, Vertex c, const Landing& target) const {
   const double after = agreement(target, b, c);
   if (after < kMinAgreement && after < agreement(v, b, c)) return false;
   if (after > kFreeToTurn) return true;

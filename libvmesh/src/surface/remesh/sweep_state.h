@@ -21,6 +21,13 @@ double edge_length_per_radius(double around);
 /// Longest edge, mm, with which a surface in balanced placement keeps within `limit` (mm) of a vessel of `radius`.
 double edge_length_for(double limit, double radius);
 
+/// Where a vertex may go, and the boundary's normal there.
+struct Landing {
+  explicit Landing(const BoundaryPoint& point) : position(point.position), normal(point.sample.gradient.normalized()) {}
+
+  const Vec3 position, normal;
+};
+
 /// What the steps of a sweep share: the surface, its size field, and which vertices are worth looking at.
 class SweepState {
  public:
@@ -65,22 +72,18 @@ class SweepState {
     return agreement(point(a), point(b), point(c), surface.gradient[a] + surface.gradient[b] + surface.gradient[c]);
   }
   /// The same once `v` has moved to `target`.
-  double agreement(const BoundaryPoint& target, Vertex b, Vertex c) const {
-    return agreement(target.position, point(b), point(c),
-                     target.sample.gradient.normalized() + surface.gradient[b] + surface.gradient[c]);
+  double agreement(const Landing& target, Vertex b, Vertex c) const {
+    return agreement(target.position, point(b), point(c), target.normal + surface.gradient[b] + surface.gradient[c]);
   }
   /// Least agreement at which a face counts as upright.
   static constexpr double kMinAgreement = 0.2;
 
   /// Whether the face vbc stays upright and does not turn far when `v` moves to `target`.
-  bool stays_upright(Vertex v, Vertex b, Vertex c, const BoundaryPoint& target) const;
+  bool stays_upright(Vertex v, Vertex b, Vertex c, const Landing& target) const;
 
   /// Squared inverse mean ratio: 1 equilateral.
   double energy(Vertex a, Vertex b, Vertex c) const { return energy(point(a), point(b), point(c)); }
-  static double energy(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const double ratio = inverse_mean_ratio(a, b, c);
-    return ratio * ratio;
-  }
+  static double energy(const Vec3& a, const Vec3& b, const Vec3& c) { return squared_inverse_mean_ratio(a, b, c); }
 
   /// Whether `v` is not yet where it belongs, at its lift from the boundary.
   bool off_boundary(Vertex v) const {
@@ -90,6 +93,10 @@ class SweepState {
   /// Where `v` belongs when it goes to `p`.
   BoundaryPoint project(Vertex v, const Vec3& p, double tolerance = kProjectionTolerance) const {
     return project_to_boundary(field, p, surface.cone[v], tolerance, surface.lift[v]);
+  }
+  /// Where `v` belongs when it stays about where it is.
+  BoundaryPoint project(Vertex v) const {
+    return project_to_boundary(field, {point(v), surface.sample(v)}, kProjectionTolerance, surface.lift[v]);
   }
   /// Where the vertex belongs that `a` and `b` become.
   BoundaryPoint project_middle(Vertex a, Vertex b) const {

@@ -13,6 +13,13 @@ inline double inverse_mean_ratio(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (ab.squaredNorm() + ac.squaredNorm() + (c - b).squaredNorm()) / (2 * std::sqrt(3.0) * area2);
 }
 
+/// Its square.
+inline double squared_inverse_mean_ratio(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a;
+  const double edges = ab.squaredNorm() + ac.squaredNorm() + (c - b).squaredNorm();
+  return edges * edges / (12 * ab.cross(ac).squaredNorm());
+}
+
 /// Power with an exponent of 0 or more, by multiplications alone.
 inline double whole_power(double base, int exponent) {
   double power = 1;
