@@ -16,32 +16,60 @@ using Tetrahedron = GradedLattice::Tetrahedron;
 
 std::uint64_t key_of_pair(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
-// Numbers of points with whole coordinates, in blocks: who looks up one looks up its neighbours next.
+// Numbers of points with whole coordinates, in blocks: who looks up one looks up its neighbours next. The blocks are in
+// a grid of their own, unless that were very large.
 class PlaceNumbers {
  public:
+  // For places from `low` to `high`.
+  void cover(const Vec3& low, const Vec3& high) {
+    double count = 1;
+    for (int i = 0; i < 3; ++i) {
+      first_[i] = static_cast<std::int32_t>(std::floor(low[i])) >> kBits;
+      side_[i] = (static_cast<std::int32_t>(std::ceil(high[i])) >> kBits) - first_[i] + 1;
+      count *= side_[i];
+    }
+    if (count <= kMostInGrid) grid_.assign(static_cast<std::size_t>(count), kNone);
+  }
+
   // kNone where there is none yet.
   Index& at(const Vec3& place) {
     std::array<std::int32_t, 3> c;
     for (int i = 0; i < 3; ++i) c[i] = static_cast<std::int32_t>(place[i]);
-    std::uint64_t key = 0;
-    for (const std::int32_t x : c) key = key << 21 | (static_cast<std::uint64_t>(x >> kBits) & 0x1FFFFF);
-    if (key != last_key_) {
-      const auto [it, is_new] = blocks_.try_emplace(key);
-      if (is_new) it->second.fill(kNone);
-      last_key_ = key;
-      last_ = &it->second;
+    const std::array<std::int32_t, 3> block = {c[0] >> kBits, c[1] >> kBits, c[2] >> kBits};
+    if (block != last_block_) {
+      last_block_ = block;
+      Index& number = number_of(block);
+      if (number == kNone) {
+        number = static_cast<Index>(blocks_.size());
+        blocks_.emplace_back().fill(kNone);
+      }
+      last_ = number;
     }
     constexpr int kMask = kSide - 1;
-    return (*last_)[static_cast<std::size_t>(((c[0] & kMask) * kSide + (c[1] & kMask)) * kSide + (c[2] & kMask))];
+    return blocks_[last_][static_cast<std::size_t>(((c[0] & kMask) * kSide + (c[1] & kMask)) * kSide + (c[2] & kMask))];
   }
 
  private:
   static constexpr int kBits = 3, kSide = 1 << kBits;
+  static constexpr double kMostInGrid = 1 << 16;
   using Block = std::array<Index, kSide * kSide * kSide>;
 
-  std::unordered_map<std::uint64_t, Block> blocks_;
-  std::uint64_t last_key_ = ~std::uint64_t{0};
-  Block* last_ = nullptr;
+  Index& number_of(const std::array<std::int32_t, 3>& block) {
+    if (!grid_.empty()) {
+      const std::array<std::int32_t, 3> at = {block[0] - first_[0], block[1] - first_[1], block[2] - first_[2]};
+      return grid_[static_cast<std::size_t>((at[0] * side_[1] + at[1]) * side_[2] + at[2])];
+    }
+    std::uint64_t key = 0;
+    for (const std::int32_t x : block) key = key << 21 | (static_cast<std::uint64_t>(x) & 0x1FFFFF);
+    return far_apart_.try_emplace(key, kNone).first->second;
+  }
+
+  std::array<std::int32_t, 3> first_{}, side_{};
+  std::vector<Index> grid_;
+  std::unordered_map<std::uint64_t, Index> far_apart_;
+  std::vector<Block> blocks_;
+  std::array<std::int32_t, 3> last_block_{INT32_MAX, 0, 0};
+  Index last_ = kNone;
 };
 
 }  // namespace
@@ -56,6 +84,13 @@ class GradedLattice::Maker {
   }
 
   void run() {
+    Vec3 low = Vec3::Zero(), high = low;
+    for (const LatticeBall& ball : balls_) {
+      low = low.cwiseMin((ball.center.array() - ball.radius).matrix());
+      high = high.cwiseMax((ball.center.array() + ball.radius).matrix());
+    }
+    const double beyond = kMargin + kLongest;  // of what is asked for
+    root_number_.cover((low.array() - beyond).matrix(), (high.array() + beyond).matrix());
     add_root(Vec3::Zero());
     for (const LatticeBall& ball : balls_) for_points_near(ball, kMargin, [&](const Vec3& at) { add_root(at); });
     make_roots();

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <queue>
-#include <unordered_map>
 
 namespace vmesh {
 namespace {
@@ -19,8 +18,10 @@ class LatticeGrowth {
       : field_(field),
         lattice_(lattice),
         points_(lattice.size()),
+        in_(lattice.size(), 0),
         seen_by_(lattice.size(), kNone),
-        part_(lattice.size(), kNone) {}
+        part_(lattice.size(), kNone),
+        first_cut_(lattice.size(), kNone) {}
 
   LatticeSurface run(Index hint, std::size_t max_handles) {
     points_[0] = {0, 1, hint, true};
@@ -37,7 +38,11 @@ class LatticeGrowth {
     double radius = 1;  // of the vessel there
     Index cone = kNone;
     bool known = false;
-    bool in = false;
+  };
+  // The surface vertex between a point of the set and one outside it.
+  struct Cut {
+    Index outside, vertex;
+    Index next;  // of the same point of the set
   };
   struct Parts {
     int inside, outside;
@@ -55,7 +60,7 @@ class LatticeGrowth {
       point.radius = points_[from].radius;
       point.cone = points_[from].cone;
     } else {
-      const FieldSample s = field_.sample(p, points_[from].cone);
+      const FieldSample s = field_.sample_fast(p, points_[from].cone);
       point.distance = s.distance;
       point.radius = field_.radius_at(s.cone, s.t);
       point.cone = s.cone;
@@ -67,13 +72,13 @@ class LatticeGrowth {
   }
 
   void add(Index p) {
-    points_[p].in = true;
+    in_[p] = 1;
     for (const Index t : lattice_.around(p)) {
       for (const Index q : lattice_.tetrahedra()[t]) {
         if (seen_by_[q] == p) continue;
         seen_by_[q] = p;
         learn(q, p);
-        if (!points_[q].in && is_inside(q)) queue_.emplace(depth(q), q);
+        if (!in_[q] && is_inside(q)) queue_.emplace(depth(q), q);
       }
     }
   }
@@ -96,16 +101,16 @@ class LatticeGrowth {
         if (q == p || part_[q] != kNone) continue;
         part_[q] = q;
         link_.push_back(q);
-        ++parts[points_[q].in];
+        ++parts[in_[q]];
       }
       for (int i = 0; i < 4; ++i) {
         for (int j = i + 1; j < 4; ++j) {
           const Index a = corners[i], b = corners[j];
-          if (a == p || b == p || points_[a].in != points_[b].in) continue;
+          if (a == p || b == p || in_[a] != in_[b]) continue;
           const Index from = root(a), to = root(b);
           if (from == to) continue;
           part_[from] = to;
-          --parts[points_[a].in];
+          --parts[in_[a]];
         }
       }
     }
@@ -129,7 +134,7 @@ class LatticeGrowth {
     while (!queue_.empty()) {
       const Index p = queue_.top().second;
       queue_.pop();
-      if (!points_[p].in && is_simple(p)) add(p);
+      if (!in_[p] && is_simple(p)) add(p);
     }
   }
 
@@ -137,7 +142,7 @@ class LatticeGrowth {
   bool bridge() {
     Index deepest = kNone;
     for (Index p = 0; p < points_.size(); ++p) {
-      if (points_[p].in || !is_inside(p) || points_[p].distance > -kBlockedDepth * lattice_.spacing(p)) continue;
+      if (in_[p] || !is_inside(p) || points_[p].distance > -kBlockedDepth * lattice_.spacing(p)) continue;
       if (deepest != kNone && depth(p) <= depth(deepest)) continue;
       if (is_bridge(p)) deepest = p;
     }
@@ -149,11 +154,13 @@ class LatticeGrowth {
 
   // The tetrahedron's corners are in positive order.
   void march(const std::array<Index, 4>& corner) {
+    const int in = in_[corner[0]] + in_[corner[1]] + in_[corner[2]] + in_[corner[3]];
+    if (in == 0 || in == 4) return;
     std::array<Index, 4> inside{}, outside{};
     std::array<int, 4> inside_rank{}, outside_rank{};
     int n_in = 0, n_out = 0;
     for (int i = 0; i < 4; ++i) {
-      if (points_[corner[i]].in) {
+      if (in_[corner[i]]) {
         inside_rank[n_in] = i;
         inside[n_in++] = corner[i];
       } else {
@@ -161,7 +168,6 @@ class LatticeGrowth {
         outside[n_out++] = corner[i];
       }
     }
-    if (n_in == 0 || n_out == 0) return;
     if (n_in == 1) {
       face(cut(inside[0], outside[0]), cut(inside[0], outside[1]), cut(inside[0], outside[2]), odd(inside_rank[0]));
     } else if (n_out == 1) {
@@ -185,26 +191,29 @@ class LatticeGrowth {
     }
   }
 
-  // The surface vertex between a point of the set and one outside it.
   Index cut(Index p, Index q) {
-    const auto [it, is_new] = vertex_.emplace(std::uint64_t{p} << 32 | q, static_cast<Index>(surface_.vertices.size()));
-    if (is_new) {
-      const double inside = points_[p].distance, outside = points_[q].distance;
-      const double t =
-          outside > 0 ? std::clamp(inside / (inside - outside), kNearestToPoint, 1 - kNearestToPoint) : 0.5;
-      surface_.vertices.push_back((1 - t) * lattice_.position(p) + t * lattice_.position(q));
-      surface_.cones.push_back(points_[p].cone);
+    for (Index i = first_cut_[p]; i != kNone; i = cuts_[i].next) {
+      if (cuts_[i].outside == q) return cuts_[i].vertex;
     }
-    return it->second;
+    const auto vertex = static_cast<Index>(surface_.vertices.size());
+    cuts_.push_back({q, vertex, first_cut_[p]});
+    first_cut_[p] = static_cast<Index>(cuts_.size() - 1);
+    const double inside = points_[p].distance, outside = points_[q].distance;
+    const double t = outside > 0 ? std::clamp(inside / (inside - outside), kNearestToPoint, 1 - kNearestToPoint) : 0.5;
+    surface_.vertices.push_back((1 - t) * lattice_.position(p) + t * lattice_.position(q));
+    surface_.cones.push_back(points_[p].cone);
+    return vertex;
   }
 
   const VesselField& field_;
   const GradedLattice& lattice_;
   std::vector<Point> points_;
+  std::vector<std::uint8_t> in_;                                 // the set
   std::priority_queue<std::pair<double, Index>> queue_;  // depth, point
   std::vector<Index> seen_by_;                           // the point last added that has looked at this one
   std::vector<Index> part_, link_;                       // of parts_around()
-  std::unordered_map<std::uint64_t, Index> vertex_;
+  std::vector<Index> first_cut_;                         // of every point of the set
+  std::vector<Cut> cuts_;
   LatticeSurface surface_;
 };
 
