@@ -38,7 +38,7 @@ class Gatherer {
     for (const RingPlace& seam : division_.seams) {
       seam_begin_.push_back(static_cast<Index>(surface_.mesh.vertices.size()));
       for (const BoundaryPoint& p : tubes_.layer().lifted(ring_at(seam))) {
-        const FieldSample sample = field.sample(p.position, p.sample.cone);
+        const FieldSample sample = field.sample_fast(p.position, p.sample.cone);
         surface_.mesh.vertices.push_back(p.position);
         surface_.binding.push_back({sample.cone, sample.t});
         surface_.radius.push_back(field.radius_at(sample.cone, sample.t));

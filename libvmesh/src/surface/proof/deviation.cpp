@@ -86,7 +86,8 @@ Deviation gather(const TriMesh& mesh, const std::vector<CenterlineBinding>& bind
 
 Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
                             const VesselField& field, int threads) {
-  return gather(mesh, binding, field, threads, [&field](const Vec3& p, Index hint) { return field.sample(p, hint); });
+  return gather(mesh, binding, field, threads,
+                [&field](const Vec3& p, Index hint) { return field.sample_fast(p, hint); });
 }
 
 Deviation measure_rounding(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,

@@ -200,7 +200,7 @@ bool RingLayer::see(Index branch, const Ring& ring, const BranchAxis::Point& axi
   double far = ring.radius;
   FieldSample s;
   for (int step = 0; step < kSteps; ++step) {
-    s = field_.sample(ring.center + far * way, segment);
+    s = field_.sample_fast(ring.center + far * way, segment);
     if (std::abs(s.distance) < kOnBoundary * ring.radius) break;
     const double slope = s.gradient.dot(way);
     if (slope < kFacing) return false;
