@@ -14,7 +14,7 @@ namespace {
 // Radii from the hint up to which single precision will do: there it is good to a few 1e-5 of them.
 constexpr double kFar = 128;
 constexpr double kLargest = 1e30;
-constexpr int kMostSteps = 64;      // from hint to hint, until what is nearest is found; then double precision decides
+constexpr int kMostSteps = 64;      // from hint to hint; then double precision decides, as between two as near
 constexpr double kLonely = 2.5;     // radii around an axis in which it is noted if there are no other cones
 constexpr float kNowhere = -1e30f;  // the radius of a cone that is near nothing
 
@@ -146,9 +146,10 @@ FieldSample VesselField::sample_fast(const Vec3& p, Index hint) const {
                                  {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
                                   static_cast<float>(blend_), s.first});
     const Index nearest = local_cones(hint)[found.nearest];
-    // Distances are rounded differently around every hint: of two as near each may see the other.
-    if (nearest == hint || nearest == before)
+    if (nearest == hint)
       return {s.unit * found.distance, Vec3(found.gradient_x, found.gradient_y, found.gradient_z), nearest, found.t};
+    // Distances are rounded differently around every hint: of two as near each may see the other.
+    if (nearest == before) break;
     before = hint;
     hint = nearest;
   }
