@@ -171,7 +171,7 @@ TEST(SoundShapes, UnevenChains) {
 }
 
 TEST(SoundShapes, RandomWalks) {
-  for (const std::uint32_t seed : {1, 2}) expect_sound_or_refused_with_reason(testing::random_walk(200, seed));
+  for (const std::uint32_t seed : {1, 2, 3, 4}) expect_sound(testing::random_walk(200, seed));
 }
 
 }  // namespace

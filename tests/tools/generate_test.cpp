@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -398,17 +400,22 @@ TEST_F(Overlap, OfAxesThatCrossIsMovedApart) {
   }
 }
 
-// Eight vessels on nearly one axis.
+// Two hubs in nearly one place, with more branches than there is room for beside each other.
 TEST_F(Overlap, OfVesselsThatCannotBePartedIsNamed) {
-  std::string swc = "# SPACE=LPS\n# UNIT=mm\n";
-  for (int k = 0; k < 8; ++k) {
-    const std::string aside = " 0 0.0" + std::to_string(k) + " 0.9 ";
-    const int first = 3 * k + 1;
-    swc += std::to_string(first) + " 0 -12" + aside + "-1\n";
-    swc += std::to_string(first + 1) + " 0 0" + aside + std::to_string(first) + "\n";
-    swc += std::to_string(first + 2) + " 0 12" + aside + std::to_string(first + 1) + "\n";
+  constexpr int kBranches = 20;
+  const double turn = std::numbers::pi * (3 - std::sqrt(5));
+  std::ostringstream swc;
+  swc << "# SPACE=LPS\n# UNIT=mm\n";
+  for (int hub = 0, id = 1; hub < 2; ++hub) {
+    const int center = id++;
+    swc << center << " 0 0 0 " << 0.01 * hub << " 0.5 -1\n";
+    for (int k = 0; k < kBranches; ++k) {
+      const double z = 1 - (2 * k + 1.0) / kBranches, across = std::sqrt(1 - z * z), angle = k * turn + 0.3 * hub;
+      swc << id++ << " 0 " << 4 * across * std::cos(angle) << ' ' << 4 * across * std::sin(angle) << ' '
+          << 4 * z + 0.01 * hub << " 0.5 " << center << '\n';
+    }
   }
-  write("x.swc", swc);
+  write("x.swc", swc.str());
   std::string err;
   EXPECT_EQ(vmesh({"generate", "@x.swc", "-o", "@x.ply"}).exit_code, 7);
   EXPECT_FALSE(exists("x.ply"));

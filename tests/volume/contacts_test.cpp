@@ -10,6 +10,7 @@
 #include "vmesh/core/error.h"
 
 #include "random_centerline.h"
+#include "random_vessels.h"
 
 namespace vmesh {
 namespace {
@@ -490,6 +491,25 @@ TEST(Separation, MovesVesselsOfOneAxis) {
   const Centerline centerline = builder.build();
   const SeparatedCenterline separated = separate_contacts(centerline);
   expect_sound(centerline, separated, 0.25);
+  EXPECT_TRUE(separated.report.left.empty());
+}
+
+// Eight vessels on nearly one axis.
+TEST(Separation, MovesManyVesselsOfOneAxis) {
+  CenterlineBuilder builder;
+  for (int k = 0; k < 8; ++k) add_vessel(builder, {-12, 0, 0.01 * k}, {12, 0, 0.01 * k}, 0.9, 2);
+  const Centerline centerline = builder.build();
+  const SeparatedCenterline separated = separate_contacts(centerline);
+  expect_sound(centerline, separated, 0.25);
+  EXPECT_TRUE(separated.report.left.empty());
+}
+
+// Three vessels cross in one place; the first choice of who moves where leaves two of them in each other.
+TEST(Separation, TriesAnotherWayWhereMovesWereInVain) {
+  const Centerline centerline = testing::noisy_tree(657);
+  const SeparatedCenterline separated = separate_contacts(centerline);
+  expect_sound(centerline, separated, 0.25);
+  EXPECT_FALSE(separated.report.before.empty());
   EXPECT_TRUE(separated.report.left.empty());
 }
 

@@ -123,15 +123,16 @@ class MovingRound {
     return {piece.segment, piece.original_t(first), piece.original_t(last), kNone};
   }
 
-  // The leaf of the thinner vessel at the closest place of a region.
-  static const CloseLeaf& anchor_of(const Region& region) {
+  // The leaf of the vessel to move, at the closest place of a region.
+  const CloseLeaf& anchor_of(const Region& region) const {
     const auto is_less = [](const CloseLeaf& a, const CloseLeaf& b) { return a.share < b.share; };
     const CloseLeaf& worst = *std::min_element(region.begin(), region.end(), is_less);
     const double own = worst.side.radius, other = worst.other_side.radius;
     const Index thinner = own != other ? (own < other ? worst.cone : worst.other) : std::max(worst.cone, worst.other);
+    const Index moving = (thinner == worst.cone) != task_.choice.thicker ? worst.cone : worst.other;
     const CloseLeaf* anchor = nullptr;
     for (const CloseLeaf& leaf : region) {
-      if (leaf.cone == thinner && (!anchor || is_less(leaf, *anchor))) anchor = &leaf;
+      if (leaf.cone == moving && (!anchor || is_less(leaf, *anchor))) anchor = &leaf;
     }
     return anchor ? *anchor : worst;
   }
@@ -195,10 +196,11 @@ class MovingRound {
       direction = some_perpendicular(own.isZero() ? other : own);
     }
     const double gone = leaf.from_other.dot(direction);
-    if (std::abs(gone) > kFarApart * leaf.wanted) return gone > 0 ? direction : Vec3(-direction);
+    if (std::abs(gone) > kFarApart * leaf.wanted && !task_.choice.opposite)
+      return gone > 0 ? direction : Vec3(-direction);
     const double free[2] = {room(leaf, direction), room(leaf, -direction)};
-    if (free[0] == free[1]) return gone >= 0 ? direction : Vec3(-direction);
-    return free[0] > free[1] ? direction : Vec3(-direction);
+    const bool along = free[0] == free[1] ? gone >= 0 : free[0] > free[1];
+    return along != task_.choice.opposite ? direction : Vec3(-direction);
   }
 
   // How far the walls of other vessels would be from the leaf's axis after it moved, mm.

@@ -16,7 +16,8 @@ namespace {
 // More than the gap is aimed for, so that rounds of narrowing end.
 constexpr double kSpare = 0.02;
 constexpr double kMoved = 1e-9;  // radii: what counts as moved
-constexpr int kAttempts = 3;     // at moving where moves were in vain
+// At moving where moves were in vain.
+constexpr MovingChoice kAttempts[] = {{}, {false, true}, {true, false}, {true, true}};
 
 void check(const SeparationOptions& options) {
   if (!(options.gap > 0 && options.gap <= 1)) throw InvalidInput("gap must be in (0, 1]");
@@ -272,10 +273,10 @@ SeparatedCenterline narrow_moved(const Centerline& original, const Moving& movin
 }
 
 // Moves vessels apart until narrowing by a moderate share can do the rest, or the rounds run out.
-void move_vessels(const Centerline& original, const SeparationOptions& options, const Progress& progress,
-                  Moving& moving) {
+void move_vessels(const Centerline& original, const SeparationOptions& options, const MovingChoice& choice,
+                  const Progress& progress, Moving& moving) {
   const auto look = [&](const DividedCenterline& vessels) {
-    return move_apart({original, vessels, options.gap, options.blend, options.move_beyond}, moving) > 0;
+    return move_apart({original, vessels, options.gap, options.blend, options.move_beyond, choice}, moving) > 0;
   };
   for (int round = 0; round < options.max_moves; ++round) {
     report_progress(progress, "move", static_cast<double>(round) / options.max_moves);
@@ -307,12 +308,13 @@ bool take_back_moves_in_vain(const Centerline& original, Moving& moving, const s
 SeparatedCenterline moved_and_narrowed(const Centerline& original, const SeparationOptions& options,
                                        const Progress& progress) {
   Moving moving(original, options.slope);
-  move_vessels(original, options, progress, moving);
+  move_vessels(original, options, {}, progress, moving);
   SeparatedCenterline best = narrow_moved(original, moving, options, progress);
   std::vector<Contact> left = best.report.left;
-  for (int attempt = 0; attempt < kAttempts && take_back_moves_in_vain(original, moving, left); ++attempt) {
+  for (const MovingChoice& choice : kAttempts) {
+    if (!take_back_moves_in_vain(original, moving, left)) break;
     for (const bool anew : {false, true}) {
-      if (anew) move_vessels(original, options, progress, moving);
+      if (anew) move_vessels(original, options, choice, progress, moving);
       SeparatedCenterline other = narrow_moved(original, moving, options, progress);
       left = other.report.left;
       if (left.size() < best.report.left.size() + !anew) best = std::move(other);

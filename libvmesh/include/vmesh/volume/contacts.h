@@ -98,9 +98,10 @@ struct SeparatedCenterline {
 /// the other's axis, or square to both where they cross, by as much as then needs no more than this share, at most 2.2
 /// times the sum of the radii. Along the graph, across branching nodes too, a move fades out with at most
 /// options.slope; where several moves meet, the axis goes aside by at most 0.8 of a length for a length. Moves are kept
-/// only if they leave fewer contacts, or none. The result has no contacts at that gap but those reported as left: axes
-/// that cross close to a common node or coincide over a long way may stay. Deterministic. Throws InvalidInput for
-/// options out of range, Cancelled when `progress` asks to stop.
+/// only if they leave fewer contacts, or none; where they were in vain, the other vessel is moved, or the other way.
+/// The result has no contacts at that gap but those reported as left: axes that cross close to a common node or
+/// coincide over a long way may stay. Deterministic. Throws InvalidInput for options out of range, Cancelled when
+/// `progress` asks to stop.
 SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options = {},
                                       const Progress& progress = {});
 
