@@ -25,6 +25,7 @@ VesselField::VesselField(const Centerline& centerline, double blend) : centerlin
   measure_spheres();
   find_local_cones();
   build_tree();
+  lonely_.assign(cones_.size(), not_asked);
 }
 
 void VesselField::measure_runs() {

@@ -57,11 +57,7 @@ void VesselField::survey(Index hint, Surroundings& s) const {
   const double around = kLonely * max_radius(hint);
   s.lonely_low = (own.origin.cwiseMin(own.origin + own.axis).array() - around).matrix();
   s.lonely_high = (own.origin.cwiseMax(own.origin + own.axis).array() + around).matrix();
-  bool lonely = true;
-  tree_.visit_overlapping(s.lonely_low, s.lonely_high, [&](Index item) {
-    lonely = lonely && std::binary_search(local.begin(), local.end(), cone_of_item_[item]);
-  });
-  if (!lonely) s.lonely_high = s.lonely_low;
+  if (!is_lonely(hint, s.lonely_low, s.lonely_high)) s.lonely_high = s.lonely_low;
   s.range = 0;
   if (local.size() > kMostConeLanes * ConeLanes::kCount) return;
   s.center = own.origin + 0.5 * own.axis;
@@ -83,6 +79,20 @@ void VesselField::survey(Index hint, Surroundings& s) const {
   for (std::size_t b = 0; b < s.lanes.size(); ++b)
     fill_lanes(local.subspan(b * ConeLanes::kCount, std::min(ConeLanes::kCount, local.size() - b * ConeLanes::kCount)),
                s.center, s.per_unit, s.lanes[b]);
+}
+
+// Found once: around a node of very many branches the surroundings of one cone are soon forgotten for another's.
+bool VesselField::is_lonely(Index cone, const Vec3& low, const Vec3& high) const {
+  const std::atomic_ref<char> known(lonely_[cone]);
+  if (known.load(std::memory_order_relaxed) == not_asked) {
+    const std::span<const Index> local = local_cones(cone);
+    bool alone = true;
+    tree_.visit_overlapping(low, high, [&](Index item) {
+      alone = alone && std::binary_search(local.begin(), local.end(), cone_of_item_[item]);
+    });
+    known.store(alone ? lonely : in_company, std::memory_order_relaxed);
+  }
+  return known.load(std::memory_order_relaxed) == lonely;
 }
 
 double VesselField::distance_to_others(const Vec3& p, Index cone, double limit) const {

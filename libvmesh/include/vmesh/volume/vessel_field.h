@@ -125,6 +125,7 @@ class VesselField {
   struct Surroundings;
   const Surroundings& surroundings(Index hint) const;
   void survey(Index hint, Surroundings& surroundings) const;
+  bool is_lonely(Index cone, const Vec3& low, const Vec3& high) const;
   void fill_lanes(std::span<const Index> cones, const Vec3& center, double per_unit, ConeLanes& lanes) const;
   static std::uint64_t new_number();
   void measure_runs();
@@ -141,6 +142,9 @@ class VesselField {
   std::vector<Index> local_offsets_, local_;
   BoxTree tree_;                     // of pieces of cones
   std::vector<Index> cone_of_item_;  // in the tree
+  // Of cones: whether no others are near but their local ones, once somebody has asked.
+  enum Lonely : char { not_asked, lonely, in_company };
+  mutable std::vector<char> lonely_;
 };
 
 }  // namespace vmesh
