@@ -1,11 +1,17 @@
 #include "vmesh/skeleton/extract_centerline.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
+#include "vmesh/centerline/branches.h"
 #include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/components.h"
+#include "vmesh/quality/sampled_distance.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/volume/vessel_field.h"
 
 #include "../mesh/shapes.h"
 #include "axis_distance.h"
@@ -35,6 +41,31 @@ TEST(ExtractCenterline, OfAGrownTreeIsCloseToTheOriginal) {
     EXPECT_LT(one.mean_radius_error, 0.015);
     EXPECT_LT(one.radius_error_95, 0.06);
   }
+}
+
+TEST(ExtractCenterline, TellsHowFarTheSurfaceIsByBranches) {
+  SyntheticTreeOptions options;
+  options.vertices = 40;
+  const TriMesh surface = grown(synthetic_tree(options));
+  const ExtractedCenterline extracted = extract_centerline(surface);
+  const ExtractionReport& report = extracted.report;
+  ASSERT_EQ(report.branches.size(), find_branches(extracted.centerline).size());
+  EXPECT_GT(report.branches.size(), 4u);
+  double area = 0, sum = 0, max = 0;
+  for (const Coverage& branch : report.branches) {
+    EXPECT_LE(branch.mean, branch.max);
+    EXPECT_LE(branch.percentile_95, branch.max);
+    area += branch.area;
+    sum += branch.area * branch.mean;
+    max = std::max(max, branch.max);
+  }
+  // The same samples, added up in another order.
+  EXPECT_NEAR(area, surface_area(surface), 1e-9 * area);
+  EXPECT_NEAR(report.coverage.area, area, 1e-9 * area);
+  EXPECT_NEAR(report.coverage.mean, sum / area, 1e-9);
+  EXPECT_EQ(report.coverage.max, max);
+  const VesselField field(extracted.centerline);
+  EXPECT_NEAR(std::abs(field.sample_global(report.coverage.max_at).distance), max, 1e-12);
 }
 
 TEST(ExtractCenterline, EndsDoNotStickOut) {

@@ -164,6 +164,14 @@ Json budget_json(const Budget& budget, const GenerateOptions& chosen, const std:
   return json;
 }
 
+Json coverage_json(const Coverage& coverage) {
+  return {{"area_mm2", coverage.area},
+          {"mean_mm", coverage.mean},
+          {"p95_mm", coverage.percentile_95},
+          {"max_mm", coverage.max},
+          {"max_at", to_json(coverage.max_at)}};
+}
+
 }  // namespace
 
 Json generator_json() { return {{"name", "vmesh"}, {"version", version()}}; }
@@ -293,14 +301,21 @@ Json to_json(const GenerateReport& report) {
 }
 
 Json to_json(const ExtractionReport& report) {
+  Json branches = Json::array();
+  for (std::size_t b = 0; b < report.branches.size(); ++b) {
+    branches.push_back(coverage_json(report.branches[b]));
+    branches.back()["branch"] = b;
+  }
   return {{"parts", report.parts},
           {"joined", report.joined},
           {"left_out", report.left_out},
           {"spurs_removed", report.spurs},
           {"loops_broken", report.loops_broken},
-          {"mean_distance_mm", report.mean_distance},
-          {"distance_95_mm", report.distance_95},
-          {"max_distance_mm", report.max_distance}};
+          {"mean_distance_mm", report.coverage.mean},
+          {"distance_95_mm", report.coverage.percentile_95},
+          {"max_distance_mm", report.coverage.max},
+          {"coverage", coverage_json(report.coverage)},
+          {"branches", branches}};
 }
 
 Json openings_json(const GenerateResult& result) {

@@ -58,8 +58,9 @@ void log(const ExtractedCenterline& result, Console& console) {
   std::ostringstream text;
   text.precision(3);
   text << centerline.nodes().size() << " nodes, " << centerline.component_count() << " components, "
-       << centerline.cycle_rank() << " loops; surface to the vessels' boundary " << report.mean_distance << " mm mean, "
-       << report.distance_95 << " at 95 %, " << report.max_distance << " max";
+       << centerline.cycle_rank() << " loops; surface to the vessels' boundary " << report.coverage.mean << " mm mean, "
+       << report.coverage.percentile_95 << " at 95 %, " << report.coverage.max << " max at ("
+       << report.coverage.max_at.x() << ", " << report.coverage.max_at.y() << ", " << report.coverage.max_at.z() << ')';
   console.log(text.str());
   if (report.left_out > 0)
     console.warn(std::to_string(report.left_out) + " of " + std::to_string(report.parts) +

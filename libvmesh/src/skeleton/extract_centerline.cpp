@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "vmesh/centerline/branches.h"
 #include "vmesh/centerline/cleaning.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/components.h"
@@ -154,28 +155,54 @@ Centerline cleaned(const Graph& graph) {
   return clean(raw).centerline;
 }
 
+/// A point of the surface and how far it is from the vessels' boundary.
+struct Deviation {
+  double distance, area;
+  Vec3 point;
+};
+
+Coverage summarized(std::vector<Deviation> deviations) {
+  Coverage coverage;
+  if (deviations.empty()) return coverage;
+  std::sort(deviations.begin(), deviations.end(),
+            [](const Deviation& a, const Deviation& b) { return a.distance < b.distance; });
+  for (const Deviation& d : deviations) {
+    coverage.area += d.area;
+    coverage.mean += d.area * d.distance;
+  }
+  if (coverage.area > 0) coverage.mean /= coverage.area;
+  coverage.max = deviations.back().distance;
+  coverage.max_at = deviations.back().point;
+  double below = 0;
+  for (const Deviation& d : deviations) {
+    coverage.percentile_95 = d.distance;
+    if ((below += d.area) >= 0.95 * coverage.area) break;
+  }
+  return coverage;
+}
+
 void measure(ExtractionReport& report, const Centerline& centerline, const std::vector<Part>& parts,
              const std::vector<bool>& kept) {
   const VesselField field(centerline);
-  std::vector<std::pair<double, double>> distances;  // with areas
-  double total = 0;
+  const std::vector<Branch> branches = find_branches(centerline);
+  std::vector<std::size_t> branch_of(field.cone_count(), branches.size());  // isolated nodes have none
+  for (std::size_t b = 0; b < branches.size(); ++b) {
+    for (const Index segment : branches[b].segments) branch_of[segment] = b;
+  }
+  std::vector<Deviation> all;
+  std::vector<std::vector<Deviation>> of_branch(branches.size() + 1);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (!kept[p]) continue;
     const skeleton::SurfaceSamples samples = skeleton::samples_of(parts[p].mesh);
     for (std::size_t i = 0; i < samples.points.size(); ++i) {
-      distances.emplace_back(std::abs(field.sample_global(samples.points[i]).distance), samples.areas[i]);
-      report.mean_distance += distances.back().first * samples.areas[i];
-      total += samples.areas[i];
+      const FieldSample sample = field.sample_global(samples.points[i]);
+      all.push_back({std::abs(sample.distance), samples.areas[i], samples.points[i]});
+      of_branch[branch_of[sample.cone]].push_back(all.back());
     }
   }
-  report.mean_distance /= total;
-  std::sort(distances.begin(), distances.end());
-  report.max_distance = distances.back().first;
-  double below = 0;
-  for (const auto& [distance, area] : distances) {
-    report.distance_95 = distance;
-    if ((below += area) >= 0.95 * total) break;
-  }
+  of_branch.pop_back();
+  for (std::vector<Deviation>& deviations : of_branch) report.branches.push_back(summarized(std::move(deviations)));
+  report.coverage = summarized(std::move(all));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "vmesh/centerline/centerline.h"
 #include "vmesh/core/progress.h"
@@ -20,6 +21,13 @@ struct ExtractOptions {
   bool tree = false;
 };
 
+/// How far a surface, or a part of it, is from the boundary of the vessel volume, over its area.
+struct Coverage {
+  double area = 0;                              ///< mm^2
+  double mean = 0, percentile_95 = 0, max = 0;  ///< mm
+  Vec3 max_at = Vec3::Zero();                   ///< on the surface, mm
+};
+
 /// What extraction did, and how well the result stands for the surface.
 struct ExtractionReport {
   std::size_t parts = 0;         ///< components of the surface that a skeleton was extracted from
@@ -27,10 +35,9 @@ struct ExtractionReport {
   std::size_t left_out = 0;      ///< of the parts, because they remained apart
   std::size_t spurs = 0;         ///< short branches that were removed
   std::size_t loops_broken = 0;  ///< by removing a segment
-  /// Distances of the surface, as far as it was not left out, to the boundary of the vessel volume: over its area (mm).
-  double mean_distance = 0;
-  double distance_95 = 0;  ///< 95th percentile
-  double max_distance = 0;
+  Coverage coverage;             ///< of the surface, as far as it was not left out
+  /// Of the parts of the surface to which one branch is nearest, in the order of find_branches().
+  std::vector<Coverage> branches;
 };
 
 struct ExtractedCenterline {
