@@ -5,20 +5,26 @@
 
 #include <gtest/gtest.h>
 
+#include "vmesh/centerline/branches.h"
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/fit/flat_reference.h"
+#include "vmesh/image/image_io.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/reference/reference_surface.h"
 #include "vmesh/skeleton/extract_centerline.h"
 #include "vmesh/surface/flat_ends.h"
 #include "vmesh/volume/contacts.h"
 
+#include "draw.h"
 #include "shared_data.h"
 
 namespace vmesh {
 namespace {
+
+[[maybe_unused]] const char* const kPortalVein = "liver_segmentations/hepaticvessel_008_vsnet.nii.gz";
 
 struct Demand {
   double mean, p95, hausdorff;  // mm
@@ -109,6 +115,88 @@ TEST(FitRealSurfaces, EndInTheCapsOfTheModelsThatFlowIsComputedIn) {
   expect_caps("centerline-based-material-props_c++_aorta_cl.vtp", "centerline-based-material-props_c++_aorta.vtp", 3);
   expect_caps("project-node-onto-centerline_c++_demo-centerlines.vtp", "sv-paths_python_demo.vtp", 3);
 }
+
+#if VMESH_WITH_VTK  // the image is resampled
+
+TriMesh portal_vein() {
+  ReferenceOptions options;
+  options.label = 2;
+  options.spacing = options.smooth = 1;
+  return reference_surface(read_image(testing::shared_data(kPortalVein)), options).mesh;
+}
+
+Centerline tree_of(const TriMesh& reference) {
+  ExtractOptions options;
+  options.tree = true;
+  return extract_centerline(reference, options).centerline;
+}
+
+Centerline without(const Centerline& whole, const std::vector<char>& cut) {
+  std::vector<Index> number(whole.nodes().size(), kNone);
+  std::vector<CenterlineNode> nodes;
+  std::vector<CenterlineSegment> segments;
+  const auto kept = [&](Index n) {
+    if (number[n] == kNone) {
+      number[n] = static_cast<Index>(nodes.size());
+      nodes.push_back(whole.node(n));
+    }
+    return number[n];
+  };
+  for (Index s = 0; s < cut.size(); ++s) {
+    if (!cut[s]) segments.push_back({kept(whole.segment(s).a), kept(whole.segment(s).b)});
+  }
+  return {std::move(nodes), std::move(segments)};
+}
+
+// Nodes off by 0.2 radii and all radii by 15 %, wider or narrower.
+TEST(FitRealSurfaces, MendsACenterlineThatIsWrong) {
+  VMESH_NEED_SHARED_DATA(kPortalVein);
+  const TriMesh reference = portal_vein();
+  const Centerline right = tree_of(reference);
+  for (const double factor : {0.85, 1.15}) {
+    testing::Draw draw(7);
+    std::vector<CenterlineNode> nodes = right.nodes();
+    for (CenterlineNode& node : nodes) {
+      node.position += 0.2 * node.radius * draw.direction();
+      node.radius *= factor;
+    }
+    const Centerline wrong = separate_contacts(Centerline(nodes, right.segments())).centerline;
+    GenerateResult result = generate_surface(wrong);
+    const FitReport report = fit_surface(result, wrong, reference);
+    EXPECT_TRUE(result.is_sound()) << factor;
+    EXPECT_GT(report.before.mean(), 0.4) << factor;  // mm
+    EXPECT_LT(report.after.mean(), 0.13) << factor;
+  }
+}
+
+// Every third end of the tree is cut off at its branching.
+TEST(FitRealSurfaces, TellsTwigsThatTheCenterlineDoesNotHave) {
+  VMESH_NEED_SHARED_DATA(kPortalVein);
+  const TriMesh reference = portal_vein();
+  const Centerline whole = tree_of(reference);
+  std::vector<char> cut(whole.segments().size(), 0);
+  std::vector<CenterlineNode> lost;  // the ends
+  std::size_t ends = 0;
+  for (const Branch& branch : find_branches(whole)) {
+    const bool last_ends = whole.degree(branch.nodes.back()) == 1;
+    if ((!last_ends && whole.degree(branch.nodes.front()) != 1) || ends++ % 3 != 0) continue;
+    lost.push_back(whole.node(last_ends ? branch.nodes.back() : branch.nodes.front()));
+    for (const Index s : branch.segments) cut[s] = 1;
+  }
+  ASSERT_GT(lost.size(), 5u);
+  const Centerline rest = without(whole, cut);
+  GenerateResult result = generate_surface(rest);
+  const FitReport report = fit_surface(result, rest, reference);
+  EXPECT_TRUE(result.is_sound());
+  for (const CenterlineNode& end : lost) {  // where a part is farthest, which is at the end of the wall around it
+    const bool told = std::any_of(report.uncovered.begin(), report.uncovered.end(), [&](const UnmatchedPart& part) {
+      return (part.position - end.position).norm() < 2 * end.radius;
+    });
+    EXPECT_TRUE(told) << end.position.transpose();
+  }
+}
+
+#endif
 
 }  // namespace
 }  // namespace vmesh
