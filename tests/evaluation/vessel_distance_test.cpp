@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include "draw.h"
 #include "shapes.h"
@@ -122,6 +123,26 @@ TEST(VesselDistance, StopsWhenAsked) {
   const TriMesh mesh = icosphere(1);
   const auto stop = [](std::string_view, double) { return false; };
   EXPECT_THROW(measure_vessel_distance(mesh, ClosestPointIndex(mesh), VesselField(one), 100, stop), Cancelled);
+}
+
+TEST(VesselDistance, IsTheSameOnAnyNumberOfThreads) {
+  testing::Draw draw(5);
+  const Centerline tree = random_tree(draw);
+  const VesselField field(tree);
+  const TriMesh mesh = scaled(icosphere(4), 3);
+  const ClosestPointIndex index(mesh);
+  const auto on_threads = [&](int threads) {
+    tbb::task_arena arena(threads);
+    return arena.execute([&] { return measure_vessel_distance(mesh, index, field, 30'000); });
+  };
+  const VesselDistance one = on_threads(1), many = on_threads(5);
+  for (const auto side : {&VesselDistance::from_mesh, &VesselDistance::from_volume}) {
+    EXPECT_EQ((one.*side).mm.mean, (many.*side).mm.mean);
+    EXPECT_EQ((one.*side).mm.count, (many.*side).mm.count);
+    EXPECT_EQ((one.*side).relative.p95, (many.*side).relative.p95);
+    EXPECT_EQ((one.*side).max_at, (many.*side).max_at);
+  }
+  EXPECT_EQ(vertex_vessel_distances(mesh, field).size(), mesh.vertices.size());
 }
 
 }  // namespace

@@ -56,6 +56,14 @@ TEST_F(Evaluate, MeasuresASurfaceAlone) {
   EXPECT_TRUE(report.at("volume").is_null());
 }
 
+TEST_F(Evaluate, SaysTheSameOnAnyNumberOfThreads) {
+  const auto on = [&](const char* threads) {
+    return evaluate({"@box.off", "--reference", "@tall.off", "--threads", threads});
+  };
+  EXPECT_EQ(on("1"), on("2"));
+  EXPECT_EQ(vmesh({"evaluate", "@box.off", "--threads", "-1"}).exit_code, 2);
+}
+
 TEST_F(Evaluate, ComparesWithAReference) {
   const json report = evaluate({"@box.off", "--reference", "@tall.off", "--tolerance", "1e-3"});
   const json& reference = report.at("reference");

@@ -306,6 +306,9 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
                   "volume_distance (.ply, .vtp)");
   add_report(verb, arguments.report, arguments.format);
   add_measuring(verb, arguments.tolerance_mm, arguments.samples);
+  verb.add_option("--threads", arguments.threads, "to work on; 0: as many as there are; the result is the same")
+      ->check(in_range(0, 4096))
+      ->capture_default_str();
   verb.add_option("--require", arguments.require,
                   "exit with 1 unless all of these hold, separated by commas: " + describe_requirements())
       ->type_name("LIST");

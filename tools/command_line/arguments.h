@@ -128,6 +128,7 @@ struct EvaluateArguments {
   std::string require;           ///< see parse_requirements()
   double tolerance_mm = 1e-4;    ///< of the Hausdorff distance
   std::size_t samples = 100'000;
+  int threads = 0;  ///< 0: as many as there are
 };
 
 struct ReferenceArguments {

@@ -1,3 +1,5 @@
+#include <tbb/task_arena.h>
+
 #include "vmesh/io/sha256.h"
 
 #include "command_line/exit_code.h"
@@ -149,9 +151,7 @@ int check(const EvaluationReport& report, Console& console) {
   return all_met ? kOk : kCheckFailed;
 }
 
-}  // namespace
-
-int run(const EvaluateArguments& arguments, Console& console) {
+int evaluate(const EvaluateArguments& arguments, Console& console) {
   const std::vector<Requirement> requirements = parse_requirements(arguments.require);
   check_requirements_can_be_checked(requirements, !arguments.reference.path.empty(),
                                     !arguments.centerline.path.empty());
@@ -177,6 +177,13 @@ int run(const EvaluateArguments& arguments, Console& console) {
   }
   write_report(to_tables(report), to_json(report), {arguments.format, arguments.common.json, arguments.report});
   return check(report, console);
+}
+
+}  // namespace
+
+int run(const EvaluateArguments& arguments, Console& console) {
+  tbb::task_arena arena(arguments.threads > 0 ? arguments.threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return evaluate(arguments, console); });
 }
 
 }  // namespace vmesh::tool

@@ -2,6 +2,9 @@
 #include <cmath>
 #include <numbers>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include "vmesh/evaluation/vessel_distance.h"
 
 namespace vmesh {
@@ -10,7 +13,8 @@ namespace {
 // Of a radius: points that lie less deep inside another cone count as on the boundary. Far above rounding, far below
 // what matters.
 constexpr double kDepth = 1e-9;
-constexpr double kPlastic = 1.32471795724474602596;  // see sample_surface()
+constexpr std::size_t kBatch = 16384, kTogether = 256;  // samples
+constexpr double kPlastic = 1.32471795724474602596;     // see sample_surface()
 
 // The side of a round cone between the circles where it touches its end spheres.
 struct ConeSide {
@@ -68,6 +72,7 @@ class BoundarySampler {
       const CenterlineNode& node = centerline_.node(n);
       spread(sphere_area(node), {n, n}, [&](double u, double v) { return on_sphere(node, u, v); });
     }
+    keep_boundary();
     return {std::move(samples_), density_};
   }
 
@@ -82,9 +87,21 @@ class BoundarySampler {
     area_ += area;
     for (; number_ + 0.5 < area_ * density_; ++number_) {
       const double u = std::fmod(0.5 + number_ / kPlastic, 1), v = std::fmod(0.5 + number_ / (kPlastic * kPlastic), 1);
-      const BoundarySample sample = place(u, v);
-      if (on_boundary(sample, nodes)) samples_.push_back(sample);
+      candidates_.push_back({place(u, v), nodes});
+      if (candidates_.size() == kBatch) keep_boundary();
     }
+  }
+
+  // Of the candidates.
+  void keep_boundary() {
+    kept_.resize(candidates_.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, candidates_.size(), kTogether), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i)
+        kept_[i] = on_boundary(candidates_[i].sample, candidates_[i].nodes);
+    });
+    for (std::size_t i = 0; i < kept_.size(); ++i)
+      if (kept_[i]) samples_.push_back(candidates_[i].sample);
+    candidates_.clear();
   }
 
   // Most points that are not on the boundary are inside a neighbouring cone.
@@ -102,6 +119,12 @@ class BoundarySampler {
   const Centerline& centerline_;
   double density_;                // per mm^2
   double area_ = 0, number_ = 0;  // so far
+  struct Candidate {
+    BoundarySample sample;
+    std::array<Index, 2> nodes;
+  };
+  std::vector<Candidate> candidates_;
+  std::vector<char> kept_;
   std::vector<BoundarySample> samples_;
 };
 

@@ -1,13 +1,17 @@
 #include "vmesh/evaluation/vessel_distance.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include "vmesh/quality/sampled_distance.h"
 
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kReportEvery = 4096;  // samples
+constexpr std::size_t kReportEvery = 4096, kBatch = 16384, kTogether = 256;  // samples
 
 // Collects the distances of samples.
 class SideCollector {
@@ -43,6 +47,25 @@ class SideCollector {
   VesselDistanceSide side_;
 };
 
+struct Measured {
+  Vec3 position;
+  double distance, radius;
+};
+
+// Adds measure(i, near) for all i in order, a batch at a time; `near` is kept from one to the next where that is cheap.
+template <class Measure>
+void measure_in_order(std::size_t count, SideCollector& to, const Measure& measure) {
+  std::vector<Measured> batch(std::min(count, kBatch));
+  for (std::size_t first = 0; first < count; first += kBatch) {
+    const std::size_t size = std::min(kBatch, count - first);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size, kTogether), [&](const auto& range) {
+      Index near = kNone;
+      for (std::size_t i = range.begin(); i < range.end(); ++i) batch[i] = measure(first + i, near);
+    });
+    for (std::size_t i = 0; i < size; ++i) to.add(batch[i].position, batch[i].distance, batch[i].radius);
+  }
+}
+
 }  // namespace
 
 VesselDistance measure_vessel_distance(const TriMesh& mesh, const ClosestPointIndex& index, const VesselField& field,
@@ -50,28 +73,28 @@ VesselDistance measure_vessel_distance(const TriMesh& mesh, const ClosestPointIn
   VesselDistance result;
   const std::vector<SurfaceSample> on_mesh = sample_surface(mesh, samples);
   SideCollector from_mesh(on_mesh.size(), progress);
-  for (const SurfaceSample& sample : on_mesh) {
-    const FieldSample found = field.sample_global(sample.position);
-    from_mesh.add(sample.position, std::abs(found.distance), field.radius_at(found.cone, found.t));
-  }
+  measure_in_order(on_mesh.size(), from_mesh, [&](std::size_t i, Index&) {
+    const FieldSample found = field.sample_global(on_mesh[i].position);
+    return Measured{on_mesh[i].position, std::abs(found.distance), field.radius_at(found.cone, found.t)};
+  });
   result.from_mesh = from_mesh.finish(on_mesh.empty() ? 0 : static_cast<double>(on_mesh.size()) / surface_area(mesh));
 
   const BoundarySamples on_volume = sample_boundary(field, samples);
   SideCollector from_volume(on_volume.points.size(), progress);
-  Index near = kNone;
-  for (const BoundarySample& sample : on_volume.points) {
+  measure_in_order(on_volume.points.size(), from_volume, [&](std::size_t i, Index& near) {
+    const BoundarySample& sample = on_volume.points[i];
     const ClosestPoint found = index.closest(sample.position, near);
     near = found.face;
-    from_volume.add(sample.position, found.distance, sample.radius);
-  }
+    return Measured{sample.position, found.distance, sample.radius};
+  });
   result.from_volume = from_volume.finish(on_volume.per_mm2);
   return result;
 }
 
 std::vector<double> vertex_vessel_distances(const TriMesh& mesh, const VesselField& field) {
-  std::vector<double> distances;
-  distances.reserve(mesh.vertices.size());
-  for (const Vec3& v : mesh.vertices) distances.push_back(field.sample_global(v).distance);
+  std::vector<double> distances(mesh.vertices.size());
+  tbb::parallel_for(std::size_t{0}, distances.size(),
+                    [&](std::size_t v) { distances[v] = field.sample_global(mesh.vertices[v]).distance; });
   return distances;
 }
 

@@ -21,10 +21,15 @@ class CloseFaces {
   /// Calls visit(face, face) once for every two faces whose boxes meet, and for some whose boxes nearly do.
   template <class Visit>
   void visit_pairs(Visit&& visit) const {
-    for (std::size_t block = 0; block < blocks_; ++block) {
-      visit_within(block, visit);
-      visit_later(1, block, visit);
-    }
+    for (std::size_t block = 0; block < blocks_; ++block) visit_pairs_of(block, visit);
+  }
+
+  /// The same in parts, one a block, in any order.
+  std::size_t block_count() const { return blocks_; }
+  template <class Visit>
+  void visit_pairs_of(std::size_t block, Visit&& visit) const {
+    visit_within(block, visit);
+    visit_later(1, block, visit);
   }
 
  private:

@@ -1,13 +1,17 @@
 #include <algorithm>
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include "vmesh/mesh/topology.h"
 
 #include "mesh/close_faces.h"
 #include "mesh/face_pair.h"
 
 namespace vmesh {
-
 namespace {
+
+constexpr std::size_t kLeastPart = 4096, kMostParts = 64;  // blocks of a part; parts
 
 std::vector<Index> faces_with_area(const TriMesh& mesh) {
   const std::vector<Index> degenerate = degenerate_faces(mesh);
@@ -29,10 +33,20 @@ std::vector<std::pair<Index, Index>> intersecting(const TriMesh& mesh, const Clo
     const auto& [a, b, c] = mesh.faces[f];
     return PlacedFace{mesh.faces[f], {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}};
   };
+  // Pieces of a surface that grow are tested one a thread; only what is larger is divided.
+  const std::size_t part = std::max(kLeastPart, (close.block_count() + kMostParts - 1) / kMostParts);
+  std::vector<std::vector<std::pair<Index, Index>>> found((close.block_count() + part - 1) / part);
+  const auto test = [&](std::size_t p) {
+    for (std::size_t block = p * part; block < std::min(close.block_count(), (p + 1) * part); ++block) {
+      close.visit_pairs_of(block, [&](Index f, Index g) {
+        if (intersect(placed(f), placed(g))) found[p].push_back(std::minmax(f, g));
+      });
+    }
+  };
+  // Isolated: who waits for this must not begin with another piece.
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, found.size(), test); });
   std::vector<std::pair<Index, Index>> pairs;
-  close.visit_pairs([&](Index f, Index g) {
-    if (intersect(placed(f), placed(g))) pairs.push_back(std::minmax(f, g));
-  });
+  for (const auto& some : found) pairs.insert(pairs.end(), some.begin(), some.end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

@@ -1,7 +1,12 @@
 #include "vmesh/quality/hausdorff.h"
 
 #include <cmath>
+#include <mutex>
+#include <optional>
 #include <sstream>
+#include <string_view>
+
+#include <tbb/parallel_invoke.h>
 
 #include "vmesh/core/error.h"
 
@@ -71,9 +76,20 @@ OneSidedHausdorff one_sided_hausdorff(const TriMesh& from, const TriMesh& to, co
 }
 
 Hausdorff hausdorff(const TriMesh& a, const TriMesh& b, const HausdorffOptions& options) {
-  const TriangleTree first(a), second(b);
-  return {Measurement(a, first.extent(), second, options).distance(),
-          Measurement(b, second.extent(), first, options).distance()};
+  std::optional<TriangleTree> first, second;
+  tbb::parallel_invoke([&] { first.emplace(a); }, [&] { second.emplace(b); });
+  std::mutex reporting;
+  HausdorffOptions one_at_a_time = options;
+  if (options.progress) {
+    one_at_a_time.progress = [&](std::string_view stage, double fraction) {
+      const std::lock_guard lock(reporting);
+      return options.progress(stage, fraction);
+    };
+  }
+  Hausdorff result;
+  tbb::parallel_invoke([&] { result.forward = Measurement(a, first->extent(), *second, one_at_a_time).distance(); },
+                       [&] { result.backward = Measurement(b, second->extent(), *first, one_at_a_time).distance(); });
+  return result;
 }
 
 SymmetricHausdorff symmetric_hausdorff(const TriMesh& a, const TriMesh& b, const HausdorffOptions& options) {

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include <tbb/parallel_for.h>
+
 #include "vmesh/core/error.h"
 
 namespace vmesh {
@@ -32,7 +34,7 @@ FaceMeasures measure_faces(const TriMesh& mesh) {
   FaceMeasures all;
   for_each_face_measure(
       all, [&](const char*, std::vector<double>& values, double, double) { values.resize(mesh.faces.size()); });
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+  tbb::parallel_for(std::size_t{0}, mesh.faces.size(), [&](std::size_t f) {
     const auto& [a, b, c] = mesh.faces[f];
     const TriangleMeasures one = measure_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
     all.area_mm2[f] = one.area_mm2;
@@ -42,7 +44,7 @@ FaceMeasures measure_faces(const TriMesh& mesh) {
     all.shortest_to_longest_edge[f] = one.shortest_to_longest_edge;
     all.double_inradius_to_circumradius[f] = one.double_inradius_to_circumradius;
     all.scaled_inradius_to_longest_edge[f] = one.scaled_inradius_to_longest_edge;
-  }
+  });
   return all;
 }
 

@@ -1,8 +1,12 @@
 #include "vmesh/quality/sampled_distance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include "vmesh/core/error.h"
 
@@ -13,7 +17,7 @@ namespace {
 
 // The plastic number: what the golden ratio is in two dimensions.
 constexpr double kPlastic = 1.32471795724474602596;
-constexpr std::size_t kReportEvery = 4096;  // samples
+constexpr std::size_t kReportEvery = 16384, kTogether = 256;  // samples
 
 // A point of the unit square, folded along its diagonal onto the triangle.
 Vec3 place_in(const TriMesh& mesh, Index face, double number) {
@@ -53,16 +57,18 @@ std::vector<SurfaceSample> sample_surface(const TriMesh& mesh, std::size_t count
 SampledDistance sample_distance(const TriMesh& from, const ClosestPointIndex& to, std::size_t samples,
                                 const Progress& progress) {
   const std::vector<SurfaceSample> points = sample_surface(from, samples);
-  std::vector<double> distances;
-  distances.reserve(points.size());
-  Index near = kNone;
-  for (const SurfaceSample& sample : points) {
-    if (distances.size() % kReportEvery == 0) {
-      report_progress(progress, "samples", static_cast<double>(distances.size()) / static_cast<double>(points.size()));
-    }
-    const ClosestPoint found = to.closest(sample.position, near);
-    near = found.face;
-    distances.push_back(found.distance);
+  std::vector<double> distances(points.size());
+  for (std::size_t first = 0; first < points.size(); first += kReportEvery) {
+    report_progress(progress, "samples", static_cast<double>(first) / static_cast<double>(points.size()));
+    const std::size_t last = std::min(points.size(), first + kReportEvery);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, kTogether), [&](const auto& range) {
+      Index near = kNone;
+      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        const ClosestPoint found = to.closest(points[i].position, near);
+        near = found.face;
+        distances[i] = found.distance;
+      }
+    });
   }
   const double area = surface_area(from);
   const double density = area > 0 ? static_cast<double>(distances.size()) / area : 0;
@@ -70,18 +76,16 @@ SampledDistance sample_distance(const TriMesh& from, const ClosestPointIndex& to
 }
 
 std::vector<double> vertex_distances(const TriMesh& from, const ClosestPointIndex& to) {
-  std::vector<double> distances;
-  distances.reserve(from.vertices.size());
-  Index near = kNone;
-  for (const Vec3& v : from.vertices) {
-    if (!within_reach(v)) {
-      distances.push_back(std::numeric_limits<double>::quiet_NaN());
-      continue;
+  std::vector<double> distances(from.vertices.size(), std::numeric_limits<double>::quiet_NaN());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, distances.size(), kTogether), [&](const auto& range) {
+    Index near = kNone;
+    for (std::size_t v = range.begin(); v < range.end(); ++v) {
+      if (!within_reach(from.vertices[v])) continue;
+      const ClosestPoint found = to.closest(from.vertices[v], near);
+      near = found.face;
+      distances[v] = found.distance;
     }
-    const ClosestPoint found = to.closest(v, near);
-    near = found.face;
-    distances.push_back(found.distance);
-  }
+  });
   return distances;
 }
 

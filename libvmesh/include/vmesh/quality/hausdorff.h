@@ -42,10 +42,11 @@ struct HausdorffOptions {
 };
 
 /// All functions below: the meshes are the sets of points of their faces, which may be open, a soup of triangles, with
-/// coincident points and faces without area; loose vertices do not count. Deterministic, on one thread. Throw
-/// InvalidInput for a mesh without faces, a face that names a vertex that does not exist, a corner that is not finite
-/// or farther than 1e15 mm from the origin, and a tolerance that is not positive or finer than doubles can tell at the
-/// size of the meshes (2^-40 of their coordinates and extents); Cancelled when the progress asks to stop.
+/// coincident points and faces without area; loose vertices do not count. Deterministic. hausdorff() takes its
+/// directions on two threads of the caller's arena (oneTBB), the others one. Throw InvalidInput for a mesh without
+/// faces, a face that names a vertex that does not exist, a corner that is not finite or farther than 1e15 mm from the
+/// origin, and a tolerance that is not positive or finer than doubles can tell at the size of the meshes (2^-40 of
+/// their coordinates and extents); Cancelled when the progress asks to stop.
 ///
 /// Branch and bound over the faces of `from`: distances at corners bound a triangle's from both sides; what remains is
 /// bisected. After Tang, Lee, Kim, "Interactive Hausdorff distance computation for general polygonal models", 2009; the

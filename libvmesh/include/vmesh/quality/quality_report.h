@@ -14,8 +14,8 @@ struct FaceMeasures {
       double_inradius_to_circumradius, scaled_inradius_to_longest_edge;
 };
 
-/// One pass over the faces. Throws InvalidInput when a face names a vertex that does not exist, or a corner is not
-/// finite.
+/// One pass over the faces, on the threads of the caller's arena (oneTBB). Throws InvalidInput when a face names a
+/// vertex that does not exist, or a corner is not finite.
 FaceMeasures measure_faces(const TriMesh& mesh);
 
 /// Calls `visit(name, values, low, high)` for every measure; `low` and `high` are the ends of a histogram, equal where

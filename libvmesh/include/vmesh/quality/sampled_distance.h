@@ -21,7 +21,8 @@ std::vector<SurfaceSample> sample_surface(const TriMesh& mesh, std::size_t count
 double surface_area(const TriMesh& mesh);
 
 /// Distances of samples: area-weighted mean, RMS and percentiles. Their maximum is a lower bound of the one-sided
-/// Hausdorff distance and no more. Throws what sample_surface() throws, and Cancelled.
+/// Hausdorff distance and no more. Here and below on the threads of the caller's arena (oneTBB), with the same result
+/// on any number. Throws what sample_surface() throws, and Cancelled.
 struct SampledDistance {
   Distribution distance;       ///< mm
   double samples_per_mm2 = 0;  ///< of the area of the sampled surface
