@@ -1,6 +1,7 @@
 #include <new>
 
 #include "command_line/exit_code.h"
+#include "command_line/inputs.h"
 #include "command_line/interrupt.h"
 #include "command_line/usage_error.h"
 #include "verbs/verbs.h"
@@ -25,9 +26,10 @@ int run_command(int argc, const char* const* argv) {
   };
   try {
     int exit_code = kOk;
-    const std::optional<Arguments> arguments = parse_arguments(argc, argv, exit_code);
+    std::optional<Arguments> arguments = parse_arguments(argc, argv, exit_code);
     if (!arguments) return exit_code;
     catch_interrupts();
+    std::visit([](auto& verb) { expand_all_folders(verb); }, *arguments);
     return run_verb(*arguments, console);
   } catch (const UsageError& error) {
     return fail(kUsage, error.what());

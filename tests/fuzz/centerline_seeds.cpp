@@ -66,14 +66,17 @@ std::vector<std::string> json_seeds() {
   return {R"({"schema": "vmesh.centerline/1", "space": "LPS", "unit": "mm",
  "nodes": [[0, 0, 0, 2], [8, 0, 0, 1.5], [12, 4, 0, 1], [12, -4, 0, 1]],
  "segments": [[0, 1], [1, 2], [1, 3]]})",
-          R"({"markups": [{"type": "Fiducial"}, {"type": "Curve", "coordinateSystem": "RAS", "coordinateUnits": "cm",
+          R"({"schema": "vmesh.centerline/1", "unit": "um", "options": "\u00e4\n", "more": {"a": [true, null, {}]},
+ "nodes": [[1e3, -0.5, 1e-9, 2]], "segments": []})"};
+}
+
+std::vector<std::string> markups_seeds() {
+  return {R"({"markups": [{"type": "Fiducial"}, {"type": "Curve", "coordinateSystem": "RAS", "coordinateUnits": "cm",
  "controlPoints": [{"position": [0, 0, 0]}, {"position": [0, 0, 9], "positionStatus": "defined"},
  {"positionStatus": "undefined", "position": []}],
  "measurements": [{"name": "length"}, {"name": "Radius", "controlPointValues": [2, 1.5, 0]}]},
  {"type": "Line", "coordinateSystem": "RAS", "coordinateUnits": ["cm"], "measurements": [{"name": "radius",
- "controlPointValues": [1, 1]}], "controlPoints": [{"position": [0, 0, 5]}, {"position": [5, 0, 5]}]}]})",
-          R"({"schema": "vmesh.centerline/1", "unit": "um", "options": "\u00e4\n", "more": {"a": [true, null, {}]},
- "nodes": [[1e3, -0.5, 1e-9, 2]], "segments": []})"};
+ "controlPointValues": [1, 1]}], "controlPoints": [{"position": [0, 0, 5]}, {"position": [5, 0, 5]}]}]})"};
 }
 
 std::vector<std::string> csv_seeds() {

@@ -8,8 +8,11 @@
 #include "vmesh/core/version.h"
 
 #include "command_line/arguments_common.h"
+#include "command_line/completion.h"
 #include "command_line/console.h"
 #include "command_line/exit_code.h"
+#include "command_line/manual.h"
+#include "command_line/outputs.h"
 #include "command_line/usage_error.h"
 #include "report/requirements.h"
 
@@ -31,6 +34,12 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate aorta.vtp -o aorta-flow.vtp --ends flat --flow-extensions 5 --json caps.json
   vmesh generate tree.swc tree.glb --bones
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
+constexpr const char* kCompletionExamples = R"(Examples:
+  source <(vmesh completion bash)
+  vmesh completion bash > ~/.local/share/bash-completion/completions/vmesh)";
+constexpr const char* kManualExamples = R"(Examples:
+  vmesh man generate | man -l -
+  vmesh man -o ~/.local/share/man/man1)";
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
   vmesh info tree.ply --json -
@@ -228,15 +237,16 @@ void add_render_view(CLI::App& verb, RenderOptions& options) {
   verb.add_option("--width", options.width, "pixels")->check(in_range(16, 16384))->capture_default_str();
   verb.add_option("--height", options.height, "pixels")->check(in_range(16, 16384))->capture_default_str();
   verb.add_option_function<std::string>(
-      "--view",
-      [&options](const std::string& text) {
-        try {
-          options.view = view_direction(text);
-        } catch (const InvalidInput& error) {
-          throw CLI::ValidationError("--view", error.what());
-        }
-      },
-      "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees");
+          "--view",
+          [&options](const std::string& text) {
+            try {
+              options.view = view_direction(text);
+            } catch (const InvalidInput& error) {
+              throw CLI::ValidationError("--view", error.what());
+            }
+          },
+          "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees")
+      ->type_name("VIEW");
   verb.add_option_function<std::string>(
           "--look-at",
           [&options](const std::string& text) {
@@ -265,7 +275,8 @@ void add_render_look(CLI::App& verb, RenderArguments& arguments) {
       ->check(in_range(0.0, 1.0))
       ->capture_default_str();
   verb.add_option("--color", arguments.color,
-                  "colour by this attribute of the file, or by skewness; branch: a colour for each");
+                  "colour by this attribute of the file, or by skewness; branch: a colour for each")
+      ->type_name("NAME");
   verb.add_option_function<std::string>(
           "--range",
           [&options](const std::string& text) {
@@ -316,6 +327,25 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
   verb.footer(kEvaluateExamples);
 }
 
+/// The verbs that tell of the others.
+struct HelpArguments {
+  std::string shell;
+  std::string verb;
+  std::filesystem::path folder;
+};
+
+void add_help(CLI::App& app, HelpArguments& arguments) {
+  CLI::App& completion = *app.add_subcommand("completion", "Print a script that lets a shell complete vmesh's words");
+  completion.add_option("SHELL", arguments.shell, "bash")->required()->check(CLI::IsMember({"bash"}));
+  completion.footer(kCompletionExamples);
+  CLI::App& manual = *app.add_subcommand("man", "Print a manual page");
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
+  manual.add_option("VERB", arguments.verb, "of this verb; without, of vmesh itself")->check(CLI::IsMember(verbs));
+  manual.add_option("-o,--output", arguments.folder, "write all pages into this folder instead");
+  manual.footer(kManualExamples);
+}
+
 /// How many letters it takes to make `b` of `a`: put in, taken out or replaced.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -349,6 +379,22 @@ void check_verb(const CLI::App& app, std::string_view word) {
   throw UsageError("there is no verb " + std::string(word) +
                    (nearest.empty() ? "" : "; did you mean " + nearest + "?") + (nearest.empty() ? "; " : " ") +
                    "The verbs are " + all);
+}
+
+/// Whether one of these verbs was called; then it is done.
+bool ran_help(const CLI::App& app, const HelpArguments& arguments) {
+  if (app.got_subcommand("completion")) {
+    write_text("-", bash_completion(app));
+  } else if (app.got_subcommand("man")) {
+    if (!arguments.folder.empty()) {
+      write_manual_pages(app, arguments.folder);
+    } else {
+      write_text("-", manual_page(app, arguments.verb.empty() ? nullptr : app.get_subcommand(arguments.verb)));
+    }
+  } else {
+    return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -398,6 +444,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   add_deform(app, deform);
   add_table1(app, table1);
   add_fit(app, fit);
+  HelpArguments help;
+  add_help(app, help);
   if (argc > 1 && argv[1][0] != '-') check_verb(app, argv[1]);
   try {
     app.parse(argc, argv);
@@ -409,6 +457,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
     for (std::string line; std::getline(lines, line);) std::cerr << printable(line) << "\n";
     return std::nullopt;
   }
+  exit_code = kOk;
+  if (ran_help(app, help)) return std::nullopt;
   if (app.got_subcommand("generate")) settle_output(generate);
   if (app.got_subcommand("synth")) settle_output(synth);
   if (app.got_subcommand("convert")) settle_output(convert);

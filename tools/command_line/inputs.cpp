@@ -1,6 +1,7 @@
 #include "command_line/inputs.h"
 
 #include <algorithm>
+#include <map>
 
 #include "vmesh/io/sha256.h"
 
@@ -96,6 +97,63 @@ bool holds_surface(const std::filesystem::path& path) {
   }
 }
 
+/// In the order of their names, without hidden ones.
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->is_regular_file(error) && !entry->path().filename().string().starts_with('.'))
+      files.push_back(entry->path());
+  }
+  if (error) throw ReadError(folder.string() + ": the folder cannot be read: " + error.message());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// ".pth", say, for files that hold one branch of a tree each; empty for others.
+std::string branch_extension(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  if (extension == ".ctgr" || extension == ".pth") return extension;
+  return extension == ".json" && extension_of(path.stem()) == ".mrk" ? ".mrk.json" : "";
+}
+
+bool is_readable(const std::filesystem::path& path) {
+  return find_centerline_format(path) || has_surface_extension(path) || is_image_path(path);
+}
+
+/// "a.swc, b.swc and 7 more": files of a folder that could have been meant.
+std::string names_of_readable(const std::vector<std::filesystem::path>& files) {
+  constexpr std::size_t kNamed = 3;
+  std::string names;
+  std::size_t count = 0;
+  for (const std::filesystem::path& file : files) {
+    if (is_readable(file) && count++ < kNamed) names += (names.empty() ? "" : ", ") + file.string();
+  }
+  return count > kNamed ? names + " and " + std::to_string(count - kNamed) + " more" : names;
+}
+
+/// The files that stand for a path: itself, unless it is a folder of branches.
+std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error)) return {path};
+  const std::filesystem::path folder = path.has_filename() ? path : path.parent_path();
+  if (is_image_path(folder)) return {folder};
+  const std::vector<std::filesystem::path> files = files_in(folder);
+  std::map<std::string, std::vector<std::filesystem::path>> branches;
+  for (const std::filesystem::path& file : files) {
+    if (const std::string extension = branch_extension(file); !extension.empty()) branches[extension].push_back(file);
+  }
+  if (branches.size() == 1) return branches.begin()->second;
+  if (branches.size() > 1) {
+    const auto& [first, second] = std::pair(*branches.begin(), *std::next(branches.begin()));
+    throw InvalidInput(folder.string() + ": this folder holds branches of several kinds (" + first.first + ", " +
+                       second.first + "); name the files of one, as in " + folder.string() + "/*" + first.first);
+  }
+  const std::string names = names_of_readable(files);
+  throw ReadError(folder.string() + ": this is a folder, and " +
+                  (names.empty() ? "no file in it is one that vmesh reads" : "a file is needed; there are " + names));
+}
+
 RawCenterline read_centerline_of(const InputArguments& input) {
   const std::vector<std::filesystem::path> paths = paths_of(input);
   for (const std::filesystem::path& path : paths) {
@@ -170,6 +228,15 @@ AnyInput load_any(const InputArguments& input, std::vector<std::string>& warning
   return load_raw_centerline(input, warnings, said);
 }
 
+void expand_folders(InputArguments& input) {
+  std::vector<std::filesystem::path> expanded;
+  for (const std::filesystem::path& path : paths_of(input)) {
+    for (std::filesystem::path& file : expanded_folder(path)) expanded.push_back(std::move(file));
+  }
+  input.path = expanded.front();
+  input.more.assign(expanded.begin() + 1, expanded.end());
+}
+
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& input) {
   if (extension_of(input) == ".csv") return {input, csv_segments_path(input)};
   return {input};
@@ -190,9 +257,16 @@ std::string file_name_of(const InputArguments& input) {
 }
 
 std::string sha256_of(const InputArguments& input) {
-  if (input.more.empty()) return sha256_of_file(input.path);
+  if (input.more.empty()) return sha256_of_input(input.path);
   std::string all;
-  for (const std::filesystem::path& path : paths_of(input)) all += sha256_of_file(path);
+  for (const std::filesystem::path& path : paths_of(input)) all += sha256_of_input(path);
+  return vmesh::sha256_of(all);
+}
+
+std::string sha256_of_input(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(path)) return sha256_of_file(path);
+  std::string all;
+  for (const std::filesystem::path& file : files_in(path)) all += sha256_of_file(file);
   return vmesh::sha256_of(all);
 }
 

@@ -50,6 +50,20 @@ auto naming(const std::filesystem::path& path, Function function) {
   }
 }
 
+/// Puts the branches in the place of a folder that holds files with one each (.mrk.json, .ctgr or .pth), in the order of
+/// their names. Folders of DICOM slices stay; other folders are refused (ReadError), with files that could be meant.
+void expand_folders(InputArguments& input);
+
+/// The same for all inputs of a verb.
+template <class VerbArguments>
+void expand_all_folders(VerbArguments& verb) {
+  if constexpr (requires { verb.input; }) expand_folders(verb.input);
+  if constexpr (requires { verb.centerline; }) expand_folders(verb.centerline);
+  if constexpr (requires { verb.reference; }) expand_folders(verb.reference);
+  if constexpr (requires { verb.surface; }) expand_folders(verb.surface);
+  if constexpr (requires { verb.fitting; }) expand_folders(verb.fitting.reference);
+}
+
 /// All files behind an input: a CSV centerline has two.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& input);
 std::vector<std::filesystem::path> files_of(const InputArguments& input);
@@ -58,5 +72,7 @@ std::vector<std::filesystem::path> files_of(const InputArguments& input);
 /// another.
 std::string file_name_of(const InputArguments& input);
 std::string sha256_of(const InputArguments& input);
+/// Of a file; of a folder, of all SHA-256 of its files in the order of their names.
+std::string sha256_of_input(const std::filesystem::path& path);
 
 }  // namespace vmesh::tool

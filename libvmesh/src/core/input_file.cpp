@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/memory.h"
 
 namespace vmesh {
 
@@ -49,6 +50,8 @@ std::size_t InputFile::read(std::span<char> bytes) {
 
 std::string read_file(const std::filesystem::path& path) {
   InputFile file(path);
+  require_memory(static_cast<double>(file.size()), path.string() + ": reading a file of this size",
+                 "give a smaller one, or part of it");
   std::string content;
   content.reserve(file.size());
   char block[1 << 16];

@@ -9,6 +9,7 @@
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/mesh/components.h"
 #include "vmesh/mesh/topology.h"
 
@@ -36,6 +37,8 @@ constexpr int kFirstRounds = 3, kLastRounds = 4;
 constexpr int kMoreRounds = 12;           // at most, to find the size for an error
 constexpr double kOfMostVertices = 0.98;  // to aim at: the count is a matter of luck
 constexpr int kCorrections = 5;
+// Memory, measured.
+constexpr double kBytesPerVertex = 3000, kBytesPerReferenceFace = 800;
 constexpr double kCorrection = 0.93;  // of the even error, when 95 % do not keep to theirs
 
 std::string text_of(const Vec3& p) {
@@ -72,6 +75,15 @@ void check(const VesselSurface& surface, const VesselField& field) {
                        " pairs of faces that cross, the first at " + text_of(surface.mesh.vertices[v]) +
                        "; make one without (--overlap separate)");
   }
+}
+
+/// Memory that a fit of so many vertices takes, at most, with the reference.
+void check_memory(std::size_t vertices, const TriMesh& reference) {
+  require_memory(
+      kBytesPerVertex * static_cast<double>(vertices) +
+          kBytesPerReferenceFace * static_cast<double>(reference.faces.size()),
+      "a fit of " + std::to_string(vertices) + " vertices to " + std::to_string(reference.faces.size()) + " faces",
+      "allow fewer vertices or a larger error, or make the reference coarser");
 }
 
 class Fit {
@@ -262,8 +274,9 @@ class Fit {
 
   void resize_once(const Matches& matches) {
     const double wanted = aim_ * static_cast<double>(wanted_vertices_);
-    set_sizes(surface_, errors_around(surface_, matches), to_error_ ? 0 : static_cast<std::size_t>(wanted), even_error_,
-              limits_);
+    const double faces = set_sizes(surface_, errors_around(surface_, matches),
+                                   to_error_ ? 0 : static_cast<std::size_t>(wanted), even_error_, limits_);
+    check_memory(static_cast<std::size_t>(faces / 2), reference_.mesh());
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       split_edges(surface, frozen);
       flip_edges(surface, frozen, guard_);
@@ -355,6 +368,7 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
   check(options);
   const VesselField field(centerline);
   check(surface, field);
+  check_memory(std::max(surface.mesh.vertices.size(), options.max_vertices), reference);
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   return arena.execute([&] {
     Fit fit(surface, field, reference, options);

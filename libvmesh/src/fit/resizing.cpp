@@ -151,8 +151,8 @@ std::vector<double> errors_around(const FitMesh& surface, const Matches& matches
   return sum;
 }
 
-void set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t vertices, double error,
-               const SizeLimits& limits) {
+double set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t vertices, double error,
+                 const SizeLimits& limits) {
   const std::size_t count = surface.vertices.size();
   std::vector<double> now(count), size(count);
   for (Index v = 0; v < count; ++v) now[v] = surface.mean_edge(v);
@@ -170,9 +170,10 @@ void set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t 
     grade(surface, neighbours, size, limits.grading);
     return faces_per_unit * face_count(surface, size);
   };
+  double faces = 0;
   if (vertices > 0) {
     const double largest = 10 * *std::max_element(errors.begin(), errors.end());
-    const double faces =
+    faces =
         static_cast<double>(surface.faces.size()) + 2 * (static_cast<double>(vertices) - static_cast<double>(count));
     double low = 1e-3 * largest, high = largest;
     for (int i = 0; i < kBisections; ++i) {
@@ -183,9 +184,10 @@ void set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t 
     const double scale = std::sqrt(sizes_for(high) / faces);
     for (double& h : size) h *= scale;
   } else {
-    sizes_for(error);
+    faces = sizes_for(error);
   }
   for (Index v = 0; v < count; ++v) surface.vertices[v].size = size[v];
+  return faces;
 }
 
 void split_edges(FitMesh& surface, const std::vector<char>& frozen) {

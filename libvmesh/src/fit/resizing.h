@@ -19,8 +19,8 @@ struct SizeLimits {
 };
 
 /// Sets the intended sizes so that errors become even at about `vertices` vertices, if that is not 0, else so that they
-/// become `error`: an error goes with the square of the edges.
-void set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t vertices, double error,
+/// become `error`: an error goes with the square of the edges. Returns how many faces that will take, about.
+double set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t vertices, double error,
                const SizeLimits& limits);
 
 /// Splits edges that are too long for their ends' sizes, collapses those that are too short.

@@ -148,7 +148,7 @@ VoxelImage cropped_to(const VoxelImage& image, double isovalue, double margin) {
   return cropped(image, low, high);
 }
 
-VoxelImage resampled(const VoxelImage& image, double spacing) {
+std::array<std::size_t, 3> resampled_size(const VoxelImage& image, double spacing) {
   if (!(spacing > 0) || !std::isfinite(spacing))
     throw InvalidInput("the spacing of a resampled image must be positive");
   const Vec3 old_spacing = image.spacing();
@@ -162,6 +162,12 @@ VoxelImage resampled(const VoxelImage& image, double spacing) {
   if (voxels > static_cast<double>(kMostVoxels))
     throw InvalidInput("a spacing of " + std::to_string(spacing) +
                        " mm asks for more than 2^31 voxels; choose a larger one");
+  return counts;
+}
+
+VoxelImage resampled(const VoxelImage& image, double spacing) {
+  const std::array<std::size_t, 3> counts = resampled_size(image, spacing);
+  const Vec3 old_spacing = image.spacing();
   VoxelImage result = image;
   for (int a = 0; a < 3; ++a) {
     const double step = spacing / old_spacing[a];

@@ -10,6 +10,7 @@
 
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
+#include "vmesh/core/memory.h"
 
 #include "image_header.h"
 #include "unpack.h"
@@ -30,10 +31,24 @@ ImageHeader parse_header(std::string_view content, const std::string& file_name,
   return image::parse_nifti_header(packed ? image::unpacked(content, kLongestHeader) : content, name);
 }
 
+/// Throws when voxels that are packed in `packed` cannot be there, or the memory does not hold them, as stored and as
+/// float.
+void check_size(std::string_view packed, const ImageHeader& header, const std::string& name) {
+  constexpr double kMostUnpacked = 1032;  // from a byte, by deflate
+  const auto voxels = static_cast<double>(header.voxels()), bytes = static_cast<double>(bytes_of(header.type));
+  if (voxels * bytes > kMostUnpacked * static_cast<double>(packed.size()))
+    throw InvalidInput(name + ": the header claims " + std::to_string(header.voxels()) +
+                       " voxels, more than the file can hold packed; it is broken or incomplete");
+  require_memory(voxels * (bytes + sizeof(float)),
+                 name + ": an image of " + std::to_string(header.voxels()) + " voxels",
+                 "crop it to the vessels, or store larger voxels");
+}
+
 /// The bytes of all voxels: part of `content`, or unpacked into `store`. Throws InvalidInput when there are fewer.
 std::string_view voxel_bytes(std::string_view content, const ImageHeader& header, bool all_packed, std::string& store,
                              const std::string& name) {
   const std::uint64_t needed = header.voxels() * bytes_of(header.type);
+  if (all_packed || header.packed) check_size(content, header, name);
   if (all_packed) content = store = image::unpacked(content, header.data_begin + needed);
   content.remove_prefix(static_cast<std::size_t>(std::min<std::uint64_t>(header.data_begin, content.size())));
   if (header.packed) content = store = image::unpacked(content, needed);

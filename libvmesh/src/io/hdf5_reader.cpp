@@ -9,8 +9,9 @@
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 
+#include "core/child_process.h"
+
 #include "bytes.h"
-#include "child_process.h"
 #include "formats.h"
 #include "poly_lines.h"
 

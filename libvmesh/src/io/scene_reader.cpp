@@ -6,11 +6,13 @@
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <minizip/unzip.h>
+#include <pugixml.hpp>
 
 #include "vmesh/core/input_file.h"
 
 #include "bytes.h"
-#include "child_process.h"
+#include "core/child_process.h"
 #include "formats.h"
 #include "text.h"
 #include "triangulation.h"
@@ -75,8 +77,40 @@ struct SceneFrame {
   float scale = 1;  ///< to that unit
 };
 
-SceneFrame frame_of(const std::string& extension, const aiScene& scene) {
-  if (extension == ".3mf") return {};
+/// The beginning of the model in a 3MF file, which is a ZIP archive; empty when there is none.
+std::string beginning_of_model(const std::filesystem::path& path) {
+  constexpr std::size_t kEnough = 1 << 16;  // for what comes before the first vertex
+  constexpr int kAnyCase = 2;
+  const unzFile archive = unzOpen64(path.c_str());
+  if (archive == nullptr) return {};
+  std::string text;
+  if (unzLocateFile(archive, "3D/3dmodel.model", kAnyCase) == UNZ_OK && unzOpenCurrentFile(archive) == UNZ_OK) {
+    text.resize(kEnough);
+    const int count = unzReadCurrentFile(archive, text.data(), static_cast<unsigned>(text.size()));
+    text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+    unzCloseCurrentFile(archive);
+  }
+  unzClose(archive);
+  return text;
+}
+
+/// Of which assimp does not tell: millimetres where the model does not say (3MF Core Specification 1.2, 3.4).
+SceneFrame frame_of_3mf(const std::filesystem::path& path) {
+  const std::string text = beginning_of_model(path);
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size());  // as far as it goes
+  const std::string unit = document.document_element().attribute("unit").as_string("millimeter");
+  if (unit == "micron") return {false, LengthUnit::um, 1};
+  if (unit == "millimeter") return {false, LengthUnit::mm, 1};
+  if (unit == "centimeter") return {false, LengthUnit::cm, 1};
+  if (unit == "meter") return {false, LengthUnit::m, 1};
+  if (unit == "inch") return {false, LengthUnit::mm, 25.4F};
+  if (unit == "foot") return {false, LengthUnit::mm, 304.8F};
+  return {};
+}
+
+SceneFrame frame_of(const std::filesystem::path& path, const std::string& extension, const aiScene& scene) {
+  if (extension == ".3mf") return frame_of_3mf(path);
   if (extension != ".fbx") return {true, LengthUnit::m, 1};  // glTF and X3D say so, assimp converts COLLADA
   double factor = 1;                                         // centimetres
   int up = 1;
@@ -103,7 +137,7 @@ std::string imported(const std::filesystem::path& path, const std::string& conte
     throw InvalidInput(source + ": " + one_line(std::string_view(importer.GetErrorString()).substr(0, 300)));
   SceneFaces faces;
   faces.add(*scene);
-  const SceneFrame frame = frame_of(extension, *scene);
+  const SceneFrame frame = frame_of(path, extension, *scene);
   std::string answer;
   store(answer, static_cast<std::uint8_t>(frame.y_up));
   store(answer, static_cast<std::uint8_t>(frame.unit));

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/image/contour.h"
 #include "vmesh/image/image_filters.h"
 #include "vmesh/mesh/components.h"
@@ -52,6 +53,26 @@ std::string list_of(const VoxelImage& image) {
     text << (count++ ? ", " : "") << label;
   }
   return text.str();
+}
+
+double count_of(const std::array<std::size_t, 3>& size) {
+  return static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
+}
+
+/// A mask, and what is cropped out of it.
+void check_memory_for_mask(const VoxelImage& image) {
+  const double voxels = count_of(image.size);
+  require_memory(2 * sizeof(float) * voxels, "a mask of " + std::to_string(image.values.size()) + " voxels",
+                 "crop the image to the vessels");
+}
+
+/// The image that is resampled or smoothed, and the contour of it.
+void check_memory_for_contour(const VoxelImage& image, const ReferenceOptions& options) {
+  const double voxels = options.spacing > 0 ? count_of(resampled_size(image, options.spacing)) : count_of(image.size);
+  std::ostringstream what;
+  what << "a surface from an image of " << voxels << " voxels";
+  require_memory((sizeof(float) + kContourBytesPerVoxel) * voxels, what.str(),
+                 options.spacing > 0 ? "choose a larger spacing" : "resample it to a larger spacing, or crop it");
 }
 
 void check(const ReferenceOptions& options) {
@@ -130,8 +151,10 @@ ReferenceSurface contour_scene(Scene scene, const ReferenceOptions& options) {
 
 ReferenceSurface reference_surface(const LoadedImage& image, const ReferenceOptions& options) {
   check(options);
+  check_memory_for_mask(image.image);
   Scene scene = scene_of(image, options);
   scene.image = cropped_to(scene.image, scene.isovalue, margin_of(scene.image, options));
+  check_memory_for_contour(scene.image, options);
   if (options.spacing > 0) {
     scene.image = resampled(scene.image, options.spacing);
     scene.binary = false;

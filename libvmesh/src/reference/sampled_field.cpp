@@ -6,6 +6,7 @@
 
 #include "vmesh/core/error.h"
 #include "vmesh/core/memory.h"
+#include "vmesh/image/contour.h"
 
 namespace vmesh {
 namespace {
@@ -28,8 +29,8 @@ VoxelImage empty_image(const Box& box, double voxel) {
   if (!(counts.prod() <= kMostVoxels))
     throw InvalidInput("voxels of " + std::to_string(voxel) +
                        " mm are too small for this centerline: more than 2^31 of them; choose larger ones");
-  require_memory(counts.prod() * sizeof(float), "an image with voxels of " + std::to_string(voxel) + " mm",
-                 "choose larger ones");
+  require_memory(counts.prod() * (sizeof(float) + kContourBytesPerVoxel),
+                 "an image with voxels of " + std::to_string(voxel) + " mm", "choose larger ones");
   VoxelImage image;
   for (int a = 0; a < 3; ++a) image.size[a] = static_cast<std::size_t>(counts[a]);
   image.origin = box.min();

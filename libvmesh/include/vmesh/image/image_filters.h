@@ -15,6 +15,9 @@ VoxelImage cropped(const VoxelImage& image, const std::array<std::size_t, 3>& lo
 /// that far. Throws InvalidInput when there is no such value.
 VoxelImage cropped_to(const VoxelImage& image, double isovalue, double margin);
 
+/// The size that resampled() gives the image. Throws InvalidInput as it does.
+std::array<std::size_t, 3> resampled_size(const VoxelImage& image, double spacing);
+
 /// The same image on cubic voxels of `spacing` mm along the same axes, values interpolated linearly. The grid is
 /// centred in the old one. Throws InvalidInput unless 0 < spacing, and when that asks for more than 2^31 voxels.
 VoxelImage resampled(const VoxelImage& image, double spacing);

@@ -35,7 +35,8 @@ struct ReferenceSurface {
 };
 
 /// Throws InvalidInput for options out of range, an image with several labels and no choice, and when nothing is inside
-/// (it lists what labels there are); Unsupported without VTK.
+/// (it lists what labels there are); Unsupported without VTK, and when the memory that is free does not hold the image
+/// that is contoured.
 ReferenceSurface reference_surface(const LoadedImage& image, const ReferenceOptions& options = {});
 
 /// The vessel volume of a centerline (plain union of round cones), sampled on voxels of `voxel` mm and contoured the

@@ -14,7 +14,7 @@
 #include "vmesh/core/error.h"
 #include "vmesh/core/memory.h"
 
-namespace vmesh::io {
+namespace vmesh {
 namespace {
 
 /// What comes first in the answer.
@@ -114,4 +114,4 @@ std::string in_child_process(const std::string& source, std::size_t file_size,
   return answer;
 }
 
-}  // namespace vmesh::io
+}  // namespace vmesh

@@ -1,11 +1,11 @@
-// For libraries that may crash or hang on damaged files. Internal to the module.
+// For libraries that may crash or hang on damaged files. Internal to vmesh.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <string>
 
-namespace vmesh::io {
+namespace vmesh {
 
 /// Runs `work` in a child of this process and returns what it returns. What it throws as InvalidInput or Unsupported is
 /// thrown here; a crash, too much memory or too much time of the processor become InvalidInput that names `source`.
@@ -13,4 +13,4 @@ namespace vmesh::io {
 std::string in_child_process(const std::string& source, std::size_t file_size,
                              const std::function<std::string()>& work);
 
-}  // namespace vmesh::io
+}  // namespace vmesh
