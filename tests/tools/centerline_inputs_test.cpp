@@ -38,6 +38,32 @@ TEST_F(CenterlineInputs, ASetOfSlicersCurves) {
   EXPECT_EQ(summary.at("centerline").at("ends"), 3);
 }
 
+TEST_F(CenterlineInputs, AFolderOfBranchesIsATree) {
+  std::filesystem::create_directory(path("curves"));
+  write("curves/a.mrk.json", curve(R"({"position": [0,0,0]}, {"position": [0,0,20]})", "3, 2.8"));
+  write("curves/b.mrk.json", curve(R"({"position": [0,0,20]}, {"position": [-9,0,32]})", "2.2, 2.1"));
+  write("curves/notes.txt", "not a branch");
+  grow({"@curves"});
+  EXPECT_EQ(nlohmann::json::parse(read("out.json")).at("centerline").at("ends"), 2);
+}
+
+TEST_F(CenterlineInputs, AnotherFolderIsRefusedWithWhatIsInIt) {
+  std::filesystem::create_directory(path("trees"));
+  Outcome run = vmesh({"generate", "@trees", "-o", "@out.ply"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("no file in it is one that vmesh reads"), std::string::npos) << run.err;
+  write_y("trees/y.swc");
+  run = vmesh({"generate", "@trees", "-o", "@out.ply"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("y.swc"), std::string::npos) << run.err;
+  write("trees/a.mrk.json", curve(R"({"position": [0,0,0]}, {"position": [0,0,20]})", "3, 2.8"));
+  write("trees/b.pth", "");
+  run = vmesh({"generate", "@trees", "-o", "@out.ply"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("several kinds (.mrk.json, .pth)"), std::string::npos) << run.err;
+  EXPECT_FALSE(exists("out.ply"));
+}
+
 TEST_F(CenterlineInputs, SeveralFilesAreNoSurface) {
   write_y("a.swc");
   const Outcome run = vmesh({"info", "@a.swc", "@b.ply"});

@@ -137,7 +137,6 @@ std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& 
   std::error_code error;
   if (!std::filesystem::is_directory(path, error)) return {path};
   const std::filesystem::path folder = path.has_filename() ? path : path.parent_path();
-  if (is_image_path(folder)) return {folder};
   const std::vector<std::filesystem::path> files = files_in(folder);
   std::map<std::string, std::vector<std::filesystem::path>> branches;
   for (const std::filesystem::path& file : files) {
@@ -257,16 +256,9 @@ std::string file_name_of(const InputArguments& input) {
 }
 
 std::string sha256_of(const InputArguments& input) {
-  if (input.more.empty()) return sha256_of_input(input.path);
+  if (input.more.empty()) return sha256_of_file(input.path);
   std::string all;
-  for (const std::filesystem::path& path : paths_of(input)) all += sha256_of_input(path);
-  return vmesh::sha256_of(all);
-}
-
-std::string sha256_of_input(const std::filesystem::path& path) {
-  if (!std::filesystem::is_directory(path)) return sha256_of_file(path);
-  std::string all;
-  for (const std::filesystem::path& file : files_in(path)) all += sha256_of_file(file);
+  for (const std::filesystem::path& path : paths_of(input)) all += sha256_of_file(path);
   return vmesh::sha256_of(all);
 }
 

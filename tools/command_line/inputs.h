@@ -50,8 +50,8 @@ auto naming(const std::filesystem::path& path, Function function) {
   }
 }
 
-/// Puts the branches in the place of a folder that holds files with one each (.mrk.json, .ctgr or .pth), in the order of
-/// their names. Folders of DICOM slices stay; other folders are refused (ReadError), with files that could be meant.
+/// Puts the branches in the place of a folder that holds files with one each (.mrk.json, .ctgr or .pth), in the order
+/// of their names. Other folders are refused (ReadError), with files that could be meant.
 void expand_folders(InputArguments& input);
 
 /// The same for all inputs of a verb.
@@ -72,7 +72,5 @@ std::vector<std::filesystem::path> files_of(const InputArguments& input);
 /// another.
 std::string file_name_of(const InputArguments& input);
 std::string sha256_of(const InputArguments& input);
-/// Of a file; of a folder, of all SHA-256 of its files in the order of their names.
-std::string sha256_of_input(const std::filesystem::path& path);
 
 }  // namespace vmesh::tool

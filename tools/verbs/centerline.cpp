@@ -80,7 +80,7 @@ int run(const CenterlineArguments& arguments, Console& console) {
   const ExtractedCenterline result = extracted(arguments, console);
   stop_if_interrupted();
   log(result, console);
-  const std::string sha256 = sha256_of_input(path);
+  const std::string sha256 = sha256_of_file(path);
   write_centerline(arguments.output, result.centerline,
                    {generator_name(), describe(arguments), path.filename().string(), sha256});
   console.log("wrote " + arguments.output.string());

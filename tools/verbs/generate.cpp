@@ -117,7 +117,7 @@ LoadedCenterline extract(GenerateArguments& arguments, std::optional<TriMesh>& r
   if (!arguments.centerline_output.empty())
     write_centerline(arguments.centerline_output, centerline,
                      {generator_name(), "extracted by generate", arguments.input.path.filename().string(),
-                      sha256_of_input(arguments.input.path)});
+                      sha256_of_file(arguments.input.path)});
   if (!reference) reference = std::move(surface);
   LoadedCenterline loaded{{centerline, {}, {}, {}}, {}, {}};
   for (Index n = 0; n < centerline.nodes().size(); ++n) loaded.cleaned.raw_node.push_back(n);

@@ -61,7 +61,7 @@ int run(const ReferenceArguments& arguments, Console& console) {
   check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, files_of(path));
   const ReferenceSurface surface = contoured(arguments, console);
   stop_if_interrupted();
-  const std::string sha256 = sha256_of_input(path);
+  const std::string sha256 = sha256_of_file(path);
   write_surface(arguments.output, surface.mesh, {},
                 {generator_name(), describe(arguments), path.filename().string(), sha256});
   if (surface.components > 1 && !arguments.options.all_components)

@@ -62,7 +62,7 @@ void check_files(const Table2Arguments& arguments) {
 }
 
 SourceFile source_file(const std::filesystem::path& path) {
-  return path.empty() ? SourceFile{} : SourceFile{path.string(), sha256_of_input(path)};
+  return path.empty() ? SourceFile{} : SourceFile{path.string(), sha256_of_file(path)};
 }
 
 void describe_contour(const ReferenceSurface& surface, Table2Source& source) {

@@ -368,7 +368,8 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
   check(options);
   const VesselField field(centerline);
   check(surface, field);
-  check_memory(std::max(surface.mesh.vertices.size(), options.max_vertices), reference);
+  const std::size_t aimed_at = options.error > 0 ? 0 : options.max_vertices;  // else a limit
+  check_memory(std::max(surface.mesh.vertices.size(), aimed_at), reference);
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   return arena.execute([&] {
     Fit fit(surface, field, reference, options);
