@@ -38,7 +38,7 @@ constexpr int kMoreRounds = 12;           // at most, to find the size for an er
 constexpr double kOfMostVertices = 0.98;  // to aim at: the count is a matter of luck
 constexpr int kCorrections = 5;
 // Memory, measured.
-constexpr double kBytesPerVertex = 3000, kBytesPerReferenceFace = 800;
+constexpr double kBytesPerVertex = 12000, kBytesPerReferenceFace = 350;
 constexpr double kCorrection = 0.93;  // of the even error, when 95 % do not keep to theirs
 
 std::string text_of(const Vec3& p) {

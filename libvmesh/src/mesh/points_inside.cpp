@@ -96,8 +96,10 @@ class RayCaster {
   std::size_t entries() const {
     std::size_t count = 0;
     for (const Triangle& face : mesh_.faces) {
-      const auto [low, high] = box_of(face);
-      const auto rows = [&](int axis) { return static_cast<std::size_t>(row(high, axis) - row(low, axis) + 1); };
+      const auto box = box_of(face);
+      const auto rows = [&](int axis) {
+        return static_cast<std::size_t>(row(box.second, axis) - row(box.first, axis) + 1);
+      };
       count += rows(1) * rows(2);
     }
     return count;

@@ -28,7 +28,7 @@ using skeleton::Graph;
 constexpr double kLeastVolume = 1e-5;
 constexpr int kFitRounds = 20;
 // Memory that a vertex of the surface takes, measured.
-constexpr double kBytesPerVertex = 1500;
+constexpr double kBytesPerVertex = 4000;
 
 /// A component of the surface on its way to a centerline.
 struct Part {
