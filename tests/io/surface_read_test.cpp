@@ -3,6 +3,8 @@
 #include <set>
 #include <sstream>
 
+#include <zlib.h>
+
 #include "vmesh/io/surface_io.h"
 
 #include "io_support.h"
@@ -236,6 +238,55 @@ TEST(ReadScene, TakesNodesAndUnitsInGlbAndCollada) {
   ASSERT_EQ(collada.mesh.vertices.size(), 4u);
   EXPECT_EQ(collada.mesh.faces.size(), 2u);
   EXPECT_LT((collada.mesh.vertices[collada.mesh.faces[1][2]] - Vec3(0.01, 0.04, 0.02)).norm(), 1e-7);
+}
+
+/// A ZIP archive of files that are not packed.
+std::string zip(const std::vector<std::pair<std::string, std::string>>& files) {
+  const auto number = [](std::size_t value, int bytes) {
+    std::string text;
+    for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i));
+    return text;
+  };
+  std::string all, directory;
+  for (const auto& [name, content] : files) {
+    const auto checksum = crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
+    const std::string about = number(20, 2) + number(0, 8) + number(checksum, 4) + number(content.size(), 4) +
+                              number(content.size(), 4) + number(name.size(), 2) + number(0, 2);
+    directory += "PK\1\2" + number(20, 2) + about + number(0, 10) + number(all.size(), 4) + name;
+    all += "PK\3\4" + about + name + content;
+  }
+  return all + directory + "PK\5\6" + number(0, 4) + number(files.size(), 2) + number(files.size(), 2) +
+         number(directory.size(), 4) + number(all.size(), 4) + number(0, 2);
+}
+
+std::string model_3mf(const std::string& attributes) {
+  const std::string relations =
+      R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)"
+      R"(<Relationship Target="/3D/3dmodel.model" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/)"
+      R"(3dmodel"/></Relationships>)";
+  const std::string model =
+      R"(<?xml version="1.0"?><model )" + attributes +
+      R"( xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1" type="model">)"
+      R"(<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="2" y="0" z="0"/><vertex x="0" y="3" z="0"/></vertices>)"
+      R"(<triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh></object></resources>)"
+      R"(<build><item objectid="1"/></build></model>)";
+  return zip({{"_rels/.rels", relations}, {"3D/3dmodel.model", model}});
+}
+
+TEST(ReadScene, TheUnitOfA3mfIsRead) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& attributes) {
+    return read_surface(folder.write("t.3mf", model_3mf(attributes)));
+  };
+  EXPECT_EQ(read(R"(unit="micron")").unit, LengthUnit::um);
+  EXPECT_EQ(read(R"(unit="millimeter")").unit, LengthUnit::mm);
+  EXPECT_EQ(read(R"(unit="centimeter")").unit, LengthUnit::cm);
+  EXPECT_EQ(read(R"(unit="meter")").unit, LengthUnit::m);
+  EXPECT_EQ(read("").unit, LengthUnit::mm) << "what the specification takes for granted";
+  EXPECT_EQ(read(R"(unit="ell")").unit, LengthUnit::unknown);
+  const LoadedSurface inches = read(R"(unit="inch")");
+  EXPECT_EQ(inches.unit, LengthUnit::mm);
+  EXPECT_NEAR(inches.mesh.vertices.at(1).x(), 50.8, 1e-5) << "float";
 }
 
 TEST(ReadScene, DamagedFilesAreRefusedOrRead) {

@@ -188,6 +188,29 @@ TEST_F(Outputs, WhatTheMemoryDoesNotHoldIsRefusedBeforeItStarts) {
       "of memory");
   setrlimit(RLIMIT_AS, &before);
 }
+
+TEST_F(Outputs, ImagesThatTheMemoryDoesNotHoldAreRefusedBeforeTheyAreMade) {
+  // A box of 6 x 6 x 6 mm in an image of 10 x 10 x 10.
+  std::string voxels(1000, '\0');
+  for (std::size_t k = 2; k < 8; ++k)
+    for (std::size_t j = 2; j < 8; ++j) voxels.replace((k * 10 + j) * 10 + 2, 6, 6, '\1');
+  write("box.nrrd",
+        "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 10 10 10\nspace directions: "
+        "(1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: raw\n\n" +
+            voxels);
+  rlimit before = {};
+  getrlimit(RLIMIT_AS, &before);
+  const rlimit limit = {20'000'000'000, before.rlim_max};
+  setrlimit(RLIMIT_AS, &limit);
+  // 2.0e9 voxels of 12 bytes; 2^31 would be too many whatever the memory.
+  for (const std::vector<std::string>& verb : {std::vector<std::string>{"generate"}, {"centerline"}, {"reference"}}) {
+    std::vector<std::string> arguments = verb;
+    arguments.insert(arguments.end(), {"@box.nrrd", "--spacing", "0.0079"});
+    arguments.insert(arguments.end(), {"-o", verb.front() == "centerline" ? "@new.json" : "@new.ply"});
+    expect_refused(arguments, 4, "of memory");
+  }
+  setrlimit(RLIMIT_AS, &before);
+}
 #endif
 
 TEST_F(Outputs, AnOlderFileIsReplacedOnSuccessOnly) {

@@ -97,7 +97,8 @@ std::vector<Opening> find_openings(const TriMesh& mesh);
 /// `surface` is bound to `centerline`. `reference` faces outwards or inwards as a whole; it may be open and may have
 /// parts that belong to no vessel. Deterministic. Throws InvalidInput for a reference without faces, one whose faces
 /// disagree about the outside, one that is nowhere near the surface, a surface that is not manifold and oriented, that
-/// has faces that cross or whose binding does not fit, and options out of range; Cancelled.
+/// has faces that cross or whose binding does not fit, and options out of range; Unsupported when the memory that is
+/// free does not hold what it takes, also in the middle, before an error asks for more vertices; Cancelled.
 FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline, const TriMesh& reference,
                       const FitOptions& options = {}, const Progress& progress = {});
 

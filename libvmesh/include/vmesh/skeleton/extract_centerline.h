@@ -50,7 +50,7 @@ struct ExtractedCenterline {
 /// surface, ends included. Components that enclose a negative volume (cavities) or next to none are left out; a surface
 /// that faces inwards as a whole is turned. A component of genus g has g loops, unless `tree`.
 /// Deterministic. Throws InvalidInput for a surface that is not closed, manifold and oriented, and for options out of
-/// range; Cancelled.
+/// range; Unsupported when the memory that is free does not hold what it takes; Cancelled.
 ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOptions& options = {},
                                        const Progress& progress = {});
 
