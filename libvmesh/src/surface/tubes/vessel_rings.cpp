@@ -54,12 +54,6 @@ bool is_straight_between(const Ring& ring, const Ring& next) {
          chord.dot(next.normal) > kStraightSkip * along;
 }
 
-// A vector normal to `from`, by the smallest rotation that takes `from` to `to`.
-Vec3 turned(const Vec3& side, const Vec3& from, const Vec3& to) {
-  const double one_plus_cosine = 1 + from.dot(to);
-  return one_plus_cosine > 1e-12 ? Vec3(side - side.dot(to) / one_plus_cosine * (from + to)) : side;
-}
-
 }  // namespace
 
 double ring_pitch(int around) { return kPitch * balanced_ring_radius(around) * equilateral_height(around); }
@@ -83,7 +77,8 @@ Rings RingLayer::lay(Index branch) const {
   for (std::size_t k = 0; k < count; ++k) {
     const double radii = step * static_cast<double>(k);
     const CrossSection here = section(branch, radii);
-    side = k == 0 ? reference(branch, here.normal) : turned(side, rings.back().normal, here.normal);
+    side = k == 0 ? reference(branch, here.normal)
+                  : Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, here.normal) * side);
     side = (side - side.dot(here.normal) * here.normal).normalized();
     rings.push_back(lay_one(branch, here, side, static_cast<double>(k % 2) / 2, laid.points));
     rings.back().beside = {section(branch, radii - step / 2), section(branch, radii + step / 2)};
