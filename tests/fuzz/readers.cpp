@@ -1,11 +1,7 @@
 #include "readers.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
-
-#include <unistd.h>
 
 #include "vmesh/core/error.h"
 #include "vmesh/image/image_io.h"
@@ -74,22 +70,6 @@ Verdict read_centerline_as(std::string_view content) {
   });
 }
 
-#if VMESH_FUZZ_WITH_HDF5
-/// HDF5 is read from files only, in a child process.
-Verdict read_hdf5(std::string_view content) {
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("vmesh-fuzz-" + std::to_string(::getpid()) + ".h5");
-  std::ofstream(path, std::ios::binary) << content;
-  const Verdict verdict = verdict_of(path.string(), [&] {
-    const RawCenterline raw = read_centerline(path);
-    check(raw);
-    clean(raw);
-  });
-  std::filesystem::remove(path);
-  return verdict;
-}
-#endif
-
 void check(const std::vector<MeshAttribute>& attributes, std::size_t count) {
   for (const auto& a : attributes) require(a.values.size() == count, "an attribute of the wrong length");
 }
@@ -131,9 +111,6 @@ constexpr Reader kReaders[] = {
     {"amira", ".am", read_centerline_as<CenterlineFormat::amira>, amira_seeds},
     {"network", ".dat", read_centerline_as<CenterlineFormat::network>, network_seeds},
     {"markups", ".mrk.json", read_centerline_as<CenterlineFormat::json>, markups_seeds},
-#if VMESH_FUZZ_WITH_HDF5
-    {"hdf5", ".h5", read_hdf5, hdf5_seeds},
-#endif
     {"surface_vtp", ".vtp", read_surface_as<SurfaceFormat::vtp>, surface_vtp_seeds},
     {"surface_vtk", ".vtk", read_surface_as<SurfaceFormat::vtk>, surface_vtk_seeds},
     {"ply", ".ply", read_surface_as<SurfaceFormat::ply>, ply_seeds},

@@ -18,7 +18,6 @@ std::vector<std::string> gxl_seeds();
 std::vector<std::string> amira_seeds();
 std::vector<std::string> network_seeds();
 std::vector<std::string> markups_seeds();
-std::vector<std::string> hdf5_seeds();
 
 std::vector<std::string> surface_vtp_seeds();
 std::vector<std::string> surface_vtk_seeds();
