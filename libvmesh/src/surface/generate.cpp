@@ -127,6 +127,7 @@ void generate_paper(const Centerline& centerline, const GenerateOptions& options
   StageClock clock(result.stages);
   std::optional<VesselField> field;
   clock.time("volume", [&] { field.emplace(centerline, options.blend); });
+  if (options.max_error.is_set()) field->use_double_precision();
   BoundSurface surface(*field);
   clock.time("grow", [&] { add_warnings(grow_from_single_seeds(surface, options.beta, progress), result); });
   clock.time("optimize", [&] {
@@ -213,8 +214,10 @@ std::vector<std::pair<Index, Index>> grow_guided(const Centerline& centerline, c
   std::optional<VesselField> field;
   clock.time("volume", [&] {
     field.emplace(centerline, options.blend);
+    if (options.max_error.is_set()) field->use_double_precision();
     growth.emplace(without_buried_branches(*field));
     if (!growth->buried.empty()) field.emplace(growth->centerline, options.blend);
+    if (options.max_error.is_set()) field->use_double_precision();
   });
   const std::vector<char> open = nodes_to_open(growth->centerline, growth->node, options.open_ends);
   std::vector<std::pair<Index, Index>> crossings;

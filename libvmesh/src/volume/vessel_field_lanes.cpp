@@ -146,6 +146,7 @@ void VesselField::fill_lanes(std::span<const Index> cones, const Vec3& center, d
 }
 
 FieldSample VesselField::sample_fast(const Vec3& p, Index hint) const {
+  if (only_double_) return sample(p, hint);
   static const LaneSampler run = best_lane_sampler();
   Index before = kNone;
   for (int step = 0; step < kMostSteps; ++step) {

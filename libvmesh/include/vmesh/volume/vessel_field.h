@@ -48,6 +48,8 @@ class VesselField {
   /// are tested by other means. In double precision where vessels are very long or thin beside their neighbours. Same
   /// bits on every machine of one architecture.
   FieldSample sample_fast(const Vec3& p, Index hint) const;
+  /// From here on sample_fast() answers in double precision too: for surfaces whose error is to be proven.
+  void use_double_precision() { only_double_ = true; }
 
   /// Signed distance of the union of all cones at `p`.
   FieldSample sample_global(const Vec3& p) const;
@@ -135,6 +137,7 @@ class VesselField {
 
   const Centerline* centerline_;
   double blend_;
+  bool only_double_ = false;
   std::uint64_t number_ = new_number();  // of this field and its copies, which are alike
   std::vector<Cone> cones_;
   std::vector<Run> runs_;
