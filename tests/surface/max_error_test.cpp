@@ -196,11 +196,12 @@ TEST_P(SteppedBoundary, IsTheOnlyPlaceWhereTheLimitMayNotHold) {
 }
 
 // Two daughters that part at a small angle, the second thinner.
-Centerline narrow_fork(double angle_deg) {
+Centerline narrow_fork(double angle_deg, const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
   const double half = angle_deg / 2 * std::numbers::pi / 180;
   const double length = 2.4 / std::sin(half);  // to where they are 4.8 apart, three of the first one's radii
   const Vec3 up(std::cos(half), std::sin(half), 0), down(std::cos(half), -std::sin(half), 0);
-  return {{{{-6, 0, 0}, 1}, {{0, 0, 0}, 1}, {length * up, 0.8}, {length * down, 0.7}}, {{0, 1}, {1, 2}, {1, 3}}};
+  return {{{turn * Vec3(-6, 0, 0), 1}, {{0, 0, 0}, 1}, {turn * (length * up), 0.8}, {turn * (length * down), 0.7}},
+          {{0, 1}, {1, 2}, {1, 3}}};
 }
 
 // Random points on the boundary within a radius of a place, deep in the gap as well: the nearest point of a cone's wall
@@ -246,6 +247,18 @@ TEST_P(NarrowFork, IsProvenWithFewVerticesInOnePlace) {
   for (Index v = 0; v < result.mesh.vertices.size(); ++v)
     EXPECT_LE(vertices_within(result, result.mesh.vertices[v], result.radius[v]), most) << "vertex " << v;
   EXPECT_LE(worst_where_proven(result, VesselField(centerline, blend), limit_of(relative)), 1);
+}
+
+// At its crease single precision does not tell which of two vessels is the nearer: eight in forty were not proven then.
+TEST(NarrowForkAnyhow, IsProvenHoweverItLies) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 8; ++k) {
+    Eigen::Quaterniond turn(normal(random), normal(random), normal(random), normal(random));
+    turn.normalize();
+    const GenerateResult result = generate(narrow_fork(30, turn.toRotationMatrix()), 0.05, 0);
+    EXPECT_EQ(result.error.unproven_faces, 0u) << "turn " << k;
+  }
 }
 
 TEST_P(NarrowFork, KeepsWhatItClosesWithinTheLimit) {

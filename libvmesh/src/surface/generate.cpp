@@ -122,12 +122,19 @@ void optimize_grown(BoundSurface& surface, const GenerateOptions& options, const
   add_warnings(report, result);
 }
 
+// Proofs of a limit on the error need more than single precision.
+VesselField& make_field(std::optional<VesselField>& field, const Centerline& centerline,
+                        const GenerateOptions& options) {
+  field.emplace(centerline, options.blend);
+  if (options.max_error.is_set()) field->use_double_precision();
+  return *field;
+}
+
 void generate_paper(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
                     GenerateResult& result) {
   StageClock clock(result.stages);
   std::optional<VesselField> field;
-  clock.time("volume", [&] { field.emplace(centerline, options.blend); });
-  if (options.max_error.is_set()) field->use_double_precision();
+  clock.time("volume", [&] { make_field(field, centerline, options); });
   BoundSurface surface(*field);
   clock.time("grow", [&] { add_warnings(grow_from_single_seeds(surface, options.beta, progress), result); });
   clock.time("optimize", [&] {
@@ -213,11 +220,8 @@ std::vector<std::pair<Index, Index>> grow_guided(const Centerline& centerline, c
   std::optional<GrowthCenterline> growth;
   std::optional<VesselField> field;
   clock.time("volume", [&] {
-    field.emplace(centerline, options.blend);
-    if (options.max_error.is_set()) field->use_double_precision();
-    growth.emplace(without_buried_branches(*field));
-    if (!growth->buried.empty()) field.emplace(growth->centerline, options.blend);
-    if (options.max_error.is_set()) field->use_double_precision();
+    growth.emplace(without_buried_branches(make_field(field, centerline, options)));
+    if (!growth->buried.empty()) make_field(field, growth->centerline, options);
   });
   const std::vector<char> open = nodes_to_open(growth->centerline, growth->node, options.open_ends);
   std::vector<std::pair<Index, Index>> crossings;

@@ -16,6 +16,9 @@ constexpr double kSpacing = 1, kFiner = 0.6;
 // Balls in which it is that fine, radii along the axis, and their radius. Derived: 1.25 around the axis between two of
 // them, for the boundary with what the default rounding adds.
 constexpr double kBallStep = 1, kReach = 1.35;
+// Radii below a thicker vessel's wall from which on there are none. Without rounding, an axis lies exactly as deep
+// below its own vessel's wall: to the last bits, which differ between machines.
+constexpr double kBeneath = 0.1;
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field
 constexpr double kShortestRimEdge = 0.4;  // intended edges of the surface
 constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move onto the boundary
@@ -32,7 +35,7 @@ Index widest_node(const Centerline& centerline) {
 // How far below the walls of thicker vessels the axis runs, beyond the depth from which neither the vessel nor its
 // blend reaches them.
 double depth_at(const VesselField& field, const Vec3& p, Index cone, double radius) {
-  return -field.sample_fast(p, cone).distance - (1 + 2 * field.blend()) * radius;
+  return -field.sample_fast(p, cone).distance - (1 + kBeneath + 2 * field.blend()) * radius;
 }
 
 // Balls along the vessels, in which the lattice is as fine as their radius asks for; but where its cubes are that fine

@@ -36,11 +36,14 @@ class Optimizer {
       : state_(surface), remesher_(state_), options_(options), progress_(progress), check_(options.max_error) {}
 
   OptimizeReport run(const GrownMesh& grown) {
-    remesher_.limit_vertices(
-        options_.max_error.is_set()
-            ? options_.max_vertices
-            : static_cast<std::size_t>(kMaxExcess * (state_.mesh.number_of_vertices() + grown.expected_vertices)));
+    const bool with_limit = options_.max_error.is_set();
+    const double expected = (with_limit ? kMostRefined * kMostRefined : 1) * grown.expected_vertices;
+    remesher_.limit_vertices(static_cast<std::size_t>(kMaxExcess * (state_.mesh.number_of_vertices() + expected)));
+    const auto lift_limit = [&] {
+      if (with_limit) remesher_.limit_vertices(options_.max_vertices);
+    };
     if (grown.stage == GrownMesh::Stage::assembled) {
+      lift_limit();
       edge_per_radius_ = edge_length_per_radius(options_.around);
       state_.update_sizes(edge_per_radius_, options_.max_error);
       for (int round = 0; !state_.surface.fine_spots.empty() && round < kSpotRounds; ++round) {
@@ -49,6 +52,7 @@ class Optimizer {
       }
     } else {
       even_out(grown.around);
+      lift_limit();
     }
     if (grown.stage == GrownMesh::Stage::piece) {
       if (options_.max_error.is_set()) finish_piece();
