@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "vmesh/centerline/branches.h"
 #include "vmesh/core/error.h"
 
 namespace vmesh {
@@ -178,6 +180,85 @@ TEST(Clean, MakesNoFalseLoopsOfPathsThatMeetAgainAfterParting) {
   EXPECT_EQ(result.centerline.component_count(), 1u);
   EXPECT_LE(result.centerline.cycle_rank(), 1u) << "at most where the end of the first path meets the second";
   EXPECT_GT(result.report.count(Kind::kept_crossing), 0u);
+}
+
+// From x = 0 along the axis, then from x = 40 on at an angle; `step` mm apart, and `beside` mm off the axis before
+// that.
+std::vector<CenterlineNode> inlet_to_outlet(double slope, double step, double beside, double radius = 2) {
+  std::vector<CenterlineNode> path;
+  for (double x = 0; x <= 60; x += step) {
+    const double off = beside * std::min(1.0, x / 5);  // all begin in one place
+    path.push_back(node(x, x < 40 ? off : off + slope * (x - 40), radius));
+  }
+  return path;
+}
+
+std::vector<double> branch_lengths(const Centerline& centerline) {
+  std::vector<double> lengths;
+  for (const Branch& branch : find_branches(centerline)) {
+    double& length = lengths.emplace_back(0);
+    for (const Index s : branch.segments) length += centerline.length(s);
+  }
+  return lengths;
+}
+
+TEST(Clean, MergesPathsFromOneInletThoughTheyDoNotShareTheirPoints) {
+  const auto raw =
+      polylines({inlet_to_outlet(1, 0.5, 0), inlet_to_outlet(-1, 0.37, 0.1), inlet_to_outlet(0.02, 1.3, -0.1)});
+  const auto result = clean(raw);
+  EXPECT_EQ(result.report.count(Kind::merged_overlap), 2u);
+  EXPECT_EQ(result.centerline.component_count(), 1u);
+  EXPECT_EQ(result.centerline.cycle_rank(), 0u);
+  EXPECT_EQ(std::count_if(result.raw_segment.begin(), result.raw_segment.end(), [](Index s) { return s == kNone; }), 0);
+  // The third leaves neither of the others by a tenth of the radius before it is past the fork.
+  const auto lengths = branch_lengths(result.centerline);
+  EXPECT_NEAR(*std::max_element(lengths.begin(), lengths.end()), 40, 1.5);
+  for (const auto& n : result.centerline.nodes()) {
+    if (n.position.x() < 39) {
+      EXPECT_LE(std::abs(n.position.y()), 0.1 + 1e-9);
+    }
+  }
+}
+
+TEST(Clean, MergesPathsToOneOutletToo) {
+  auto first = inlet_to_outlet(1, 0.5, 0), second = inlet_to_outlet(-1, 0.37, 0.1);
+  std::reverse(first.begin(), first.end());
+  std::reverse(second.begin(), second.end());
+  const auto result = clean(polylines({first, second}));
+  EXPECT_EQ(result.report.count(Kind::merged_overlap), 1u);
+  EXPECT_EQ(result.centerline.component_count(), 1u);
+  EXPECT_EQ(result.centerline.cycle_rank(), 0u);
+  EXPECT_EQ(find_branches(result.centerline).size(), 3u);
+}
+
+TEST(Clean, MergesAPathOntoLongSegments) {
+  // The first has a segment of 40 mm there, which the second leaves in its middle.
+  std::vector<CenterlineNode> first = {node(0, 0, 2), node(40, 0, 2), node(80, 0, 2)}, second;
+  for (int i = 0; i <= 30; ++i) second.push_back(node(2 * i, i < 10 ? 0.05 : i - 10, 2));
+  second.front() = node(0, 0, 2);
+  const auto result = clean(polylines({first, second}));
+  EXPECT_EQ(result.report.count(Kind::merged_overlap), 1u);
+  ASSERT_EQ(result.centerline.component_count(), 1u);
+  const auto lengths = branch_lengths(result.centerline);
+  ASSERT_EQ(lengths.size(), 3u);
+  std::size_t of_first = 0;
+  for (const Index s : result.raw_segment) of_first += s == 0;
+  EXPECT_EQ(of_first, 2u) << "divided where the second leaves it";
+  EXPECT_NEAR(std::accumulate(lengths.begin(), lengths.end(), 0.0), 80 + 20 * std::sqrt(5.0) + 2, 2.5);
+}
+
+TEST(Clean, LeavesPathsApartThatSoonPartOrDifferInRadius) {
+  const auto two = [](double slope, double radius) {
+    std::vector<CenterlineNode> first, second;
+    for (int i = 0; i <= 40; ++i) {
+      first.push_back(node(0.5 * i, 0, 2));
+      second.push_back(node(0.5 * i, slope * i, i == 0 ? 2 : radius));
+    }
+    return clean(polylines({first, second})).report.count(Kind::merged_overlap);
+  };
+  EXPECT_EQ(two(0.05, 2), 0u);  // side by side for one radius
+  EXPECT_EQ(two(0.01, 1.5), 0u);
+  EXPECT_EQ(two(0.001, 2), 1u);
 }
 
 TEST(Clean, JoinsABranchThatStopsShortOfItsParent) {

@@ -224,9 +224,10 @@ void remove_duplicate_segments(Workspace& work) {
 }  // namespace cleaning
 
 std::string_view to_string(CleaningAction::Kind kind) {
-  constexpr std::array<std::string_view, 9> kNames = {
-      "rounded",       "removed_self_loop",         "merged_trunk",    "contracted_segment", "merged_node",
-      "kept_crossing", "removed_duplicate_segment", "repaired_radius", "joined_gap"};
+  constexpr std::array<std::string_view, 10> kNames = {"rounded",        "removed_self_loop",         "merged_trunk",
+                                                       "merged_overlap", "contracted_segment",        "merged_node",
+                                                       "kept_crossing",  "removed_duplicate_segment", "repaired_radius",
+                                                       "joined_gap"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -256,6 +257,7 @@ CleanedCenterline clean(const RawCenterline& raw, const CleaningOptions& options
   if (options.round) round_to_grid(work);
   remove_self_loops(work);
   merge_trunks(work);
+  merge_overlaps(work);
   work.compact();
   contract_short_segments(work);
   merge_coincident_nodes(work);

@@ -46,6 +46,7 @@ struct Workspace {
 
 void round_to_grid(Workspace& work);
 void merge_trunks(Workspace& work);
+void merge_overlaps(Workspace& work);
 void contract_short_segments(Workspace& work);
 void merge_coincident_nodes(Workspace& work);
 void remove_duplicate_segments(Workspace& work);

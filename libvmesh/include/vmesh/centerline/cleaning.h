@@ -12,6 +12,10 @@ namespace vmesh {
 struct CleaningOptions {
   /// Points closer than this times the smaller of their radii count as one.
   double tolerance = 1e-3;
+  /// Polylines that begin or end in one place count as one for as long as their positions and radii differ by less than
+  /// this times the radius: paths from one inlet to every outlet repeat the trunk, and once they are resampled or
+  /// smoothed not with the same points. What runs side by side for less than two radii is left as it is. 0: all is.
+  double overlap_tolerance = 0.1;
   /// Join the start of a branch to the nearest node of another component that is closer than that node's radius.
   /// Unset: when the file's kind has loose branches (RawCenterline::loose_branches).
   std::optional<bool> join_gaps;
@@ -31,6 +35,7 @@ struct CleaningAction {
     rounded,                    ///< all positions and radii were rounded
     removed_self_loop,          ///< a segment from a node to itself
     merged_trunk,               ///< the beginning of a polyline repeats an earlier one
+    merged_overlap,             ///< one end of a polyline runs along earlier ones
     contracted_segment,         ///< a segment of no length: its nodes became one
     merged_node,                ///< a node at the place of another
     kept_crossing,              ///< two nodes at one place were left apart: joining them would close a loop
