@@ -8,8 +8,9 @@
 namespace vmesh::cleaning {
 namespace {
 
-constexpr double kLeastLength = 2;         // radii that polylines run side by side, or they are left as they are
-constexpr double kSearched = 2;            // of a polyline's step: so far ahead its next point is looked for
+constexpr double kLeastLength = 2;  // radii that polylines run side by side, or they are left as they are
+constexpr double kStray = 2;        // tolerances that a polyline may be off where it comes back
+constexpr double kSearched = 2;     // of a polyline's step: so far ahead its next point is looked for
 constexpr int kMostSearchedSegments = 256;
 constexpr int kMostComparedBranches = 64;  // that leave one node: keeps stars linear
 
@@ -99,16 +100,12 @@ class OverlapMerger {
   bool follow(const Path& path, std::size_t number) {
     const Index start = find_start(path.nodes.front());
     if (start == kNone) return false;
-    std::vector<Foot> feet;
+    const std::vector<Foot> feet = feet_along(path, start);
     double length = 0, worst = 0, worst_relative = 0;
-    for (std::size_t i = 1; i < path.nodes.size() && !placed_[home(path.nodes[i])]; ++i) {
-      const Foot at = feet.empty() ? Foot{kNone, start, start, 1, 0} : feet.back();
-      const Foot foot = next_foot(at, path.nodes[i - 1], path.nodes[i]);
-      if (foot.segment == kNone) break;
-      feet.push_back(foot);
-      length += (position(path.nodes[i]) - position(path.nodes[i - 1])).norm();
-      worst = std::max(worst, foot.distance);
-      worst_relative = std::max(worst_relative, foot.distance / radius_at(foot));
+    for (std::size_t i = 0; i < feet.size(); ++i) {
+      length += (position(path.nodes[i + 1]) - position(path.nodes[i])).norm();
+      worst = std::max(worst, feet[i].distance);
+      worst_relative = std::max(worst_relative, feet[i].distance / radius_at(feet[i]));
     }
     if (feet.empty() || length < kLeastLength * radius_at(feet.back())) return false;
     report(path, feet.size(), number, start, worst, worst_relative);
@@ -120,6 +117,27 @@ class OverlapMerger {
     for (std::size_t i = 0; i < feet.size(); ++i)
       work_.segments[path.segments[i]] = {last, last};  // compact() drops it
     return true;
+  }
+
+  /// Where the points after the first one are on the graph, up to the last one within the tolerance.
+  std::vector<Foot> feet_along(const Path& path, Index start) {
+    std::vector<Foot> feet;
+    std::size_t good = 0;
+    for (std::size_t i = 1; i < path.nodes.size() && !placed_[home(path.nodes[i])]; ++i) {
+      const Foot at = feet.empty() ? Foot{kNone, start, start, 1, 0} : feet.back();
+      feet.push_back(next_foot(at, path.nodes[i - 1], path.nodes[i]));
+      if (feet.back().segment == kNone) break;
+      if (fits(feet.back(), path.nodes[i], 1)) good = feet.size();
+    }
+    feet.resize(good);
+    return feet;
+  }
+
+  /// Whether a polyline's point may count as one with its foot.
+  bool fits(const Foot& foot, Index n, double tolerances) {
+    const double r = radius(n), other = radius_at(foot);
+    return foot.distance <= tolerances * tolerance(n, other) &&
+           std::abs(r - other) <= tolerances * work_.options.overlap_tolerance * std::max(r, other);
   }
 
   /// The node of the graph at which a polyline from `n` can begin to follow it: itself, or the end of an earlier one.
@@ -141,7 +159,7 @@ class OverlapMerger {
   /// Where the graph, followed on from `at`, is nearest to `q`, the polyline's point after `p`; without a segment where
   /// it is nowhere near enough, or is not so between.
   Foot next_foot(const Foot& at, Index p, Index q) {
-    const double reach = kSearched * (position(q) - position(p)).norm() + tolerance(q, radius(q));
+    const double reach = kSearched * (position(q) - position(p)).norm() + kStray * tolerance(q, radius(q));
     struct Ahead {
       Foot from;  // of the segment: not before there
       double left;
@@ -157,17 +175,13 @@ class OverlapMerger {
       const auto [from, left] = stack.back();
       stack.pop_back();
       const Foot foot = nearest_on(from, q);
-      if (foot.distance <= tolerance(q, radius_at(foot)) && agree(radius(q), radius_at(foot)) &&
-          (best.segment == kNone || foot.distance < best.distance))
-        best = foot;
+      if (fits(foot, q, kStray) && (best.segment == kNone || foot.distance < best.distance)) best = foot;
       const double rest = left - (position(from.to) - position_at(from)).norm();
       if (rest <= 0 || !is_along(from.to, p, q)) continue;
       push_beyond(from, rest, [&](const Foot& next, double next_left) { stack.push_back({next, next_left}); });
     }
     return best;
   }
-
-  bool agree(double a, double b) const { return std::abs(a - b) <= work_.options.overlap_tolerance * std::max(a, b); }
 
   /// The segments that go on from the end of one.
   template <class Push>
@@ -190,11 +204,12 @@ class OverlapMerger {
     return foot;
   }
 
-  /// Whether a node of the graph lies within the tolerance of the polyline's segment.
+  /// Whether a node of the graph lies near enough to the polyline's segment.
   bool is_along(Index node, Index p, Index q) {
     const Vec3 &a = position(p), &b = position(q);
     const double t = nearest_parameter(a, b, position(node));
-    return (position(node) - ((1 - t) * a + t * b)).norm() <= tolerance(node, (1 - t) * radius(p) + t * radius(q));
+    return (position(node) - ((1 - t) * a + t * b)).norm() <=
+           kStray * tolerance(node, (1 - t) * radius(p) + t * radius(q));
   }
 
   /// The graph's node keeps its place and its segments, whichever of the two stands for both.

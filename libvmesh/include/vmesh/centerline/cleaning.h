@@ -13,8 +13,9 @@ struct CleaningOptions {
   /// Points closer than this times the smaller of their radii count as one.
   double tolerance = 1e-3;
   /// Polylines that begin or end in one place count as one for as long as their positions and radii differ by less than
-  /// this times the radius: paths from one inlet to every outlet repeat the trunk, and once they are resampled or
-  /// smoothed not with the same points. What runs side by side for less than two radii is left as it is. 0: all is.
+  /// this times the radius, or by twice that before they come back: paths from one inlet to every outlet repeat the
+  /// trunk, and once they are resampled or smoothed not with the same points. The earlier one's geometry is kept. What
+  /// runs side by side for less than two radii is left as it is. 0: all is.
   double overlap_tolerance = 0.1;
   /// Join the start of a branch to the nearest node of another component that is closer than that node's radius.
   /// Unset: when the file's kind has loose branches (RawCenterline::loose_branches).
