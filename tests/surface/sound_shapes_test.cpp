@@ -129,6 +129,21 @@ TEST(SoundShapes, MoebiusLadders) {
   }
 }
 
+// Without nodes of its own in the part of the centerline that a junction grows around, such a loop joins a node to
+// itself or two nodes twice.
+TEST(SoundShapes, LoopsThatAreShortAgainstTheirRadius) {
+  for (const double size : {1e-2, 0.1, 1.0}) {
+    SCOPED_TRACE(size);
+    const CenterlineNode inlet{{-10, 0, 0}, 1}, outlet{{10, 0, 0}, 1}, fork{{0, 0, 0}, 1};
+    const CenterlineNode aside{{0.5 * size, size, 0}, 1}, ahead{{size, 0, 0}, 1}, above{{0.5 * size, 0, size}, 1};
+    const auto twice = Centerline({inlet, fork, aside, ahead, outlet}, {{0, 1}, {1, 2}, {2, 3}, {1, 3}, {3, 4}});
+    const auto thrice = Centerline({inlet, fork, aside, ahead, outlet, above},
+                                   {{0, 1}, {1, 2}, {2, 3}, {1, 3}, {3, 4}, {1, 5}, {3, 5}});
+    const auto to_itself = Centerline({inlet, fork, aside, ahead, outlet}, {{0, 1}, {1, 2}, {2, 3}, {3, 1}, {1, 4}});
+    for (const Centerline& centerline : {twice, thrice, to_itself}) expect_sound(centerline);
+  }
+}
+
 TEST(SoundShapes, AVesselInsideAnother) {
   for (const double radius : {0.05, 0.3, 1.0, 1.8}) {
     for (const double aside : {0.0, 0.01, 0.9, 1.9}) {

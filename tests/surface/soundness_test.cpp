@@ -54,12 +54,14 @@ TEST(Soundness, OfPlausibleTreesWhateverTheOptions) {
 // Pieces of BraVa and trees in their likeness, random trees that came out broken, vessels that touch.
 TEST(Soundness, OfCrowdedFiles) {
   VMESH_NEED_SHARED_DATA("crowded");
-  for (const char* file :
-       {"hairpin_28.swc", "hairpin_120.swc", "noisy_34.swc",    "noisy_8.swc",         "noisy_91.swc", "s1005.csv",
-        "s1049.csv",      "s1078.csv",       "s1130.csv",       "s1131.csv",           "s1156.csv",    "p5018.csv",
-        "p5040.csv",      "p5075.csv",       "p5133.csv",       "p5249.csv",           "p5255.csv",    "p5400.csv",
-        "p6037.csv",      "p6038.csv",       "p6040.csv",       "p6057.csv",           "k5.csv",       "ch200.csv",
-        "cross90.csv",    "helix_over.csv",  "trefoil_fat.csv", "parallel_overlap.csv"}) {
+  for (const char* file : {"hairpin_28.swc", "hairpin_120.swc", "noisy_34.swc",    "noisy_8.swc",
+                           "noisy_91.swc",   "s1005.csv",       "s1049.csv",       "s1078.csv",
+                           "s1130.csv",      "s1131.csv",       "s1156.csv",       "p5018.csv",
+                           "p5040.csv",      "p5075.csv",       "p5133.csv",       "p5249.csv",
+                           "p5255.csv",      "p5400.csv",       "p6037.csv",       "p6038.csv",
+                           "p6040.csv",      "p6057.csv",       "k5.csv",          "ch200.csv",
+                           "cross90.csv",    "helix_over.csv",  "trefoil_fat.csv", "parallel_overlap.csv",
+                           "tiny_loop.csv"}) {
     SCOPED_TRACE(file);
     const Centerline centerline =
         load_centerline(testing::shared_data(std::string("crowded/") + file)).cleaned.centerline;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <utility>
 
 namespace vmesh {
 namespace {
@@ -62,6 +64,18 @@ class JunctionCenterlineMaker {
     return places;
   }
 
+  // A loop that is short against its radius needs nodes even so: a centerline has no two segments between the same
+  // nodes, and none from a node to itself.
+  void keep_apart(Index first, Index last, std::vector<double>& places) {
+    const std::size_t inner = places.size() - 2, needed = first == last ? 2 : 1;
+    const bool is_new = joined_.insert(std::minmax(first, last)).second;
+    if (inner >= needed || (inner == 0 && first != last && is_new)) return;
+    const double begin = places.front(), end = places.back();
+    places.clear();
+    for (std::size_t i = 0; i <= needed + 1; ++i)
+      places.push_back(begin + (end - begin) * static_cast<double>(i) / static_cast<double>(needed + 1));
+  }
+
   void add(const Gap& gap, Index number) {
     const BranchAxis& axis = axes_[gap.branch];
     const std::vector<double> nodes = nodes_within(axis, gap);
@@ -75,6 +89,7 @@ class JunctionCenterlineMaker {
     places.push_back(gap.end);
     Index last = end_node(gap, 0);
     const Index end = end_node(gap, 1);
+    keep_apart(last, end, places);
     for (std::size_t i = 1; i < places.size(); ++i) {
       const auto point = axis.at(places[i]);
       const Index next = i + 1 == places.size() ? end : add_node(point.position, point.radius);
@@ -88,6 +103,7 @@ class JunctionCenterlineMaker {
   const std::vector<BranchAxis>& axes_;
   JunctionCenterline result_;
   std::map<Index, Index> nodes_;
+  std::set<std::pair<Index, Index>> joined_;  // by a gap
 };
 
 }  // namespace
