@@ -82,8 +82,8 @@ void note_simplifications(const VesselTubes& tubes, const Junction& junction, st
 using Badness = std::pair<std::size_t, double>;
 constexpr Badness kNoBadness{0, 0};
 
-Badness badness(const PieceSurface& piece) {
-  return {piece.faults.size(), piece.worst_skewness > kMended ? piece.worst_skewness : 0};
+Badness badness(const PieceSurface& piece, double mended) {
+  return {piece.faults.size(), piece.worst_skewness > mended ? piece.worst_skewness : 0};
 }
 
 class PieceMaker {
@@ -101,13 +101,17 @@ class PieceMaker {
       PieceSurface piece = make(kLadder[rung]);
       piece.rung = rung;
       last = piece.faults;
-      if (rung == first || badness(piece) < badness(best)) best = std::move(piece);
-      if (badness(best) == kNoBadness || is_hopeless(best)) break;
+      if (rung == first || badness(piece, mended()) < badness(best, mended())) best = std::move(piece);
+      if (badness(best, mended()) == kNoBadness || is_hopeless(best)) break;
     }
     return best;
   }
 
  private:
+  // Skewness above which something is done about it. What is mended leaves the boundary a little: not beyond a limit,
+  // unless it must.
+  double mended() const { return context_.options.max_error.is_set() ? kWorstSkewness : kMended; }
+
   // Where very many vessels meet in a node there are always walls that nearly touch.
   bool is_hub() const {
     return std::any_of(plan_.nodes.begin(), plan_.nodes.end(),
@@ -186,9 +190,7 @@ class PieceMaker {
       const GrownMesh grown{double(context_.options.around),
                             expected_vertices(length_in_radii(), context_.options.around), GrownMesh::Stage::assembled};
       const bool crosses = optimize(surface, context_.options, grown, context_.progress).crosses;
-      // What is mended leaves the boundary a little: not beyond a limit, unless it must.
-      const double limit = context_.options.max_error.is_set() ? kWorstSkewness : kMended;
-      tested = !mend_worst_faces(surface, limit) && !crosses;
+      tested = !mend_worst_faces(surface, mended()) && !crosses;
     }
     const PieceFindings findings = check_piece(surface, nodes_of(skeleton), context_.options, !tested);
     piece.faults = findings.faults;
