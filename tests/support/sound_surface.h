@@ -43,12 +43,10 @@ inline void expect_sound(const Centerline& centerline, const GenerateOptions& op
 }
 
 /// Sound; or refused, where vessels touch that could not be separated.
-inline GenerateResult expect_sound_or_refused_with_reason(const Centerline& centerline,
-                                                          const GenerateOptions& options = {}) {
+inline void expect_sound_or_refused_with_reason(const Centerline& centerline, const GenerateOptions& options = {}) {
   const SeparatedCenterline given = separated(centerline, options.blend);
-  GenerateResult result = honest_surface(given.centerline, options);
+  const GenerateResult result = honest_surface(given.centerline, options);
   EXPECT_TRUE(result.is_sound() || !given.report.left.empty());
-  return result;
 }
 
 }  // namespace vmesh::testing
