@@ -32,7 +32,4 @@ Matches find_matches(const FitMesh& surface, const FitReference& reference, cons
 /// The distance that a share of the matches' area is nearer than, mm, the larger of both ways; 0 without matches.
 double matched_distance(const Matches& matches, double share);
 
-/// The distance that a share of the matches' area is nearer than, mm, the larger of both ways; 0 without matches.
-double matched_distance(const Matches& matches, double share);
-
 }  // namespace vmesh

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 #include <utility>
 
 #include <tbb/parallel_for.h>
@@ -33,6 +34,11 @@ constexpr int kRelaxations = 2;
 constexpr int kRepairs = 4, kRepairPower = 8;  // of the triangles that a split or collapse left too skew
 constexpr double kEvenShare = 0.5;             // of the error that 95 % keep to: what it is around most vertices
 constexpr double kAim = 0.92;                  // of the error, while resizing: with few samples a little is missed
+// RMS distances from which on a place, as a ridge that a triangle lies across, gets a vertex of its own. Measured on
+// SU201, twelve starts that differ by 1e-6 radii each: Hausdorff .293 in the mean and .393 at most without, .284 and
+// .328 with it.
+constexpr double kFar = 7;
+constexpr int kMostPlaces = 6;
 constexpr int kFirstRounds = 3, kLastRounds = 4;
 constexpr int kMoreRounds = 12;           // at most, to find the size for an error
 constexpr double kOfMostVertices = 0.98;  // to aim at: the count is a matter of luck
@@ -84,6 +90,35 @@ void check_memory(std::size_t vertices, const TriMesh& reference) {
           kBytesPerReferenceFace * static_cast<double>(reference.faces.size()),
       "a fit of " + std::to_string(vertices) + " vertices to " + std::to_string(reference.faces.size()) + " faces",
       "allow fewer vertices or a larger error, or make the reference coarser");
+}
+
+Match farthest_match(const Matches& matches) {
+  Match farthest;
+  for (const auto* list : {&matches.from_surface, &matches.from_reference}) {
+    for (const Match& match : *list) {
+      if (match.face != kNone && std::abs(match.distance) > std::abs(farthest.distance)) farthest = match;
+    }
+  }
+  return farthest;
+}
+
+double worst_skewness(const FitMesh& surface) {
+  double worst = 0;
+  for (Index f = 0; f < surface.faces.size(); ++f) worst = std::max(worst, skewness_of(surface, f));
+  return worst;
+}
+
+// Puts a vertex at the far end of a match, on a side of the match's face.
+void split_at(FitMesh& surface, const Match& match, int side) {
+  const Triangle face = surface.faces[match.face];
+  const Index a = face[(side + 1) % 3], b = face[(side + 2) % 3];
+  if (surface.face_of(a, b) == kNone || surface.face_of(b, a) == kNone) return;
+  Vec3 p = -match.distance * match.direction;
+  for (int i = 0; i < 3; ++i) p += match.weights[i] * surface.position(face[i]);
+  const FitMesh::Vertex &first = surface.vertices[a], &second = surface.vertices[b];
+  surface.split(a, b,
+                {p, std::min(first.cone, second.cone), kNone, 0.5 * (first.size + second.size),
+                 0.5 * (first.base_size + second.base_size)});
 }
 
 class Fit {
@@ -200,6 +235,41 @@ class Fit {
       step(next_matches());
       if (i < kLastRounds - 2) reshape(2, true);
     }
+    for (int i = 0; options_.resize && i < kMostPlaces && put_vertex_where_farthest(); ++i) {
+    }
+  }
+
+  // Returns whether there is a place that is too far off, and came nearer.
+  bool put_vertex_where_farthest() {
+    const Matches matches = matches_now(false);
+    const Match worst = farthest_match(matches);
+    double least = std::abs(worst.distance);
+    if (least <= kFar * rms_distance(matches) || surface_.vertices.size() >= most_vertices_) return false;
+    if (least > kNotOfSize * surface_.mean_edge(surface_.faces[worst.face][0])) return false;
+    const auto before = std::pair(surface_, openings_);
+    auto best = before;
+    const double limit = std::max(guard_.max_skewness, worst_skewness(surface_));
+    for (int side = 0; side < 3; ++side) {
+      std::tie(surface_, openings_) = before;
+      put_vertex(worst, side);
+      const double left = std::abs(farthest_match(matches_now(false)).distance);
+      if (left >= least || worst_skewness(surface_) > limit) continue;
+      least = left;
+      best = {surface_, openings_};
+    }
+    std::tie(surface_, openings_) = best;
+    return least < std::abs(worst.distance);
+  }
+
+  void put_vertex(const Match& match, int side) {
+    change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
+      split_at(surface, match, side);
+      flip_closer(surface, frozen);
+      for (int k = 0; k < kRepairs; ++k) relax(surface, frozen, guard_, kRepairPower, guard_.max_skewness);
+    });
+    pack();
+    find_cones();
+    for (int i = 0; i < 2; ++i) step(matches_now(true));
   }
 
   bool keeps_error() const {

@@ -104,6 +104,8 @@ void for_each_match(const Matches& matches, Visit&& visit) {
   }
 }
 
+}  // namespace
+
 double rms_distance(const Matches& matches) {
   double sum = 0, area = 0;
   for_each_match(matches, [&](const Match& match) {
@@ -112,8 +114,6 @@ double rms_distance(const Matches& matches) {
   });
   return area > 0 && sum > 0 ? std::sqrt(sum / area) : 1;
 }
-
-}  // namespace
 
 std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& matches, const std::vector<Vec3>& pull,
                                       const std::vector<Vec3>& opening_normals, const LeastSquaresWeights& weights) {

@@ -18,4 +18,7 @@ struct LeastSquaresWeights {
 std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& matches, const std::vector<Vec3>& pull,
                                       const std::vector<Vec3>& opening_normals, const LeastSquaresWeights& weights);
 
+/// Of the matches both ways, mm; 1 where there are none.
+double rms_distance(const Matches& matches);
+
 }  // namespace vmesh

@@ -13,10 +13,7 @@ namespace vmesh {
 namespace {
 
 constexpr double kLong = 4.0 / 3, kShort = 4.0 / 5;  // of the intended length (Botsch, Kobbelt 2004)
-// Of the edges: a chord across a right angle cuts off half of its length. A larger error has other reasons, as a wall
-// that the reference does not have.
-constexpr double kNotOfSize = 0.4;
-constexpr int kBisections = 16;  // of an interval of 1000: to 0.01 %
+constexpr int kBisections = 16;                      // of an interval of 1000: to 0.01 %
 constexpr double kCollapsedSkewness = 0.45;
 constexpr double kBent = 0.5;  // cosine between a triangle's normals before and after a collapse, at least
 
