@@ -11,7 +11,9 @@ using testing::Draw;
 
 constexpr double kTolerance = 0.05;  // radii
 
-double a_twentieth(double radius) { return kTolerance * radius; }
+auto a_twentieth(const Centerline& centerline) {
+  return [&](Index node) { return kTolerance * centerline.node(node).radius; };
+}
 
 // Branches between random nodes, wavy, finely sampled, some of their segments backwards, and a node alone.
 Centerline random_graph(std::uint32_t seed) {
@@ -47,7 +49,7 @@ TEST(Simplification, KeepsEverySphereWithinTheTolerance) {
   std::size_t left_out = 0;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     const Centerline original = random_graph(seed);
-    const SimplifiedCenterline simplified = simplify(original, a_twentieth);
+    const SimplifiedCenterline simplified = simplify(original, a_twentieth(original));
     left_out += original.nodes().size() - simplified.centerline.nodes().size();
     double worst = 0;
     for (Index s = 0; s < simplified.centerline.segments().size(); ++s) {
@@ -68,7 +70,7 @@ TEST(Simplification, KeepsEverySphereWithinTheTolerance) {
 TEST(Simplification, KeepsTheGraph) {
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     const Centerline original = random_graph(seed);
-    const SimplifiedCenterline simplified = simplify(original, [](double radius) { return 100 * radius; });
+    const SimplifiedCenterline simplified = simplify(original, [](Index) { return 1000; });
     EXPECT_EQ(simplified.centerline.component_count(), original.component_count());
     EXPECT_EQ(simplified.centerline.cycle_rank(), original.cycle_rank());
     EXPECT_TRUE(std::is_sorted(simplified.node.begin(), simplified.node.end()));
@@ -83,7 +85,7 @@ TEST(Simplification, KeepsTheGraph) {
 
 TEST(Simplification, EverySegmentIsStoodForOnce) {
   const Centerline original = random_graph(5);
-  const SimplifiedCenterline simplified = simplify(original, a_twentieth);
+  const SimplifiedCenterline simplified = simplify(original, a_twentieth(original));
   std::vector<int> count(original.segments().size(), 0);
   for (const auto& piece : simplified.pieces) ++count[piece.segment];
   EXPECT_EQ(count, std::vector<int>(original.segments().size(), 1));
@@ -93,10 +95,22 @@ TEST(Simplification, EverySegmentIsStoodForOnce) {
 
 TEST(Simplification, LeavesNothingOutWithoutATolerance) {
   const Centerline original = random_graph(3);
-  const SimplifiedCenterline simplified = simplify(original, [](double) { return 0; });
+  const SimplifiedCenterline simplified = simplify(original, [](Index) { return 0; });
   EXPECT_EQ(simplified.centerline.nodes().size(), original.nodes().size());
   EXPECT_FALSE(simplified.is_simpler());
   EXPECT_EQ(simplified.max_deviation, 0);
+}
+
+TEST(Simplification, KeepsNodesWithoutATolerance) {
+  const Centerline original = random_graph(7);
+  const auto is_fixed = [](Index node) { return node % 5 == 0; };
+  const SimplifiedCenterline simplified =
+      simplify(original, [&](Index node) { return is_fixed(node) ? -1 : a_twentieth(original)(node); });
+  EXPECT_TRUE(simplified.is_simpler());
+  for (Index n = 0; n < original.nodes().size(); ++n) {
+    const bool kept = std::binary_search(simplified.node.begin(), simplified.node.end(), n);
+    EXPECT_TRUE(kept || !is_fixed(n)) << n;
+  }
 }
 
 TEST(Simplification, OfAStraightTaperIsOneSegment) {
@@ -106,7 +120,7 @@ TEST(Simplification, OfAStraightTaperIsOneSegment) {
     nodes.push_back({Vec3(0.1 * i, 0.05 * i, 0), 2 - 0.001 * i});
     if (i > 0) segments.push_back({i - 1, i});
   }
-  const SimplifiedCenterline simplified = simplify({nodes, segments}, [](double) { return 1e-9; });  // rounding
+  const SimplifiedCenterline simplified = simplify({nodes, segments}, [](Index) { return 1e-9; });  // rounding
   ASSERT_EQ(simplified.centerline.segments().size(), 1u);
   const auto place = simplified.original(0, 0.50025);
   EXPECT_EQ(place.segment, 500u);

@@ -47,8 +47,9 @@ TEST(Blend, NeverLeavesThePlainUnionAndNeverExceedsItsWidth) {
     for (int i = 0; i < 100; ++i) {
       const Vec3 p = draw.in_cube(6);
       const auto hint = draw.below(static_cast<Index>(field.cone_count()));
+      const FieldSample local = field.sample(p, hint);
       for (const auto& [s, reference] : {std::pair(field.sample_global(p), plain.sample_global(p)),
-                                         {field.sample(p, hint), plain.sample(p, hint)}}) {
+                                         {local, testing::closest_of(plain, p, field.local_cones(local.cone))}}) {
         EXPECT_LE(s.distance, reference.distance);
         // The smooth minimum is lowest where two are equal: a quarter of the width, which is at most 2 blend r, r < 2.
         EXPECT_GE(s.distance, reference.distance - blend * 2 * 2 / 4);

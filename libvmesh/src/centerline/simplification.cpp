@@ -13,7 +13,7 @@ using Piece = SimplifiedCenterline::Piece;
 // One branch after the other, from its first node on.
 class Simplifier {
  public:
-  Simplifier(const Centerline& centerline, const std::function<double(double)>& tolerance)
+  Simplifier(const Centerline& centerline, const std::function<double(Index)>& tolerance)
       : centerline_(centerline), tolerance_(tolerance), kept_(centerline.nodes().size(), 1) {}
 
   SimplifiedCenterline run() {
@@ -89,7 +89,7 @@ class Simplifier {
       const double t = std::clamp(foot, places_.back(), 1.0);
       const double deviation =
           (node.position - a.position - t * axis).norm() + std::abs(node.radius - ((1 - t) * a.radius + t * b.radius));
-      if (deviation > tolerance_(node.radius)) return false;
+      if (deviation > tolerance_(branch.nodes[i])) return false;
       worst_ = std::max(worst_, deviation);
       worst_relative_ = std::max(worst_relative_, deviation / node.radius);
       places_.push_back(t);
@@ -113,7 +113,7 @@ class Simplifier {
   }
 
   const Centerline& centerline_;
-  const std::function<double(double)>& tolerance_;
+  const std::function<double(Index)>& tolerance_;
   std::vector<char> kept_;
   std::set<std::pair<Index, Index>> joined_;  // nodes between which there is a segment already: no pair may have two
   std::vector<CenterlineSegment> segments_;
@@ -137,7 +137,7 @@ SimplifiedCenterline::Place SimplifiedCenterline::original(Index cone, double t)
   return {piece->segment, (1 - share) * piece->t_first + share * piece->t_last};
 }
 
-SimplifiedCenterline simplify(const Centerline& centerline, const std::function<double(double)>& tolerance) {
+SimplifiedCenterline simplify(const Centerline& centerline, const std::function<double(Index)>& tolerance) {
   return Simplifier(centerline, tolerance).run();
 }
 

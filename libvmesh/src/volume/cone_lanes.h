@@ -12,7 +12,8 @@ struct ConeLanes {
   using Numbers = std::array<float, kCount>;
 
   Numbers origin_x, origin_y, origin_z, axis_x, axis_y, axis_z;
-  Numbers r0, taper;  ///< r1 - r0
+  Numbers r0, taper;                 ///< r1 - r0
+  Numbers rounding, rounding_taper;  ///< shares of the blend
   Numbers inv_length2, lag, t_low, t_high;
   Numbers reach;  ///< beyond the nearest cone, up to which it may be blended in
   /// Farther from there than this radius plus the distance of the nearest cone none of them is near or blended in.

@@ -136,7 +136,9 @@ LaneSample run(const ConeLanes* lanes, std::size_t count, const LaneQuery& query
         sample.t = t;
         sample.gradient_x = x, sample.gradient_y = y, sample.gradient_z = z;
       }
-      candidates.add(distances.value[n], query.blend * (lanes[b].r0[lane] + t * lanes[b].taper[lane]), x, y, z);
+      const float rounding = lanes[b].rounding[lane] + t * lanes[b].rounding_taper[lane];
+      const float reach = query.blend * (lanes[b].r0[lane] + t * lanes[b].taper[lane]) * rounding;
+      candidates.add(distances.value[n], reach, x, y, z);
     }
   }
   if (candidates.count < 2 || query.blend == 0) return sample;

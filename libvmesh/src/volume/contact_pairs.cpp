@@ -157,11 +157,6 @@ class PairFinder {
   }
 
  private:
-  bool is_local(Index i, Index j) const {
-    const auto cones = field_.local_cones(i);
-    return std::binary_search(cones.begin(), cones.end(), j);
-  }
-
   // Close along the graph in a wider sense: at a fork that a gap wider than what a fork has would find still open.
   bool are_parting(Index i, Index j) {
     if (gap_ <= kForkGap) return false;
@@ -178,7 +173,8 @@ class PairFinder {
   }
 
   void examine(Index i, Index j) {
-    if (out_of_reach(i, j) || are_apart(cones_[i], cones_[j], gap_, most_rounding_) || is_local(i, j)) return;
+    if (out_of_reach(i, j) || are_apart(cones_[i], cones_[j], gap_, most_rounding_) || field_.are_one_volume(i, j))
+      return;
     const double gap = are_parting(i, j) ? kForkGap : gap_;
     ContactPair pair{i, j, gap, closest_approach(cones_[i], cones_[j], gap), kNone};
     if (pair.closest.excess >= 0) {
@@ -201,12 +197,12 @@ class PairFinder {
   // By how much the blend of cone `c` with others that are apart from `other` lowers the distance at `p`.
   double rounding_at(const Vec3& p, Index c, Index other) const {
     const FieldSample own = field_.sample_cone(p, c);
-    const double radius = field_.radius_at(c, own.t);
+    const double reach = reach_at(c, own.t);
     double most = 0;
     for (const Index k : field_.local_cones(c)) {
-      if (k == c || is_local(k, other)) continue;
+      if (k == c || field_.are_one_volume(k, other)) continue;
       const FieldSample next = field_.sample_cone(p, k);
-      const double thinner = field_.blend() * std::min(radius, field_.radius_at(k, next.t));
+      const double thinner = std::min(reach, reach_at(k, next.t));
       const double width = thinner * (1 - own.gradient.dot(next.gradient));
       const double apart = std::abs(next.distance - own.distance);
       if (apart >= width) continue;
@@ -214,6 +210,11 @@ class PairFinder {
       most = std::max(most, h * h * width / 4);
     }
     return most;
+  }
+
+  // Of the blend, mm.
+  double reach_at(Index c, double t) const {
+    return field_.blend() * field_.radius_at(c, t) * field_.rounding_at(c, t);
   }
 
   const VesselField& field_;

@@ -160,7 +160,7 @@ void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidate
   };
   candidates = at_different_places(candidates);
   for (Candidate& c : candidates) {
-    c.radius = radius_at(c.cone, c.t);
+    c.reach = blend_ * radius_at(c.cone, c.t) * rounding_at(c.cone, c.t);
     c.gradient = gradient_of(cones_[c.cone], p, c.t);
   }
   Batch batch;
@@ -169,14 +169,14 @@ void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidate
     for (std::size_t j = 0; j < count; ++j) {
       const Candidate& c = candidates[begin + j];
       batch.value[j] = c.value;
-      batch.reach[j] = blend_ * c.radius;
+      batch.reach[j] = c.reach;
       batch.x[j] = c.gradient.x();
       batch.y[j] = c.gradient.y();
       batch.z[j] = c.gradient.z();
     }
     for (const Candidate& low : candidates) {
-      if (low.value - blend_ * low.radius / 2 >= sample.distance) continue;
-      const double reach = blend_ * low.radius, x = low.gradient.x(), y = low.gradient.y(), z = low.gradient.z();
+      if (low.value - low.reach / 2 >= sample.distance) continue;
+      const double reach = low.reach, x = low.gradient.x(), y = low.gradient.y(), z = low.gradient.z();
       for (std::size_t j = 0; j < count; ++j) {
         const double thinner = reach < batch.reach[j] ? reach : batch.reach[j];
         const double width = thinner * (1 - (x * batch.x[j] + y * batch.y[j] + z * batch.z[j]));
@@ -188,7 +188,7 @@ void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidate
         const double width = batch.room[j] + gap;
         const double h = batch.room[j] / width;
         const double value = low.value - h * h * width / 4;
-        if (value >= sample.distance) continue;
+        if (value >= sample.distance || !are_blended(low.cone, candidates[begin + j].cone)) continue;
         sample.distance = value;
         sample.gradient = (1 - h / 2) * low.gradient + h / 2 * candidates[begin + j].gradient;
       }

@@ -5,7 +5,7 @@
 
 #include "vmesh/volume/vessel_field.h"
 
-#include "volume/local_pairs.h"
+#include "volume/sight.h"
 
 namespace vmesh {
 namespace {
@@ -31,25 +31,53 @@ void keep_listed(std::span<const Index> list, std::vector<Index>& cones) {
 }  // namespace
 
 void VesselField::find_local_cones() {
-  const PairSet set = local_pairs(*centerline_, kOneVolume);
+  const auto [local, parting, apart, rounding] = sight_between_segments(*centerline_, blend_);
 
   local_offsets_.assign(cones_.size() + 1, 0);
   for (std::size_t c = 0; c < cones_.size(); ++c) ++local_offsets_[c + 1];
-  for (const auto& [i, j] : set.pairs()) {
-    ++local_offsets_[i + 1];
-    ++local_offsets_[j + 1];
+  for (const PairSet* set : {&local, &parting}) {
+    for (const auto& [i, j] : set->pairs()) {
+      ++local_offsets_[i + 1];
+      ++local_offsets_[j + 1];
+    }
   }
   std::partial_sum(local_offsets_.begin(), local_offsets_.end(), local_offsets_.begin());
   local_.resize(local_offsets_.back());
   std::vector<Index> next(local_offsets_.begin(), local_offsets_.end() - 1);
   for (Index c = 0; c < cones_.size(); ++c) local_[next[c]++] = c;
-  for (const auto& [i, j] : set.pairs()) {
-    local_[next[i]++] = j;
-    local_[next[j]++] = i;
+  for (const PairSet* set : {&local, &parting}) {
+    for (const auto& [i, j] : set->pairs()) {
+      local_[next[i]++] = j;
+      local_[next[j]++] = i;
+    }
   }
+  is_parting_.assign(local_.size(), 0);
   for (Index c = 0; c < cones_.size(); ++c) {
     std::sort(local_.begin() + local_offsets_[c], local_.begin() + local_offsets_[c + 1]);
+    for (std::size_t k = local_offsets_[c]; k < local_offsets_[c + 1]; ++k) {
+      is_parting_[k] = parting.contains(c, local_[k]);
+    }
   }
+  apart_ = apart.pairs();
+  std::sort(apart_.begin(), apart_.end());
+  for (const auto& [i, j] : apart_) cones_[i].is_apart = cones_[j].is_apart = true;
+  for (Cone& cone : cones_) {
+    if (rounding.empty()) break;
+    cone.rounding0 = rounding[cone.a];
+    cone.rounding1 = rounding[cone.b];
+  }
+}
+
+bool VesselField::are_one_volume(Index i, Index j) const {
+  const auto local = local_cones(i);
+  const auto place = std::lower_bound(local.begin(), local.end(), j);
+  return place != local.end() && *place == j && !is_parting_[local_offsets_[i] + (place - local.begin())];
+}
+
+bool VesselField::are_blended(Index i, Index j) const {
+  if (!cones_[i].is_apart || !cones_[j].is_apart) return true;
+  const std::pair<Index, Index> pair = std::minmax(i, j);
+  return !std::binary_search(apart_.begin(), apart_.end(), pair);
 }
 
 // The box of a piece of a cone holds all points at which it may be blended in: those closer to it than the widest

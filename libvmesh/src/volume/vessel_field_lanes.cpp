@@ -59,7 +59,7 @@ void VesselField::survey(Index hint, Surroundings& s) const {
   s.lonely_high = (own.origin.cwiseMax(own.origin + own.axis).array() + around).matrix();
   if (!is_lonely(hint, s.lonely_low, s.lonely_high)) s.lonely_high = s.lonely_low;
   s.range = 0;
-  if (local.size() > kMostConeLanes * ConeLanes::kCount) return;
+  if (local.size() > kMostConeLanes * ConeLanes::kCount || !all_are_blended(local)) return;
   s.center = own.origin + 0.5 * own.axis;
   s.unit = std::exp2(std::ilogb(std::max(own.axis.norm(), max_radius(hint))));
   s.per_unit = 1 / s.unit;
@@ -79,6 +79,16 @@ void VesselField::survey(Index hint, Surroundings& s) const {
   for (std::size_t b = 0; b < s.lanes.size(); ++b)
     fill_lanes(local.subspan(b * ConeLanes::kCount, std::min(ConeLanes::kCount, local.size() - b * ConeLanes::kCount)),
                s.center, s.per_unit, s.lanes[b]);
+}
+
+bool VesselField::all_are_blended(std::span<const Index> cones) const {
+  for (std::size_t i = 0; i < cones.size(); ++i) {
+    if (!cones_[cones[i]].is_apart) continue;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!are_blended(cones[j], cones[i])) return false;
+    }
+  }
+  return true;
 }
 
 // Found once: around a node of very many branches the surroundings of one cone are soon forgotten for another's.
@@ -123,6 +133,8 @@ void VesselField::fill_lanes(std::span<const Index> cones, const Vec3& center, d
     lanes.axis_z[i] = static_cast<float>(axis.z());
     lanes.r0[i] = is_one ? static_cast<float>(per_unit * cone.r0) : kNowhere;
     lanes.taper[i] = static_cast<float>(per_unit * (cone.r1 - cone.r0));
+    lanes.rounding[i] = static_cast<float>(cone.rounding0);
+    lanes.rounding_taper[i] = static_cast<float>(cone.rounding1 - cone.rounding0);
     lanes.inv_length2[i] = static_cast<float>(cone.inv_length2 / (per_unit * per_unit));
     lanes.lag[i] = static_cast<float>(cone.lag / per_unit);
     lanes.t_low[i] = static_cast<float>(cone.t_low);

@@ -34,10 +34,10 @@ struct SimplifiedCenterline {
 };
 
 /// Leaves out nodes with two segments. Every sphere that is left out moves and changes its radius, together, by at most
-/// `tolerance(radius)` (mm) to become a sphere of the segment that replaces it, in their order along the vessel;
+/// the tolerance of its node (mm) to become a sphere of the segment that replaces it, in their order along the vessel;
 /// spheres between them then do too, and the boundaries of the two unions are within that distance of each other. Nodes
-/// that branch or end stay, and the graph stays the same: loops keep three nodes. O(n log n) for branches of bounded
-/// curvature; deterministic.
-SimplifiedCenterline simplify(const Centerline& centerline, const std::function<double(double)>& tolerance);
+/// that branch or end stay, those with a negative tolerance too, and the graph stays the same: loops keep three nodes.
+/// O(n log n) for branches of bounded curvature; deterministic.
+SimplifiedCenterline simplify(const Centerline& centerline, const std::function<double(Index)>& tolerance);
 
 }  // namespace vmesh

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "vmesh/centerline/centerline.h"
@@ -27,10 +28,12 @@ struct FieldSample {
 /// the depth, so that a step of |distance| never leaves the volume. With `blend` > 0 branches are rounded: where
 /// two cones of radii r1, r2 meet under gradients g1, g2 the minimum is smooth over a width of
 /// blend * min(r1, r2) * (1 - g1.g2); along a straight chain the gradients agree and, up to blend 1, nothing bulges.
+/// Where vessels part and come near again, as around a tight turn, less is rounded, so that their walls stay apart.
 ///
 /// Local queries carry a cone they were last closest to; only cones near it along the graph take part: those whose
-/// spheres it touches without a break from a common place on. Vessels that part and meet again, or come close in space
-/// but not along the graph do not see each other. Global queries see every cone, for evaluation.
+/// spheres it touches without a break from a common place on, and on to where the rounding between vessels that part
+/// ends: up to the default blend, the boundary has no step there. Vessels that part and meet again closely, or come
+/// close in space but not along the graph, do not see each other. Global queries see every cone, for evaluation.
 class VesselField {
  public:
   /// `blend` in [0, 2]. Keeps a reference to `centerline`, which must outlive the field.
@@ -66,6 +69,13 @@ class VesselField {
     return {local_.data() + local_offsets_[cone], local_.data() + local_offsets_[cone + 1]};
   }
 
+  /// Whether two cones count as one volume: each takes part in local queries with the other as hint, and not just
+  /// because, where their vessels part, the rounding between them reaches farther than they touch.
+  bool are_one_volume(Index i, Index j) const;
+
+  /// Whether two cones are blended where both are near: not if their vessels have parted and come near again.
+  bool are_blended(Index i, Index j) const;
+
   /// Of local_cones(cone) those whose distance at `p` (mm), less the widest blend, is at most `limit` (mm), and perhaps
   /// others; ascending. They are found in space where there are many, as around a node of many branches.
   void local_cones_near(const Vec3& p, Index cone, double limit, std::vector<Index>& near) const;
@@ -76,6 +86,10 @@ class VesselField {
 
   /// Vessel radius at parameter `t` of `cone`.
   double radius_at(Index cone, double t) const { return cones_[cone].r0 + t * (cones_[cone].r1 - cones_[cone].r0); }
+  /// How much of the blend is left to a cone at parameter `t`, in [0, 1].
+  double rounding_at(Index cone, double t) const {
+    return cones_[cone].rounding0 + t * (cones_[cone].rounding1 - cones_[cone].rounding0);
+  }
   /// Point of the axis at parameter `t` of `cone`.
   Vec3 axis_point(Index cone, double t) const { return cones_[cone].origin + t * cones_[cone].axis; }
 
@@ -83,10 +97,12 @@ class VesselField {
   struct Cone {
     Vec3 origin, axis;  // axis = last - first, mm
     double r0 = 0, r1 = 0;
-    double inv_length2 = 0;        // 1 / |axis|^2; 0 for a sphere
-    double lag = 0;                // tan(half angle) / |axis|: how far the touching sphere lags the foot point
-    double t_low = 0, t_high = 1;  // equal where one end sphere contains the other
+    double rounding0 = 1, rounding1 = 1;  // shares of the blend
+    double inv_length2 = 0;               // 1 / |axis|^2; 0 for a sphere
+    double lag = 0;                       // tan(half angle) / |axis|: how far the touching sphere lags the foot point
+    double t_low = 0, t_high = 1;         // equal where one end sphere contains the other
     Index a = kNone, b = kNone;
+    bool is_apart = false;  // from some other: in apart_
   };
   // Cones that follow each other along the graph form a run. From sphere to sphere along it, neither a distance nor
   // that less the widest blend changes by more than `travel` does.
@@ -107,7 +123,7 @@ class VesselField {
   struct Candidate {
     double value, t;
     Index cone;
-    double radius = 0;
+    double reach = 0;  // of the blend, mm
     Vec3 gradient = Vec3::Zero();
   };
 
@@ -127,6 +143,7 @@ class VesselField {
   struct Surroundings;
   const Surroundings& surroundings(Index hint) const;
   void survey(Index hint, Surroundings& surroundings) const;
+  bool all_are_blended(std::span<const Index> cones) const;
   bool is_lonely(Index cone, const Vec3& low, const Vec3& high) const;
   void fill_lanes(std::span<const Index> cones, const Vec3& center, double per_unit, ConeLanes& lanes) const;
   static std::uint64_t new_number();
@@ -143,8 +160,10 @@ class VesselField {
   std::vector<Run> runs_;
   std::vector<Sphere> spheres_;
   std::vector<Index> local_offsets_, local_;
-  BoxTree tree_;                     // of pieces of cones
-  std::vector<Index> cone_of_item_;  // in the tree
+  std::vector<char> is_parting_;                // of local_
+  std::vector<std::pair<Index, Index>> apart_;  // ascending
+  BoxTree tree_;                                // of pieces of cones
+  std::vector<Index> cone_of_item_;             // in the tree
   // Of cones: whether no others are near but their local ones, once somebody has asked.
   enum Lonely : char { not_asked, lonely, in_company };
   mutable std::vector<char> lonely_;

@@ -2,6 +2,7 @@
 
 #include "vmesh/core/error.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/volume/vessel_field.h"
 
 #include "surface/remesh/sweep_state.h"
 
@@ -25,14 +26,29 @@ Index end_in(const SimplifiedCenterline& simplified, Index node) {
   return number;
 }
 
+// At cones where the blend is smaller than elsewhere. By how much, spheres along the segments decide: others would do
+// if nodes were left out, and the boundary would change by more than the tolerance.
+std::vector<char> nodes_less_rounded(const Centerline& centerline, double blend) {
+  std::vector<char> result(centerline.nodes().size(), 0);
+  const VesselField field(centerline, blend);
+  for (Index c = 0; c < field.cone_count(); ++c) {
+    if (field.rounding_at(c, 0) < 1 || field.rounding_at(c, 1) < 1)
+      result[field.first_node(c)] = result[field.last_node(c)] = 1;
+  }
+  return result;
+}
+
 }  // namespace
 
 SimplifiedCenterline simplify_for_growth(const Centerline& centerline, const GenerateOptions& options) {
   const double edge = edge_length_per_radius(std::max(kLeastAround, options.around));
   const double cut_off = edge * edge / 16;  // balanced: half of it is outside
-  return simplify(centerline, [&](double radius) {
-    const double tolerance = options.simplification * cut_off * radius;
-    return options.max_error.is_set() ? std::min(tolerance, kMostOfLimit * options.max_error.at(radius)) : tolerance;
+  const auto tolerance = [&](Index node) { return options.simplification * cut_off * centerline.node(node).radius; };
+  if (!options.max_error.is_set()) return simplify(centerline, tolerance);
+  const std::vector<char> less_rounded = nodes_less_rounded(centerline, options.blend);
+  return simplify(centerline, [&](Index node) {
+    if (less_rounded[node]) return -1.0;
+    return std::min(tolerance(node), kMostOfLimit * options.max_error.at(centerline.node(node).radius));
   });
 }
 

@@ -35,6 +35,7 @@ struct ConeBounds {
   double low = 0, high = 0;                  // of the signed distance
   double at_center = 0;                      // the signed distance at the centroid
   double least_radius = 0, most_radius = 0;  // of the sphere that touches the boundary
+  double least_reach = 0, most_reach = 0;    // of the blend
   double turn = 0;                           // how far the gradient can be from that at the centroid, at most 2
   Vec3 gradient = Vec3::Zero();              // at the centroid
 };
@@ -142,16 +143,29 @@ class TriangleTest {
     const double change = std::min(radius_slope(first, last, length) * reach_, std::abs(last - first));
     b.least_radius = std::max(std::min(first, last), radius - change);
     b.most_radius = std::min(std::max(first, last), radius + change);
+    const auto [least_share, most_share] = shares_of(cone, s.t, length, radius_slope(first, last, length));
+    b.least_reach = field_.blend() * b.least_radius * least_share;
+    b.most_reach = field_.blend() * b.most_radius * most_share;
     // The gradient turns by the way divided by the distance from the touching sphere's centre.
     const double from_center = radius + s.distance - reach_ - change;
     b.turn = from_center > 0.5 * reach_ ? reach_ / from_center : 2;
     return b;
   }
 
+  // Of the blend that is left to a cone on the triangle: the least and the most. The touching sphere moves along the
+  // axis by the way divided by the cosine of the cone's half angle.
+  std::pair<double, double> shares_of(Index cone, double t, double length, double slope) const {
+    const auto [least, most] = std::minmax({field_.rounding_at(cone, 0), field_.rounding_at(cone, 1)});
+    if (least == most) return {least, most};
+    const double share = field_.rounding_at(cone, t);
+    const double change = std::min(std::sqrt(1 + slope * slope) * reach_ / length, 1.0) * (most - least);
+    return {std::max(least, share - change), std::min(most, share + change)};
+  }
+
   // Width over which two cones are blended when their gradients differ by `difference`: 1 - cos = difference^2 / 2.
-  double width(double radius, double difference) const {
+  static double width(double reach, double difference) {
     const double d = std::clamp(difference, 0.0, 2.0);
-    return field_.blend() * radius * d * d / 2;
+    return reach * d * d / 2;
   }
 
   // Calls visit for every cone and combine for every pair that may be blended; returns the least of what they return.
@@ -161,7 +175,10 @@ class TriangleTest {
     for (std::size_t i = range.begin; i < range.end; ++i) {
       result = std::min(result, visit(stack_[i]));
       if (field_.blend() == 0) continue;
-      for (std::size_t j = range.begin; j < i; ++j) result = std::min(result, combine(stack_[i], stack_[j]));
+      for (std::size_t j = range.begin; j < i; ++j) {
+        if (field_.are_blended(stack_[i].cone, stack_[j].cone))
+          result = std::min(result, combine(stack_[i], stack_[j]));
+      }
     }
     return result;
   }
@@ -172,7 +189,7 @@ class TriangleTest {
         range, [](const ConeBounds& b) { return b.low; },
         [this](const ConeBounds& a, const ConeBounds& b) {
           const double difference = (a.gradient - b.gradient).norm() + a.turn + b.turn;
-          const double widest = width(std::min(a.most_radius, b.most_radius), difference);
+          const double widest = width(std::min(a.most_reach, b.most_reach), difference);
           const double gap = std::max(0.0, std::abs(a.at_center - b.at_center) - 2 * reach_);
           const double low = std::min(a.low, b.low);
           if (gap >= widest) return low;
@@ -186,7 +203,7 @@ class TriangleTest {
         range, [](const ConeBounds& b) { return b.high; },
         [this](const ConeBounds& a, const ConeBounds& b) {
           const double difference = (a.gradient - b.gradient).norm() - a.turn - b.turn;
-          return smooth_minimum(a.high, b.high, width(std::min(a.least_radius, b.least_radius), difference));
+          return smooth_minimum(a.high, b.high, width(std::min(a.least_reach, b.least_reach), difference));
         });
   }
 
@@ -195,8 +212,8 @@ class TriangleTest {
     return least(
         range, [](const ConeBounds& b) { return b.at_center; },
         [this](const ConeBounds& a, const ConeBounds& b) {
-          const double radius = 0.5 * std::min(a.least_radius + a.most_radius, b.least_radius + b.most_radius);
-          return smooth_minimum(a.at_center, b.at_center, width(radius, (a.gradient - b.gradient).norm()));
+          const double reach = 0.5 * std::min(a.least_reach + a.most_reach, b.least_reach + b.most_reach);
+          return smooth_minimum(a.at_center, b.at_center, width(reach, (a.gradient - b.gradient).norm()));
         });
   }
 

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "vmesh/centerline/centerline.h"
+
+#include "volume/local_pairs.h"
+
+namespace vmesh {
+
+/// Spheres at all nodes and along all segments, half a mean radius apart: first those of the nodes, then those within
+/// segments in turn.
+class SphereChain {
+ public:
+  explicit SphereChain(const Centerline& centerline) : centerline_(centerline) {
+    for (const auto& node : centerline.nodes()) spheres_.push_back({node.position, node.radius});
+    for (Index s = 0; s < centerline.segments().size(); ++s) {
+      first_.push_back(size());
+      const double steps = std::ceil(centerline.length(s) / (kSampling * centerline.radius_at(s, 0.5)));
+      const int count = static_cast<int>(std::clamp(steps, 1.0, double{kMaxSamples}));
+      for (int k = 1; k < count; ++k) {
+        const double t = static_cast<double>(k) / count;
+        spheres_.push_back({centerline.point_at(s, t), centerline.radius_at(s, t)});
+        segments_.push_back(s);
+      }
+    }
+    first_.push_back(size());
+  }
+
+  Index size() const { return static_cast<Index>(spheres_.size()); }
+
+  Index nodes() const { return static_cast<Index>(centerline_.nodes().size()); }
+  const Vec3& center(Index p) const { return spheres_[p].center; }
+  double radius(Index p) const { return spheres_[p].radius; }
+  /// Between the two spheres, mm.
+  double gap(Index p, Index q) const {
+    return (spheres_[p].center - spheres_[q].center).norm() - spheres_[p].radius - spheres_[q].radius;
+  }
+
+  /// The segments of which sphere `p` is part: several at a node.
+  std::span<const Index> segments(Index p) const {
+    return p < nodes() ? centerline_.incident_segments(p) : std::span(&segments_[p - nodes()], 1);
+  }
+
+  /// Calls visit(sphere) for the spheres of a segment, both ends included.
+  template <class Visit>
+  void visit_spheres(Index segment, Visit&& visit) const {
+    visit(centerline_.segment(segment).a);
+    for (Index p = first_[segment]; p < first_[segment + 1]; ++p) visit(p);
+    visit(centerline_.segment(segment).b);
+  }
+
+  /// Calls visit(sphere) for the spheres next to `p` along the centerline.
+  template <class Visit>
+  void visit_next(Index p, Visit&& visit) const {
+    for (const Index s : segments(p)) {
+      const Index last = first_[s + 1] - first_[s] + 1;
+      const Index place = p >= nodes() ? p - first_[s] + 1 : p == centerline_.segment(s).a ? 0 : last;
+      if (place > 0) visit(sphere_at(s, place - 1));
+      if (place < last) visit(sphere_at(s, place + 1));
+    }
+  }
+
+  /// Calls visit(p', q') for the pairs of spheres next to the pair p, q.
+  template <class Visit>
+  void visit_next_pairs(Index p, Index q, Visit&& visit) const {
+    visit_next(p, [&](Index next) { visit(next, q); });
+    visit_next(q, [&](Index next) { visit(p, next); });
+  }
+
+  bool touch(Index p, Index q, const Touch& touch) const {
+    const double r = spheres_[p].radius, s = spheres_[q].radius, reach = r + s + touch.gap(r, s);
+    return (spheres_[p].center - spheres_[q].center).squaredNorm() < reach * reach;
+  }
+
+ private:
+  static constexpr double kSampling = 0.5;  // mean radii between two spheres that stand for a cone
+  static constexpr int kMaxSamples = 200;   // per cone
+
+  struct Sphere {
+    Vec3 center;
+    double radius;
+  };
+
+  // Along segment `s`, whose first node has place 0.
+  Index sphere_at(Index s, Index place) const {
+    const auto& [a, b] = centerline_.segment(s);
+    const Index within = first_[s] + place - 1;
+    return place == 0 ? a : within < first_[s + 1] ? within : b;
+  }
+
+  const Centerline& centerline_;
+  std::vector<Sphere> spheres_;
+  std::vector<Index> first_;     // of the spheres within every segment; one more for the end
+  std::vector<Index> segments_;  // of spheres within segments
+};
+
+/// All pairs of different spheres in touch that can be reached from pairs of one and the same by moving either along
+/// the centerline without losing touch.
+PairSet pairs_in_touch(const SphereChain& chain, const Touch& touch);
+
+/// Joins the segments of pairs of spheres.
+class SegmentPairs {
+ public:
+  explicit SegmentPairs(const SphereChain& chain) : chain_(chain) {}
+
+  void join(Index p, Index q);
+  void join_all(const PairSet& spheres);
+  const PairSet& pairs() const { return pairs_; }
+  PairSet take() { return std::move(pairs_); }
+
+ private:
+  void join_one(Index p, Index j);
+
+  const SphereChain& chain_;
+  PairSet pairs_;
+  PairSet joined_;  // nodes of many branches and the segments that were joined to all of these
+};
+
+/// The segments of every sphere and of all these pairs.
+PairSet local_segments(const SphereChain& chain, const PairSet& touching);
+
+}  // namespace vmesh
