@@ -18,7 +18,6 @@ namespace {
 
 constexpr int kAround = 24;     // sample points around a vessel, and four times closer than faces are wide along it
 constexpr double kStep = 0.15;  // radii
-constexpr double kNear = 5;     // mm: two radii of the vessels at the notches
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
@@ -79,7 +78,7 @@ double distance_to_boundary(const VesselField& field, const Vec3& x, Index hint)
   return (p - x).norm() + std::abs(s.distance);
 }
 
-// Calls visit(point, distance in limits) for 28 points of every face.
+// Calls visit(distance in limits) for 28 points of every face.
 template <class Visit>
 void for_surface_points(const GenerateResult& result, const VesselField& field, const ErrorLimit& limit,
                         Visit&& visit) {
@@ -89,7 +88,7 @@ void for_surface_points(const GenerateResult& result, const VesselField& field, 
     for (int i = 0; i <= 6; ++i) {
       for (int j = 0; i + j <= 6; ++j) {
         const Vec3 x = (i * p + j * q + (6 - i - j) * r) / 6;
-        visit(x, distance_to_boundary(field, x, result.binding[a].segment) / allowed);
+        visit(distance_to_boundary(field, x, result.binding[a].segment) / allowed);
       }
     }
   }
@@ -119,21 +118,17 @@ void for_boundary_points(const VesselField& field, Visit&& visit) {
   }
 }
 
-// The same for both directions, but for points near places of which the result says that nothing is proven.
-double worst_where_proven(const GenerateResult& result, const VesselField& field, const ErrorLimit& limit) {
+// The same for both directions.
+double worst_deviation(const GenerateResult& result, const VesselField& field, const ErrorLimit& limit) {
   double worst = 0;
   std::size_t points = 0;
-  const auto look_at = [&](const Vec3& p, double distance) {
+  const auto look_at = [&](double distance) {
     ++points;
-    if (distance <= worst) return;
-    for (const UnprovenPlace& place : result.error.unproven_places) {
-      if ((place.position - p).norm() < kNear) return;
-    }
-    worst = distance;
+    worst = std::max(worst, distance);
   };
   for_surface_points(result, field, limit, look_at);
   const SurfaceDistance distance(result, limit);
-  for_boundary_points(field, [&](const Vec3& p) { look_at(p, distance(p)); });
+  for_boundary_points(field, [&](const Vec3& p) { look_at(distance(p)); });
   EXPECT_GT(points, 60 * result.mesh.vertices.size());
   return worst;
 }
@@ -162,7 +157,7 @@ TEST_P(MaxError, HoldsBothWaysAtDensePoints) {
   EXPECT_EQ(result.error.unproven_faces, 0u);
   EXPECT_TRUE(self_intersections(result.mesh).empty());
   EXPECT_EQ(measure_topology(result.mesh).genus, 0);
-  EXPECT_LE(worst_where_proven(result, VesselField(centerline, GenerateOptions().blend), limit_of(relative)), 1);
+  EXPECT_LE(worst_deviation(result, VesselField(centerline, GenerateOptions().blend), limit_of(relative)), 1);
 }
 
 // Vessels run side by side there, so that the gap between them ends in a notch too narrow for triangles that may be.
@@ -179,20 +174,7 @@ TEST_P(NarrowNotch, IsClosedWithinTheLimit) {
   if (relative < 0.1) {
     EXPECT_FALSE(result.error.closed_notches.empty());  // at a tenth triangles may be wide enough for the notches
   }
-  EXPECT_LE(worst_where_proven(result, VesselField(centerline, blend), limit_of(relative)), 1);
-}
-
-// Cones that do not see each other are blended there where a third is nearest that sees both: the boundary has a step.
-class SteppedBoundary : public ::testing::TestWithParam<std::tuple<const char*, double>> {};
-
-TEST_P(SteppedBoundary, IsTheOnlyPlaceWhereTheLimitMayNotHold) {
-  const auto& [name, relative] = GetParam();
-  const std::string file = name;
-  VMESH_NEED_SHARED_DATA(file);
-  const Centerline centerline = load_centerline(testing::shared_data(file)).cleaned.centerline;
-  const GenerateResult result = generate(centerline, relative);
-  EXPECT_LE(result.error.unproven_places.size(), 5u);  // of some 40 forks
-  EXPECT_LE(worst_where_proven(result, VesselField(centerline, GenerateOptions().blend), limit_of(relative)), 1);
+  EXPECT_LE(worst_deviation(result, VesselField(centerline, blend), limit_of(relative)), 1);
 }
 
 // Two daughters that part at a small angle, the second thinner.
@@ -246,7 +228,7 @@ TEST_P(NarrowFork, IsProvenWithFewVerticesInOnePlace) {
   const double most = most_vertices_within_a_radius(2 * std::sin(std::numbers::pi / 6), relative);
   for (Index v = 0; v < result.mesh.vertices.size(); ++v)
     EXPECT_LE(vertices_within(result, result.mesh.vertices[v], result.radius[v]), most) << "vertex " << v;
-  EXPECT_LE(worst_where_proven(result, VesselField(centerline, blend), limit_of(relative)), 1);
+  EXPECT_LE(worst_deviation(result, VesselField(centerline, blend), limit_of(relative)), 1);
 }
 
 // At its crease single precision does not tell which of two vessels is the nearer: eight in forty were not proven then.
@@ -289,23 +271,22 @@ TEST_P(NarrowFork, KeepsWhatItClosesWithinTheLimit) {
 #define TREE(name) "liver_portal_centerlines/liverModelPatient1__" name "_1.swc"
 INSTANTIATE_TEST_SUITE_P(TenPercent, MaxError,
                          ::testing::Combine(::testing::Values(TREE("portal1"), TREE("portal3"), TREE("portal15"),
-                                                              TREE("hepatic1"), TREE("hepatic3"), TREE("arterial15"),
-                                                              TREE("vessel_hepatic"), TREE("vessel_arterial")),
+                                                              TREE("hepatic1"), TREE("hepatic3"), TREE("hepatic15"),
+                                                              TREE("arterial15"), TREE("vessel_hepatic"),
+                                                              TREE("vessel_portal"), TREE("vessel_arterial"),
+                                                              "synthetic_trees/tree1560.swc"),
                                             ::testing::Values(0.1)));
 INSTANTIATE_TEST_SUITE_P(FivePercent, MaxError,
                          ::testing::Combine(::testing::Values(TREE("portal1"), TREE("portal3"), TREE("portal15"),
                                                               TREE("hepatic1"), TREE("hepatic3"), TREE("hepatic15"),
                                                               TREE("arterial15"), TREE("vessel_hepatic"),
-                                                              TREE("vessel_arterial")),
+                                                              TREE("vessel_portal"), TREE("vessel_arterial")),
                                             ::testing::Values(0.05)));
 INSTANTIATE_TEST_SUITE_P(Sharp, NarrowNotch,
                          ::testing::Combine(::testing::Values(TREE("vessel_portal"), "synthetic_trees/tree119.swc"),
                                             ::testing::Values(0.0), ::testing::Values(0.1, 0.05)));
 INSTANTIATE_TEST_SUITE_P(SharpAndLarge, NarrowNotch,
                          ::testing::Values(std::tuple("synthetic_trees/tree1560.swc", 0.0, 0.1)));
-INSTANTIATE_TEST_SUITE_P(Real, SteppedBoundary,
-                         ::testing::Values(std::tuple(TREE("hepatic15"), 0.1), std::tuple(TREE("vessel_portal"), 0.1),
-                                           std::tuple(TREE("vessel_portal"), 0.05)));
 INSTANTIATE_TEST_SUITE_P(Angles, NarrowFork,
                          ::testing::Combine(::testing::Values(30.0, 45.0), ::testing::Values(0.0, 0.5),
                                             ::testing::Values(0.1, 0.05)));
