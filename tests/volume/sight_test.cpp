@@ -136,7 +136,7 @@ TEST(Sight, EndsBeforeWallsThatMeetAgainClosely) {
 double steepest_way(const VesselField& field, Draw& draw) {
   constexpr double kStep = 1e-3;
   double steepest = 0;
-  for (int walk = 0; walk < 20; ++walk) {
+  for (int walk = 0; walk < 6; ++walk) {
     const auto start = static_cast<Index>(field.cone_count() - 1 - draw.below(2));
     Vec3 p = field.axis_point(start, 0.5);
     p += Vec3(0, p.y() > 0 ? -1 : 1, draw.uniform(-0.4, 0.4)).normalized();

@@ -137,14 +137,16 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, In
 }
 
 // Cones that begin with one and the same sphere are alike to the bit where that is what is near. At a thick node of
-// many branches nearly all are. Looks back at a few, which is enough there.
+// many branches nearly all are. One that blends with every other speaks for them. Looks back at a few, which is enough
+// there.
 std::span<VesselField::Candidate> VesselField::at_different_places(std::span<Candidate> candidates) const {
   constexpr std::size_t kLookBack = 8;
   std::size_t kept = 0;
   for (const Candidate& c : candidates) {
     const auto recent = candidates.subspan(kept - std::min(kept, kLookBack), std::min(kept, kLookBack));
     const bool known = c.t == 0 && std::any_of(recent.begin(), recent.end(), [&](const Candidate& other) {
-                         return other.t == 0 && cones_[other.cone].a == cones_[c.cone].a;
+                         const Cone& seen = cones_[other.cone];
+                         return other.t == 0 && seen.a == cones_[c.cone].a && !seen.is_apart;
                        });
     if (!known) candidates[kept++] = c;
   }

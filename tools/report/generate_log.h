@@ -1,0 +1,26 @@
+#pragma once
+
+#include "command_line/console.h"
+#include "report/summary.h"
+
+namespace vmesh::tool {
+
+/// What `vmesh generate` tells while it works; the summary has all of it.
+void log_simplification(const SimplifiedCenterline& simplified, Console& console);
+void log_separation(const SeparationReport& separation, Console& console);
+/// The operating points tried for a budget, and the command that makes the one chosen.
+void log_choice(const BudgetedSurface& surface, const GenerateArguments& arguments, Console& console);
+void log_result(const GenerateReport& report, Console& console);
+
+/// Warns, and keeps the warning for the summary.
+void warn(GenerateReport& report, const std::string& text, Console& console);
+void warn_of_contacts(GenerateReport& report, Console& console);
+/// Of vessels that could not be parted.
+void warn_of_contacts_left(GenerateReport& report, const std::vector<Contact>& left, Console& console);
+/// Of faces whose distance is not proven to keep to the limit.
+void warn_of_error(GenerateReport& report, Console& console);
+
+/// Says why nothing is written.
+void log_refusal(const GenerateReport& report, Console& console);
+
+}  // namespace vmesh::tool

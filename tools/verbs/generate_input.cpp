@@ -1,0 +1,120 @@
+#include "verbs/generate_input.h"
+
+#include <cmath>
+
+#include "vmesh/io/sha256.h"
+
+#include "command_line/interrupt.h"
+#include "command_line/outputs.h"
+#include "command_line/usage_error.h"
+#include "report/summary.h"
+#include "verbs/fitting.h"
+
+namespace vmesh::tool {
+namespace {
+
+bool has_image(const GenerateArguments& arguments) { return is_image_path(arguments.input.path); }
+
+LoadedCenterline load(const InputArguments& input, Console& console) {
+  LoadedCenterline loaded = load_clean_centerline(input, console);
+  const Centerline& centerline = loaded.cleaned.centerline;
+  console.log(std::to_string(centerline.nodes().size()) + " nodes, " + std::to_string(centerline.segments().size()) +
+              " segments, " + std::to_string(centerline.component_count()) + " components, " +
+              std::to_string(centerline.cycle_rank()) + " loops");
+  return loaded;
+}
+
+/// The centerline of the vessels in an image, and their surface, which is what the one that grows is fitted to.
+LoadedCenterline extract(const GenerateArguments& arguments, std::optional<TriMesh>& reference, Console& console) {
+  FittingArguments image = arguments.fitting;
+  image.reference = arguments.input;
+  TriMesh surface = load_fit_reference(image, console);
+  stop_if_interrupted();
+  const ExtractedCenterline extracted = naming(
+      arguments.input.path, [&] { return extract_centerline(surface, arguments.extraction, console.progress()); });
+  const Centerline& centerline = extracted.centerline;
+  console.log(std::to_string(centerline.nodes().size()) + " nodes, " + std::to_string(centerline.segments().size()) +
+              " segments, " + std::to_string(centerline.component_count()) + " components, " +
+              std::to_string(centerline.cycle_rank()) + " loops extracted");
+  if (!arguments.centerline_output.empty())
+    write_centerline(arguments.centerline_output, centerline,
+                     {generator_name(), "extracted by generate", arguments.input.path.filename().string(),
+                      sha256_of_file(arguments.input.path)});
+  if (!reference) reference = std::move(surface);
+  LoadedCenterline loaded{{centerline, {}, {}, {}}, {}, {}};
+  for (Index n = 0; n < centerline.nodes().size(); ++n) loaded.cleaned.raw_node.push_back(n);
+  for (Index s = 0; s < centerline.segments().size(); ++s) loaded.cleaned.raw_segment.push_back(s);
+  return loaded;
+}
+
+void check_left_open(const GenerateArguments& arguments, const Centerline& centerline) {
+  for (const Index n : arguments.left_open) {
+    if (n >= centerline.nodes().size() || centerline.degree(n) != 1)
+      throw InvalidInput(arguments.input.path.string() + ": node " + std::to_string(n) +
+                         " cannot be left open: it is not an end of the centerline");
+  }
+}
+
+}  // namespace
+
+void check_input(const GenerateArguments& arguments) {
+  const ReferenceOptions& image = arguments.fitting.image;
+  const bool fits = !arguments.fitting.reference.path.empty();
+  if (has_image(arguments)) {
+    if (!arguments.input.more.empty())
+      throw UsageError(arguments.input.more.front().string() + ": beside an image nothing else makes a centerline");
+    if (fits && has_options(image) && is_image_path(arguments.fitting.reference.path))
+      throw UsageError(
+          "--label, --threshold, --spacing and --smooth would be for two images; extract the centerline "
+          "first (vmesh centerline), or leave --fit out: the surface is fitted to the image it is from");
+    return;
+  }
+  if (!arguments.centerline_output.empty())
+    throw UsageError("--centerline-output is for an input that is an image; this is taken for a centerline");
+  const ExtractOptions plain;
+  if (arguments.extraction.tree || arguments.extraction.spacing != plain.spacing ||
+      arguments.extraction.join != plain.join)
+    throw UsageError("--step, --join and --tree are for an input that is an image; this is taken for a centerline");
+  if (fits) return;
+  if (arguments.fitting.options.error > 0) throw UsageError("--fit-error needs --fit REFERENCE");
+  if (has_options(image))
+    throw UsageError("--label, --threshold, --spacing and --smooth are for images; none is given");
+}
+
+void apply_budget_to_fit(GenerateArguments& arguments) {
+  FittingArguments& fitting = arguments.fitting;
+  if (fit_reference(arguments).empty()) return;
+  if (arguments.options.max_error.is_set())
+    throw UsageError("--max-error is a limit on the distance to round cones; with --fit see --fit-error");
+  fitting.options.threads = arguments.options.threads;
+  if (!arguments.budget) return;
+  const Budget budget = *arguments.budget;
+  if (budget.kind == Budget::Kind::vertices) {
+    fitting.options.max_vertices = budget.vertices;  // what is grown keeps to it as well
+    return;
+  }
+  if (budget.kind != Budget::Kind::error || !std::isfinite(budget.error.mm) || std::isfinite(budget.error.relative))
+    throw UsageError("--fit takes budgets such as vertices=5000 and error=0.2mm, not " + to_string(budget));
+  fitting.options.error = budget.error.mm;
+  arguments.budget.reset();
+}
+
+std::filesystem::path fit_reference(const GenerateArguments& arguments) {
+  const std::filesystem::path& path = arguments.fitting.reference.path;
+  return path.empty() && has_image(arguments) ? arguments.input.path : path;
+}
+
+GenerateInput load_input(const GenerateArguments& arguments, Console& console) {
+  std::optional<TriMesh> reference;
+  if (!arguments.fitting.reference.path.empty()) {
+    FittingArguments fitting = arguments.fitting;
+    if (has_image(arguments) && !is_image_path(fitting.reference.path)) fitting.image = {};  // the input's
+    reference = load_fit_reference(fitting, console);
+  }
+  LoadedCenterline loaded =
+      has_image(arguments) ? extract(arguments, reference, console) : load(arguments.input, console);
+  check_left_open(arguments, loaded.cleaned.centerline);
+  return {std::move(loaded), std::move(reference)};
+}
+
+}  // namespace vmesh::tool
