@@ -17,6 +17,7 @@ namespace {
 
 // Roberts' R2, as sample_surface() does.
 constexpr double kReach = 1;  // local radii from the round cones: as far as bulges go
+constexpr double kRim = 0.7;  // cosine of the angle between the normals on both sides of it, at most
 constexpr double kPlastic = 1.32471795724474602596;
 
 struct HalfEdge {
@@ -191,6 +192,20 @@ std::vector<ReferenceSample> FitReference::samples(const VesselField& field, std
       const Vec3 p = (1 - u - v) * mesh_.vertices[a] + u * mesh_.vertices[b] + v * mesh_.vertices[c];
       const double radius = widest_radius(field, cones_[f]);
       samples.push_back({p, f, step * radius * radius});
+    }
+  }
+  return samples;
+}
+
+std::vector<ReferenceSample> FitReference::rim_samples() const {
+  std::vector<ReferenceSample> samples;
+  for (Index f = 0; f < mesh_.faces.size(); ++f) {
+    for (int i = 0; i < 3; ++i) {
+      const Index g = across_[f][i];
+      if (g == kNone || normals_[f].dot(normals_[g]) > kRim) continue;
+      const Vec3 &a = mesh_.vertices[mesh_.faces[f][i]], &b = mesh_.vertices[mesh_.faces[f][(i + 1) % 3]];
+      samples.push_back({a, f, 0});
+      samples.push_back({0.5 * (a + b), f, 0});
     }
   }
   return samples;

@@ -38,6 +38,8 @@ class FitReference {
 
   /// About `count` points, their density that of 1 / radius^2 of the vessels.
   std::vector<ReferenceSample> samples(const VesselField& field, std::size_t count) const;
+  /// Corners and middles of sharp edges, for what their faces' samples miss; they stand for no area.
+  std::vector<ReferenceSample> rim_samples() const;
 
  private:
   void connect();

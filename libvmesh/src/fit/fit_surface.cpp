@@ -92,11 +92,32 @@ void check_memory(std::size_t vertices, const TriMesh& reference) {
       "allow fewer vertices or a larger error, or make the reference coarser");
 }
 
-Match farthest_match(const Matches& matches) {
+// A point of the surface and what is around it, mm.
+struct Place {
+  Vec3 position;
+  double reach;
+
+  bool holds(const Vec3& p) const { return (p - position).squaredNorm() < reach * reach; }
+};
+
+Vec3 point_of(const FitMesh& surface, const Match& match) {
+  const auto [a, b, c] = surface.corners(match.face);
+  return match.weights[0] * a + match.weights[1] * b + match.weights[2] * c;
+}
+
+Place place_of(const FitMesh& surface, const Match& match) {
+  return {point_of(surface, match), surface.mean_edge(surface.faces[match.face][0])};
+}
+
+// Outside of some places.
+Match farthest_match(const FitMesh& surface, const Matches& matches, const std::vector<Place>& left_alone) {
   Match farthest;
   for (const auto* list : {&matches.from_surface, &matches.from_reference}) {
     for (const Match& match : *list) {
-      if (match.face != kNone && std::abs(match.distance) > std::abs(farthest.distance)) farthest = match;
+      if (match.face == kNone || std::abs(match.distance) <= std::abs(farthest.distance)) continue;
+      const Vec3 p = point_of(surface, match);
+      if (std::none_of(left_alone.begin(), left_alone.end(), [&](const Place& place) { return place.holds(p); }))
+        farthest = match;
     }
   }
   return farthest;
@@ -113,8 +134,7 @@ void split_at(FitMesh& surface, const Match& match, int side) {
   const Triangle face = surface.faces[match.face];
   const Index a = face[(side + 1) % 3], b = face[(side + 2) % 3];
   if (surface.face_of(a, b) == kNone || surface.face_of(b, a) == kNone) return;
-  Vec3 p = -match.distance * match.direction;
-  for (int i = 0; i < 3; ++i) p += match.weights[i] * surface.position(face[i]);
+  const Vec3 p = point_of(surface, match) - match.distance * match.direction;
   const FitMesh::Vertex &first = surface.vertices[a], &second = surface.vertices[b];
   surface.split(a, b,
                 {p, std::min(first.cone, second.cone), kNone, 0.5 * (first.size + second.size),
@@ -138,6 +158,8 @@ class Fit {
       few_samples_.push_back(samples_[i]);
       few_samples_.back().area *= kFewer;
     }
+    samples_and_rims_ = samples_;
+    for (const ReferenceSample& sample : reference_.rim_samples()) samples_and_rims_.push_back(sample);
     most_vertices_ = options.max_vertices;
     if (most_vertices_ == 0) most_vertices_ = surface.mesh.vertices.size() * 21 / 20;
     wanted_vertices_ = static_cast<std::size_t>(kOfMostVertices * static_cast<double>(most_vertices_));
@@ -174,7 +196,7 @@ class Fit {
       const Matches matches = next_matches(true);
       if (i == 0) check_matched(matches);
       step(matches);
-      reshape(1, false);
+      reshape(1, true);
     }
     if (options_.resize) resize();
     if (options_.resize && !to_error_) keep_to_most_vertices();
@@ -229,22 +251,33 @@ class Fit {
     return find_matches(surface_, reference_, samples_, field_, kDivision);
   }
 
+  Matches matches_at_rims() const {
+    return find_matches(surface_, reference_, samples_and_rims_, field_, kDivision);
+  }
+
   // The last rounds: shape gives way to nearness.
   void finish() {
     for (int i = 0; i < kLastRounds; ++i) {
       step(next_matches());
-      if (i < kLastRounds - 2) reshape(2, true);
+      if (i < kLastRounds - 2) reshape(2, false);
     }
-    for (int i = 0; options_.resize && i < kMostPlaces && put_vertex_where_farthest(); ++i) {
+    if (options_.resize) put_vertices_where_farthest();
+  }
+
+  void put_vertices_where_farthest() {
+    std::vector<Place> left_alone;
+    for (int i = 0; i < kMostPlaces && surface_.vertices.size() < most_vertices_; ++i) {
+      const Matches matches = matches_at_rims();
+      const Match worst = farthest_match(surface_, matches, left_alone);
+      if (std::abs(worst.distance) <= kFar * rms_distance(matches)) return;
+      const Place place = place_of(surface_, worst);
+      if (!put_vertex_at(worst, left_alone)) left_alone.push_back(place);
     }
   }
 
-  // Returns whether there is a place that is too far off, and came nearer.
-  bool put_vertex_where_farthest() {
-    const Matches matches = matches_now(false);
-    const Match worst = farthest_match(matches);
+  // Returns whether what is farthest came nearer by it.
+  bool put_vertex_at(const Match& worst, const std::vector<Place>& left_alone) {
     double least = std::abs(worst.distance);
-    if (least <= kFar * rms_distance(matches) || surface_.vertices.size() >= most_vertices_) return false;
     if (least > kNotOfSize * surface_.mean_edge(surface_.faces[worst.face][0])) return false;
     const auto before = std::pair(surface_, openings_);
     auto best = before;
@@ -252,7 +285,7 @@ class Fit {
     for (int side = 0; side < 3; ++side) {
       std::tie(surface_, openings_) = before;
       put_vertex(worst, side);
-      const double left = std::abs(farthest_match(matches_now(false)).distance);
+      const double left = std::abs(farthest_match(surface_, matches_at_rims(), left_alone).distance);
       if (left >= least || worst_skewness(surface_) > limit) continue;
       least = left;
       best = {surface_, openings_};
@@ -265,7 +298,7 @@ class Fit {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       split_at(surface, match, side);
       flip_closer(surface, frozen);
-      for (int k = 0; k < kRepairs; ++k) relax(surface, frozen, guard_, kRepairPower, guard_.max_skewness);
+      repair(surface, frozen);
     });
     pack();
     find_cones();
@@ -309,15 +342,17 @@ class Fit {
     flip_edges_closer(surface, frozen, [&](Index a, Index b, const Vec3& p) { return distance_at(surface, a, b, p); });
   }
 
-  void reshape(int power, bool closer) {
+  void reshape(int power, bool more_even) {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
-      if (closer) {
-        flip_closer(surface, frozen);
-      } else {
-        flip_edges(surface, frozen, guard_);
-      }
+      if (options_.resize) flip_closer(surface, frozen);
+      if (options_.resize && more_even) flip_edges(surface, frozen, guard_);
       for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, power);
+      repair(surface, frozen);
     });
+  }
+
+  void repair(FitMesh& surface, const std::vector<char>& frozen) const {
+    for (int i = 0; i < kRepairs; ++i) relax(surface, frozen, guard_, kRepairPower, guard_.max_skewness);
   }
 
   // For an error, until the number of vertices has settled.
@@ -355,7 +390,7 @@ class Fit {
         flip_edges(surface, frozen, guard_);
         for (int k = 0; k < kRelaxations; ++k) relax(surface, frozen, guard_, 1);
       }
-      for (int k = 0; k < kRepairs; ++k) relax(surface, frozen, guard_, kRepairPower, guard_.max_skewness);
+      repair(surface, frozen);
     });
     pack();
     if (options_.max_vertices > 0 && surface_.vertices.size() > most_vertices_) to_error_ = false;
@@ -389,7 +424,7 @@ class Fit {
   FitMesh surface_;
   std::vector<Opening> openings_;
   std::vector<Vec3> opening_normals_;
-  std::vector<ReferenceSample> samples_, few_samples_;
+  std::vector<ReferenceSample> samples_, few_samples_, samples_and_rims_;
   std::size_t most_vertices_ = 0, wanted_vertices_ = 0;
   double even_error_ = 0;  // mm, to have everywhere
   bool settled_ = false;   // the number of vertices
