@@ -311,6 +311,7 @@ Json to_json(const ExtractionReport& report) {
           {"left_out", report.left_out},
           {"spurs_removed", report.spurs},
           {"loops_broken", report.loops_broken},
+          {"merged", report.merged},
           {"mean_distance_mm", report.coverage.mean},
           {"distance_95_mm", report.coverage.percentile_95},
           {"max_distance_mm", report.coverage.max},

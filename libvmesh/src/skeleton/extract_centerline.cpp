@@ -17,6 +17,7 @@
 
 #include "cone_fit.h"
 #include "mean_curvature.h"
+#include "shared_lumen.h"
 #include "skeleton_graph.h"
 
 namespace vmesh {
@@ -27,6 +28,8 @@ using skeleton::Graph;
 // A component with less than this share of the largest one's volume is dirt.
 constexpr double kLeastVolume = 1e-5;
 constexpr int kFitRounds = 20;
+constexpr int kRefinements = 2;  // a second one of what the first made straight
+constexpr int kMerges = 3;       // each may bring others together
 // Memory that a vertex of the surface takes, measured.
 constexpr double kBytesPerVertex = 4000;
 
@@ -72,21 +75,34 @@ std::vector<Part> parts_of(TriMesh surface) {
   return parts;
 }
 
+/// Removes what closes too many loops and what is too short, divides anew and fits again.
+void refine(Graph& graph, std::size_t loops, const skeleton::SurfaceSamples& samples, const ExtractOptions& options,
+            ExtractionReport& report) {
+  report.loops_broken += skeleton::break_loops(graph, loops);
+  report.spurs += skeleton::prune_spurs(graph);
+  skeleton::compact(graph);
+  graph = skeleton::resampled(graph, options.spacing);
+  skeleton::fit_cones(graph, samples, kFitRounds);
+}
+
 void extract(Part& part, const ExtractOptions& options, ExtractionReport& report) {
   Graph& graph = part.graph;
   graph = skeleton::mean_curvature_skeleton(part.mesh);
   skeleton::connect(graph);
-  const auto genus = static_cast<std::size_t>(measure_topology(part.mesh).genus);
-  report.loops_broken += skeleton::break_loops(graph, options.tree ? 0 : genus);
-  report.spurs += skeleton::prune_spurs(graph);
-  skeleton::compact(graph);
-  graph = skeleton::resampled(graph, options.spacing);
+  const std::size_t loops = options.tree ? 0 : static_cast<std::size_t>(measure_topology(part.mesh).genus);
   const skeleton::SurfaceSamples samples = skeleton::samples_of(part.mesh);
-  skeleton::fit_cones(graph, samples, kFitRounds);
+  for (int i = 0; i < kRefinements; ++i) refine(graph, loops, samples, options, report);
+  for (int i = 0; i < kMerges; ++i) {
+    std::size_t merged = 0;
+    merged = skeleton::merge_in_one_lumen(graph, samples);
+    if(getenv("SAY")) fprintf(stderr,"merged %zu\n",merged);
+    if (merged == 0) break;
+    report.merged += merged;
+  report.loops_broken += skeleton::break_loops(graph, loops);
   report.spurs += skeleton::prune_spurs(graph);
   skeleton::compact(graph);
-  graph = skeleton::resampled(graph, options.spacing);
   skeleton::fit_cones(graph, samples, kFitRounds);
+  }
 }
 
 /// Where two parts come closest, node to node.

@@ -35,6 +35,7 @@ struct ExtractionReport {
   std::size_t left_out = 0;      ///< of the parts, because they remained apart
   std::size_t spurs = 0;         ///< short branches that were removed
   std::size_t loops_broken = 0;  ///< by removing a segment
+  std::size_t merged = 0;        ///< nodes that shared a lumen with one of another stretch of vessel
   Coverage coverage;             ///< of the surface, as far as it was not left out
   /// Of the parts of the surface to which one branch is nearest, in the order of find_branches().
   std::vector<Coverage> branches;
@@ -47,10 +48,11 @@ struct ExtractedCenterline {
 
 /// The centerline of a closed surface: curve skeletons by mean curvature flow, spurs shorter than the local radius
 /// removed, resampled; then positions and radii are fitted so that the boundary of the union of round cones follows the
-/// surface, ends included. Components that enclose a negative volume (cavities) or next to none are left out; a surface
-/// that faces inwards as a whole is turned. A component of genus g has g loops, unless `tree`.
-/// Deterministic. Throws InvalidInput for a surface that is not closed, manifold and oriented, and for options out of
-/// range; Unsupported when the memory that is free does not hold what it takes; Cancelled.
+/// surface, ends included. Stretches that share one lumen, as the legs of a hairpin in a wide vessel, become one.
+/// Components that enclose a negative volume (cavities) or next to none are left out; a surface that faces inwards as a
+/// whole is turned. A component of genus g has g loops, unless `tree`. Deterministic. Throws InvalidInput for a surface
+/// that is not closed, manifold and oriented, and for options out of range; Unsupported when the memory that is free
+/// does not hold what it takes; Cancelled.
 ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOptions& options = {},
                                        const Progress& progress = {});
 

@@ -1,0 +1,160 @@
+#include "shared_lumen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+namespace vmesh::skeleton {
+namespace {
+
+// Spheres that overlap by more than this share of their radii's sum already have no wall between them.
+constexpr double kOverlapping = 0.9;
+// Free space between the spheres, in smaller radii, beyond which the lumen would have to be a vessel of its own.
+constexpr double kFarthest = 1;
+// The way along the graph in relation to the distance: neighbours in one vessel, and across a bend, have less.
+constexpr double kLongerWay = 1.5;
+// How wide the lumen is at its narrowest between the two, in smaller radii. Two round vessels that cross each other's
+// walls as little as kOverlapping have 0.44.
+constexpr double kNeck = .9;
+
+struct Pair {
+  double gap;  // between the spheres, in smaller radii
+  Index a, b;
+
+  bool operator<(const Pair& other) const { return std::tie(gap, a, b) < std::tie(other.gap, other.a, other.b); }
+};
+
+/// Lengths of the shortest ways from `from`, as far as `limit`; infinite beyond.
+class Ways {
+ public:
+  explicit Ways(const Graph& graph) : graph_(graph), edges_at_(incidence(graph)), length_(graph.nodes.size(), kFar) {}
+
+  void find(Index from, double limit) {
+    for (const Index n : reached_) length_[n] = kFar;
+    reached_.clear();
+    reach(from, 0);
+    while (!queue_.empty()) {
+      const auto [d, n] = queue_.top();
+      queue_.pop();
+      if (d > length_[n]) continue;
+      for (const Index e : edges_at_[n]) {
+        if (d + graph_.length(e) <= limit) reach(other_end(graph_, e, n), d + graph_.length(e));
+      }
+    }
+  }
+
+  double to(Index n) const { return length_[n]; }
+
+ private:
+  using Entry = std::pair<double, Index>;
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+  void reach(Index n, double d) {
+    if (d >= length_[n]) return;
+    if (length_[n] == kFar) reached_.push_back(n);
+    length_[n] = d;
+    queue_.push({d, n});
+  }
+
+  const Graph& graph_;
+  std::vector<std::vector<Index>> edges_at_;
+  std::vector<double> length_;
+  std::vector<Index> reached_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+};
+
+double distance_between(const Graph& graph, Index a, Index b) {
+  return (graph.nodes[a].position - graph.nodes[b].position).norm();
+}
+
+std::vector<Pair> pairs_side_by_side(const Graph& graph) {
+  std::vector<Index> order(graph.nodes.size());
+  for (Index n = 0; n < order.size(); ++n) order[n] = n;
+  const auto left = [&](Index n) { return graph.nodes[n].position.x() - 2 * graph.nodes[n].radius; };
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return std::pair(left(a), a) < std::pair(left(b), b); });
+  Ways ways(graph);
+  std::vector<Pair> pairs, near;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Index a = order[i];
+    const Node& node = graph.nodes[a];
+    near.clear();
+    double longest = 0;
+    for (std::size_t j = i + 1; j < order.size() && left(order[j]) <= node.position.x() + 2 * node.radius; ++j) {
+      const Index b = order[j];
+      const double distance = distance_between(graph, a, b), both = node.radius + graph.nodes[b].radius;
+      const double smaller = std::min(node.radius, graph.nodes[b].radius);
+      if (distance < kOverlapping * both || distance > both + kFarthest * smaller) continue;
+      near.push_back({(distance - both) / smaller, std::min(a, b), std::max(a, b)});
+      longest = std::max(longest, kLongerWay * distance);
+    }
+    if (near.empty()) continue;
+    ways.find(a, longest);
+    for (const Pair& pair : near) {
+      const Index b = pair.a == a ? pair.b : pair.a;
+      if (ways.to(b) > kLongerWay * distance_between(graph, a, b)) pairs.push_back(pair);
+    }
+  }
+  return pairs;
+}
+
+bool in_one_lumen(const Node& a, const Node& b, const SurfaceSamples& samples) {
+  const double neck = kNeck * std::min(a.radius, b.radius);
+  const Vec3 along = b.position - a.position;
+  const double length2 = along.squaredNorm();
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    const Vec3 p = samples.points[i] - a.position;
+    const double t = std::clamp(p.dot(along) / length2, 0.0, 1.0);
+    const double around = std::sqrt(samples.areas[i] / std::numbers::pi);  // a sample stands for a disc
+    if ((p - t * along).norm() < neck + around) return false;
+  }
+  return true;
+}
+
+/// Both in one place, the wide one's weight by its volume.
+Node merged(const Node& a, const Node& b) {
+  const double wa = a.radius * a.radius * a.radius, wb = b.radius * b.radius * b.radius;
+  return {(wa * a.position + wb * b.position) / (wa + wb), std::max(a.radius, b.radius)};
+}
+
+void drop_double_edges(Graph& graph) {
+  std::vector<std::array<Index, 2>> kept, seen;
+  for (const auto& [a, b] : graph.edges) {
+    if (a == b) continue;
+    const std::array<Index, 2> edge = {std::min(a, b), std::max(a, b)};
+    const auto at = std::lower_bound(seen.begin(), seen.end(), edge);
+    if (at != seen.end() && *at == edge) continue;
+    seen.insert(at, edge);
+    kept.push_back({a, b});
+  }
+  graph.edges = std::move(kept);
+}
+
+}  // namespace
+
+std::size_t merge_in_one_lumen(Graph& graph, const SurfaceSamples& samples) {
+  std::vector<Pair> shared = pairs_side_by_side(graph);
+  std::erase_if(shared,
+                [&](const Pair& pair) { return !in_one_lumen(graph.nodes[pair.a], graph.nodes[pair.b], samples); });
+  std::sort(shared.begin(), shared.end());
+  std::vector<Index> number(graph.nodes.size(), kNone);  // the node that another one went into; of both
+  std::size_t count = 0;
+  for (const auto& [gap, a, b] : shared) {
+    if (number[a] != kNone || number[b] != kNone) continue;
+    number[a] = number[b] = a;
+    graph.nodes[a] = merged(graph.nodes[a], graph.nodes[b]);
+    ++count;
+  }
+  for (auto& edge : graph.edges) {
+    for (Index& n : edge) n = number[n] == kNone ? n : number[n];
+  }
+  if (count > 0) drop_double_edges(graph);
+  compact(graph);
+  return count;
+}
+
+}  // namespace vmesh::skeleton
