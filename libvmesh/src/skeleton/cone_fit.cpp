@@ -23,6 +23,8 @@ constexpr double kSmoothRadius = 0.1;
 constexpr double kDamping = 0.02;
 // Sliding along the vessel changes next to nothing but how evenly nodes are spread.
 constexpr double kDampingAlong = 1;
+constexpr double kDampingOfFixed = 1e6;  // next to nothing is left to move
+constexpr int kAround = 2;               // edges from a merged node to those that it moves
 // Samples farther off than this count as if they were that far, in local radii.
 constexpr double kNear = 0.5;
 constexpr double kRadiusFactor = 2;
@@ -114,12 +116,16 @@ Vector4 state(const Node& node) {
   return result;
 }
 
-void add_priors(Equations& equations, const Graph& graph) {
+void add_priors(Equations& equations, const Graph& graph, const std::vector<char>& fixed) {
   const auto edges_at = incidence(graph);
   double mean = 0;
   for (const double w : equations.weight()) mean += w / static_cast<double>(graph.nodes.size());
   for (Index n = 0; n < graph.nodes.size(); ++n) {
     const double weight = equations.weight()[n] + 0.05 * mean;  // nodes deep inside others have no samples
+    if (fixed[n]) {
+      equations.add_block(n, n, Matrix4::Identity() * (kDampingOfFixed * weight));
+      continue;
+    }
     Matrix4 damping = Matrix4::Identity() * (kDamping * weight);
     if (edges_at[n].size() == 2) {
       const Index a = other_end(graph, edges_at[n][0], n), b = other_end(graph, edges_at[n][1], n);
@@ -135,9 +141,11 @@ void add_priors(Equations& equations, const Graph& graph) {
 
 /// Applies a step, cut to half a radius; radii keep within a factor of what they were at first, so that nodes without
 /// samples of their own cannot vanish. Returns the largest change in relation to the radius.
-double apply(Graph& graph, const std::vector<Node>& first, const Eigen::VectorXd& step) {
+double apply(Graph& graph, const std::vector<Node>& first, const std::vector<char>& fixed,
+             const Eigen::VectorXd& step) {
   double most = 0;
   for (Index n = 0; n < graph.nodes.size(); ++n) {
+    if (fixed[n]) continue;
     Node& node = graph.nodes[n];
     const double limit = 0.5 * node.radius;
     Vec3 move = step.segment<3>(4 * n);
@@ -150,6 +158,19 @@ double apply(Graph& graph, const std::vector<Node>& first, const Eigen::VectorXd
     node.radius += change;
   }
   return most;
+}
+
+void fit(Graph& graph, const std::vector<char>& fixed, const SurfaceSamples& samples, int rounds) {
+  constexpr double kSettled = 1e-3;
+  const std::vector<Node> first = graph.nodes;
+  for (int round = 0; round < rounds; ++round) {
+    const Centerline centerline = to_centerline(graph);
+    const VesselField field(centerline);
+    Equations equations(graph.nodes.size());
+    add_samples(equations, field, samples);
+    add_priors(equations, graph, fixed);
+    if (apply(graph, first, fixed, equations.solve()) < kSettled) return;
+  }
 }
 
 }  // namespace
@@ -181,16 +202,21 @@ Centerline to_centerline(const Graph& graph) {
 }
 
 void fit_cones(Graph& graph, const SurfaceSamples& samples, int rounds) {
-  constexpr double kSettled = 1e-3;
-  const std::vector<Node> first = graph.nodes;
-  for (int round = 0; round < rounds; ++round) {
-    const Centerline centerline = to_centerline(graph);
-    const VesselField field(centerline);
-    Equations equations(graph.nodes.size());
-    add_samples(equations, field, samples);
-    add_priors(equations, graph);
-    if (apply(graph, first, equations.solve()) < kSettled) return;
+  fit(graph, std::vector<char>(graph.nodes.size(), 0), samples, rounds);
+}
+
+void fit_merged_cones(Graph& graph, const SurfaceSamples& samples, int rounds) {
+  std::vector<char> fixed(graph.nodes.size(), 1);
+  for (Index n = 0; n < fixed.size(); ++n) {
+    if (graph.nodes[n].merged) fixed[n] = 0;
   }
+  for (int i = 0; i < kAround; ++i) {
+    const std::vector<char> before = fixed;
+    for (const auto& [a, b] : graph.edges) {
+      if (!before[a] || !before[b]) fixed[a] = fixed[b] = 0;
+    }
+  }
+  fit(graph, fixed, samples, rounds);
 }
 
 }  // namespace vmesh::skeleton

@@ -22,6 +22,9 @@ SurfaceSamples samples_of(const TriMesh& mesh);
 /// does not reach. Ends so come to lie where their spheres touch the surface's.
 void fit_cones(Graph& graph, const SurfaceSamples& samples, int rounds);
 
+/// The same for nodes that were merged and those around them; the others stay.
+void fit_merged_cones(Graph& graph, const SurfaceSamples& samples, int rounds);
+
 /// Throws InvalidInput where `graph` is no valid centerline.
 Centerline to_centerline(const Graph& graph);
 

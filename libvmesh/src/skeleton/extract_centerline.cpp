@@ -29,7 +29,7 @@ using skeleton::Graph;
 constexpr double kLeastVolume = 1e-5;
 constexpr int kFitRounds = 20;
 constexpr int kRefinements = 2;  // a second one of what the first made straight
-constexpr int kMerges = 3;       // each may bring others together
+constexpr int kMerges = 3;       // each may bring others together; the portal and hepatic veins need two or three
 // Memory that a vertex of the surface takes, measured.
 constexpr double kBytesPerVertex = 4000;
 
@@ -75,14 +75,11 @@ std::vector<Part> parts_of(TriMesh surface) {
   return parts;
 }
 
-/// Removes what closes too many loops and what is too short, divides anew and fits again.
-void refine(Graph& graph, std::size_t loops, const skeleton::SurfaceSamples& samples, const ExtractOptions& options,
-            ExtractionReport& report) {
+/// Removes what closes too many loops and what is too short.
+void tidy(Graph& graph, std::size_t loops, ExtractionReport& report) {
   report.loops_broken += skeleton::break_loops(graph, loops);
   report.spurs += skeleton::prune_spurs(graph);
   skeleton::compact(graph);
-  graph = skeleton::resampled(graph, options.spacing);
-  skeleton::fit_cones(graph, samples, kFitRounds);
 }
 
 void extract(Part& part, const ExtractOptions& options, ExtractionReport& report) {
@@ -91,17 +88,17 @@ void extract(Part& part, const ExtractOptions& options, ExtractionReport& report
   skeleton::connect(graph);
   const std::size_t loops = options.tree ? 0 : static_cast<std::size_t>(measure_topology(part.mesh).genus);
   const skeleton::SurfaceSamples samples = skeleton::samples_of(part.mesh);
-  for (int i = 0; i < kRefinements; ++i) refine(graph, loops, samples, options, report);
+  for (int i = 0; i < kRefinements; ++i) {
+    tidy(graph, loops, report);
+    graph = skeleton::resampled(graph, options.spacing);
+    skeleton::fit_cones(graph, samples, kFitRounds);
+  }
   for (int i = 0; i < kMerges; ++i) {
-    std::size_t merged = 0;
-    merged = skeleton::merge_in_one_lumen(graph, samples);
-    if(getenv("SAY")) fprintf(stderr,"merged %zu\n",merged);
+    const std::size_t merged = skeleton::merge_in_one_lumen(graph, samples);
     if (merged == 0) break;
     report.merged += merged;
-  report.loops_broken += skeleton::break_loops(graph, loops);
-  report.spurs += skeleton::prune_spurs(graph);
-  skeleton::compact(graph);
-  skeleton::fit_cones(graph, samples, kFitRounds);
+    tidy(graph, loops, report);
+    skeleton::fit_merged_cones(graph, samples, kFitRounds);
   }
 }
 

@@ -10,7 +10,8 @@ namespace vmesh::skeleton {
 
 struct Node {
   Vec3 position = Vec3::Zero();
-  double radius = 0;  ///< mm
+  double radius = 0;    ///< mm
+  bool merged = false;  ///< of several that shared a lumen
 };
 
 /// A graph without multiple edges. After removals nodes may be left without an edge.
