@@ -198,6 +198,7 @@ class Fit {
       step(matches);
       reshape(1, true);
     }
+    harsh_ = false;
     if (options_.resize) resize();
     if (options_.resize && !to_error_) keep_to_most_vertices();
     finish();
@@ -295,7 +296,7 @@ class Fit {
   void put_vertex(const Match& match, int side) {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       split_at(surface, match, side);
-      flip_closer(surface, frozen);
+      flip_closer(surface, frozen, harsh_);
       repair(surface, frozen);
     });
     pack();
@@ -336,13 +337,14 @@ class Fit {
     return found ? found->distance : -1;
   }
 
-  void flip_closer(FitMesh& surface, const std::vector<char>& frozen) const {
-    flip_edges_closer(surface, frozen, [&](Index a, Index b, const Vec3& p) { return distance_at(surface, a, b, p); });
+  void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh) const {
+    flip_edges_closer(surface, frozen, harsh,
+                      [&](Index a, Index b, const Vec3& p) { return distance_at(surface, a, b, p); });
   }
 
   void reshape(int power, bool more_even) {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
-      if (options_.resize) flip_closer(surface, frozen);
+      if (options_.resize) flip_closer(surface, frozen, harsh_);
       if (options_.resize && more_even) flip_edges(surface, frozen, guard_);
       for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, power);
       repair(surface, frozen);
@@ -398,7 +400,8 @@ class Fit {
         0.8, 1.25);
     find_cones();
     step(matches_now(true));
-    change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) { flip_closer(surface, frozen); });
+    change_safely(surface_,
+                  [&](FitMesh& surface, const std::vector<char>& frozen) { flip_closer(surface, frozen, harsh_); });
     step(matches_now(false));
   }
 
@@ -426,6 +429,7 @@ class Fit {
   std::size_t most_vertices_ = 0, wanted_vertices_ = 0;
   double even_error_ = 0;  // mm, to have everywhere
   bool settled_ = false;   // the number of vertices
+  bool harsh_ = true;      // flips may make triangles skew, early enough for them to be repaired
   int rounds_ = 0;
   const Progress* progress_ = nullptr;
   double aim_ = 1;  // vertices to ask for, to get as many as wanted

@@ -148,7 +148,7 @@ void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGua
   }
 }
 
-void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen,
+void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh,
                        const std::function<double(Index, Index, const Vec3&)>& distance) {
   for (const auto& [a, b] : surface.edges()) {
     if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
@@ -166,15 +166,15 @@ void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen,
                &pd = surface.position(d);
     const double worst_before = std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd));
     const double worst_after = std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc));
-    if (worst_after > std::max(kWrongSkewness, worst_before)) continue;
+    if (worst_after > std::max(harsh ? kWrongSkewness : kCloserSkewness, worst_before)) continue;
     const Vec3 n1 = unit_normal(pa, pb, pc), n2 = unit_normal(pb, pa, pd);
     const Vec3 m1 = unit_normal(pc, pa, pd), m2 = unit_normal(pd, pb, pc);
     const double turn = std::min({m1.dot(n1), m1.dot(n2), m2.dot(n1), m2.dot(n2), m1.dot(m2)});
-    if (turn < kWrongTurn) continue;
+    if (turn < (harsh ? kWrongTurn : kOverRim)) continue;
     const double now = distance(a, b, 0.5 * (pa + pb)), then = distance(c, d, 0.5 * (pc + pd));
     if (now < 0 || then < 0) continue;
-    const bool harsh = turn < kOverRim || worst_after > std::max(kCloserSkewness, worst_before);
-    if (now - then < (harsh ? kMuchCloser : kCloser) * (pa - pb).norm()) continue;
+    const bool is_harsh = turn < kOverRim || worst_after > std::max(kCloserSkewness, worst_before);
+    if (now - then < (is_harsh ? kMuchCloser : kCloser) * (pa - pb).norm()) continue;
     surface.flip(a, b);
   }
 }

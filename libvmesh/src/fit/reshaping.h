@@ -20,8 +20,9 @@ inline bool is_frozen(const std::vector<char>& frozen, Index v) { return v < fro
 void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard);
 
 /// Flips edges where the other diagonal's middle is closer to the reference: `distance(edge's ends, middle)` tells how
-/// far a point is, mm, negative when that is not known.
-void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen,
+/// far a point is, mm, negative when that is not known. With `harsh` also where triangles become skew and turn far, if
+/// it brings much: they are to be repaired.
+void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh,
                        const std::function<double(Index, Index, const Vec3&)>& distance);
 
 /// For every vertex, the step in the tangent plane that is best for its triangles (a Newton step of their inverse mean
