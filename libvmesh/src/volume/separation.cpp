@@ -15,7 +15,7 @@ namespace {
 
 // More than the gap is aimed for, so that rounds of narrowing end.
 constexpr double kSpare = 0.02;
-constexpr double kMoved = 1e-9;  // radii: what counts as moved
+constexpr double kMoved = 1e-9;  // derived: radii, more than rounding moves
 // At moving where moves were in vain.
 constexpr MovingChoice kAttempts[] = {{}, {false, true}, {true, false}, {true, true}};
 

@@ -13,10 +13,10 @@ namespace {
 
 // Radii from the hint up to which single precision will do: there it is good to a few 1e-5 of them.
 constexpr double kFar = 128;
-constexpr double kLargest = 1e30;
+constexpr double kLargest = 1e30;  // derived: squares of it stay in the range of double, and its own in that of float
 constexpr int kMostSteps = 64;      // from hint to hint; then double precision decides, as between two as near
 constexpr double kLonely = 2.5;     // radii around an axis in which it is noted if there are no other cones
-constexpr float kNowhere = -1e30f;  // the radius of a cone that is near nothing
+constexpr float kNowhere = -1e30f;  // derived: the radius of a cone that is near nothing, in the range of float
 
 // Relative: covers the rounding in a distance and in the bound by which lanes are skipped.
 constexpr float kMargin = 1e-5f;

@@ -12,7 +12,7 @@ constexpr double kPiece = 0.5;         // radii: length of the pieces that have 
 constexpr double kSlack = 0.1;         // radii that a piece may stand out
 constexpr double kNeedle = 0.5;        // of a sphere's radius: thinner spheres may stand out of it ...
 constexpr double kNeedleSlack = 0.25;  // ... by this part of it where a branch ends
-constexpr int kMaxPieces = 2000;       // per segment; a hair that long is not buried, or not worth finding out
+constexpr int kMaxPieces = 2000;       // derived: per segment; a hair that long is not buried, or not worth finding out
 
 class Burial {
  public:

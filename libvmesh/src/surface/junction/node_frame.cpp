@@ -3,7 +3,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kStraight = 1e-6;  // sine of an angle below which directions count as equal
+constexpr double kStraight = 1e-6;  // derived: sine of an angle that rounding of a direction stays far below
 
 // The normal of the plane through `along` at `node` and the node of the centerline farthest off it; some normal if the
 // centerline is straight.

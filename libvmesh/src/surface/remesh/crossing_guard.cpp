@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kMostLatest = 32;  // faces that are looked at one by one
 constexpr int kPartsOfThread = 8;        // each in a box of its own: that of an aslant thread is mostly empty
-constexpr double kRounding = 1e-15;      // of coordinates, in a point between two others
+constexpr double kRounding = 1e-15;      // derived: of coordinates, in a point between two others, a few units in the last place
 constexpr double kRoom = 0.25;           // around a face in its box, in the diagonal of what it needs
 
 std::pair<Vec3, Vec3> box_of(const PlacedFace& f) {

@@ -6,7 +6,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kFlat = 1e-9;  // relative taper below which a segment counts as a cylinder
+constexpr double kFlat = 1e-9;  // derived: relative taper below which the angle of a cone is lost in rounding
 
 // Integral of ds / r over a segment whose radius runs from r0 to r1.
 double radii_along(double length, double r0, double r1) {

@@ -10,7 +10,7 @@ namespace {
 constexpr double kPitch = 1.055;      // of rings, in heights of the equilateral band at their final radius
 constexpr double kSmoothing = 0.6;    // radii before and behind over which the direction of the vessel is taken
 constexpr int kSteps = 8;             // of the search for the boundary along a ray
-constexpr double kOnBoundary = 1e-3;  // radii
+constexpr double kOnBoundary = 1e-3;  // radii; derived: a tenth of what a surface may be off (kOffBoundary)
 constexpr double kNearest = 0.5, kFarthest = 2;  // radii at which the boundary may lie
 constexpr double kFacing = 0.5;                  // cosine between ray and boundary normal
 constexpr double kOwnReach = 1.5;                // radii along the branch from which the boundary may come
@@ -24,7 +24,7 @@ constexpr double kNeighbourhood = 1.5;  // radii around the axis where that may 
 constexpr int kDirections = 24;
 constexpr int kPlacesThrough = 6;
 constexpr double kThrough = 0.3;        // cosine between the vessel's way and the normal of its cross-section
-constexpr double kStraight = 1e-3;      // sine of an angle below which directions count as equal
+constexpr double kStraight = 1e-3;      // derived: sine below which directions count as equal, far above their rounding
 constexpr double kLongestSkip = 2.5;    // radii along the branch
 constexpr double kStraightSkip = 0.95;  // cosine
 constexpr double kMinGap = 0.2;         // pitches between two rings anywhere
