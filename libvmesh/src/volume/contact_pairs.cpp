@@ -16,10 +16,11 @@ namespace {
 constexpr int kSectionSteps = 48;  // derived: 0.618^48 = 1e-10 of the axis
 // Vessels that part have walls of their own from a gap of half a smaller radius on (kOneVolume): never more than this
 // is asked of them there.
-constexpr double kForkGap = 0.4;
-constexpr double kMostRounding = 0.2;     // sums of radii
-constexpr Touch kFork{0.5, 0.25};         // what then still counts as a place where vessels part
-constexpr double kNearlyParallel = 1e-6;  // derived: of lengths, more than what rounding at any angle does to an axis distance
+constexpr double kForkGap = 0.4;       // idle 0.28 to 0.56
+constexpr double kMostRounding = 0.2;  // sums of radii; safe 0.14 to 0.28
+constexpr Touch kFork{0.5, 0.25};      // what then still counts as a place where vessels part
+// Derived: of lengths, more than what rounding at any angle does to an axis distance.
+constexpr double kNearlyParallel = 1e-6;
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
 // The sphere of a cone that is closest to a point, for radii that count `weight` times.

@@ -7,8 +7,8 @@
 namespace vmesh {
 namespace {
 
-constexpr double kLeaf = 0.5;        // smaller radii
-constexpr Index kMostLeaves = 4096;  // per segment
+constexpr double kLeaf = 0.5;        // smaller radii; safe 0.35 to 0.7
+constexpr Index kMostLeaves = 4096;  // per segment; idle 2867 to 5734
 
 }  // namespace
 

@@ -5,7 +5,8 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kManySegments = 8;  // at a node: from there on it pays to note what it was joined to
+// At a node: from there on it pays to note what it was joined to; idle 6 to 11.
+constexpr std::size_t kManySegments = 8;
 
 }  // namespace
 

@@ -14,15 +14,20 @@
 namespace vmesh {
 namespace {
 
-constexpr double kSpare = 0.05;           // of the share that may be taken, so that rounds of moving end
-constexpr double kFarApart = 0.25;        // of the distance wanted: axes further apart than that tell the direction
-constexpr double kCrossing = 0.2;         // sine of the angle between axes from which on they cross
-constexpr double kNearlyTouching = 1e-3;  // radii: axes closer than that tell no direction
-constexpr double kSideways = 0.5;         // cosine: more aslant to its axis, a vessel is not moved
-constexpr double kSameDirection = 0.7;    // cosine
-constexpr double kSamePart = 0.3;         // of a shift: where it moves less, another is added
-constexpr double kFarthest = 2.2;         // sums of radii that a vessel is moved
-constexpr double kAlong = 12;             // sums of radii along the graph that one shift answers for
+// Of the share that may be taken, so that rounds of moving end; safe 0.035 to 0.07.
+constexpr double kSpare = 0.05;
+// Of the distance wanted: axes further apart than that tell the direction; safe 0.17 to 0.35.
+constexpr double kFarApart = 0.25;
+// Sine of the angle between axes from which on they cross; idle 0.14 to 0.28.
+constexpr double kCrossing = 0.2;
+// Radii: axes closer than that tell no direction; idle 0.0007 to 0.0014.
+constexpr double kNearlyTouching = 1e-3;
+// Cosine: more aslant to its axis, a vessel is not moved; safe 0.35 to 0.7.
+constexpr double kSideways = 0.5;
+constexpr double kSameDirection = 0.7;  // cosine; safe 0.49 to 0.98
+constexpr double kSamePart = 0.3;       // of a shift: where it moves less, another is added; idle 0.21 to 0.42
+constexpr double kFarthest = 2.2;       // sums of radii that a vessel is moved; idle 1.5 to 3.1
+constexpr double kAlong = 12;           // sums of radii along the graph that one shift answers for; idle 8.4 to 17
 
 // A leaf of one vessel that is too close to another.
 struct CloseLeaf {

@@ -13,15 +13,17 @@ namespace vmesh {
 namespace {
 
 // Opposite walls are rounded over a gap of 2 * blend smaller radii, and meet at half of it.
-constexpr double kReach = 2;
+constexpr double kReach = 2;  // safe 1.4 to 2.8
 // Vessels have parted that are farther from each other than what counts as one volume, and come near again where they
 // are nearer than this. In between they still see each other, but the blend must not join them. (contact_pairs.cpp asks
 // no more of a fork.) On vessel_portal, whose hairpin comes to 0.42, the mean error is 3 % larger with 0.5.
 constexpr Touch kNearAgain{0.4, kOneVolume.larger};
-constexpr double kMostBlend = 0.5;  // above, walls that part and come near again would be joined though they part
-constexpr double kSpare = 0.9;      // of a gap: spheres half a radius apart lack something of a cone (kOneVolume)
+// Above, walls that part and come near again would be joined though they part; safe 0.35 to 0.7.
+constexpr double kMostBlend = 0.5;
+// Of a gap: spheres half a radius apart lack something of a cone (kOneVolume); safe 0.63 to 1.3.
+constexpr double kSpare = 0.9;
 // By which the share of the blend grows, per mean radius along the graph. With 1, creases by turns are harder to prove.
-constexpr double kReturn = 0.25;
+constexpr double kReturn = 0.25;  // safe 0.17 to 0.35
 
 // Pairs of spheres that face each other over a gap, around those that have come near again. Between these and where the
 // vessels part there is a widest place: up to there they belong to the one or the other.

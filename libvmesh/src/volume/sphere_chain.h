@@ -77,8 +77,9 @@ class SphereChain {
   }
 
  private:
-  static constexpr double kSampling = 0.5;  // mean radii between two spheres that stand for a cone
-  static constexpr int kMaxSamples = 200;   // per cone
+  // Mean radii between two spheres that stand for a cone; safe 0.35 to 0.7.
+  static constexpr double kSampling = 0.5;
+  static constexpr int kMaxSamples = 200;  // per cone; safe 140 to 280
 
   struct Sphere {
     Vec3 center;

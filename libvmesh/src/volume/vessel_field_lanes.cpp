@@ -12,14 +12,16 @@ namespace vmesh {
 namespace {
 
 // Radii from the hint up to which single precision will do: there it is good to a few 1e-5 of them.
-constexpr double kFar = 128;
+constexpr double kFar = 128;       // idle 90 to 179
 constexpr double kLargest = 1e30;  // derived: squares of it stay in the range of double, and its own in that of float
-constexpr int kMostSteps = 64;      // from hint to hint; then double precision decides, as between two as near
-constexpr double kLonely = 2.5;     // radii around an axis in which it is noted if there are no other cones
+// From hint to hint; then double precision decides, as between two as near; idle 45 to 90.
+constexpr int kMostSteps = 64;
+// Radii around an axis in which it is noted if there are no other cones; idle 1.8 to 3.5.
+constexpr double kLonely = 2.5;
 constexpr float kNowhere = -1e30f;  // derived: the radius of a cone that is near nothing, in the range of float
 
 // Relative: covers the rounding in a distance and in the bound by which lanes are skipped.
-constexpr float kMargin = 1e-5f;
+constexpr float kMargin = 1e-5f;  // idle 7e-6 to 1.4e-5
 
 }  // namespace
 

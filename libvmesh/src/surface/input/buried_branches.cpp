@@ -8,10 +8,12 @@
 namespace vmesh {
 namespace {
 
-constexpr double kPiece = 0.5;         // radii: length of the pieces that have to lie in one cone each
-constexpr double kSlack = 0.1;         // radii that a piece may stand out
-constexpr double kNeedle = 0.5;        // of a sphere's radius: thinner spheres may stand out of it ...
-constexpr double kNeedleSlack = 0.25;  // ... by this part of it where a branch ends
+// Radii: length of the pieces that have to lie in one cone each; idle 0.35 to 0.7.
+constexpr double kPiece = 0.5;
+constexpr double kSlack = 0.1;  // radii that a piece may stand out; idle 0.07 to 0.14
+// Of a sphere's radius: thinner spheres may stand out of it ... (safe 0.35 to 0.7).
+constexpr double kNeedle = 0.5;
+constexpr double kNeedleSlack = 0.25;  // ... by this part of it where a branch ends; safe 0.17 to 0.35
 constexpr int kMaxPieces = 2000;       // derived: per segment; a hair that long is not buried, or not worth finding out
 
 class Burial {

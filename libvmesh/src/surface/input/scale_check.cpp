@@ -9,7 +9,7 @@ namespace vmesh {
 namespace {
 
 // Ninth powers of lengths and of their inverses stay in the range of double; nothing here takes higher ones.
-constexpr double kLongest = 1e30, kShortest = 1e-30;
+constexpr double kLongest = 1e30, kShortest = 1e-30;  // kShortest: idle 7e-31 to 1.4e-30
 // Where positions are rounded to more than a thousandth of the radius, a cross-section is no circle any more.
 constexpr double kRoundingsPerRadius = 1000;
 

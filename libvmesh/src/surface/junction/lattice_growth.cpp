@@ -6,11 +6,15 @@
 namespace vmesh {
 namespace {
 
-constexpr double kNearestToPoint = 0.25;  // of an edge: a surface vertex keeps that far from lattice points
-constexpr double kInside = 0.05;          // spacings below the boundary from which on a point counts as inside
-constexpr double kFarInside = 1.5;        // spacings below the boundary from which on depths need not be exact
-constexpr double kDepthStep = 1e-6;       // radii below which depths count as equal
-constexpr double kBlockedDepth = 0.4;     // spacings below the boundary at which a blocked point asks for a handle
+// Of an edge: a surface vertex keeps that far from lattice points; safe 0.17 to 0.35.
+constexpr double kNearestToPoint = 0.25;
+// Spacings below the boundary from which on a point counts as inside; safe 0.035 to 0.07.
+constexpr double kInside = 0.05;
+// Spacings below the boundary from which on depths need not be exact; safe 1 to 2.1.
+constexpr double kFarInside = 1.5;
+constexpr double kDepthStep = 1e-6;  // radii below which depths count as equal; idle 7e-7 to 1.4e-6
+// Spacings below the boundary at which a blocked point asks for a handle; idle 0.28 to 0.56.
+constexpr double kBlockedDepth = 0.4;
 
 class LatticeGrowth {
  public:
@@ -208,7 +212,7 @@ class LatticeGrowth {
   const VesselField& field_;
   const GradedLattice& lattice_;
   std::vector<Point> points_;
-  std::vector<std::uint8_t> in_;                                 // the set
+  std::vector<std::uint8_t> in_;                         // the set
   std::priority_queue<std::pair<double, Index>> queue_;  // depth, point
   std::vector<Index> seen_by_;                           // the point last added that has looked at this one
   std::vector<Index> part_, link_;                       // of parts_around()

@@ -7,7 +7,7 @@
 namespace vmesh {
 namespace {
 
-constexpr int kFewestOnCap = 4;  // vertices of a cap's ring: three would be a face
+constexpr int kFewestOnCap = 4;  // vertices of a cap's ring: three would be a face; safe 3 to 6
 
 std::vector<Index> reversed(std::vector<Index> loop) {
   std::reverse(loop.begin(), loop.end());

@@ -22,14 +22,15 @@ struct Rung {
   double finer;  // radius of fine spots at faults, in those of the thinnest vessel there; 0: none
   bool guarded;  // no step is taken after which faces cross
 };
-constexpr double kMended = 0.5;  // skewness above which triangles are mended at any price but soundness
+// Skewness above which triangles are mended at any price but soundness; safe 0.35 to 0.5, above not sound.
+constexpr double kMended = 0.5;
 // Where there are faults, nothing is refined for the limit on the error any more once the guard is there, radii around
 // them. The boundary may have a step there, at which finer triangles prove nothing and stand on edge.
-constexpr double kCalm = 2;
-constexpr int kFirstGuarded = 4;  // of the rungs below: where a hub starts
+constexpr double kCalm = 2;       // idle 1.4 to 2.8
+constexpr int kFirstGuarded = 4;  // of the rungs below: where a hub starts; idle 3 to 6
 // Free rings at a hub that are left to it. Measured on stars of 500 and 1,000: rims cross without, with 2 and 4 none
 // do.
-constexpr int kRoomAtHub = 2;
+constexpr int kRoomAtHub = 2;  // idle 1 to 3
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 constexpr Rung kLadder[kRungs] = {{0, 0, false}, {2, 0, false}, {3, 0, false},  {3, 1, false},
                                   {3, 0, true},  {3, 1, true},  {5, 0.5, true}, {kEverywhere, 0.5, true}};

@@ -10,7 +10,8 @@ namespace vmesh {
 
 namespace {
 
-constexpr double kHighestShell = 0.5;  // radii: no use in looking at the other side of the vessel
+// Radii: no use in looking at the other side of the vessel; idle 0.35 to 0.7.
+constexpr double kHighestShell = 0.5;
 
 }  // namespace
 

@@ -14,15 +14,21 @@
 namespace vmesh {
 namespace {
 
-constexpr double kFilled = 0.25;      // of the limit: leaves room for what is between vertices. 0.1 to 0.5 do as well
-constexpr int kSteps = 12;            // of Newton's method; three or four as a rule
-constexpr double kSharp = 0.02;       // length of the sum of two walls' normals below which they are parallel
-constexpr double kFacing = 0.5;       // cosine between the walls at an edge's ends above which it lies along one wall
-constexpr double kInGap = 0.25;       // an edge's middle in the gap is not so much nearer to one wall than to the other
-constexpr double kFarthest = 10;      // limits: an edge so high above the gap's end does not end in a notch
-constexpr double kBadForNow = 0.995;  // skewness that flips may mend
+// Of the limit: leaves room for what is between vertices. 0.1 to 0.5 do as well; idle 0.17 to 0.35.
+constexpr double kFilled = 0.25;
+constexpr int kSteps = 12;  // of Newton's method; three or four as a rule; idle 8 to 17
+// Length of the sum of two walls' normals below which they are parallel; idle 0.014 to 0.028.
+constexpr double kSharp = 0.02;
+// Cosine between the walls at an edge's ends above which it lies along one wall; idle 0.35 to 0.7.
+constexpr double kFacing = 0.5;
+// An edge's middle in the gap is not so much nearer to one wall than to the other; idle 0.17 to 0.35.
+constexpr double kInGap = 0.25;
+// Limits: an edge so high above the gap's end does not end in a notch; idle 7 to 14.
+constexpr double kFarthest = 10;
+constexpr double kBadForNow = 0.995;                       // skewness that flips may mend; idle 0.7 to 1.4
 constexpr double kSlides[] = {0, 0.15, -0.15, 0.3, -0.3};  // of the edge, along the notch
-constexpr int kRounds = 2;  // in a row without fewer unproven faces; the trees below have one at most
+// In a row without fewer unproven faces; the trees below have one at most; idle 1 to 3.
+constexpr int kRounds = 2;
 
 // Ways to go about it, each from the first surface, until all is proven. The first is enough on vessel_portal and
 // tree119 at 10 % and 5 % and on tree1560 at 10 %; the second is for one of 45 notches of tree1560 at 5 %, the third

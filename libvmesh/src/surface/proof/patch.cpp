@@ -8,7 +8,7 @@ namespace vmesh {
 namespace {
 
 constexpr Triangle kDead = {kNone, kNone, kNone};
-constexpr int kMendRounds = 4;
+constexpr int kMendRounds = 4;  // idle 3 to 6
 
 bool has(const Triangle& f, Index v) { return std::find(f.begin(), f.end(), v) != f.end(); }
 

@@ -13,7 +13,7 @@ namespace vmesh {
 double balanced_ring_radius(double around);
 
 /// Share of the error limit up to which vertices are lifted: the rest is for what lies between them.
-inline constexpr double kShareOfLimit = 0.95;
+inline constexpr double kShareOfLimit = 0.95;  // safe 0.66 to 1.3
 
 /// Target edge length in vessel radii at `around` vertices around a vessel.
 double edge_length_per_radius(double around);
@@ -76,7 +76,7 @@ class SweepState {
     return agreement(target.position, point(b), point(c), target.normal + surface.gradient[b] + surface.gradient[c]);
   }
   /// Least agreement at which a face counts as upright.
-  static constexpr double kMinAgreement = 0.2;
+  static constexpr double kMinAgreement = 0.2;  // safe 0.14 to 0.28
 
   /// Whether the face vbc stays upright and does not turn far when `v` moves to `target`.
   bool stays_upright(Vertex v, Vertex b, Vertex c, const Landing& target) const;
@@ -106,8 +106,8 @@ class SweepState {
 
  private:
   static constexpr char kActive = 1, kStirred = 2;
-  static constexpr double kOffBoundary = 0.01;  // vessel radii
-  static constexpr double kProjectionTolerance = 1e-3;
+  static constexpr double kOffBoundary = 0.01;          // vessel radii; safe 0.007 to 0.014
+  static constexpr double kProjectionTolerance = 1e-3;  // safe 0.0007 to 0.0014
 
   static double agreement(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& gradient_sum);
 

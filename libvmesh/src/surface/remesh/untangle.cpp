@@ -5,8 +5,8 @@
 namespace vmesh {
 namespace {
 
-constexpr int kRings = 2;  // around a tangle that take part
-constexpr int kPasses = 5;
+constexpr int kRings = 2;   // around a tangle that take part; safe 1 to 3
+constexpr int kPasses = 5;  // safe 4 to 7
 
 void sort_unique(std::vector<Vertex>& vertices) {
   std::sort(vertices.begin(), vertices.end());

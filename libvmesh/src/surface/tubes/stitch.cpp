@@ -7,7 +7,7 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kStarts = 6;  // places from which a band is tried
+constexpr std::size_t kStarts = 6;  // places from which a band is tried; idle 4 to 8
 constexpr double kTie = 1 - 1e-9;   // derived: of a value; what is not less than that is equal but for rounding
 
 // Shortest way through the grid of pairs (bottom i, top j) from (0, start) once around both loops.
