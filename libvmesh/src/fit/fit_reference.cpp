@@ -15,9 +15,9 @@
 namespace vmesh {
 namespace {
 
-// Roberts' R2, as sample_surface() does.
 constexpr double kReach = 1;  // local radii from the round cones: as far as bulges go
 constexpr double kRim = 0.7;  // cosine of the angle between the normals on both sides of it, at most
+// Roberts' R2, as sample_surface() does.
 constexpr double kPlastic = 1.32471795724474602596;
 
 struct HalfEdge {

@@ -35,8 +35,8 @@ constexpr int kRepairs = 4, kRepairPower = 8;  // of the triangles that a split 
 constexpr double kEvenShare = 0.5;             // of the error that 95 % keep to: what it is around most vertices
 constexpr double kAim = 0.92;                  // of the error, while resizing: with few samples a little is missed
 // RMS distances from which on a place, as a ridge that a triangle lies across, gets a vertex of its own. Measured on
-// SU201, nine starts (growth with nodes left out at 0 to .8): Hausdorff .278 in the mean with 4, .279 with 5, .288 with
-// 7; safe from 4 to 7.
+// SU201, nine starts (growth with nodes left out at 0 to .8): Hausdorff .274 in the mean with 4 and 5, .288
+// with 7; safe from 4 to 7.
 constexpr double kFar = 5;
 constexpr int kMostPlaces = 6;
 constexpr int kFirstRounds = 3, kLastRounds = 4;

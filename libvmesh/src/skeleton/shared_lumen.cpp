@@ -20,7 +20,7 @@ constexpr double kFarthest = 1;
 constexpr double kLongerWay = 1.5, kLongestWay = 20;
 // How wide the lumen is at its narrowest between the two, in smaller radii. Two round vessels that cross each other's
 // walls as little as kOverlapping have 0.44. Measured on two portal and two hepatic veins, fitted, at .65 to .8:
-// Hausdorff 1.85 to 2.17, .56 to .97, 1.2 to 4.0 and 1.7 to 4.9 mm, of 2.06, .62, 3.2 and 4.7 without merging; what is
+// Hausdorff 1.85 to 2.17, .56 to .97, 1.2 to 4.0 and 1.7 to 5.0 mm, of 2.06, .62, 3.2 and 4.7 without merging; what is
 // left is a single crevice each time, here or there.
 constexpr double kNeck = 0.7;
 // Between nodes of both legs on the way to where they meet, in the sum of their radii: with more they go around
