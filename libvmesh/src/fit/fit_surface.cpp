@@ -15,6 +15,7 @@
 #include "vmesh/mesh/topology.h"
 
 #include "fit/correspondence.h"
+#include "fit/farthest.h"
 #include "fit/guarded_step.h"
 #include "fit/least_squares.h"
 #include "fit/reshaping.h"
@@ -92,53 +93,10 @@ void check_memory(std::size_t vertices, const TriMesh& reference) {
       "allow fewer vertices or a larger error, or make the reference coarser");
 }
 
-// A point of the surface and what is around it, mm.
-struct Place {
-  Vec3 position;
-  double reach;
-
-  bool holds(const Vec3& p) const { return (p - position).squaredNorm() < reach * reach; }
-};
-
-Vec3 point_of(const FitMesh& surface, const Match& match) {
-  const auto [a, b, c] = surface.corners(match.face);
-  return match.weights[0] * a + match.weights[1] * b + match.weights[2] * c;
-}
-
-Place place_of(const FitMesh& surface, const Match& match) {
-  return {point_of(surface, match), surface.mean_edge(surface.faces[match.face][0])};
-}
-
-// Outside of some places.
-Match farthest_match(const FitMesh& surface, const Matches& matches, const std::vector<Place>& left_alone) {
-  Match farthest;
-  for (const auto* list : {&matches.from_surface, &matches.from_reference}) {
-    for (const Match& match : *list) {
-      if (match.face == kNone || std::abs(match.distance) <= std::abs(farthest.distance)) continue;
-      const Vec3 p = point_of(surface, match);
-      if (std::none_of(left_alone.begin(), left_alone.end(), [&](const Place& place) { return place.holds(p); }))
-        farthest = match;
-    }
-  }
-  return farthest;
-}
-
 double worst_skewness(const FitMesh& surface) {
   double worst = 0;
   for (Index f = 0; f < surface.faces.size(); ++f) worst = std::max(worst, skewness_of(surface, f));
   return worst;
-}
-
-// Puts a vertex at the far end of a match, on a side of the match's face.
-void split_at(FitMesh& surface, const Match& match, int side) {
-  const Triangle face = surface.faces[match.face];
-  const Index a = face[(side + 1) % 3], b = face[(side + 2) % 3];
-  if (surface.face_of(a, b) == kNone || surface.face_of(b, a) == kNone) return;
-  const Vec3 p = point_of(surface, match) - match.distance * match.direction;
-  const FitMesh::Vertex &first = surface.vertices[a], &second = surface.vertices[b];
-  surface.split(a, b,
-                {p, std::min(first.cone, second.cone), kNone, 0.5 * (first.size + second.size),
-                 0.5 * (first.base_size + second.base_size)});
 }
 
 class Fit {
@@ -198,7 +156,6 @@ class Fit {
       step(matches);
       reshape(1, true);
     }
-    harsh_ = false;
     if (options_.resize) resize();
     if (options_.resize && !to_error_) keep_to_most_vertices();
     finish();
@@ -296,7 +253,7 @@ class Fit {
   void put_vertex(const Match& match, int side) {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       split_at(surface, match, side);
-      flip_closer(surface, frozen, harsh_);
+      flip_closer(surface, frozen, false);
       repair(surface, frozen);
     });
     pack();
@@ -342,10 +299,11 @@ class Fit {
                       [&](Index a, Index b, const Vec3& p) { return distance_at(surface, a, b, p); });
   }
 
-  void reshape(int power, bool more_even) {
+  // `first`: there are rounds left to repair what flips make skew.
+  void reshape(int power, bool first) {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
-      if (options_.resize) flip_closer(surface, frozen, harsh_);
-      if (options_.resize && more_even) flip_edges(surface, frozen, guard_);
+      if (options_.resize) flip_closer(surface, frozen, first);
+      if (options_.resize && first) flip_edges(surface, frozen, guard_);
       for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, power);
       repair(surface, frozen);
     });
@@ -401,7 +359,7 @@ class Fit {
     find_cones();
     step(matches_now(true));
     change_safely(surface_,
-                  [&](FitMesh& surface, const std::vector<char>& frozen) { flip_closer(surface, frozen, harsh_); });
+                  [&](FitMesh& surface, const std::vector<char>& frozen) { flip_closer(surface, frozen, false); });
     step(matches_now(false));
   }
 
@@ -429,7 +387,6 @@ class Fit {
   std::size_t most_vertices_ = 0, wanted_vertices_ = 0;
   double even_error_ = 0;  // mm, to have everywhere
   bool settled_ = false;   // the number of vertices
-  bool harsh_ = true;      // flips may make triangles skew, early enough for them to be repaired
   int rounds_ = 0;
   const Progress* progress_ = nullptr;
   double aim_ = 1;  // vertices to ask for, to get as many as wanted

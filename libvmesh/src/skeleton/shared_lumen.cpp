@@ -56,7 +56,6 @@ class Ways {
   }
 
   double to(Index n) const { return length_[n]; }
-  bool leads_to(Index n) const { return length_[n] < kFar; }
 
   std::vector<Index> way_from(Index n) const {
     std::vector<Index> way;
@@ -121,7 +120,8 @@ std::vector<Pair> pairs_side_by_side(const Graph& graph) {
     ways.find(a, longest);
     for (Pair& pair : near) {
       const Index b = pair.a == a ? pair.b : pair.a;
-      if (!ways.leads_to(b) || ways.to(b) < kLongerWay * distance_between(graph, a, b)) continue;
+      const double relative = ways.to(b) / distance_between(graph, a, b);
+      if (relative < kLongerWay || relative > kLongestWay) continue;
       pair.way = ways.way_from(b);
       if (stays_together(graph, pair.way)) pairs.push_back(std::move(pair));
     }
