@@ -11,6 +11,7 @@
 #include "vmesh/surface/error_bound.h"
 
 #include "surface/pieces/gathering.h"
+#include "surface/pieces/parting.h"
 #include "surface/proof/notches.h"
 
 namespace vmesh {
@@ -35,6 +36,7 @@ class PieceGrower {
     for (int round = 0;; ++round) {
       gathered_ = gather(tubes_, division_, pieces_);
       crossings_ = find_crossings();
+      if (!options_.max_error.is_set()) crossings_ = part_walls(gathered_, tubes_.field(), crossings_);
       if (options_.max_error.is_set())
         unproven_ = unproven_faces(gathered_.mesh, gathered_.binding, tubes_.field(), options_.max_error,
                                    Shells::along_normals);

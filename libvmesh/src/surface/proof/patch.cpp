@@ -119,8 +119,8 @@ Patch::Step Patch::flipping(const MeshEdge& e) const {
 
 // Its ends have no neighbours in common but the opposite corners of its faces, and neither lies at an opening.
 bool Patch::may_collapse(const MeshEdge& e) const {
+  if (!is_inner(e.a) || !is_inner(e.b)) return false;
   const std::vector<Index> at_a = around(e.a), at_b = around(e.b);
-  if (at_a.size() != faces_at_[e.a].size() + 1 || at_b.size() != faces_at_[e.b].size() + 1) return false;
   std::vector<Index> common;
   std::set_intersection(at_a.begin(), at_a.end(), at_b.begin(), at_b.end(), std::back_inserter(common));
   return common.size() == 4;

@@ -50,6 +50,8 @@ class Patch {
   bool may_flip(const MeshEdge& e) const;
   /// Whether the edge is there and has a face on either side.
   bool is_inner(const MeshEdge& e) const { return faces_of(e).size() == 2; }
+  /// Whether there are faces all around the vertex.
+  bool is_inner(Index v) const { return around(v).size() == faces_at_[v].size() + 1; }
   /// The corners of an inner edge's faces that are not its ends.
   std::array<Index, 2> opposite(const MeshEdge& e) const;
 
