@@ -163,5 +163,36 @@ TEST(Sight, EndsWithoutAStep) {
   }
 }
 
+// Two thick vessels less than half a radius apart, and between them a thread.
+Centerline thread_between_thick_ones() {
+  return {{{{0, 0, 0}, 2.5},
+           {{3.8, 0, 0}, 2.5},
+           {{6.2, 0.8, 0}, 0.06},
+           {{9.2, 0.8, 0.3}, 0.24},
+           {{9.6, -0.5, 0}, 2.9},
+           {{12.6, -0.5, 0}, 0.8}},
+          {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}}};
+}
+
+TEST(Sight, OfAThreadDoesNotJoinWhatDoesNotSeeEachOther) {
+  const Centerline centerline = thread_between_thick_ones();
+  const VesselField field(centerline, 0.5);
+  ASSERT_TRUE(sees(field, 2, 1) && sees(field, 2, 3));
+  ASSERT_FALSE(sees(field, 1, 3));
+  EXPECT_FALSE(field.are_blended(1, 3));
+  // The distance beside the thread changes by no more than the way does, whatever is the nearest.
+  constexpr double kStep = 1e-3;
+  for (const double beside : {0.1, 0.2, 0.3}) {
+    Index hint = 2;
+    double last = field.sample({6.2, 0.8 + beside, 0}, hint).distance;
+    for (double x = 6.2 + kStep; x < 7.2; x += kStep) {
+      const FieldSample s = field.sample({x, 0.8 + beside, 0}, hint);
+      EXPECT_LE(std::abs(s.distance - last), 1.01 * kStep) << beside << " beside at " << x;
+      hint = s.cone;
+      last = s.distance;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vmesh

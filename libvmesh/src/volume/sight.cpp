@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "vmesh/core/box_tree.h"
+
 #include "volume/sphere_chain.h"
 
 namespace vmesh {
@@ -223,6 +225,56 @@ Beyond look_beyond(const SphereChain& chain, const PairSet& touching, const Touc
   return beyond;
 }
 
+// Calls visit(i, j) for the pairs of segments in whose boxes, grown by half the widest gap of `wide`, there is a place
+// in common.
+template <class Visit>
+void visit_near(const Centerline& centerline, const Touch& wide, Visit&& visit) {
+  std::vector<Vec3> low, high;
+  for (const auto& [a, b] : centerline.segments()) {
+    const auto &from = centerline.node(a), &to = centerline.node(b);
+    const double widest = std::max(from.radius, to.radius), reach = widest + wide.gap(widest, widest) / 2;
+    low.push_back(from.position.cwiseMin(to.position).array() - reach);
+    high.push_back(from.position.cwiseMax(to.position).array() + reach);
+  }
+  BoxTree(low, high).visit_pairs([&](Index i, Index j) {
+    if ((low[i].array() <= high[j].array()).all() && (low[j].array() <= high[i].array()).all()) visit(i, j);
+  });
+}
+
+bool are_near(const SphereChain& chain, Index i, Index j, const Touch& wide) {
+  bool near = false;
+  chain.visit_spheres(
+      i, [&](Index p) { chain.visit_spheres(j, [&](Index q) { near = near || chain.touch(p, q, wide); }); });
+  return near;
+}
+
+// Segments that do not see each other, but a third one sees both, as where two thick ones come close along a thin one
+// between them: seen from there they must not be blended either, or the boundary would have a step where sight ends.
+void keep_strangers_apart(const Centerline& centerline, const SphereChain& chain, const Touch& wide, Sight& sight) {
+  std::vector<std::pair<Index, Index>> strangers;
+  visit_near(centerline, wide, [&](Index i, Index j) {
+    const bool known = sight.local.contains(i, j) || sight.parting.contains(i, j) || sight.apart.contains(i, j);
+    if (!known && are_near(chain, i, j, wide)) strangers.emplace_back(i, j);
+  });
+  if (strangers.empty()) return;
+  std::vector<char> is_stranger(centerline.segments().size(), 0);
+  for (const auto& [i, j] : strangers) is_stranger[i] = is_stranger[j] = 1;
+  std::vector<std::vector<Index>> seen(is_stranger.size());
+  for (const PairSet* pairs : {&sight.local, &sight.parting}) {
+    for (const auto& [i, j] : pairs->pairs()) {
+      if (is_stranger[i]) seen[i].push_back(j);
+      if (is_stranger[j]) seen[j].push_back(i);
+    }
+  }
+  for (auto& row : seen) std::sort(row.begin(), row.end());
+  for (const auto& [i, j] : strangers) {
+    const std::vector<Index>& others = seen[j];
+    const bool meet =
+        std::ranges::any_of(seen[i], [&](Index c) { return std::binary_search(others.begin(), others.end(), c); });
+    if (meet) sight.apart.insert(i, j);
+  }
+}
+
 }  // namespace
 
 Sight sight_between_segments(const Centerline& centerline, double blend) {
@@ -254,6 +306,7 @@ Sight sight_between_segments(const Centerline& centerline, double blend) {
   for (const auto& [i, j] : seen.pairs().pairs()) {
     if (!sight.local.contains(i, j) && !sight.apart.contains(i, j)) sight.parting.insert(i, j);
   }
+  keep_strangers_apart(centerline, chain, wide, sight);
   return sight;
 }
 

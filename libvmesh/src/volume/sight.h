@@ -14,8 +14,9 @@ struct Sight {
   PairSet local;  ///< count as one volume
   /// One volume no longer, but the blend still reaches over what is between their walls.
   PairSet parting;
-  /// Have parted and come near again. They must not be joined, or the volume would have a tunnel that the graph lacks:
-  /// they do not see each other, and are not blended where others see both.
+  /// Have parted and come near again, or are near though they never touched along the graph. They must not be joined,
+  /// or the volume would have a tunnel that the graph lacks: they do not see each other, and are not blended where
+  /// others see both.
   PairSet apart;
   /// Of every node, the share of the blend that is left to it; empty where it is 1 for all. It is less where vessels
   /// that part turn into vessels apart: so little that the blend does not reach over the gap. From there it grows along
