@@ -42,17 +42,20 @@ std::size_t nodes_outside(const GenerateResult& result) {
   }));
 }
 
-void examine(const std::string& name, const Centerline& given, const GenerateOptions& options, const Settings& settings,
+void examine(const std::string& name, const Centerline& given, const GenerateOptions& wanted, const Settings& settings,
              Tally& tally) {
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   ++tally.cases;
   std::size_t left = 0;
-  Centerline centerline = given;
+  // As `vmesh generate` does: nodes that growth does not need are left out before vessels are separated.
+  SimplifiedCenterline simplified = simplify_for_growth(given, wanted);
+  const GenerateOptions options = after_simplification(wanted, simplified);
+  Centerline centerline = std::move(simplified.centerline);
   if (!settings.keep) {
     SeparationOptions separation;
     separation.blend = options.blend;
-    SeparatedCenterline separated = separate_contacts(given, separation);
+    SeparatedCenterline separated = separate_contacts(centerline, separation);
     left = separated.report.left.size();
     centerline = std::move(separated.centerline);
   }

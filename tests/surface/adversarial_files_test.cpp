@@ -25,7 +25,7 @@ TEST(AdversarialSwc, MeshesOrRefusesWithinBounds) {
     try {
       const Centerline centerline = load_centerline(entry.path()).cleaned.centerline;
       const GenerateResult result = testing::honest_surface(centerline);
-      testing::expect_sound_or_refused_with_reason(centerline);
+      testing::expect_sound(centerline);
       const Topology topology = measure_topology(result.mesh);
       EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented);
       // Grown at up to 4 vertices per unit, 7 expected, 1.5 times their sum allowed, and a ball for every component.

@@ -18,7 +18,10 @@ constexpr int kSectionSteps = 48;  // derived: 0.618^48 = 1e-10 of the axis
 // is asked of them there.
 constexpr double kForkGap = 0.4;       // idle 0.28 to 0.56
 constexpr double kMostRounding = 0.2;  // sums of radii; safe 0.14 to 0.28
-constexpr Touch kFork{0.5, 0.25};      // what then still counts as a place where vessels part
+// Largest radius of a cone against the one at which a gap of so many mm is turned into one of so many radii. A waist of
+// 1e-6 mm would ask for a gap of 260 radii.
+constexpr double kThinnest = 8;
+constexpr Touch kFork{0.5, 0.25};  // what then still counts as a place where vessels part
 // Derived: of lengths, more than what rounding at any angle does to an axis distance.
 constexpr double kNearlyParallel = 1e-6;
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
@@ -181,12 +184,16 @@ class PairFinder {
     if (pair.closest.excess >= 0) {
       const double r = cones_[i].radius(pair.closest.s), q = cones_[j].radius(pair.closest.t);
       if (pair.closest.excess >= most_rounding_ * (r + q)) return;
-      const double most = std::max(gap, are_parting(i, j) ? kForkGap : kMostRounding * (r + q) / std::min(r, q));
-      pair.gap = std::min(gap + rounding(pair) / std::min(r, q), most);
+      // The gap is asked for all along, also where radii are much larger.
+      const double smaller = std::max(std::min(r, q), std::min(largest(i), largest(j)) / kThinnest);
+      const double most = std::max(gap, are_parting(i, j) ? kForkGap : kMostRounding * (r + q) / smaller);
+      pair.gap = std::min(gap + rounding(pair) / smaller, most);
       pair.closest = closest_approach(cones_[i], cones_[j], pair.gap);
     }
     if (pair.closest.excess < 0) pairs_.push_back(pair);
   }
+
+  double largest(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
 
   // How far the walls come out towards each other because vessels branch there, mm. Seen from the axes: no wall comes
   // closer to the other than its blended distance from the other's axis tells.

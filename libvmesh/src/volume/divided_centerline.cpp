@@ -8,6 +8,7 @@ namespace vmesh {
 namespace {
 
 constexpr double kLeaf = 0.5;        // smaller radii; safe 0.35 to 0.7
+constexpr double kSteepest = 8;      // larger radius against the smaller, beyond which leaves need not become shorter
 constexpr Index kMostLeaves = 4096;  // per segment; idle 2867 to 5734
 
 }  // namespace
@@ -29,8 +30,8 @@ DividedCenterline composed(const DividedCenterline& outer, DividedCenterline inn
 }
 
 Index leaf_count_of(const Centerline& centerline, Index segment) {
-  const double smaller = std::min(centerline.radius_at(segment, 0), centerline.radius_at(segment, 1));
-  const double count = std::ceil(centerline.length(segment) / (kLeaf * smaller));
+  const auto [smaller, larger] = std::minmax({centerline.radius_at(segment, 0), centerline.radius_at(segment, 1)});
+  const double count = std::ceil(centerline.length(segment) / (kLeaf * std::max(smaller, larger / kSteepest)));
   return static_cast<Index>(std::clamp(count, 1.0, double{kMostLeaves}));
 }
 

@@ -83,6 +83,10 @@ void note_simplifications(const VesselTubes& tubes, const Junction& junction, st
 using Badness = std::pair<std::size_t, double>;
 constexpr Badness kNoBadness{0, 0};
 
+bool vessels_overlap(const std::vector<PieceFault>& faults) {
+  return std::any_of(faults.begin(), faults.end(), [](const PieceFault& fault) { return fault.vessels_overlap; });
+}
+
 Badness badness(const PieceSurface& piece, double mended) {
   return {piece.faults.size(), piece.worst_skewness > mended ? piece.worst_skewness : 0};
 }
@@ -102,8 +106,10 @@ class PieceMaker {
       PieceSurface piece = make(kLadder[rung]);
       piece.rung = rung;
       last = piece.faults;
+      const bool hopeless = vessels_overlap(last);
       if (rung == first || badness(piece, mended()) < badness(best, mended())) best = std::move(piece);
-      if (badness(best, mended()) == kNoBadness || is_hopeless(best)) break;
+      best.hopeless = hopeless && !best.faults.empty();
+      if (badness(best, mended()) == kNoBadness || hopeless) break;
     }
     return best;
   }
@@ -305,10 +311,6 @@ class PieceMaker {
 };
 
 }  // namespace
-
-bool is_hopeless(const PieceSurface& piece) {
-  return std::any_of(piece.faults.begin(), piece.faults.end(), [](const PieceFault& f) { return f.vessels_overlap; });
-}
 
 PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan) { return PieceMaker(context, plan).run(); }
 

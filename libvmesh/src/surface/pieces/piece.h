@@ -44,10 +44,8 @@ struct PieceSurface {
   double worst_skewness = 0;     ///< equiangle, of its triangles
   int rung = 0;                  ///< of the ladder at which it was found
   std::vector<PieceFault> faults;
+  bool hopeless = false;  ///< on some rung it was found that vessels overlap in it: it cannot be sound
 };
-
-/// Whether vessels overlap in it, so that it cannot be sound.
-bool is_hopeless(const PieceSurface& piece);
 
 /// What all pieces of a surface have in common.
 struct PieceContext {
@@ -62,7 +60,7 @@ struct PieceContext {
 inline constexpr int kRungs = 8;
 
 /// Makes a piece on the first rung on which it is sound and without bad triangles, or the one with the fewest faults.
-/// Where vessels overlap that do not belong together no rung would help: the first is taken.
+/// Once it is found that vessels overlap that do not belong together no further rung would help.
 PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan);
 
 }  // namespace vmesh
