@@ -64,6 +64,22 @@ TEST_F(Fit, AnErrorThatIsNotReachedIsToldByTheExitCode) {
   EXPECT_LE(read_surface(path("fitted.ply")).mesh.vertices.size(), 700u) << "the limit on vertices holds";
 }
 
+TEST_F(Fit, ABudgetIsANumberOfVerticesOrAnError) {
+  const Outcome few = fit({"--budget", "vertices=300", "--json", "@few.json"});
+  ASSERT_EQ(few.exit_code, 0) << few.err;
+  EXPECT_LE(read_surface(path("fitted.ply")).mesh.vertices.size(), 300u);
+  EXPECT_NE(Json::parse(read("few.json"))["options"].get<std::string>().find("--max-vertices 300"), std::string::npos);
+  ASSERT_EQ(fit({"--budget", "error=0.4mm"}).exit_code, 0);
+  const std::string by_budget = read("fitted.ply");
+  ASSERT_EQ(fit({"--fit-error", "0.4mm"}).exit_code, 0);
+  EXPECT_EQ(read("fitted.ply"), by_budget);
+  for (const char* budget : {"time=1s", "error=5%"}) {
+    const Outcome run = fit({"--budget", budget});
+    EXPECT_EQ(run.exit_code, 2) << budget;
+    EXPECT_NE(run.err.find("a fit takes budgets such as"), std::string::npos) << run.err;
+  }
+}
+
 TEST_F(Fit, GrowsAndFitsInOneGo) {
   const Outcome run = vmesh({"generate", "@y.swc", "--fit", "@scan.stl", "-o", "@one.ply", "--json", "@one.json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;

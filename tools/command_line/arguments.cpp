@@ -149,18 +149,10 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
           "0.3mm, 10% (of the local radius), or both, separated by a comma")
       ->type_name("Xmm|X%");
-  verb.add_option_function<std::string>(
-          "--budget",
-          [&arguments](const std::string& text) {
-            try {
-              arguments.budget = parse_budget(text);
-            } catch (const InvalidInput& error) {
-              throw CLI::ValidationError("--budget", error.what());
-            }
-          },
-          "choose the resolution: the finest surface with vertices=N at most, or grown within time=Xms, or the one "
-          "with the fewest vertices that keeps error=Xmm or error=X% everywhere")
-      ->type_name("vertices=N|time=Xms|error=X")
+  add_budget(verb, arguments.budget,
+             "choose the resolution: the finest surface with vertices=N at most, or grown within time=Xms, or the one "
+             "with the fewest vertices that keeps error=Xmm or error=X% everywhere")
+      .type_name("vertices=N|time=Xms|error=X")
       ->excludes("--around")
       ->excludes("--preset")
       ->excludes("--max-error");

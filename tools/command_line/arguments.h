@@ -88,6 +88,7 @@ struct FitArguments {
   std::filesystem::path output;
   WritingArguments writing;
   FittingArguments fitting;
+  std::optional<Budget> budget;  ///< says the fitting's max_vertices or its error
 };
 
 struct InfoArguments {

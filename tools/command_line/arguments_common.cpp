@@ -55,6 +55,19 @@ void group(CLI::App& verb, const std::string& heading, std::initializer_list<con
   for (const char* option : options) verb.get_option(option)->group(heading);
 }
 
+CLI::Option& add_budget(CLI::App& verb, std::optional<Budget>& budget, const std::string& help) {
+  return *verb.add_option_function<std::string>(
+      "--budget",
+      [&budget](const std::string& text) {
+        try {
+          budget = parse_budget(text);
+        } catch (const InvalidInput& error) {
+          throw CLI::ValidationError("--budget", error.what());
+        }
+      },
+      help);
+}
+
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {
   std::vector<double> numbers;
   std::istringstream list(text);

@@ -65,6 +65,9 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
 /// Where a report goes besides stdout, and its format there.
 void add_report(CLI::App& verb, std::filesystem::path& report, std::string& format);
 
+/// --budget, as parse_budget() reads it.
+CLI::Option& add_budget(CLI::App& verb, std::optional<Budget>& budget, const std::string& help);
+
 /// How a surface is measured against another one.
 void add_measuring(CLI::App& verb, double& tolerance_mm, std::size_t& samples);
 

@@ -90,6 +90,10 @@ void add_fit(CLI::App& app, FitArguments& arguments) {
   verb.add_option("--max-vertices", arguments.fitting.options.max_vertices,
                   "0: a twentieth more than the surface has, or as many as --fit-error takes")
       ->capture_default_str();
+  add_budget(verb, arguments.budget, "vertices=N: as --max-vertices N; error=Xmm: as --fit-error Xmm")
+      .type_name("vertices=N|error=Xmm")
+      ->excludes("--max-vertices")
+      ->excludes("--fit-error");
   verb.add_option("--threads", arguments.fitting.options.threads,
                   "to work on; 0: as many as there are; the result is the same")
       ->check(in_range(0, 4096))

@@ -44,9 +44,11 @@ std::vector<CenterlineBinding> binding_of(const LoadedSurface& surface, const Ce
 int run(const FitArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
+  FittingArguments fitting = arguments.fitting;
+  if (arguments.budget) set_budget(*arguments.budget, fitting.options);
   std::vector<std::filesystem::path> inputs = files_of(arguments.centerline.path);
   inputs.push_back(path);
-  inputs.push_back(arguments.fitting.reference.path);
+  inputs.push_back(fitting.reference.path);
   check_writing(arguments.output, arguments.writing);
   check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, inputs);
   LoadedSurface loaded = load_surface(arguments.input);
@@ -55,15 +57,17 @@ int run(const FitArguments& arguments, Console& console) {
   const VesselSurface surface = naming(path, [&] {
     return VesselSurface{loaded.mesh, binding_of(loaded, centerline), {}};
   });
-  const TriMesh reference = load_fit_reference(arguments.fitting, console);
+  const TriMesh reference = load_fit_reference(fitting, console);
   stop_if_interrupted();
-  const FitResult result = naming(
-      path, [&] { return fit_surface(surface, centerline, reference, arguments.fitting.options, console.progress()); });
+  const FitOptions& wanted = fitting.options;
+  const FitResult result =
+      naming(path, [&] { return fit_surface(surface, centerline, reference, wanted, console.progress()); });
   std::vector<std::string> warnings;
   log_fit(result.report, warnings, console);
-  const bool near = keeps_error(result.report, arguments.fitting.options.error, warnings, console);
+  const bool near = keeps_error(result.report, wanted.error, warnings, console);
   const std::string sha256 = sha256_of_file(path);
-  const std::string options = "fit" + describe(arguments.fitting);
+  std::string options = "fit" + describe(fitting);
+  if (wanted.max_vertices > 0) options += " --max-vertices " + std::to_string(wanted.max_vertices);
   const VesselSurface& fitted = result.surface;
   const SurfaceMeasurement measurement = measure_surface(fitted.mesh);
   if (measurement.self_intersections > 0) {
@@ -82,7 +86,7 @@ int run(const FitArguments& arguments, Console& console) {
     Json json = {{"schema", "vmesh.fit/1"},
                  {"generator", generator_json()},
                  {"input", {{"file", path.string()}, {"sha256", sha256}}},
-                 {"reference", arguments.fitting.reference.path.string()},
+                 {"reference", fitting.reference.path.string()},
                  {"output", arguments.output.string()},
                  {"options", options},
                  {"vertices", result.surface.mesh.vertices.size()},

@@ -1,5 +1,7 @@
 #include "verbs/fitting.h"
 
+#include <cmath>
+
 #include "command_line/inputs.h"
 #include "command_line/usage_error.h"
 
@@ -7,6 +9,16 @@ namespace vmesh::tool {
 
 bool has_options(const ReferenceOptions& image) {
   return image.label || image.threshold || image.spacing > 0 || image.smooth > 0;
+}
+
+void set_budget(const Budget& budget, FitOptions& options) {
+  if (budget.kind == Budget::Kind::vertices) {
+    options.max_vertices = budget.vertices;
+    return;
+  }
+  if (budget.kind != Budget::Kind::error || !std::isfinite(budget.error.mm) || std::isfinite(budget.error.relative))
+    throw UsageError("a fit takes budgets such as vertices=5000 and error=0.2mm, not " + to_string(budget));
+  options.error = budget.error.mm;
 }
 
 TriMesh load_fit_reference(const FittingArguments& arguments, Console& console) {

@@ -88,15 +88,9 @@ void apply_budget_to_fit(GenerateArguments& arguments) {
     throw UsageError("--max-error is a limit on the distance to round cones; with --fit see --fit-error");
   fitting.options.threads = arguments.options.threads;
   if (!arguments.budget) return;
-  const Budget budget = *arguments.budget;
-  if (budget.kind == Budget::Kind::vertices) {
-    fitting.options.max_vertices = budget.vertices;  // what is grown keeps to it as well
-    return;
-  }
-  if (budget.kind != Budget::Kind::error || !std::isfinite(budget.error.mm) || std::isfinite(budget.error.relative))
-    throw UsageError("--fit takes budgets such as vertices=5000 and error=0.2mm, not " + to_string(budget));
-  fitting.options.error = budget.error.mm;
-  arguments.budget.reset();
+  set_budget(*arguments.budget, fitting.options);
+  // What is grown keeps to a number of vertices as well.
+  if (arguments.budget->kind == Budget::Kind::error) arguments.budget.reset();
 }
 
 std::filesystem::path fit_reference(const GenerateArguments& arguments) {
