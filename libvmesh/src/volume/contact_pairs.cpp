@@ -19,7 +19,7 @@ constexpr int kSectionSteps = 48;  // derived: 0.618^48 = 1e-10 of the axis
 constexpr double kForkGap = 0.4;       // idle 0.28 to 0.56
 constexpr double kMostRounding = 0.2;  // sums of radii; safe 0.14 to 0.28
 // Largest radius of a cone against the one at which a gap of so many mm is turned into one of so many radii. A waist of
-// 1e-6 mm would ask for a gap of 260 radii.
+// 1e-6 mm would ask for a gap of 260 radii. Idle 5.6 to 11.
 constexpr double kThinnest = 8;
 constexpr Touch kFork{0.5, 0.25};  // what then still counts as a place where vessels part
 // Derived: of lengths, more than what rounding at any angle does to an axis distance.
