@@ -629,8 +629,9 @@ TEST(Separation, MindsTheRoundingAtBranches) {
   }
 }
 
-// Two vessels side by side that share half of their lumens, one with a waist of next to nothing: neither is the gap of
-// the waist asked for elsewhere, nor are the segments beside it divided to its size.
+// Two vessels side by side that share half of their lumens, one with a waist of next to nothing: the segments beside it
+// are not divided to its size. That its gap is not asked for elsewhere, Neuron_small_radius.swc among the adversarial
+// files tests.
 TEST(Separation, OfAVesselWithAWaist) {
   const auto beside_each_other = [](double waist) {
     CenterlineBuilder builder;
