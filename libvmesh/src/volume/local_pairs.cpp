@@ -10,10 +10,13 @@ constexpr std::size_t kManySegments = 8;
 
 }  // namespace
 
-PairSet pairs_in_touch(const SphereChain& chain, const Touch& touch) {
+PairSet pairs_in_touch(const SphereChain& chain, const Touch& touch,
+                       const std::function<void(Index, Index)>& visit_next) {
   PairSet touching;
   const auto note = [&](Index p, Index q) {
-    if (p != q && chain.touch(p, q, touch)) touching.insert(p, q);
+    const bool touches = p == q || chain.touch(p, q, touch);
+    if (touches && p != q) touching.insert(p, q);
+    return touches;
   };
   for (Index p = 0; p < chain.size(); ++p) {
     chain.visit_next(p, [&](Index q) {
@@ -23,7 +26,9 @@ PairSet pairs_in_touch(const SphereChain& chain, const Touch& touch) {
   }
   for (std::size_t n = 0; n < touching.pairs().size(); ++n) {
     const auto [p, q] = touching.pairs()[n];
-    chain.visit_next_pairs(p, q, note);
+    chain.visit_next_pairs(p, q, [&](Index next_p, Index next_q) {
+      if (!note(next_p, next_q) && visit_next) visit_next(next_p, next_q);
+    });
   }
   return touching;
 }

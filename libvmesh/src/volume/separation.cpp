@@ -330,6 +330,10 @@ SeparatedCenterline separate_contacts(const Centerline& centerline, const Separa
                                       const Progress& progress) {
   check(options);
   std::vector<Contact> before = find_contacts(VesselField(centerline, options.blend), options.gap);
+  if (before.empty()) {
+    DividedCenterline whole = undivided(centerline);
+    return {std::move(whole.centerline), std::move(whole.pieces), {}};
+  }
   SeparatedCenterline separated = narrow_moved(centerline, Moving(centerline, options.slope), options, progress);
   const bool enough = separated.report.left.empty() && separated.report.max_taken_relative <= options.move_beyond;
   if (!enough && options.move_beyond < options.most_taken && options.max_moves > 0) {

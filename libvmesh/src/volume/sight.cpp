@@ -207,23 +207,31 @@ class Rounding {
 
 // Pairs of spheres that are reached from touching ones over those that are in touch in the wider sense only; and where
 // these are too near again.
-struct Beyond {
-  PairSet parting, met_again;
-};
+class Beyond {
+ public:
+  Beyond(const SphereChain& chain, const Touch& wide) : chain_(chain), wide_(wide) {}
 
-Beyond look_beyond(const SphereChain& chain, const PairSet& touching, const Touch& wide) {
-  Beyond beyond;
-  const auto note = [&](Index p, Index q) {
-    if (p == q || touching.contains(p, q) || !chain.touch(p, q, wide)) return;
-    (chain.touch(p, q, kNearAgain) ? beyond.met_again : beyond.parting).insert(p, q);
-  };
-  for (const auto& [p, q] : touching.pairs()) chain.visit_next_pairs(p, q, note);
-  for (std::size_t n = 0; n < beyond.parting.pairs().size(); ++n) {
-    const auto [p, q] = beyond.parting.pairs()[n];
-    chain.visit_next_pairs(p, q, note);
+  /// A pair that is not in touch, next to one that is.
+  void note(Index p, Index q) {
+    if (!chain_.touch(p, q, wide_)) return;
+    (chain_.touch(p, q, kNearAgain) ? met_again_ : parting_).insert(p, q);
   }
-  return beyond;
-}
+  void look_on(const PairSet& touching) {
+    for (std::size_t n = 0; n < parting_.pairs().size(); ++n) {
+      const auto [p, q] = parting_.pairs()[n];
+      chain_.visit_next_pairs(p, q, [&](Index next_p, Index next_q) {
+        if (next_p != next_q && !touching.contains(next_p, next_q)) note(next_p, next_q);
+      });
+    }
+  }
+  const PairSet& parting() const { return parting_; }
+  const PairSet& met_again() const { return met_again_; }
+
+ private:
+  const SphereChain& chain_;
+  const Touch& wide_;
+  PairSet parting_, met_again_;
+};
 
 // Calls visit(i, j) for the pairs of segments in whose boxes, grown by half the widest gap of `wide`, there is a place
 // in common.
@@ -279,13 +287,18 @@ void keep_strangers_apart(const Centerline& centerline, const SphereChain& chain
 
 Sight sight_between_segments(const Centerline& centerline, double blend) {
   const SphereChain chain(centerline);
-  const PairSet touching = pairs_in_touch(chain, kOneVolume);
+  const Touch wide{kReach * blend, kOneVolume.larger};
+  const bool sees_beyond = wide.smaller > kOneVolume.smaller && blend <= kMostBlend;
+  Beyond beyond(chain, wide);
+  const PairSet touching = pairs_in_touch(chain, kOneVolume, [&](Index p, Index q) {
+    if (sees_beyond) beyond.note(p, q);
+  });
   Sight sight;
   sight.local = local_segments(chain, touching);
-  const Touch wide{kReach * blend, kOneVolume.larger};
-  if (wide.smaller <= kOneVolume.smaller || blend > kMostBlend) return sight;
+  if (!sees_beyond) return sight;
 
-  const auto [parting, met_again] = look_beyond(chain, touching, wide);
+  beyond.look_on(touching);
+  const PairSet &parting = beyond.parting(), &met_again = beyond.met_again();
   SegmentPairs seen(chain), apart(chain);
   seen.join_all(parting);
   apart.join_all(met_again);

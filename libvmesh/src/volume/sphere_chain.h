@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -100,8 +101,9 @@ class SphereChain {
 };
 
 /// All pairs of different spheres in touch that can be reached from pairs of one and the same by moving either along
-/// the centerline without losing touch.
-PairSet pairs_in_touch(const SphereChain& chain, const Touch& touch);
+/// the centerline without losing touch. Calls visit_next(p, q) for those one step further, not in touch, once or more.
+PairSet pairs_in_touch(const SphereChain& chain, const Touch& touch,
+                       const std::function<void(Index, Index)>& visit_next = {});
 
 /// Joins the segments of pairs of spheres.
 class SegmentPairs {
