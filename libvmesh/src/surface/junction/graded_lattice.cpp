@@ -105,16 +105,20 @@ class GradedLattice::Maker {
   }
 
  private:
-  struct Node {
-    Tetrahedron corners;
-    Index child = kNone;  // the first of two; kNone: not bisected
-    std::array<Index, 4>
-        next;  // in the list of the tetrahedra around each corner: four times its number, and the corner
-  };
   struct Edge {
     int a, b;  // corners
     double length2;
   };
+  struct Node {
+    Tetrahedron corners;
+    Edge longest;
+    double coarsest2;     // no squared edge of what it was bisected into is longer
+    Index child = kNone;  // the first of two; kNone: not bisected
+    std::array<Index, 4>
+        next;  // in the list of the tetrahedra around each corner: four times its number, and the corner
+  };
+
+  static bool is_odd(double whole) { return (static_cast<std::int64_t>(whole) & 1) != 0; }
 
   // Lattice points are all even or all odd.
   template <class Visit>
@@ -122,10 +126,9 @@ class GradedLattice::Maker {
     const double reach = ball.radius + margin;
     for (double x = std::ceil(ball.center.x() - reach); x <= ball.center.x() + reach; ++x) {
       const double over_x = reach * reach - (x - ball.center.x()) * (x - ball.center.x());
-      const double parity = std::abs(std::fmod(x, 2));
       const auto first = [&](double low) {
         const double least = std::ceil(low);
-        return std::abs(std::fmod(least, 2)) == parity ? least : least + 1;
+        return is_odd(least) == is_odd(x) ? least : least + 1;
       };
       const double wide = std::sqrt(std::max(0.0, over_x));
       for (double y = first(ball.center.y() - wide); y <= ball.center.y() + wide; y += 2) {
@@ -169,7 +172,7 @@ class GradedLattice::Maker {
       const int other_axis = i % 2 == 0 ? u : v;  // along which ring[i] and the next differ
       const Index a = ring[i], b = ring[(i + 1) % 4];
       if (other_axis < d || a == kNone || b == kNone) continue;
-      const bool odd = std::fmod(at_[p].x(), 2) != 0;
+      const bool odd = is_odd(at_[p].x());
       const Tetrahedron corners = odd ? Tetrahedron{p, q, a, b} : Tetrahedron{a, b, p, q};
       for (const Index c : corners) ++around[c];
       add(corners);
@@ -178,7 +181,8 @@ class GradedLattice::Maker {
 
   Index add(const Tetrahedron& corners) {
     const auto number = static_cast<Index>(nodes_.size());
-    Node node{corners, kNone, {}};
+    const Edge longest = longest_edge(corners);
+    Node node{corners, longest, longest.length2, kNone, {}};
     for (int i = 0; i < 4; ++i) {
       node.next[i] = first_around_[corners[i]];
       first_around_[corners[i]] = 4 * number + i;
@@ -188,8 +192,7 @@ class GradedLattice::Maker {
   }
 
   // The first in order where two are as long: the odd points' of an unbisected one.
-  Edge longest_edge(Index t) const {
-    const Tetrahedron& corners = nodes_[t].corners;
+  Edge longest_edge(const Tetrahedron& corners) const {
     Edge longest{0, 1, 0};
     for (int a = 0; a < 4; ++a) {
       for (int b = a + 1; b < 4; ++b) {
@@ -223,27 +226,26 @@ class GradedLattice::Maker {
   }
 
   void refine(Index t, const LatticeBall& ball) {
-    const Edge longest = longest_edge(t);
+    if (nodes_[t].coarsest2 <= ball.longest * ball.longest) return;
+    const Edge longest = nodes_[t].longest;
     const Vec3 middle = 0.5 * (at_[nodes_[t].corners[longest.a]] + at_[nodes_[t].corners[longest.b]]);
     // All of it lies within a longest edge's length of the middle of that edge.
     const double reach = ball.radius + std::sqrt(longest.length2);
     if ((middle - ball.center).squaredNorm() > reach * reach) return;
-    if (nodes_[t].child == kNone) {
-      if (longest.length2 <= ball.longest * ball.longest) return;
-      bisect(t);
-    }
+    if (nodes_[t].child == kNone) bisect(t);
     const Index child = nodes_[t].child;
     refine(child, ball);
     refine(child + 1, ball);
+    nodes_[t].coarsest2 = std::max(nodes_[child].coarsest2, nodes_[child + 1].coarsest2);
   }
 
   // With all others around its longest edge, after those among them that have a longer one.
   void bisect(Index t) {
-    const Edge edge = longest_edge(t);
+    const Edge edge = nodes_[t].longest;
     const Index a = nodes_[t].corners[edge.a], b = nodes_[t].corners[edge.b];
     std::vector<Index> around = around_edge(a, b);
     for (std::size_t i = 0; i < around.size();) {
-      const Edge other = longest_edge(around[i]);
+      const Edge& other = nodes_[around[i]].longest;
       if (key_of_pair(nodes_[around[i]].corners[other.a], nodes_[around[i]].corners[other.b]) == key_of_pair(a, b)) {
         ++i;
         continue;
@@ -302,7 +304,7 @@ class GradedLattice::Maker {
     lattice_.around_offsets_.assign(at_.size() + 1, 0);
     for (Index t = 0; t < nodes_.size(); ++t) {
       if (nodes_[t].child != kNone) continue;
-      const double longest = std::sqrt(longest_edge(t).length2);
+      const double longest = std::sqrt(nodes_[t].longest.length2);
       for (const Index c : nodes_[t].corners) {
         lattice_.longest_[c] = std::max(lattice_.longest_[c], longest);
         ++lattice_.around_offsets_[c + 1];
