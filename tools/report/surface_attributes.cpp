@@ -30,9 +30,13 @@ MeshAttributes surface_attributes(const TriMesh& mesh, const std::vector<Centerl
     segment.values.push_back(place.segment);
     parameter.values.push_back(place.t);
   }
-  attributes.vertex = {{"radius", radius}, std::move(segment), std::move(parameter), branch_attribute(branch.vertex)};
+  attributes.vertex.push_back({"radius", radius});
+  attributes.vertex.push_back(std::move(segment));
+  attributes.vertex.push_back(std::move(parameter));
+  attributes.vertex.push_back(branch_attribute(branch.vertex));
   if (!openings.empty()) attributes.vertex.push_back(opening_labels(mesh, openings));
-  attributes.face = {{"EquiangleSkewness", equiangle_skewness(mesh)}, branch_attribute(branch.face)};
+  attributes.face.push_back({"EquiangleSkewness", equiangle_skewness(mesh)});
+  attributes.face.push_back(branch_attribute(branch.face));
   return attributes;
 }
 

@@ -56,13 +56,15 @@ void write_ply(std::ostream& out, const TriMesh& mesh, const MeshAttributes& att
     for (const double x : mesh.vertices[v]) store(bytes, x);
     for (const double x : normals[v]) store(bytes, x);
     for (const auto& a : attributes.vertex) store_value(bytes, a, v);
+    write_blocks(out, bytes);
   }
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     store(bytes, std::uint8_t{3});
     for (const Index v : mesh.faces[f]) store(bytes, static_cast<std::int32_t>(v));
     for (const auto& a : attributes.face) store_value(bytes, a, f);
+    write_blocks(out, bytes);
   }
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  write_out(out, bytes);
 }
 
 }  // namespace vmesh::io

@@ -131,8 +131,9 @@ void write_stl(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& me
       for (const double x : mesh.vertices[v]) store(bytes, static_cast<float>(x));
     }
     store(bytes, std::uint16_t{0});
+    write_blocks(out, bytes);
   }
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  write_out(out, bytes);
 }
 
 }  // namespace vmesh::io

@@ -52,8 +52,8 @@ CloseFaces::CloseFaces(const TriMesh& mesh, std::vector<Index> faces) : faces_(s
   build(mesh);
 }
 
-CloseFaces::CloseFaces(const TriMesh& mesh, std::vector<Index> faces, const std::vector<Index>& parts)
-    : faces_(std::move(faces)), part_(parts) {
+CloseFaces::CloseFaces(const TriMesh& mesh, std::vector<Index> faces, std::vector<Index> parts)
+    : faces_(std::move(faces)), part_(std::move(parts)) {
   for (std::size_t begin = 0, end = 0; begin < faces_.size(); begin = end) {
     while (end < faces_.size() && part_[end] == part_[begin]) ++end;
     sort(mesh, begin, end);
@@ -74,6 +74,7 @@ void CloseFaces::note_parts() {
 }
 
 void CloseFaces::build(const TriMesh& mesh) {
+  boxes_.reserve(faces_.size());
   for (const Index f : faces_) boxes_.push_back(box_of(mesh, f));
   blocks_ = (faces_.size() + kBlock - 1) / kBlock;
   while (leaves_ < blocks_) leaves_ *= 2;
@@ -82,7 +83,7 @@ void CloseFaces::build(const TriMesh& mesh) {
   last_block_.assign(2 * leaves_, 0);
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     nodes_[leaves_ + i / kBlock].enclose(boxes_[i]);
-    last_block_[leaves_ + i / kBlock] = i / kBlock + 1;
+    last_block_[leaves_ + i / kBlock] = static_cast<Index>(i / kBlock + 1);
   }
   for (std::size_t node = leaves_; --node > 0;) {
     for (const std::size_t child : {2 * node, 2 * node + 1}) {

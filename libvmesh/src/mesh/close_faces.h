@@ -16,7 +16,7 @@ class CloseFaces {
   /// `faces`: the numbers of those that take part. O(n log n).
   CloseFaces(const TriMesh& mesh, std::vector<Index> faces);
   /// The same, for faces of different parts only. `parts`: that of every face in `faces`, ascending.
-  CloseFaces(const TriMesh& mesh, std::vector<Index> faces, const std::vector<Index>& parts);
+  CloseFaces(const TriMesh& mesh, std::vector<Index> faces, std::vector<Index> parts);
 
   /// Calls visit(face, face) once for every two faces whose boxes meet, and for some whose boxes nearly do.
   template <class Visit>
@@ -91,9 +91,9 @@ class CloseFaces {
   std::size_t blocks_ = 0, leaves_ = 1;  // a power of two
   // Node 1 is the root, those below node n are 2 n and 2 n + 1; from leaves_ on they are blocks.
   std::vector<Box> nodes_;
-  std::vector<std::size_t> last_block_;  // below a node, counted from one; 0: none
-  std::vector<Index> part_;              // of every face; empty: all count
-  std::vector<Index> part_below_;        // a node, if it is one
+  std::vector<Index> last_block_;  // below a node, counted from one; 0: none
+  std::vector<Index> part_;        // of every face; empty: all count
+  std::vector<Index> part_below_;  // a node, if it is one
 };
 
 }  // namespace vmesh

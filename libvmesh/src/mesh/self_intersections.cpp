@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "vmesh/core/box_tree.h"
 #include "vmesh/mesh/topology.h"
 
 #include "mesh/close_faces.h"
@@ -27,6 +28,54 @@ std::vector<Index> faces_with_area(const TriMesh& mesh) {
   }
   return faces;
 }
+
+struct Bounds {
+  Vec3 low, high;
+
+  explicit Bounds(const TriMesh& mesh, Index face) : low(mesh.vertices[mesh.faces[face][0]]), high(low) {
+    enclose(mesh, face);
+  }
+  void enclose(const TriMesh& mesh, Index face) {
+    for (const Index v : mesh.faces[face]) {
+      low = low.cwiseMin(mesh.vertices[v]);
+      high = high.cwiseMax(mesh.vertices[v]);
+    }
+  }
+  bool meets(const Vec3& other_low, const Vec3& other_high) const {
+    return (low.array() <= other_high.array()).all() && (other_low.array() <= high.array()).all();
+  }
+};
+
+// Boxes around the parts of a mesh: a face that lies in none but its own part's meets no other part.
+class PartBoxes {
+ public:
+  PartBoxes(const TriMesh& mesh, std::span<const Index> first_face) {
+    for (Index part = 0; part < first_face.size(); ++part) {
+      const std::size_t end = part + 1 < first_face.size() ? first_face[part + 1] : mesh.faces.size();
+      if (first_face[part] == end) continue;
+      Bounds bounds(mesh, first_face[part]);
+      for (Index f = first_face[part]; f < end; ++f) bounds.enclose(mesh, f);
+      parts_.push_back(part);
+      low_.push_back(bounds.low);
+      high_.push_back(bounds.high);
+    }
+    tree_ = BoxTree(low_, high_);
+  }
+
+  bool reaches_others(const TriMesh& mesh, Index face, Index part) const {
+    const Bounds bounds(mesh, face);
+    bool reaches = false;
+    tree_.visit_overlapping(bounds.low, bounds.high, [&](Index i) {
+      reaches = reaches || (parts_[i] != part && bounds.meets(low_[i], high_[i]));
+    });
+    return reaches;
+  }
+
+ private:
+  std::vector<Index> parts_;  // those that have faces
+  std::vector<Vec3> low_, high_;
+  BoxTree tree_;
+};
 
 std::vector<std::pair<Index, Index>> intersecting(const TriMesh& mesh, const CloseFaces& close) {
   const auto placed = [&](Index f) {
@@ -58,15 +107,16 @@ std::vector<std::pair<Index, Index>> self_intersections(const TriMesh& mesh) {
 }
 
 std::vector<std::pair<Index, Index>> intersections_between(const TriMesh& mesh, std::span<const Index> first_face) {
-  const std::vector<Index> faces = faces_with_area(mesh);
-  std::vector<Index> parts;
-  parts.reserve(faces.size());
+  const PartBoxes boxes(mesh, first_face);
+  std::vector<Index> faces, parts;
   Index part = 0;
-  for (const Index f : faces) {
+  for (const Index f : faces_with_area(mesh)) {
     while (part + 1 < first_face.size() && first_face[part + 1] <= f) ++part;
+    if (!boxes.reaches_others(mesh, f, part)) continue;
+    faces.push_back(f);
     parts.push_back(part);
   }
-  return intersecting(mesh, CloseFaces(mesh, faces, parts));
+  return intersecting(mesh, CloseFaces(mesh, std::move(faces), std::move(parts)));
 }
 
 }  // namespace vmesh

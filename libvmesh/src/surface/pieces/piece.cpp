@@ -272,6 +272,11 @@ class PieceMaker {
       for (Index j = 0; loop.node == kNone && j < loop.vertices.size(); ++j)
         at_seam.emplace(loop.vertices[j], SeamVertex{loop.seam, j});
     }
+    // All pieces are in memory at once.
+    piece.vertices.reserve(mesh.number_of_vertices());
+    piece.binding.reserve(mesh.number_of_vertices());
+    piece.radius.reserve(mesh.number_of_vertices());
+    piece.faces.reserve(mesh.number_of_faces());
     for (const Vertex v : mesh.vertices()) {
       if (surface.role[v] == BoundSurface::Role::lid || at_seam.contains(v)) continue;
       number[v.idx()] = static_cast<Index>(piece.vertices.size());
