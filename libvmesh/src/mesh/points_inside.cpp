@@ -39,86 +39,70 @@ void check_closed(const TriMesh& mesh) {
   if (!closed) throw InvalidInput("inside is not defined: the mesh is open");
 }
 
-// Counts the faces that a ray along x meets, with exact predicates: as if its origin were moved by (0, e, e^2), e > 0
-// infinitely small, so that it meets no edge. Faces are found in a grid across x.
-class RayCaster {
+// Points in the cells of a grid across x. There are few, and many faces.
+class PointGrid {
  public:
-  explicit RayCaster(const TriMesh& mesh) : mesh_(mesh) {
-    low_ = high_ = mesh.vertices[mesh.faces.front()[0]];
-    for (const Triangle& face : mesh.faces) {
-      for (const Index v : face) {
-        low_ = low_.cwiseMin(mesh.vertices[v]);
-        high_ = high_.cwiseMax(mesh.vertices[v]);
-      }
+  explicit PointGrid(const std::vector<Vec3>& points)
+      : side_(static_cast<int>(std::clamp(std::sqrt(static_cast<double>(points.size())), 1.0, kMostCells))) {
+    if (points.empty()) return;
+    low_ = high_ = points.front();
+    for (const Vec3& p : points) {
+      low_ = low_.cwiseMin(p);
+      high_ = high_.cwiseMax(p);
     }
-    side_ = static_cast<int>(std::clamp(std::sqrt(static_cast<double>(mesh.faces.size())), 1.0, kMostCells));
-    while (side_ > 1 && entries() > kMostEntries * mesh.faces.size()) side_ /= 2;
-    fill();
+    first_.assign(cell_of(side_, 0) + 1, 0);
+    for (const Vec3& p : points) ++first_[cell_of(row(p, 1), row(p, 2)) + 1];
+    for (std::size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
+    std::vector<Index> next(first_.begin(), first_.end() - 1);
+    points_.resize(points.size());
+    for (Index i = 0; i < points.size(); ++i) points_[next[cell_of(row(points[i], 1), row(points[i], 2))]++] = i;
   }
 
-  bool is_inside(const Vec3& p) const {
-    if ((p.array() < low_.array()).any() || (p.array() > high_.array()).any()) return false;
-    bool inside = false;
-    const std::size_t cell = cell_of(row(p, 1), row(p, 2));
-    for (std::size_t i = first_[cell]; i < first_[cell + 1]; ++i) {
-      const Triangle& face = mesh_.faces[faces_[i]];
-      if (is_on(face, p)) return false;
-      if (is_across(face, p) && is_before(face, p)) inside = !inside;
+  /// Calls visit(point) for those whose lines along x may meet the box.
+  template <class Visit>
+  void visit(const Vec3& low, const Vec3& high, Visit&& visit) const {
+    if (points_.empty() || (low.tail<2>().array() > high_.tail<2>().array()).any() ||
+        (high.tail<2>().array() < low_.tail<2>().array()).any())
+      return;
+    for (int y = row(low, 1); y <= row(high, 1); ++y) {
+      const std::size_t end = first_[cell_of(y, row(high, 2)) + 1];  // the cells of a row follow each other
+      for (std::size_t i = first_[cell_of(y, row(low, 2))]; i < end; ++i) visit(points_[i]);
     }
-    return inside;
   }
 
  private:
-  static constexpr double kMostCells = 1024;       // in a row
-  static constexpr std::size_t kMostEntries = 32;  // in cells, for a face on average
+  static constexpr double kMostCells = 1024;  // in a row
 
   int row(const Vec3& p, int axis) const {
     const double size = high_[axis] - low_[axis];
-    return size > 0 ? std::min(side_ - 1, static_cast<int>(side_ * ((p[axis] - low_[axis]) / size))) : 0;
+    return size > 0 ? static_cast<int>(std::clamp(side_ * ((p[axis] - low_[axis]) / size), 0.0, side_ - 1.0)) : 0;
   }
   std::size_t cell_of(int y, int z) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(z);
   }
 
-  std::pair<Vec3, Vec3> box_of(const Triangle& face) const {
-    const Vec3 &a = mesh_.vertices[face[0]], &b = mesh_.vertices[face[1]], &c = mesh_.vertices[face[2]];
-    return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
-  }
+  int side_;  // cells in a row
+  Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
+  std::vector<Index> first_;  // of every cell in points_; one more for the end
+  std::vector<Index> points_;
+};
 
-  template <class Visit>
-  void visit_cells(const Triangle& face, Visit&& visit) const {
-    const auto [low, high] = box_of(face);
-    for (int y = row(low, 1); y <= row(high, 1); ++y) {
-      for (int z = row(low, 2); z <= row(high, 2); ++z) visit(cell_of(y, z));
+// Whether a ray along x meets a face, with exact predicates: as if its origin were moved by (0, e, e^2), e > 0
+// infinitely small, so that it meets no edge.
+class RayTest {
+ public:
+  explicit RayTest(const TriMesh& mesh) : mesh_(mesh), beyond_(mesh.vertices[mesh.faces.front()[0]].x()) {
+    double low = beyond_;
+    for (const Triangle& face : mesh.faces) {
+      for (const Index v : face) {
+        low = std::min(low, mesh.vertices[v].x());
+        beyond_ = std::max(beyond_, mesh.vertices[v].x());
+      }
     }
+    beyond_ += beyond_ - low;
   }
 
-  std::size_t entries() const {
-    std::size_t count = 0;
-    for (const Triangle& face : mesh_.faces) {
-      const auto box = box_of(face);
-      const auto rows = [&](int axis) {
-        return static_cast<std::size_t>(row(box.second, axis) - row(box.first, axis) + 1);
-      };
-      count += rows(1) * rows(2);
-    }
-    return count;
-  }
-
-  void fill() {
-    first_.assign(cell_of(side_, 0) + 1, 0);
-    for (const Triangle& face : mesh_.faces) visit_cells(face, [&](std::size_t cell) { ++first_[cell + 1]; });
-    for (std::size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
-    faces_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (Index f = 0; f < mesh_.faces.size(); ++f)
-      visit_cells(mesh_.faces[f], [&](std::size_t cell) { faces_[next[cell]++] = f; });
-  }
-
-  Kernel::Point_3 point(Index v) const {
-    const Vec3& p = mesh_.vertices[v];
-    return {p.x(), p.y(), p.z()};
-  }
+  bool meets(const Triangle& face, const Vec3& p) const { return is_across(face, p) && is_before(face, p); }
 
   bool is_on(const Triangle& face, const Vec3& p) const {
     for (int axis = 0; axis < 3; ++axis) {
@@ -129,6 +113,12 @@ class RayCaster {
     const Kernel::Point_3 q(p.x(), p.y(), p.z());
     const Kernel::Triangle_3 triangle(point(face[0]), point(face[1]), point(face[2]));
     return CGAL::coplanar(triangle[0], triangle[1], triangle[2], q) && (triangle.is_degenerate() || triangle.has_on(q));
+  }
+
+ private:
+  Kernel::Point_3 point(Index v) const {
+    const Vec3& p = mesh_.vertices[v];
+    return {p.x(), p.y(), p.z()};
   }
 
   // Whether the line through the point meets the face: it is within an odd number of its edges' way along y.
@@ -150,26 +140,30 @@ class RayCaster {
     const double a = mesh_.vertices[face[0]].x(), b = mesh_.vertices[face[1]].x(), c = mesh_.vertices[face[2]].x();
     if (p.x() < std::min({a, b, c})) return true;
     if (p.x() > std::max({a, b, c})) return false;
-    const Kernel::Point_3 q(p.x(), p.y(), p.z()), beyond(2 * high_.x() - low_.x(), p.y(), p.z());
+    const Kernel::Point_3 q(p.x(), p.y(), p.z()), beyond(beyond_, p.y(), p.z());
     const auto side = CGAL::orientation(point(face[0]), point(face[1]), point(face[2]), q);
     return side != CGAL::orientation(point(face[0]), point(face[1]), point(face[2]), beyond);
   }
 
   const TriMesh& mesh_;
-  Vec3 low_, high_;
-  int side_ = 1;                    // cells in a row
-  std::vector<std::size_t> first_;  // of every cell in faces_; one more for the end
-  std::vector<Index> faces_;
+  double beyond_;  // of all faces, along x
 };
 
 }  // namespace
 
 std::vector<bool> points_inside(const TriMesh& mesh, const std::vector<Vec3>& points) {
   check_closed(mesh);
-  const RayCaster rays(mesh);
-  std::vector<bool> inside;
-  inside.reserve(points.size());
-  for (const Vec3& p : points) inside.push_back(rays.is_inside(p));
+  const PointGrid grid(points);
+  const RayTest ray(mesh);
+  std::vector<bool> inside(points.size(), false), on(points.size(), false);
+  for (const Triangle& face : mesh.faces) {
+    const Vec3 &a = mesh.vertices[face[0]], &b = mesh.vertices[face[1]], &c = mesh.vertices[face[2]];
+    grid.visit(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), [&](Index i) {
+      if (ray.is_on(face, points[i])) on[i] = true;
+      if (ray.meets(face, points[i])) inside[i] = !inside[i];
+    });
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) inside[i] = inside[i] && !on[i];
   return inside;
 }
 
