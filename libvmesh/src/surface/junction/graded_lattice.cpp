@@ -243,17 +243,21 @@ class GradedLattice::Maker {
   void bisect(Index t) {
     const Edge edge = nodes_[t].longest;
     const Index a = nodes_[t].corners[edge.a], b = nodes_[t].corners[edge.b];
-    std::vector<Index> around = around_edge(a, b);
-    for (std::size_t i = 0; i < around.size();) {
-      const Edge& other = nodes_[around[i]].longest;
-      if (key_of_pair(nodes_[around[i]].corners[other.a], nodes_[around[i]].corners[other.b]) == key_of_pair(a, b)) {
+    const std::size_t begin = around_.size();
+    find_around_edge(a, b);
+    for (std::size_t i = begin; i < around_.size();) {
+      const Edge& other = nodes_[around_[i]].longest;
+      const Tetrahedron& corners = nodes_[around_[i]].corners;
+      if (key_of_pair(corners[other.a], corners[other.b]) == key_of_pair(a, b)) {
         ++i;
         continue;
       }
-      bisect(around[i]);
-      around = around_edge(a, b);
-      i = 0;
+      bisect(around_[i]);
+      around_.resize(begin);
+      find_around_edge(a, b);
+      i = begin;
     }
+    const std::span<const Index> around(around_.begin() + begin, around_.end());
     const auto middle = static_cast<Index>(at_.size());
     at_.push_back(0.5 * (at_[a] + at_[b]));
     lattice_.at_rim_.push_back(lattice_.at_rim_[a] && lattice_.at_rim_[b] && !closes_around(a, b, around));
@@ -266,10 +270,11 @@ class GradedLattice::Maker {
         if (nodes_[u].child == kNone) nodes_[u].child = child;
       }
     }
+    around_.resize(begin);
   }
 
   // Whether these tetrahedra around an edge form a ring: two at each of the triangles at it.
-  bool closes_around(Index a, Index b, const std::vector<Index>& around) const {
+  bool closes_around(Index a, Index b, std::span<const Index> around) const {
     const auto count = [&](Index corner) {
       return std::count_if(around.begin(), around.end(), [&](Index t) {
         const Tetrahedron& corners = nodes_[t].corners;
@@ -282,9 +287,9 @@ class GradedLattice::Maker {
     });
   }
 
-  // The unbisected ones, ascending. Those that no longer are leave the list on the way.
-  std::vector<Index> around_edge(Index a, Index b) {
-    std::vector<Index> found;
+  // Adds the unbisected ones to around_, ascending. Those that no longer are leave the list on the way.
+  void find_around_edge(Index a, Index b) {
+    const std::size_t begin = around_.size();
     Index* link = &first_around_[a];
     while (*link != kNone) {
       Node& node = nodes_[*link / 4];
@@ -292,11 +297,10 @@ class GradedLattice::Maker {
         *link = node.next[*link % 4];
         continue;
       }
-      if (std::find(node.corners.begin(), node.corners.end(), b) != node.corners.end()) found.push_back(*link / 4);
+      if (std::find(node.corners.begin(), node.corners.end(), b) != node.corners.end()) around_.push_back(*link / 4);
       link = &node.next[*link % 4];
     }
-    std::sort(found.begin(), found.end());
-    return found;
+    std::sort(around_.begin() + begin, around_.end());
   }
 
   void finish() {
@@ -327,6 +331,7 @@ class GradedLattice::Maker {
   std::vector<Index> first_around_;  // of every point: as Node::next
   std::vector<std::vector<Index>> roots_around_;
   std::vector<Index> last_ball_;  // that has refined a root
+  std::vector<Index> around_;     // edges that are being bisected, one after the other
 };
 
 GradedLattice::GradedLattice(const Vec3& origin, const Eigen::Matrix3d& frame, double spacing,
