@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "surface/junction/node_frame.h"
-#include "surface/junction/thinning.h"
 #include "surface/remesh/optimize.h"
 #include "surface/remesh/sweep_state.h"
 
@@ -121,8 +120,7 @@ JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarde
 
 GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   BoundSurface surface(local_field_);
-  // What is thinned comes to rest sooner, but need no longer be free of self-intersections.
-  fill(surface, guarded || finer > 1 ? lattice_ : thinned(lattice_));
+  fill(surface, lattice_);
   if (guarded) surface.guard_crossings();
   GenerateOptions options = options_;
   options.sweeps = kSweeps;
