@@ -13,7 +13,7 @@ namespace {
 // Measured on 14 liver and synthetic trees: at 0.5 to 1 for kFiner vertices, skewness and mean error are the same to
 // 2 %; kSpacing 1.3 is unsafe.
 // kSpacing: safe 0.85 to 1.4, below that slower; kFiner: safe 0.51 to 0.84, below that slower.
-constexpr double kSpacing = 1, kFiner = 0.6;
+constexpr double kSpacing = 1, kFiner = 0.7;
 // Balls in which it is that fine, radii along the axis, and their radius. Derived: 1.25 around the axis between two of
 // them, for the boundary with what the default rounding adds.
 constexpr double kBallStep = 1, kReach = 1.35;  // kBallStep: safe 0.7 to 1.4; kReach: safe 0.94 to 1.9
