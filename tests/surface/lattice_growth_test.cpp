@@ -1,10 +1,13 @@
 #include "surface/junction/lattice_growth.h"
 
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "vmesh/mesh/topology.h"
 
 #include "draw.h"
+#include "surface/junction/thinning.h"
 
 namespace vmesh {
 namespace {
@@ -32,14 +35,20 @@ LatticeSurface grow_around(const VesselField& field, const Vec3& seed, double sp
   return grow_in_lattice(field, lattice_around(field, seed, spacing, fineness), 0, max_handles);
 }
 
-void expect_surface_of_genus(const LatticeSurface& surface, std::int64_t genus) {
-  const TriMesh mesh = mesh_of(surface);
-  const Topology topology = measure_topology(mesh);
+void expect_topology(const LatticeSurface& surface, std::int64_t genus) {
+  const Topology topology = measure_topology(mesh_of(surface));
   EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented && topology.outward);
   EXPECT_EQ(topology.components, 1u);
   EXPECT_EQ(topology.genus, genus);
-  EXPECT_TRUE(self_intersections(mesh).empty());
   EXPECT_EQ(surface.cones.size(), surface.vertices.size());
+  EXPECT_EQ(surface.points.size(), surface.vertices.size());
+}
+
+// Thinned too.
+void expect_surface_of_genus(const LatticeSurface& surface, std::int64_t genus) {
+  expect_topology(surface, genus);
+  EXPECT_TRUE(self_intersections(mesh_of(surface)).empty());
+  expect_topology(thinned(surface), genus);
 }
 
 TEST(LatticeGrowth, FillsABallToHalfASpacing) {
@@ -52,6 +61,39 @@ TEST(LatticeGrowth, FillsABallToHalfASpacing) {
   for (const Vec3& v : surface.vertices) EXPECT_LT(std::abs((v - Vec3(1, 2, 3)).norm() - 2), 0.75 * spacing);
   const double volume = 4.0 / 3 * M_PI * 8;
   EXPECT_NEAR(enclosed_volume(mesh_of(surface)), volume, 0.1 * volume);
+}
+
+// A point of the lattice at a smooth wall cuts off about five vertices, which become one among them.
+TEST(LatticeGrowth, ThinsASmoothWallToOneVertexAPoint) {
+  const Centerline centerline({{{1, 2, 3}, 2}}, {});
+  const VesselField field(centerline);
+  const double spacing = 0.4;
+  const LatticeSurface surface = grow_around(field, {1, 2, 3}, spacing, 0);
+  const std::set<Index> points(surface.points.begin(), surface.points.end());
+  const LatticeSurface thin = thinned(surface);
+  EXPECT_LT(4 * points.size(), surface.vertices.size());
+  EXPECT_LT(static_cast<double>(thin.vertices.size()), 1.1 * static_cast<double>(points.size()));
+  EXPECT_TRUE(self_intersections(mesh_of(thin)).empty());
+  for (const Vec3& v : thin.vertices) EXPECT_LT(std::abs((v - Vec3(1, 2, 3)).norm() - 2), 0.75 * spacing);
+}
+
+// Where the lattice is coarse, most groups hold the surface open or apart: those stay as they are.
+TEST(LatticeGrowth, ThinsWithoutClosingAHandle) {
+  Draw draw(5);
+  for (int i = 0; i < 40; ++i) {
+    std::vector<CenterlineNode> nodes;
+    std::vector<CenterlineSegment> segments;
+    for (Index n = 0; n < 8; ++n) {
+      const double angle = 2 * M_PI * n / 8;
+      nodes.push_back({draw.uniform(1.2, 3) * Vec3(std::cos(angle), std::sin(angle), 0), 0.5});
+      segments.push_back({n, (n + 1) % 8});
+    }
+    const Centerline centerline(nodes, segments);
+    const VesselField field(centerline);
+    const LatticeSurface surface = grow_around(field, nodes[0].position, draw.uniform(0.4, 0.8), 1);
+    SCOPED_TRACE(i);
+    expect_topology(thinned(surface), static_cast<std::int64_t>(surface.handles));
+  }
 }
 
 TEST(LatticeGrowth, HoldsTheSeedInAVesselThinnerThanTheLattice) {

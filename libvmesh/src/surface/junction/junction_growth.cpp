@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "surface/junction/node_frame.h"
+#include "surface/junction/thinning.h"
 #include "surface/remesh/optimize.h"
 #include "surface/remesh/sweep_state.h"
 
@@ -120,7 +121,8 @@ JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarde
 
 GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   BoundSurface surface(local_field_);
-  fill(surface, lattice_);
+  // What is thinned comes to rest sooner, but need no longer be free of self-intersections.
+  fill(surface, guarded || finer > 1 ? lattice_ : thinned(lattice_));
   if (guarded) surface.guard_crossings();
   GenerateOptions options = options_;
   options.sweeps = kSweeps;

@@ -206,6 +206,7 @@ class LatticeGrowth {
     const double t = outside > 0 ? std::clamp(inside / (inside - outside), kNearestToPoint, 1 - kNearestToPoint) : 0.5;
     surface_.vertices.push_back((1 - t) * lattice_.position(p) + t * lattice_.position(q));
     surface_.cones.push_back(points_[p].cone);
+    surface_.points.push_back(p);
     return vertex;
   }
 

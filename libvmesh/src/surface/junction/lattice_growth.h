@@ -12,7 +12,8 @@ namespace vmesh {
 /// A closed surface around what a volume holds of a lattice.
 struct LatticeSurface {
   std::vector<Vec3> vertices;
-  std::vector<Index> cones;  ///< hint for a query at every vertex
+  std::vector<Index> cones;   ///< hint for a query at every vertex
+  std::vector<Index> points;  ///< of the lattice, off which every vertex cuts the rest
   std::vector<Triangle> faces;
   std::size_t handles = 0;  ///< genus of the surface
 };
