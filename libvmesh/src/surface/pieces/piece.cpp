@@ -24,6 +24,9 @@ struct Rung {
 };
 // Skewness above which triangles are mended at any price but soundness; safe 0.35 to 0.5, above not sound.
 constexpr double kMended = 0.5;
+// Skewness above which triangles are eased. Measured on seven trees: the largest skewness follows it (0.25: 0.253 in
+// the mean, 0.235: 0.238; without 0.314), the mean grows by 1 %; all take 8 to 15 % longer.
+constexpr double kEased = 0.24;
 // Where there are faults, nothing is refined for the limit on the error any more once the guard is there, radii around
 // them. The boundary may have a step there, at which finer triangles prove nothing and stand on edge.
 constexpr double kCalm = 2;       // idle 1.4 to 2.8
@@ -198,6 +201,8 @@ class PieceMaker {
                             expected_vertices(length_in_radii(), context_.options.around), GrownMesh::Stage::assembled};
       const bool crosses = optimize(surface, context_.options, grown, context_.progress).crosses;
       tested = !mend_worst_faces(surface, mended()) && !crosses;
+      // Guarded: what does not cross does not cross afterwards. Under a limit, finer triangles have been proven.
+      if (!crosses && !context_.options.max_error.is_set()) ease_worst_faces(surface, kEased);
     }
     const PieceFindings findings = check_piece(surface, nodes_of(skeleton), context_.options, !tested);
     piece.faults = findings.faults;

@@ -11,9 +11,11 @@
 namespace vmesh {
 namespace {
 
-constexpr int kRounds = 20;         // through all bad faces; idle 14 to 28
-constexpr double kPaysOff = 0.998;  // worst skewness around against that before; safe 0.7 to 1.4
+constexpr int kRounds = 20;          // through all bad faces; idle 14 to 28
+constexpr double kPaysOff = 0.998;   // worst skewness around against that before; safe 0.7 to 1.4
+constexpr double kTolerance = 1e-3;  // vessel radii, of what is eased from where it belongs: as in all sweeps
 
+constexpr double kFlat = 0.85;             // cosine between faces up to which easing may fold an edge further
 constexpr double kMostOffBoundary = 0.15;  // edge lengths that one step may lead from it; safe 0.1 to 0.21
 constexpr double kDiagonal = 0.70710678118654752;
 constexpr std::array<std::array<double, 2>, 8> kDirections = {{{1, 0},
@@ -25,19 +27,27 @@ constexpr std::array<std::array<double, 2>, 8> kDirections = {{{1, 0},
                                                                {0, -1},
                                                                {kDiagonal, -kDiagonal}}};
 
+enum class Keeps { nothing, to_boundary };
+
 // Applies to one face after the other the step that helps most.
 class Mender {
  public:
-  Mender(BoundSurface& surface, double limit) : surface_(surface), mesh_(surface.mesh), limit_(limit) {}
+  Mender(BoundSurface& surface, double limit, Keeps keeps)
+      : surface_(surface), mesh_(surface.mesh), limit_(limit), keeps_(keeps) {}
 
   bool run() {
-    for (int round = 0; round < kRounds; ++round) {
-      const std::vector<Face> bad = bad_faces();
-      if (bad.empty()) return round > 0;
-      if (round == 0) surface_.guard_crossings();
-      bool any = false;
-      for (const Face f : bad) any = (!mesh_.is_removed(f) && skewness(f) > limit_ && mend(f)) || any;
-      if (!any) break;
+    const auto all = mesh_.faces();
+    std::vector<Face> bad = bad_faces({all.begin(), all.end()});
+    if (bad.empty()) return false;
+    surface_.guard_crossings();
+    for (int round = 0; round < kRounds && !bad.empty(); ++round) {
+      changed_.clear();
+      for (const Face f : bad) {
+        if (!mesh_.is_removed(f) && skewness(f) > limit_) mend(f);
+      }
+      if (changed_.empty()) break;
+      bad.insert(bad.end(), changed_.begin(), changed_.end());
+      bad = bad_faces(std::move(bad));
     }
     return true;
   }
@@ -49,18 +59,21 @@ class Mender {
     Halfedge edge;  // of a flip, collapse or split
     Vertex vertex;  // of a move
     Vec3 place;
-    double worst;  // skewness around, afterwards
+    double before, worst;  // skewness around, before and afterwards
   };
 
-  std::vector<Face> bad_faces() const {
+  // Worst first.
+  std::vector<Face> bad_faces(std::vector<Face> faces) const {
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     std::vector<std::pair<double, Face>> order;
-    for (const Face f : mesh_.faces()) {
-      if (surface_.is_lid(f)) continue;
+    for (const Face f : faces) {
+      if (mesh_.is_removed(f) || surface_.is_lid(f)) continue;
       const double s = skewness(f);
       if (s > limit_) order.emplace_back(-s, f);
     }
     std::sort(order.begin(), order.end());
-    std::vector<Face> faces;
+    faces.clear();
     for (const auto& [_, f] : order) faces.push_back(f);
     return faces;
   }
@@ -76,7 +89,7 @@ class Mender {
     for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
       add_flip(h, steps);
       add_collapses(h, steps);
-      add_split(h, steps);
+      if (keeps_ == Keeps::nothing) add_split(h, steps);
       add_moves(mesh_.target(h), steps);
     }
     std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.worst < b.worst; });
@@ -89,8 +102,8 @@ class Mender {
   }
 
   // A step is offered if it lowers the worst skewness of the faces it changes.
-  void offer(const Step& step, double before, std::vector<Step>& steps) const {
-    if (step.worst < kPaysOff * before) steps.push_back(step);
+  void offer(const Step& step, std::vector<Step>& steps) const {
+    if (step.worst < kPaysOff * step.before) steps.push_back(step);
   }
 
   void add_flip(Halfedge h, std::vector<Step>& steps) const {
@@ -102,7 +115,9 @@ class Mender {
     if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge()) return;
     const double worst = std::max(equiangle_skewness(mesh_.point(c), mesh_.point(d), mesh_.point(b)),
                                   equiangle_skewness(mesh_.point(d), mesh_.point(c), mesh_.point(a)));
-    offer({Kind::flip, h, {}, Vec3::Zero(), worst}, std::max(skewness(mesh_.face(h)), skewness(mesh_.face(o))), steps);
+    const double before = std::max(skewness(mesh_.face(h)), skewness(mesh_.face(o)));
+    if (keeps_ == Keeps::to_boundary && !stays_flat(a, b, c, d)) return;
+    offer({Kind::flip, h, {}, Vec3::Zero(), before, worst}, steps);
   }
 
   void add_collapses(Halfedge h, std::vector<Step>& steps) const {
@@ -112,7 +127,7 @@ class Mender {
     const double before = std::max(worst_around(a), worst_around(b));
     for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       const Vec3 place = (1 - t) * mesh_.point(a) + t * mesh_.point(b);
-      offer({Kind::collapse, h, {}, place, std::max(worst_with(a, b, place), worst_with(b, a, place))}, before, steps);
+      offer({Kind::collapse, h, {}, place, before, worst_with_both(a, b, place)}, steps);
     }
   }
 
@@ -129,7 +144,8 @@ class Mender {
       for (const Vertex end : {a, b})
         worst = std::max(worst, equiangle_skewness(mesh_.point(apex), mesh_.point(end), middle));
     }
-    offer({Kind::split, h, {}, middle, worst}, std::max(skewness(mesh_.face(h)), skewness(mesh_.face(o))), steps);
+    const double before = std::max(skewness(mesh_.face(h)), skewness(mesh_.face(o)));
+    offer({Kind::split, h, {}, middle, before, worst}, steps);
   }
 
   // To the neighbours' centre and around where it is, nearer and nearer.
@@ -145,29 +161,61 @@ class Mender {
     length /= static_cast<double>(mesh_.degree(v));
     const double before = worst_around(v);
     const auto offer_place = [&](const Vec3& place) {
-      offer({Kind::move, {}, v, place, worst_with(v, v, place)}, before, steps);
+      offer({Kind::move, {}, v, place, before, worst_with(v, v, place, kPaysOff * before)}, steps);
     };
-    for (const double share : {0.25, 0.5, 1.0}) offer_place(mesh_.point(v) + share * (center - mesh_.point(v)));
     const Vec3 normal = surface_.gradient[v], side = normal.unitOrthogonal(), across = normal.cross(side);
+    if (keeps_ == Keeps::to_boundary) center -= normal.dot(center - mesh_.point(v)) * normal;
+    for (const double share : {0.25, 0.5, 1.0}) offer_place(mesh_.point(v) + share * (center - mesh_.point(v)));
     for (const double share : {0.6, 0.4, 0.2, 0.1, 0.05, 0.02}) {
-      if (share < kMostOffBoundary) {
+      if (share < kMostOffBoundary && keeps_ == Keeps::nothing) {
         for (const double way : {-share, share}) offer_place(mesh_.point(v) + way * length * normal);
       }
       for (const auto& [x, y] : kDirections) offer_place(mesh_.point(v) + share * length * (x * side + y * across));
     }
   }
 
-  double worst_around(Vertex v) const { return worst_with(v, v, mesh_.point(v)); }
+  double worst_around(Vertex v) const { return worst_with(v, v, mesh_.point(v), 1); }
 
-  // Of the faces of `v` but those at `other`, once it is at `place`.
-  double worst_with(Vertex v, Vertex other, const Vec3& place) const {
+  // Of the faces of `v` but those at `other`, once it is at `place`; any value from `enough` on if it is as much.
+  double worst_with(Vertex v, Vertex other, const Vec3& place, double enough) const {
     double worst = 0;
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
       if (other != v && (b == other || c == other)) continue;
       worst = std::max(worst, equiangle_skewness(place, mesh_.point(b), mesh_.point(c)));
+      if (worst >= enough) break;
     }
     return worst;
+  }
+
+  // The same for an edge that becomes a vertex.
+  double worst_with_both(Vertex a, Vertex b, const Vec3& place) const {
+    return std::max(worst_with(a, b, place, 1), worst_with(b, a, place, 1));
+  }
+
+  // Whether the faces beside cd instead of ab form no sharper edge than those beside ab, or hardly any.
+  bool stays_flat(Vertex a, Vertex b, Vertex c, Vertex d) const {
+    const auto normal = [&](Vertex x, Vertex y, Vertex z) {
+      return Vec3((mesh_.point(y) - mesh_.point(x)).cross(mesh_.point(z) - mesh_.point(x)).normalized());
+    };
+    const double before = normal(a, b, c).dot(normal(b, a, d)), after = normal(c, d, b).dot(normal(d, c, a));
+    return after >= std::min(before, kFlat);
+  }
+
+  // Where a vertex goes that is to go to `place`.
+  BoundaryPoint belongs(const Vec3& place, Index hint, double lift) const {
+    if (keeps_ == Keeps::nothing) return {place, surface_.field.sample(place, hint)};
+    return project_to_boundary(surface_.field, place, hint, kTolerance, lift);
+  }
+
+  void put(Vertex v, const BoundaryPoint& target) {
+    surface_.place(v, target.position, target.sample);
+    if (keeps_ == Keeps::nothing) surface_.lift[v] = surface_.distance[v];
+    note_changed(v);
+  }
+
+  void note_changed(Vertex v) {
+    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) changed_.push_back(f);
   }
 
   // Unless faces would cross.
@@ -177,39 +225,45 @@ class Mender {
         if (!surface_.may_flip(step.edge)) return false;
         CGAL::Euler::flip_edge(step.edge, mesh_);
         surface_.touch_faces(mesh_.target(step.edge));
+        note_changed(mesh_.target(step.edge));
+        note_changed(mesh_.source(step.edge));
         return true;
       case Kind::collapse: {
         const Vertex a = mesh_.source(step.edge), b = mesh_.target(step.edge);
-        if (!surface_.may_collapse(a, b, step.place)) return false;
-        const Index hint = surface_.cone[a];
-        put(CGAL::Euler::collapse_edge(mesh_.edge(step.edge), mesh_), step.place, hint);
+        const double lift = 0.5 * (surface_.lift[a] + surface_.lift[b]);
+        const BoundaryPoint target = belongs(step.place, surface_.cone[a], lift);
+        if (worst_with_both(a, b, target.position) >= step.before) return false;
+        if (!surface_.may_collapse(a, b, target.position)) return false;
+        const Vertex v = CGAL::Euler::collapse_edge(mesh_.edge(step.edge), mesh_);
+        surface_.lift[v] = lift;
+        put(v, target);
         return true;
       }
       case Kind::split: {
         const Index hint = surface_.cone[mesh_.target(step.edge)];
-        put(surface_.split_edge(mesh_.edge(step.edge)), step.place, hint);
+        put(surface_.split_edge(mesh_.edge(step.edge)), belongs(step.place, hint, 0));
         return true;
       }
       case Kind::move:
         break;
     }
-    if (!surface_.may_place(step.vertex, step.place)) return false;
-    put(step.vertex, step.place, surface_.cone[step.vertex]);
+    const BoundaryPoint target = belongs(step.place, surface_.cone[step.vertex], surface_.lift[step.vertex]);
+    if (worst_with(step.vertex, step.vertex, target.position, step.before) >= step.before) return false;
+    if (!surface_.may_place(step.vertex, target.position)) return false;
+    put(step.vertex, target);
     return true;
   }
-
-  void put(Vertex v, const Vec3& place, Index hint) {
-    surface_.place(v, place, surface_.field.sample(place, hint));
-    surface_.lift[v] = surface_.distance[v];
-  }
-
   BoundSurface& surface_;
   SurfaceMesh& mesh_;
   double limit_;
+  Keeps keeps_;
+  std::vector<Face> changed_;  // in this round
 };
 
 }  // namespace
 
-bool mend_worst_faces(BoundSurface& surface, double limit) { return Mender(surface, limit).run(); }
+bool mend_worst_faces(BoundSurface& surface, double limit) { return Mender(surface, limit, Keeps::nothing).run(); }
+
+void ease_worst_faces(BoundSurface& surface, double limit) { Mender(surface, limit, Keeps::to_boundary).run(); }
 
 }  // namespace vmesh

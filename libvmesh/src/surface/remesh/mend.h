@@ -10,4 +10,8 @@ namespace vmesh {
 /// Returns whether there were any such triangles.
 bool mend_worst_faces(BoundSurface& surface, double limit);
 
+/// The same for triangles that are not bad but could be better: vertices stay at their lifts from the boundary, and none
+/// are added.
+void ease_worst_faces(BoundSurface& surface, double limit);
+
 }  // namespace vmesh

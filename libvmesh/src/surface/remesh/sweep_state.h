@@ -56,6 +56,10 @@ class SweepState {
   // Only what changed in the last sweep, and its neighbours, is looked at in the next one.
   bool active(Vertex v) const { return stirred_[v] & kActive; }
   bool active(Edge e) const { return active(mesh.vertex(e, 0)) || active(mesh.vertex(e, 1)); }
+  bool active(Face f) const {
+    const auto [a, b, c] = corners(f);
+    return active(a) || active(b) || active(c);
+  }
   /// `v` has changed: it and its neighbours are active in the next sweep.
   void stir(Vertex v);
   /// `v` alone is active in the next sweep.

@@ -72,7 +72,7 @@ std::vector<Vertex> find_tangles(const SweepState& state) {
   return vertices;
 }
 
-void loosen(SweepState& state, const std::vector<Vertex>& tangles) {
+std::vector<Vertex> loosen(SweepState& state, const std::vector<Vertex>& tangles) {
   const SurfaceMesh& mesh = state.mesh;
   std::vector<Vertex> region = tangles;
   for (int ring = 0; ring < kRings; ++ring) add_ring(mesh, region);
@@ -88,6 +88,7 @@ void loosen(SweepState& state, const std::vector<Vertex>& tangles) {
     }
   }
   for (const Vertex v : region) state.stir(v);
+  return region;
 }
 
 }  // namespace vmesh

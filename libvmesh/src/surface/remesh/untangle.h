@@ -10,8 +10,9 @@ namespace vmesh {
 /// boundary: what a local operation can mend. Ascending.
 std::vector<Vertex> find_tangles(const SweepState& state);
 
-/// Lets the surroundings of `tangles` relax on the boundary like a rubber sheet, which pulls folds flat.
-void loosen(SweepState& state, const std::vector<Vertex>& tangles);
+/// Lets the surroundings of `tangles` relax on the boundary like a rubber sheet, which pulls folds flat. Returns them,
+/// ascending, stirred.
+std::vector<Vertex> loosen(SweepState& state, const std::vector<Vertex>& tangles);
 
 /// The surface as it is, its vertices by their indices; with its lids or without.
 TriMesh indexed_mesh(const SweepState& state, bool with_lids);
