@@ -73,8 +73,8 @@ class Drawing {
 
 // Colours of the pictures.
 enum Group { kTube = 0, kJunction = 1, kSeam = 2 };
-constexpr double kLine = 0.06;   // radii of the vessel, half the width of lines
-constexpr double kAxis = 0.15;   // the same of axes
+constexpr double kLine = 0.06;  // radii of the vessel, half the width of lines
+constexpr double kAxis = 0.15;  // the same of axes
 
 std::vector<Vec3> positions(std::span<const BoundaryPoint> points) {
   std::vector<Vec3> result;
@@ -147,7 +147,8 @@ Drawing draw_rings(const VesselTubes& tubes, const Division& division) {
 void draw_tube(const Tube& tube, Drawing& drawing) {
   const std::size_t count = tube.rings.size();
   for (std::size_t k = 0; k + 1 < count + (tube.periodic ? 1 : 0); ++k) {
-    const std::vector<Vec3> ring = positions(tube.rings[k].points), next = positions(tube.rings[(k + 1) % count].points);
+    const std::vector<Vec3> ring = positions(tube.rings[k].points),
+                            next = positions(tube.rings[(k + 1) % count].points);
     std::vector<Vec3> both = ring;
     both.insert(both.end(), next.begin(), next.end());
     drawing.add(both, stitch(ring, next), kTube);
