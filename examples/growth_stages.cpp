@@ -3,6 +3,7 @@
 //   growth_stages [CENTERLINE [FOLDER]]
 #include <cstdio>
 #include <filesystem>
+#include <numbers>
 
 #include "vmesh/core/error.h"
 #include "vmesh/io/centerline_io.h"
@@ -39,7 +40,7 @@ class Drawing {
     std::vector<Triangle> faces;
     for (const Vec3& end : {a, b}) {
       for (Index i = 0; i < kSides; ++i) {
-        const double angle = 2 * EIGEN_PI * i / kSides;
+        const double angle = 2 * std::numbers::pi * i / kSides;
         vertices.push_back(end + radius * (std::cos(angle) * side + std::sin(angle) * up));
       }
     }
@@ -73,7 +74,7 @@ class Drawing {
 
 // Colours of the pictures.
 enum Group { kTube = 0, kJunction = 1, kSeam = 2 };
-constexpr double kLine = 0.06;  // radii of the vessel, half the width of lines
+constexpr double kLine = 0.08;  // radii of the vessel, half the width of lines
 constexpr double kAxis = 0.15;  // the same of axes
 
 std::vector<Vec3> positions(std::span<const BoundaryPoint> points) {
@@ -88,7 +89,7 @@ std::vector<Vec3> outline(const Ring& ring) {
   const Vec3 side = ring.normal.unitOrthogonal(), up = ring.normal.cross(side);
   std::vector<Vec3> circle;
   for (int i = 0; i < 24; ++i) {
-    const double angle = 2 * EIGEN_PI * i / 24;
+    const double angle = 2 * std::numbers::pi * i / 24;
     circle.push_back(ring.center + ring.radius * (std::cos(angle) * side + std::sin(angle) * up));
   }
   return circle;
