@@ -88,4 +88,7 @@ function(vmesh_install_package)
     DESTINATION "${vmesh_package_dir}")
   install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/CHANGELOG.md"
     DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+  foreach(folder tools libvmesh bench)  # where README.md goes on
+    install(FILES "${PROJECT_SOURCE_DIR}/${folder}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}/${folder}")
+  endforeach()
 endfunction()

@@ -18,7 +18,7 @@ void add_deform(CLI::App& app, DeformArguments& arguments) {
   add_centerline_reading(verb, arguments.input, "");
   verb.add_option("SURFACE", arguments.surface.path, "surface around it: grown by vmesh, or any other")->required();
   add_reading(verb, arguments.surface, "surface-");
-  verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (README.md, Deforming)")
+  verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (tools/README.md, Scenes)")
       ->required();
   add_output(verb, arguments.output, "new or empty folder for the frames");
   verb.add_option("--format", arguments.format, "of the frames")

@@ -24,7 +24,7 @@ struct Course {
   }
 };
 
-/// What happens to a vessel tree, as a scene file tells it. README.md describes the file.
+/// What happens to a vessel tree, as a scene file tells it. tools/README.md describes the file.
 struct Scene {
   struct Drag {
     Index node;

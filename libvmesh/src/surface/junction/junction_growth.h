@@ -40,6 +40,9 @@ class JunctionGrowth {
   /// edges, or as they were cut. Guarded: faces never cross on the way from the lattice to the boundary.
   JunctionSurface make(double finer, bool smooth_rims, bool guarded) const;
 
+  /// The surface as it comes out of the lattice, closed: before it is brought onto the boundary and cut.
+  const LatticeSurface& lattice() const { return lattice_; }
+
   /// Loops of the centerline that are too short to have a hole.
   std::size_t filled_loops() const { return centerline_.cycle_rank() - lattice_.handles; }
   double length_in_radii() const { return centerline_.length_in_radii(); }
