@@ -15,7 +15,11 @@ constexpr int kRounds = 20;          // through all bad faces; idle 14 to 28
 constexpr double kPaysOff = 0.998;   // worst skewness around against that before; safe 0.7 to 1.4
 constexpr double kTolerance = 1e-3;  // vessel radii, of what is eased from where it belongs: as in all sweeps
 
-constexpr double kFlat = 0.85;             // cosine between faces up to which easing may fold an edge further
+constexpr double kFlat = 0.85;  // cosine between faces up to which easing may fold an edge further
+// Mean distance of the faces around a vertex from the boundary that easing may lead to: against that before, and in
+// vessel radii, about that of an even tube. Measured on fourteen trees: without this the mean distance of one of them
+// grows by 1.4 %, with less room the largest skewness by up to 9 %.
+constexpr double kFarther = 1.03, kNear = 0.05;
 constexpr double kMostOffBoundary = 0.15;  // edge lengths that one step may lead from it; safe 0.1 to 0.21
 constexpr double kDiagonal = 0.70710678118654752;
 constexpr std::array<std::array<double, 2>, 8> kDirections = {{{1, 0},
@@ -26,6 +30,10 @@ constexpr std::array<std::array<double, 2>, 8> kDirections = {{{1, 0},
                                                                {-kDiagonal, -kDiagonal},
                                                                {0, -1},
                                                                {kDiagonal, -kDiagonal}}};
+
+// Steps at a face that easing looks at: where the best are refused, most are. Measured on fourteen trees: without this
+// the mean of the largest skewness is 0.3 % less.
+constexpr std::size_t kTries = 8;
 
 enum class Keeps { nothing, to_boundary };
 
@@ -46,8 +54,7 @@ class Mender {
         if (!mesh_.is_removed(f) && skewness(f) > limit_) mend(f);
       }
       if (changed_.empty()) break;
-      bad.insert(bad.end(), changed_.begin(), changed_.end());
-      bad = bad_faces(std::move(bad));
+      bad = bad_faces(std::move(changed_));
     }
     return true;
   }
@@ -93,6 +100,7 @@ class Mender {
       add_moves(mesh_.target(h), steps);
     }
     std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.worst < b.worst; });
+    if (keeps_ == Keeps::to_boundary && steps.size() > kTries) steps.resize(kTries);
     return std::any_of(steps.begin(), steps.end(), [&](const Step& step) { return take(step); });
   }
 
@@ -202,6 +210,24 @@ class Mender {
     return after >= std::min(before, kFlat);
   }
 
+  // Mean distance of the faces around `v` from the boundary, at their centres, once it is at `place`.
+  double error_around(Vertex v, const Vec3& place) const {
+    double area = 0, sum = 0;
+    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+      const Vec3 &b = mesh_.point(mesh_.target(mesh_.next(h))), &c = mesh_.point(mesh_.source(h));
+      const double a = (b - place).cross(c - place).norm();
+      area += a;
+      sum += a * std::abs(surface_.field.sample_fast((place + b + c) / 3, surface_.cone[v]).distance);
+    }
+    return sum / area;
+  }
+
+  // Whether the faces around `v` are hardly farther from the boundary once it is at `place`, or near it.
+  bool stays_near(Vertex v, const Vec3& place) const {
+    const double most = std::max(kFarther * error_around(v, mesh_.point(v)), kNear * surface_.radius(v));
+    return error_around(v, place) <= most;
+  }
+
   // Where a vertex goes that is to go to `place`.
   BoundaryPoint belongs(const Vec3& place, Index hint, double lift) const {
     if (keeps_ == Keeps::nothing) return {place, surface_.field.sample(place, hint)};
@@ -249,6 +275,7 @@ class Mender {
     }
     const BoundaryPoint target = belongs(step.place, surface_.cone[step.vertex], surface_.lift[step.vertex]);
     if (worst_with(step.vertex, step.vertex, target.position, step.before) >= step.before) return false;
+    if (keeps_ == Keeps::to_boundary && !stays_near(step.vertex, target.position)) return false;
     if (!surface_.may_place(step.vertex, target.position)) return false;
     put(step.vertex, target);
     return true;
