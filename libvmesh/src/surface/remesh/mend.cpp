@@ -240,8 +240,11 @@ class Mender {
     note_changed(v);
   }
 
+  // For the faces whose corners have `v` as a neighbour there may be other steps now.
   void note_changed(Vertex v) {
-    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) changed_.push_back(f);
+    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+      for (const Face f : mesh_.faces_around_target(mesh_.opposite(h))) changed_.push_back(f);
+    }
   }
 
   // Unless faces would cross.
