@@ -86,6 +86,17 @@ TEST(Generate, MakesForksOfManyAngles) {
   }
 }
 
+// Measured on seeds 11 to 20: .241 to .258; .311 to .316 if the worst triangles are polished, but not eased.
+TEST(Generate, LeavesNoTriangleOfATreeSkew) {
+  SyntheticTreeOptions tree;
+  tree.vertices = 400;
+  for (tree.seed = 11; tree.seed < 15; ++tree.seed) {
+    const SkewnessSummary skewness = summarize_skewness(generate_surface(synthetic_tree(tree)).mesh);
+    EXPECT_LE(skewness.max, 0.27) << tree.seed;
+    EXPECT_LE(skewness.mean, 0.09) << tree.seed;
+  }
+}
+
 TEST(Generate, MakesStars) {
   for (const int arms : {12, 20}) {
     SCOPED_TRACE(arms);

@@ -171,7 +171,7 @@ class Mender {
     const auto offer_place = [&](const Vec3& place) {
       offer({Kind::move, {}, v, place, before, worst_with(v, v, place, kPaysOff * before)}, steps);
     };
-    const Vec3 normal = surface_.gradient[v], side = normal.unitOrthogonal(), across = normal.cross(side);
+    const Vec3 normal = surface_.gradient[v], side = towards_neighbour(v, normal), across = normal.cross(side);
     if (keeps_ == Keeps::to_boundary) center -= normal.dot(center - mesh_.point(v)) * normal;
     for (const double share : {0.25, 0.5, 1.0}) offer_place(mesh_.point(v) + share * (center - mesh_.point(v)));
     for (const double share : {0.6, 0.4, 0.2, 0.1, 0.05, 0.02}) {
@@ -180,6 +180,13 @@ class Mender {
       }
       for (const auto& [x, y] : kDirections) offer_place(mesh_.point(v) + share * length * (x * side + y * across));
     }
+  }
+
+  // Along the surface, so that what is done moves with the centerline.
+  Vec3 towards_neighbour(Vertex v, const Vec3& normal) const {
+    const Vec3 edge = mesh_.point(mesh_.source(mesh_.halfedge(v))) - mesh_.point(v);
+    const Vec3 along = edge - normal.dot(edge) * normal;
+    return along.squaredNorm() > 0 ? Vec3(along.normalized()) : Vec3(normal.unitOrthogonal());
   }
 
   double worst_around(Vertex v) const { return worst_with(v, v, mesh_.point(v), 1); }
