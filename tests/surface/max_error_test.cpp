@@ -66,16 +66,38 @@ class SurfaceDistance {
   BoxTree tree_;
 };
 
+// The least distance from `x`, up to `reach`, at which the field changes its sign in one of many directions.
+double distance_all_around(const VesselField& field, const Vec3& x, Index hint, double reach) {
+  constexpr int kDirections = 400, kSteps = 64;
+  const bool outside = field.sample(x, hint).distance > 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const double z = 1 - (2.0 * i + 1) / kDirections, angle = i * std::numbers::pi * (3 - std::sqrt(5));
+    const double across = std::sqrt(1 - z * z);
+    const Vec3 way(across * std::cos(angle), across * std::sin(angle), z);
+    for (int k = 1; k <= kSteps; ++k) {
+      const double distance = reach * k / kSteps;
+      if ((field.sample(x + distance * way, hint).distance > 0) == outside) continue;
+      reach = distance;
+      break;
+    }
+  }
+  return reach;
+}
+
 // The distance of `x` from the boundary point that follows from it along the gradient: no less than that to the
-// boundary. (The field itself is not quite a distance where it is blended.)
+// boundary. (The field itself is not quite a distance where it is blended, and where the walls of two vessels blend
+// its gradient nearly vanishes and leads astray: there one looks all around.)
 double distance_to_boundary(const VesselField& field, const Vec3& x, Index hint) {
+  constexpr double kShallow = 0.3;
   Vec3 p = x;
   FieldSample s = field.sample(p, hint);
+  const bool shallow = s.gradient.norm() < kShallow;
   for (int step = 0; step < 20 && s.gradient.squaredNorm() > 0.01; ++step) {
     p -= s.distance / s.gradient.squaredNorm() * s.gradient;
     s = field.sample(p, s.cone);
   }
-  return (p - x).norm() + std::abs(s.distance);
+  const double distance = (p - x).norm() + std::abs(s.distance);
+  return shallow ? distance_all_around(field, x, hint, distance) : distance;
 }
 
 // Calls visit(distance in limits) for 28 points of every face.

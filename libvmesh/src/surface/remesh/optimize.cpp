@@ -216,7 +216,7 @@ class Optimizer {
     std::vector<Vertex> tangles = find_tangles(state_);
     while (!tangles.empty() && !hopeless(tangles)) {
       const std::vector<Vertex> loosened = loosen(state_, tangles);
-      sweep_from(options_.sweeps / 2, [&] { stir(loosened); });
+      sweep_from(options_.sweeps / 2, [&] { stir_loosened(loosened); });
       const std::size_t before = tangles.size();
       tangles = find_tangles(state_);
       if (static_cast<double>(tangles.size()) > kStillTangled * static_cast<double>(before)) break;
@@ -224,8 +224,10 @@ class Optimizer {
     tangles_ = tangles.size();
   }
 
-  void stir(const std::vector<Vertex>& vertices) {
-    for (const Vertex v : vertices) {
+  // With a limit on the error everything: of eight sharp forks of 30 degrees seven were not proven at 5 % without.
+  void stir_loosened(const std::vector<Vertex>& loosened) {
+    if (options_.max_error.is_set()) return state_.stir_all();
+    for (const Vertex v : loosened) {
       if (!state_.mesh.is_removed(v)) state_.stir(v);
     }
   }
