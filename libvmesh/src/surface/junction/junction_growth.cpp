@@ -129,8 +129,8 @@ GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   options.max_error = {};
   options.around = std::max(3, static_cast<int>(finer * options_.around));
   const double expected = expected_vertices(centerline_, options.around);
-  optimize(surface, options,
-           {std::min<double>(finer * kGrownAround, options.around), expected, GrownMesh::Stage::piece}, {});
+  const double around = std::min<double>(finer * kGrownAround, options.around);
+  optimize(surface, options, {around, expected, GrownMesh::Stage::piece, options_.max_error.is_set()}, {});
   GenerateResult piece;
   surface.export_to(piece);
   return piece;

@@ -29,6 +29,7 @@ struct GrownMesh {
   double around;             ///< its resolution, in vertices around a vessel
   double expected_vertices;  ///< at the resolution asked for
   Stage stage = Stage::grown;
+  bool to_be_proven = false;  ///< there is a limit on the error, now or later
 };
 
 /// Turns a grown surface into a good one: edges are split, collapsed and flipped towards a size field proportional
