@@ -55,22 +55,19 @@ class Matcher {
   }
 
   Match from_surface(Index f, const Vec3& weights, double area, Index& near) const {
-    const auto [a, b, c] = surface_.corners(f);
-    const Vec3 p = weights[0] * a + weights[1] * b + weights[2] * c;
-    int corner = 0;
-    weights.maxCoeff(&corner);
-    const Index cone = surface_.vertices[surface_.faces[f][corner]].cone;
-    const double radius = widest_radius(field_, cone);
-    const auto found = on_reference(p, normals_[f], cone, kFarthest * radius, near);
-    if (!found) return {};
-    near = found->face;
-    if (reference_.on_border(found->face, found->point)) return {};
-    if (found->distance > kNear * radius) {  // is that point's own counterpart much nearer, then it is not this one
-      const Index there = reference_.cone(found->face);
-      const double limit = kMutual * found->distance;
-      if (on_surface(found->point, reference_.normal(found->face), there, limit, f)) return {};
-    }
-    return match(f, weights, p, found->point, reference_.normal(found->face), radius, area);
+    return from_surface(f, weights, normals_[f], area, near);
+  }
+
+  // Of the middle of the side opposite to corner i, whose normal is that of both its faces.
+  Match from_edge(Index f, int i) const {
+    const Triangle& face = surface_.faces[f];
+    const Index a = face[(i + 1) % 3], b = face[(i + 2) % 3], g = surface_.face_of(b, a);
+    if (g == kNone || g < f) return {};
+    const Vec3 normal = (normals_[f] + normals_[g]).normalized();
+    Vec3 weights = Vec3::Constant(0.5);
+    weights[i] = 0;
+    Index near = kNone;
+    return from_surface(f, weights, normal, 0, near);
   }
 
   Match from_reference(const ReferenceSample& sample, Index& near) const {
@@ -92,6 +89,25 @@ class Matcher {
   }
 
  private:
+  Match from_surface(Index f, const Vec3& weights, const Vec3& normal, double area, Index& near) const {
+    const auto [a, b, c] = surface_.corners(f);
+    const Vec3 p = weights[0] * a + weights[1] * b + weights[2] * c;
+    int corner = 0;
+    weights.maxCoeff(&corner);
+    const Index cone = surface_.vertices[surface_.faces[f][corner]].cone;
+    const double radius = widest_radius(field_, cone);
+    const auto found = on_reference(p, normal, cone, kFarthest * radius, near);
+    if (!found) return {};
+    near = found->face;
+    if (reference_.on_border(found->face, found->point)) return {};
+    if (found->distance > kNear * radius) {  // is that point's own counterpart much nearer, then it is not this one
+      const Index there = reference_.cone(found->face);
+      const double limit = kMutual * found->distance;
+      if (on_surface(found->point, reference_.normal(found->face), there, limit, f)) return {};
+    }
+    return match(f, weights, p, found->point, reference_.normal(found->face), radius, area);
+  }
+
   std::optional<ClosestPoint> on_reference(const Vec3& p, const Vec3& normal, Index cone, double limit,
                                            Index near) const {
     const auto accepts = [&](Index g) {
@@ -155,6 +171,15 @@ Matches find_matches(const FitMesh& surface, const FitReference& reference, cons
     Index near = kNone;
     for (std::size_t i = block * kGrain; i < std::min(samples.size(), (block + 1) * kGrain); ++i)
       matches.from_reference[i] = matcher.from_reference(samples[i], near);
+  });
+  return matches;
+}
+
+std::vector<Match> match_edges(const FitMesh& surface, const FitReference& reference, const VesselField& field) {
+  const Matcher matcher(surface, reference, field);
+  std::vector<Match> matches(3 * surface.faces.size());
+  tbb::parallel_for(Index{0}, static_cast<Index>(surface.faces.size()), [&](Index f) {
+    for (int i = 0; i < 3; ++i) matches[3 * f + static_cast<Index>(i)] = matcher.from_edge(f, i);
   });
   return matches;
 }

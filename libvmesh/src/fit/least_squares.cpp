@@ -10,6 +10,7 @@ using Mat3 = Eigen::Matrix3d;
 
 constexpr double kHold = 1e-3;      // of a vertex' area: keeps what no match holds
 constexpr double kInPlane = 100;    // of a vertex' area
+constexpr double kFrozen = 1e4;     // of a vertex' area: what is left of its step is dropped
 constexpr double kAccuracy = 1e-4;  // of the residual; steps are corrected in the next round anyway
 // Large distances count more, up to this many times the RMS distance: what is far off is brought near.
 constexpr double kEmphasis = 0.8;
@@ -116,7 +117,8 @@ double rms_distance(const Matches& matches) {
 }
 
 std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& matches, const std::vector<Vec3>& pull,
-                                      const std::vector<Vec3>& opening_normals, const LeastSquaresWeights& weights) {
+                                      const std::vector<Vec3>& opening_normals, const std::vector<char>& frozen,
+                                      const LeastSquaresWeights& weights) {
   Equations equations(surface);
   const double rms = rms_distance(matches);
   for_each_match(matches, [&](const Match& match) {
@@ -136,7 +138,8 @@ std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& mat
   for (Index v = 0; v < surface.vertices.size(); ++v) {
     const Mat3 along = normal[v] * normal[v].transpose();
     equations.add(v, weights.tangential * area[v] * (Mat3::Identity() - along), pull[v]);
-    equations.add(v, kHold * area[v] * Mat3::Identity(), Vec3::Zero());
+    const double hold = is_frozen(frozen, v) ? kFrozen : kHold;
+    equations.add(v, hold * area[v] * Mat3::Identity(), Vec3::Zero());
     if (surface.on_border(v)) {
       const Vec3& across = opening_normals[surface.vertices[v].opening];
       equations.add(v, kInPlane * area[v] * across * across.transpose(), Vec3::Zero());
@@ -149,6 +152,7 @@ std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& mat
   }
   std::vector<Vec3> steps = equations.solve();
   for (Index v = 0; v < surface.vertices.size(); ++v) {
+    if (is_frozen(frozen, v)) steps[v].setZero();
     if (!surface.on_border(v)) continue;
     const Vec3& across = opening_normals[surface.vertices[v].opening];
     steps[v] -= across.dot(steps[v]) * across;

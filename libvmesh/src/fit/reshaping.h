@@ -13,9 +13,6 @@ namespace vmesh {
 /// the end not at all.
 void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const std::vector<char>&)>& change);
 
-/// Vertices that are newer than the flags are not frozen.
-inline bool is_frozen(const std::vector<char>& frozen, Index v) { return v < frozen.size() && frozen[v]; }
-
 /// Flips edges for even valences and for better triangles. Leaves alone the edges with a frozen end.
 void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard);
 
