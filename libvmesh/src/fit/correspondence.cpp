@@ -58,14 +58,15 @@ class Matcher {
     return from_surface(f, weights, normals_[f], area, near);
   }
 
-  // Of the middle of the side opposite to corner i, whose normal is that of both its faces.
-  Match from_edge(Index f, int i) const {
+  // Of a point on the side opposite to corner i, whose normal is that of both its faces; `part` of the way along it.
+  Match from_edge(Index f, int i, double part) const {
     const Triangle& face = surface_.faces[f];
     const Index a = face[(i + 1) % 3], b = face[(i + 2) % 3], g = surface_.face_of(b, a);
     if (g == kNone || g < f) return {};
     const Vec3 normal = (normals_[f] + normals_[g]).normalized();
-    Vec3 weights = Vec3::Constant(0.5);
-    weights[i] = 0;
+    Vec3 weights = Vec3::Zero();
+    weights[(i + 1) % 3] = 1 - part;
+    weights[(i + 2) % 3] = part;
     Index near = kNone;
     return from_surface(f, weights, normal, 0, near);
   }
@@ -177,9 +178,12 @@ Matches find_matches(const FitMesh& surface, const FitReference& reference, cons
 
 std::vector<Match> match_edges(const FitMesh& surface, const FitReference& reference, const VesselField& field) {
   const Matcher matcher(surface, reference, field);
-  std::vector<Match> matches(3 * surface.faces.size());
+  constexpr int kPoints = 3 * kPerEdge;
+  std::vector<Match> matches(kPoints * surface.faces.size());
   tbb::parallel_for(Index{0}, static_cast<Index>(surface.faces.size()), [&](Index f) {
-    for (int i = 0; i < 3; ++i) matches[3 * f + static_cast<Index>(i)] = matcher.from_edge(f, i);
+    for (int i = 0; i < kPoints; ++i)
+      matches[kPoints * f + static_cast<Index>(i)] =
+          matcher.from_edge(f, i / kPerEdge, (i % kPerEdge + 1.0) / (kPerEdge + 1));
   });
   return matches;
 }
