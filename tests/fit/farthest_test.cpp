@@ -55,6 +55,16 @@ TEST_F(Ridge, IsSeenByTheMiddleOfTheEdgeAlongIt) {
   EXPECT_LT(place_of(surface_, farthest).position.head<2>().norm(), 1e-9);
 }
 
+TEST_F(Ridge, IsSeenByItsTips) {
+  surface_.vertices[0].position.z() += 1.5;
+  Matches matches = find_matches(surface_, reference_, samples_, field_, 3);
+  const double by_faces = std::abs(farthest_match(surface_, matches, {}).distance);
+  matches.from_edges = match_edges(surface_, reference_, field_);
+  const Match farthest = farthest_match(surface_, matches, {});
+  EXPECT_GT(std::abs(farthest.distance), 1.2 * by_faces);
+  EXPECT_LT((place_of(surface_, farthest).position - surface_.position(0)).norm(), 1e-9);
+}
+
 TEST_F(Ridge, GetsAVertex) {
   setting_.guard.max_skewness = 0.9;  // halves of them are slim
   put_vertices_where_farthest(surface_, samples_, setting_, 5);

@@ -16,6 +16,7 @@ constexpr double kNear = 0.25, kMutual = 0.2;
 constexpr double kNoDistance = 1e-9;  // of a radius: below it the line between two points has no direction
 constexpr double kOnEdge = 1e-9;      // a corner's weight on the edge opposite to it
 constexpr std::size_t kGrain = 256;   // samples in a row, each of which helps the next
+constexpr Index kFaces = 32;          // the same of faces
 
 // Centres of the triangles that a face is divided into, as weights of its corners.
 std::vector<Vec3> pattern(int division) {
@@ -161,11 +162,14 @@ Matches find_matches(const FitMesh& surface, const FitReference& reference, cons
   Matches matches;
   matches.per_face = static_cast<int>(points.size());
   matches.from_surface.resize(surface.faces.size() * points.size());
-  tbb::parallel_for(Index{0}, static_cast<Index>(surface.faces.size()), [&](Index f) {
-    const double area = surface.area_normal(f).norm() / (2 * static_cast<double>(points.size()));
+  const auto face_count = static_cast<Index>(surface.faces.size());
+  tbb::parallel_for(Index{0}, (face_count + kFaces - 1) / kFaces, [&](Index block) {
     Index near = kNone;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      matches.from_surface[f * points.size() + i] = matcher.from_surface(f, points[i], area, near);
+    for (Index f = block * kFaces; f < std::min(face_count, (block + 1) * kFaces); ++f) {
+      const double area = surface.area_normal(f).norm() / (2 * static_cast<double>(points.size()));
+      for (std::size_t i = 0; i < points.size(); ++i)
+        matches.from_surface[f * points.size() + i] = matcher.from_surface(f, points[i], area, near);
+    }
   });
   matches.from_reference.resize(samples.size());
   tbb::parallel_for(std::size_t{0}, (samples.size() + kGrain - 1) / kGrain, [&](std::size_t block) {
@@ -183,9 +187,22 @@ std::vector<Match> match_edges(const FitMesh& surface, const FitReference& refer
   tbb::parallel_for(Index{0}, static_cast<Index>(surface.faces.size()), [&](Index f) {
     for (int i = 0; i < kPoints; ++i)
       matches[kPoints * f + static_cast<Index>(i)] =
-          matcher.from_edge(f, i / kPerEdge, (i % kPerEdge + 1.0) / (kPerEdge + 1));
+          matcher.from_edge(f, i / kPerEdge, i % kPerEdge / (kPerEdge - 1.0));
   });
   return matches;
+}
+
+void follow(Matches& matches, const std::vector<FitMesh::Vertex>& before, const FitMesh& surface) {
+  for (auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
+    for (Match& match : *list) {
+      if (match.face == kNone) continue;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Index v = surface.faces[match.face][i];
+        match.distance +=
+            match.weights[static_cast<Eigen::Index>(i)] * match.direction.dot(surface.position(v) - before[v].position);
+      }
+    }
+  }
 }
 
 double matched_distance(const Matches& matches, double share) {

@@ -1,6 +1,7 @@
 #include "fit/farthest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -20,8 +21,10 @@ constexpr std::size_t kEdgePoints = 3 * kPerEdge;  // of a face
 // triangles skewer than .14 in the mean.
 constexpr double kFar = 4;
 constexpr int kMostPlaces = 12;
-constexpr double kReach = 2.5;  // edges: what is fitted again around a new vertex. Measured: 1.5 to 3.5 do the same
-constexpr int kRounds = 3;      // of it. Measured: 2 to 4 do the same
+constexpr double kReach = 2.5;      // edges: what is fitted again around a new vertex. Measured: 1.5 to 3.5 do the same
+constexpr double kAtVertex = 1e-9;  // what is left of the weights, for a vertex
+constexpr std::array<double, 3> kShares = {0.75, 0.5, 0.25};  // of its distance that a vertex is brought nearer by
+constexpr int kRounds = 3;                                    // of it. Measured: 2 to 4 do the same
 
 Vec3 point_of(const FitMesh& surface, const Match& match) {
   const auto [a, b, c] = surface.corners(match.face);
@@ -66,23 +69,40 @@ class FarPlaces {
     double least = farthest(patch, before.matches);
     const double limit = std::max(setting_.guard.max_skewness, worst_skewness(patch));
     std::optional<std::pair<Patch, PatchMatches>> best;
-    for (int side = 0; side < 3; ++side) {
+    const auto try_change = [&](const auto& change) {
       Patch changed = patch;
       PatchMatches after{{}, before.samples};
-      put_vertex(changed, there, side, after);
+      change(changed, after);
+      renew(changed, after);
+      after.matches.from_edges = match_edges(changed.surface, setting_.reference, setting_.field);
       const double left = farthest(changed, after.matches);
-      if (left >= least || worst_skewness(changed) > limit) continue;
+      if (left >= least || worst_skewness(changed) > limit) return;
       least = left;
       best.emplace(std::move(changed), std::move(after));
+    };
+    if (worst.weights.maxCoeff() > 1 - kAtVertex) {
+      for (const double share : kShares)
+        try_change([&](Patch& changed, PatchMatches&) { move_vertex(changed, there, share); });
+    } else {
+      for (int side = 0; side < 3; ++side)
+        try_change([&](Patch& changed, PatchMatches& matches) { put_vertex(changed, there, side, matches); });
     }
     if (best) put_back(best->first, best->second);
     return best.has_value();
   }
 
+  // A tip, that fills what the faces around it cut off.
+  void move_vertex(Patch& patch, const Match& match, double share) const {
+    Eigen::Index corner = 0;
+    match.weights.maxCoeff(&corner);
+    std::vector<Vec3> steps(patch.surface.vertices.size(), Vec3::Zero());
+    steps[patch.surface.faces[match.face][static_cast<std::size_t>(corner)]] =
+        -share * match.distance * match.direction;
+    take_steps(patch.surface, steps, setting_.guard);
+  }
+
   void put_vertex(Patch& patch, const Match& match, int side, PatchMatches& matches) const {
-    change_safely(patch.surface, [&](FitMesh& surface, const std::vector<char>& crossing) {
-      std::vector<char> frozen = patch.frozen;
-      for (std::size_t v = 0; v < frozen.size(); ++v) frozen[v] = frozen[v] || crossing[v];
+    change(patch, [&](FitMesh& surface, const std::vector<char>& frozen) {
       split_at(surface, match, side);
       flip_closer(surface, frozen, false, setting_);
       flip_edges(surface, frozen, setting_.guard);
@@ -93,9 +113,19 @@ class FarPlaces {
     for (int i = 0; i < kRounds; ++i) {
       renew(patch, matches);
       step_nearer(patch.surface, matches.matches, setting_, patch.frozen);
+      change(patch,
+             [&](FitMesh& surface, const std::vector<char>& frozen) { repair(surface, frozen, setting_.guard); });
     }
-    renew(patch, matches);
-    matches.matches.from_edges = match_edges(patch.surface, setting_.reference, setting_.field);
+  }
+
+  // change_safely() with what is free of a patch.
+  template <class Change>
+  static void change(Patch& patch, Change&& change_free) {
+    change_safely(patch.surface, [&](FitMesh& surface, const std::vector<char>& crossing) {
+      std::vector<char> frozen = patch.frozen;
+      for (std::size_t v = 0; v < frozen.size(); ++v) frozen[v] = frozen[v] || crossing[v];
+      change_free(surface, frozen);
+    });
   }
 
   void renew(const Patch& patch, PatchMatches& matches) const {

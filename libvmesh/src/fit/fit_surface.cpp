@@ -148,7 +148,7 @@ class Fit {
     finish();
     for (int i = 0; options_.resize && to_error_ && i < kCorrections && !keeps_error(); ++i) {
       even_error_ *= kCorrection;
-      for (int round = 0; round < 2; ++round) resize_once(next_matches());
+      for (int round = 0; round < 2; ++round) resize_once(matches_after_step());
       if (!to_error_) keep_to_most_vertices();
       finish();
     }
@@ -191,6 +191,15 @@ class Fit {
     return matches_now(coarse);
   }
 
+  // One step nearer, and what the distances are after it.
+  Matches matches_after_step() {
+    Matches matches = next_matches();
+    const std::vector<FitMesh::Vertex> before = surface_.vertices;
+    step(matches);
+    follow(matches, before, surface_);
+    return matches;
+  }
+
   Matches matches_now(bool coarse) const {
     if (coarse) return find_matches(surface_, reference_, few_samples_, field_, kCoarseDivision);
     return find_matches(surface_, reference_, samples_, field_, kDivision);
@@ -227,7 +236,7 @@ class Fit {
   void resize() {
     const int rounds = std::max(1, options_.rounds - kFirstRounds - kLastRounds);
     for (int i = 0; i < (to_error_ ? rounds + kMoreRounds : rounds); ++i) {
-      const Matches matches = next_matches();
+      const Matches matches = matches_after_step();
       const std::size_t before = surface_.vertices.size();
       const double p95 = to_error_ ? matched_distance(matches, 0.95) : 0;
       if (to_error_ && settled_ && i >= rounds && p95 <= 0.95 * options_.error && p95 > 0.88 * options_.error) return;
@@ -241,7 +250,7 @@ class Fit {
   void keep_to_most_vertices() {
     for (int i = 0; i < kCorrections && surface_.vertices.size() > most_vertices_; ++i) {
       aim_ *= kCorrection;
-      resize_once(next_matches());
+      resize_once(matches_after_step());
     }
   }
 
@@ -271,7 +280,6 @@ class Fit {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       flip_closer(surface, frozen, false, setting_);
     });
-    step(matches_now(false));
   }
 
   // What the error around vertices should be for 95 % of the distances to be below options.error.
