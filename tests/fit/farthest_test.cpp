@@ -56,7 +56,7 @@ TEST_F(Ridge, IsSeenByTheMiddleOfTheEdgeAlongIt) {
 }
 
 TEST_F(Ridge, IsSeenByItsTips) {
-  surface_.vertices[0].position.z() += 1.5;
+  surface_.vertices[0].position.z() += 3;
   Matches matches = find_matches(surface_, reference_, samples_, field_, 3);
   const double by_faces = std::abs(farthest_match(surface_, matches, {}).distance);
   matches.from_edges = match_edges(surface_, reference_, field_);

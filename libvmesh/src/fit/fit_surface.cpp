@@ -28,6 +28,7 @@ namespace {
 constexpr double kSamplesPerFace = 9;              // of the reference
 constexpr int kDivision = 3, kCoarseDivision = 2;  // of the surface's faces: 9 or 4 samples
 constexpr int kFewer = 2;                          // samples of the reference to one, where coarse will do
+constexpr std::size_t kFewerBefore = 4;            // samples of the report's distances, to one after the fit
 constexpr double kLeastMatched = 0.02;             // of the surface's area, for a reference that is somewhere else
 constexpr int kRelaxations = 2;
 constexpr double kEvenShare = 0.5;  // of the error that 95 % keep to: what it is around most vertices
@@ -193,7 +194,7 @@ class Fit {
 
   // One step nearer, and what the distances are after it.
   Matches matches_after_step() {
-    Matches matches = next_matches();
+    Matches matches = next_matches(!to_error_);
     const std::vector<FitMesh::Vertex> before = surface_.vertices;
     step(matches);
     follow(matches, before, surface_);
@@ -208,8 +209,9 @@ class Fit {
   // The last rounds: shape gives way to nearness.
   void finish() {
     for (int i = 0; i < kLastRounds; ++i) {
-      step(next_matches());
-      if (i < kLastRounds - 2) reshape(2, false);
+      const bool last = i >= kLastRounds - 2;
+      step(next_matches(!last && !to_error_));
+      if (!last) reshape(2, false);
     }
     if (options_.resize) put_vertices_where_farthest(surface_, samples_and_rims_, setting_, most_vertices_);
   }
@@ -312,12 +314,13 @@ class Fit {
   SizeLimits limits_;
 };
 
-FitDistance distance_between(const TriMesh& surface, const TriMesh& reference, const FitOptions& options) {
+FitDistance distance_between(const TriMesh& surface, const TriMesh& reference, const FitOptions& options,
+                             std::size_t samples) {
   HausdorffOptions hausdorff_options;
   hausdorff_options.tolerance = options.tolerance;
   return {hausdorff(surface, reference, hausdorff_options),
-          sample_distance(surface, ClosestPointIndex(reference), options.samples),
-          sample_distance(reference, ClosestPointIndex(surface), options.samples)};
+          sample_distance(surface, ClosestPointIndex(reference), samples),
+          sample_distance(reference, ClosestPointIndex(surface), samples)};
 }
 
 }  // namespace
@@ -362,8 +365,8 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
     report.turned = fit.reference().turned();
     report.rounds = fit.rounds();
     const TriMesh compared = fit.reference_without_apart(report);
-    report.before = distance_between(surface.mesh, compared, options);
-    report.after = distance_between(result.surface.mesh, compared, options);
+    report.before = distance_between(surface.mesh, compared, options, options.samples / kFewerBefore + 1);
+    report.after = distance_between(result.surface.mesh, compared, options, options.samples);
     report.uncovered = uncovered_parts(fit.surface(), fit.reference(), field);
     report.unsupported = unsupported_parts(fit.surface(), fit.reference(), field);
     return result;

@@ -189,11 +189,12 @@ std::vector<Vec3> shape_steps(const FitMesh& surface, int power) {
   return steps;
 }
 
-void relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above) {
+bool relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above) {
   std::vector<double> skewness(surface.faces.size(), 0);
   for (Index f = 0; f < skewness.size(); ++f) {
     if (surface.has_face(f)) skewness[f] = skewness_of(surface, f);
   }
+  bool moved = false;
   for (Index v = 0; v < surface.vertices.size(); ++v) {
     if (!surface.has_vertex(v) || surface.on_border(v) || is_frozen(frozen, v)) continue;
     const auto& around = surface.faces_around(v);
@@ -203,9 +204,11 @@ void relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& g
       if (!may_place(surface, v, surface.position(v) + step, skewness, guard)) continue;
       surface.vertices[v].position += step;
       for (const Index f : around) skewness[f] = skewness_of(surface, f);
+      moved = true;
       break;
     }
   }
+  return moved;
 }
 
 }  // namespace vmesh

@@ -27,7 +27,7 @@ void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen, bool h
 std::vector<Vec3> shape_steps(const FitMesh& surface, int power);
 
 /// Moves vertices one after the other by their shape steps, as far as none of their triangles becomes worse than the
-/// worst. Only vertices with a triangle of more than `above` skewness take part.
-void relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above = 0);
+/// worst. Only vertices with a triangle of more than `above` skewness take part. Returns whether one moved.
+bool relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above = 0);
 
 }  // namespace vmesh

@@ -48,7 +48,9 @@ void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh, 
 }
 
 void repair(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard) {
-  for (int i = 0; i < kRepairs; ++i) relax(surface, frozen, guard, kRepairPower, guard.max_skewness);
+  for (int i = 0; i < kRepairs; ++i) {
+    if (!relax(surface, frozen, guard, kRepairPower, guard.max_skewness)) return;
+  }
 }
 
 }  // namespace vmesh
