@@ -80,24 +80,44 @@ class FarPlaces {
       least = left;
       best.emplace(std::move(changed), std::move(after));
     };
-    if (worst.weights.maxCoeff() > 1 - kAtVertex) {
+    Match cut = there;  // where a vertex may help
+    if (is_tip(worst)) {
       for (const double share : kShares)
         try_change([&](Patch& changed, PatchMatches&) { move_vertex(changed, there, share); });
-    } else {
+      cut = farthest_beside(patch, before.matches, tip_of(patch, there));
+    }
+    if (!best && cut.face != kNone) {
       for (int side = 0; side < 3; ++side)
-        try_change([&](Patch& changed, PatchMatches& matches) { put_vertex(changed, there, side, matches); });
+        try_change([&](Patch& changed, PatchMatches& matches) { put_vertex(changed, cut, side, matches); });
     }
     if (best) put_back(best->first, best->second);
     return best.has_value();
   }
 
-  // A tip, that fills what the faces around it cut off.
-  void move_vertex(Patch& patch, const Match& match, double share) const {
+  static bool is_tip(const Match& match) { return match.weights.maxCoeff() > 1 - kAtVertex; }
+
+  static Index tip_of(const Patch& patch, const Match& match) {
     Eigen::Index corner = 0;
     match.weights.maxCoeff(&corner);
+    return patch.surface.faces[match.face][static_cast<std::size_t>(corner)];
+  }
+
+  // What the faces around a tip cut off, that it makes up for.
+  static Match farthest_beside(const Patch& patch, const Matches& matches, Index tip) {
+    Match farthest;
+    for (const auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
+      for (const Match& match : *list) {
+        if (match.face == kNone || is_tip(match) || std::abs(match.distance) <= std::abs(farthest.distance)) continue;
+        const Triangle& face = patch.surface.faces[match.face];
+        if (std::find(face.begin(), face.end(), tip) != face.end()) farthest = match;
+      }
+    }
+    return farthest;
+  }
+
+  void move_vertex(Patch& patch, const Match& match, double share) const {
     std::vector<Vec3> steps(patch.surface.vertices.size(), Vec3::Zero());
-    steps[patch.surface.faces[match.face][static_cast<std::size_t>(corner)]] =
-        -share * match.distance * match.direction;
+    steps[tip_of(patch, match)] = -share * match.distance * match.direction;
     take_steps(patch.surface, steps, setting_.guard);
   }
 
