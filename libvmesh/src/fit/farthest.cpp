@@ -15,9 +15,9 @@ namespace {
 
 constexpr int kDivision = 3, kRelaxations = 2;
 constexpr std::size_t kEdgePoints = 3 * kPerEdge;  // of a face
-// RMS distances from which on a place, as a ridge that a triangle lies across, gets a vertex of its own. Measured on the
-// aorta and SU201, sixteen starts (growth with nodes left out at 0 to .8, vertices moved by 1e-6 radii): Hausdorff at
-// most .97 and .29 mm with 3 to 4.5, 1.00 and .29 with 5; safe from 3 to 4.5.
+// RMS distances from which on a place, as a ridge that a triangle lies across, gets a vertex of its own. Measured on
+// the aorta and SU201, sixteen starts (growth with nodes left out at 0 to .8, vertices moved by 1e-6 radii): Hausdorff
+// at most .97 and .29 mm with 3 to 4.5, 1.00 and .29 with 5; safe from 3 to 4.5.
 constexpr double kFar = 4;
 constexpr int kMostPlaces = 12;
 constexpr double kReach = 2.5;      // edges: what is fitted again around a new vertex. Measured: 1.5 to 3.5 do the same
