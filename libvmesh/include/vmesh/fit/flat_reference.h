@@ -16,7 +16,7 @@ struct ReferenceCap {
 };
 
 struct FlatReference {
-  TriMesh mesh;                    ///< the reference without its caps
+  TriMesh mesh;  ///< the reference without its caps
   std::vector<ReferenceCap> caps;  ///< that openings were moved to: all found, or none if faces would cross
 };
 
