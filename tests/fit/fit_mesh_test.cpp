@@ -5,6 +5,7 @@
 #include "vmesh/mesh/topology.h"
 
 #include "../mesh/shapes.h"
+#include "fit/patch.h"
 
 namespace vmesh {
 namespace {
@@ -56,6 +57,24 @@ TEST(FitMesh, DoesNotCollapseToAnEdgeOfFourFaces) {
   for (const Vec3& p : tetrahedron.vertices) vertices.push_back({p, 0, kNone, 1, 1});
   const FitMesh mesh(tetrahedron, vertices);
   for (const auto& [a, b] : mesh.edges()) EXPECT_FALSE(mesh.may_collapse(a, b));
+}
+
+TEST(FitMesh, ChangesInAPatchThatIsPutBack) {
+  FitMesh mesh = sphere();
+  Patch patch = patch_around(mesh, 20, 0.7);
+  EXPECT_LT(patch.faces.size(), mesh.faces.size());
+  const auto is_free = [&](Index f) { return patch.moves(f); };
+  Index changed = 0;
+  while (!is_free(changed)) ++changed;
+  const auto [a, b, c] = patch.surface.faces[changed];
+  FitMesh::Vertex middle = patch.surface.vertices[a];
+  middle.position = 0.5 * (patch.surface.position(a) + patch.surface.position(b));
+  const Index m = patch.surface.split(a, b, middle);
+  EXPECT_FALSE(is_frozen(patch.frozen, m));
+  const std::vector<Index> faces = put_back(mesh, patch);
+  EXPECT_EQ(faces.size(), patch.surface.faces.size());
+  EXPECT_EQ(mesh.position(42), middle.position);
+  expect_sphere(mesh, 43);
 }
 
 }  // namespace

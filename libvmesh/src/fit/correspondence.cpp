@@ -16,6 +16,7 @@ constexpr double kNear = 0.25, kMutual = 0.2;
 constexpr double kNoDistance = 1e-9;  // of a radius: below it the line between two points has no direction
 constexpr double kOnEdge = 1e-9;      // a corner's weight on the edge opposite to it
 constexpr std::size_t kGrain = 256;   // samples in a row, each of which helps the next
+constexpr Index kFaces = 32;          // the same of faces
 
 // Centres of the triangles that a face is divided into, as weights of its corners.
 std::vector<Vec3> pattern(int division) {
@@ -55,22 +56,20 @@ class Matcher {
   }
 
   Match from_surface(Index f, const Vec3& weights, double area, Index& near) const {
-    const auto [a, b, c] = surface_.corners(f);
-    const Vec3 p = weights[0] * a + weights[1] * b + weights[2] * c;
-    int corner = 0;
-    weights.maxCoeff(&corner);
-    const Index cone = surface_.vertices[surface_.faces[f][corner]].cone;
-    const double radius = widest_radius(field_, cone);
-    const auto found = on_reference(p, normals_[f], cone, kFarthest * radius, near);
-    if (!found) return {};
-    near = found->face;
-    if (reference_.on_border(found->face, found->point)) return {};
-    if (found->distance > kNear * radius) {  // is that point's own counterpart much nearer, then it is not this one
-      const Index there = reference_.cone(found->face);
-      const double limit = kMutual * found->distance;
-      if (on_surface(found->point, reference_.normal(found->face), there, limit, f)) return {};
-    }
-    return match(f, weights, p, found->point, reference_.normal(found->face), radius, area);
+    return from_surface(f, weights, normals_[f], area, near);
+  }
+
+  // Of a point on the side opposite to corner i, whose normal is that of both its faces; `part` of the way along it.
+  Match from_edge(Index f, int i, double part) const {
+    const Triangle& face = surface_.faces[f];
+    const Index a = face[(i + 1) % 3], b = face[(i + 2) % 3], g = surface_.face_of(b, a);
+    if (g == kNone || g < f) return {};
+    const Vec3 normal = (normals_[f] + normals_[g]).normalized();
+    Vec3 weights = Vec3::Zero();
+    weights[(i + 1) % 3] = 1 - part;
+    weights[(i + 2) % 3] = part;
+    Index near = kNone;
+    return from_surface(f, weights, normal, 0, near);
   }
 
   Match from_reference(const ReferenceSample& sample, Index& near) const {
@@ -92,6 +91,25 @@ class Matcher {
   }
 
  private:
+  Match from_surface(Index f, const Vec3& weights, const Vec3& normal, double area, Index& near) const {
+    const auto [a, b, c] = surface_.corners(f);
+    const Vec3 p = weights[0] * a + weights[1] * b + weights[2] * c;
+    int corner = 0;
+    weights.maxCoeff(&corner);
+    const Index cone = surface_.vertices[surface_.faces[f][corner]].cone;
+    const double radius = widest_radius(field_, cone);
+    const auto found = on_reference(p, normal, cone, kFarthest * radius, near);
+    if (!found) return {};
+    near = found->face;
+    if (reference_.on_border(found->face, found->point)) return {};
+    if (found->distance > kNear * radius) {  // is that point's own counterpart much nearer, then it is not this one
+      const Index there = reference_.cone(found->face);
+      const double limit = kMutual * found->distance;
+      if (on_surface(found->point, reference_.normal(found->face), there, limit, f)) return {};
+    }
+    return match(f, weights, p, found->point, reference_.normal(found->face), radius, area);
+  }
+
   std::optional<ClosestPoint> on_reference(const Vec3& p, const Vec3& normal, Index cone, double limit,
                                            Index near) const {
     const auto accepts = [&](Index g) {
@@ -144,11 +162,14 @@ Matches find_matches(const FitMesh& surface, const FitReference& reference, cons
   Matches matches;
   matches.per_face = static_cast<int>(points.size());
   matches.from_surface.resize(surface.faces.size() * points.size());
-  tbb::parallel_for(Index{0}, static_cast<Index>(surface.faces.size()), [&](Index f) {
-    const double area = surface.area_normal(f).norm() / (2 * static_cast<double>(points.size()));
+  const auto face_count = static_cast<Index>(surface.faces.size());
+  tbb::parallel_for(Index{0}, (face_count + kFaces - 1) / kFaces, [&](Index block) {
     Index near = kNone;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      matches.from_surface[f * points.size() + i] = matcher.from_surface(f, points[i], area, near);
+    for (Index f = block * kFaces; f < std::min(face_count, (block + 1) * kFaces); ++f) {
+      const double area = surface.area_normal(f).norm() / (2 * static_cast<double>(points.size()));
+      for (std::size_t i = 0; i < points.size(); ++i)
+        matches.from_surface[f * points.size() + i] = matcher.from_surface(f, points[i], area, near);
+    }
   });
   matches.from_reference.resize(samples.size());
   tbb::parallel_for(std::size_t{0}, (samples.size() + kGrain - 1) / kGrain, [&](std::size_t block) {
@@ -157,6 +178,31 @@ Matches find_matches(const FitMesh& surface, const FitReference& reference, cons
       matches.from_reference[i] = matcher.from_reference(samples[i], near);
   });
   return matches;
+}
+
+std::vector<Match> match_edges(const FitMesh& surface, const FitReference& reference, const VesselField& field) {
+  const Matcher matcher(surface, reference, field);
+  constexpr int kPoints = 3 * kPerEdge;
+  std::vector<Match> matches(kPoints * surface.faces.size());
+  tbb::parallel_for(Index{0}, static_cast<Index>(surface.faces.size()), [&](Index f) {
+    for (int i = 0; i < kPoints; ++i)
+      matches[kPoints * f + static_cast<Index>(i)] =
+          matcher.from_edge(f, i / kPerEdge, i % kPerEdge / (kPerEdge - 1.0));
+  });
+  return matches;
+}
+
+void follow(Matches& matches, const std::vector<FitMesh::Vertex>& before, const FitMesh& surface) {
+  for (auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
+    for (Match& match : *list) {
+      if (match.face == kNone) continue;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Index v = surface.faces[match.face][i];
+        match.distance +=
+            match.weights[static_cast<Eigen::Index>(i)] * match.direction.dot(surface.position(v) - before[v].position);
+      }
+    }
+  }
 }
 
 double matched_distance(const Matches& matches, double share) {

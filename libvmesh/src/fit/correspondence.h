@@ -21,6 +21,9 @@ struct Match {
 struct Matches {
   std::vector<Match> from_surface;    ///< `per_face` for every face, in the order of the faces
   std::vector<Match> from_reference;  ///< one for every sample
+  /// Of points on the edges and their ends, where ridges and tips are farthest from what is round; they stand for no
+  /// area. Empty, or kPerEdge for each side of every face; a side that two faces share has its matches in one of them.
+  std::vector<Match> from_edges;
   int per_face = 0;
 };
 
@@ -28,6 +31,14 @@ struct Matches {
 /// closest point that faces the same way and belongs to the same vessel, within 1.5 local radii.
 Matches find_matches(const FitMesh& surface, const FitReference& reference, const std::vector<ReferenceSample>& samples,
                      const VesselField& field, int division);
+
+inline constexpr int kPerEdge = 5;
+
+/// The counterparts of points on all edges, ends included, as Matches has them.
+std::vector<Match> match_edges(const FitMesh& surface, const FitReference& reference, const VesselField& field);
+
+/// Changes the distances to those after vertices have moved a little from where they were, along the same directions.
+void follow(Matches& matches, const std::vector<FitMesh::Vertex>& before, const FitMesh& surface);
 
 /// The distance that a share of the matches' area is nearer than, mm, the larger of both ways; 0 without matches.
 double matched_distance(const Matches& matches, double share);

@@ -1,15 +1,227 @@
 #include "fit/farthest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+
+#include "fit/least_squares.h"
+#include "fit/patch.h"
+#include "fit/reshaping.h"
+#include "fit/resizing.h"
 
 namespace vmesh {
 namespace {
+
+constexpr int kDivision = 3, kRelaxations = 2;
+constexpr std::size_t kEdgePoints = 3 * kPerEdge;  // of a face
+// RMS distances from which on a place, as a ridge that a triangle lies across, gets a vertex of its own. Measured on
+// the aorta and SU201, sixteen starts (growth with nodes left out at 0 to .8, vertices moved by 1e-6 radii): Hausdorff
+// at most .97 and .29 mm with 3 to 4.5, 1.00 and .29 with 5; safe from 3 to 4.5.
+constexpr double kFar = 4;
+constexpr int kMostPlaces = 12;
+constexpr double kReach = 2.5;      // edges: what is fitted again around a new vertex. Measured: 1.5 to 3.5 do the same
+constexpr double kAtVertex = 1e-9;  // what is left of the weights, for a vertex
+constexpr std::array<double, 3> kShares = {0.75, 0.5, 0.25};  // of its distance that a vertex is brought nearer by
+constexpr int kRounds = 3;                                    // of it. Measured: 2 to 4 do the same
 
 Vec3 point_of(const FitMesh& surface, const Match& match) {
   const auto [a, b, c] = surface.corners(match.face);
   return match.weights[0] * a + match.weights[1] * b + match.weights[2] * c;
 }
+
+// The matches of a part of the surface, and where they belong among all.
+struct PatchMatches {
+  Matches matches;
+  std::vector<Index> samples;  // of the reference, by their numbers among all
+};
+
+class FarPlaces {
+ public:
+  FarPlaces(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting)
+      : surface_(surface), samples_(samples), setting_(setting) {
+    matches_ = find_matches(surface, setting.reference, samples, setting.field, kDivision);
+    matches_.from_edges = match_edges(surface, setting.reference, setting.field);
+  }
+
+  void improve(std::size_t most_vertices) {
+    std::vector<Place> left_alone;
+    const double near = kFar * rms_distance(matches_);
+    for (int i = 0; i < kMostPlaces && surface_.vertices.size() < most_vertices; ++i) {
+      const Match worst = farthest_match(surface_, matches_, left_alone);
+      if (worst.face == kNone || std::abs(worst.distance) <= near) return;
+      const Place place = place_of(surface_, worst);
+      if (!put_vertex_at(worst)) left_alone.push_back(place);
+    }
+  }
+
+ private:
+  // Returns whether what is around it came nearer by it.
+  bool put_vertex_at(const Match& worst) {
+    const double edge = surface_.mean_edge(surface_.faces[worst.face][0]);
+    if (std::abs(worst.distance) > kNotOfSize * edge) return false;
+    const Patch patch = patch_around(surface_, worst.face, kReach * edge);
+    const PatchMatches before = matches_of(patch);
+    Match there = worst;
+    there.face =
+        static_cast<Index>(std::lower_bound(patch.faces.begin(), patch.faces.end(), worst.face) - patch.faces.begin());
+    double least = farthest(patch, before.matches);
+    const double limit = std::max(setting_.guard.max_skewness, worst_skewness(patch));
+    std::optional<std::pair<Patch, PatchMatches>> best;
+    const auto try_change = [&](const auto& change) {
+      Patch changed = patch;
+      PatchMatches after{{}, before.samples};
+      change(changed, after);
+      renew(changed, after);
+      after.matches.from_edges = match_edges(changed.surface, setting_.reference, setting_.field);
+      const double left = farthest(changed, after.matches);
+      if (left >= least || worst_skewness(changed) > limit) return;
+      least = left;
+      best.emplace(std::move(changed), std::move(after));
+    };
+    Match cut = there;  // where a vertex may help
+    if (is_tip(worst)) {
+      for (const double share : kShares)
+        try_change([&](Patch& changed, PatchMatches&) { move_vertex(changed, there, share); });
+      cut = farthest_beside(patch, before.matches, tip_of(patch, there));
+    }
+    if (!best && cut.face != kNone) {
+      for (int side = 0; side < 3; ++side)
+        try_change([&](Patch& changed, PatchMatches& matches) { put_vertex(changed, cut, side, matches); });
+    }
+    if (best) put_back(best->first, best->second);
+    return best.has_value();
+  }
+
+  static bool is_tip(const Match& match) { return match.weights.maxCoeff() > 1 - kAtVertex; }
+
+  static Index tip_of(const Patch& patch, const Match& match) {
+    Eigen::Index corner = 0;
+    match.weights.maxCoeff(&corner);
+    return patch.surface.faces[match.face][static_cast<std::size_t>(corner)];
+  }
+
+  // What the faces around a tip cut off, that it makes up for.
+  static Match farthest_beside(const Patch& patch, const Matches& matches, Index tip) {
+    Match farthest;
+    for (const auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
+      for (const Match& match : *list) {
+        if (match.face == kNone || is_tip(match) || std::abs(match.distance) <= std::abs(farthest.distance)) continue;
+        const Triangle& face = patch.surface.faces[match.face];
+        if (std::find(face.begin(), face.end(), tip) != face.end()) farthest = match;
+      }
+    }
+    return farthest;
+  }
+
+  void move_vertex(Patch& patch, const Match& match, double share) const {
+    std::vector<Vec3> steps(patch.surface.vertices.size(), Vec3::Zero());
+    steps[tip_of(patch, match)] = -share * match.distance * match.direction;
+    take_steps(patch.surface, steps, setting_.guard);
+  }
+
+  void put_vertex(Patch& patch, const Match& match, int side, PatchMatches& matches) const {
+    change(patch, [&](FitMesh& surface, const std::vector<char>& frozen) {
+      split_at(surface, match, side);
+      flip_closer(surface, frozen, false, setting_);
+      flip_edges(surface, frozen, setting_.guard);
+      for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, setting_.guard, 2);
+      repair(surface, frozen, setting_.guard);
+    });
+    find_cones(patch.surface, setting_.field);
+    for (int i = 0; i < kRounds; ++i) {
+      renew(patch, matches);
+      step_nearer(patch.surface, matches.matches, setting_, patch.frozen);
+      change(patch,
+             [&](FitMesh& surface, const std::vector<char>& frozen) { repair(surface, frozen, setting_.guard); });
+    }
+  }
+
+  // change_safely() with what is free of a patch.
+  template <class Change>
+  static void change(Patch& patch, Change&& change_free) {
+    change_safely(patch.surface, [&](FitMesh& surface, const std::vector<char>& crossing) {
+      std::vector<char> frozen = patch.frozen;
+      for (std::size_t v = 0; v < frozen.size(); ++v) frozen[v] = frozen[v] || crossing[v];
+      change_free(surface, frozen);
+    });
+  }
+
+  void renew(const Patch& patch, PatchMatches& matches) const {
+    std::vector<ReferenceSample> samples;
+    for (const Index i : matches.samples) samples.push_back(samples_[i]);
+    matches.matches = find_matches(patch.surface, setting_.reference, samples, setting_.field, kDivision);
+  }
+
+  // As they are among all.
+  PatchMatches matches_of(const Patch& patch) const {
+    std::vector<Index> number(surface_.faces.size(), kNone);
+    PatchMatches result;
+    const auto per_face = static_cast<std::size_t>(matches_.per_face);
+    for (Index f = 0; f < patch.faces.size(); ++f) {
+      number[patch.faces[f]] = f;
+      for (std::size_t i = 0; i < per_face; ++i) {
+        result.matches.from_surface.push_back(matches_.from_surface[patch.faces[f] * per_face + i]);
+        if (result.matches.from_surface.back().face != kNone) result.matches.from_surface.back().face = f;
+      }
+      for (std::size_t i = 0; i < kEdgePoints; ++i) {
+        result.matches.from_edges.push_back(matches_.from_edges[kEdgePoints * patch.faces[f] + i]);
+        if (result.matches.from_edges.back().face != kNone) result.matches.from_edges.back().face = f;
+      }
+    }
+    for (Index i = 0; i < samples_.size(); ++i) {
+      Match match = matches_.from_reference[i];
+      if (match.face == kNone || number[match.face] == kNone || !patch.moves(number[match.face])) continue;
+      match.face = number[match.face];
+      result.matches.from_reference.push_back(match);
+      result.samples.push_back(i);
+    }
+    return result;
+  }
+
+  void put_back(const Patch& patch, const PatchMatches& matches) {
+    const std::vector<Index> faces = vmesh::put_back(surface_, patch);
+    const auto per_face = static_cast<std::size_t>(matches_.per_face);
+    matches_.from_surface.resize(surface_.faces.size() * per_face);
+    matches_.from_edges.resize(surface_.faces.size() * kEdgePoints);
+    const auto place = [&](const Match& match, Match& all) {
+      all = match;
+      if (match.face != kNone) all.face = faces[match.face];
+    };
+    for (Index f = 0; f < faces.size(); ++f) {
+      if (!patch.moves(f)) continue;
+      for (std::size_t i = 0; i < per_face; ++i)
+        place(matches.matches.from_surface[f * per_face + i], matches_.from_surface[faces[f] * per_face + i]);
+      for (std::size_t i = 0; i < kEdgePoints; ++i)
+        place(matches.matches.from_edges[kEdgePoints * f + i], matches_.from_edges[kEdgePoints * faces[f] + i]);
+    }
+    for (std::size_t i = 0; i < matches.samples.size(); ++i)
+      place(matches.matches.from_reference[i], matches_.from_reference[matches.samples[i]]);
+  }
+
+  static double farthest(const Patch& patch, const Matches& matches) {
+    double result = 0;
+    for (const auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
+      for (const Match& match : *list) {
+        if (match.face != kNone && patch.moves(match.face)) result = std::max(result, std::abs(match.distance));
+      }
+    }
+    return result;
+  }
+
+  static double worst_skewness(const Patch& patch) {
+    double worst = 0;
+    for (Index f = 0; f < patch.surface.faces.size(); ++f) {
+      if (patch.moves(f)) worst = std::max(worst, skewness_of(patch.surface, f));
+    }
+    return worst;
+  }
+
+  FitMesh& surface_;
+  const std::vector<ReferenceSample>& samples_;
+  const FitSetting& setting_;
+  Matches matches_;
+};
 
 }  // namespace
 
@@ -19,7 +231,7 @@ Place place_of(const FitMesh& surface, const Match& match) {
 
 Match farthest_match(const FitMesh& surface, const Matches& matches, const std::vector<Place>& left_alone) {
   Match farthest;
-  for (const auto* list : {&matches.from_surface, &matches.from_reference}) {
+  for (const auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
     for (const Match& match : *list) {
       if (match.face == kNone || std::abs(match.distance) <= std::abs(farthest.distance)) continue;
       const Vec3 p = point_of(surface, match);
@@ -39,6 +251,11 @@ void split_at(FitMesh& surface, const Match& match, int side) {
   surface.split(a, b,
                 {p, std::min(first.cone, second.cone), kNone, 0.5 * (first.size + second.size),
                  0.5 * (first.base_size + second.base_size)});
+}
+
+void put_vertices_where_farthest(FitMesh& surface, const std::vector<ReferenceSample>& samples,
+                                 const FitSetting& setting, std::size_t most_vertices) {
+  FarPlaces(surface, samples, setting).improve(most_vertices);
 }
 
 }  // namespace vmesh

@@ -4,6 +4,7 @@
 
 #include "fit/correspondence.h"
 #include "fit/fit_mesh.h"
+#include "fit/rounds.h"
 
 namespace vmesh {
 
@@ -24,5 +25,10 @@ Match farthest_match(const FitMesh& surface, const Matches& matches, const std::
 
 /// Puts a vertex at a match's end on the reference, on a side of the match's face; on a border it does nothing.
 void split_at(FitMesh& surface, const Match& match, int side);
+
+/// Where the packed surface is farthest from the reference, at ridges that a triangle or an edge lies across, one
+/// vertex after the other is added and its surroundings are fitted again, as long as that brings them nearer.
+void put_vertices_where_farthest(FitMesh& surface, const std::vector<ReferenceSample>& samples,
+                                 const FitSetting& setting, std::size_t most_vertices);
 
 }  // namespace vmesh

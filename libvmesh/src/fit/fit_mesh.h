@@ -73,4 +73,7 @@ class FitMesh {
   std::size_t vertex_count_ = 0;
 };
 
+/// Whether a vertex has to stay as it is: one flag each, and those that are newer than the flags are not frozen.
+inline bool is_frozen(const std::vector<char>& frozen, Index v) { return v < frozen.size() && frozen[v]; }
+
 }  // namespace vmesh

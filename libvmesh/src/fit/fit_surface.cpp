@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <tuple>
 #include <utility>
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
@@ -16,30 +14,23 @@
 
 #include "fit/correspondence.h"
 #include "fit/farthest.h"
-#include "fit/guarded_step.h"
-#include "fit/least_squares.h"
 #include "fit/reshaping.h"
 #include "fit/resizing.h"
+#include "fit/rounds.h"
 #include "fit/unmatched.h"
 #include "surface/proof/defects.h"
 
 namespace vmesh {
 namespace {
 
-constexpr double kLongestStep = 0.35;              // of the edges around
 constexpr double kSamplesPerFace = 9;              // of the reference
 constexpr int kDivision = 3, kCoarseDivision = 2;  // of the surface's faces: 9 or 4 samples
 constexpr int kFewer = 2;                          // samples of the reference to one, where coarse will do
+constexpr std::size_t kFewerBefore = 4;            // samples of the report's distances, to one after the fit
 constexpr double kLeastMatched = 0.02;             // of the surface's area, for a reference that is somewhere else
 constexpr int kRelaxations = 2;
-constexpr int kRepairs = 4, kRepairPower = 8;  // of the triangles that a split or collapse left too skew
-constexpr double kEvenShare = 0.5;             // of the error that 95 % keep to: what it is around most vertices
-constexpr double kAim = 0.92;                  // of the error, while resizing: with few samples a little is missed
-// RMS distances from which on a place, as a ridge that a triangle lies across, gets a vertex of its own. Measured on
-// SU201, nine starts (growth with nodes left out at 0 to .8): Hausdorff .274 in the mean with 4 and 5, .288
-// with 7; safe from 4 to 7.
-constexpr double kFar = 5;
-constexpr int kMostPlaces = 6;
+constexpr double kEvenShare = 0.5;  // of the error that 95 % keep to: what it is around most vertices
+constexpr double kAim = 0.92;       // of the error, while resizing: with few samples a little is missed
 constexpr int kFirstRounds = 3, kLastRounds = 4;
 constexpr int kMoreRounds = 12;           // at most, to find the size for an error
 constexpr double kOfMostVertices = 0.98;  // to aim at: the count is a matter of luck
@@ -93,12 +84,6 @@ void check_memory(std::size_t vertices, const TriMesh& reference) {
       "allow fewer vertices or a larger error, or make the reference coarser");
 }
 
-double worst_skewness(const FitMesh& surface) {
-  double worst = 0;
-  for (Index f = 0; f < surface.faces.size(); ++f) worst = std::max(worst, skewness_of(surface, f));
-  return worst;
-}
-
 class Fit {
  public:
   Fit(const VesselSurface& surface, const VesselField& field, const TriMesh& reference, const FitOptions& options)
@@ -106,9 +91,10 @@ class Fit {
         options_(options),
         to_error_(options.error > 0),
         reference_(reference, field),
+        setting_{reference_, field, {}, {}},
         surface_(surface.mesh, vertices_of(surface)),
         openings_(surface.openings.empty() ? find_openings(surface.mesh) : surface.openings) {
-    guard_.max_skewness = options.max_skewness;
+    setting_.guard.max_skewness = options.max_skewness;
     if (options.error > 0) limits_.step = 1.4;
     const double count = kSamplesPerFace * static_cast<double>(surface_.faces.size());
     samples_ = reference_.samples(field, static_cast<std::size_t>(count));
@@ -128,7 +114,7 @@ class Fit {
     limits_.finest = std::min(limits_.finest, 0.5 / refinement);
     limits_.coarsest = std::max(limits_.coarsest, options.error > 0 ? 4 : 1.5 / refinement);
     for (Index i = 0; i < openings_.size(); ++i) {
-      opening_normals_.push_back(openings_[i].normal.normalized());
+      setting_.opening_normals.push_back(openings_[i].normal.normalized());
       for (const Index v : openings_[i].ring) surface_.vertices[v].opening = i;
     }
     for (Index v = 0; v < surface_.vertices.size(); ++v) surface_.vertices[v].base_size = surface_.mean_edge(v);
@@ -161,7 +147,7 @@ class Fit {
     finish();
     for (int i = 0; options_.resize && to_error_ && i < kCorrections && !keeps_error(); ++i) {
       even_error_ *= kCorrection;
-      for (int round = 0; round < 2; ++round) resize_once(next_matches());
+      for (int round = 0; round < 2; ++round) resize_once(matches_after_step());
       if (!to_error_) keep_to_most_vertices();
       finish();
     }
@@ -204,61 +190,28 @@ class Fit {
     return matches_now(coarse);
   }
 
+  // One step nearer, and what the distances are after it.
+  Matches matches_after_step() {
+    Matches matches = next_matches(!to_error_);
+    const std::vector<FitMesh::Vertex> before = surface_.vertices;
+    step(matches);
+    follow(matches, before, surface_);
+    return matches;
+  }
+
   Matches matches_now(bool coarse) const {
     if (coarse) return find_matches(surface_, reference_, few_samples_, field_, kCoarseDivision);
     return find_matches(surface_, reference_, samples_, field_, kDivision);
   }
 
-  Matches matches_at_rims() const { return find_matches(surface_, reference_, samples_and_rims_, field_, kDivision); }
-
   // The last rounds: shape gives way to nearness.
   void finish() {
     for (int i = 0; i < kLastRounds; ++i) {
-      step(next_matches());
-      if (i < kLastRounds - 2) reshape(2, false);
+      const bool last = i >= kLastRounds - 2;
+      step(next_matches(!last && !to_error_));
+      if (!last) reshape(2, false);
     }
-    if (options_.resize) put_vertices_where_farthest();
-  }
-
-  void put_vertices_where_farthest() {
-    std::vector<Place> left_alone;
-    for (int i = 0; i < kMostPlaces && surface_.vertices.size() < most_vertices_; ++i) {
-      const Matches matches = matches_at_rims();
-      const Match worst = farthest_match(surface_, matches, left_alone);
-      if (std::abs(worst.distance) <= kFar * rms_distance(matches)) return;
-      const Place place = place_of(surface_, worst);
-      if (!put_vertex_at(worst, left_alone)) left_alone.push_back(place);
-    }
-  }
-
-  // Returns whether what is farthest came nearer by it.
-  bool put_vertex_at(const Match& worst, const std::vector<Place>& left_alone) {
-    double least = std::abs(worst.distance);
-    if (least > kNotOfSize * surface_.mean_edge(surface_.faces[worst.face][0])) return false;
-    const auto before = std::pair(surface_, openings_);
-    auto best = before;
-    const double limit = std::max(guard_.max_skewness, worst_skewness(surface_));
-    for (int side = 0; side < 3; ++side) {
-      std::tie(surface_, openings_) = before;
-      put_vertex(worst, side);
-      const double left = std::abs(farthest_match(surface_, matches_at_rims(), left_alone).distance);
-      if (left >= least || worst_skewness(surface_) > limit) continue;
-      least = left;
-      best = {surface_, openings_};
-    }
-    std::tie(surface_, openings_) = best;
-    return least < std::abs(worst.distance);
-  }
-
-  void put_vertex(const Match& match, int side) {
-    change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
-      split_at(surface, match, side);
-      flip_closer(surface, frozen, false);
-      repair(surface, frozen);
-    });
-    pack();
-    find_cones();
-    for (int i = 0; i < 2; ++i) step(matches_now(true));
+    if (options_.resize) put_vertices_where_farthest(surface_, samples_and_rims_, setting_, most_vertices_);
   }
 
   bool keeps_error() const {
@@ -267,57 +220,23 @@ class Fit {
            sample_distance(reference_.mesh(), ClosestPointIndex(mesh), options_.samples).distance.p95 <= options_.error;
   }
 
-  void step(const Matches& matches) {
-    std::vector<Vec3> steps = least_squares_steps(surface_, matches, shape_steps(surface_, 2), opening_normals_, {});
-    for (Index v = 0; v < steps.size(); ++v) {
-      const double longest = kLongestStep * surface_.mean_edge(v), norm = steps[v].norm();
-      if (norm > longest) steps[v] *= longest / norm;
-    }
-    take_steps(surface_, steps, guard_);
-    find_cones();
-  }
-
-  void find_cones() {
-    tbb::parallel_for(std::size_t{0}, surface_.vertices.size(), [&](std::size_t v) {
-      surface_.vertices[v].cone = field_.sample(surface_.vertices[v].position, surface_.vertices[v].cone).cone;
-    });
-  }
-
-  // How far a point on an edge is from the reference.
-  double distance_at(const FitMesh& surface, Index a, Index b, const Vec3& p) const {
-    const Index cone = surface.vertices[a].cone;
-    const Vec3 normal = surface.vertex_normal(a) + surface.vertex_normal(b);
-    const auto accepts = [&](Index g) {
-      return reference_.normal(g).dot(normal) > 0 && same_vessel(field_, cone, reference_.cone(g));
-    };
-    const auto found = reference_.index().closest_among(p, 1.5 * widest_radius(field_, cone), accepts);
-    return found ? found->distance : -1;
-  }
-
-  void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh) const {
-    flip_edges_closer(surface, frozen, harsh,
-                      [&](Index a, Index b, const Vec3& p) { return distance_at(surface, a, b, p); });
-  }
+  void step(const Matches& matches) { step_nearer(surface_, matches, setting_); }
 
   // `first`: there are rounds left to repair what flips make skew.
   void reshape(int power, bool first) {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
-      if (options_.resize) flip_closer(surface, frozen, first);
-      if (options_.resize && first) flip_edges(surface, frozen, guard_);
-      for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, guard_, power);
-      repair(surface, frozen);
+      if (options_.resize) flip_closer(surface, frozen, first, setting_);
+      if (options_.resize && first) flip_edges(surface, frozen, setting_.guard);
+      for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, setting_.guard, power);
+      repair(surface, frozen, setting_.guard);
     });
-  }
-
-  void repair(FitMesh& surface, const std::vector<char>& frozen) const {
-    for (int i = 0; i < kRepairs; ++i) relax(surface, frozen, guard_, kRepairPower, guard_.max_skewness);
   }
 
   // For an error, until the number of vertices has settled.
   void resize() {
     const int rounds = std::max(1, options_.rounds - kFirstRounds - kLastRounds);
     for (int i = 0; i < (to_error_ ? rounds + kMoreRounds : rounds); ++i) {
-      const Matches matches = next_matches();
+      const Matches matches = matches_after_step();
       const std::size_t before = surface_.vertices.size();
       const double p95 = to_error_ ? matched_distance(matches, 0.95) : 0;
       if (to_error_ && settled_ && i >= rounds && p95 <= 0.95 * options_.error && p95 > 0.88 * options_.error) return;
@@ -331,7 +250,7 @@ class Fit {
   void keep_to_most_vertices() {
     for (int i = 0; i < kCorrections && surface_.vertices.size() > most_vertices_; ++i) {
       aim_ *= kCorrection;
-      resize_once(next_matches());
+      resize_once(matches_after_step());
     }
   }
 
@@ -342,13 +261,13 @@ class Fit {
     check_memory(static_cast<std::size_t>(faces / 2), reference_.mesh());
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       split_edges(surface, frozen);
-      flip_edges(surface, frozen, guard_);
-      collapse_edges(surface, frozen, guard_);
+      flip_edges(surface, frozen, setting_.guard);
+      collapse_edges(surface, frozen, setting_.guard);
       for (int i = 0; i < 2; ++i) {
-        flip_edges(surface, frozen, guard_);
-        for (int k = 0; k < kRelaxations; ++k) relax(surface, frozen, guard_, 1);
+        flip_edges(surface, frozen, setting_.guard);
+        for (int k = 0; k < kRelaxations; ++k) relax(surface, frozen, setting_.guard, 1);
       }
-      repair(surface, frozen);
+      repair(surface, frozen, setting_.guard);
     });
     pack();
     if (options_.max_vertices > 0 && surface_.vertices.size() > most_vertices_) to_error_ = false;
@@ -356,11 +275,11 @@ class Fit {
     aim_ = std::clamp(
         aim_ * std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()), 0.7),
         0.8, 1.25);
-    find_cones();
+    find_cones(surface_, field_);
     step(matches_now(true));
-    change_safely(surface_,
-                  [&](FitMesh& surface, const std::vector<char>& frozen) { flip_closer(surface, frozen, false); });
-    step(matches_now(false));
+    change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
+      flip_closer(surface, frozen, false, setting_);
+    });
   }
 
   // What the error around vertices should be for 95 % of the distances to be below options.error.
@@ -380,9 +299,9 @@ class Fit {
   const FitOptions& options_;
   bool to_error_;  // sizes are those for an error; or for a number of vertices, without one or where that is exceeded
   FitReference reference_;
+  FitSetting setting_;
   FitMesh surface_;
   std::vector<Opening> openings_;
-  std::vector<Vec3> opening_normals_;
   std::vector<ReferenceSample> samples_, few_samples_, samples_and_rims_;
   std::size_t most_vertices_ = 0, wanted_vertices_ = 0;
   double even_error_ = 0;  // mm, to have everywhere
@@ -390,16 +309,16 @@ class Fit {
   int rounds_ = 0;
   const Progress* progress_ = nullptr;
   double aim_ = 1;  // vertices to ask for, to get as many as wanted
-  StepGuard guard_;
   SizeLimits limits_;
 };
 
-FitDistance distance_between(const TriMesh& surface, const TriMesh& reference, const FitOptions& options) {
+FitDistance distance_between(const TriMesh& surface, const TriMesh& reference, const FitOptions& options,
+                             std::size_t samples) {
   HausdorffOptions hausdorff_options;
   hausdorff_options.tolerance = options.tolerance;
   return {hausdorff(surface, reference, hausdorff_options),
-          sample_distance(surface, ClosestPointIndex(reference), options.samples),
-          sample_distance(reference, ClosestPointIndex(surface), options.samples)};
+          sample_distance(surface, ClosestPointIndex(reference), samples),
+          sample_distance(reference, ClosestPointIndex(surface), samples)};
 }
 
 }  // namespace
@@ -444,8 +363,8 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
     report.turned = fit.reference().turned();
     report.rounds = fit.rounds();
     const TriMesh compared = fit.reference_without_apart(report);
-    report.before = distance_between(surface.mesh, compared, options);
-    report.after = distance_between(result.surface.mesh, compared, options);
+    report.before = distance_between(surface.mesh, compared, options, options.samples / kFewerBefore + 1);
+    report.after = distance_between(result.surface.mesh, compared, options, options.samples);
     report.uncovered = uncovered_parts(fit.surface(), fit.reference(), field);
     report.unsupported = unsupported_parts(fit.surface(), fit.reference(), field);
     return result;

@@ -1,7 +1,9 @@
 #include "fit/guarded_step.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "vmesh/core/box_tree.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
 
@@ -42,15 +44,18 @@ class Step {
   }
 
   void keep_apart() {
+    std::vector<std::pair<Index, Index>> crossing = self_intersections(surface_.tri_mesh());
     while (true) {
+      moved_.clear();
       std::vector<Index> moved;
-      for (const auto& [f, g] : self_intersections(surface_.tri_mesh())) {
+      for (const auto& [f, g] : crossing) {
         for (const Index face : {f, g}) {
           for (const Index v : surface_.faces[face]) moved.push_back(v);
         }
       }
       if (shorten(std::move(moved)).empty()) return;
       keep_shapes();
+      crossing = crossing_around(std::exchange(moved_, {}));
     }
   }
 
@@ -78,6 +83,7 @@ class Step {
       if (halvings_[v] > kHalvings) continue;
       ++halvings_[v];
       place(v);
+      moved_.push_back(v);
       for (const Index f : surface_.faces_around(v)) {
         for (const Index w : surface_.faces[f])
           faces.insert(faces.end(), surface_.faces_around(w).begin(), surface_.faces_around(w).end());
@@ -102,12 +108,40 @@ class Step {
     return true;
   }
 
+  // Pairs of faces that cross, those with a moved vertex among them: other pairs are as they were.
+  std::vector<std::pair<Index, Index>> crossing_around(const std::vector<Index>& vertices) const {
+    std::vector<Vec3> low, high;
+    for (const Index v : vertices) {
+      for (const Index f : surface_.faces_around(v)) {
+        const auto [a, b, c] = surface_.corners(f);
+        low.push_back(a.cwiseMin(b).cwiseMin(c));
+        high.push_back(a.cwiseMax(b).cwiseMax(c));
+      }
+    }
+    const BoxTree moved(low, high);
+    TriMesh near;
+    for (const FitMesh::Vertex& v : surface_.vertices) near.vertices.push_back(v.position);
+    std::vector<Index> number;
+    for (Index f = 0; f < surface_.faces.size(); ++f) {
+      const auto [a, b, c] = surface_.corners(f);
+      bool meets = false;
+      moved.visit_overlapping(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), [&](Index) { meets = true; });
+      if (!meets) continue;
+      near.faces.push_back(surface_.faces[f]);
+      number.push_back(f);
+    }
+    std::vector<std::pair<Index, Index>> crossing = self_intersections(near);
+    for (auto& [f, g] : crossing) f = number[f], g = number[g];
+    return crossing;
+  }
+
   FitMesh& surface_;
   const std::vector<Vec3>& steps_;
   const StepGuard& guard_;
   std::vector<Vec3> before_, normals_;
   std::vector<double> skewness_;
   std::vector<int> halvings_;
+  std::vector<Index> moved_;  // by shorten(), some of them more than once
 };
 
 }  // namespace

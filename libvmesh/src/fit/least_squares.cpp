@@ -1,7 +1,8 @@
 #include "fit/least_squares.h"
 
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/SparseCore>
+#include <cmath>
+
+#include <Eigen/LU>
 
 namespace vmesh {
 namespace {
@@ -10,7 +11,8 @@ using Mat3 = Eigen::Matrix3d;
 
 constexpr double kHold = 1e-3;      // of a vertex' area: keeps what no match holds
 constexpr double kInPlane = 100;    // of a vertex' area
-constexpr double kAccuracy = 1e-4;  // of the residual; steps are corrected in the next round anyway
+constexpr double kFrozen = 1e4;     // of a vertex' area: what is left of its step is dropped
+constexpr double kAccuracy = 1e-5;  // of the residual, each vertex by its own stiffness
 // Large distances count more, up to this many times the RMS distance: what is far off is brought near.
 constexpr double kEmphasis = 0.8;
 constexpr double kMostEmphasized = 4;
@@ -20,7 +22,7 @@ constexpr int kMostIterations = 200;
 class Equations {
  public:
   explicit Equations(const FitMesh& surface)
-      : surface_(surface), faces_(surface.faces.size()), right_(Eigen::VectorXd::Zero(3 * surface.vertices.size())) {
+      : surface_(surface), faces_(surface.faces.size()), right_(surface.vertices.size(), Vec3::Zero()) {
     diagonal_.assign(surface.vertices.size(), Mat3::Zero());
   }
 
@@ -31,14 +33,14 @@ class Equations {
     for (int i = 0; i < 3; ++i) {
       diagonal_[face[i]] += match.weights[i] * match.weights[i] * square;
       faces_[match.face][i] += match.weights[(i + 1) % 3] * match.weights[(i + 2) % 3] * square;
-      right_.segment<3>(3 * face[i]) += match.weights[i] * pull;
+      right_[face[i]] += match.weights[i] * pull;
     }
   }
 
   // Weight of the step's components: `square` (step - target)^2.
   void add(Index v, const Mat3& square, const Vec3& target) {
     diagonal_[v] += square;
-    right_.segment<3>(3 * v) += square * target;
+    right_[v] += square * target;
   }
 
   // Weight of the difference of the steps at the ends of the side of face f that is opposite to corner i.
@@ -49,41 +51,48 @@ class Equations {
     faces_[f][i] -= square;
   }
 
+  // Conjugate gradients, preconditioned by the vertices' own blocks. One solution is needed of every matrix, and few
+  // iterations: to put one together would take longer.
   std::vector<Vec3> solve() const {
-    const Eigen::SparseMatrix<double> matrix = assemble();
-    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver;
-    solver.setTolerance(kAccuracy);
-    solver.setMaxIterations(kMostIterations);
-    solver.compute(matrix);
-    const Eigen::VectorXd solution = solver.solve(right_);
-    std::vector<Vec3> steps;
-    for (std::size_t v = 0; v < diagonal_.size(); ++v)
-      steps.emplace_back(solution.segment<3>(3 * static_cast<Eigen::Index>(v)));
+    const std::size_t count = diagonal_.size();
+    std::vector<Mat3> inverse(count);
+    for (Index v = 0; v < count; ++v) inverse[v] = diagonal_[v].inverse();
+    std::vector<Vec3> steps(count, Vec3::Zero()), residual = right_, direction(count), product(count);
+    for (Index v = 0; v < count; ++v) direction[v] = inverse[v] * residual[v];
+    double energy = dot(residual, direction);
+    const double enough = kAccuracy * kAccuracy * energy;
+    for (int i = 0; i < kMostIterations && energy > enough; ++i) {
+      multiply(direction, product);
+      const double length = energy / dot(direction, product);
+      double next_energy = 0;
+      for (Index v = 0; v < count; ++v) {
+        steps[v] += length * direction[v];
+        residual[v] -= length * product[v];
+        next_energy += residual[v].dot(inverse[v] * residual[v]);
+      }
+      const double share = next_energy / energy;
+      energy = next_energy;
+      for (Index v = 0; v < count; ++v) direction[v] = inverse[v] * residual[v] + share * direction[v];
+    }
     return steps;
   }
 
  private:
-  Eigen::SparseMatrix<double> assemble() const {
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(9 * diagonal_.size() + 54 * faces_.size());
-    const auto add_block = [&](Index v, Index w, const Mat3& block) {
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j)
-          entries.emplace_back(static_cast<int>(3 * v + i), static_cast<int>(3 * w + j), block(i, j));
-      }
-    };
-    for (Index v = 0; v < diagonal_.size(); ++v) add_block(v, v, diagonal_[v]);
+  static double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+    return sum;
+  }
+
+  void multiply(const std::vector<Vec3>& x, std::vector<Vec3>& product) const {
+    for (Index v = 0; v < x.size(); ++v) product[v] = diagonal_[v] * x[v];
     for (Index f = 0; f < faces_.size(); ++f) {
-      for (int i = 0; i < 3; ++i) {
+      for (std::size_t i = 0; i < 3; ++i) {
         const Index v = surface_.faces[f][(i + 1) % 3], w = surface_.faces[f][(i + 2) % 3];
-        add_block(v, w, faces_[f][i]);
-        add_block(w, v, faces_[f][i]);
+        product[v] += faces_[f][i] * x[w];  // blocks are symmetric
+        product[w] += faces_[f][i] * x[v];
       }
     }
-    const auto size = 3 * static_cast<Eigen::Index>(diagonal_.size());
-    Eigen::SparseMatrix<double> matrix(size, size);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    return matrix;
   }
 
   const FitMesh& surface_;
@@ -92,7 +101,7 @@ class Equations {
     Sides() { fill(Mat3::Zero()); }
   };
   std::vector<Sides> faces_;  // of a face's sides, each opposite to a corner
-  Eigen::VectorXd right_;
+  std::vector<Vec3> right_;
 };
 
 template <class Visit>
@@ -116,7 +125,8 @@ double rms_distance(const Matches& matches) {
 }
 
 std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& matches, const std::vector<Vec3>& pull,
-                                      const std::vector<Vec3>& opening_normals, const LeastSquaresWeights& weights) {
+                                      const std::vector<Vec3>& opening_normals, const std::vector<char>& frozen,
+                                      const LeastSquaresWeights& weights) {
   Equations equations(surface);
   const double rms = rms_distance(matches);
   for_each_match(matches, [&](const Match& match) {
@@ -136,7 +146,8 @@ std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& mat
   for (Index v = 0; v < surface.vertices.size(); ++v) {
     const Mat3 along = normal[v] * normal[v].transpose();
     equations.add(v, weights.tangential * area[v] * (Mat3::Identity() - along), pull[v]);
-    equations.add(v, kHold * area[v] * Mat3::Identity(), Vec3::Zero());
+    const double hold = is_frozen(frozen, v) ? kFrozen : kHold;
+    equations.add(v, hold * area[v] * Mat3::Identity(), Vec3::Zero());
     if (surface.on_border(v)) {
       const Vec3& across = opening_normals[surface.vertices[v].opening];
       equations.add(v, kInPlane * area[v] * across * across.transpose(), Vec3::Zero());
@@ -149,6 +160,7 @@ std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& mat
   }
   std::vector<Vec3> steps = equations.solve();
   for (Index v = 0; v < surface.vertices.size(); ++v) {
+    if (is_frozen(frozen, v)) steps[v].setZero();
     if (!surface.on_border(v)) continue;
     const Vec3& across = opening_normals[surface.vertices[v].opening];
     steps[v] -= across.dot(steps[v]) * across;

@@ -14,9 +14,10 @@ struct LeastSquaresWeights {
 
 /// The steps of all vertices (mm) that make the squared distances of the matches least. `pull`: for every vertex the
 /// tangential step that is best for its triangles. Vertices on an opening stay in its plane, whose unit normal
-/// `opening_normals` has.
+/// `opening_normals` has. Those that are `frozen` (one flag each, fewer than vertices: the rest are not) stay.
 std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& matches, const std::vector<Vec3>& pull,
-                                      const std::vector<Vec3>& opening_normals, const LeastSquaresWeights& weights);
+                                      const std::vector<Vec3>& opening_normals, const std::vector<char>& frozen,
+                                      const LeastSquaresWeights& weights = {});
 
 /// Of the matches both ways, mm; 1 where there are none.
 double rms_distance(const Matches& matches);

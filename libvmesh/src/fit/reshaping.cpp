@@ -58,29 +58,31 @@ Vec3 shape_step(const FitMesh& surface, Index v, int power) {
   return result;
 }
 
-bool may_place(const FitMesh& surface, Index v, const Vec3& p, const StepGuard& guard) {
-  double worst_before = 0, worst = 0;
+// `skewness`: of all faces, as they are.
+bool may_place(const FitMesh& surface, Index v, const Vec3& p, const std::vector<double>& skewness,
+               const StepGuard& guard) {
+  double worst = 0;
+  for (const Index f : surface.faces_around(v)) worst = std::max(worst, skewness[f]);
   for (const Index f : surface.faces_around(v)) {
     std::array<Vec3, 3> corners = surface.corners(f);
     const Vec3 before = unit_normal(corners[0], corners[1], corners[2]);
-    worst_before = std::max(worst_before, equiangle_skewness(corners[0], corners[1], corners[2]));
     for (int i = 0; i < 3; ++i) {
       if (surface.faces[f][i] == v) corners[i] = p;
     }
     const Vec3 after = unit_normal(corners[0], corners[1], corners[2]);
     if (!(after.dot(before) >= guard.turn)) return false;
-    worst = std::max(worst, equiangle_skewness(corners[0], corners[1], corners[2]));
+    if (equiangle_skewness(corners[0], corners[1], corners[2]) > worst) return false;
     for (int i = 0; i < 3; ++i) {
       const Index a = surface.faces[f][i], b = surface.faces[f][(i + 1) % 3];
       const Index g = surface.face_of(b, a);
       if (g == kNone) continue;
-      const Vec3 across = surface.unit_normal(g);
       const auto& around = surface.faces_around(v);
       if (std::binary_search(around.begin(), around.end(), g)) continue;
+      const Vec3 across = surface.unit_normal(g);
       if (!may_fold(after.dot(across), before.dot(across), guard.fold)) return false;
     }
   }
-  return worst <= std::max(worst_before, 0.0);
+  return true;
 }
 
 int deviation(std::size_t valence) {
@@ -187,20 +189,26 @@ std::vector<Vec3> shape_steps(const FitMesh& surface, int power) {
   return steps;
 }
 
-void relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above) {
+bool relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above) {
+  std::vector<double> skewness(surface.faces.size(), 0);
+  for (Index f = 0; f < skewness.size(); ++f) {
+    if (surface.has_face(f)) skewness[f] = skewness_of(surface, f);
+  }
+  bool moved = false;
   for (Index v = 0; v < surface.vertices.size(); ++v) {
     if (!surface.has_vertex(v) || surface.on_border(v) || is_frozen(frozen, v)) continue;
     const auto& around = surface.faces_around(v);
-    if (above > 0 &&
-        std::none_of(around.begin(), around.end(), [&](Index f) { return skewness_of(surface, f) > above; }))
-      continue;
+    if (std::none_of(around.begin(), around.end(), [&](Index f) { return skewness[f] > above; })) continue;
     Vec3 step = shape_step(surface, v, power);
     for (int halving = 0; halving < 3; ++halving, step /= 2) {
-      if (!may_place(surface, v, surface.position(v) + step, guard)) continue;
+      if (!may_place(surface, v, surface.position(v) + step, skewness, guard)) continue;
       surface.vertices[v].position += step;
+      for (const Index f : around) skewness[f] = skewness_of(surface, f);
+      moved = true;
       break;
     }
   }
+  return moved;
 }
 
 }  // namespace vmesh

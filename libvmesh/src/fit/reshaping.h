@@ -13,9 +13,6 @@ namespace vmesh {
 /// the end not at all.
 void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const std::vector<char>&)>& change);
 
-/// Vertices that are newer than the flags are not frozen.
-inline bool is_frozen(const std::vector<char>& frozen, Index v) { return v < frozen.size() && frozen[v]; }
-
 /// Flips edges for even valences and for better triangles. Leaves alone the edges with a frozen end.
 void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard);
 
@@ -30,7 +27,7 @@ void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen, bool h
 std::vector<Vec3> shape_steps(const FitMesh& surface, int power);
 
 /// Moves vertices one after the other by their shape steps, as far as none of their triangles becomes worse than the
-/// worst. Only vertices with a triangle of more than `above` skewness take part.
-void relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above = 0);
+/// worst. Only vertices with a triangle of more than `above` skewness take part. Returns whether one moved.
+bool relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above = 0);
 
 }  // namespace vmesh

@@ -32,7 +32,7 @@ struct FitOptions {
   double error = 0;
   /// Equiangle skewness that no step makes a triangle worse than; 0.1 to 0.9.
   double max_skewness = 0.4;
-  /// Points on each surface for mean, RMS and percentiles of the report.
+  /// Points on each surface for mean, RMS and percentiles of the report; a quarter of them before the fit.
   std::size_t samples = 100'000;
   /// Width of the interval that holds a Hausdorff distance, mm.
   double tolerance = 1e-3;

@@ -1,0 +1,56 @@
+#include "fit/rounds.h"
+
+#include <tbb/parallel_for.h>
+
+#include "fit/least_squares.h"
+#include "fit/reshaping.h"
+
+namespace vmesh {
+namespace {
+
+constexpr double kLongestStep = 0.35;  // of the edges around
+constexpr int kShapePower = 2;
+constexpr int kRepairs = 4, kRepairPower = 8;
+
+// How far a point on an edge is from the reference; negative: not known.
+double distance_at(const FitMesh& surface, Index a, Index b, const Vec3& p, const FitSetting& setting) {
+  const Index cone = surface.vertices[a].cone;
+  const Vec3 normal = surface.vertex_normal(a) + surface.vertex_normal(b);
+  const auto accepts = [&](Index g) {
+    return setting.reference.normal(g).dot(normal) > 0 && same_vessel(setting.field, cone, setting.reference.cone(g));
+  };
+  const auto found = setting.reference.index().closest_among(p, 1.5 * widest_radius(setting.field, cone), accepts);
+  return found ? found->distance : -1;
+}
+
+}  // namespace
+
+void step_nearer(FitMesh& surface, const Matches& matches, const FitSetting& setting, const std::vector<char>& frozen) {
+  std::vector<Vec3> steps =
+      least_squares_steps(surface, matches, shape_steps(surface, kShapePower), setting.opening_normals, frozen);
+  for (Index v = 0; v < steps.size(); ++v) {
+    const double longest = kLongestStep * surface.mean_edge(v), norm = steps[v].norm();
+    if (norm > longest) steps[v] *= longest / norm;
+  }
+  take_steps(surface, steps, setting.guard);
+  find_cones(surface, setting.field);
+}
+
+void find_cones(FitMesh& surface, const VesselField& field) {
+  tbb::parallel_for(std::size_t{0}, surface.vertices.size(), [&](std::size_t v) {
+    surface.vertices[v].cone = field.sample(surface.vertices[v].position, surface.vertices[v].cone).cone;
+  });
+}
+
+void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh, const FitSetting& setting) {
+  flip_edges_closer(surface, frozen, harsh,
+                    [&](Index a, Index b, const Vec3& p) { return distance_at(surface, a, b, p, setting); });
+}
+
+void repair(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard) {
+  for (int i = 0; i < kRepairs; ++i) {
+    if (!relax(surface, frozen, guard, kRepairPower, guard.max_skewness)) return;
+  }
+}
+
+}  // namespace vmesh

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "vmesh/volume/vessel_field.h"
+
+#include "fit/correspondence.h"
+#include "fit/fit_mesh.h"
+#include "fit/fit_reference.h"
+#include "fit/guarded_step.h"
+
+namespace vmesh {
+
+/// What a surface is fitted to, and what it must keep to.
+struct FitSetting {
+  const FitReference& reference;
+  const VesselField& field;
+  std::vector<Vec3> opening_normals;  ///< unit, by FitMesh::Vertex::opening
+  StepGuard guard;
+};
+
+/// Moves the vertices by one guarded step of least squares, except for frozen ones, and renews their cones.
+void step_nearer(FitMesh& surface, const Matches& matches, const FitSetting& setting,
+                 const std::vector<char>& frozen = {});
+
+void find_cones(FitMesh& surface, const VesselField& field);
+
+/// flip_edges_closer() by the distance from the reference.
+void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh, const FitSetting& setting);
+
+/// Relaxes what a split, a collapse or a flip left too skew.
+void repair(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard);
+
+}  // namespace vmesh
