@@ -5,7 +5,7 @@
 #include "vmesh/mesh/topology.h"
 
 #include "../mesh/shapes.h"
-#include "fit/patch.h"
+#include "fit/fit_patch.h"
 
 namespace vmesh {
 namespace {
@@ -61,7 +61,7 @@ TEST(FitMesh, DoesNotCollapseToAnEdgeOfFourFaces) {
 
 TEST(FitMesh, ChangesInAPatchThatIsPutBack) {
   FitMesh mesh = sphere();
-  Patch patch = patch_around(mesh, 20, 0.7);
+  FitPatch patch = patch_around(mesh, 20, 0.7);
   EXPECT_LT(patch.faces.size(), mesh.faces.size());
   const auto is_free = [&](Index f) { return patch.moves(f); };
   Index changed = 0;

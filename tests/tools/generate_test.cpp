@@ -347,6 +347,14 @@ TEST_F(Overlap, IsSeparated) {
   }
 }
 
+TEST_F(Overlap, IsNotSaidToBeNarrowedWhereNothingTouches) {
+  write_crossing("2.5");
+  const json summary = summary_of({});
+  const bool simplified = summary.at("simplification").at("nodes_left_out") > 0;
+  EXPECT_EQ(summary.at("contacts").at("count"), 0);
+  EXPECT_EQ(summary.at("distance").at("to"), simplified ? "the simplified vessels" : "the vessels");
+}
+
 TEST_F(Overlap, SeparatedVerticesKeepTheirPlaceOnTheOriginalCenterline) {
   write_crossing("1.2");
   const json summary = summary_of({"--overlap", "separate"});

@@ -130,7 +130,8 @@ Json to_json(const SeparationReport& separation) {
 
 /// What the surface was grown around and is compared with.
 std::string measured_centerline(const GenerateReport& report) {
-  if (!report.separation) return "the vessels";
+  if (!report.separation || report.separation->nodes_narrowed + report.separation->nodes_moved == 0)
+    return report.result->simplification.nodes_left_out > 0 ? "the simplified vessels" : "the vessels";
   return report.separation->nodes_moved > 0 ? "the narrowed and moved vessels" : "the narrowed vessels";
 }
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "fit/fit_patch.h"
 #include "fit/least_squares.h"
-#include "fit/patch.h"
 #include "fit/reshaping.h"
 #include "fit/resizing.h"
 
@@ -60,16 +60,16 @@ class FarPlaces {
   bool put_vertex_at(const Match& worst) {
     const double edge = surface_.mean_edge(surface_.faces[worst.face][0]);
     if (std::abs(worst.distance) > kNotOfSize * edge) return false;
-    const Patch patch = patch_around(surface_, worst.face, kReach * edge);
+    const FitPatch patch = patch_around(surface_, worst.face, kReach * edge);
     const PatchMatches before = matches_of(patch);
     Match there = worst;
     there.face =
         static_cast<Index>(std::lower_bound(patch.faces.begin(), patch.faces.end(), worst.face) - patch.faces.begin());
     double least = farthest(patch, before.matches);
     const double limit = std::max(setting_.guard.max_skewness, worst_skewness(patch));
-    std::optional<std::pair<Patch, PatchMatches>> best;
+    std::optional<std::pair<FitPatch, PatchMatches>> best;
     const auto try_change = [&](const auto& change) {
-      Patch changed = patch;
+      FitPatch changed = patch;
       PatchMatches after{{}, before.samples};
       change(changed, after);
       renew(changed, after);
@@ -82,12 +82,12 @@ class FarPlaces {
     Match cut = there;  // where a vertex may help
     if (is_tip(worst)) {
       for (const double share : kShares)
-        try_change([&](Patch& changed, PatchMatches&) { move_vertex(changed, there, share); });
+        try_change([&](FitPatch& changed, PatchMatches&) { move_vertex(changed, there, share); });
       cut = farthest_beside(patch, before.matches, tip_of(patch, there));
     }
     if (!best && cut.face != kNone) {
       for (int side = 0; side < 3; ++side)
-        try_change([&](Patch& changed, PatchMatches& matches) { put_vertex(changed, cut, side, matches); });
+        try_change([&](FitPatch& changed, PatchMatches& matches) { put_vertex(changed, cut, side, matches); });
     }
     if (best) put_back(best->first, best->second);
     return best.has_value();
@@ -95,14 +95,14 @@ class FarPlaces {
 
   static bool is_tip(const Match& match) { return match.weights.maxCoeff() > 1 - kAtVertex; }
 
-  static Index tip_of(const Patch& patch, const Match& match) {
+  static Index tip_of(const FitPatch& patch, const Match& match) {
     Eigen::Index corner = 0;
     match.weights.maxCoeff(&corner);
     return patch.surface.faces[match.face][static_cast<std::size_t>(corner)];
   }
 
   // What the faces around a tip cut off, that it makes up for.
-  static Match farthest_beside(const Patch& patch, const Matches& matches, Index tip) {
+  static Match farthest_beside(const FitPatch& patch, const Matches& matches, Index tip) {
     Match farthest;
     for (const auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
       for (const Match& match : *list) {
@@ -114,13 +114,13 @@ class FarPlaces {
     return farthest;
   }
 
-  void move_vertex(Patch& patch, const Match& match, double share) const {
+  void move_vertex(FitPatch& patch, const Match& match, double share) const {
     std::vector<Vec3> steps(patch.surface.vertices.size(), Vec3::Zero());
     steps[tip_of(patch, match)] = -share * match.distance * match.direction;
     take_steps(patch.surface, steps, setting_.guard);
   }
 
-  void put_vertex(Patch& patch, const Match& match, int side, PatchMatches& matches) const {
+  void put_vertex(FitPatch& patch, const Match& match, int side, PatchMatches& matches) const {
     change(patch, [&](FitMesh& surface, const std::vector<char>& frozen) {
       split_at(surface, match, side);
       flip_closer(surface, frozen, false, setting_);
@@ -139,7 +139,7 @@ class FarPlaces {
 
   // change_safely() with what is free of a patch.
   template <class Change>
-  static void change(Patch& patch, Change&& change_free) {
+  static void change(FitPatch& patch, Change&& change_free) {
     change_safely(patch.surface, [&](FitMesh& surface, const std::vector<char>& crossing) {
       std::vector<char> frozen = patch.frozen;
       for (std::size_t v = 0; v < frozen.size(); ++v) frozen[v] = frozen[v] || crossing[v];
@@ -147,14 +147,14 @@ class FarPlaces {
     });
   }
 
-  void renew(const Patch& patch, PatchMatches& matches) const {
+  void renew(const FitPatch& patch, PatchMatches& matches) const {
     std::vector<ReferenceSample> samples;
     for (const Index i : matches.samples) samples.push_back(samples_[i]);
     matches.matches = find_matches(patch.surface, setting_.reference, samples, setting_.field, kDivision);
   }
 
   // As they are among all.
-  PatchMatches matches_of(const Patch& patch) const {
+  PatchMatches matches_of(const FitPatch& patch) const {
     std::vector<Index> number(surface_.faces.size(), kNone);
     PatchMatches result;
     const auto per_face = static_cast<std::size_t>(matches_.per_face);
@@ -179,7 +179,7 @@ class FarPlaces {
     return result;
   }
 
-  void put_back(const Patch& patch, const PatchMatches& matches) {
+  void put_back(const FitPatch& patch, const PatchMatches& matches) {
     const std::vector<Index> faces = vmesh::put_back(surface_, patch);
     const auto per_face = static_cast<std::size_t>(matches_.per_face);
     matches_.from_surface.resize(surface_.faces.size() * per_face);
@@ -199,7 +199,7 @@ class FarPlaces {
       place(matches.matches.from_reference[i], matches_.from_reference[matches.samples[i]]);
   }
 
-  static double farthest(const Patch& patch, const Matches& matches) {
+  static double farthest(const FitPatch& patch, const Matches& matches) {
     double result = 0;
     for (const auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
       for (const Match& match : *list) {
@@ -209,7 +209,7 @@ class FarPlaces {
     return result;
   }
 
-  static double worst_skewness(const Patch& patch) {
+  static double worst_skewness(const FitPatch& patch) {
     double worst = 0;
     for (Index f = 0; f < patch.surface.faces.size(); ++f) {
       if (patch.moves(f)) worst = std::max(worst, skewness_of(patch.surface, f));

@@ -15,7 +15,7 @@
 #include "render/camera.h"
 #include "render/canvas.h"
 #include "render/color.h"
-#include "render/coverage.h"
+#include "render/shown_tiles.h"
 #include "render/legend.h"
 #include "render/ray_scene.h"
 #include "render/surface_shader.h"
@@ -185,11 +185,11 @@ Image draw(const TriMesh& mesh, const RenderOptions& options, Coloring coloring,
   const SurfaceShader shader(mesh, options, camera, scene, std::move(coloring.colors));
   const Vec3 background = linear_from_srgb(options.background);
   const PixelSampler sampler(camera, scene, shader, background);
-  const Coverage coverage(mesh, camera, options.width, options.height);
+  const ShownTiles shown(mesh, camera, options.width, options.height);
   Canvas canvas(options.width, options.height, background);
   for (int y = 0; y < options.height; ++y) {
     for (int x = 0; x < options.width; ++x) {
-      if (coverage.may_show_mesh(x, y)) canvas.at(x, y) = sampler.sample(x, y);
+      if (shown.may_show_mesh(x, y)) canvas.at(x, y) = sampler.sample(x, y);
     }
   }
   if (with_legend) draw_legend(canvas, coloring.legend, background);

@@ -1,11 +1,11 @@
-#include "render/coverage.h"
+#include "render/shown_tiles.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace vmesh {
 
-Coverage::Coverage(const TriMesh& mesh, const Camera& camera, int width, int height)
+ShownTiles::ShownTiles(const TriMesh& mesh, const Camera& camera, int width, int height)
     : columns_((width + kTile - 1) / kTile),
       rows_((height + kTile - 1) / kTile),
       tiles_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0) {
@@ -13,7 +13,7 @@ Coverage::Coverage(const TriMesh& mesh, const Camera& camera, int width, int hei
 }
 
 // Marks the tiles under the box around the face; all of them for a face that reaches behind the eye.
-void Coverage::mark(const TriMesh& mesh, const Camera& camera, const Triangle& face) {
+void ShownTiles::mark(const TriMesh& mesh, const Camera& camera, const Triangle& face) {
   const auto& [a, b, c] = face;
   const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
   if (!camera.is_in_front(p) || !camera.is_in_front(q) || !camera.is_in_front(r)) {

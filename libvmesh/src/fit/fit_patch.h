@@ -8,7 +8,7 @@ namespace vmesh {
 
 /// A part of a surface that changes by itself: the vertices around a place, and all faces that they could meet. None is
 /// removed from it.
-struct Patch {
+struct FitPatch {
   FitMesh surface;
   std::vector<Index> vertices, faces;  ///< their numbers in the whole; newer ones come after them
   std::vector<char> frozen;            ///< of the vertices, as is_frozen() takes it
@@ -18,10 +18,10 @@ struct Patch {
 };
 
 /// What is within `reach` of a corner of `face`, along the edges of the packed surface, is free.
-Patch patch_around(const FitMesh& whole, Index face, double reach);
+FitPatch patch_around(const FitMesh& whole, Index face, double reach);
 
 /// Puts a changed patch in its place: new vertices and faces get the numbers after the last. Returns the numbers of all
 /// faces of the patch in the whole.
-std::vector<Index> put_back(FitMesh& whole, const Patch& patch);
+std::vector<Index> put_back(FitMesh& whole, const FitPatch& patch);
 
 }  // namespace vmesh

@@ -1,4 +1,4 @@
-#include "fit/patch.h"
+#include "fit/fit_patch.h"
 
 #include <algorithm>
 
@@ -36,12 +36,12 @@ Box box_of(const FitMesh& surface, Index f) {
 
 }  // namespace
 
-bool Patch::moves(Index face) const {
+bool FitPatch::moves(Index face) const {
   const Triangle& corners = surface.faces[face];
   return std::any_of(corners.begin(), corners.end(), [&](Index v) { return !is_frozen(frozen, v); });
 }
 
-Patch patch_around(const FitMesh& whole, Index face, double reach) {
+FitPatch patch_around(const FitMesh& whole, Index face, double reach) {
   const std::vector<Index> free = vertices_within(whole, face, reach);
   Box box;
   for (const Index v : free) {
@@ -49,7 +49,7 @@ Patch patch_around(const FitMesh& whole, Index face, double reach) {
   }
   const Vec3 room = Vec3::Constant(whole.mean_edge(whole.faces[face][0]));  // to move
   box = Box(box.min() - room, box.max() + room);
-  Patch patch{FitMesh({}, {}), {}, {}, {}};
+  FitPatch patch{FitMesh({}, {}), {}, {}, {}};
   std::vector<Index> number(whole.vertices.size(), kNone);
   TriMesh mesh;  // faces only
   std::vector<FitMesh::Vertex> vertices;
@@ -74,7 +74,7 @@ Patch patch_around(const FitMesh& whole, Index face, double reach) {
   return patch;
 }
 
-std::vector<Index> put_back(FitMesh& whole, const Patch& patch) {
+std::vector<Index> put_back(FitMesh& whole, const FitPatch& patch) {
   std::vector<Index> numbers = patch.vertices, faces = patch.faces;
   TriMesh mesh;  // faces only
   mesh.faces = std::move(whole.faces);

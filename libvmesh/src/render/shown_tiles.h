@@ -9,9 +9,9 @@
 namespace vmesh {
 
 /// Which parts of a picture may show the mesh: rays through the others need not be cast.
-class Coverage {
+class ShownTiles {
  public:
-  Coverage(const TriMesh& mesh, const Camera& camera, int width, int height);
+  ShownTiles(const TriMesh& mesh, const Camera& camera, int width, int height);
 
   bool may_show_mesh(int x, int y) const {
     return tiles_[static_cast<std::size_t>(y / kTile) * static_cast<std::size_t>(columns_) +
