@@ -132,7 +132,7 @@ std::string names_of_readable(const std::vector<std::filesystem::path>& files) {
   return count > kNamed ? names + " and " + std::to_string(count - kNamed) + " more" : names;
 }
 
-/// The files that stand for a path: itself, unless it is a folder of branches.
+/// The files that stand for a path: itself, unless it is a folder of branches. A folder of DICOM files is an image.
 std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_directory(path, error)) return {path};
@@ -148,6 +148,7 @@ std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& 
     throw InvalidInput(folder.string() + ": this folder holds branches of several kinds (" + first.first + ", " +
                        second.first + "); name the files of one, as in " + folder.string() + "/*" + first.first);
   }
+  if (is_image(folder)) return {folder};  // of DICOM slices
   const std::string names = names_of_readable(files);
   throw ReadError(folder.string() + ": this is a folder, and " +
                   (names.empty() ? "no file in it is one that vmesh reads" : "a file is needed; there are " + names));
@@ -157,7 +158,7 @@ RawCenterline read_centerline_of(const InputArguments& input) {
   const std::vector<std::filesystem::path> paths = paths_of(input);
   for (const std::filesystem::path& path : paths) {
     if (has_surface_extension(path)) throw Unsupported(make_centerline_first(path, "a surface"));
-    if (is_image_path(path)) throw Unsupported(make_centerline_first(path, "an image"));
+    if (is_image(path)) throw Unsupported(make_centerline_first(path, "an image"));
   }
   try {
     return read_centerline(paths, input.read);
@@ -181,7 +182,7 @@ RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::
 LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
   if (!input.more.empty())
     throw UsageError(input.more.front().string() + ": several files make a centerline, no surface");
-  if (is_image_path(input.path)) throw Unsupported(make_surface_first(input.path, "an image", "reference"));
+  if (is_image(input.path)) throw Unsupported(make_surface_first(input.path, "an image", "reference"));
   if (holds_only_a_centerline(input.path))
     throw Unsupported(make_surface_first(input.path, "a centerline", "generate"));
   try {
@@ -241,10 +242,15 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& input) 
   return {input};
 }
 
+std::vector<std::filesystem::path> files_of_input(const std::filesystem::path& input) {
+  std::error_code error;
+  return std::filesystem::is_directory(input, error) ? files_in(input) : files_of(input);
+}
+
 std::vector<std::filesystem::path> files_of(const InputArguments& input) {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& path : paths_of(input)) {
-    for (const std::filesystem::path& file : files_of(path)) files.push_back(file);
+    for (const std::filesystem::path& file : files_of_input(path)) files.push_back(file);
   }
   return files;
 }
@@ -256,9 +262,17 @@ std::string file_name_of(const InputArguments& input) {
 }
 
 std::string sha256_of(const InputArguments& input) {
-  if (input.more.empty()) return sha256_of_file(input.path);
+  if (input.more.empty()) return sha256_of_input(input.path);
   std::string all;
   for (const std::filesystem::path& path : paths_of(input)) all += sha256_of_file(path);
+  return vmesh::sha256_of(all);
+}
+
+std::string sha256_of_input(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error)) return sha256_of_file(path);
+  std::string all;
+  for (const std::filesystem::path& file : files_in(path)) all += sha256_of_file(file);
   return vmesh::sha256_of(all);
 }
 
