@@ -129,8 +129,7 @@ std::vector<float> frames_of(const std::filesystem::path& path, std::size_t voxe
   const NumberType type = number_type(image.GetPixelFormat(), name);
   const std::size_t bytes = image.GetBufferLength();
   if (bytes != voxels * bytes_of(type)) fail_to_read(name);
-  const gdcm::ByteValue* plain = image.GetDataElement().GetByteValue();
-  if (plain != nullptr && plain->GetLength() < bytes) fail_to_read(name);
+  check_not_cut_off(path, bytes);
   const auto stored = std::make_unique_for_overwrite<char[]>(bytes);
   if (!image.GetBuffer(stored.get())) fail_to_read(name);
   std::vector<float> values(voxels);
@@ -146,6 +145,7 @@ std::vector<float> frames_of_bits(const std::filesystem::path& path, std::size_t
   const gdcm::Tag pixel_data(0x7fe0, 0x0010);
   if (!reader.Read() || !reader.GetFile().GetDataSet().FindDataElement(pixel_data)) fail_to_read(path.string());
   const gdcm::ByteValue* bits = reader.GetFile().GetDataSet().GetDataElement(pixel_data).GetByteValue();
+  check_not_cut_off(path, (voxels + 7) / 8);
   if (bits == nullptr || bits->GetLength() < (voxels + 7) / 8) fail_to_read(path.string());
   std::vector<float> values(voxels);
   for (std::size_t v = 0; v < voxels; ++v)

@@ -1,7 +1,9 @@
 #include "dicom_tags.h"
 
-#include <charconv>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <fstream>
 
 #include <gdcmAttribute.h>
 #include <gdcmMediaStorage.h>
@@ -81,9 +83,25 @@ std::vector<DataSet> items_of(const DataSet& data, const Tag& tag) {
 /// All but the voxels. Throws InvalidInput.
 void read_tags(gdcm::Reader& reader, const std::filesystem::path& path) {
   reader.SetFileName(path.c_str());
-  if (!reader.ReadUpToTag(kPixelData))
+  if (!reader.ReadUpToTag(kPixelData, {kPixelData}))
     throw InvalidInput(path.string() +
                        ": this DICOM file is damaged or cut off; fetch it again, or take it out of the folder");
+}
+
+/// Whether items of packed voxels go on until their end is marked.
+bool fragments_end(const std::filesystem::path& path, std::uint64_t begin) {
+  constexpr std::uint32_t kItem = 0xe000fffe, kEnd = 0xe0ddfffe;  // as they are stored, the group first
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(begin));
+  for (std::array<unsigned char, 8> head; file.read(reinterpret_cast<char*>(head.data()), head.size());) {
+    const auto number = [&](std::size_t at) {
+      return head[at] | head[at + 1] << 8u | head[at + 2] << 16u | static_cast<std::uint32_t>(head[at + 3]) << 24u;
+    };
+    if (number(0) == kEnd) return true;
+    if (number(0) != kItem) return false;
+    file.seekg(number(4), std::ios::cur);
+  }
+  return false;
 }
 
 std::size_t frames_of(const DataSet& data) {
@@ -173,6 +191,17 @@ std::optional<DicomFile> identify(const std::filesystem::path& path) {
   file.many_frames = frames_of(data) > 1 || data.FindDataElement(kFrameGroups);
   if (file.many_frames) file.series = path.string();
   return file;
+}
+
+void check_not_cut_off(const std::filesystem::path& path, std::size_t bytes) {
+  gdcm::Reader reader;
+  read_tags(reader, path);
+  const gdcm::TransferSyntax& syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
+  if (syntax == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian)
+    throw Unsupported(path.string() + ": deflated DICOM files are not supported; store the series anew");
+  const std::uint64_t begin = reader.GetStreamCurrentPosition();
+  if (syntax.IsEncapsulated() ? fragments_end(path, begin) : std::filesystem::file_size(path) >= begin + bytes) return;
+  throw InvalidInput(path.string() + ": this DICOM file is cut off: voxels are missing; fetch it again");
 }
 
 std::vector<DicomSlice> slices_of(const DicomFile& file, DicomVoxels* voxels) {

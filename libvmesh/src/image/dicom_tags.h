@@ -42,4 +42,8 @@ std::optional<DicomFile> identify(const std::filesystem::path& path);
 /// Unsupported for colours and what is no stack of slices. `voxels`, unless null, is told as well.
 std::vector<DicomSlice> slices_of(const DicomFile& file, DicomVoxels* voxels = nullptr);
 
+/// Throws InvalidInput unless the file goes on to the end of its voxels, which are so many bytes when they are not
+/// packed. GDCM reads what is cut off without an error.
+void check_not_cut_off(const std::filesystem::path& path, std::size_t bytes);
+
 }  // namespace vmesh::image

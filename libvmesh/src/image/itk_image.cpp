@@ -1,4 +1,5 @@
 // Header and voxels in two files, through ITK.
+#include <algorithm>
 #include <bit>
 #include <fstream>
 #include <limits>
@@ -68,6 +69,57 @@ NumberType number_type(itk::ImageIOBase::IOComponentEnum type, const std::string
   }
 }
 
+bool is_pair(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".hdr" || extension == ".img";
+}
+
+/// The other file of a NIfTI or Analyze pair, or itself: `lower` and `upper` are the extension asked for.
+std::filesystem::path part_of_pair(std::filesystem::path path, const char* lower, const char* upper) {
+  if (lower_extension(path) == lower) return path;
+  const bool shouts = path.extension() == ".IMG" || path.extension() == ".HDR";
+  return path.replace_extension(shouts ? upper : lower);
+}
+
+/// The first bytes of a NIfTI-1 or Analyze header.
+std::string beginning_of_header(const std::filesystem::path& path) {
+  std::string header(348, '\0');
+  std::ifstream file(part_of_pair(path, ".hdr", ".HDR"), std::ios::binary);
+  file.read(header.data(), static_cast<std::streamsize>(header.size()));
+  return header;
+}
+
+/// Analyze has no field for the frame: what left and right are is a custom.
+bool is_analyze(const std::filesystem::path& path) {
+  constexpr std::size_t kMagic = 344;
+  return is_pair(path) && beginning_of_header(path).compare(kMagic, 2, "ni") != 0;
+}
+
+/// ITK fills what is missing in the second file of a pair with 0 and says nothing.
+void check_pair_is_complete(const std::filesystem::path& path, std::size_t voxels) {
+  const std::filesystem::path data = part_of_pair(path, ".img", ".IMG");
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(data, error);
+  if (error) throw InvalidInput(path.string() + ": " + data.string() + " is needed, unpacked, and cannot be read");
+  const std::string header = beginning_of_header(path);
+  const auto byte = [&](std::size_t at) { return static_cast<std::size_t>(static_cast<unsigned char>(header[at])); };
+  constexpr std::size_t kBits = 72;
+  const bool big_endian = byte(0) == 0;  // of 348, which is what a header begins with
+  const std::size_t bits = big_endian ? byte(kBits) << 8u | byte(kBits + 1) : byte(kBits) | byte(kBits + 1) << 8u;
+  if (size >= voxels * (bits / 8)) return;
+  throw InvalidInput(data.string() + ": is cut off: " + std::to_string(voxels * (bits / 8)) + " bytes are claimed, " +
+                     std::to_string(size) + " are there");
+}
+
+void check_one_data_file(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("ElementDataFile")) continue;
+    if (line.find("LIST") == std::string::npos && line.find('%') == std::string::npos) return;
+    throw Unsupported(path.string() + ": voxels in many files are not supported; store them in one");
+  }
+}
+
 /// With its header read.
 itk::ImageIOBase::Pointer opened(const std::filesystem::path& path) {
   const std::string name = path.string(), extension = lower_extension(path);
@@ -81,6 +133,7 @@ itk::ImageIOBase::Pointer opened(const std::filesystem::path& path) {
   }
   if (!io->CanReadFile(name.c_str()))
     throw InvalidInput(name + ": its header is damaged, or of another kind, or the file that belongs to it is missing");
+  if (extension == ".mhd") check_one_data_file(path);
   io->SetFileName(name);
   io->ReadImageInformation();
   if (io->GetNumberOfComponents() != 1)
@@ -96,17 +149,19 @@ itk::ImageIOBase::Pointer opened(const std::filesystem::path& path) {
   return io;
 }
 
-/// Analyze has no field for the frame: what left and right are is a custom.
-bool is_analyze(const std::filesystem::path& path) {
-  constexpr std::size_t kMagic = 344;
-  std::filesystem::path header = path;
-  if (lower_extension(path) == ".img") header.replace_extension(path.extension() == ".IMG" ? ".HDR" : ".hdr");
-  if (lower_extension(header) != ".hdr") return false;
-  char magic[4] = {};
-  std::ifstream file(header, std::ios::binary);
-  file.seekg(kMagic);
-  file.read(magic, sizeof magic);
-  return std::string_view(magic, 2) != "ni";
+/// Reads all voxels. MetaIO leaves the rest as it was when its file ends too early, and says nothing: so what was
+/// there before must not be there afterwards, whatever it was.
+void read_whole(itk::ImageIOBase& io, std::span<char> stored, std::size_t of_voxel, const std::string& name) {
+  constexpr char kMark = '\x5a', kOtherMark = '\x69';
+  const std::span<char> last = stored.last(of_voxel);
+  std::fill(last.begin(), last.end(), kMark);
+  io.Read(stored.data());
+  if (std::find(last.begin(), last.end(), kMark) == last.end()) return;
+  const std::string before(last.begin(), last.end());
+  std::fill(last.begin(), last.end(), kOtherMark);
+  io.Read(stored.data());
+  if (before != std::string_view(last.data(), last.size()))
+    throw InvalidInput(name + ": the file with its voxels is cut off");
 }
 
 /// Runs `work`, with what ITK throws as InvalidInput.
@@ -152,7 +207,8 @@ Warnings itk_voxels(const std::filesystem::path& path, std::span<float> values) 
       throw InvalidInput(name + ": has changed while it was read");
     const std::size_t bytes = values.size() * bytes_of(type);
     const auto stored = std::make_unique_for_overwrite<char[]>(bytes);
-    io->Read(stored.get());
+    if (is_pair(path)) check_pair_is_complete(path, values.size());
+    read_whole(*io, {stored.get(), bytes}, bytes_of(type), name);
     read_numbers({stored.get(), bytes}, {type, std::endian::native == std::endian::big}, values, name);
     return Warnings();
   });
