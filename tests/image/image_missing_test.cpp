@@ -29,13 +29,15 @@ TEST(WithoutItk, ReadingSaysWhatIsMissing) {
 
 TEST(ImagePath, DicomIsToldByItsContent) {
   const TemporaryFolder folder;
+  std::string begin(132, '\0');
+  begin.replace(128, 4, "DICM");
   EXPECT_FALSE(is_image(folder / ""));
   folder.write("notes", std::string(200, 'x'));
-  folder.write("DICOMDIR", std::string(128, '\0') + "DICM");
+  folder.write("DICOMDIR", begin);
   EXPECT_FALSE(is_image(folder / ""));
   EXPECT_FALSE(is_image(folder / "notes"));
   EXPECT_FALSE(is_image(folder / "missing"));
-  EXPECT_TRUE(is_image(folder.write("IM0001", std::string(128, '\0') + "DICM")));
+  EXPECT_TRUE(is_image(folder.write("IM0001", begin)));
   EXPECT_TRUE(is_image(folder / ""));
 }
 

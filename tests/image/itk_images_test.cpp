@@ -1,4 +1,6 @@
 // Images with header and voxels in two files.
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "vmesh/image/image_io.h"
@@ -88,6 +90,32 @@ TEST_F(TwoFiles, AnotherFileThatIsMissingIsAnError) {
     EXPECT_THROW(read_image(path), InvalidInput) << path;
   }
   EXPECT_THROW(read_image(folder_ / "there_is_none.mhd"), ReadError);
+}
+
+TEST_F(TwoFiles, HeadersThatAreWrongNeverCrash) {
+  std::mt19937 random(5);
+  for (int format = 0; format < 3; ++format) {
+    const std::filesystem::path path = format == 0   ? write_mhd(voxels_)
+                                       : format == 1 ? write_nhdr(voxels_)
+                                                     : write_pair(voxels_);
+    const std::string whole = content_of(path);
+    for (int round = 0; round < 60; ++round) {
+      std::string bytes = whole;
+      for (int n = 0; n < 2; ++n) bytes[random() % bytes.size()] = static_cast<char>(random());
+      try {
+        read_image(folder_.write(path.filename().string(), bytes));
+      } catch (const Error&) {
+      }
+    }
+  }
+}
+
+TEST_F(TwoFiles, VoxelsInManyFilesAreRefused) {
+  const std::string header = content_of(write_mhd(voxels_));
+  for (const char* data : {"LIST", "%03d.raw 1 5 1"}) {
+    const std::filesystem::path path = folder_.write("a.mhd", replaced(header, "a.raw", data));
+    expect_contains(message_of<Unsupported>([&] { read_image(path); }), "many files");
+  }
 }
 
 TEST_F(TwoFiles, AHugeClaimIsRefusedBeforeItIsRead) {

@@ -48,6 +48,13 @@ TEST_F(DicomInputs, AFolderIsGrownAndFitted) {
   EXPECT_EQ(summary.at("centerline").at("ends"), 3);
 }
 
+TEST_F(DicomInputs, ABentTubeHasTwoEnds) {
+  write_series("ct", scan_of_vessels(image_, false, true));
+  const Outcome run = vmesh({"generate", "@ct", "--threshold", "200", "--json", "@out.json", "-o", "@out.ply"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(read("out.json")).at("centerline").at("ends"), 2);
+}
+
 TEST_F(DicomInputs, AFileOfTheSeriesStandsForIt) {
   write_series("ct", values_);
   expect_surface({"generate", "@ct/IM5", "--threshold", "200"});

@@ -82,7 +82,8 @@ bool is_image_path(const std::filesystem::path& path) {
 bool is_image(const std::filesystem::path& path) { return is_image_path(path) || image::is_dicom(path); }
 
 LoadedImage parse_image(std::string_view content, const std::string& source) {
-  if (!has_own_format(source)) throw Unsupported(source + ": images are .nii, .nii.gz, .nrrd or .mha");
+  if (!has_own_format(source))
+    throw Unsupported(source + ": images are .nii, .nii.gz, .nrrd or .mha, or a folder of DICOM files");
   const std::string file_name = image::folded(std::filesystem::path(source).filename().string());
   const ImageHeader header = parse_header(content, file_name, source);
   check_place(header, source);
@@ -100,9 +101,8 @@ LoadedImage parse_image(std::string_view content, const std::string& source) {
 
 LoadedImage read_image(const std::filesystem::path& path) {
   std::error_code error;
-  if (has_own_format(path) && !std::filesystem::is_directory(path, error))
-    return parse_image(read_file(path), path.string());
-  return image::read_by_itk(path);
+  const bool own = has_own_format(path) && !std::filesystem::is_directory(path, error);
+  return own || !is_image(path) ? parse_image(read_file(path), path.string()) : image::read_by_itk(path);
 }
 
 }  // namespace vmesh
