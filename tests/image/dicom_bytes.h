@@ -90,6 +90,34 @@ inline std::string dicom_slice(const SampleImage& image, const std::vector<doubl
           element(0x7fe0, 0x10, "OW", voxel_bytes<std::int16_t>(stored)));
 }
 
+/// All slices in one file, in the order given; each is stored with a slope of its own.
+inline std::string dicom_frames(const SampleImage& image, const std::vector<double>& values,
+                                const std::vector<int>& order) {
+  const std::string enhanced_ct = "1.2.840.10008.5.1.4.1.1.2.1";
+  const std::size_t area = static_cast<std::size_t>(image.size[0]) * image.size[1];
+  std::vector<std::string> places;
+  std::vector<double> stored;
+  for (const int k : order) {
+    const double slope = k % 2 == 0 ? 1 : 2, intercept = -1024;
+    places.push_back(sequence(0x20, 0x9113, {element(0x20, 0x32, "DS", decimals(image.position(0, 0, k)))}) +
+                     sequence(0x28, 0x9145,
+                              {element(0x28, 0x1052, "DS", decimals({intercept})) +
+                               element(0x28, 0x1053, "DS", decimals({slope}))}));
+    for (std::size_t v = 0; v < area; ++v) stored.push_back((values[k * area + v] - intercept) / slope);
+  }
+  const std::string shared = sequence(0x20, 0x9116, {element(0x20, 0x37, "DS", orientation_of(image))}) +
+                             sequence(0x28, 0x9110, {element(0x28, 0x30, "DS", pixel_spacing_of(image))});
+  return dicom_file(
+      enhanced_ct, "1.2.3.9",
+      element(8, 0x16, "UI", enhanced_ct) + element(8, 0x18, "UI", "1.2.3.9") + element(8, 0x60, "CS", "CT") +
+          element(0x20, 0xd, "UI", "1.2.3") + element(0x20, 0xe, "UI", "1.2.3.8") + short_element(0x28, 2, 1) +
+          element(0x28, 4, "CS", "MONOCHROME2") + element(0x28, 8, "IS", std::to_string(order.size())) +
+          short_element(0x28, 0x10, image.size[1]) + short_element(0x28, 0x11, image.size[0]) +
+          short_element(0x28, 0x100, 16) + short_element(0x28, 0x101, 16) + short_element(0x28, 0x102, 15) +
+          short_element(0x28, 0x103, 1) + sequence(0x5200, 0x9229, {shared}) + sequence(0x5200, 0x9230, places) +
+          element(0x7fe0, 0x10, "OW", voxel_bytes<std::int16_t>(stored)));
+}
+
 /// A frame of a segmentation: where `labels` are `segment` in slice k.
 struct SegmentFrame {
   int segment, k;

@@ -166,6 +166,28 @@ TEST_F(Dicom, WhatIsNoImageIsLeftOut) {
   expect_contains(message_of<InvalidInput>([&] { read_image(folder_.write("a.dcm", "x")); }), "no DICOM file");
 }
 
+TEST_F(Dicom, FramesOfOneFileAreSortedAndRescaledEachByItself) {
+  const SampleImage image;
+  std::vector<double> values = image.values();
+  for (double& value : values) value *= 2;
+  const LoadedImage loaded = read_image(folder_.write("a.dcm", dicom_frames(image, values, {3, 0, 4, 2, 1})));
+  for (std::size_t v = 0; v < values.size(); ++v) EXPECT_EQ(loaded.image.values[v], values[v]);
+  EXPECT_LT((loaded.image.position(Vec3(6, 5, 4)) - image.position(6, 5, 4)).norm(), 1e-5);
+}
+
+TEST_F(Dicom, SegmentsThatOverlapAreToldOf) {
+  const std::vector<double> ones(static_cast<std::size_t>(image_.count()), 1);
+  std::string bytes = dicom_segmentation(image_, ones, {{1, 0}, {1, 0}});
+  // The second frame becomes one of segment 2, in the place of the first.
+  const std::string number = short_element(0x62, 0xb, 1);
+  bytes.replace(bytes.rfind(number), number.size(), short_element(0x62, 0xb, 2));
+  const LoadedImage loaded = read_image(folder_.write("seg.dcm", bytes));
+  ASSERT_EQ(loaded.warnings.size(), 1u);
+  expect_contains(loaded.warnings[0], "several segments");
+  EXPECT_EQ(loaded.image.size[2], 1u);
+  EXPECT_EQ(loaded.image.values[0], 2);
+}
+
 TEST_F(Dicom, ASegmentationIsLabels) {
   std::vector<double> labels = scan_of_vessels(image_, true, false), other = scan_of_vessels(image_, false, true);
   for (std::size_t v = 0; v < labels.size(); ++v) labels[v] = labels[v] >= 200 ? 1 : other[v] >= 200 ? 2 : 0;

@@ -5,6 +5,7 @@
 
 #include "vmesh/io/sha256.h"
 
+#include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
 
@@ -210,9 +211,14 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
 LoadedImage load_image(const InputArguments& input, Console& console) {
   if (input.unit || input.space)
     throw UsageError(input.path.string() + ": an image says where it lies; --unit and --space do not apply");
-  LoadedImage loaded = read_image(input.path);
-  console.warn(loaded.warnings);
-  return loaded;
+  try {
+    LoadedImage loaded = read_image(input.path);
+    console.warn(loaded.warnings);
+    return loaded;
+  } catch (const InvalidInput&) {
+    stop_if_interrupted();  // which ends the process that reads as well
+    throw;
+  }
 }
 
 AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said) {

@@ -1,10 +1,9 @@
 // A DICOM series as an image, through GDCM.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
-#include <memory>
 
-#include <gdcmImageHelper.h>
 #include <gdcmImageReader.h>
 
 #include "vmesh/core/error.h"
@@ -80,9 +79,7 @@ Series read_series(const std::filesystem::path& path) {
   for (const DicomFile& file : files) {
     DicomVoxels voxels;
     for (DicomSlice& slice : slices_of(file, &voxels)) slices.push_back(std::move(slice));
-    const bool integer = series.voxels.integer && voxels.integer;
     series.voxels = voxels;
-    series.voxels.integer = integer;
   }
   series.stack = stacked(std::move(slices), series.voxels.slice_step, path.string());
   return series;
@@ -119,27 +116,29 @@ NumberType number_type(const gdcm::PixelFormat& format, const std::string& name)
                      "way that GDCM does not know; fetch it again");
 }
 
-/// The frames of a file, one after another.
-std::vector<float> frames_of(const std::filesystem::path& path, std::size_t voxels) {
+/// The frames of a file, one after another, as they are stored.
+struct StoredFrames {
+  NumberType type = NumberType::u8;
+  std::vector<char> bytes;
+};
+
+StoredFrames frames_of(const std::filesystem::path& path, std::size_t voxels) {
   const std::string name = path.string();
   gdcm::ImageReader reader;
   reader.SetFileName(path.c_str());
   if (!reader.Read()) fail_to_read(name);
   const gdcm::Image& image = reader.GetImage();
-  const NumberType type = number_type(image.GetPixelFormat(), name);
+  StoredFrames frames{number_type(image.GetPixelFormat(), name), {}};
   const std::size_t bytes = image.GetBufferLength();
-  if (bytes != voxels * bytes_of(type)) fail_to_read(name);
+  if (bytes != voxels * bytes_of(frames.type)) fail_to_read(name);
   check_not_cut_off(path, bytes);
-  const auto stored = std::make_unique_for_overwrite<char[]>(bytes);
-  if (!image.GetBuffer(stored.get())) fail_to_read(name);
-  std::vector<float> values(voxels);
-  const bool big_endian = std::endian::native == std::endian::big;
-  read_numbers({stored.get(), bytes}, {type, big_endian, image.GetSlope(), image.GetIntercept()}, values, name);
-  return values;
+  frames.bytes.resize(bytes);
+  if (!image.GetBuffer(frames.bytes.data())) fail_to_read(name);
+  return frames;
 }
 
 /// The same of a segmentation with a bit for each voxel, the lowest first.
-std::vector<float> frames_of_bits(const std::filesystem::path& path, std::size_t voxels) {
+StoredFrames frames_of_bits(const std::filesystem::path& path, std::size_t voxels) {
   gdcm::Reader reader;
   reader.SetFileName(path.c_str());
   const gdcm::Tag pixel_data(0x7fe0, 0x0010);
@@ -147,10 +146,18 @@ std::vector<float> frames_of_bits(const std::filesystem::path& path, std::size_t
   const gdcm::ByteValue* bits = reader.GetFile().GetDataSet().GetDataElement(pixel_data).GetByteValue();
   check_not_cut_off(path, (voxels + 7) / 8);
   if (bits == nullptr || bits->GetLength() < (voxels + 7) / 8) fail_to_read(path.string());
-  std::vector<float> values(voxels);
+  StoredFrames frames{NumberType::u8, std::vector<char>(voxels)};
   for (std::size_t v = 0; v < voxels; ++v)
-    values[v] = static_cast<float>(static_cast<unsigned char>(bits->GetPointer()[v / 8]) >> (v % 8) & 1);
-  return values;
+    frames.bytes[v] = static_cast<char>(static_cast<unsigned char>(bits->GetPointer()[v / 8]) >> (v % 8) & 1);
+  return frames;
+}
+
+/// The values of one frame.
+void read_frame(const StoredFrames& frames, const DicomSlice& slice, std::span<float> values) {
+  const std::size_t bytes = values.size() * bytes_of(frames.type);
+  const bool big_endian = std::endian::native == std::endian::big;
+  read_numbers(std::string_view(frames.bytes.data(), frames.bytes.size()).substr(slice.frame * bytes, bytes),
+               {frames.type, big_endian, slice.slope, slice.intercept}, values, slice.path.string());
 }
 
 /// Puts segment numbers where a frame of a segmentation is not 0. Returns how many belonged to another one.
@@ -175,32 +182,34 @@ ForeignHeader dicom_header(const std::filesystem::path& path, Warnings&) {
     for (int b = 0; b < 3; ++b) header.steps[a][b] = stack.steps(b, a);
   }
   header.bytes = std::max<std::size_t>(1, voxels.bits / 8);
-  header.integer = voxels.integer;
+  header.integer = std::all_of(stack.slices.begin(), stack.slices.end(), [](const DicomSlice& slice) {
+    return slice.slope == std::floor(slice.slope) && slice.intercept == std::floor(slice.intercept);
+  });
   return header;
 }
 
 Warnings dicom_voxels(const std::filesystem::path& path, std::span<float> values) {
-  // As 3D Slicer does: also of modalities that need not have a rescaling.
-  gdcm::ImageHelper::SetForceRescaleInterceptSlope(true);
   const auto [stack, voxels] = read_series(path);
   const std::size_t area = stack.size[0] * stack.size[1];
   if (values.size() != area * stack.size[2]) throw InvalidInput(path.string() + ": has changed while it was read");
-  std::map<std::filesystem::path, std::size_t> frames;
-  for (const DicomSlice& slice : stack.slices) ++frames[slice.path];
+  std::map<std::filesystem::path, std::size_t> frames_in;
+  for (const DicomSlice& slice : stack.slices) ++frames_in[slice.path];
   std::size_t shared = 0;
-  std::vector<float> read;
+  StoredFrames frames;
   std::filesystem::path last;
+  std::vector<float> segment(area);
   for (std::size_t s = 0; s < stack.slices.size(); ++s) {
     const DicomSlice& slice = stack.slices[s];
-    const std::size_t count = frames.at(slice.path) * area;
-    if (slice.path != last) read = voxels.bits == 1 ? frames_of_bits(slice.path, count) : frames_of(slice.path, count);
+    const std::size_t count = frames_in.at(slice.path) * area;
+    if (slice.path != last)
+      frames = voxels.bits == 1 ? frames_of_bits(slice.path, count) : frames_of(slice.path, count);
     last = slice.path;
-    const std::span<const float> frame = std::span(read).subspan(slice.frame * area, area);
     const std::span<float> layer = values.subspan(stack.layer[s] * area, area);
     if (slice.segment > 0) {
-      shared += label(frame, slice.segment, layer);
+      read_frame(frames, slice, segment);
+      shared += label(segment, slice.segment, layer);
     } else {
-      std::copy(frame.begin(), frame.end(), layer.begin());
+      read_frame(frames, slice, layer);
     }
   }
   if (shared == 0) return {};

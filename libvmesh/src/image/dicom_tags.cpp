@@ -144,19 +144,17 @@ DicomSlice slice_of(const DicomFile& file, const FrameGroups& groups, std::size_
   DicomSlice slice{file.path, frame, Vec3(position.data()), {}, file.columns, file.rows};
   slice.steps.col(0) = spacing[1] * row.normalized();  // the spacing of rows comes first
   slice.steps.col(1) = spacing[0] * column.normalized();
+  const DataSet rescaling = groups.in(kRescaling);
+  const std::vector<double> slope = decimals_of(rescaling, kSlope, 1),
+                            intercept = decimals_of(rescaling, kIntercept, 1);
+  if (!slope.empty() && slope[0] != 0) slice.slope = slope[0];
+  if (!intercept.empty()) slice.intercept = intercept[0];
   return slice;
-}
-
-bool is_whole(const DataSet& data, const Tag& tag) {
-  const std::vector<double> number = decimals_of(data, tag, 1);
-  return number.empty() || number[0] == std::floor(number[0]);
 }
 
 DicomVoxels voxels_of(const DataSet& data, const FrameGroups& groups) {
   DicomVoxels voxels;
   voxels.bits = short_of<0x0028, 0x0100>(data, 16);
-  const DataSet rescaling = groups.in(kRescaling);
-  voxels.integer = is_whole(rescaling, kSlope) && is_whole(rescaling, kIntercept);
   const std::vector<double> step = decimals_of(groups.in(kPixelMeasures), kSliceStep, 1);
   if (!step.empty()) voxels.slice_step = std::abs(step[0]);
   return voxels;

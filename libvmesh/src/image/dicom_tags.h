@@ -25,13 +25,13 @@ struct DicomSlice {
   Vec3 position = Vec3::Zero();       ///< centre of its first voxel, LPS, mm
   Eigen::Matrix<double, 3, 2> steps;  ///< to the next voxel of a row, and to the next row
   std::size_t columns = 0, rows = 0;
-  int segment = 0;  ///< that the frame of a segmentation belongs to; 0: no segmentation
+  double slope = 1, intercept = 0;  ///< of its values, from those that are stored
+  int segment = 0;                  ///< that the frame of a segmentation belongs to; 0: no segmentation
 };
 
 /// How the voxels of a file are stored.
 struct DicomVoxels {
   std::size_t bits = 16;  ///< of each; 1 in segmentations
-  bool integer = true;    ///< they remain whole numbers when they are rescaled
   double slice_step = 0;  ///< distance between slices (mm); 0: it does not say
 };
 
