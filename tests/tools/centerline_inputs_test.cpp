@@ -80,6 +80,15 @@ TEST_F(CenterlineInputs, AFolderOfDicomFilesNeedsItk) {
 }
 #endif
 
+TEST_F(CenterlineInputs, AFolderOfScansNamesThem) {
+  std::filesystem::create_directories(path("patient/arterial"));
+  std::string slice(132, '\0');
+  write("patient/arterial/IM0001", slice.replace(128, 4, "DICM"));
+  const Outcome run = vmesh({"generate", "@patient", "--threshold", "200", "-o", "@out.ply"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("there are " + path("patient/arterial").string()), std::string::npos) << run.err;
+}
+
 TEST_F(CenterlineInputs, AFolderOfImagesIsNoScan) {
   std::filesystem::create_directory(path("images"));
   write("images/a.nii", "");

@@ -122,15 +122,26 @@ bool is_readable(const std::filesystem::path& path) {
   return find_centerline_format(path) || has_surface_extension(path) || is_image_path(path);
 }
 
-/// "a.swc, b.swc and 7 more": files of a folder that could have been meant.
+/// "a.swc, b.swc and 7 more": what is in a folder and could have been meant.
 std::string names_of_readable(const std::vector<std::filesystem::path>& files) {
   constexpr std::size_t kNamed = 3;
   std::string names;
   std::size_t count = 0;
   for (const std::filesystem::path& file : files) {
-    if (is_readable(file) && count++ < kNamed) names += (names.empty() ? "" : ", ") + file.string();
+    if ((is_readable(file) || is_image(file)) && count++ < kNamed) names += (names.empty() ? "" : ", ") + file.string();
   }
   return count > kNamed ? names + " and " + std::to_string(count - kNamed) + " more" : names;
+}
+
+/// Folders in a folder that hold DICOM files: a study's series often lie so.
+std::vector<std::filesystem::path> scans_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> scans;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->is_directory(error) && is_image(entry->path())) scans.push_back(entry->path());
+  }
+  std::sort(scans.begin(), scans.end());
+  return scans;
 }
 
 /// The files that stand for a path: itself, unless it is a folder of branches. A folder of DICOM files is an image.
@@ -150,9 +161,12 @@ std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& 
                        second.first + "); name the files of one, as in " + folder.string() + "/*" + first.first);
   }
   if (is_image(folder)) return {folder};  // of DICOM slices
-  const std::string names = names_of_readable(files);
-  throw ReadError(folder.string() + ": this is a folder, and " +
-                  (names.empty() ? "no file in it is one that vmesh reads" : "a file is needed; there are " + names));
+  std::vector<std::filesystem::path> meant = files;
+  for (std::filesystem::path& scan : scans_in(folder)) meant.push_back(std::move(scan));
+  const std::string names = names_of_readable(meant);
+  throw ReadError(
+      folder.string() + ": this is a folder, and " +
+      (names.empty() ? "no file in it is one that vmesh reads" : "one of what is in it is needed; there are " + names));
 }
 
 RawCenterline read_centerline_of(const InputArguments& input) {
