@@ -15,8 +15,35 @@ TEST(WithoutVtk, ContouringSaysWhatIsMissing) {
 }
 #endif
 
+#if !VMESH_WITH_ITK
+TEST(WithoutItk, ReadingSaysWhatIsMissing) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.mhd", "a.NHDR", "a.hdr", "a.img", "a.dcm"}) {
+    const std::string message = message_of<Unsupported>([&] { read_image(folder.write(name, "x")); });
+    expect_contains(message, "built without ITK (CMake option VMESH_WITH_ITK)");
+    expect_contains(message, name);
+  }
+  EXPECT_THROW(read_image(folder / "missing.mhd"), ReadError);
+}
+#endif
+
+TEST(ImagePath, DicomIsToldByItsContent) {
+  const TemporaryFolder folder;
+  std::string begin(132, '\0');
+  begin.replace(128, 4, "DICM");
+  EXPECT_FALSE(is_image(folder / ""));
+  folder.write("notes", std::string(200, 'x'));
+  folder.write("DICOMDIR", begin);
+  EXPECT_FALSE(is_image(folder / ""));
+  EXPECT_FALSE(is_image(folder / "notes"));
+  EXPECT_FALSE(is_image(folder / "missing"));
+  EXPECT_TRUE(is_image(folder.write("IM0001", begin)));
+  EXPECT_TRUE(is_image(folder / ""));
+}
+
 TEST(ImagePath, IsToldByItsEnding) {
-  for (const char* name : {"a.nii", "b/a.NII.GZ", "a.nrrd", "A.Mha"}) EXPECT_TRUE(is_image_path(name)) << name;
+  for (const char* name : {"a.nii", "b/a.NII.GZ", "a.nrrd", "A.Mha", "a.mhd", "a.dcm"})
+    EXPECT_TRUE(is_image_path(name)) << name;
   for (const char* name : {"a.gz", "a.ply", "nii", "a.nii.ply", ""}) EXPECT_FALSE(is_image_path(name)) << name;
 }
 

@@ -64,6 +64,39 @@ TEST_F(CenterlineInputs, AnotherFolderIsRefusedWithWhatIsInIt) {
   EXPECT_FALSE(exists("out.ply"));
 }
 
+#if !VMESH_TEST_WITH_ITK
+TEST_F(CenterlineInputs, AFolderOfDicomFilesNeedsItk) {
+  std::filesystem::create_directory(path("ct"));
+  write("ct/IM0001", std::string(128, '\0') + "DICM");
+  for (const char* input : {"@ct", "@ct/IM0001"}) {
+    for (const char* verb : {"generate", "centerline", "reference"}) {
+      const Outcome run = vmesh({verb, input, "--threshold", "200", "-o", "@out.json"});
+      EXPECT_EQ(run.exit_code, 4) << run.err;
+    }
+    const Outcome run = vmesh({"generate", input, "--threshold", "200", "-o", "@out.ply"});
+    EXPECT_NE(run.err.find("built without ITK (CMake option VMESH_WITH_ITK)"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("convert the image"), std::string::npos) << run.err;
+  }
+}
+#endif
+
+TEST_F(CenterlineInputs, AFolderOfScansNamesThem) {
+  std::filesystem::create_directories(path("patient/arterial"));
+  std::string slice(132, '\0');
+  write("patient/arterial/IM0001", slice.replace(128, 4, "DICM"));
+  const Outcome run = vmesh({"generate", "@patient", "--threshold", "200", "-o", "@out.ply"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("there are " + path("patient/arterial").string()), std::string::npos) << run.err;
+}
+
+TEST_F(CenterlineInputs, AFolderOfImagesIsNoScan) {
+  std::filesystem::create_directory(path("images"));
+  write("images/a.nii", "");
+  const Outcome run = vmesh({"generate", "@images", "--threshold", "200", "-o", "@out.ply"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("a.nii"), std::string::npos) << run.err;
+}
+
 TEST_F(CenterlineInputs, SeveralFilesAreNoSurface) {
   write_y("a.swc");
   const Outcome run = vmesh({"info", "@a.swc", "@b.ply"});

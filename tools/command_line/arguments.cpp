@@ -122,8 +122,9 @@ void add_preset(CLI::App& verb, GenerateOptions& options) {
 
 void add_generate(CLI::App& app, GenerateArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
-  add_centerline_input(verb, arguments.input,
-                       "centerline, or image (.nii, .nii.gz, .nrrd, .mha) to extract it from and to fit to");
+  add_centerline_input(
+      verb, arguments.input,
+      "centerline, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files) to extract it from and to fit to");
   add_output_after_several(verb, arguments.output, "surface (.ply, .vtp, .stl, .obj, .off, .glb)");
   add_writing(verb, arguments.writing);
   verb.add_flag("--bones", arguments.bones, "a .glb gets bones along the centerline, to bend it by");

@@ -80,7 +80,8 @@ void add_fit(CLI::App& app, FitArguments& arguments) {
   CLI::App& verb =
       *app.add_subcommand("fit", "Move a surface that vmesh grew onto a segmentation's own: a surface or an image");
   add_input(verb, arguments.input, "surface, with places on the centerline (.ply, .vtp)");
-  verb.add_option("REFERENCE", arguments.fitting.reference.path, "surface, or image (.nii, .nii.gz, .nrrd, .mha)")
+  verb.add_option("REFERENCE", arguments.fitting.reference.path,
+                  "surface, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files)")
       ->required();
   add_output(verb, arguments.output, "surface");
   add_writing(verb, arguments.writing);
@@ -105,7 +106,7 @@ void add_fit(CLI::App& app, FitArguments& arguments) {
 void add_reference(CLI::App& app, ReferenceArguments& arguments) {
   CLI::App& verb = *app.add_subcommand(
       "reference", "Contour an image by marching cubes, or the vessel volume of a centerline sampled on voxels");
-  add_input(verb, arguments.input, "image (.nii, .nii.gz, .nrrd, .mha) or centerline");
+  add_input(verb, arguments.input, "image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files) or centerline");
   add_output(verb, arguments.output, "surface");
   add_image_options(verb, arguments.options);
   verb.add_option("--voxel", arguments.voxel, "centerline: side of the voxels, mm")->check(in_range(1e-6, 1e6));
@@ -130,7 +131,7 @@ void add_cones(CLI::App& app, ConesArguments& arguments) {
 void add_centerline(CLI::App& app, CenterlineArguments& arguments) {
   CLI::App& verb =
       *app.add_subcommand("centerline", "Extract the centerline with radii from a closed surface or an image");
-  add_input(verb, arguments.input, "surface, or image (.nii, .nii.gz, .nrrd, .mha)");
+  add_input(verb, arguments.input, "surface, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files)");
   add_output(verb, arguments.output, "centerline");
   add_image_options(verb, arguments.image);
   add_extraction(verb, arguments.options);

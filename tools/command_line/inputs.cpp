@@ -5,6 +5,7 @@
 
 #include "vmesh/io/sha256.h"
 
+#include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
 
@@ -121,18 +122,29 @@ bool is_readable(const std::filesystem::path& path) {
   return find_centerline_format(path) || has_surface_extension(path) || is_image_path(path);
 }
 
-/// "a.swc, b.swc and 7 more": files of a folder that could have been meant.
+/// "a.swc, b.swc and 7 more": what is in a folder and could have been meant.
 std::string names_of_readable(const std::vector<std::filesystem::path>& files) {
   constexpr std::size_t kNamed = 3;
   std::string names;
   std::size_t count = 0;
   for (const std::filesystem::path& file : files) {
-    if (is_readable(file) && count++ < kNamed) names += (names.empty() ? "" : ", ") + file.string();
+    if ((is_readable(file) || is_image(file)) && count++ < kNamed) names += (names.empty() ? "" : ", ") + file.string();
   }
   return count > kNamed ? names + " and " + std::to_string(count - kNamed) + " more" : names;
 }
 
-/// The files that stand for a path: itself, unless it is a folder of branches.
+/// Folders in a folder that hold DICOM files: a study's series often lie so.
+std::vector<std::filesystem::path> scans_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> scans;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->is_directory(error) && is_image(entry->path())) scans.push_back(entry->path());
+  }
+  std::sort(scans.begin(), scans.end());
+  return scans;
+}
+
+/// The files that stand for a path: itself, unless it is a folder of branches. A folder of DICOM files is an image.
 std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_directory(path, error)) return {path};
@@ -148,16 +160,20 @@ std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& 
     throw InvalidInput(folder.string() + ": this folder holds branches of several kinds (" + first.first + ", " +
                        second.first + "); name the files of one, as in " + folder.string() + "/*" + first.first);
   }
-  const std::string names = names_of_readable(files);
-  throw ReadError(folder.string() + ": this is a folder, and " +
-                  (names.empty() ? "no file in it is one that vmesh reads" : "a file is needed; there are " + names));
+  if (is_image(folder)) return {folder};  // of DICOM slices
+  std::vector<std::filesystem::path> meant = files;
+  for (std::filesystem::path& scan : scans_in(folder)) meant.push_back(std::move(scan));
+  const std::string names = names_of_readable(meant);
+  throw ReadError(
+      folder.string() + ": this is a folder, and " +
+      (names.empty() ? "no file in it is one that vmesh reads" : "one of what is in it is needed; there are " + names));
 }
 
 RawCenterline read_centerline_of(const InputArguments& input) {
   const std::vector<std::filesystem::path> paths = paths_of(input);
   for (const std::filesystem::path& path : paths) {
     if (has_surface_extension(path)) throw Unsupported(make_centerline_first(path, "a surface"));
-    if (is_image_path(path)) throw Unsupported(make_centerline_first(path, "an image"));
+    if (is_image(path)) throw Unsupported(make_centerline_first(path, "an image"));
   }
   try {
     return read_centerline(paths, input.read);
@@ -181,7 +197,7 @@ RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::
 LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
   if (!input.more.empty())
     throw UsageError(input.more.front().string() + ": several files make a centerline, no surface");
-  if (is_image_path(input.path)) throw Unsupported(make_surface_first(input.path, "an image", "reference"));
+  if (is_image(input.path)) throw Unsupported(make_surface_first(input.path, "an image", "reference"));
   if (holds_only_a_centerline(input.path))
     throw Unsupported(make_surface_first(input.path, "a centerline", "generate"));
   try {
@@ -209,9 +225,14 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
 LoadedImage load_image(const InputArguments& input, Console& console) {
   if (input.unit || input.space)
     throw UsageError(input.path.string() + ": an image says where it lies; --unit and --space do not apply");
-  LoadedImage loaded = read_image(input.path);
-  console.warn(loaded.warnings);
-  return loaded;
+  try {
+    LoadedImage loaded = read_image(input.path);
+    console.warn(loaded.warnings);
+    return loaded;
+  } catch (const InvalidInput&) {
+    stop_if_interrupted();  // which ends the process that reads as well
+    throw;
+  }
 }
 
 AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said) {
@@ -241,10 +262,15 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& input) 
   return {input};
 }
 
+std::vector<std::filesystem::path> files_of_input(const std::filesystem::path& input) {
+  std::error_code error;
+  return std::filesystem::is_directory(input, error) ? files_in(input) : files_of(input);
+}
+
 std::vector<std::filesystem::path> files_of(const InputArguments& input) {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& path : paths_of(input)) {
-    for (const std::filesystem::path& file : files_of(path)) files.push_back(file);
+    for (const std::filesystem::path& file : files_of_input(path)) files.push_back(file);
   }
   return files;
 }
@@ -256,9 +282,17 @@ std::string file_name_of(const InputArguments& input) {
 }
 
 std::string sha256_of(const InputArguments& input) {
-  if (input.more.empty()) return sha256_of_file(input.path);
+  if (input.more.empty()) return sha256_of_input(input.path);
   std::string all;
   for (const std::filesystem::path& path : paths_of(input)) all += sha256_of_file(path);
+  return vmesh::sha256_of(all);
+}
+
+std::string sha256_of_input(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error)) return sha256_of_file(path);
+  std::string all;
+  for (const std::filesystem::path& file : files_in(path)) all += sha256_of_file(file);
   return vmesh::sha256_of(all);
 }
 

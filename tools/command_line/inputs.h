@@ -51,7 +51,8 @@ auto naming(const std::filesystem::path& path, Function function) {
 }
 
 /// Puts the branches in the place of a folder that holds files with one each (.mrk.json, .ctgr or .pth), in the order
-/// of their names. Other folders are refused (ReadError), with files that could be meant.
+/// of their names. A folder of DICOM files remains: it is an image. Others are refused (ReadError), with files that
+/// could be meant.
 void expand_folders(InputArguments& input);
 
 /// The same for all inputs of a verb.
@@ -64,13 +65,17 @@ void expand_all_folders(VerbArguments& verb) {
   if constexpr (requires { verb.fitting; }) expand_folders(verb.fitting.reference);
 }
 
-/// All files behind an input: a CSV centerline has two.
+/// All files behind an input or output: a CSV centerline has two.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& input);
+/// The same of an input, which may be a folder of DICOM files.
+std::vector<std::filesystem::path> files_of_input(const std::filesystem::path& input);
 std::vector<std::filesystem::path> files_of(const InputArguments& input);
 
 /// For metadata: the name of the file, or the names of all; its SHA-256, or the SHA-256 of all theirs, one after
 /// another.
 std::string file_name_of(const InputArguments& input);
 std::string sha256_of(const InputArguments& input);
+/// Of a file, or of a folder of DICOM files likewise.
+std::string sha256_of_input(const std::filesystem::path& path);
 
 }  // namespace vmesh::tool

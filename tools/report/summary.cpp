@@ -387,8 +387,8 @@ std::string describe(const GenerateArguments& arguments) {
   text << " --overlap " << to_string(arguments.overlap) << " --gap " << exact_text(arguments.gap);
   const std::filesystem::path& reference = arguments.fitting.reference.path;
   if (!reference.empty()) text << " --fit " << reference.string();
-  if (!reference.empty() || is_image_path(arguments.input.path)) text << describe(arguments.fitting);
-  if (is_image_path(arguments.input.path)) {
+  if (!reference.empty() || is_image(arguments.input.path)) text << describe(arguments.fitting);
+  if (is_image(arguments.input.path)) {
     text << " --step " << exact_text(arguments.extraction.spacing) << " --join "
          << exact_text(arguments.extraction.join);
     if (arguments.extraction.tree) text << " --tree";

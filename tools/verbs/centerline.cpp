@@ -1,7 +1,5 @@
 #include <sstream>
 
-#include "vmesh/io/sha256.h"
-
 #include "command_line/exit_code.h"
 #include "command_line/inputs.h"
 #include "command_line/interrupt.h"
@@ -15,7 +13,7 @@ namespace {
 
 void check(const CenterlineArguments& arguments) {
   const ReferenceOptions& image = arguments.image;
-  if (is_image_path(arguments.input.path)) return;
+  if (is_image(arguments.input.path)) return;
   if (image.label || image.threshold || image.spacing > 0 || image.smooth > 0)
     throw UsageError(arguments.input.path.string() +
                      ": --label, --threshold, --spacing and --smooth are for images; this is taken for a surface");
@@ -34,7 +32,7 @@ std::string describe(const CenterlineArguments& arguments) {
 }
 
 TriMesh surface_of(const CenterlineArguments& arguments, Console& console) {
-  if (is_image_path(arguments.input.path)) {
+  if (is_image(arguments.input.path)) {
     ReferenceOptions options = arguments.image;
     options.all_components = true;  // what belongs together, the vessels decide
     return reference_surface(load_image(arguments.input, console), options).mesh;
@@ -76,11 +74,11 @@ int run(const CenterlineArguments& arguments, Console& console) {
   check(arguments);
   std::vector<PlannedOutput> outputs = {{arguments.common.json, Kind::summary}};
   for (const std::filesystem::path& file : files_of(arguments.output)) outputs.push_back({file, Kind::centerline});
-  check_outputs(outputs, {path});
+  check_outputs(outputs, files_of_input(path));
   const ExtractedCenterline result = extracted(arguments, console);
   stop_if_interrupted();
   log(result, console);
-  const std::string sha256 = sha256_of_file(path);
+  const std::string sha256 = sha256_of_input(path);
   write_centerline(arguments.output, result.centerline,
                    {generator_name(), describe(arguments), path.filename().string(), sha256});
   console.log("wrote " + arguments.output.string());

@@ -48,7 +48,7 @@ int run(const FitArguments& arguments, Console& console) {
   if (arguments.budget) set_budget(*arguments.budget, fitting.options);
   std::vector<std::filesystem::path> inputs = files_of(arguments.centerline.path);
   inputs.push_back(path);
-  inputs.push_back(fitting.reference.path);
+  for (const std::filesystem::path& file : files_of_input(fitting.reference.path)) inputs.push_back(file);
   check_writing(arguments.output, arguments.writing);
   check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, inputs);
   LoadedSurface loaded = load_surface(arguments.input);

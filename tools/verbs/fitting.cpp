@@ -24,7 +24,7 @@ void set_budget(const Budget& budget, FitOptions& options) {
 TriMesh load_fit_reference(const FittingArguments& arguments, Console& console) {
   const std::filesystem::path& path = arguments.reference.path;
   const ReferenceOptions& image = arguments.image;
-  if (is_image_path(path)) {
+  if (is_image(path)) {
     return naming(path, [&] {
       ReferenceOptions options = image;
       options.all_components = true;  // what belongs to a vessel, the fit decides

@@ -141,7 +141,9 @@ void check_arguments(const GenerateArguments& arguments) {
       outputs.push_back({file, Kind::centerline});
   }
   std::vector<std::filesystem::path> inputs = files_of(arguments.input);
-  if (!arguments.fitting.reference.path.empty()) inputs.push_back(arguments.fitting.reference.path);
+  if (!arguments.fitting.reference.path.empty()) {
+    for (const std::filesystem::path& file : files_of_input(arguments.fitting.reference.path)) inputs.push_back(file);
+  }
   check_outputs(outputs, inputs);
 }
 

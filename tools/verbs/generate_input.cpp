@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "vmesh/io/sha256.h"
-
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
@@ -13,7 +11,7 @@
 namespace vmesh::tool {
 namespace {
 
-bool has_image(const GenerateArguments& arguments) { return is_image_path(arguments.input.path); }
+bool has_image(const GenerateArguments& arguments) { return is_image(arguments.input.path); }
 
 LoadedCenterline load(const InputArguments& input, Console& console) {
   LoadedCenterline loaded = load_clean_centerline(input, console);
@@ -39,7 +37,7 @@ LoadedCenterline extract(const GenerateArguments& arguments, std::optional<TriMe
   if (!arguments.centerline_output.empty())
     write_centerline(arguments.centerline_output, centerline,
                      {generator_name(), "extracted by generate", arguments.input.path.filename().string(),
-                      sha256_of_file(arguments.input.path)});
+                      sha256_of_input(arguments.input.path)});
   if (!reference) reference = std::move(surface);
   LoadedCenterline loaded{{centerline, {}, {}, {}}, {}, {}};
   for (Index n = 0; n < centerline.nodes().size(); ++n) loaded.cleaned.raw_node.push_back(n);
@@ -63,7 +61,7 @@ void check_input(const GenerateArguments& arguments) {
   if (has_image(arguments)) {
     if (!arguments.input.more.empty())
       throw UsageError(arguments.input.more.front().string() + ": beside an image nothing else makes a centerline");
-    if (fits && has_options(image) && is_image_path(arguments.fitting.reference.path))
+    if (fits && has_options(image) && is_image(arguments.fitting.reference.path))
       throw UsageError(
           "--label, --threshold, --spacing and --smooth would be for two images; extract the centerline "
           "first (vmesh centerline), or leave --fit out: the surface is fitted to the image it is from");
@@ -102,7 +100,7 @@ GenerateInput load_input(const GenerateArguments& arguments, Console& console) {
   std::optional<TriMesh> reference;
   if (!arguments.fitting.reference.path.empty()) {
     FittingArguments fitting = arguments.fitting;
-    if (has_image(arguments) && !is_image_path(fitting.reference.path)) fitting.image = {};  // the input's
+    if (has_image(arguments) && !is_image(fitting.reference.path)) fitting.image = {};  // the input's
     reference = load_fit_reference(fitting, console);
   }
   LoadedCenterline loaded =

@@ -1,7 +1,5 @@
 #include <sstream>
 
-#include "vmesh/io/sha256.h"
-
 #include "command_line/exit_code.h"
 #include "command_line/inputs.h"
 #include "command_line/interrupt.h"
@@ -15,7 +13,7 @@ namespace {
 
 void check(const ReferenceArguments& arguments) {
   const ReferenceOptions& options = arguments.options;
-  const bool image = is_image_path(arguments.input.path);
+  const bool image = is_image(arguments.input.path);
   const std::string name = arguments.input.path.string();
   if (image && arguments.voxel > 0) throw UsageError(name + ": --voxel is for centerlines; see --spacing");
   if (image) return;
@@ -41,7 +39,7 @@ std::string describe(const ReferenceArguments& arguments) {
 
 ReferenceSurface contoured(const ReferenceArguments& arguments, Console& console) {
   return naming(arguments.input.path, [&] {
-    if (is_image_path(arguments.input.path)) {
+    if (is_image(arguments.input.path)) {
       const LoadedImage image = load_image(arguments.input, console);
       stop_if_interrupted();
       return reference_surface(image, arguments.options);
@@ -58,10 +56,10 @@ int run(const ReferenceArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
   check(arguments);
-  check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, files_of(path));
+  check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, files_of_input(path));
   const ReferenceSurface surface = contoured(arguments, console);
   stop_if_interrupted();
-  const std::string sha256 = sha256_of_file(path);
+  const std::string sha256 = sha256_of_input(path);
   write_surface(arguments.output, surface.mesh, {},
                 {generator_name(), describe(arguments), path.filename().string(), sha256});
   if (surface.components > 1 && !arguments.options.all_components)

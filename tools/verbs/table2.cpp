@@ -26,7 +26,7 @@ constexpr SurfaceFile kSurfaceFiles[] = {{SurfaceMethod::marching_cubes, "refere
                                          {SurfaceMethod::high_resolution, "high.ply"}};
 constexpr const char* kCenterlineFile = "centerline.json";
 
-bool has_image(const Table2Arguments& arguments) { return is_image_path(arguments.reference.path); }
+bool has_image(const Table2Arguments& arguments) { return is_image(arguments.reference.path); }
 
 void check_options(const Table2Arguments& arguments) {
   const ReferenceOptions& image = arguments.image;
@@ -51,7 +51,7 @@ void check_files(const Table2Arguments& arguments) {
   std::vector<std::filesystem::path> inputs;
   for (const InputArguments* input : {&arguments.reference, &arguments.centerline}) {
     if (input->path.empty()) continue;
-    for (const std::filesystem::path& file : files_of(input->path)) inputs.push_back(file);
+    for (const std::filesystem::path& file : files_of_input(input->path)) inputs.push_back(file);
   }
   std::vector<PlannedOutput> outputs = {{arguments.common.json, Kind::summary}, {arguments.report, Kind::report}};
   if (!arguments.surfaces.empty()) {
@@ -62,7 +62,7 @@ void check_files(const Table2Arguments& arguments) {
 }
 
 SourceFile source_file(const std::filesystem::path& path) {
-  return path.empty() ? SourceFile{} : SourceFile{path.string(), sha256_of_file(path)};
+  return path.empty() ? SourceFile{} : SourceFile{path.string(), sha256_of_input(path)};
 }
 
 void describe_contour(const ReferenceSurface& surface, Table2Source& source) {

@@ -9,28 +9,6 @@
 
 namespace vmesh::image {
 
-std::size_t bytes_of(NumberType type) {
-  switch (type) {
-    case NumberType::u8:
-    case NumberType::i8:
-      return 1;
-    case NumberType::u16:
-    case NumberType::i16:
-      return 2;
-    case NumberType::u32:
-    case NumberType::i32:
-    case NumberType::f32:
-      return 4;
-    case NumberType::u64:
-    case NumberType::i64:
-    case NumberType::f64:
-      return 8;
-  }
-  return 1;
-}
-
-bool is_integer(NumberType type) { return type != NumberType::f32 && type != NumberType::f64; }
-
 void set_size(ImageHeader& header, const std::vector<double>& sizes, const std::string& name) {
   if (sizes.size() < 3)
     throw InvalidInput(name + ": has " + std::to_string(sizes.size()) + " dimensions; give an image of 3");

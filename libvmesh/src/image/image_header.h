@@ -10,12 +10,9 @@
 
 #include "vmesh/core/types.h"
 
+#include "number_type.h"
+
 namespace vmesh::image {
-
-enum class NumberType { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
-
-std::size_t bytes_of(NumberType type);
-bool is_integer(NumberType type);
 
 struct ImageHeader {
   std::array<std::uint64_t, 3> size = {0, 0, 0};        ///< none is 0, their product fits

@@ -1,18 +1,15 @@
 #include "vmesh/image/image_io.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
 #include <string_view>
 
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 #include "vmesh/core/memory.h"
 
+#include "dicom_files.h"
 #include "image_header.h"
+#include "read_by_itk.h"
 #include "unpack.h"
 
 namespace vmesh {
@@ -59,75 +56,34 @@ std::string_view voxel_bytes(std::string_view content, const ImageHeader& header
   return content;
 }
 
-template <class T>
-T number_at(const char* bytes, bool big_endian) {
-  std::array<char, sizeof(T)> buffer;
-  std::memcpy(buffer.data(), bytes, sizeof(T));
-  if (big_endian != (std::endian::native == std::endian::big)) std::reverse(buffer.begin(), buffer.end());
-  return std::bit_cast<T>(buffer);
-}
-
-/// Labels that become another number in float would be mixed up.
-void check_exact(double stored, float number, const std::string& name) {
-  if (static_cast<double>(number) != stored)
-    throw Unsupported(name + ": holds the whole number " + std::to_string(stored) +
-                      "; those above 16777216 are not told apart. Renumber the labels");
-}
-
-template <class T>
-std::vector<float> to_float(std::string_view bytes, const ImageHeader& header, const std::string& name) {
-  std::vector<float> values;
-  values.reserve(header.voxels());
-  const bool scaled = header.slope != 1 || header.intercept != 0;
-  for (std::uint64_t n = 0; n < header.voxels(); ++n) {
-    const auto stored = static_cast<double>(number_at<T>(bytes.data() + n * sizeof(T), header.big_endian));
-    const auto number = static_cast<float>(scaled ? header.slope * stored + header.intercept : stored);
-    if (!std::isfinite(number))
-      throw InvalidInput(name + ": voxel " + std::to_string(n) +
-                         ", counted from 0 as stored, has no finite value; repair or mask it");
-    if (std::numeric_limits<T>::is_integer && !scaled) check_exact(stored, number, name);
-    values.push_back(number);
-  }
+std::vector<float> values_of(std::string_view bytes, const ImageHeader& header, const std::string& name) {
+  std::vector<float> values(header.voxels());
+  image::read_numbers(bytes, {header.type, header.big_endian, header.slope, header.intercept}, values, name);
   return values;
 }
 
-std::vector<float> values_of(std::string_view bytes, const ImageHeader& header, const std::string& name) {
-  switch (header.type) {
-    case NumberType::u8:
-      return to_float<std::uint8_t>(bytes, header, name);
-    case NumberType::i8:
-      return to_float<std::int8_t>(bytes, header, name);
-    case NumberType::u16:
-      return to_float<std::uint16_t>(bytes, header, name);
-    case NumberType::i16:
-      return to_float<std::int16_t>(bytes, header, name);
-    case NumberType::u32:
-      return to_float<std::uint32_t>(bytes, header, name);
-    case NumberType::i32:
-      return to_float<std::int32_t>(bytes, header, name);
-    case NumberType::u64:
-      return to_float<std::uint64_t>(bytes, header, name);
-    case NumberType::i64:
-      return to_float<std::int64_t>(bytes, header, name);
-    case NumberType::f32:
-      return to_float<float>(bytes, header, name);
-    case NumberType::f64:
-      return to_float<double>(bytes, header, name);
-  }
-  return {};
-}
-
-}  // namespace
-
-bool is_image_path(const std::filesystem::path& path) {
+/// With a parser here; the others are read through ITK.
+bool has_own_format(const std::filesystem::path& path) {
   const std::string name = image::folded(path.filename().string());
   for (const char* ending : {".nii", ".nii.gz", ".nrrd", ".mha"})
     if (name.ends_with(ending)) return true;
   return false;
 }
 
+}  // namespace
+
+bool is_image_path(const std::filesystem::path& path) {
+  const std::string name = image::folded(path.filename().string());
+  for (const char* ending : {".mhd", ".nhdr", ".hdr", ".img", ".dcm"})
+    if (name.ends_with(ending)) return true;
+  return has_own_format(path);
+}
+
+bool is_image(const std::filesystem::path& path) { return is_image_path(path) || image::is_dicom(path); }
+
 LoadedImage parse_image(std::string_view content, const std::string& source) {
-  if (!is_image_path(source)) throw Unsupported(source + ": images are .nii, .nii.gz, .nrrd or .mha");
+  if (!has_own_format(source))
+    throw Unsupported(source + ": images are .nii, .nii.gz, .nrrd or .mha, or a folder of DICOM files");
   const std::string file_name = image::folded(std::filesystem::path(source).filename().string());
   const ImageHeader header = parse_header(content, file_name, source);
   check_place(header, source);
@@ -143,6 +99,10 @@ LoadedImage parse_image(std::string_view content, const std::string& source) {
   return loaded;
 }
 
-LoadedImage read_image(const std::filesystem::path& path) { return parse_image(read_file(path), path.string()); }
+LoadedImage read_image(const std::filesystem::path& path) {
+  std::error_code error;
+  const bool own = has_own_format(path) && !std::filesystem::is_directory(path, error);
+  return own || !is_image(path) ? parse_image(read_file(path), path.string()) : image::read_by_itk(path);
+}
 
 }  // namespace vmesh
