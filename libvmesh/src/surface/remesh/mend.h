@@ -10,8 +10,8 @@ namespace vmesh {
 /// Returns whether there were any such triangles.
 bool mend_worst_faces(BoundSurface& surface, double limit);
 
-/// The same for triangles that are not bad but could be better: vertices stay at their lifts from the boundary, and none
-/// are added.
+/// The same for triangles that are not bad but could be better: vertices stay at their lifts from the boundary, none are
+/// added, and those that move leave the faces around hardly farther from it.
 void ease_worst_faces(BoundSurface& surface, double limit);
 
 }  // namespace vmesh

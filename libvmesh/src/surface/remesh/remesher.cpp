@@ -116,8 +116,7 @@ void Remesher::collapse_bad_faces() {
   const auto count = static_cast<Index>(mesh_.num_faces());
   for (Index i = 0; i < count; ++i) {
     const Face f(i);
-    if (mesh_.is_removed(f)) continue;
-    if (!state_.active(f)) continue;
+    if (mesh_.is_removed(f) || !state_.active(f)) continue;
     const auto [a, b, c] = state_.corners(f);
     if (state_.energy(a, b, c) < kBadEnergy) continue;
     Halfedge shortest = mesh_.halfedge(f);
@@ -161,8 +160,7 @@ void Remesher::split_far_faces(double max_distance) {
   const auto count = static_cast<Index>(mesh_.num_faces());
   for (Index i = 0; i < count; ++i) {
     const Face f(i);
-    if (mesh_.is_removed(f)) continue;
-    if (!state_.active(f)) continue;
+    if (mesh_.is_removed(f) || !state_.active(f)) continue;
     const std::array<Vertex, 3> corner = state_.corners(f);
     if (std::count_if(corner.begin(), corner.end(), [&](Vertex v) { return surface_.held(v); }) > 1) continue;
     const Vec3 center = (state_.point(corner[0]) + state_.point(corner[1]) + state_.point(corner[2])) / 3;
