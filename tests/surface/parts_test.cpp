@@ -21,45 +21,37 @@ struct Joined {
   TriMesh mesh;
   std::vector<CenterlineBinding> binding;
   std::vector<double> radius;
-  std::vector<Index> first_face;  // of every piece, and the end
+  std::vector<Index> first_face = {0};  // of every piece, and the end
   std::size_t faults = 0;
+
+  void set(std::size_t v, const PartSurface& part, std::size_t i) {
+    mesh.vertices[v] = part.mesh.vertices[i];
+    binding[v] = part.binding[i];
+    radius[v] = part.radius[i];
+  }
 };
 
 Joined join(const std::vector<PartSurface>& parts, std::size_t seams) {
-  const std::size_t around = static_cast<std::size_t>(parts.front().around);
-  Joined whole;
-  whole.mesh.vertices.resize(seams * around);
-  whole.binding.resize(seams * around);
-  whole.radius.resize(seams * around);
+  const std::size_t around = parts.front().around;
+  std::size_t count = seams * around;
+  for (const PartSurface& part : parts) count += part.mesh.vertices.size() - part.seam_vertex_count();
+  Joined whole{TriMesh{std::vector<Vec3>(count), {}}, std::vector<CenterlineBinding>(count), std::vector<double>(count)};
+  std::size_t begin = seams * around;
   for (const PartSurface& part : parts) {
-    for (std::size_t i = 0; i < part.seams.size() * around; ++i) {
-      const std::size_t v = part.seams[i / around] * around + i % around;
-      whole.mesh.vertices[v] = part.vertices[i];
-      whole.binding[v] = part.binding[i];
-      whole.radius[v] = part.radius[i];
-    }
-  }
-  Index face_count = 0;
-  for (const PartSurface& part : parts) {
-    const auto begin = static_cast<Index>(whole.mesh.vertices.size());
-    const std::size_t of_seams = part.seams.size() * around;
-    for (std::size_t i = of_seams; i < part.vertices.size(); ++i) {
-      whole.mesh.vertices.push_back(part.vertices[i]);
-      whole.binding.push_back(part.binding[i]);
-      whole.radius.push_back(part.radius[i]);
-    }
-    const Index own = part.piece_vertex_count();
-    for (Triangle face : part.faces) {
-      for (Index& v : face) v = v < own ? begin + v : part.seam_vertices[v - own];
-      whole.mesh.faces.push_back(face);
-    }
+    const std::size_t of_seams = part.seam_vertex_count();
+    const auto number = [&](std::size_t i) {
+      return i < of_seams ? part.seams[i / around] * around + i % around : begin + i - of_seams;
+    };
+    for (std::size_t i = 0; i < part.mesh.vertices.size(); ++i) whole.set(number(i), part, i);
+    for (const auto& [a, b, c] : part.mesh.faces)
+      whole.mesh.faces.push_back({static_cast<Index>(number(a)), static_cast<Index>(number(b)),
+                                  static_cast<Index>(number(c))});
+    begin += part.mesh.vertices.size() - of_seams;
     for (const PartSurface::Piece& piece : part.pieces) {
-      whole.first_face.push_back(whole.first_face.empty() ? 0 : whole.first_face.back() + face_count);
-      face_count = piece.face_count;
+      whole.first_face.push_back(whole.first_face.back() + piece.face_count);
       whole.faults += piece.faults.size();
     }
   }
-  whole.first_face.push_back(static_cast<Index>(whole.mesh.faces.size()));
   return whole;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
 
 #include "vmesh/core/error.h"
 #include "vmesh/volume/vessel_field.h"
@@ -128,6 +129,58 @@ VesselField::VesselField(const Centerline& centerline, const FieldExcerpt& excer
   for (const auto& [i, j] : apart_) cones_[i].is_apart = cones_[j].is_apart = true;
   build_tree();
   lonely_.assign(cones_.size(), not_asked);
+}
+
+FieldExcerpt merged(std::span<const FieldExcerpt> excerpts) {
+  struct Source {
+    Index cone, excerpt, place;
+    bool complete;
+  };
+  std::vector<Source> sources;
+  FieldExcerpt result;
+  for (Index e = 0; e < excerpts.size(); ++e) {
+    const FieldExcerpt& excerpt = excerpts[e];
+    result.blend = excerpt.blend;
+    result.node.insert(result.node.end(), excerpt.node.begin(), excerpt.node.end());
+    for (Index c = 0; c < excerpt.cone.size(); ++c)
+      sources.push_back({excerpt.cone[c], e, c, excerpt.complete[c] != 0});
+  }
+  std::sort(sources.begin(), sources.end(), [](const Source& a, const Source& b) {
+    return std::tuple(a.cone, !a.complete, a.excerpt) < std::tuple(b.cone, !b.complete, b.excerpt);
+  });
+  const auto same = [](const Source& a, const Source& b) { return a.cone == b.cone; };
+  sources.erase(std::unique(sources.begin(), sources.end(), same), sources.end());
+  sort_unique(result.node);
+  result.nodes.resize(result.node.size());
+  for (const FieldExcerpt& excerpt : excerpts) {
+    for (Index n = 0; n < excerpt.node.size(); ++n) result.nodes[place_in(result.node, excerpt.node[n])] = excerpt.nodes[n];
+    for (const auto& [i, j] : excerpt.apart) result.apart.emplace_back(excerpt.cone[i], excerpt.cone[j]);
+  }
+  for (const Source& source : sources) result.cone.push_back(source.cone);
+  for (auto& [i, j] : result.apart) {
+    i = place_in(result.cone, i);
+    j = place_in(result.cone, j);
+  }
+  std::sort(result.apart.begin(), result.apart.end());
+  result.apart.erase(std::unique(result.apart.begin(), result.apart.end()), result.apart.end());
+  result.local_offsets.push_back(0);
+  for (const auto& [cone, e, place, complete] : sources) {
+    const FieldExcerpt& from = excerpts[e];
+    if (place < from.segments.size()) {
+      const auto [a, b] = from.segments[place];
+      result.segments.push_back({place_in(result.node, from.node[a]), place_in(result.node, from.node[b])});
+    }
+    result.run.push_back(from.run[place]);
+    result.travel.push_back(from.travel[place]);
+    result.rounding.push_back(from.rounding[place]);
+    result.complete.push_back(complete);
+    for (Index k = from.local_offsets[place]; k < from.local_offsets[place + 1]; ++k) {
+      result.local.push_back(place_in(result.cone, from.cone[from.local[k]]));
+      result.parting.push_back(from.parting[k]);
+    }
+    result.local_offsets.push_back(static_cast<Index>(result.local.size()));
+  }
+  return result;
 }
 
 }  // namespace vmesh

@@ -49,41 +49,38 @@ struct SurfacePart {
   struct Seam {
     RingPlace place;       ///< along the part's branches
     Index number = kNone;  ///< in the whole
-    bool owned = false;    ///< this part writes its vertices
   };
 
-  GenerateOptions options;  ///< of the whole, as they were settled for it
-  FieldExcerpt field;       ///< numbers are those of the centerline that was split
+  GenerateOptions options;       ///< of the whole, as they were settled for it
+  FieldExcerpt field;            ///< numbers are those of the centerline that was split
   std::vector<Branch> branches;  ///< those along which its pieces lie, by nodes and segments of the excerpt
   Index first_piece = 0;         ///< number in the whole
   std::vector<PiecePlan> pieces;
-  std::vector<Seam> seams;  ///< ascending in their places
+  std::vector<Seam> seams;  ///< at its pieces' ends, ascending in place and number
 };
 
-/// A part that has grown. Vertices of seams that the part owns come first, options.around for each, then those of its
-/// pieces in their order.
+/// A part that has grown: a surface with holes at the seams around it. Vertices of all its seams come first,
+/// options.around for each, then those of its pieces in their order.
 struct PartSurface {
   struct Piece {
     Index vertex_count = 0, face_count = 0;
     Index junctions = 0, tubes = 0, filled_loops = 0;
-    int rung = 0;                   ///< of the ladder on which it was found
-    double worst_skewness = 0;      ///< equiangle
+    Index rung = 0;                  ///< of the ladder on which it was found
+    double worst_skewness = 0;       ///< equiangle
     std::vector<PieceFault> faults;  ///< none: it is sound
   };
 
   Index first_piece = 0;
-  int around = 0;
-  std::vector<Index> seams;  ///< numbers in the whole of those it owns, ascending
+  Index around = 0;
+  std::vector<Index> seams;  ///< numbers in the whole, ascending
   std::vector<Piece> pieces;
-  std::vector<Vec3> vertices;
+  TriMesh mesh;
   std::vector<CenterlineBinding> binding;  ///< one per vertex, as is the next; to the centerline that was split
   std::vector<double> radius;
-  std::vector<Index> seam_vertices;  ///< that faces use: number of the seam in the whole times `around`, and in its ring
-  /// Number of a piece's vertex, counted from the part's first; from piece_vertex_count() on, of `seam_vertices`.
-  std::vector<Triangle> faces;
+  std::vector<std::pair<Index, Index>> crossings;  ///< faces of different pieces that cross each other, ascending
   std::vector<GrowthSimplification> simplifications;
 
-  Index piece_vertex_count() const { return static_cast<Index>(vertices.size() - seams.size() * static_cast<std::size_t>(around)); }
+  Index seam_vertex_count() const { return static_cast<Index>(seams.size()) * around; }
 };
 
 /// How a surface was split.
@@ -108,5 +105,18 @@ SplitSummary split_surface(const Centerline& centerline, const GenerateOptions& 
 /// sound is told with the pieces.
 /// Throws InvalidInput for a part that does not fit together, Cancelled.
 PartSurface grow_part(const SurfacePart& part, int threads, const Progress& progress = {});
+
+/// Some of a whole surface around pairs of its faces that cross: all faces near them, in their order in the whole.
+struct SurfaceAround {
+  TriMesh mesh;
+  std::vector<CenterlineBinding> binding;
+  std::vector<double> radius;
+};
+
+/// Parts walls of different pieces that cross, as generate_surface() does: edges of such faces are exchanged or halved,
+/// or vertices moved. Vertices and faces keep their numbers, new ones come last. `field`: of all parts near. Returns the
+/// pairs of faces that still cross.
+std::vector<std::pair<Index, Index>> part_walls(SurfaceAround& surface, const FieldExcerpt& field,
+                                                const std::vector<std::pair<Index, Index>>& crossings);
 
 }  // namespace vmesh

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -29,5 +30,8 @@ struct FieldExcerpt {
 
   Centerline centerline() const { return {nodes, segments}; }
 };
+
+/// What several excerpts of one field know together.
+FieldExcerpt merged(std::span<const FieldExcerpt> excerpts);
 
 }  // namespace vmesh

@@ -6,9 +6,11 @@
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/mesh/topology.h"
 #include "vmesh/surface/part.h"
 #include "vmesh/volume/vessel_field.h"
 
+#include "surface/pieces/parting.h"
 #include "surface/pieces/piece.h"
 
 namespace vmesh {
@@ -44,6 +46,9 @@ void check_places(const SurfacePart& part, const VesselTubes& tubes) {
   for (const SurfacePart::Seam& seam : part.seams)
     require(seam.place.ring < rings(seam.place.branch) && tubes.rings(seam.place.branch)[seam.place.ring].free,
             "its seams");
+  require(std::is_sorted(part.seams.begin(), part.seams.end(),
+                         [](const auto& a, const auto& b) { return a.place < b.place && a.number < b.number; }),
+          "the order of its seams");
 }
 
 class PartGrower {
@@ -68,59 +73,53 @@ class PartGrower {
       ++done;
     });
     result_.first_piece = part_.first_piece;
-    result_.around = part_.options.around;
-    for (const PieceSurface& piece : pieces) piece_vertex_count_ += static_cast<Index>(piece.vertices.size());
+    result_.around = static_cast<Index>(part_.options.around);
     add_seams();
+    std::vector<Index> first_face;
     for (PieceSurface& piece : pieces) {
+      first_face.push_back(static_cast<Index>(result_.mesh.faces.size()));
       add(piece);
       piece = {};
     }
+    first_face.push_back(static_cast<Index>(result_.mesh.faces.size()));
+    result_.crossings = intersections_between(result_.mesh, first_face);
     return std::move(result_);
   }
 
  private:
   void add_vertex(const Vec3& position, const CenterlineBinding& binding, double radius) {
-    result_.vertices.push_back(position);
+    result_.mesh.vertices.push_back(position);
     result_.binding.push_back({part_.field.cone[binding.segment], binding.t});
     result_.radius.push_back(radius);
   }
 
-  // In the order of their numbers, as places are.
   void add_seams() {
     const VesselField& field = tubes_.field();
     for (const SurfacePart::Seam& seam : part_.seams) {
-      if (!seam.owned) continue;
       result_.seams.push_back(seam.number);
       for (const BoundaryPoint& p : tubes_.layer().lifted(tubes_.rings(seam.place.branch)[seam.place.ring])) {
         const FieldSample sample = field.sample_fast(p.position, p.sample.cone);
         add_vertex(p.position, {sample.cone, sample.t}, field.radius_at(sample.cone, sample.t));
       }
     }
-    for (const SurfacePart::Seam& seam : part_.seams) {
-      for (int j = 0; j < result_.around; ++j)
-        result_.seam_vertices.push_back(seam.number * static_cast<Index>(result_.around) + static_cast<Index>(j));
-    }
   }
 
-  // The number among the part's seam vertices.
   Index number_of(const SeamVertex& v) const {
     const auto it = std::lower_bound(part_.seams.begin(), part_.seams.end(), v.seam,
                                      [](const SurfacePart::Seam& s, const RingPlace& place) { return s.place < place; });
-    return static_cast<Index>(it - part_.seams.begin()) * static_cast<Index>(result_.around) + v.number;
+    if (it == part_.seams.end() || it->place != v.seam) require(false, "its seams");
+    return static_cast<Index>(it - part_.seams.begin()) * result_.around + v.number;
   }
 
   void add(const PieceSurface& piece) {
-    const Index begin = added_;
+    const auto begin = static_cast<Index>(result_.mesh.vertices.size());
     const auto own = static_cast<Index>(piece.vertices.size());
     for (Index v = 0; v < own; ++v) add_vertex(piece.vertices[v], piece.binding[v], piece.radius[v]);
-    const auto number = [&](Index v) {
-      return v < own ? begin + v : piece_vertex_count_ + number_of(piece.seam_vertices[v - own]);
-    };
-    for (const auto& [a, b, c] : piece.faces) result_.faces.push_back({number(a), number(b), number(c)});
-    added_ += own;
+    const auto number = [&](Index v) { return v < own ? begin + v : number_of(piece.seam_vertices[v - own]); };
+    for (const auto& [a, b, c] : piece.faces) result_.mesh.faces.push_back({number(a), number(b), number(c)});
     result_.pieces.push_back({own, static_cast<Index>(piece.faces.size()), static_cast<Index>(piece.junctions),
-                              static_cast<Index>(piece.tubes), static_cast<Index>(piece.filled_loops), piece.rung,
-                              piece.worst_skewness, piece.faults});
+                              static_cast<Index>(piece.tubes), static_cast<Index>(piece.filled_loops),
+                              static_cast<Index>(piece.rung), piece.worst_skewness, piece.faults});
     for (GrowthSimplification note : piece.simplifications) {
       for (Index& n : note.nodes) n = part_.field.node[n];
       for (Index& s : note.segments) s = part_.field.cone[s];
@@ -132,7 +131,6 @@ class PartGrower {
   VesselTubes tubes_;
   std::vector<char> open_;
   PartSurface result_;
-  Index piece_vertex_count_ = 0, added_ = 0;
 };
 
 }  // namespace
@@ -146,6 +144,23 @@ PartSurface grow_part(const SurfacePart& part, int threads, const Progress& prog
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] { surface = PartGrower(part, field).run(progress); });
   return surface;
+}
+
+std::vector<std::pair<Index, Index>> part_walls(SurfaceAround& surface, const FieldExcerpt& excerpt,
+                                                const std::vector<std::pair<Index, Index>>& crossings) {
+  const Centerline centerline = excerpt.centerline();
+  const VesselField field(centerline, excerpt);
+  const auto place_of = [&](Index cone) {
+    const auto it = std::lower_bound(excerpt.cone.begin(), excerpt.cone.end(), cone);
+    if (it == excerpt.cone.end() || *it != cone) throw InvalidInput("a surface and its parts do not fit together");
+    return static_cast<Index>(it - excerpt.cone.begin());
+  };
+  GatheredSurface gathered{std::move(surface.mesh), std::move(surface.binding), std::move(surface.radius), {}, {}};
+  for (CenterlineBinding& binding : gathered.binding) binding.segment = place_of(binding.segment);
+  std::vector<std::pair<Index, Index>> left = part_walls(gathered, field, crossings);
+  for (CenterlineBinding& binding : gathered.binding) binding.segment = excerpt.cone[binding.segment];
+  surface = {std::move(gathered.mesh), std::move(gathered.binding), std::move(gathered.radius)};
+  return left;
 }
 
 }  // namespace vmesh

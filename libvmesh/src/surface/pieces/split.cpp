@@ -59,13 +59,7 @@ void sort_unique(std::vector<Index>& numbers) {
 class PartMaker {
  public:
   PartMaker(const VesselAxes& axes, const RingCounts& rings, const Division& division, const GenerateOptions& options)
-      : axes_(axes), rings_(rings), division_(division), options_(options), owner_(division.seams.size(), kNone) {
-    for (Index p = 0; p < division.plans.size(); ++p) {
-      for (const RingPlace& seam : seams_of(rings, division.plans[p])) {
-        Index& owner = owner_[number_of(seam)];
-        owner = std::min(owner, p);
-      }
-    }
+      : axes_(axes), rings_(rings), division_(division), options_(options) {
     const Centerline& centerline = axes.centerline();
     for (Index n = 0; n < centerline.nodes().size(); ++n) {
       if (centerline.degree(n) == 0) isolated_.push_back(n);
@@ -88,10 +82,8 @@ class PartMaker {
     for (const Index b : branches) part.branches.push_back(as_in(part.field, axes_.axes()[b].branch()));
     for (Index p = first; p < end; ++p) {
       PiecePlan plan = division_.plans[p];
-      for (const RingPlace& seam : seams_of(rings_, plan)) {
-        const Index number = number_of(seam);
-        part.seams.push_back({{number_in(branches, seam.branch), seam.ring}, number, owner_[number] == p});
-      }
+      for (const RingPlace& seam : seams_of(rings_, plan))
+        part.seams.push_back({{number_in(branches, seam.branch), seam.ring}, number_of(seam)});
       for (Index& n : plan.nodes) n = number_in(part.field.node, n);
       for (Stretch& s : plan.stretches) s.branch = number_in(branches, s.branch);
       part.pieces.push_back(std::move(plan));
@@ -146,10 +138,8 @@ class PartMaker {
 
   // A seam between two of the part's pieces was added for both.
   static void merge(std::vector<SurfacePart::Seam>& seams) {
-    std::sort(seams.begin(), seams.end(), [](const SurfacePart::Seam& a, const SurfacePart::Seam& b) {
-      return std::pair(a.place, !a.owned) < std::pair(b.place, !b.owned);
-    });
-    const auto same = [](const SurfacePart::Seam& a, const SurfacePart::Seam& b) { return a.place == b.place; };
+    std::sort(seams.begin(), seams.end(), [](const auto& a, const auto& b) { return a.place < b.place; });
+    const auto same = [](const auto& a, const auto& b) { return a.place == b.place; };
     seams.erase(std::unique(seams.begin(), seams.end(), same), seams.end());
   }
 
@@ -157,7 +147,6 @@ class PartMaker {
   const RingCounts& rings_;
   const Division& division_;
   const GenerateOptions& options_;
-  std::vector<Index> owner_;     // of every seam, the first piece at it
   std::vector<Index> isolated_;  // nodes
 };
 
