@@ -8,6 +8,12 @@ import sys
 import tempfile
 
 sys.dont_write_bytecode = True
+SKIPPED = 77  # ctest's SKIP_RETURN_CODE
+try:
+    import numpy  # noqa: F401
+except ImportError:
+    print("SKIPPED: NumPy is not installed (Debian: python3-numpy)", file=sys.stderr)
+    sys.exit(SKIPPED)
 
 import hdf5_inputs  # noqa: E402
 import inputs  # noqa: E402
@@ -16,8 +22,6 @@ import programs  # noqa: E402
 from report import Absent, Table, Vmesh  # noqa: E402
 
 PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "h5py", "text")
-SKIPPED = 77  # ctest's SKIP_RETURN_CODE
-
 
 def check(name, table, written, options, folder):
     if name == "vtk":
