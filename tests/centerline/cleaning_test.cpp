@@ -308,6 +308,12 @@ TEST(Clean, KeepsTheDigitsOfTinyVessels) {
   EXPECT_NEAR(result.centerline.length(0), 1.2345678e-4, 1e-10);
 }
 
+TEST(Clean, KeepsRadiiThatAreNextToNothing) {
+  const double least = 5e-324;  // there is no smaller number
+  const auto result = clean(raw_of({node(0, 0, least), node(9, 0, 1)}, {{0, 1}}));
+  EXPECT_EQ(std::min(result.centerline.node(0).radius, result.centerline.node(1).radius), least);
+}
+
 TEST(Clean, OrdersByGeometryNotByFile) {
   std::mt19937 random(7);
   std::vector<CenterlineNode> nodes = {node(0, 0, 4)};

@@ -81,9 +81,10 @@ void remove_self_loops(Workspace& work) {
 
 /// Decimals of the grid that positions and radii are rounded to.
 int grid_decimals(const std::vector<CenterlineNode>& nodes) {
+  constexpr double kLeast = 1e-300;  // below, its ten-thousandth would be 0
   double smallest = std::numeric_limits<double>::infinity();
   for (const auto& node : nodes) {
-    if (node.radius > 0) smallest = std::min(smallest, node.radius);
+    if (node.radius > 0) smallest = std::clamp(node.radius, kLeast, smallest);
   }
   if (!std::isfinite(smallest)) return 6;
   return std::max(6, -static_cast<int>(std::floor(std::log10(smallest * 1e-4))));
