@@ -15,6 +15,7 @@ except ImportError:
     print("SKIPPED: NumPy is not installed (Debian: python3-numpy)", file=sys.stderr)
     sys.exit(SKIPPED)
 
+import caps  # noqa: E402
 import hdf5_inputs  # noqa: E402
 import inputs  # noqa: E402
 import outputs  # noqa: E402
@@ -23,11 +24,14 @@ from report import Absent, Table, Vmesh  # noqa: E402
 
 PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "h5py", "text")
 
+
 def check(name, table, written, options, folder):
     if name == "vtk":
         vtk = programs.Vtk()
         outputs.check_vtk(table, vtk, written)
         inputs.check_vtk(table, vtk, written, options.shared_data)
+        if written.with_vtk:
+            caps.check(table, vtk, written.vmesh, options.shared_data)
     elif name == "meshio":
         meshio = programs.Meshio()
         outputs.check_meshio(table, meshio, written)

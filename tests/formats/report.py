@@ -264,7 +264,7 @@ class Table:
             )
             if not program.startswith("as ") and points != "refused":
                 group["names"] = max(group["names"], names, key=lambda text: text.count(","))
-                group["places"] += [place] if place not in ("-", *group["places"]) else []
+                group["places"] += [place] if place not in ("", "-", *group["places"]) else []
         lines = ["| | | | with | names of attributes | unit, frame |", "|---|---|---|---|---|---|"]
         for (way, kind, form), group in sorted(
             groups.items(), key=lambda item: (item[0][0] == "in", item[0][1], item[0][2])
