@@ -26,6 +26,8 @@ std::string number(double value) {
   return text.str();
 }
 
+constexpr double kLargest = 1e30;  // mm; no surface is grown beyond, and squares of squares are finite up to there
+
 /// What cleaning cannot mend.
 std::vector<std::string> list_problems(const RawCenterline& raw) {
   std::vector<std::string> problems;
@@ -43,6 +45,9 @@ std::vector<std::string> list_problems(const RawCenterline& raw) {
       problems.push_back(raw.name_of_node(n) + ": the radius " + number(radius) +
                          " is negative; correct it, or set it to 0 to have it interpolated");
     }
+    const double size = std::max(position.cwiseAbs().maxCoeff(), radius);
+    if (std::isfinite(size) && size > kLargest)
+      problems.push_back(raw.name_of_node(n) + ": " + number(size) + " mm is too much; check the unit");
   }
   for (Index s = 0; s < raw.segments.size(); ++s) {
     const auto& [a, b] = raw.segments[s];
