@@ -7,8 +7,18 @@ import numpy
 from report import expect
 
 MODELS = (
-    ("generate-1d-mesh_example_SU201_2005_RPA1_cl.vtp", "generate-1d-mesh_example_SU201_2005_RPA1_exterior.vtp", 6),
-    ("centerline-based-material-props_c++_aorta_cl.vtp", "centerline-based-material-props_c++_aorta.vtp", 3),
+    (
+        "SU201",
+        "generate-1d-mesh_example_SU201_2005_RPA1_cl.vtp",
+        "generate-1d-mesh_example_SU201_2005_RPA1_exterior.vtp",
+        6,
+    ),
+    (
+        "the aorta",
+        "centerline-based-material-props_c++_aorta_cl.vtp",
+        "centerline-based-material-props_c++_aorta.vtp",
+        3,
+    ),
 )
 ALLOWED = 0.05  # of a cap's area, and of its root
 
@@ -31,10 +41,10 @@ def check(table, vtk, vmesh, shared_data):
     if not os.path.isdir(folder):
         table.notes.append("SKIPPED caps: the folder of shared data is not there")
         return
-    for centerline, model, count in MODELS:
+    for title, centerline, model, count in MODELS:
         table.check(
             ".vtp",
-            f"out, the {count} caps of {model}",
+            f"out, the {count} caps of {title}",
             vtk.name,
             lambda names=(centerline, model, count): agree(vtk, vmesh, folder, *names),
         )

@@ -17,12 +17,13 @@ except ImportError:
 
 import caps  # noqa: E402
 import hdf5_inputs  # noqa: E402
+import images  # noqa: E402
 import inputs  # noqa: E402
 import outputs  # noqa: E402
 import programs  # noqa: E402
 from report import Absent, Table, Vmesh  # noqa: E402
 
-PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "h5py", "text")
+PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "h5py", "pydicom", "text")
 
 
 def check(name, table, written, options, folder):
@@ -30,6 +31,7 @@ def check(name, table, written, options, folder):
         vtk = programs.Vtk()
         outputs.check_vtk(table, vtk, written)
         inputs.check_vtk(table, vtk, written, options.shared_data)
+        images.check_vtk(table, vtk, written)
         if written.with_vtk:
             caps.check(table, vtk, written.vmesh, options.shared_data)
     elif name == "meshio":
@@ -46,11 +48,14 @@ def check(name, table, written, options, folder):
         meshlab = programs.MeshLab(folder)
         outputs.check_meshlab(table, meshlab, written)
         inputs.check_meshlab(table, meshlab, written)
+    elif name == "pydicom":
+        images.check_pydicom(table, written)
     elif name == "h5py":
         hdf5_inputs.check(table, written, options.shared_data)
     else:
         outputs.check_text(table, written)
         inputs.check_text(table, written, options.shared_data)
+        images.check_text(table, written)
 
 
 def main():
@@ -82,7 +87,7 @@ def main():
         os.replace(options.digest + ".tmp", options.digest)
     if table.failures:
         return 1
-    return SKIPPED if absent and not table.rows else 0
+    return 0 if table.rows else SKIPPED
 
 
 if __name__ == "__main__":

@@ -52,25 +52,6 @@ def check_tree(
     table.check(form, way, program, action)
 
 
-def check_ball(table, form, program, vmesh, make, turn):
-    """An image of a ball, whose contour lies where the ball does; `turn` takes its frame to LPS."""
-
-    def action():
-        path = make()
-        vmesh("reference", path, "--label", 1, "--binary", "-o", vmesh.path("ball.ply"))
-        there = vmesh.surface(vmesh.path("ball.ply"))
-        center = small.BALL_CENTER * numpy.array(turn)
-        off = numpy.linalg.norm(there.points - center, axis=1) - small.BALL_RADIUS
-        # The contour lies between voxels, half a voxel off at most along each axis.
-        expect(
-            numpy.abs(off).max() <= small.BALL_SPACING * 3**0.5 / 2,
-            f"the ball is off by {numpy.abs(off).max():.3g} mm",
-        )
-        return len(there.points), len(there.faces), "values", "mm, " + ("LPS" if turn[0] > 0 else "RAS")
-
-    table.check(form, "in, image", program, action)
-
-
 def check_vtk(table, vtk, written, shared_data):
     path, wall = written.vmesh.path, written.wall
     theirs = {name: wall.of_points[ours] for name, ours in VTK_NAMES.items()}
@@ -161,24 +142,6 @@ def check_vtk(table, vtk, written, shared_data):
         "",
         "in, centerline, text",
     )
-
-    def image(writer, name, **settings):
-        voxels = vtk.vtk.vtkImageData()
-        voxels.SetDimensions(small.BALL_SIZE)
-        voxels.SetSpacing([small.BALL_SPACING] * 3)
-        values = vtk.arrays.numpy_to_vtk(small.ball().ravel("F"), deep=True)
-        voxels.GetPointData().SetScalars(values)
-        return vtk.write(writer, voxels, path(name), **settings)
-
-    def nifti(name):
-        return image("vtkNIFTIImageWriter", name, QFormMatrix=vtk.vtk.vtkMatrix4x4(), QFac=1)
-
-    if written.with_vtk:
-        check_ball(table, ".nii", vtk.name, written.vmesh, lambda: nifti("ball.nii"), (-1, -1, 1))
-        check_ball(table, ".nii.gz", vtk.name, written.vmesh, lambda: nifti("ball.nii.gz"), (-1, -1, 1))
-        check_ball(table, ".mha", vtk.name, written.vmesh, lambda: image("vtkMetaImageWriter", "ball.mha"), (1, 1, 1))
-    else:
-        table.notes.append("SKIPPED images: this vmesh is built without VTK, which contours them")
     check_shared_surfaces(table, vtk, written, shared_data)
 
 
@@ -349,8 +312,6 @@ def check_text(table, written, shared_data):
             FLOAT,
             False,
         )
-    if written.with_vtk:
-        check_ball(table, ".nrrd", by, vmesh, lambda: small.nrrd(path("ball.nrrd")), (-1, -1, 1))
     brava = os.path.join(shared_data, "brain_brava_swc", "BG0002.CNG.")
     if os.path.exists(brava + "vmv"):
         table.check(".swc", "in", "as NumPy: BG0002.CNG.swc", lambda: shared_swc(vmesh, brava + "swc"))

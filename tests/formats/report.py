@@ -225,7 +225,7 @@ def expect_same_tree(arrived, written, tolerance):
 
 KINDS = {
     "centerline": (".swc", ".csv", ".json", ".mrk.json", ".ctgr", ".pth", ".gxl", ".am", ".dat", ".vmv", ".h5"),
-    "image": (".nii", ".nii.gz", ".mha", ".nrrd"),
+    "image": (),
 }
 
 
@@ -263,7 +263,7 @@ class Table:
                 "**wrong**" if points == "**wrong**" else "refused: " + details if points == "refused" else details
             )
             if not program.startswith("as ") and points != "refused":
-                group["names"] = max(group["names"], names, key=lambda text: text.count(","))
+                group["names"] = max(group["names"], names, key=lambda text: (text.count(","), len(text)))
                 group["places"] += [place] if place not in ("", "-", *group["places"]) else []
         lines = ["| | | | with | names of attributes | unit, frame |", "|---|---|---|---|---|---|"]
         for (way, kind, form), group in sorted(

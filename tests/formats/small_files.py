@@ -175,24 +175,6 @@ def own_json(path):
     )
 
 
-BALL_CENTER, BALL_RADIUS, BALL_SIZE, BALL_SPACING = numpy.array([9, 10, 11.0]), 6.0, (40, 44, 50), 0.5
-
-
-def ball():
-    """Voxels of a ball, first axis fastest."""
-    places = numpy.stack(numpy.meshgrid(*(numpy.arange(n) * BALL_SPACING for n in BALL_SIZE), indexing="ij"), -1)
-    inside = numpy.linalg.norm(places - BALL_CENTER, axis=-1) <= BALL_RADIUS
-    return inside.astype(numpy.uint8)
-
-
-def nrrd(path):
-    head = (
-        "NRRD0004\ntype: uchar\ndimension: 3\nspace: right-anterior-superior\nsizes: {} {} {}\nspace directions: "
-        "({s},0,0) (0,{s},0) (0,0,{s})\nkinds: domain domain domain\nencoding: raw\nspace origin: (0,0,0)\n\n"
-    )
-    return write(path, head.format(*BALL_SIZE, s=BALL_SPACING).encode() + ball().tobytes("F"))
-
-
 def model_3mf(path, surface):
     """A 3MF of one object, millimetres."""
     vertices = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}" />' for x, y, z in surface.points.tolist())
