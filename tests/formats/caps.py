@@ -24,15 +24,17 @@ ALLOWED = 0.05  # of a cap's area, and of its root
 
 
 def caps_of(surface):
-    """Area, mm2, and centre of every group of faces of one ModelFaceID that is flat, which walls are not."""
+    """Area of the triangles, the same seen along the normal, mm2, and centre of every group of faces of one ModelFaceID
+    that is flat, which walls are not."""
     caps = {}
     for number in numpy.unique(surface.of_faces["ModelFaceID"]):
         corners = surface.points[surface.faces[surface.of_faces["ModelFaceID"] == number]]
         normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
         areas = numpy.linalg.norm(normals, axis=1)
-        area = numpy.linalg.norm(normals.sum(0))  # seen along the normal
-        if area > 0.95 * areas.sum():
-            caps[int(number)] = area, (corners.mean(1) * areas[:, None]).sum(0) / areas.sum()
+        seen = numpy.linalg.norm(normals.sum(0))
+        if seen > 0.95 * areas.sum():
+            center = (corners.mean(1) * areas[:, None]).sum(0) / areas.sum()
+            caps[int(number)] = areas.sum(), seen, center
     return caps
 
 
@@ -62,10 +64,10 @@ def agree(vtk, vmesh, folder, centerline, model, count):
         listed = {cap["model_face_id"]: cap["area_mm2"] for cap in json.load(file)["caps"]}
     expect(set(listed) == set(ours), f"the summary lists {sorted(listed)}")
     worst = 0
-    for number, (area, center) in ours.items():
-        expect(abs(listed[number] - area) < 1e-9 * area, f"cap {number}: {area} mm2, the summary says {listed[number]}")
-        nearest = min(theirs, key=lambda key: numpy.linalg.norm(theirs[key][1] - center))
-        their_area, their_center = theirs.pop(nearest)
+    for number, (area, seen, center) in ours.items():
+        expect(abs(listed[number] - seen) < 1e-9 * seen, f"cap {number}: {seen} mm2, the summary says {listed[number]}")
+        nearest = min(theirs, key=lambda key: numpy.linalg.norm(theirs[key][2] - center))
+        their_area, _, their_center = theirs.pop(nearest)
         off = numpy.linalg.norm(center - their_center)
         expect(off <= ALLOWED * their_area**0.5, f"cap {number}: its centre is off by {off:.3g} mm")
         worst = max(worst, abs(area / their_area - 1))

@@ -258,14 +258,14 @@ class Table:
             kind = next((k for k in ("centerline", "image") if k in ways or form in KINDS.get(k, ())), "surface")
             details = ", ".join(w for w in ways[1:] if w != kind)
             group = groups.setdefault((ways[0], kind, form), {"programs": {}, "names": "-", "places": []})
-            known = group["programs"].setdefault("shared data" if program.startswith("as ") else program, [])
+            known = group["programs"].setdefault("files of others" if program.startswith("as ") else program, [])
             known.append(
                 "**wrong**" if points == "**wrong**" else "refused: " + details if points == "refused" else details
             )
             if not program.startswith("as ") and points != "refused":
                 group["names"] = max(group["names"], names, key=lambda text: (text.count(","), len(text)))
                 group["places"] += [place] if place not in ("", "-", *group["places"]) else []
-        lines = ["| | | | with | names of attributes | unit, frame |", "|---|---|---|---|---|---|"]
+        lines = ["| format | way | what | programs | names of attributes | unit, frame |", "|---|---|---|---|---|---|"]
         for (way, kind, form), group in sorted(
             groups.items(), key=lambda item: (item[0][0] == "in", item[0][1], item[0][2])
         ):
