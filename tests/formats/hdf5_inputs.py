@@ -8,32 +8,36 @@ from inputs import check_tree
 from report import Absent, Wrong, expect
 
 
-def check(table, written, shared_data):
+def h5py_module():
     try:
         import h5py
     except ImportError as error:
         raise Absent(f"h5py is not installed (Debian: python3-h5py): {error}") from None
-    vmesh, path = written.vmesh, written.vmesh.path
+    return h5py
+
+
+def make(path):
+    """MorphIO's layout: sections of points with diameters, micrometres, and pairs of sections of which the second goes
+    on where the first ends."""
+    points = numpy.concatenate([small.POINTS[s] for s in small.SEGMENTS]) * 1000
+    with h5py_module().File(path, "w") as file:
+        file["points"] = numpy.concatenate([points, numpy.full((6, 1), 2000 * small.RADIUS)], 1)
+        file["structure"] = numpy.array([[0, 0], [2, 0], [4, 0]])
+        file["connectivity"] = numpy.array([[0, 1], [0, 2]])
+    return path
+
+
+def check(table, written, shared_data):
+    h5py, vmesh, path = h5py_module(), written.vmesh, written.vmesh.path("tree.h5")
     program = f"h5py {h5py.__version__}"
-
-    def make():
-        """MorphIO's layout: sections of points with diameters, micrometres, and pairs of sections of which the second
-        goes on where the first ends."""
-        points = numpy.concatenate([small.POINTS[s] for s in small.SEGMENTS]) * 1000
-        with h5py.File(path("tree.h5"), "w") as file:
-            file["points"] = numpy.concatenate([points, numpy.full((6, 1), 2000 * small.RADIUS)], 1)
-            file["structure"] = numpy.array([[0, 0], [2, 0], [4, 0]])
-            file["connectivity"] = numpy.array([[0, 1], [0, 2]])
-        return path("tree.h5")
-
     try:
-        vmesh("info", make())
+        vmesh("info", make(path))
     except Wrong as wrong:
         if "VMESH_WITH_HDF5" not in str(wrong):
             raise
         table.notes.append("SKIPPED .h5: this vmesh is built without HDF5")
         return
-    check_tree(table, ".h5", program, vmesh, make, place="um (the format's)")
+    check_tree(table, ".h5", program, vmesh, lambda: make(path), place="um (the format's)")
     for name in ("vasculature1", "vasculature2"):
         file = os.path.join(shared_data, "microvascular_loops", name + ".h5")
         if os.path.exists(file):

@@ -62,27 +62,26 @@ def reads_by_itk(table, vmesh):
     return True
 
 
+def write_by_vtk(vtk, path):
+    writer, settings = "vtkMetaImageWriter", {}
+    if not path.endswith((".mha", ".mhd")):
+        writer, settings = "vtkNIFTIImageWriter", {"QFormMatrix": vtk.vtk.vtkMatrix4x4(), "QFac": 1}
+    voxels = vtk.vtk.vtkImageData()
+    voxels.SetDimensions(BALL_SIZE)
+    voxels.SetSpacing([BALL_SPACING] * 3)
+    voxels.GetPointData().SetScalars(vtk.arrays.numpy_to_vtk(ball().ravel("F"), deep=True))
+    return vtk.write(writer, voxels, path, **settings)
+
+
 def check_vtk(table, vtk, written):
-    vmesh, path = written.vmesh, written.vmesh.path
-
-    def image(writer, name, **settings):
-        voxels = vtk.vtk.vtkImageData()
-        voxels.SetDimensions(BALL_SIZE)
-        voxels.SetSpacing([BALL_SPACING] * 3)
-        voxels.GetPointData().SetScalars(vtk.arrays.numpy_to_vtk(ball().ravel("F"), deep=True))
-        return vtk.write(writer, voxels, path(name), **settings)
-
-    def nifti(name):
-        return image("vtkNIFTIImageWriter", name, QFormMatrix=vtk.vtk.vtkMatrix4x4(), QFac=1)
-
     if not contours(table, written):
         return
-    for form in (".nii", ".nii.gz"):
-        check_ball(table, form, vtk.name, vmesh, lambda form=form: nifti("ball" + form), (-1, -1, 1))
-    check_ball(table, ".mha", vtk.name, vmesh, lambda: image("vtkMetaImageWriter", "ball.mha"), (1, 1, 1))
-    if reads_by_itk(table, vmesh):
-        check_ball(table, ".img", vtk.name, vmesh, lambda: nifti("ball.img"), (-1, -1, 1))
-        check_ball(table, ".mhd", vtk.name, vmesh, lambda: image("vtkMetaImageWriter", "ball.mhd"), (1, 1, 1))
+    forms = [(".nii", (-1, -1, 1)), (".nii.gz", (-1, -1, 1)), (".mha", (1, 1, 1))]
+    if reads_by_itk(table, written.vmesh):
+        forms += [(".img", (-1, -1, 1)), (".mhd", (1, 1, 1))]
+    for form, turn in forms:
+        path = written.vmesh.path("ball" + form)
+        check_ball(table, form, vtk.name, written.vmesh, lambda path=path: write_by_vtk(vtk, path), turn)
 
 
 def check_text(table, written):
@@ -94,42 +93,47 @@ def check_text(table, written):
         check_ball(table, ".nhdr", by, vmesh, lambda: nrrd(path("ball.nhdr"), detached=True), (-1, -1, 1))
 
 
-def check_pydicom(table, written):
+def pydicom_module():
     try:
         import pydicom
-        from pydicom.dataset import FileDataset, FileMetaDataset
     except ImportError as error:
         raise Absent(f"pydicom is not installed (Debian: python3-pydicom): {error}") from None
-    vmesh, folder = written.vmesh, written.vmesh.path("ct")
+    return pydicom
 
-    def slice_of(voxels, number):
-        meta = FileMetaDataset()
-        meta.MediaStorageSOPClassUID = pydicom.uid.CTImageStorage
-        meta.MediaStorageSOPInstanceUID = f"1.2.826.0.1.3680043.8.498.1.{number + 1}"
-        meta.TransferSyntaxUID = pydicom.uid.ExplicitVRLittleEndian
-        data = FileDataset("", {}, file_meta=meta, preamble=b"\0" * 128)
-        data.is_little_endian, data.is_implicit_VR = True, False
-        data.SOPClassUID, data.SOPInstanceUID = meta.MediaStorageSOPClassUID, meta.MediaStorageSOPInstanceUID
-        data.SeriesInstanceUID, data.StudyInstanceUID, data.FrameOfReferenceUID = "1.2.3.4", "1.2.3.5", "1.2.3.6"
-        data.Modality, data.PatientName, data.PatientID = "CT", "Ball", "1"
-        data.ImagePositionPatient = [0, 0, number * BALL_SPACING]
-        data.ImageOrientationPatient, data.PixelSpacing = [1, 0, 0, 0, 1, 0], [BALL_SPACING, BALL_SPACING]
-        data.SliceThickness, data.InstanceNumber = BALL_SPACING, number + 1
-        data.Columns, data.Rows = voxels.shape[:2]
-        data.SamplesPerPixel, data.PhotometricInterpretation = 1, "MONOCHROME2"
-        data.BitsAllocated = data.BitsStored = 16
-        data.HighBit, data.PixelRepresentation = 15, 0
-        data.RescaleIntercept, data.RescaleSlope = 0, 1
-        data.PixelData = voxels.astype("<u2").tobytes("F")
-        return data
 
-    def series():
-        os.makedirs(folder, exist_ok=True)
-        voxels = ball()
-        for number in range(BALL_SIZE[2]):  # under names that do not follow their order
-            name = os.path.join(folder, f"IM{number * 7 % BALL_SIZE[2]:03}")
-            slice_of(voxels[:, :, number], number).save_as(name, write_like_original=False)
-        return folder
+def slice_by_pydicom(pydicom, voxels, number):
+    meta = pydicom.dataset.FileMetaDataset()
+    meta.MediaStorageSOPClassUID = pydicom.uid.CTImageStorage
+    meta.MediaStorageSOPInstanceUID = f"1.2.826.0.1.3680043.8.498.1.{number + 1}"
+    meta.TransferSyntaxUID = pydicom.uid.ExplicitVRLittleEndian
+    data = pydicom.dataset.FileDataset("", {}, file_meta=meta, preamble=b"\0" * 128)
+    data.is_little_endian, data.is_implicit_VR = True, False
+    data.SOPClassUID, data.SOPInstanceUID = meta.MediaStorageSOPClassUID, meta.MediaStorageSOPInstanceUID
+    data.SeriesInstanceUID, data.StudyInstanceUID, data.FrameOfReferenceUID = "1.2.3.4", "1.2.3.5", "1.2.3.6"
+    data.Modality, data.PatientName, data.PatientID = "CT", "Ball", "1"
+    data.ImagePositionPatient = [0, 0, number * BALL_SPACING]
+    data.ImageOrientationPatient, data.PixelSpacing = [1, 0, 0, 0, 1, 0], [BALL_SPACING, BALL_SPACING]
+    data.SliceThickness, data.InstanceNumber = BALL_SPACING, number + 1
+    data.Columns, data.Rows = voxels.shape[:2]
+    data.SamplesPerPixel, data.PhotometricInterpretation = 1, "MONOCHROME2"
+    data.BitsAllocated = data.BitsStored = 16
+    data.HighBit, data.PixelRepresentation = 15, 0
+    data.RescaleIntercept, data.RescaleSlope = 0, 1
+    data.PixelData = voxels.astype("<u2").tobytes("F")
+    return data
 
+
+def write_by_pydicom(folder):
+    """A series, its slices under names that do not follow their order."""
+    os.makedirs(folder, exist_ok=True)
+    pydicom, voxels = pydicom_module(), ball()
+    for number in range(BALL_SIZE[2]):
+        name = os.path.join(folder, f"IM{number * 7 % BALL_SIZE[2]:03}")
+        slice_by_pydicom(pydicom, voxels[:, :, number], number).save_as(name, write_like_original=False)
+    return folder
+
+
+def check_pydicom(table, written):
+    name, vmesh = f"pydicom {pydicom_module().__version__}", written.vmesh
     if contours(table, written) and reads_by_itk(table, vmesh):
-        check_ball(table, "DICOM", f"pydicom {pydicom.__version__}", vmesh, series, (1, 1, 1))
+        check_ball(table, "DICOM", name, vmesh, lambda: write_by_pydicom(vmesh.path("ct")), (1, 1, 1))
