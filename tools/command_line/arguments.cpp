@@ -189,6 +189,7 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   verb.add_option("--centerline-output", arguments.centerline_output,
                   "of an image: the centerline that was extracted, to keep it");
   add_extraction(verb, arguments.extraction);
+  add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   group(verb, "Resolution", {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification"});
   group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
@@ -316,6 +317,7 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
   verb.add_option("--require", arguments.require,
                   "exit with 1 unless all of these hold, separated by commas: " + describe_requirements())
       ->type_name("LIST");
+  add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   verb.footer(kEvaluateExamples);
 }

@@ -24,6 +24,7 @@ void add_deform(CLI::App& app, DeformArguments& arguments) {
   verb.add_option("--format", arguments.format, "of the frames")
       ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off", "glb"}))
       ->capture_default_str();
+  add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   verb.footer(kDeformExamples);
 }
