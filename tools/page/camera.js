@@ -36,6 +36,7 @@ function addAxes(svg, scene, look) {
         const y = 40 - reach * v.y;
         button.setAttribute("transform", `translate(${x.toFixed(1)} ${y.toFixed(1)})`);
         button.classList.toggle("behind", v.z < -0.3);
+        button.classList.toggle("covered", v.z < -0.93);
         return { x, y };
       });
       line.setAttribute("x1", ends[0].x);

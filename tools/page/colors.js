@@ -51,11 +51,11 @@ function labelColor(label) {
   return oklch([0.72, 0.55, 0.85][label % 3], 0.12, (25 + 137.508 * label) % 360);
 }
 
-/** Values to colours. Those on both sides of zero get the scale that is pale there. */
-function makeScale(low, high, labels) {
+/** Values from `low` to `high` to colours. Those on both sides of zero get the scale that is pale there. */
+function makeScale({ low, high, min = low, max = high, labels = false }) {
   if (labels) return { labels, low, high, color: labelColor };
-  const signed = low < 0 && high > 0;
   const reach = Math.max(-low, high);
+  const signed = Math.min(-low, high) > 0.2 * reach;  // with next to nothing on one side, the other gets all colours
   const from = signed ? -reach : low;
   const to = signed ? reach : high;
   const colors = signed ? DIVERGING : SEQUENTIAL;
@@ -65,7 +65,8 @@ function makeScale(low, high, labels) {
     const t = Math.min(1, Math.max(0, (value - from) / width));
     return colors[Math.round(t * (SCALE_STEPS - 1))];
   };
-  return { labels, signed, low: from, high: to, color };
+  const beyond = (min < from ? "below " : "") + (max > to ? "above" : "");
+  return { labels, low: from, high: to, beyond, color };
 }
 
 const cssColor = (rgb) => `rgb(${rgb.join(",")})`;

@@ -32,19 +32,51 @@ function positionsOf(places, low, step, origin) {
 function decodeAttribute(json, vertices, faces) {
   const steps = unpack(json.values, json.on === "vertex" ? vertices : faces);
   const none = json.labels ? NaN : -1;
-  let low = Infinity;
-  let high = -Infinity;
-  for (const step of steps) {
-    if (step === none) continue;
-    low = Math.min(low, step);
-    high = Math.max(high, step);
-  }
-  const value = (i) => (steps[i] === none ? NaN : json.low + json.step * steps[i]);
   return {
     name: json.name, label: json.label, unit: json.unit, labels: json.labels, onFaces: json.on === "face",
-    low: low <= high ? json.low + json.step * low : 0, high: low <= high ? json.low + json.step * high : 1,
-    digits: json.labels ? 0 : Math.max(0, Math.ceil(-Math.log10(json.step))), count: steps.length, value,
+    digits: json.labels ? 0 : Math.max(0, Math.floor(-Math.log10(json.step))), count: steps.length,
+    value: (i) => (steps[i] === none ? NaN : json.low + json.step * steps[i]),
   };
+}
+
+/** Areas of faces, and the third of those around every vertex. */
+function areasOf({ positions, corners, vertices, faces }) {
+  const ofFace = new Float32Array(faces);
+  const ofVertex = new Float32Array(vertices);
+  for (let f = 0; f < faces; ++f) {
+    const [a, b, c] = corners.subarray(3 * f, 3 * f + 3).map((corner) => 3 * corner);
+    const u = [0, 1, 2].map((k) => positions[b + k] - positions[a + k]);
+    const v = [0, 1, 2].map((k) => positions[c + k] - positions[a + k]);
+    ofFace[f] = Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
+    for (const corner of [a, b, c]) ofVertex[corner / 3] += ofFace[f] / 3;
+  }
+  return { ofFace, ofVertex };
+}
+
+/**
+ * The least and largest value of an attribute; `low` and `high`: the ends of a colour scale, which values of a hundredth
+ * of the area do not stretch far.
+ */
+function rangeOf(attribute, areas) {
+  const area = attribute.onFaces ? areas.ofFace : areas.ofVertex;
+  const order = [...area.keys()].filter((i) => isFinite(attribute.value(i)));
+  if (order.length === 0) return { min: 0, max: 1, low: 0, high: 1 };
+  order.sort((i, j) => attribute.value(i) - attribute.value(j));
+  const min = attribute.value(order[0]);
+  const max = attribute.value(order[order.length - 1]);
+  if (attribute.labels) return { min, max, low: min, high: max };
+  const total = order.reduce((sum, i) => sum + area[i], 0);
+  const atShare = (share) => {
+    let sum = 0;
+    return attribute.value(order.find((i) => (sum += area[i]) >= share * total) ?? order[order.length - 1]);
+  };
+  let low = atShare(0.01);
+  let high = atShare(0.99);
+  const room = 0.5 * (high - low);
+  if (low - room <= min) low = min;
+  if (high + room >= max) high = max;
+  if (low > 0 && low < 0.3 * high) low = 0;
+  return { min, max, low, high };
 }
 
 function decodeSurface(json, origin) {

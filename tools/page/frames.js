@@ -32,8 +32,7 @@ class Player {
     for (let frame = 0; frame < this.positions.length; ++frame) {
       for (let v = 0; v < vertices; ++v) high = Math.max(high, at(frame, v));
     }
-    attribute.low = 0;
-    attribute.high = high;
+    Object.assign(attribute, { low: 0, min: 0, high, max: high });
     attribute.digits = 3;
     attribute.value = (v) => at(this.frame, v);
   }
@@ -47,6 +46,11 @@ class Player {
     if (this.centerline) this.centerline.positions.set(now.subarray(positions.length));
     this.view.update();
     this.show(this);
+  }
+
+  stopAt(frame) {
+    this.playing = false;
+    this.go(frame);
   }
 
   play(on) {

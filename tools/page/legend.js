@@ -38,7 +38,7 @@ function gradient(scale) {
   return `linear-gradient(to right, ${stops.join(",")})`;
 }
 
-/** Fills `box` with the scale of an attribute. */
+/** Fills `box` with the scale of an attribute; it is pointed where values go on beyond it. */
 function drawLegend(box, attribute, scale) {
   box.replaceChildren(element("div", { class: "legend-title" }, withUnit(attribute.label, attribute.unit)));
   if (scale.labels) {
@@ -57,7 +57,7 @@ function drawLegend(box, attribute, scale) {
     const at = scale.high > scale.low ? (100 * (tick - scale.low)) / (scale.high - scale.low) : 50;
     axis.append(element("span", { style: `left:${at.toFixed(2)}%` }, texts[i]));
   });
-  box.append(element("div", { class: "legend-bar", style: `background:${gradient(scale)}` }), axis);
+  box.append(element("div", { class: `legend-bar ${scale.beyond}`, style: `background:${gradient(scale)}` }), axis);
 }
 
 /** Counts in bins as an SVG; `color`: of a value. */

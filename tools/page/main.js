@@ -75,7 +75,7 @@ class Viewer {
     this.set("glass", this.is("glass"));
     const colored = surface.attributes.filter((attribute) => attribute.name !== "parameter");
     fillSelect(byId("color"), [...colored.map((a) => [a.name, withUnit(a.label, a.unit)]), ["", "One colour"]]);
-    const wanted = ["displacement", "distance", "volume_distance", "EquiangleSkewness", "radius"];
+    const wanted = ["displacement", "distance", "relative_distance", "volume_distance", "EquiangleSkewness", "radius"];
     const has = (name) => colored.some((a) => a.name === name);
     const kept = this.attribute && has(this.attribute.name) ? this.attribute.name : null;
     this.colorBy(kept || wanted.find(has) || (colored[0] ? colored[0].name : ""));
@@ -84,7 +84,11 @@ class Viewer {
   colorBy(name) {
     const { surface } = this.shown;
     this.attribute = surface.attributes.find((a) => a.name === name) || null;
-    this.scale = this.attribute && makeScale(this.attribute.low, this.attribute.high, this.attribute.labels);
+    if (this.attribute && this.attribute.low === undefined) {
+      surface.areas = surface.areas || areasOf(surface);
+      Object.assign(this.attribute, rangeOf(this.attribute, surface.areas));
+    }
+    this.scale = this.attribute && makeScale(this.attribute);
     byId("color").value = this.attribute ? name : "";
     this.shown.color(this.attribute, this.scale);
     byId("legend").hidden = !this.attribute;
@@ -105,10 +109,7 @@ class Viewer {
     };
     this.player = new Player(this.page.frames, this.shown, this.centerline, this.origin, show);
     byId("frame").max = this.player.positions.length - 1;
-    byId("frame").addEventListener("input", () => {
-      this.player.playing = false;
-      this.player.go(Number(byId("frame").value));
-    });
+    byId("frame").addEventListener("input", () => this.player.stopAt(Number(byId("frame").value)));
     byId("play").addEventListener("click", () => this.player.play(!this.player.playing));
     this.player.go(0);
     this.colorBy(byId("color").value);
@@ -158,6 +159,7 @@ class Viewer {
     if (!place) return;
     this.choose(this.page.places.indexOf(place));
     this.unpick();
+    if (this.player) this.player.stopAt(this.player.positions.length - 1);
     if (place.surface) this.showSurface(place.surface);
     if (place.attribute && this.shown && this.shown.surface.attributes.some((a) => a.name === place.attribute))
       this.colorBy(place.attribute);
@@ -241,9 +243,7 @@ function addKeys(viewer) {
   byId("help-open").addEventListener("click", toggleHelp);
   byId("help-close").addEventListener("click", toggleHelp);
   const frame = (by) => {
-    if (!viewer.player) return;
-    viewer.player.playing = false;
-    viewer.player.go(viewer.player.frame + by);
+    if (viewer.player) viewer.player.stopAt(viewer.player.frame + by);
   };
   const keys = {
     e: () => viewer.toggle("edges"), c: () => viewer.toggle("centerline"), r: () => viewer.toggle("reference"),

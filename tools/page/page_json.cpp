@@ -15,6 +15,7 @@ struct Naming {
 constexpr Naming kNamings[] = {{"EquiangleSkewness", "Skewness", ""},
                                {"distance", "Distance to the reference", "mm"},
                                {"volume_distance", "Distance to the vessels", "mm"},
+                               {"relative_distance", "Distance to the vessels", "radii"},
                                {"displacement", "Displacement", "mm"},
                                {"radius", "Vessel radius", "mm"},
                                {"MaximumInscribedSphereRadius", "Vessel radius", "mm"},

@@ -37,6 +37,7 @@ function fillPlaces(page, go) {
       element("span", { class: "badge" }, String(i + 1)), element("span", { class: "what" }, place.label),
       element("span", { class: "value" }, place.value))));
   });
+  if (page.frames) byId("places-title").textContent = "Moved farthest";
   byId("places-part").hidden = page.places.length === 0;
   return (chosen) => {
     [...list.children].forEach((item, i) => item.firstChild.setAttribute("aria-current", String(i === chosen)));
@@ -45,9 +46,9 @@ function fillPlaces(page, go) {
 
 function fillHistograms(page) {
   for (const h of page.histograms) {
-    const scale = makeScale(h.low, h.high, false);
-    const text = `mean ${numberText(h.mean)} · 95 % below ${numberText(h.p95)} · ` +
-      `${numberText(h.min)} to ${numberText(h.max)}`;
+    const scale = makeScale(h);
+    const say = (value) => numberText(value, h.high - h.low > 50 ? 1 : 3);
+    const text = `mean ${say(h.mean)} · 95 % below ${say(h.p95)} · ${say(h.min)} to ${say(h.max)}`;
     byId("histograms").append(element("figure", {},
       element("figcaption", {}, element("b", {}, withUnit(h.title, h.unit)), element("span", {}, text)),
       drawHistogram(h, scale.color)));

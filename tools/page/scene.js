@@ -10,12 +10,14 @@ class Scene {
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.canvas = this.renderer.domElement;
-    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", "The surface in 3D. Drag to turn, wheel to zoom, click to ask a vertex.");
     box.prepend(this.canvas);
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
     this.controls.enableKeys = false;
     this.controls.screenSpacePanning = true;
+    this.controls.target.copy(bounds.center);
+    this.camera.position.copy(bounds.center).y -= bounds.radius;
     this.controls.addEventListener("change", () => this.draw());
     this.controls.addEventListener("start", () => this.stopFlight());
     const light = new THREE.DirectionalLight(0xffffff, 0.52);
@@ -73,10 +75,34 @@ class Scene {
     return ray.intersectObject(mesh)[0] || null;
   }
 
-  /** How far away `radius` fills the picture. */
+  /** Half of the picture's height and width, at a distance of 1. */
+  spread() {
+    const high = Math.tan((this.camera.fov * Math.PI) / 360);
+    return { high, wide: high * this.camera.aspect };
+  }
+
+  /** How far away a sphere fills the picture. */
   distanceFor(radius) {
-    const half = (this.camera.fov * Math.PI) / 360;
-    return (1.08 * radius) / Math.sin(Math.atan(Math.tan(half) * Math.min(1, this.camera.aspect)));
+    const { high, wide } = this.spread();
+    return (1.08 * radius) / Math.sin(Math.atan(Math.min(high, wide)));
+  }
+
+  /** How far away everything fills it, seen from `direction`. */
+  distanceForAll(direction) {
+    const { high, wide } = this.spread();
+    const back = direction.clone().normalize();
+    const right = new THREE.Vector3().crossVectors(this.camera.up, back).normalize();
+    const up = new THREE.Vector3().crossVectors(back, right);
+    const point = new THREE.Vector3();
+    let distance = 0;
+    for (const positions of this.bounds.lists) {
+      for (let i = 0; i < positions.length; i += 3) {
+        point.fromArray(positions, i).sub(this.bounds.center);
+        const beside = Math.max(Math.abs(point.dot(right)) / wide, Math.abs(point.dot(up)) / high);
+        distance = Math.max(distance, 1.1 * beside + point.dot(back));
+      }
+    }
+    return distance || this.bounds.radius;
   }
 
   stopFlight() {
@@ -119,7 +145,7 @@ class Scene {
   }
 
   viewAll(direction, atOnce) {
-    this.flyTo(this.bounds.center, direction, this.distanceFor(this.bounds.radius), atOnce);
+    this.flyTo(this.bounds.center, direction, this.distanceForAll(direction), atOnce);
   }
 
   /** Turns by angles in radians about the target, or comes nearer. */
@@ -141,7 +167,7 @@ class Scene {
   }
 }
 
-/** The sphere around points, three numbers each. */
+/** The middle of the box around points, three numbers each, and the radius of a sphere that holds them. */
 function boundsOf(lists) {
   const box = new THREE.Box3();
   const point = new THREE.Vector3();
@@ -150,5 +176,5 @@ function boundsOf(lists) {
   }
   if (box.isEmpty()) box.expandByPoint(point.set(0, 0, 0));
   const sphere = box.getBoundingSphere(new THREE.Sphere());
-  return { center: sphere.center, radius: sphere.radius || 1 };
+  return { center: sphere.center, radius: sphere.radius || 1, lists };
 }

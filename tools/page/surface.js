@@ -149,7 +149,7 @@ function centerlineView(centerline) {
   const look = { color: 0xd6336c, depthTest: false, transparent: true };
   const view = new THREE.Group();
   view.add(new THREE.LineSegments(lines, new THREE.LineBasicMaterial({ ...look, opacity: 0.9 })),
-    new THREE.Points(geometry, new THREE.PointsMaterial({ ...look, size: 3.5, sizeAttenuation: false })));
+    new THREE.Points(geometry, new THREE.PointsMaterial({ ...look, size: 2.5, sizeAttenuation: false })));
   for (const part of view.children) {
     part.renderOrder = 5;
     part.frustumCulled = false;

@@ -60,7 +60,7 @@ void add_facts(Page& page, const EvaluationReport& report) {
   if (report.volume) {
     const VesselDistanceSide& side = report.volume->distance.from_mesh;
     page.facts.push_back({"To the vessels, mm, mean / max", mean_and_max(side.mm.mean, side.mm.max)});
-    page.facts.push_back({"In their radii, mean / max", mean_and_max(side.relative.mean, side.relative.max)});
+    page.facts.push_back({"In vessel radii, mean / max", mean_and_max(side.relative.mean, side.relative.max)});
   }
 }
 
@@ -137,8 +137,8 @@ Page page_of(const TradeoffArguments& arguments, const Centerline& centerline,
   return page;
 }
 
-Page page_of(const DeformArguments& arguments, const Json& summary, const TriMesh& rest, MeshAttributes attributes,
-             const Centerline& centerline, PageFrames frames) {
+Page page_of(const DeformArguments& arguments, const Json& summary, const TriMesh& rest, const TriMesh& moved,
+             MeshAttributes attributes, const Centerline& centerline, PageFrames frames) {
   Page page = make_page("deform", arguments.script, arguments.common);
   page.facts = {{"Frames", std::to_string(summary["frames"].get<std::size_t>())},
                 {"Vertices", std::to_string(rest.vertices.size())},
@@ -146,10 +146,11 @@ Page page_of(const DeformArguments& arguments, const Json& summary, const TriMes
                 {"Centerline", std::to_string(centerline.nodes().size()) + " nodes"}};
   if (frames.every() > 1)
     page.warnings = {"Every " + std::to_string(frames.every()) + "th frame is shown, so that the page stays small."};
+  const PageSurface last{"surface", moved, attributes};
   page.surfaces.push_back({"surface", rest, std::move(attributes)});
   page.centerline = centerline;
-  add_largest(page, page.surfaces.front(), "displacement", "Moved far, at the end", " mm", kEach);
-  add_histograms(page, page.surfaces.front());
+  add_largest(page, last, "displacement", "At the end", " mm", kEach);
+  add_histograms(page, last);
   page.tables = tables_of(summary);
   page.frames = std::move(frames);
   return page;

@@ -42,10 +42,10 @@ void add_places(Page& page, const GenerateReport& report, const PageSurface& sur
     add_hausdorff_places(page, report.fit->after.hausdorff, "the reference");
     add_unmatched(page, *report.fit, kEach);
   } else {
-    page.places.push_back({"Farthest from the vessels, beside their radius",
+    page.places.push_back({"Farthest from the vessels, in their radii",
                            short_number(report.deviation.max_relative) + " radii", report.deviation.max_at,
-                           "volume_distance", ""});
-    add_largest(page, surface, "volume_distance", "Far from the vessels", " mm", kEach);
+                           "relative_distance", ""});
+    add_largest(page, surface, "volume_distance", "Vertex far from the vessels", " mm", kEach);
   }
   add_largest(page, surface, "EquiangleSkewness", "Skew triangle", "", kEach);
   for (const UnprovenPlace& place : report.result->error.unproven_places)
@@ -59,6 +59,16 @@ void add_places(Page& page, const GenerateReport& report, const PageSurface& sur
         {"Vessel moved aside", short_number(move.displacement.norm()) + " mm", move.position, "", ""});
 }
 
+/// To the vessels: in mm, and for each by its own radius.
+void add_distances(const GenerateReport& report, const Centerline& grown, MeshAttributes& attributes) {
+  const GenerateResult& result = *report.result;
+  const VesselField field(grown, report.arguments->options.blend);
+  MeshAttribute mm{"volume_distance", vertex_vessel_distances(result.mesh, field)}, radii{"relative_distance", {}};
+  for (std::size_t v = 0; v < mm.values.size(); ++v) radii.values.push_back(mm.values[v] / result.radius[v]);
+  attributes.vertex.push_back(std::move(mm));
+  attributes.vertex.push_back(std::move(radii));
+}
+
 void add_facts(Page& page, const GenerateReport& report) {
   const TriMesh& mesh = report.result->mesh;
   page.facts = {{"Sound", report.result->is_sound() ? "yes" : "no"},
@@ -68,7 +78,7 @@ void add_facts(Page& page, const GenerateReport& report) {
   if (report.fit) return add_fit_facts(page, *report.fit);
   page.facts.push_back(
       {"To the vessels, mm, mean / max", mean_and_max(report.deviation.mean_mm, report.deviation.max_mm)});
-  page.facts.push_back({"In their radii, mean / max",
+  page.facts.push_back({"In vessel radii, mean / max",
                         mean_and_max(report.deviation.mean_relative, report.deviation.max_relative)});
   page.facts.push_back({"Centerline", std::to_string(report.cleaned->centerline.nodes().size()) + " nodes"});
 }
@@ -81,8 +91,7 @@ Page page_of(const GenerateReport& report, const Centerline& grown, MeshAttribut
   const TriMesh& mesh = report.result->mesh;
   Page page = make_page("generate", arguments.output, arguments.common);
   page.options = describe(arguments);
-  const VesselField field(grown, arguments.options.blend);
-  attributes.vertex.push_back({"volume_distance", vertex_vessel_distances(mesh, field)});
+  add_distances(report, grown, attributes);
   if (reference && report.fit)
     attributes.vertex.push_back({"distance", vertex_distances(mesh, ClosestPointIndex(*reference))});
   page.surfaces.push_back({"surface", mesh, std::move(attributes)});
@@ -111,7 +120,7 @@ Page page_of(const FitArguments& arguments, const FitReport& report, const Json&
   add_fit_facts(page, report);
   add_hausdorff_places(page, report.after.hausdorff, "the reference");
   add_unmatched(page, report, kEach);
-  add_largest(page, page.surfaces.front(), "distance", "Far from the reference", " mm", kEach);
+  add_largest(page, page.surfaces.front(), "distance", "Vertex far from the reference", " mm", kEach);
   add_largest(page, page.surfaces.front(), "EquiangleSkewness", "Skew triangle", "", kEach);
   add_histograms(page, page.surfaces.front());
   page.tables = tables_of(summary);

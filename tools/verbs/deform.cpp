@@ -279,7 +279,9 @@ int run(const DeformArguments& arguments, Console& console) {
   if (!arguments.common.json.empty()) write_json(arguments.common.json, summary);
   if (frames)
     write_page(arguments.common.html,
-               page_of(arguments, summary, rest.mesh, writer.attributes(), centerline, std::move(*frames)), console);
+               page_of(arguments, summary, rest.mesh, writer.mesh(), writer.attributes(), centerline,
+                       std::move(*frames)),
+               console);
   return kOk;
 }
 
