@@ -48,6 +48,7 @@ class Browser:
         self.socket.close()
         self.process.terminate()
         self.process.wait()
+        self.process.stderr.close()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _address(self):
@@ -109,6 +110,7 @@ class Browser:
         if self.touch:
             self._call("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
             self._call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+            self.ask("new Promise(done => setTimeout(done, 100))")  # a tap becomes a click a little later
         else:
             for kind in ("mousePressed", "mouseReleased"):
                 self._call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
@@ -116,7 +118,7 @@ class Browser:
 
     def click_on(self, selector):
         x, y = self.ask(f"(() => {{ const e = document.querySelector({json.dumps(selector)});"
-                        "e.scrollIntoView({block: 'center'}); const b = e.getBoundingClientRect();"
+                        "e.scrollIntoView({block: 'nearest'}); const b = e.getBoundingClientRect();"
                         "return [b.left + b.width / 2, b.top + b.height / 2]; })()")
         self.click(x, y)
 

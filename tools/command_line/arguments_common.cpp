@@ -10,9 +10,10 @@ void add_common(CLI::App& verb, CommonArguments& common, bool with_json) {
 }
 
 void add_html(CLI::App& verb, CommonArguments& common) {
-  verb.add_option("--html", common.html,
-                  "write a page to this file: the surface in 3D with its worst places, distributions and figures, for any "
-                  "browser, without a network (.html)");
+  verb.add_option(
+      "--html", common.html,
+      "write a page to this file: the surface in 3D with its worst places, distributions and figures, for any "
+      "browser, without a network (.html)");
 }
 
 void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& help) {

@@ -271,6 +271,7 @@ function addKeys(viewer) {
 
 function start() {
   const page = JSON.parse(byId("page-data").textContent);
+  document.body.classList.toggle("figures-first", page.surfaces.length === 0);
   fillHeader(page);
   fillHistograms(page);
   fillReport(page);

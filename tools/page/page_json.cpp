@@ -126,10 +126,14 @@ Json to_json(const PagePlace& place) {
 }
 
 Json to_json(const PageHistogram& h) {
-  return {{"title", h.title},        {"unit", h.unit},
-          {"low", h.histogram.low},  {"high", h.histogram.high},
-          {"counts", h.histogram.counts}, {"mean", h.distribution.mean},
-          {"p95", h.distribution.p95},    {"min", h.distribution.min},
+  return {{"title", h.title},
+          {"unit", h.unit},
+          {"low", h.histogram.low},
+          {"high", h.histogram.high},
+          {"counts", h.histogram.counts},
+          {"mean", h.distribution.mean},
+          {"p95", h.distribution.p95},
+          {"min", h.distribution.min},
           {"max", h.distribution.max}};
 }
 

@@ -29,8 +29,8 @@ void add_places(Page& page, const EvaluationReport& report, const TriMesh& mesh)
   add_defects(page, mesh, report.defects);
   if (report.reference) {
     const Hausdorff& h = report.reference->hausdorff;
-    page.places.push_back({"Farthest from the reference", short_number(h.forward.upper) + " mm",
-                           h.forward.witness.from, "distance", ""});
+    page.places.push_back(
+        {"Farthest from the reference", short_number(h.forward.upper) + " mm", h.forward.witness.from, "distance", ""});
     page.places.push_back({"Of the reference, farthest from the surface", short_number(h.backward.upper) + " mm",
                            h.backward.witness.from, "distance", ""});
   }
@@ -53,8 +53,8 @@ void add_facts(Page& page, const EvaluationReport& report) {
                 {"Crossing pairs of faces", std::to_string(report.defects.self_intersections.size())}};
   if (report.reference) {
     const ReferenceComparison& r = *report.reference;
-    page.facts.push_back({"To the reference, mm, mean / 95 %",
-                          mean_and_max(r.forward.distance.mean, r.forward.distance.p95)});
+    page.facts.push_back(
+        {"To the reference, mm, mean / 95 %", mean_and_max(r.forward.distance.mean, r.forward.distance.p95)});
     page.facts.push_back({"Hausdorff to it, mm", short_number(r.hausdorff.upper())});
   }
   if (report.volume) {
@@ -126,8 +126,8 @@ Page page_of(const Table2Arguments& arguments, const Table2Report& report) {
   return page;
 }
 
-Page page_of(const TradeoffArguments& arguments, const Centerline& centerline,
-             const std::vector<TradeoffPoint>& points, std::vector<ReportTable> tables) {
+Page page_of(const TradeoffArguments& arguments, const Centerline& centerline, const std::vector<TradeoffPoint>& points,
+             std::vector<ReportTable> tables) {
   Page page = make_page("tradeoff", arguments.input.path, arguments.common);
   page.centerline = centerline;
   page.facts = {{"Surfaces", std::to_string(points.size())},

@@ -16,14 +16,14 @@ PageSurface reference_surface(const TriMesh& mesh) { return {"reference", mesh, 
 
 void add_fit_facts(Page& page, const FitReport& fit) {
   page.facts.push_back({"To the reference, mm, mean / 95 %", mean_and_max(fit.after.mean(), fit.after.p95())});
-  page.facts.push_back({"Before the fit", mean_and_max(fit.before.mean(), fit.before.p95())});
+  page.facts.push_back({"The same before the fit", mean_and_max(fit.before.mean(), fit.before.p95())});
   page.facts.push_back({"Hausdorff to it, mm", short_number(fit.after.hausdorff.upper())});
 }
 
 void add_hausdorff_places(Page& page, const Hausdorff& hausdorff, const std::string& reference) {
   const OneSidedHausdorff &forward = hausdorff.forward, &backward = hausdorff.backward;
-  page.places.push_back({"Farthest from " + reference, short_number(forward.upper) + " mm", forward.witness.from,
-                         "distance", ""});
+  page.places.push_back(
+      {"Farthest from " + reference, short_number(forward.upper) + " mm", forward.witness.from, "distance", ""});
   page.places.push_back({"Of " + reference + ", farthest from the surface", short_number(backward.upper) + " mm",
                          backward.witness.from, "distance", ""});
 }
@@ -71,15 +71,15 @@ void add_distances(const GenerateReport& report, const Centerline& grown, MeshAt
 
 void add_facts(Page& page, const GenerateReport& report) {
   const TriMesh& mesh = report.result->mesh;
-  page.facts = {{"Sound", report.result->is_sound() ? "yes" : "no"},
-                {"Vertices", std::to_string(mesh.vertices.size())},
-                {"Skewness, mean / max", mean_and_max(report.measurement.skewness.mean,
-                                                      report.measurement.skewness.max)}};
+  page.facts = {
+      {"Sound", report.result->is_sound() ? "yes" : "no"},
+      {"Vertices", std::to_string(mesh.vertices.size())},
+      {"Skewness, mean / max", mean_and_max(report.measurement.skewness.mean, report.measurement.skewness.max)}};
   if (report.fit) return add_fit_facts(page, *report.fit);
   page.facts.push_back(
       {"To the vessels, mm, mean / max", mean_and_max(report.deviation.mean_mm, report.deviation.max_mm)});
-  page.facts.push_back({"In vessel radii, mean / max",
-                        mean_and_max(report.deviation.mean_relative, report.deviation.max_relative)});
+  page.facts.push_back(
+      {"In vessel radii, mean / max", mean_and_max(report.deviation.mean_relative, report.deviation.max_relative)});
   page.facts.push_back({"Centerline", std::to_string(report.cleaned->centerline.nodes().size()) + " nodes"});
 }
 
@@ -115,8 +115,8 @@ Page page_of(const FitArguments& arguments, const FitReport& report, const Json&
   page.centerline = centerline;
   page.warnings = summary["warnings"].get<std::vector<std::string>>();
   page.facts = {{"Vertices", std::to_string(mesh.vertices.size())},
-                {"Skewness, mean / max", mean_and_max(summary["skewness"]["mean"].get<double>(),
-                                                      summary["skewness"]["max"].get<double>())}};
+                {"Skewness, mean / max",
+                 mean_and_max(summary["skewness"]["mean"].get<double>(), summary["skewness"]["max"].get<double>())}};
   add_fit_facts(page, report);
   add_hausdorff_places(page, report.after.hausdorff, "the reference");
   add_unmatched(page, report, kEach);

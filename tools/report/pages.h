@@ -27,8 +27,8 @@ Page page_of(const FitArguments& arguments, const FitReport& report, const Json&
 
 Page page_of(const Table2Arguments& arguments, const Table2Report& report);
 
-Page page_of(const TradeoffArguments& arguments, const Centerline& centerline,
-             const std::vector<TradeoffPoint>& points, std::vector<ReportTable> tables);
+Page page_of(const TradeoffArguments& arguments, const Centerline& centerline, const std::vector<TradeoffPoint>& points,
+             std::vector<ReportTable> tables);
 
 /// Of a motion from `rest` to `moved`, whose `attributes` it has; `summary` is what --json writes.
 Page page_of(const DeformArguments& arguments, const Json& summary, const TriMesh& rest, const TriMesh& moved,

@@ -231,9 +231,9 @@ void check_files(const DeformArguments& arguments) {
   std::vector<fs::path> inputs = files_of(arguments.input.path);
   inputs.push_back(arguments.surface.path);
   inputs.push_back(arguments.script);
-  check_outputs({{arguments.common.json, PlannedOutput::Kind::summary},
-                 {arguments.common.html, PlannedOutput::Kind::page}},
-                inputs);
+  check_outputs(
+      {{arguments.common.json, PlannedOutput::Kind::summary}, {arguments.common.html, PlannedOutput::Kind::page}},
+      inputs);
   surface_output_format("frame." + arguments.format);
   if (arguments.format == "vtp" && !VMESH_TOOL_WITH_VTK)
     throw Unsupported("this vmesh was built without VTK and cannot write .vtp; choose --format obj");
@@ -260,8 +260,8 @@ int run(const DeformArguments& arguments, Console& console) {
   const auto show = [&](double time_s) {
     if (frames) frames->add(time_s, writer.mesh().vertices, node_positions(stage.simulation(), nodes));
   };
-  const Timing timing = naming(
-      arguments.script, [&] { return play(scene, stage, binding, writer, series, console.progress(), show); });
+  const Timing timing =
+      naming(arguments.script, [&] { return play(scene, stage, binding, writer, series, console.progress(), show); });
   series.keep();
   console.log("wrote " + std::to_string(series.size()) + " frames to " + arguments.output.string());
   const Json summary = {{"schema", "vmesh.deform/1"},
@@ -278,10 +278,10 @@ int run(const DeformArguments& arguments, Console& console) {
                         {"synchronise_s", timing.synchronise_s}};
   if (!arguments.common.json.empty()) write_json(arguments.common.json, summary);
   if (frames)
-    write_page(arguments.common.html,
-               page_of(arguments, summary, rest.mesh, writer.mesh(), writer.attributes(), centerline,
-                       std::move(*frames)),
-               console);
+    write_page(
+        arguments.common.html,
+        page_of(arguments, summary, rest.mesh, writer.mesh(), writer.attributes(), centerline, std::move(*frames)),
+        console);
   return kOk;
 }
 

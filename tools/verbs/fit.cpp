@@ -51,10 +51,9 @@ int run(const FitArguments& arguments, Console& console) {
   inputs.push_back(path);
   for (const std::filesystem::path& file : files_of_input(fitting.reference.path)) inputs.push_back(file);
   check_writing(arguments.output, arguments.writing);
-  check_outputs({{arguments.output, Kind::surface},
-                 {arguments.common.json, Kind::summary},
-                 {arguments.common.html, Kind::page}},
-                inputs);
+  check_outputs(
+      {{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}, {arguments.common.html, Kind::page}},
+      inputs);
   LoadedSurface loaded = load_surface(arguments.input);
   console.warn(loaded.warnings);
   const Centerline centerline = load_clean_centerline(arguments.centerline, console).cleaned.centerline;

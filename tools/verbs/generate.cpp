@@ -141,9 +141,8 @@ void check_arguments(const GenerateArguments& arguments) {
   check_writing(arguments.output, arguments.writing);
   if (arguments.bones && extension_of(arguments.output) != ".glb")
     throw UsageError(arguments.output.string() + ": --bones are for .glb only");
-  std::vector<PlannedOutput> outputs = {{arguments.output, Kind::surface},
-                                        {arguments.common.json, Kind::summary},
-                                        {arguments.common.html, Kind::page}};
+  std::vector<PlannedOutput> outputs = {
+      {arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}, {arguments.common.html, Kind::page}};
   if (!arguments.centerline_output.empty()) {
     for (const std::filesystem::path& file : files_of(arguments.centerline_output))
       outputs.push_back({file, Kind::centerline});

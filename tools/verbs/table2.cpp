@@ -54,9 +54,8 @@ void check_files(const Table2Arguments& arguments) {
     if (input->path.empty()) continue;
     for (const std::filesystem::path& file : files_of_input(input->path)) inputs.push_back(file);
   }
-  std::vector<PlannedOutput> outputs = {{arguments.common.json, Kind::summary},
-                                        {arguments.report, Kind::report},
-                                        {arguments.common.html, Kind::page}};
+  std::vector<PlannedOutput> outputs = {
+      {arguments.common.json, Kind::summary}, {arguments.report, Kind::report}, {arguments.common.html, Kind::page}};
   if (!arguments.surfaces.empty()) {
     for (const SurfaceFile& file : kSurfaceFiles) outputs.push_back({arguments.surfaces / file.name, Kind::surface});
     outputs.push_back({arguments.surfaces / kCenterlineFile, Kind::centerline});

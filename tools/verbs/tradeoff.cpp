@@ -87,12 +87,11 @@ Json report_json(const TradeoffArguments& arguments, const Centerline& centerlin
 
 int run(const TradeoffArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
-  check_outputs(
-      {{arguments.report, Kind::report},
-       {arguments.plot, Kind::plot},
-       {arguments.common.json, Kind::summary},
-       {arguments.common.html, Kind::page}},
-      files_of(arguments.input));
+  check_outputs({{arguments.report, Kind::report},
+                 {arguments.plot, Kind::plot},
+                 {arguments.common.json, Kind::summary},
+                 {arguments.common.html, Kind::page}},
+                files_of(arguments.input));
   const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
   const std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, arguments.options, console.progress());
   const std::vector<ReportTable> tables = {points_table(points), peers_table(points)};
