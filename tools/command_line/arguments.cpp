@@ -33,6 +33,7 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate liver.nii.gz --label 2 --spacing 1 --smooth 1 --tree -o portal.ply --centerline-output portal.swc
   vmesh generate aorta.vtp -o aorta-flow.vtp --ends flat --flow-extensions 5 --json caps.json
   vmesh generate tree.swc tree.glb --bones
+  vmesh generate tree.swc -o tree.ply --html tree.html
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kCompletionExamples = R"(Examples:
   source <(vmesh completion bash)
@@ -58,6 +59,7 @@ constexpr const char* kRenderExamples = R"(Examples:
 constexpr const char* kEvaluateExamples = R"(Examples:
   vmesh evaluate tree.ply
   vmesh evaluate tree.ply --reference scan.stl --report report.md --json report.json -o colored.ply
+  vmesh evaluate tree.ply --reference scan.stl --centerline tree.swc --html tree.html
   vmesh evaluate tree.ply --centerline tree.swc --require closed,max-skewness=0.9,relative-volume-distance=0.5)";
 
 OpenEnds parse_open_ends(const std::string& text) {

@@ -5,7 +5,7 @@ namespace {
 
 constexpr const char* kDeformExamples = R"(Examples:
   vmesh deform tree.json tree.ply --script scene.json -o frames/
-  vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj)";
+  vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj --html moved.html)";
 constexpr const char* kTable1Examples = R"(Examples:
   vmesh table1
   vmesh table1 --format markdown --report table1.md --plot trade.svg)";

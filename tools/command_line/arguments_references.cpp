@@ -24,7 +24,8 @@ constexpr const char* kTable2Examples = R"(Examples:
   vmesh table2 --reference portal.ply --tree)";
 constexpr const char* kFitExamples = R"(Examples:
   vmesh fit tree.ply scan.stl --centerline tree.swc -o fitted.ply
-  vmesh fit portal.ply liver.nii.gz --label 2 --spacing 1 --smooth 1 --centerline portal.swc -o fitted.ply)";
+  vmesh fit portal.ply liver.nii.gz --label 2 --spacing 1 --smooth 1 --centerline portal.swc -o fitted.ply \
+    --html fitted.html)";
 constexpr const char* kTradeoffExamples = R"(Examples:
   vmesh tradeoff tree.swc --report tradeoff.md --plot tradeoff.svg --json tradeoff.json)";
 

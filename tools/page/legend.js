@@ -43,10 +43,11 @@ function drawLegend(box, attribute, scale) {
   box.replaceChildren(element("div", { class: "legend-title" }, withUnit(attribute.label, attribute.unit)));
   if (scale.labels) {
     const row = element("div", { class: "legend-labels" });
-    const count = Math.min(attribute.high + 1, 10);
-    for (let label = 0; label < count; ++label)
+    const first = Math.max(0, attribute.low);
+    const end = Math.min(attribute.high + 1, first + 10);
+    for (let label = first; label < end; ++label)
       row.append(element("span", { style: `--swatch:${cssColor(scale.color(label))}` }, String(label)));
-    if (attribute.high + 1 > count) row.append(element("em", {}, `to ${attribute.high}`));
+    if (attribute.high + 1 > end) row.append(element("em", {}, `to ${attribute.high}`));
     box.append(row);
     return;
   }
@@ -87,6 +88,7 @@ function drawHistogram(h, color) {
     svg.append(element("line", { x1: x(tick), x2: x(tick), y1: base, y2: base + 4, class: "axis" }),
       element("text", { x: x(tick), y: base + 17, "text-anchor": anchor }, texts[i]));
   });
-  svg.append(element("line", { x1: x(h.mean), x2: x(h.mean), y1: 4, y2: base, class: "mean" }));
+  for (const kind of ["halo", "mean"])
+    svg.append(element("line", { x1: x(h.mean), x2: x(h.mean), y1: 2, y2: base, class: kind }));
   return svg;
 }

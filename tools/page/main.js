@@ -176,7 +176,8 @@ class Viewer {
   /** How far around a place there should be in view: some triangles, and the surface if it is not there. */
   sizeAt(target, vertex) {
     if (vertex < 0) return 0.1 * this.scene.bounds.radius;
-    return Math.max(7 * this.shown.edgeAt(vertex), 1.5 * target.distanceTo(this.shown.vertex(vertex)));
+    const size = Math.max(7 * this.shown.edgeAt(vertex), 1.5 * target.distanceTo(this.shown.vertex(vertex)));
+    return Math.min(size, this.scene.bounds.radius) || this.scene.bounds.radius;
   }
 
   moveMark() {

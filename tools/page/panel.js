@@ -5,14 +5,21 @@ const byId = (id) => document.getElementById(id);
 /** Cells that are numbers are set to the right. */
 const isNumber = (text) => /^[-+]?[\d.,]+(e[-+]?\d+)?$/i.test(text);
 
-function tableElement(table) {
-  const columns = table.columns.map((column, i) =>
-    table.rows.length > 0 && table.rows.every((row) => row[i] === "" || row[i] === "-" || isNumber(row[i])));
-  const cell = (kind, text, i) => element(kind, columns[i] ? { class: "number" } : {}, text);
-  const head = element("tr", {}, ...table.columns.map((text, i) => cell("th", text, i)));
-  const rows = table.rows.map((row) => element("tr", {}, ...row.map((text, i) => cell(i === 0 ? "th" : "td", text, i))));
+/** Rows of a name and a value, as most reports have, need no heads. */
+function propertyTable(rows) {
+  return element("table", { class: "properties" }, element("tbody", {}, ...rows.map(([name, value]) =>
+    element("tr", {}, element("th", {}, name), element("td", {}, value)))));
+}
+
+function tableElement({ columns, rows }) {
+  if (columns.length === 2 && columns[0] === "property") return propertyTable(rows);
+  const numeric = columns.map((column, i) =>
+    rows.length > 0 && rows.every((row) => row[i] === "" || row[i] === "-" || isNumber(row[i])));
+  const cell = (kind, text, i) => element(kind, numeric[i] ? { class: "number" } : {}, text);
+  const head = element("tr", {}, ...columns.map((text, i) => cell("th", text, i)));
+  const body = rows.map((row) => element("tr", {}, ...row.map((text, i) => cell(i === 0 ? "th" : "td", text, i))));
   return element("div", { class: "scroll", tabindex: 0 },
-    element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows)));
+    element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
 }
 
 /** Opens under its heading; `open`: at once. */
@@ -24,7 +31,8 @@ function fillHeader(page) {
   byId("verb").textContent = `vmesh ${page.verb}`;
   byId("title").textContent = page.title;
   for (const [name, value] of page.facts)
-    byId("facts").append(element("div", {}, element("dt", {}, name), element("dd", {}, value)));
+    byId("facts").append(element("div", {}, element("dt", {}, name),
+      element("dd", value === "no" ? { class: "bad" } : {}, value)));
   byId("warnings").append(...page.warnings.map((text) => element("p", {}, text)));
   byId("warnings").hidden = page.warnings.length === 0;
 }

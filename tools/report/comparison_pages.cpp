@@ -13,10 +13,15 @@ namespace {
 constexpr std::size_t kEach = 3;
 
 void add_defects(Page& page, const TriMesh& mesh, const DefectReport& defects) {
-  const std::vector<IntersectingFaces>& pairs = defects.self_intersections;
-  for (const IntersectingFaces& pair : std::span(pairs).first(std::min(kEach, pairs.size())))
+  PlacesApart apart(mesh);
+  std::size_t crossings = 0;
+  for (const IntersectingFaces& pair : defects.self_intersections) {
+    if (crossings == kEach) break;
+    if (!apart.take(pair.position)) continue;
+    ++crossings;
     page.places.push_back({"Faces " + std::to_string(pair.first) + " and " + std::to_string(pair.second) + " cross", "",
                            pair.position, "", ""});
+  }
   const auto add = [&](const std::vector<Index>& faces, const char* label) {
     for (const Index face : std::span(faces).first(std::min(kEach, faces.size())))
       page.places.push_back({label, "face " + std::to_string(face), mesh.vertices[mesh.faces[face][0]], "", ""});

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <span>
 
 #include "vmesh/evaluation/vessel_distance.h"
@@ -33,11 +34,18 @@ void add_contacts(Page& page, const std::vector<Contact>& contacts, const char* 
     page.places.push_back({label, short_number(contact.depth) + " mm deep", contact.position, "", ""});
 }
 
+/// "crossing faces"
+std::string words(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
 void add_places(Page& page, const GenerateReport& report, const PageSurface& surface) {
   const std::vector<Defect>& defects = report.result->defects;
   for (const Defect& defect : std::span(defects).first(std::min(kMostDefects, defects.size())))
     page.places.push_back(
-        {"Defect: " + std::string(to_string(defect.kind)), std::to_string(defect.count), defect.position, "", ""});
+        {"Defect: " + words(to_string(defect.kind)), std::to_string(defect.count), defect.position, "", ""});
   if (report.fit) {
     add_hausdorff_places(page, report.fit->after.hausdorff, "the reference");
     add_unmatched(page, *report.fit, kEach);
@@ -59,11 +67,13 @@ void add_places(Page& page, const GenerateReport& report, const PageSurface& sur
         {"Vessel moved aside", short_number(move.displacement.norm()) + " mm", move.position, "", ""});
 }
 
-/// To the vessels: in mm, and for each by its own radius.
+/// To the vessels: in mm, and for each by its own radius. Caps and what goes on from ends are not of the wall.
 void add_distances(const GenerateReport& report, const Centerline& grown, MeshAttributes& attributes) {
   const GenerateResult& result = *report.result;
   const VesselField field(grown, report.arguments->options.blend);
   MeshAttribute mm{"volume_distance", vertex_vessel_distances(result.mesh, field)}, radii{"relative_distance", {}};
+  for (std::size_t v = report.wall_vertices; v < mm.values.size(); ++v)
+    mm.values[v] = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t v = 0; v < mm.values.size(); ++v) radii.values.push_back(mm.values[v] / result.radius[v]);
   attributes.vertex.push_back(std::move(mm));
   attributes.vertex.push_back(std::move(radii));

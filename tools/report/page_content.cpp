@@ -113,6 +113,15 @@ std::string point_text(const Vec3& p) {
   return "(" + format_number(p.x()) + ", " + format_number(p.y()) + ", " + format_number(p.z()) + ")";
 }
 
+PlacesApart::PlacesApart(const TriMesh& mesh) : distance_(kApart * diagonal(mesh)) {}
+
+bool PlacesApart::take(const Vec3& place) {
+  for (const Vec3& other : taken_)
+    if ((other - place).norm() < distance_) return false;
+  taken_.push_back(place);
+  return true;
+}
+
 void add_histograms(Page& page, const PageSurface& surface) {
   std::vector<double> skewness = finite(equiangle_skewness(surface.mesh)), angles = angles_deg(surface.mesh);
   if (!skewness.empty()) {
@@ -128,17 +137,15 @@ void add_largest(Page& page, const PageSurface& surface, std::string_view name, 
                  const std::string& unit, std::size_t count) {
   const auto [attribute, on_faces] = find(surface, name);
   if (!attribute) return;
-  const double apart = kApart * diagonal(surface.mesh);
-  std::vector<Vec3> chosen;
+  PlacesApart apart(surface.mesh);
+  std::size_t chosen = 0;
   for (const std::size_t element : by_size(attribute->values)) {
-    if (chosen.size() == count) break;
+    if (chosen == count) break;
     const double value = attribute->values[element];
     if (value == 0) break;
     const Vec3 at = position_of(surface.mesh, element, on_faces);
-    if (!at.allFinite()) continue;
-    const auto is_near = [&](const Vec3& other) { return (other - at).norm() < apart; };
-    if (std::any_of(chosen.begin(), chosen.end(), is_near)) continue;
-    chosen.push_back(at);
+    if (!at.allFinite() || !apart.take(at)) continue;
+    ++chosen;
     page.places.push_back({label, short_number(value) + unit, at, attribute->name, surface.name});
   }
 }

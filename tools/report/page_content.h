@@ -19,6 +19,18 @@ std::string short_number(double value);
 std::string mean_and_max(double mean, double max);
 std::string point_text(const Vec3& p);
 
+/// Tells places of a surface apart.
+class PlacesApart {
+ public:
+  explicit PlacesApart(const TriMesh& mesh);
+  /// Whether `place` is apart from all that were taken; then it is taken too.
+  bool take(const Vec3& place);
+
+ private:
+  double distance_ = 0;
+  std::vector<Vec3> taken_;
+};
+
 /// Skewness of faces, angles, and what attributes of vertices are distances.
 void add_histograms(Page& page, const PageSurface& surface);
 

@@ -80,6 +80,7 @@ void measure_distance(GenerateReport& report, const Centerline& grown) {
 void finish_ends(GenerateReport& report, GenerateResult& result) {
   const GenerateArguments& arguments = *report.arguments;
   const Centerline& centerline = report.cleaned->centerline;
+  report.wall_vertices = result.mesh.vertices.size();
   if (result.openings.empty() && arguments.ends == EndShape::round) return;
   FlatEndOptions options;
   options.cap = arguments.ends == EndShape::flat;
