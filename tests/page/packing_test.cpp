@@ -33,7 +33,7 @@ TEST(Base64, IsThatOfTheRfc) {
 }
 
 TEST(Pack, BringsBackEveryNumber) {
-  const std::vector<std::int64_t> numbers = {0,  -1,  1,      63,     64,     -64,          -65,         127,
+  const std::vector<std::int64_t> numbers = {0,   -1,  1,      63,      64,      -64,         -65,          127,
                                              128, 300, -70000, 1 << 20, 1 << 28, (1LL << 40), -(1LL << 40), 5};
   for (const std::size_t stride : {1, 2, 3, 100}) EXPECT_EQ(unpack(pack(numbers, stride), stride), numbers) << stride;
   EXPECT_EQ(pack(std::vector<std::int64_t>{}), "");

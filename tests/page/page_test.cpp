@@ -77,20 +77,6 @@ class Pages : public CommandTest {
   }
 };
 
-#if !VMESH_TEST_WITH_HTML
-
-TEST_F(Pages, WithoutThreeJsAreRefusedBeforeAnythingIsDone) {
-  const auto before = files();
-  const Outcome run = vmesh({"generate", "@y.swc", "-o", "@y.ply", "--html", "@y.html"});
-  EXPECT_EQ(run.exit_code, 4);
-  EXPECT_NE(run.err.find("--html"), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("libjs-three"), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("VMESH_WITH_HTML"), std::string::npos) << run.err;
-  EXPECT_EQ(files(), before);
-}
-
-#else
-
 TEST_F(Pages, HoldTheSurfaceThatWasWritten) {
   const Json page = page_of({"generate", "@y.swc", "-o", "@y.ply"});
   const LoadedSurface written = read_surface(path("y.ply"));
@@ -201,8 +187,9 @@ TEST_F(Pages, OfAnEvaluationShowTheReferenceAndTheFarthestPoints) {
 
 TEST_F(Pages, OfAFitShowWhatItWasFittedTo) {
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply", "-q"}).exit_code, 0);
-  ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@fine.ply", "--around", "14", "--placement", "inscribed", "-q"}).exit_code,
-            0);
+  ASSERT_EQ(
+      vmesh({"generate", "@y.swc", "-o", "@fine.ply", "--around", "14", "--placement", "inscribed", "-q"}).exit_code,
+      0);
   const Json page =
       page_of({"fit", "@y.ply", "@fine.ply", "--centerline", "@y.swc", "-o", "@fitted.ply", "--json", "@f.json"});
   const Json summary = Json::parse(read("f.json"));
@@ -246,8 +233,6 @@ TEST_F(Pages, OfComparisonsHoldEverySurfaceOrTheChart) {
   ASSERT_EQ(source.rfind(kind, 0), 0u);
   EXPECT_EQ(from_base64(source.substr(kind.size())), read("plot.svg"));
 }
-
-#endif
 
 }  // namespace
 }  // namespace vmesh::testing
