@@ -286,6 +286,7 @@ function start() {
   } catch (error) {
     console.error(error);
     byId("no-picture").hidden = false;
+    if (byId("places").children.length === 0) fillPlaces(page, () => {});
     document.body.classList.add("without-picture");
   }
   document.body.dataset.ready = "1";

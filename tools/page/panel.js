@@ -41,7 +41,8 @@ function fillHeader(page) {
 function fillPlaces(page, go) {
   const list = byId("places");
   page.places.forEach((place, i) => {
-    list.append(element("li", {}, element("button", { type: "button", onclick: () => go(i), "data-place": i + 1 },
+    list.append(element("li", {}, element("button", { type: "button", onclick: () => go(i), "data-place": i + 1,
+      title: `at ${place.at.map((x) => numberText(x)).join(", ")} mm` },
       element("span", { class: "badge" }, String(i + 1)), element("span", { class: "what" }, place.label),
       element("span", { class: "value" }, place.value))));
   });
