@@ -6,6 +6,7 @@ import sys
 import tempfile
 import unittest
 
+sys.dont_write_bytecode = True  # next to the sources
 if not shutil.which("chromium"):
     print("SKIPPED: no Chromium; scripts/install-dependencies --with-browser")
     sys.exit(77)
@@ -43,6 +44,7 @@ class PageInABrowser(unittest.TestCase):
         cls.vmesh("generate", "small.json", "-o", "small.ply")
         cls.vmesh("generate", "small.json", "-o", "fine.ply", "--preset", "high")
         cls.vmesh("evaluate", "small.ply", "--reference", "fine.ply", "--centerline", "small.json", "--html", "eval.html")
+        cls.vmesh("table2", "--centerline", "small.json", "--voxel", "2", "--samples", "3000", "--html", "table2.html")
         cls.vmesh("deform", "small.json", "small.ply", "--script", f"{EXAMPLES}/pull_branch.json", "-o", "moved",
                   "--html", "moved.html")
 
@@ -146,6 +148,31 @@ class PageInABrowser(unittest.TestCase):
             self.assertTrue(browser.ask("vmesh.shown.edges.visible"))
             camera = browser.ask(CAMERA)
             self.assertGreater(camera[0] - camera[3], 0.99 * distance(camera[:3], camera[3:]), "from the left")
+
+    def test_colours_rise_evenly_in_lightness(self):
+        with Browser(1400, 900) as browser:
+            browser.open(self.page("eval.html"))
+            # CIE L*, of the luminance of sRGB
+            light = browser.ask("""SEQUENTIAL.map(rgb => { const [r, g, b] = rgb.map(c => { c /= 255;
+              return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; });
+              return 116 * Math.cbrt(0.2126 * r + 0.7152 * g + 0.0722 * b) - 16; })""")
+            self.assertGreater(light[-1] - light[0], 60)
+            for i in range(16, len(light), 16):
+                self.assertGreater(light[i] - light[i - 16], 2, "a sixteenth of the scale can be told from the next")
+
+    def test_holds_several_surfaces(self):
+        with Browser(1400, 900) as browser:
+            browser.open(self.page("table2.html"))
+            names = browser.ask("Array.from(document.querySelectorAll('#surface option')).map(o => o.value)")
+            self.assertGreaterEqual(len(names), 4)
+            browser.ask("(() => { const s = document.getElementById('surface'); s.value = 'truncated cones';"
+                        "s.dispatchEvent(new Event('change')); })()")
+            self.assertEqual(browser.ask("vmesh.shown.surface.name"), "truncated cones")
+            other = browser.ask("vmesh.page.places.findIndex(p => p.surface && p.surface !== 'truncated cones')")
+            browser.click_on(f"[data-place='{other + 1}']")
+            self.assertEqual(browser.ask("vmesh.shown.surface.name"), browser.ask(f"vmesh.page.places[{other}].surface"))
+            self.assertGreater(browser.ask(DRAWN), 0.01)
+            self.assertEqual(browser.problems, [])
 
     def test_plays_a_motion(self):
         with Browser(1400, 900) as browser:

@@ -40,8 +40,8 @@ struct PageHistogram {
 /// A motion of the first surface and of the centerline. Positions are packed as they come.
 class PageFrames {
  public:
-  /// Takes every frame of `expected`, or every second, third ..., so that they stay within about 16 MB.
-  PageFrames(const TriMesh& mesh, const Centerline& centerline, std::size_t expected);
+  /// Takes every frame of `count`, or every second, third ... and the last, so that they stay within about 16 MB.
+  PageFrames(const TriMesh& mesh, const Centerline& centerline, std::size_t count);
 
   /// Frames come in the order of their time; the first one is at rest.
   void add(double time_s, const std::vector<Vec3>& vertices, const std::vector<Vec3>& nodes);
@@ -51,7 +51,7 @@ class PageFrames {
   const std::vector<std::string>& packed() const { return packed_; }
 
  private:
-  std::size_t every_ = 1, seen_ = 0;
+  std::size_t count_, every_ = 1, seen_ = 0;
   Vec3 low_ = Vec3::Zero();
   double step_ = 1;
   std::vector<std::int64_t> last_;

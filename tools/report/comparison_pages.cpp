@@ -150,7 +150,8 @@ Page page_of(const DeformArguments& arguments, const Json& summary, const TriMes
                 {"Largest displacement, mm", short_number(summary["largest_displacement_mm"].get<double>())},
                 {"Centerline", std::to_string(centerline.nodes().size()) + " nodes"}};
   if (frames.every() > 1)
-    page.warnings = {"Every " + std::to_string(frames.every()) + "th frame is shown, so that the page stays small."};
+    page.warnings = {"Of every " + std::to_string(frames.every()) +
+                     " frames one is shown, so that the page stays small."};
   const PageSurface last{"surface", moved, attributes};
   page.surfaces.push_back({"surface", rest, std::move(attributes)});
   page.centerline = centerline;

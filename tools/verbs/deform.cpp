@@ -197,6 +197,12 @@ std::size_t steps_of(const Scene& scene) {
   return static_cast<std::size_t>(std::llround(scene.duration_s / scene.options.step_s));
 }
 
+/// At rest, then every so many steps, and the last.
+std::size_t frames_of(const Scene& scene) {
+  const auto every = static_cast<std::size_t>(scene.frame_every);
+  return 1 + (steps_of(scene) + every - 1) / every;
+}
+
 std::vector<Vec3> node_positions(const CenterlineSimulation& simulation, std::size_t nodes) {
   std::vector<Vec3> positions;
   for (Index n = 0; n < nodes; ++n) positions.push_back(simulation.position(n));
@@ -255,8 +261,7 @@ int run(const DeformArguments& arguments, Console& console) {
   FrameWriter writer(arguments, rest, binding);
   const std::size_t nodes = centerline.nodes().size();
   std::optional<PageFrames> frames;
-  if (!arguments.common.html.empty())
-    frames.emplace(rest.mesh, centerline, steps_of(scene) / static_cast<std::size_t>(scene.frame_every) + 2);
+  if (!arguments.common.html.empty()) frames.emplace(rest.mesh, centerline, frames_of(scene));
   const auto show = [&](double time_s) {
     if (frames) frames->add(time_s, writer.mesh().vertices, node_positions(stage.simulation(), nodes));
   };
