@@ -16,7 +16,7 @@ except ImportError:
     print("SKIPPED: no python3-websocket; scripts/install-dependencies --with-browser")
     sys.exit(77)
 
-VMESH, EXAMPLES = sys.argv[1:3]
+VMESH, EXAMPLES = map(os.path.abspath, sys.argv[1:3])
 # Pixels that are not the ground's, of those that are drawn.
 DRAWN = """(() => { vmesh.scene.render(); const gl = vmesh.scene.renderer.getContext();
   const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight]; const p = new Uint8Array(4 * w * h);

@@ -54,8 +54,8 @@ function areasOf({ positions, corners, vertices, faces }) {
 }
 
 /**
- * The least and largest value of an attribute; `low` and `high`: the ends of a colour scale, which values of a hundredth
- * of the area do not stretch far.
+ * The least and largest value of an attribute; `low` and `high`: the ends of a colour scale, which values of a
+ * hundredth of the area do not stretch far.
  */
 function rangeOf(attribute, areas) {
   const area = attribute.onFaces ? areas.ofFace : areas.ofVertex;

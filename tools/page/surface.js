@@ -116,7 +116,8 @@ class SurfaceView {
     let longest = 0;
     for (let i = 0; i < corners.length; i += 3) {
       if (corners[i] !== v && corners[i + 1] !== v && corners[i + 2] !== v) continue;
-      for (const other of corners.subarray(i, i + 3)) longest = Math.max(longest, this.vertex(v).distanceTo(this.vertex(other)));
+      for (const other of corners.subarray(i, i + 3))
+        longest = Math.max(longest, this.vertex(v).distanceTo(this.vertex(other)));
     }
     return longest;
   }
