@@ -6,6 +6,7 @@
 #include "command_line/exit_code.h"
 #include "command_line/inputs.h"
 #include "command_line/interrupt.h"
+#include "command_line/quoting.h"
 #include "command_line/usage_error.h"
 #include "verbs/verbs.h"
 
@@ -44,7 +45,12 @@ int run_command(int argc, const char* const* argv) {
     std::optional<Arguments> arguments = parse_arguments(argc, argv, exit_code);
     if (!arguments) return exit_code;
     catch_interrupts();
-    std::visit([](auto& verb) { expand_all_folders(verb); }, *arguments);
+    std::visit(
+        [argc, argv](auto& verb) {
+          verb.common.command_line = quoted_command(argc, argv);
+          expand_all_folders(verb);
+        },
+        *arguments);
     return run_verb(*arguments, console);
   } catch (const UsageError& error) {
     return fail(kUsage, error.what());

@@ -33,6 +33,7 @@ constexpr const char* kGenerateExamples = R"(Examples:
   vmesh generate liver.nii.gz --label 2 --spacing 1 --smooth 1 --tree -o portal.ply --centerline-output portal.swc
   vmesh generate aorta.vtp -o aorta-flow.vtp --ends flat --flow-extensions 5 --json caps.json
   vmesh generate tree.swc tree.glb --bones
+  vmesh generate tree.swc -o tree.ply --html tree.html
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)";
 constexpr const char* kCompletionExamples = R"(Examples:
   source <(vmesh completion bash)
@@ -58,6 +59,7 @@ constexpr const char* kRenderExamples = R"(Examples:
 constexpr const char* kEvaluateExamples = R"(Examples:
   vmesh evaluate tree.ply
   vmesh evaluate tree.ply --reference scan.stl --report report.md --json report.json -o colored.ply
+  vmesh evaluate tree.ply --reference scan.stl --centerline tree.swc --html tree.html
   vmesh evaluate tree.ply --centerline tree.swc --require closed,max-skewness=0.9,relative-volume-distance=0.5)";
 
 OpenEnds parse_open_ends(const std::string& text) {
@@ -174,6 +176,7 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   verb.add_option("--centerline-output", arguments.centerline_output,
                   "of an image: the centerline that was extracted, to keep it");
   add_extraction(verb, arguments.extraction);
+  add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   group(verb, "Resolution", {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification"});
   group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
@@ -301,6 +304,7 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
   verb.add_option("--require", arguments.require,
                   "exit with 1 unless all of these hold, separated by commas: " + describe_requirements())
       ->type_name("LIST");
+  add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   verb.footer(kEvaluateExamples);
 }

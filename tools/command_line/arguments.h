@@ -27,6 +27,8 @@ namespace vmesh::tool {
 struct CommonArguments {
   bool quiet = false;
   std::filesystem::path json;  ///< where a summary goes; "-" for stdout, empty for nowhere
+  std::filesystem::path html;  ///< where a page goes; empty for nowhere. Not of all verbs
+  std::string command_line;    ///< as it was typed, for the page
 };
 
 /// A centerline or surface file and how to read its numbers.

@@ -9,6 +9,13 @@ void add_common(CLI::App& verb, CommonArguments& common, bool with_json) {
   if (with_json) verb.add_option("--json", common.json, "write a summary to this file; - for stdout");
 }
 
+void add_html(CLI::App& verb, CommonArguments& common) {
+  verb.add_option(
+      "--html", common.html,
+      "write a page to this file: the surface in 3D with its worst places, distributions and figures, for any "
+      "browser, without a network (.html)");
+}
+
 void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& help) {
   verb.add_option("-o,--output,OUT", output, help);
 }

@@ -24,6 +24,9 @@ CLI::Validator in_range(Number low, Number high) {
 
 void add_common(CLI::App& verb, CommonArguments& common, bool with_json = true);
 
+/// --html, of verbs that can make a page.
+void add_html(CLI::App& verb, CommonArguments& common);
+
 /// -o, or the last word: see settle_output().
 void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& help);
 

@@ -5,7 +5,7 @@ namespace {
 
 constexpr const char* kDeformExamples = R"(Examples:
   vmesh deform tree.json tree.ply --script scene.json -o frames/
-  vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj)";
+  vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj --html moved.html)";
 constexpr const char* kTable1Examples = R"(Examples:
   vmesh table1
   vmesh table1 --format markdown --report table1.md --plot trade.svg)";
@@ -24,6 +24,7 @@ void add_deform(CLI::App& app, DeformArguments& arguments) {
   verb.add_option("--format", arguments.format, "of the frames")
       ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off", "glb"}))
       ->capture_default_str();
+  add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   verb.footer(kDeformExamples);
 }

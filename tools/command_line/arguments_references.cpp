@@ -24,7 +24,8 @@ constexpr const char* kTable2Examples = R"(Examples:
   vmesh table2 --reference portal.ply --tree)";
 constexpr const char* kFitExamples = R"(Examples:
   vmesh fit tree.ply scan.stl --centerline tree.swc -o fitted.ply
-  vmesh fit portal.ply liver.nii.gz --label 2 --spacing 1 --smooth 1 --centerline portal.swc -o fitted.ply)";
+  vmesh fit portal.ply liver.nii.gz --label 2 --spacing 1 --smooth 1 --centerline portal.swc -o fitted.ply \
+    --html fitted.html)";
 constexpr const char* kTradeoffExamples = R"(Examples:
   vmesh tradeoff tree.swc --report tradeoff.md --plot tradeoff.svg --json tradeoff.json)";
 
@@ -99,6 +100,7 @@ void add_fit(CLI::App& app, FitArguments& arguments) {
                   "to work on; 0: as many as there are; the result is the same")
       ->check(in_range(0, 4096))
       ->capture_default_str();
+  add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   verb.footer(kFitExamples);
 }
@@ -168,6 +170,7 @@ void add_table2(CLI::App& app, Table2Arguments& arguments) {
                   "folder for reference.ply, cones.ply, low.ply and high.ply with distances (the reference's: to low), "
                   "and centerline.json");
   verb.add_flag("--check", arguments.check, "exit with 1 unless all that is demanded of the low resolution holds");
+  add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   verb.footer(kTable2Examples);
 }
@@ -184,6 +187,7 @@ void add_tradeoff(CLI::App& app, TradeoffArguments& arguments) {
   verb.add_option("--threads", arguments.options.generate.threads, "to work on; 0: as many as there are")
       ->check(in_range(0, 4096))
       ->capture_default_str();
+  add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   verb.footer(kTradeoffExamples);
 }

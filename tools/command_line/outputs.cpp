@@ -11,6 +11,7 @@
 #include "vmesh/render/render.h"
 
 #include "command_line/usage_error.h"
+#include "page/page.h"
 
 namespace vmesh::tool {
 namespace {
@@ -33,6 +34,8 @@ const char* name_of(Kind kind) {
       return "report";
     case Kind::plot:
       return "plot";
+    case Kind::page:
+      return "page";
   }
   return "";
 }
@@ -59,6 +62,11 @@ void check_format(const PlannedOutput& output) {
     throw Unsupported(output.path.string() + ": reports are written as .txt, .md, .csv or .json");
   if (output.kind == Kind::plot && extension != ".svg")
     throw Unsupported(output.path.string() + ": plots are written as .svg only");
+  if (output.kind == Kind::page) {
+    if (extension != ".html" && extension != ".htm")
+      throw Unsupported(output.path.string() + ": pages are written as .html or .htm");
+    check_can_make_pages();
+  }
   if (output.kind == Kind::picture && extension != ".png")
     throw Unsupported(output.path.string() + ": pictures are written as .png only");
   if (extension == ".vtp" && !VMESH_TOOL_WITH_VTK)

@@ -15,7 +15,7 @@ std::string extension_of(const std::filesystem::path& path);
 
 /// A file a command is going to write.
 struct PlannedOutput {
-  enum class Kind { surface, centerline, picture, summary, report, plot };
+  enum class Kind { surface, centerline, picture, summary, report, plot, page };
   std::filesystem::path path;
   Kind kind;
 };

@@ -27,6 +27,7 @@ struct GenerateReport {
   std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed or moved
   const GenerateResult* result = nullptr;
   FlatEnds ends;                      ///< those that are not round
+  std::size_t wall_vertices = 0;      ///< before ends were capped or went on
   std::vector<OperatingPoint> tried;  ///< for a budget
   SurfaceMeasurement measurement;
   std::size_t grown_nodes = 0;              ///< of the centerline that was grown: with those a separation added

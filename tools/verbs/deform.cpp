@@ -12,6 +12,7 @@
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
+#include "report/pages.h"
 #include "report/summary.h"
 #include "verbs/scene.h"
 #include "verbs/verbs.h"
@@ -179,6 +180,9 @@ class FrameWriter {
   }
 
   double largest_displacement_mm() const { return largest_mm_; }
+  /// Of the frame written last.
+  const TriMesh& mesh() const { return mesh_; }
+  const MeshAttributes& attributes() const { return attributes_; }
 
  private:
   const LoadedSurface& rest_;
@@ -189,12 +193,31 @@ class FrameWriter {
   double largest_mm_ = 0;
 };
 
+std::size_t steps_of(const Scene& scene) {
+  return static_cast<std::size_t>(std::llround(scene.duration_s / scene.options.step_s));
+}
+
+/// At rest, then every so many steps, and the last.
+std::size_t frames_of(const Scene& scene) {
+  const auto every = static_cast<std::size_t>(scene.frame_every);
+  return 1 + (steps_of(scene) + every - 1) / every;
+}
+
+std::vector<Vec3> node_positions(const CenterlineSimulation& simulation, std::size_t nodes) {
+  std::vector<Vec3> positions;
+  for (Index n = 0; n < nodes; ++n) positions.push_back(simulation.position(n));
+  return positions;
+}
+
+/// `show(time)` is called after every frame that is written.
+template <class Show>
 Timing play(const Scene& scene, Stage& stage, const SurfaceBinding& binding, FrameWriter& writer, Series& series,
-            const Progress& progress) {
+            const Progress& progress, Show show) {
   Timing timing;
   DeformedSurface surface = binding.make_surface();
   writer.write(series.next(), surface);
-  const auto steps = static_cast<std::size_t>(std::llround(scene.duration_s / scene.options.step_s));
+  show(0.0);
+  const std::size_t steps = steps_of(scene);
   for (std::size_t i = 1; i <= steps; ++i) {
     report_progress(progress, "deforming", static_cast<double>(i - 1) / static_cast<double>(steps));
     Stopwatch watch;
@@ -203,7 +226,9 @@ Timing play(const Scene& scene, Stage& stage, const SurfaceBinding& binding, Fra
     binding.apply(stage.simulation().pose(), stage.simulation().moved(), surface);
     stage.simulation().clear_moved();
     timing.synchronise_s += watch.lap();
-    if (i % static_cast<std::size_t>(scene.frame_every) == 0 || i == steps) writer.write(series.next(), surface);
+    if (i % static_cast<std::size_t>(scene.frame_every) != 0 && i != steps) continue;
+    writer.write(series.next(), surface);
+    show(static_cast<double>(i) * scene.options.step_s);
   }
   return timing;
 }
@@ -212,7 +237,9 @@ void check_files(const DeformArguments& arguments) {
   std::vector<fs::path> inputs = files_of(arguments.input.path);
   inputs.push_back(arguments.surface.path);
   inputs.push_back(arguments.script);
-  check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, inputs);
+  check_outputs(
+      {{arguments.common.json, PlannedOutput::Kind::summary}, {arguments.common.html, PlannedOutput::Kind::page}},
+      inputs);
   surface_output_format("frame." + arguments.format);
   if (arguments.format == "vtp" && !VMESH_TOOL_WITH_VTK)
     throw Unsupported("this vmesh was built without VTK and cannot write .vtp; choose --format obj");
@@ -232,23 +259,34 @@ int run(const DeformArguments& arguments, Console& console) {
   stop_if_interrupted();
   Series series(arguments.output, "." + arguments.format);
   FrameWriter writer(arguments, rest, binding);
+  const std::size_t nodes = centerline.nodes().size();
+  std::optional<PageFrames> frames;
+  if (!arguments.common.html.empty()) frames.emplace(rest.mesh, centerline, frames_of(scene));
+  const auto show = [&](double time_s) {
+    if (frames) frames->add(time_s, writer.mesh().vertices, node_positions(stage.simulation(), nodes));
+  };
   const Timing timing =
-      naming(arguments.script, [&] { return play(scene, stage, binding, writer, series, console.progress()); });
+      naming(arguments.script, [&] { return play(scene, stage, binding, writer, series, console.progress(), show); });
   series.keep();
   console.log("wrote " + std::to_string(series.size()) + " frames to " + arguments.output.string());
-  if (!arguments.common.json.empty())
-    write_json(arguments.common.json, {{"schema", "vmesh.deform/1"},
-                                       {"generator", generator_json()},
-                                       {"centerline", to_json(centerline)},
-                                       {"vertices", rest.mesh.vertices.size()},
-                                       {"frames", series.size()},
-                                       {"largest_displacement_mm", writer.largest_displacement_mm()},
-                                       {"last_movement_mm", stage.last_movement_mm()},
-                                       {"work_J", stage.work_J()},
-                                       {"kinetic_energy_J", stage.simulation().kinetic_energy_J()},
-                                       {"elastic_energy_J", stage.simulation().elastic_energy_J()},
-                                       {"simulate_s", timing.simulate_s},
-                                       {"synchronise_s", timing.synchronise_s}});
+  const Json summary = {{"schema", "vmesh.deform/1"},
+                        {"generator", generator_json()},
+                        {"centerline", to_json(centerline)},
+                        {"vertices", rest.mesh.vertices.size()},
+                        {"frames", series.size()},
+                        {"largest_displacement_mm", writer.largest_displacement_mm()},
+                        {"last_movement_mm", stage.last_movement_mm()},
+                        {"work_J", stage.work_J()},
+                        {"kinetic_energy_J", stage.simulation().kinetic_energy_J()},
+                        {"elastic_energy_J", stage.simulation().elastic_energy_J()},
+                        {"simulate_s", timing.simulate_s},
+                        {"synchronise_s", timing.synchronise_s}};
+  if (!arguments.common.json.empty()) write_json(arguments.common.json, summary);
+  if (frames)
+    write_page(
+        arguments.common.html,
+        page_of(arguments, summary, rest.mesh, writer.mesh(), writer.attributes(), centerline, std::move(*frames)),
+        console);
   return kOk;
 }
 

@@ -7,6 +7,7 @@
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "report/evaluation_report.h"
+#include "report/pages.h"
 #include "report/report_output.h"
 #include "report/requirements.h"
 #include "verbs/verbs.h"
@@ -137,6 +138,7 @@ void check_files(const EvaluateArguments& arguments) {
   }
   check_outputs({{arguments.output, PlannedOutput::Kind::surface},
                  {arguments.common.json, PlannedOutput::Kind::summary},
+                 {arguments.common.html, PlannedOutput::Kind::page},
                  {arguments.report, PlannedOutput::Kind::report}},
                 inputs);
 }
@@ -174,6 +176,14 @@ int evaluate(const EvaluateArguments& arguments, Console& console) {
     write_surface(arguments.output, comparison.surface.mesh, evaluation.attributes(report.measures),
                   metadata_of(arguments, report.sha256));
     console.log("wrote " + arguments.output.string());
+  }
+  if (!arguments.common.html.empty()) {
+    const TriMesh* reference = comparison.reference ? &comparison.reference->mesh : nullptr;
+    const Centerline* centerline = comparison.centerline ? &*comparison.centerline : nullptr;
+    write_page(arguments.common.html,
+               page_of(arguments, report, comparison.surface.mesh, evaluation.attributes(report.measures), reference,
+                       centerline),
+               console);
   }
   write_report(to_tables(report), to_json(report), {arguments.format, arguments.common.json, arguments.report});
   return check(report, console);

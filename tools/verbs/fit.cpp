@@ -8,6 +8,7 @@
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "report/fit_report.h"
+#include "report/pages.h"
 #include "report/surface_attributes.h"
 #include "verbs/fitting.h"
 #include "verbs/verbs.h"
@@ -50,7 +51,9 @@ int run(const FitArguments& arguments, Console& console) {
   inputs.push_back(path);
   for (const std::filesystem::path& file : files_of_input(fitting.reference.path)) inputs.push_back(file);
   check_writing(arguments.output, arguments.writing);
-  check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, inputs);
+  check_outputs(
+      {{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}, {arguments.common.html, Kind::page}},
+      inputs);
   LoadedSurface loaded = load_surface(arguments.input);
   console.warn(loaded.warnings);
   const Centerline centerline = load_clean_centerline(arguments.centerline, console).cleaned.centerline;
@@ -75,27 +78,30 @@ int run(const FitArguments& arguments, Console& console) {
                   " pairs of its faces cross; nothing is written");
     return kDefective;
   }
-  write_surface(arguments.output, fitted.mesh,
-                surface_attributes(fitted.mesh, fitted.binding, result.radius, fitted.openings, centerline),
+  const MeshAttributes attributes =
+      surface_attributes(fitted.mesh, fitted.binding, result.radius, fitted.openings, centerline);
+  write_surface(arguments.output, fitted.mesh, attributes,
                 {generator_name(), options, path.filename().string(), sha256}, arguments.writing);
   console.log(std::to_string(result.surface.mesh.vertices.size()) + " vertices, skewness " +
               std::to_string(measurement.skewness.mean) + " mean, " + std::to_string(measurement.skewness.max) +
               " max");
   console.log("wrote " + arguments.output.string());
-  if (!arguments.common.json.empty()) {
-    Json json = {{"schema", "vmesh.fit/1"},
-                 {"generator", generator_json()},
-                 {"input", {{"file", path.string()}, {"sha256", sha256}}},
-                 {"reference", fitting.reference.path.string()},
-                 {"output", arguments.output.string()},
-                 {"options", options},
-                 {"vertices", result.surface.mesh.vertices.size()},
-                 {"faces", result.surface.mesh.faces.size()},
-                 {"fit", to_json(result.report)},
-                 {"warnings", warnings}};
-    json.update(to_json(measurement));
-    write_json(arguments.common.json, json);
-  }
+  if (arguments.common.json.empty() && arguments.common.html.empty()) return near ? kOk : kNotConverged;
+  Json json = {{"schema", "vmesh.fit/1"},
+               {"generator", generator_json()},
+               {"input", {{"file", path.string()}, {"sha256", sha256}}},
+               {"reference", fitting.reference.path.string()},
+               {"output", arguments.output.string()},
+               {"options", options},
+               {"vertices", result.surface.mesh.vertices.size()},
+               {"faces", result.surface.mesh.faces.size()},
+               {"fit", to_json(result.report)},
+               {"warnings", warnings}};
+  json.update(to_json(measurement));
+  if (!arguments.common.json.empty()) write_json(arguments.common.json, json);
+  if (!arguments.common.html.empty())
+    write_page(arguments.common.html,
+               page_of(arguments, result.report, json, fitted.mesh, attributes, reference, centerline), console);
   return near ? kOk : kNotConverged;
 }
 

@@ -10,6 +10,7 @@
 #include "command_line/usage_error.h"
 #include "report/fit_report.h"
 #include "report/generate_log.h"
+#include "report/pages.h"
 #include "report/summary.h"
 #include "report/surface_attributes.h"
 #include "verbs/generate_input.h"
@@ -79,6 +80,7 @@ void measure_distance(GenerateReport& report, const Centerline& grown) {
 void finish_ends(GenerateReport& report, GenerateResult& result) {
   const GenerateArguments& arguments = *report.arguments;
   const Centerline& centerline = report.cleaned->centerline;
+  report.wall_vertices = result.mesh.vertices.size();
   if (result.openings.empty() && arguments.ends == EndShape::round) return;
   FlatEndOptions options;
   options.cap = arguments.ends == EndShape::flat;
@@ -115,15 +117,20 @@ SurfaceSkin bones(const GenerateResult& result, const Centerline& centerline) {
   return make_linear_skin(centerline, make_rod_tree(centerline), places);
 }
 
-void write(const GenerateReport& report) {
-  const GenerateArguments& arguments = *report.arguments;
+MeshAttributes attributes_of(const GenerateReport& report) {
   const GenerateResult& result = *report.result;
   MeshAttributes attributes =
       surface_attributes(result.mesh, result.binding, result.radius, result.openings, report.cleaned->centerline);
   if (!report.ends.ends.empty()) add_cap_labels(report.ends, attributes);
+  return attributes;
+}
+
+void write(const GenerateReport& report) {
+  const GenerateArguments& arguments = *report.arguments;
+  const GenerateResult& result = *report.result;
   std::optional<SurfaceSkin> skin;
   if (arguments.bones) skin = bones(result, report.cleaned->centerline);
-  write_surface(arguments.output, result.mesh, std::move(attributes),
+  write_surface(arguments.output, result.mesh, attributes_of(report),
                 {generator_name(), describe(arguments), file_name_of(arguments.input), report.input_sha256},
                 arguments.writing, skin ? &*skin : nullptr);
 }
@@ -135,7 +142,8 @@ void check_arguments(const GenerateArguments& arguments) {
   check_writing(arguments.output, arguments.writing);
   if (arguments.bones && extension_of(arguments.output) != ".glb")
     throw UsageError(arguments.output.string() + ": --bones are for .glb only");
-  std::vector<PlannedOutput> outputs = {{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}};
+  std::vector<PlannedOutput> outputs = {
+      {arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}, {arguments.common.html, Kind::page}};
   if (!arguments.centerline_output.empty()) {
     for (const std::filesystem::path& file : files_of(arguments.centerline_output))
       outputs.push_back({file, Kind::centerline});
@@ -216,6 +224,10 @@ int run(const GenerateArguments& given, Console& console) {
   report.stages.push_back({"write", watch.lap()});
   log_result(report, console);
   if (!arguments.common.json.empty()) write_json(arguments.common.json, to_json(report));
+  if (!arguments.common.html.empty()) {
+    const TriMesh* fitted_to = reference ? &*reference : nullptr;
+    write_page(arguments.common.html, page_of(report, prepared.grown(), attributes_of(report), fitted_to), console);
+  }
   if (arguments.check && !report.problems.empty()) return kCheckFailed;
   return result.error.unproven_faces > 0 || !kept_budget ? kNotConverged : kOk;
 }

@@ -22,7 +22,7 @@ void check_arguments(const GenerateArguments& arguments) {
   if (!arguments.input.more.empty())
     throw UsageError(arguments.input.more.front().string() + ": parts are grown one at a time");
   if (describe(arguments) != describe(plain) || arguments.budget || !arguments.fitting.reference.path.empty() ||
-      arguments.bones)
+      arguments.bones || !arguments.common.html.empty())
     throw UsageError(arguments.input.path.string() +
                      ": a part is grown with the options that vmesh split was given; here --threads, --json and "
                      "--quiet can be said");

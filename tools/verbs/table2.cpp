@@ -6,6 +6,7 @@
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
+#include "report/pages.h"
 #include "report/report_output.h"
 #include "report/table2_report.h"
 #include "verbs/verbs.h"
@@ -53,7 +54,8 @@ void check_files(const Table2Arguments& arguments) {
     if (input->path.empty()) continue;
     for (const std::filesystem::path& file : files_of_input(input->path)) inputs.push_back(file);
   }
-  std::vector<PlannedOutput> outputs = {{arguments.common.json, Kind::summary}, {arguments.report, Kind::report}};
+  std::vector<PlannedOutput> outputs = {
+      {arguments.common.json, Kind::summary}, {arguments.report, Kind::report}, {arguments.common.html, Kind::page}};
   if (!arguments.surfaces.empty()) {
     for (const SurfaceFile& file : kSurfaceFiles) outputs.push_back({arguments.surfaces / file.name, Kind::surface});
     outputs.push_back({arguments.surfaces / kCenterlineFile, Kind::centerline});
@@ -199,6 +201,7 @@ int run(const Table2Arguments& arguments, Console& console) {
   console.warn(report.warnings);
   stop_if_interrupted();
   if (!arguments.surfaces.empty()) write_surfaces(arguments, report);
+  if (!arguments.common.html.empty()) write_page(arguments.common.html, page_of(arguments, report), console);
   write_report(to_tables(report), to_json(report), {arguments.format, arguments.common.json, arguments.report});
   return arguments.check ? check_demands_of(report, console) : kOk;
 }

@@ -5,6 +5,7 @@
 #include "command_line/exit_code.h"
 #include "command_line/inputs.h"
 #include "command_line/outputs.h"
+#include "report/pages.h"
 #include "report/report_output.h"
 #include "report/summary.h"
 #include "verbs/verbs.h"
@@ -86,12 +87,17 @@ Json report_json(const TradeoffArguments& arguments, const Centerline& centerlin
 
 int run(const TradeoffArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
-  check_outputs(
-      {{arguments.report, Kind::report}, {arguments.plot, Kind::plot}, {arguments.common.json, Kind::summary}},
-      files_of(arguments.input));
+  check_outputs({{arguments.report, Kind::report},
+                 {arguments.plot, Kind::plot},
+                 {arguments.common.json, Kind::summary},
+                 {arguments.common.html, Kind::page}},
+                files_of(arguments.input));
   const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
   const std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, arguments.options, console.progress());
-  write_report({points_table(points), peers_table(points)}, report_json(arguments, centerline, points),
+  const std::vector<ReportTable> tables = {points_table(points), peers_table(points)};
+  if (!arguments.common.html.empty())
+    write_page(arguments.common.html, page_of(arguments, centerline, points, tables), console);
+  write_report(tables, report_json(arguments, centerline, points),
                {arguments.format, arguments.common.json, arguments.report});
   if (!arguments.plot.empty()) write_text(arguments.plot, plot_tradeoff(points));
   return kOk;

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vmesh::testing {
+
+std::string from_base64(const std::string& text);
+
+/// All whole numbers that a page's text holds; the reverse of pack().
+std::vector<std::int64_t> unpack(const std::string& text, std::size_t stride = 1);
+
+}  // namespace vmesh::testing

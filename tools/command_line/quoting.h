@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace vmesh::tool {
+
+/// "vmesh" and the other words of a command line, so that a shell reads the same words of it again.
+std::string quoted_command(int argc, const char* const* argv);
+
+}  // namespace vmesh::tool

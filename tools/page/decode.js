@@ -1,0 +1,137 @@
+"use strict";
+// Reads what packing.h wrote.
+
+/** `count` whole numbers of a packed text, as an Int32Array. */
+function unpack(text, count, stride = 1) {
+  const bytes = atob(text);
+  const numbers = new Int32Array(count);
+  let at = 0;
+  for (let i = 0; i < count; ++i) {
+    let value = 0;
+    let scale = 1;
+    let byte;
+    do {
+      byte = bytes.charCodeAt(at++);
+      value += (byte & 127) * scale;
+      scale *= 128;
+    } while (byte > 127);
+    const difference = value % 2 === 0 ? value / 2 : -(value + 1) / 2;
+    numbers[i] = difference + (i < stride ? 0 : numbers[i - stride]);
+  }
+  return numbers;
+}
+
+/** Positions in mm, less `origin`, three to a point. */
+function positionsOf(places, low, step, origin) {
+  const positions = new Float32Array(places.length);
+  for (let i = 0; i < places.length; ++i) positions[i] = places[i] * step + low[i % 3] - origin[i % 3];
+  return positions;
+}
+
+/** Values are whole numbers of steps; -1 is none, but for labels. */
+function decodeAttribute(json, vertices, faces) {
+  const steps = unpack(json.values, json.on === "vertex" ? vertices : faces);
+  const none = json.labels ? NaN : -1;
+  return {
+    name: json.name, label: json.label, unit: json.unit, labels: json.labels, onFaces: json.on === "face",
+    digits: json.labels ? 0 : Math.max(0, Math.floor(-Math.log10(json.step))), count: steps.length,
+    value: (i) => (steps[i] === none ? NaN : json.low + json.step * steps[i]),
+  };
+}
+
+/** Areas of faces, and the third of those around every vertex. */
+function areasOf({ positions, corners, vertices, faces }) {
+  const ofFace = new Float32Array(faces);
+  const ofVertex = new Float32Array(vertices);
+  for (let f = 0; f < faces; ++f) {
+    const [a, b, c] = corners.subarray(3 * f, 3 * f + 3).map((corner) => 3 * corner);
+    const u = [0, 1, 2].map((k) => positions[b + k] - positions[a + k]);
+    const v = [0, 1, 2].map((k) => positions[c + k] - positions[a + k]);
+    ofFace[f] = Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
+    for (const corner of [a, b, c]) ofVertex[corner / 3] += ofFace[f] / 3;
+  }
+  return { ofFace, ofVertex };
+}
+
+/**
+ * The least and largest value of an attribute; `low` and `high`: the ends of a colour scale, which values of a
+ * hundredth of the area do not stretch far.
+ */
+function rangeOf(attribute, areas) {
+  const area = attribute.onFaces ? areas.ofFace : areas.ofVertex;
+  const order = [...area.keys()].filter((i) => isFinite(attribute.value(i)));
+  if (order.length === 0) return { min: 0, max: 1, low: 0, high: 1 };
+  order.sort((i, j) => attribute.value(i) - attribute.value(j));
+  const min = attribute.value(order[0]);
+  const max = attribute.value(order[order.length - 1]);
+  if (attribute.labels) return { min, max, low: min, high: max };
+  const total = order.reduce((sum, i) => sum + area[i], 0);
+  const atShare = (share) => {
+    let sum = 0;
+    return attribute.value(order.find((i) => (sum += area[i]) >= share * total) ?? order[order.length - 1]);
+  };
+  let low = atShare(0.01);
+  let high = atShare(0.99);
+  const room = 0.5 * (high - low);
+  if (low - room <= min) low = min;
+  if (high + room >= max) high = max;
+  if (low > 0 && low < 0.3 * high) low = 0;
+  return { min, max, low, high };
+}
+
+function decodeSurface(json, origin) {
+  const corners = unpack(json.corners, 3 * json.faces, 3);
+  for (let i = 0; i < corners.length; i += 3) {
+    corners[i + 1] += corners[i];
+    corners[i + 2] += corners[i + 1];
+  }
+  const places = unpack(json.positions, 3 * json.vertices, 3);
+  return {
+    name: json.name, reference: json.reference, vertices: json.vertices, faces: json.faces, step: json.step, places,
+    low: json.low, corners, positions: positionsOf(places, json.low, json.step, origin),
+    attributes: json.attributes.map((attribute) => decodeAttribute(attribute, json.vertices, json.faces)),
+  };
+}
+
+function decodeCenterline(json, origin) {
+  const steps = unpack(json.radius.values, json.nodes);
+  return {
+    nodes: json.nodes, segments: json.segments,
+    positions: positionsOf(unpack(json.positions, 3 * json.nodes, 3), json.low, json.step, origin),
+    ends: unpack(json.ends, 2 * json.segments, 2), radius: (node) => json.radius.low + json.radius.step * steps[node],
+  };
+}
+
+/** Unit normals of vertices, weighted by the areas of their faces. */
+function vertexNormals(positions, corners) {
+  const normals = new Float32Array(positions.length);
+  for (let i = 0; i < corners.length; i += 3) {
+    const a = 3 * corners[i];
+    const b = 3 * corners[i + 1];
+    const c = 3 * corners[i + 2];
+    const ux = positions[b] - positions[a];
+    const uy = positions[b + 1] - positions[a + 1];
+    const uz = positions[b + 2] - positions[a + 2];
+    const vx = positions[c] - positions[a];
+    const vy = positions[c + 1] - positions[a + 1];
+    const vz = positions[c + 2] - positions[a + 2];
+    const n = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    for (const corner of [a, b, c]) {
+      normals[corner] += n[0];
+      normals[corner + 1] += n[1];
+      normals[corner + 2] += n[2];
+    }
+  }
+  for (let i = 0; i < normals.length; i += 3) {
+    const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
+    for (let axis = 0; axis < 3; ++axis) normals[i + axis] /= length;
+  }
+  return normals;
+}
+
+/** A number with as many digits as it takes to tell it from others of its kind. */
+function numberText(value, digits = 3) {
+  if (!isFinite(value)) return "none";
+  const text = value.toFixed(Math.min(digits, 6));
+  return Number(text) === 0 ? text.replace("-", "") : text;
+}

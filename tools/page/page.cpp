@@ -1,0 +1,95 @@
+#include "page/page.h"
+
+#include <cstdio>
+#include <string_view>
+
+#include "vmesh/core/error.h"
+
+#include "command_line/outputs.h"
+#include "page/page_json.h"
+#include "page/page_parts.h"
+
+namespace vmesh::tool {
+namespace {
+
+/// Text of a page's title.
+std::string escaped(std::string_view text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '&') {
+      safe += "&amp;";
+    } else if (c == '<') {
+      safe += "&lt;";
+    } else if (c == '>') {
+      safe += "&gt;";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+/// JSON between <script> tags: nothing in it may look like the end of them.
+std::string script_safe(const std::string& json) {
+  std::string safe;
+  safe.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+/// The template with every "@NAME@" in it replaced; what is put in is not looked at again.
+std::string filled(std::string_view text, const std::vector<std::pair<std::string_view, std::string_view>>& parts) {
+  std::string result;
+  while (!text.empty()) {
+    std::size_t at = text.size();
+    const std::pair<std::string_view, std::string_view>* next = nullptr;
+    for (const auto& part : parts) {
+      const std::size_t found = text.find(part.first);
+      if (found < at) at = found, next = &part;
+    }
+    result += text.substr(0, at);
+    if (!next) break;
+    result += next->second;
+    text.remove_prefix(at + next->first.size());
+  }
+  return result;
+}
+
+}  // namespace
+
+void check_can_make_pages() {
+  if (page_parts().three.empty() || page_parts().controls.empty())
+    throw Unsupported(
+        "--html: this vmesh was built without pages; install libjs-three and build it with -DVMESH_WITH_HTML=ON");
+}
+
+std::string to_html(const Page& page) {
+  check_can_make_pages();
+  const PageParts& parts = page_parts();
+  const Json json = to_json(page);
+  const std::string title = escaped(json["title"].get<std::string>() + " \u2013 vmesh " + page.verb);
+  // Text that is not UTF-8 is repaired, as in every JSON.
+  const std::string data = script_safe(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return filled(parts.page, {{"@TITLE@", title},
+                             {"@STYLE@", parts.style},
+                             {"@DATA@", data},
+                             {"@THREE@", parts.three},
+                             {"@CONTROLS@", parts.controls},
+                             {"@SCRIPT@", parts.script}});
+}
+
+void write_page(const std::filesystem::path& path, const Page& page, Console& console) {
+  const std::string html = to_html(page);
+  write_text(path, html);
+  char size[32];
+  std::snprintf(size, sizeof size, "%.1f MB", static_cast<double>(html.size()) / 1e6);
+  console.log("wrote " + path.string() + ", " + size + ": open it in a browser");
+}
+
+}  // namespace vmesh::tool

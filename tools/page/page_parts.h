@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string_view>
+
+namespace vmesh::tool {
+
+/// What pages are made of; the build puts it into the command (see embed.cmake).
+struct PageParts {
+  std::string_view page, style, script;
+  std::string_view three, controls;  ///< three.js and its OrbitControls; empty: not built in
+};
+const PageParts& page_parts();
+
+}  // namespace vmesh::tool

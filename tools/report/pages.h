@@ -1,0 +1,37 @@
+// What pages of the verbs show.
+#pragma once
+
+#include <optional>
+
+#include "vmesh/tuning/tradeoff.h"
+
+#include "page/page.h"
+#include "report/evaluation_report.h"
+#include "report/summary.h"
+#include "report/table2_report.h"
+
+namespace vmesh::tool {
+
+/// Of a surface that was grown around `grown` with `attributes` as they are written; `reference`: what it was fitted
+/// to, or none.
+Page page_of(const GenerateReport& report, const Centerline& grown, MeshAttributes attributes,
+             const TriMesh* reference);
+
+/// Of a surface that was measured. `attributes` with distances.
+Page page_of(const EvaluateArguments& arguments, const EvaluationReport& report, const TriMesh& mesh,
+             MeshAttributes attributes, const TriMesh* reference, const Centerline* centerline);
+
+/// Of a surface that was fitted; `summary` is what --json writes.
+Page page_of(const FitArguments& arguments, const FitReport& report, const Json& summary, const TriMesh& mesh,
+             MeshAttributes attributes, const TriMesh& reference, const Centerline& centerline);
+
+Page page_of(const Table2Arguments& arguments, const Table2Report& report);
+
+Page page_of(const TradeoffArguments& arguments, const Centerline& centerline, const std::vector<TradeoffPoint>& points,
+             std::vector<ReportTable> tables);
+
+/// Of a motion from `rest` to `moved`, whose `attributes` it has; `summary` is what --json writes.
+Page page_of(const DeformArguments& arguments, const Json& summary, const TriMesh& rest, const TriMesh& moved,
+             MeshAttributes attributes, const Centerline& centerline, PageFrames frames);
+
+}  // namespace vmesh::tool
