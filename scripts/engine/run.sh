@@ -38,10 +38,21 @@ run_snakemake() {
     exit 2
   }
   VMESH_JOB_NAME=vmesh-$(sha256sum <<<"$(uname -n) $results" | cut -c 1-12)
-  export VMESH_JOB_NAME
+  export VMESH_JOB_NAME VMESH_PROGRESS=8
   # Jobs that a run left behind when it was killed would do the same work twice.
   if command -v scancel >/dev/null && [[ "$profile" != */local ]]; then
     scancel --quiet --user "$(id -un)" --name "$VMESH_JOB_NAME" || true
   fi
-  snakemake --snakefile "$snakefile" --directory "$results" --profile "$profile" --nolock "$@"
+  local command=(snakemake --snakefile "$snakefile" --directory "$results" --profile "$profile" --nolock "$@")
+  if [[ " $* " =~ " -n "|" --dry-run " ]]; then
+    "${command[@]}"
+    return
+  fi
+  local log=$results/log/snakemake.log
+  mkdir -p "$results/log"
+  "${command[@]}" --log-handler-script "$root/scripts/engine/progress.py" 8>&2 2>"$log" || {
+    local code=$?
+    echo "$0: not everything finished; Snakemake's own words are in $log" >&2
+    return "$code"
+  }
 }

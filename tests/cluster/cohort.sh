@@ -1,0 +1,138 @@
+#!/usr/bin/env bash
+# cohort.sh VMESH SCRIPTS: scripts/cohort on this machine, then through a Slurm of this machine while a job, the
+# controller and a node with its job are killed; the results must be the same, byte by byte. About a minute and a half.
+set -euo pipefail
+vmesh=$(realpath "$1") scripts=$(realpath "$2")
+source "$(dirname "${BASH_SOURCE[0]}")/slurm.sh"
+need_commands snakemake flock munged slurmctld slurmd sbatch
+
+work=$(mktemp -d /tmp/vmesh-XXXXXX)
+driver=
+clean_up() {
+  local code=$?
+  [[ -z "$driver" ]] || kill -- "-$driver" 2>/dev/null || true
+  stop_slurm
+  if ((code)); then
+    tail -n 40 "$work"/*.log "$work"/slurm/*.log >&2 || true
+  fi
+  rm -rf "$work"
+  exit "$code"
+}
+trap clean_up EXIT
+export VMESH=$vmesh CI=true  # Snakemake then asks for the state of jobs every second, not every ten
+
+make_inputs() {
+  mkdir "$work/trees"
+  for seed in 1 2 3; do "$vmesh" synth --vertices 150 --seed "$seed" -o "$work/trees/small_$seed.swc" --quiet; done
+  for seed in 1 2; do "$vmesh" synth --vertices 5000 --seed "$seed" -o "$work/trees/long_$seed.swc" --quiet; done
+  { cat "$work/trees/small_1.swc" && echo "151 3 0 zero 0 1 150"; } >"$work/trees/damaged.swc"
+  cat >"$work/cohort.yaml" <<CONFIG
+inputs:
+  - files: trees/*.swc
+picture: {width: 200, height: 150}
+cases:
+  long_*: {options: {around: 12}}
+CONFIG
+}
+
+cohort() {
+  "$scripts/cohort/run" "$work/cohort.yaml" "$@"
+}
+
+# Rows of the table without what a case costs, which differs from run to run.
+results_in_table() {
+  python3 -c 'import csv, sys
+for row in csv.DictReader(open(sys.argv[1])):
+    print({name: value for name, value in row.items() if name not in ("seconds", "cpu_seconds", "peak_memory_mb")})' "$1"
+}
+
+same_results() {
+  diff <(results_in_table "$1/table.csv") <(results_in_table "$2/table.csv") || fail "the tables differ"
+  local folder
+  for folder in surfaces pictures; do
+    diff -r "$1/$folder" "$2/$folder" || fail "$folder differ"
+  done
+}
+
+run_locally() {
+  cohort -o "$work/here" 2>"$work/here.log"
+  grep -q "6 cases: 5 ok, 1 failed" "$work/here.log" || fail "not what was expected of the cohort on this machine"
+  grep -q '^damaged,failed,3,.*zero' "$work/here/table.csv" || fail "the table does not say what is damaged"
+  cohort -o "$work/here" 2>"$work/again.log"
+  grep -q "Nothing to be done" "$work/again.log" || fail "a second run does something"
+  touch "$work"/trees/*
+  cohort -o "$work/here" 2>"$work/again.log"
+  grep -q "Nothing to be done" "$work/again.log" || fail "a run after touching the files does something"
+}
+
+# The job that makes the surface of case $1, if it runs.
+job_of() {
+  local number
+  for number in $(squeue --noheader --states RUNNING --format %A); do
+    ! grep -q "status/$1.surface.json" "$work/there/log/slurm/$number.log" 2>/dev/null || echo "$number"
+  done
+}
+
+runs_vmesh() { [[ -n "$(job_of "$1")" ]] && pgrep --full "generate $work/trees/$1.swc" >/dev/null; }
+
+kill_a_job() {
+  wait_for 60 "a job of long_1" runs_vmesh long_1
+  first_job=$(job_of long_1)
+  echo "job $first_job is killed"
+  scancel --signal KILL --full "$first_job"
+}
+
+# Not before it has saved the state of the jobs, every five seconds: what it forgets runs twice, on a node that is then
+# drained for it.
+kill_the_controller() {
+  sleep 6
+  echo "the controller is killed"
+  kill_daemon KILL slurmctld
+  sleep 2
+  start_controller
+  wait_for 20 "an answer of the controller" scontrol ping
+}
+
+kill_the_node() {
+  wait_for 90 "a job of long_2" runs_vmesh long_2
+  local number pids
+  number=$(job_of long_2)
+  echo "the node and its job $number are killed"
+  mapfile -t pids < <(job_pids "$number")
+  kill_daemon KILL slurmd
+  kill -KILL "${pids[@]}" 2>/dev/null || true
+  start_node
+  lost_job=$number
+}
+
+requeued() { [[ "$(scontrol --oneliner show job "$1" | sed -E 's/.* Restarts=([0-9]+).*/\1/')" -ge 1 ]]; }
+
+run_on_cluster() {
+  start_slurm "$work/slurm"
+  setsid "$scripts/cohort/run" "$work/cohort.yaml" -o "$work/there" --profile slurm >"$work/there.log" 2>&1 &
+  driver=$!
+  kill_a_job
+  kill_the_node
+  kill_the_controller
+  local code=0
+  wait "$driver" || code=$?
+  driver=
+  ((code == 0)) || fail "the workflow ended with $code"
+  grep -q "Trying to restart" "$work/there.log" || fail "the job that was killed was not tried again"
+  requeued "$lost_job" || fail "the job of the node that was lost was not taken up again"
+}
+
+change_one_input() {
+  "$vmesh" synth --vertices 160 --seed 9 -o "$work/trees/small_2.swc" --quiet
+  cohort -o "$work/there" --profile slurm 2>"$work/changed.log"
+  grep -Eq '^surface +1 ' "$work/changed.log" || fail "one input changed, and not one surface was made"
+}
+
+make_inputs
+run_locally
+echo "here: $SECONDS s"
+run_on_cluster
+same_results "$work/here" "$work/there"
+echo "there: $SECONDS s"
+change_one_input
+echo "the same results through Slurm, with a job, the controller and a node killed; $SECONDS s"
