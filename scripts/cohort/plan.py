@@ -12,13 +12,14 @@ import glob
 import json
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import yaml
 
-from files import Hashes, PlanError, content_key, read_json, write_json
+sys.path.append(str(Path(__file__).resolve().parents[1] / "engine"))
+from files import Hashes, PlanError, content_key, read_json, write_changed
+from vmesh_command import arguments_of, parsed, version_of
 
 CENTERLINES = (".swc", ".vtp", ".vtk", ".mrk.json", ".json", ".csv", ".vmv", ".ctgr", ".pth", ".gxl", ".xml", ".am",
                ".dat", ".h5")
@@ -67,18 +68,6 @@ def merged(*levels):
             both_dicts = isinstance(level[key], dict) and isinstance(result[key], dict)
             result[key] = {**result[key], **level[key]} if both_dicts else level[key]
     return result
-
-
-def arguments_of(options):
-    """{around: 8, tree: true, label: null} as --around 8 --tree."""
-    arguments = []
-    for name, value in options.items():
-        if value is None or value is False:
-            continue
-        arguments.append(f"--{name}")
-        if value is not True:
-            arguments.append(str(value))
-    return arguments
 
 
 def stem_of(path):
@@ -229,13 +218,6 @@ def config_of_folder(folder):
     return {"inputs": [{"files": [glob.escape(name) for name in found if not name.endswith(".segments.csv")]}]}
 
 
-def version_of(vmesh):
-    try:
-        return subprocess.run([vmesh, "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    except (OSError, subprocess.CalledProcessError) as error:
-        raise PlanError(f"{vmesh} does not run: {error}") from None
-
-
 def forget(out, cases, retry_failed):
     """Removes the status of cases whose files are gone, or that failed, so that they run again."""
     for name, case in cases.items():
@@ -247,14 +229,6 @@ def forget(out, cases, retry_failed):
             gone = status.get(made) and not (out / status[made]).exists()
             if gone or (retry_failed and status["exit_code"] != 0):
                 path.unlink(missing_ok=True)
-
-
-def parsed(text):
-    """NAME=VALUE of the command line, VALUE as in a configuration."""
-    name, equals, value = text.partition("=")
-    if not equals:
-        raise PlanError(f"--set {text}: expected NAME=VALUE, as in --set label=2 or --set tree=true")
-    return name, yaml.safe_load(value)
 
 
 def make_plan(arguments):
@@ -278,8 +252,7 @@ def make_plan(arguments):
     for case in cases.values():
         add_keys(case, version)
     plan = {"schema": "vmesh.cohort/1", "vmesh": arguments.vmesh, "version": version, "cases": cases}
-    if read_json(out / "plan.json") != plan:
-        write_json(out / "plan.json", plan)
+    write_changed(out / "plan.json", plan)
     forget(out, cases, arguments.retry_failed)
     return out
 

@@ -12,6 +12,7 @@ import sys
 import time
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "engine"))
 from files import read_json, write_json
 
 CANNOT_WRITE, INTERRUPTED = 5, 130  # exit codes of vmesh

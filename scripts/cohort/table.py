@@ -8,6 +8,7 @@ import os
 import sys
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "engine"))
 from files import read_json, write_text
 
 # Column, where the summary has it, and its digits in the Markdown table. Relative: in local radii.

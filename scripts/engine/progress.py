@@ -15,6 +15,17 @@ def say(text):
     os.write(int(os.environ.get("VMESH_PROGRESS", "2")), f"{text}\n".encode())
 
 
+def say_errors(log):
+    """What vmesh said of an error in its log."""
+    try:
+        with open(log, errors="replace") as lines:
+            for line in lines:
+                if line.startswith("vmesh: "):
+                    say(f"  {line.rstrip()}")
+    except OSError:
+        say(f"  there is no {log}")
+
+
 def log_handler(message):
     global last_said
     level, text = message["level"], str(message.get("msg") or "")
@@ -26,5 +37,7 @@ def log_handler(message):
     elif level in ("job_error", "group_error"):
         files = message.get("output") or [file for job in message.get("job_error_info", []) for file in job["output"]]
         say(f"not finished: {', '.join(files)} {text}".rstrip())
+        for log in message.get("log") or []:
+            say_errors(log)
     elif level in ("error", "warning", "run_info") or text.startswith(WORTH_SAYING):
         say(text)

@@ -48,6 +48,9 @@ run_snakemake() {
     "${command[@]}"
     return
   fi
+  if [[ "$profile" == */local ]]; then  # what runs at a time fits into the memory
+    command+=(--resources "mem_mb=$(awk '/^MemTotal/ {print int($2 / 1024 * 0.9)}' /proc/meminfo)")
+  fi
   local log=$results/log/snakemake.log
   mkdir -p "$results/log"
   "${command[@]}" --log-handler-script "$root/scripts/engine/progress.py" 8>&2 2>"$log" || {

@@ -39,8 +39,23 @@ def write_json(path, content):
     write_text(path, json.dumps(content, indent=1) + "\n")
 
 
+def write_changed(path, content):
+    """A file that is the same stays as old as it is."""
+    if read_json(path) != content:
+        write_json(path, content)
+
+
 def content_key(*content):
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def hash_of(path):
+    """SHA-256 of a file's content."""
+    digest = hashlib.sha256()
+    with open(path, "rb") as file:
+        for block in iter(lambda: file.read(1 << 20), b""):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def files_of(path):
@@ -68,11 +83,7 @@ class Hashes:
         if known and known[:4] == mark:
             digest = known[4]
         else:
-            with open(path, "rb") as file:
-                digest = hashlib.sha256()
-                for block in iter(lambda: file.read(1 << 20), b""):
-                    digest.update(block)
-                digest = digest.hexdigest()
+            digest = hash_of(path)
         self.now[str(path)] = [*mark, digest]
         return digest
 
