@@ -133,8 +133,6 @@ def fit_reference(options, name, path, folder):
     except (KeyError, IndexError, ValueError) as error:
         raise PlanError(f"options: fit: {error}; known are {{case}}, {{parent}} and {{stem}}") from None
     options["fit"] = os.path.join(folder, reference)
-    if not os.path.exists(options["fit"]):
-        raise PlanError(f"case {name}: fit: there is no {options['fit']}; check the name")
     return Path(options["fit"])
 
 

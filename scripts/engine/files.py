@@ -88,6 +88,13 @@ class Hashes:
         return digest
 
     def of_input(self, path):
+        """Of what cannot be read it is the reason, which vmesh will tell as well."""
+        try:
+            return self.of_readable(path)
+        except OSError as error:
+            return error.strerror
+
+    def of_readable(self, path):
         files = files_of(path)
         if files == [path]:
             return self.of_file(path)
