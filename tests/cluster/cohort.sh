@@ -6,21 +6,8 @@ vmesh=$(realpath "$1") scripts=$(realpath "$2")
 source "$(dirname "${BASH_SOURCE[0]}")/slurm.sh"
 need_commands snakemake flock munged slurmctld slurmd sbatch
 
-work=$(mktemp -d /tmp/vmesh-XXXXXX)
-driver=
-say() { echo "$SECONDS s: $*"; }
-clean_up() {
-  local code=$?
-  [[ -z "$driver" ]] || kill -- "-$driver" 2>/dev/null || true
-  stop_slurm
-  if ((code)); then
-    tail -n 40 "$work"/*.log "$work"/slurm/*.log >&2 || true
-  fi
-  [[ -n "${KEEP:-}" ]] || rm -rf "$work"
-  exit "$code"
-}
-trap clean_up EXIT
-export VMESH=$vmesh CI=true  # Snakemake then asks for the state of jobs every second, not every ten
+begin_test
+export VMESH=$vmesh
 
 make_inputs() {
   mkdir "$work/trees"
@@ -66,73 +53,28 @@ run_locally() {
   grep -q "Nothing to be done" "$work/again.log" || fail "a run after touching the files does something"
 }
 
-# The job that makes the surface of case $1, if it runs.
-job_of() {
-  local number
-  for number in $(squeue --noheader --states RUNNING --format %A); do
-    ! grep -q "status/$1.surface.json" "$work/there/log/slurm/$number.log" 2>/dev/null || echo "$number"
-  done
-}
-
-runs_vmesh() { [[ -n "$(job_of "$1")" ]] && pgrep --full "generate $work/trees/$1.swc" >/dev/null; }
-
-kill_a_job() {
-  wait_for 60 "a job of long_1" runs_vmesh long_1
-  first_job=$(job_of long_1)
-  say "job $first_job is killed"
-  scancel --signal KILL --full "$first_job"
-}
-
 only_long_jobs_run() {
-  [[ -z "$(squeue --noheader --states PENDING,COMPLETING --format %A)" ]] || return 1
-  local number
-  for number in $(squeue --noheader --states RUNNING --format %A); do
-    grep -q "status/long_.*.surface.json" "$work/there/log/slurm/$number.log" || return 1
-  done
-  [[ -n "${number:-}" ]]
+  local running
+  running=$(squeue --noheader --format %A)
+  [[ -n "$running" && "$(sort <<<"$running")" == "$(jobs_of "$work/there" 'status/long_.*surface' | sort)" ]]
 }
-
-# While nothing begins or ends: the state of the jobs is saved five seconds later, and what the controller forgets runs
-# twice, on a node that Slurm then drains for it.
-kill_the_controller() {
-  wait_for 120 "a time when only the long cases are left" only_long_jobs_run
-  sleep 6
-  say "the controller is killed"
-  kill_daemon KILL slurmctld
-  sleep 2
-  start_controller
-  wait_for 20 "an answer of the controller" scontrol ping
-}
-
-kill_the_node() {
-  local pids
-  lost_job=$(squeue --noheader --states RUNNING --format %A | tail -n 1)
-  [[ -n "$lost_job" ]] || fail "the long cases are too short: none was left to kill"
-  say "the node and its job $lost_job are killed"
-  mapfile -t pids < <(job_pids "$lost_job")
-  kill_daemon KILL slurmd
-  kill -KILL "${pids[@]}" 2>/dev/null || true
-  start_node
-}
-
-requeued() { [[ "$(scontrol --oneliner show job "$1" | sed -E 's/.* Restarts=([0-9]+).*/\1/')" -ge 1 ]]; }
-
-driver_ended() { ! kill -0 "$driver"; }
 
 run_on_cluster() {
   start_slurm "$work/slurm"
-  setsid "$scripts/cohort/run" "$work/cohort.yaml" -o "$work/there" --profile slurm >"$work/there.log" 2>&1 &
-  driver=$!
-  kill_a_job
-  kill_the_controller
-  kill_the_node
-  local code=0
-  wait_for 300 "the end of the workflow" driver_ended
-  wait "$driver" || code=$?
-  driver=
-  ((code == 0)) || fail "the workflow ended with $code"
+  start_driver "$work/there.log" "$scripts/cohort/run" "$work/cohort.yaml" -o "$work/there" --profile slurm
+  wait_for 60 "a job of long_1" runs "$work/there" status/long_1.surface
+  kill_job "$(jobs_of "$work/there" status/long_1.surface)"
+  # While nothing begins or ends: the state of the jobs is saved five seconds later, and what the controller forgets
+  # runs twice, on a node that Slurm then drains for it.
+  wait_for 120 "a time when only the long cases are left" only_long_jobs_run
+  sleep 6
+  kill_and_restart_controller
+  local lost
+  lost=$(jobs_of "$work/there" status/long_ | tail -n 1)
+  [[ -n "$lost" ]] || fail "the long cases are too short: none was left to kill"
+  kill_node_and_job "$lost"
+  finish_driver
   grep -q "Trying to restart" "$work/there.log" || fail "the job that was killed was not tried again"
-  requeued "$lost_job" || fail "the job of the node that was lost was not taken up again"
 }
 
 change_one_input() {

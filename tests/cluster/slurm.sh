@@ -14,6 +14,8 @@ need_commands() {
   done
 }
 
+say() { echo "$SECONDS s: $*"; }
+
 fail() {
   echo "FAILED: $*" >&2
   exit 1
@@ -117,6 +119,43 @@ kill_daemon() {
   while kill -0 "$pid" 2>/dev/null; do sleep .1; done
 }
 
+# The running jobs of the workflow in the folder RESULTS that make FILE, a regular expression.
+jobs_of() {
+  local number
+  for number in $(squeue --noheader --states RUNNING --format %A); do
+    ! grep -Eq "output: .*$2" "$1/log/slurm/$number.log" 2>/dev/null || echo "$number"
+  done
+}
+
+runs() { [[ -n "$(jobs_of "$@")" ]]; }
+
+requeued() { [[ "$(scontrol --oneliner show job "$1" | sed -E 's/.* Restarts=([0-9]+).*/\1/')" -ge 1 ]]; }
+
+kill_job() {
+  say "job $1 is killed"
+  scancel --signal KILL --full "$1"
+}
+
+# With it the processes of job NUMBER. The node comes back once Slurm has given it up and has put the job back into the
+# queue, after half a minute; were it back at once, Slurm would miss the job after two minutes only.
+kill_node_and_job() {
+  local pids
+  say "the node and its job $1 are killed"
+  mapfile -t pids < <(job_pids "$1")
+  kill_daemon KILL slurmd
+  kill -KILL "${pids[@]}" 2>/dev/null || true
+  wait_for 60 "the end of the node's job" requeued "$1"
+  start_node
+}
+
+kill_and_restart_controller() {
+  say "the controller is killed"
+  kill_daemon KILL slurmctld
+  sleep 2
+  start_controller
+  wait_for 20 "an answer of the controller" scontrol ping
+}
+
 # The processes of job NUMBER, its slurmstepd first: Slurm's session of the job.
 job_pids() {
   pgrep --full "slurmstepd: \[$1\." || true
@@ -129,4 +168,40 @@ stop_slurm() {
   sleep 1
   local daemon
   for daemon in slurmd slurmctld munged; do kill_daemon TERM "$daemon"; done
+}
+
+# A folder for a test, in $work; it and what the test started go when the test ends. KEEP=1 keeps the folder.
+begin_test() {
+  work=$(mktemp -d /tmp/vmesh-XXXXXX)
+  driver=
+  trap end_test EXIT
+  export CI=true  # Snakemake then asks for the state of jobs every second, not every ten
+}
+
+end_test() {
+  local code=$?
+  [[ -z "$driver" ]] || kill -- "-$driver" 2>/dev/null || true
+  stop_slurm
+  ((code == 0)) || tail -n 40 "$work"/*.log "$work"/slurm/*.log >&2 || true
+  [[ -n "${KEEP:-}" ]] || rm -rf "$work"
+  exit "$code"
+}
+
+# Runs a command in the background, what it says in LOG; its process group is $driver.
+start_driver() {
+  local log=$1
+  shift
+  setsid "$@" >"$log" 2>&1 &
+  driver=$!
+}
+
+driver_ended() { ! kill -0 "$driver"; }
+
+# Until the command ends, with 0.
+finish_driver() {
+  local code=0
+  wait_for 300 "the end of the workflow" driver_ended
+  wait "$driver" || code=$?
+  driver=
+  ((code == 0)) || fail "the workflow ended with $code"
 }
