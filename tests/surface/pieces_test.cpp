@@ -55,7 +55,7 @@ TEST(Division, HasAPieceForEveryJunctionAndASeamBetweenTwo) {
   EXPECT_EQ(divided.division.seams.size(), 4u);
   std::map<RingPlace, int> sides;
   for (const PiecePlan& plan : divided.division.plans) {
-    for (const RingPlace& seam : seams_of(divided.tubes, plan)) ++sides[seam];
+    for (const RingPlace& seam : seams_of(RingCounts(divided.tubes), plan)) ++sides[seam];
   }
   for (const RingPlace& seam : divided.division.seams) EXPECT_EQ(sides[seam], 2);
 }
@@ -90,7 +90,7 @@ TEST(Division, LeavesNoSeamWithOnePieceOnBothSides) {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     const Divided divided(testing::plausible_tree(seed, 2));
     for (const PiecePlan& plan : divided.division.plans) {
-      std::vector<RingPlace> seams = seams_of(divided.tubes, plan);
+      std::vector<RingPlace> seams = seams_of(RingCounts(divided.tubes), plan);
       std::sort(seams.begin(), seams.end());
       EXPECT_EQ(std::adjacent_find(seams.begin(), seams.end()), seams.end());
     }
@@ -99,11 +99,11 @@ TEST(Division, LeavesNoSeamWithOnePieceOnBothSides) {
 
 TEST(Division, IsCoarserWithoutSomeSeams) {
   const Divided divided(chain_of_forks(5));
-  const Division fewer = regrouped(divided.tubes, divided.division, {divided.division.seams[1]}, {});
+  const Division fewer = regrouped(RingCounts(divided.tubes), divided.division, {divided.division.seams[1]}, {});
   EXPECT_EQ(fewer.plans.size(), 4u);
   EXPECT_EQ(fewer.seams.size(), 3u);
   const auto& plans = divided.division.plans;
-  const Division joined = regrouped(divided.tubes, divided.division, {}, {{anchor_of(plans[0]), anchor_of(plans[4])}});
+  const Division joined = regrouped(RingCounts(divided.tubes), divided.division, {}, {{anchor_of(plans[0]), anchor_of(plans[4])}});
   EXPECT_EQ(joined.plans.size(), 4u);
   EXPECT_EQ(joined.seams, divided.division.seams);
 }

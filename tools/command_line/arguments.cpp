@@ -109,6 +109,15 @@ GenerateArguments settled(GenerateArguments arguments) {
   return arguments;
 }
 
+/// A part's surface goes beside it.
+void settle_generate(GenerateArguments& arguments) {
+  if (is_part(arguments.input.path) && arguments.output.empty() && arguments.input.more.empty()) {
+    arguments.output = arguments.input.path;
+    arguments.output.replace_extension(kPartSurfaceExtension);
+  }
+  settle_output(arguments);
+}
+
 // What the presets stand for can be overridden by its own option, wherever that is on the line.
 void add_preset(CLI::App& verb, GenerateOptions& options) {
   CLI::Option* preset = verb.add_option("--preset", "low: 6 vertices around; high: 12, about four times as many in all")
@@ -128,11 +137,7 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   add_output_after_several(verb, arguments.output, "surface (.ply, .vtp, .stl, .obj, .off, .glb)");
   add_writing(verb, arguments.writing);
   verb.add_flag("--bones", arguments.bones, "a .glb gets bones along the centerline, to bend it by");
-  for_each_generate_option(arguments.options,
-                           [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
-                             verb.add_option(flag, member, help)->check(in_range(low, high))->capture_default_str();
-                           });
-  add_preset(verb, arguments.options);
+  add_growth(verb, arguments);
   verb.add_option_function<std::string>(
           "--growth", [&arguments](const std::string& text) { arguments.options.growth = parse_growth_method(text); },
           "guided: topology as the centerline's; paper: a single seed, as published")
@@ -157,27 +162,7 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
       ->excludes("--around")
       ->excludes("--preset")
       ->excludes("--max-error");
-  verb.add_option_function<std::string>(
-          "--placement", [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },
-          "inscribed: vertices on the boundary; balanced: lifted off it, so that volume is kept")
-      ->check(CLI::IsMember({"inscribed", "balanced"}))
-      ->default_str("balanced");
   add_ends(verb, arguments);
-  verb.add_option("--threads", arguments.options.threads, "to work on; 0: as many as there are; the result is the same")
-      ->check(in_range(0, 4096))
-      ->capture_default_str();
-  verb.add_option_function<std::string>(
-          "--overlap",
-          [&arguments](const std::string& text) {
-            arguments.overlap = text == "separate" ? OverlapHandling::separate : OverlapHandling::keep;
-          },
-          "where vessels touch that are not neighbours: separate them by narrowing, and by moving those that cross; or "
-          "keep them as they are: the surface then intersects itself there and is refused")
-      ->check(CLI::IsMember({"keep", "separate"}))
-      ->default_str("separate");
-  verb.add_option("--gap", arguments.gap, "free space between vessels below which they touch, in smaller radii")
-      ->check(in_range(0.001, 1.0))
-      ->capture_default_str();
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
                 "self-intersections, of the expected topology, and holds every centerline node");
@@ -392,6 +377,34 @@ bool ran_help(const CLI::App& app, const HelpArguments& arguments) {
 
 }  // namespace
 
+void add_growth(CLI::App& verb, GenerateArguments& arguments) {
+  for_each_generate_option(arguments.options,
+                           [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
+                             verb.add_option(flag, member, help)->check(in_range(low, high))->capture_default_str();
+                           });
+  add_preset(verb, arguments.options);
+  verb.add_option_function<std::string>(
+          "--placement", [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },
+          "inscribed: vertices on the boundary; balanced: lifted off it, so that volume is kept")
+      ->check(CLI::IsMember({"inscribed", "balanced"}))
+      ->default_str("balanced");
+  verb.add_option("--threads", arguments.options.threads, "to work on; 0: as many as there are; the result is the same")
+      ->check(in_range(0, 4096))
+      ->capture_default_str();
+  verb.add_option_function<std::string>(
+          "--overlap",
+          [&arguments](const std::string& text) {
+            arguments.overlap = text == "separate" ? OverlapHandling::separate : OverlapHandling::keep;
+          },
+          "where vessels touch that are not neighbours: separate them by narrowing, and by moving those that cross; or "
+          "keep them as they are: the surface then intersects itself there and is refused")
+      ->check(CLI::IsMember({"keep", "separate"}))
+      ->default_str("separate");
+  verb.add_option("--gap", arguments.gap, "free space between vessels below which they touch, in smaller radii")
+      ->check(in_range(0.001, 1.0))
+      ->capture_default_str();
+}
+
 std::string_view to_string(OverlapHandling overlap) {
   return overlap == OverlapHandling::separate ? "separate" : "keep";
 }
@@ -423,6 +436,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   DeformArguments deform;
   Table1Arguments table1;
   FitArguments fit;
+  SplitArguments split;
+  JoinArguments join;
   add_generate(app, generate);
   add_info(app, info);
   add_synth(app, synth);
@@ -437,6 +452,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   add_deform(app, deform);
   add_table1(app, table1);
   add_fit(app, fit);
+  add_split(app, split);
+  add_join(app, join);
   HelpArguments help;
   add_help(app, help);
   if (argc > 1 && argv[1][0] != '-') check_verb(app, argv[1]);
@@ -452,7 +469,9 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   }
   exit_code = kOk;
   if (ran_help(app, help)) return std::nullopt;
-  if (app.got_subcommand("generate")) settle_output(generate);
+  if (app.got_subcommand("generate")) settle_generate(generate);
+  if (app.got_subcommand("split")) settle_output(split);
+  if (app.got_subcommand("join")) settle_output(join);
   if (app.got_subcommand("synth")) settle_output(synth);
   if (app.got_subcommand("convert")) settle_output(convert);
   if (app.got_subcommand("render")) settle_output(render);
@@ -473,6 +492,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   if (app.got_subcommand("deform")) return deform;
   if (app.got_subcommand("table1")) return table1;
   if (app.got_subcommand("fit")) return fit;
+  if (app.got_subcommand("split")) return split;
+  if (app.got_subcommand("join")) return join;
   if (app.got_subcommand("evaluate")) return evaluate;
   return render;
 }

@@ -13,6 +13,7 @@
 #include "vmesh/comparison/method_comparison.h"
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/io/centerline_io.h"
+#include "vmesh/parts/part_files.h"
 #include "vmesh/reference/reference_surface.h"
 #include "vmesh/render/render.h"
 #include "vmesh/skeleton/extract_centerline.h"
@@ -195,9 +196,28 @@ struct Table1Arguments {
   std::string format = "text";   ///< of stdout: text, markdown or csv
 };
 
+struct SplitArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;  ///< folder
+  double vertices = 1'000'000;   ///< of a part's surface, about
+  GenerateArguments generate;    ///< its options of growth
+};
+
+struct JoinArguments {
+  CommonArguments common;
+  std::filesystem::path folder;
+  std::filesystem::path output;
+  int threads = 0;  ///< 0: as many as there are
+};
+
 using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments,
                                EvaluateArguments, ReferenceArguments, ConesArguments, CenterlineArguments,
-                               Table2Arguments, TradeoffArguments, DeformArguments, Table1Arguments, FitArguments>;
+                               Table2Arguments, TradeoffArguments, DeformArguments, Table1Arguments, FitArguments,
+                               SplitArguments, JoinArguments>;
+
+/// Whether the file is a part of a surface to be grown, by its name.
+bool is_part(const std::filesystem::path& path);
 
 /// Calls `visit(flag, member, low, high, help)` for every option of the growth. The one list behind the command line
 /// and the summary.

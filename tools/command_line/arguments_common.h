@@ -79,6 +79,13 @@ void add_table2(CLI::App& app, Table2Arguments& arguments);
 void add_tradeoff(CLI::App& app, TradeoffArguments& arguments);
 void add_fit(CLI::App& app, FitArguments& arguments);
 
+/// How surfaces grow: the options that generate and split have in common.
+void add_growth(CLI::App& verb, GenerateArguments& arguments);
+
+/// The verbs for surfaces in parts.
+void add_split(CLI::App& app, SplitArguments& arguments);
+void add_join(CLI::App& app, JoinArguments& arguments);
+
 /// What makes a surface of an image.
 void add_image_options(CLI::App& verb, ReferenceOptions& options);
 /// How a centerline is extracted.

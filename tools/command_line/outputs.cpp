@@ -131,13 +131,17 @@ void add_quality(std::vector<MeshAttribute>& attributes) {
 
 }  // namespace
 
+void add_for_viewers(const std::string& extension, std::vector<MeshAttribute>& attributes) {
+  if (extension == ".ply" || extension == ".glb") add_colors(attributes);
+  if (extension == ".ply") add_quality(attributes);
+}
+
 void write_surface(const fs::path& path, const TriMesh& mesh, MeshAttributes attributes, SurfaceMetadata metadata,
                    const WritingArguments& writing, const SurfaceSkin* skin) {
   const std::string extension = extension_of(path);
   if (writing.attributes != "all") attributes.face.clear();
   if (writing.attributes == "none") attributes.vertex.clear();
-  if (extension == ".ply" || extension == ".glb") add_colors(attributes.vertex);
-  if (extension == ".ply") add_quality(attributes.vertex);
+  add_for_viewers(extension, attributes.vertex);
   metadata.unit = writing.unit;
   metadata.space = writing.space;
   vmesh::write_surface(path, mesh, attributes, metadata, skin);

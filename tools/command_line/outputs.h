@@ -33,6 +33,9 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, MeshAttributes attributes,
                    SurfaceMetadata metadata, const WritingArguments& writing, const SurfaceSkin* skin = nullptr);
 
+/// What write_surface() adds to the attributes of vertices for this extension: colours, and in PLY the quality.
+void add_for_viewers(const std::string& extension, std::vector<MeshAttribute>& attributes);
+
 /// Throws UsageError for a unit or frame that the format does not have.
 void check_writing(const std::filesystem::path& path, const WritingArguments& writing);
 

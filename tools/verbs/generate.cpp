@@ -169,6 +169,7 @@ GrownSurface grow(GenerateReport& report, const PreparedCenterline& prepared, Ge
 }  // namespace
 
 int run(const GenerateArguments& given, Console& console) {
+  if (is_part(given.input.path)) return run_part(given, console);
   check_arguments(given);
   GenerateArguments arguments = given;  // a budget chooses some of them
   apply_budget_to_fit(arguments);

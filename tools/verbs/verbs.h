@@ -20,5 +20,9 @@ int run(const TradeoffArguments& arguments, Console& console);
 int run(const DeformArguments& arguments, Console& console);
 int run(const Table1Arguments& arguments, Console& console);
 int run(const FitArguments& arguments, Console& console);
+int run(const SplitArguments& arguments, Console& console);
+int run(const JoinArguments& arguments, Console& console);
+/// A part of a surface.
+int run_part(const GenerateArguments& arguments, Console& console);
 
 }  // namespace vmesh::tool

@@ -126,15 +126,25 @@ class Simplifier {
 
 }  // namespace
 
+std::size_t piece_at(std::span<const Piece> pieces, double t) {
+  const auto above = std::upper_bound(pieces.begin() + 1, pieces.end(), t,
+                                      [](double u, const Piece& p) { return u < p.begin; });
+  return static_cast<std::size_t>(above - pieces.begin() - 1);
+}
+
+SimplifiedCenterline::Place place_on(std::span<const Piece> pieces, double t) {
+  const std::size_t i = piece_at(pieces, t);
+  const Piece& piece = pieces[i];
+  const double piece_end = i + 1 == pieces.size() ? 1 : pieces[i + 1].begin;
+  const double length = piece_end - piece.begin;
+  const double share = length > 0 ? std::clamp((t - piece.begin) / length, 0.0, 1.0) : 0;
+  return {piece.segment, (1 - share) * piece.t_first + share * piece.t_last};
+}
+
 SimplifiedCenterline::Place SimplifiedCenterline::original(Index cone, double t) const {
   if (cone >= centerline.segments().size())
     return {static_cast<Index>(cone - centerline.segments().size() + pieces.size()), t};
-  const auto begin = pieces.begin() + offsets[cone], end = pieces.begin() + offsets[cone + 1];
-  const auto piece = std::upper_bound(begin + 1, end, t, [](double u, const Piece& p) { return u < p.begin; }) - 1;
-  const double piece_end = piece + 1 == end ? 1 : (piece + 1)->begin;
-  const double length = piece_end - piece->begin;
-  const double share = length > 0 ? std::clamp((t - piece->begin) / length, 0.0, 1.0) : 0;
-  return {piece->segment, (1 - share) * piece->t_first + share * piece->t_last};
+  return place_on(std::span(pieces).subspan(offsets[cone], offsets[cone + 1] - offsets[cone]), t);
 }
 
 SimplifiedCenterline simplify(const Centerline& centerline, const std::function<double(Index)>& tolerance) {

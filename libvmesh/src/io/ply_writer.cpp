@@ -1,6 +1,10 @@
 #include <algorithm>
 #include <ostream>
 
+#include "vmesh/core/atomic_file.h"
+#include "vmesh/core/error.h"
+#include "vmesh/io/ply_stream.h"
+
 #include "bytes.h"
 #include "comments.h"
 #include "formats.h"
@@ -37,34 +41,100 @@ std::string word(const std::string& name) {
   return result;
 }
 
-}  // namespace
-
-void write_ply(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-               const SurfaceMetadata& metadata) {
+std::string header_of(std::size_t vertices, std::size_t faces, const MeshAttributes& attributes,
+                      const SurfaceMetadata& metadata) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\n" + comments(metadata, "comment ");
   for (const auto& a : attributes.face) {
     if (a.name == kSkewnessName) bytes += std::string(kSkewnessComment) + "\n";
   }
-  bytes += "element vertex " + std::to_string(mesh.vertices.size()) + "\n";
+  bytes += "element vertex " + std::to_string(vertices) + "\n";
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) bytes += std::string("property double ") + name + "\n";
   for (const auto& a : attributes.vertex) declare(bytes, a, word(a.name));
-  bytes += "element face " + std::to_string(mesh.faces.size()) + "\nproperty list uchar int vertex_indices\n";
+  bytes += "element face " + std::to_string(faces) + "\nproperty list uchar int vertex_indices\n";
   for (const auto& a : attributes.face) declare(bytes, a, a.name == kSkewnessName ? "quality" : word(a.name));
   bytes += "end_header\n";
-  const auto normals = vertex_normals(mesh);
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    for (const double x : mesh.vertices[v]) store(bytes, x);
+  return bytes;
+}
+
+void write_vertices(std::ostream& out, std::string& bytes, std::span<const Vec3> positions,
+                    std::span<const Vec3> normals, const std::vector<MeshAttribute>& attributes) {
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    for (const double x : positions[v]) store(bytes, x);
     for (const double x : normals[v]) store(bytes, x);
-    for (const auto& a : attributes.vertex) store_value(bytes, a, v);
+    for (const auto& a : attributes) store_value(bytes, a, v);
     write_blocks(out, bytes);
   }
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+}
+
+void write_faces(std::ostream& out, std::string& bytes, std::span<const Triangle> faces,
+                 const std::vector<MeshAttribute>& attributes) {
+  for (std::size_t f = 0; f < faces.size(); ++f) {
     store(bytes, std::uint8_t{3});
-    for (const Index v : mesh.faces[f]) store(bytes, static_cast<std::int32_t>(v));
-    for (const auto& a : attributes.face) store_value(bytes, a, f);
+    for (const Index v : faces[f]) store(bytes, static_cast<std::int32_t>(v));
+    for (const auto& a : attributes) store_value(bytes, a, f);
     write_blocks(out, bytes);
   }
+}
+
+}  // namespace
+
+void write_ply(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+               const SurfaceMetadata& metadata) {
+  std::string bytes = header_of(mesh.vertices.size(), mesh.faces.size(), attributes, metadata);
+  write_vertices(out, bytes, mesh.vertices, vertex_normals(mesh), attributes.vertex);
+  write_faces(out, bytes, mesh.faces, attributes.face);
   write_out(out, bytes);
 }
 
 }  // namespace vmesh::io
+
+namespace vmesh {
+namespace {
+
+void check_columns(const std::vector<MeshAttribute>& attributes, std::size_t declared, std::size_t count) {
+  bool good = attributes.size() == declared;
+  for (const MeshAttribute& a : attributes) good = good && a.values.size() == count;
+  if (!good) throw InvalidInput("a block of a surface does not have the attributes that were declared");
+}
+
+}  // namespace
+
+PlyStream::PlyStream(const std::filesystem::path& path, std::size_t vertices, std::size_t faces,
+                     const MeshAttributes& declared, const SurfaceMetadata& metadata)
+    : name_(path.string()),
+      vertex_attributes_(declared.vertex.size()),
+      face_attributes_(declared.face.size()),
+      vertices_left_(vertices),
+      faces_left_(faces) {
+  if (vertices >= 0x80000000 || faces >= 0x80000000)
+    throw InvalidInput(name_ + ": the surface has too many vertices or faces for its file format (2^31)");
+  file_ = std::make_unique<AtomicFile>(path);
+  bytes_ = io::header_of(vertices, faces, declared, metadata);
+}
+
+PlyStream::~PlyStream() = default;
+
+void PlyStream::add_vertices(std::span<const Vec3> positions, std::span<const Vec3> normals,
+                             const std::vector<MeshAttribute>& attributes) {
+  check_columns(attributes, vertex_attributes_, positions.size());
+  if (normals.size() != positions.size() || positions.size() > vertices_left_)
+    throw InvalidInput(name_ + ": more vertices than were declared, or normals for others");
+  vertices_left_ -= positions.size();
+  io::write_vertices(file_->stream(), bytes_, positions, normals, attributes);
+}
+
+void PlyStream::add_faces(std::span<const Triangle> faces, const std::vector<MeshAttribute>& attributes) {
+  check_columns(attributes, face_attributes_, faces.size());
+  if (vertices_left_ > 0 || faces.size() > faces_left_)
+    throw InvalidInput(name_ + ": faces come after all vertices, no more than were declared");
+  faces_left_ -= faces.size();
+  io::write_faces(file_->stream(), bytes_, faces, attributes);
+}
+
+void PlyStream::commit() {
+  if (vertices_left_ > 0 || faces_left_ > 0) throw InvalidInput(name_ + ": fewer vertices or faces than were declared");
+  io::write_out(file_->stream(), bytes_);
+  file_->commit();
+}
+
+}  // namespace vmesh

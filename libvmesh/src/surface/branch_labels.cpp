@@ -6,10 +6,7 @@
 #include "vmesh/core/error.h"
 
 namespace vmesh {
-namespace {
-
-/// The label of every segment, and of every isolated node behind them.
-std::vector<Index> labels_of_bindings(const Centerline& centerline) {
+std::vector<Index> branch_label_of_cones(const Centerline& centerline) {
   const std::vector<Branch> branches = find_branches(centerline);
   std::vector<Index> labels(centerline.segments().size(), kNone);
   for (Index b = 0; b < branches.size(); ++b) {
@@ -22,9 +19,7 @@ std::vector<Index> labels_of_bindings(const Centerline& centerline) {
   return labels;
 }
 
-Index most_frequent(Index a, Index b, Index c) { return b == c ? b : a == b || a == c ? a : std::min({a, b, c}); }
-
-}  // namespace
+Index label_of_face(Index a, Index b, Index c) { return b == c ? b : a == b || a == c ? a : std::min({a, b, c}); }
 
 BranchLabels label_branches(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
                             const Centerline& centerline) {
@@ -32,7 +27,7 @@ BranchLabels label_branches(const TriMesh& mesh, const std::vector<CenterlineBin
     throw InvalidInput("branch labels: there are " + std::to_string(mesh.vertices.size()) + " vertices and " +
                        std::to_string(binding.size()) + " bindings; every vertex needs one");
   }
-  const std::vector<Index> label_of = labels_of_bindings(centerline);
+  const std::vector<Index> label_of = branch_label_of_cones(centerline);
   BranchLabels labels;
   for (std::size_t v = 0; v < binding.size(); ++v) {
     if (binding[v].segment >= label_of.size()) {
@@ -42,7 +37,7 @@ BranchLabels label_branches(const TriMesh& mesh, const std::vector<CenterlineBin
     labels.vertex.push_back(label_of[binding[v].segment]);
   }
   for (const auto& [a, b, c] : mesh.faces) {
-    labels.face.push_back(most_frequent(labels.vertex[a], labels.vertex[b], labels.vertex[c]));
+    labels.face.push_back(label_of_face(labels.vertex[a], labels.vertex[b], labels.vertex[c]));
   }
   return labels;
 }

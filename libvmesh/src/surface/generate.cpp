@@ -8,12 +8,11 @@
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
-#include "vmesh/core/memory.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/error_bound.h"
 
 #include "surface/input/buried_branches.h"
-#include "surface/input/scale_check.h"
+#include "surface/input/size_check.h"
 #include "surface/paper/paper_growth.h"
 #include "surface/pieces/grow_pieces.h"
 #include "surface/proof/defects.h"
@@ -39,53 +38,6 @@ class StageClock {
  private:
   std::vector<StageTime>& stages_;
 };
-
-void check_options(const GenerateOptions& o) {
-  if (!(o.beta >= 0 && o.beta <= 1)) throw InvalidInput("beta must be in [0, 1]");
-  if (!(o.around >= 3 && o.around <= 200)) throw InvalidInput("around must be in [3, 200]");
-  if (!(o.max_center_distance > 0)) throw InvalidInput("max_center_distance must be > 0");
-  if (!(o.simplification >= 0 && o.simplification <= 1)) throw InvalidInput("simplification must be in [0, 1]");
-  if (o.sweeps < 0) throw InvalidInput("sweeps must be >= 0");
-  if (!(o.max_error.mm > 0 && o.max_error.relative > 0)) throw InvalidInput("max_error must be > 0");
-  if (o.max_error.is_set() && o.sweeps == 0) throw InvalidInput("max_error needs sweeps to refine in");
-  if (o.max_vertices < 1) throw InvalidInput("max_vertices must be > 0");
-  if (o.threads < 0) throw InvalidInput("threads must be >= 0");
-}
-
-/// Peak memory of a run per vertex that is expected: measured on surfaces of 4,000 to 600,000 vertices.
-constexpr double kBytesPerVertex = 600;
-
-/// The vessel thinnest for its length, in words.
-std::string thinnest_vessel(const Centerline& centerline) {
-  Index longest = kNone;
-  double most = 0;
-  for (Index s = 0; s < centerline.segments().size(); ++s) {
-    const double radii = centerline.length(s) / centerline.radius_at(s, 0.5);
-    if (radii > most) {
-      most = radii;
-      longest = s;
-    }
-  }
-  if (longest == kNone) return {};
-  std::ostringstream text;
-  text << "the vessel thinnest for its length is segment " << longest << " at ("
-       << centerline.point_at(longest, 0.5).transpose() << "): " << centerline.length(longest) << " mm at radius "
-       << centerline.radius_at(longest, 0.5) << " mm. Check its radii, ";
-  return text.str();
-}
-
-void check_size(const Centerline& centerline, const GenerateOptions& options) {
-  const double expected = expected_vertices(centerline, options.around, options.max_error);
-  std::ostringstream count, fewer;
-  count << "about " << expected << " vertices";
-  fewer << thinnest_vessel(centerline) << "ask for fewer vertices around"
-        << (options.max_error.is_set() ? " or a larger error" : "");
-  if (expected > options.max_vertices) {
-    throw InvalidInput(count.str() + " would be needed, more than the " + std::to_string(options.max_vertices) +
-                       " allowed; " + fewer.str() + ", or allow more in all");
-  }
-  require_memory(expected * kBytesPerVertex, "a surface of " + count.str(), fewer.str());
-}
 
 using WarningKind = GrowthWarning::Kind;
 
@@ -203,16 +155,8 @@ void renumber(const GrowthCenterline& growth, const Centerline& full, GenerateRe
     for (Index& s : note.segments) s = growth.segment[s];
     for (Index& n : note.nodes) n = growth.node[n];
   }
-  for (const BuriedBranch& buried : growth.buried) {
-    const Index middle = buried.segments[buried.segments.size() / 2];
-    GrowthSimplification note{
-        GrowthSimplification::Kind::buried_branch, full.point_at(middle, 0.5), {}, buried.segments, {}};
-    std::ostringstream text;
-    text << "the branch at (" << note.position.x() << ", " << note.position.y() << ", " << note.position.z()
-         << ") was left out: the other vessels cover it";
-    note.message = text.str();
+  for (GrowthSimplification& note : notes_of_buried(growth, full))
     result.growth.simplifications.push_back(std::move(note));
-  }
 }
 
 std::vector<std::pair<Index, Index>> grow_guided(const Centerline& centerline, const GenerateOptions& options,
@@ -275,11 +219,8 @@ TriMesh with_lids(const GenerateResult& result) {
 }
 
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& given, const Progress& progress) {
-  check_options(given);
-  check_scale(centerline);
-  GenerateOptions options = given;
-  options.around = std::max(options.around, least_around(centerline, options.max_error));
-  check_size(centerline, options);
+  const GenerateOptions options = settled(given, centerline);
+  require_memory_for(centerline, options);
   check_open_ends(centerline, options);
   GenerateResult result;
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);

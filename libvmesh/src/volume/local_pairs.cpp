@@ -12,7 +12,7 @@ constexpr std::size_t kManySegments = 8;
 
 PairSet pairs_in_touch(const SphereChain& chain, const Touch& touch,
                        const std::function<void(Index, Index)>& visit_next) {
-  PairSet touching;
+  PairSet touching(chain.size());
   const auto note = [&](Index p, Index q) {
     const bool touches = p == q || chain.touch(p, q, touch);
     if (touches && p != q) touching.insert(p, q);

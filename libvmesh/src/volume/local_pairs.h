@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,10 @@ inline constexpr Touch kOneVolume{0.5, 0.04};
 /// tables of their own.
 class PairSet {
  public:
+  PairSet() = default;
+  /// Of so many indices.
+  explicit PairSet(std::size_t count) { above_.reserve(count); }
+
   bool insert(Index i, Index j) {
     const auto [low, high] = std::minmax(i, j);
     if (low >= above_.size()) above_.resize(low + 1);
@@ -47,7 +52,7 @@ class PairSet {
     return low < above_.size() && above_[low].contains(high);
   }
   /// In the order of insertion, each with the lower index first.
-  const std::vector<std::pair<Index, Index>>& pairs() const { return pairs_; }
+  const std::deque<std::pair<Index, Index>>& pairs() const { return pairs_; }
 
  private:
   class Row {
@@ -97,7 +102,7 @@ class PairSet {
   };
 
   std::vector<Row> above_;  // of every index its greater partners
-  std::vector<std::pair<Index, Index>> pairs_;
+  std::deque<std::pair<Index, Index>> pairs_;  // many, and they grow: no copies
 };
 
 /// The pairs of segments that are local to each other: a pair of spheres, one on each, can be reached from a pair of

@@ -17,11 +17,15 @@ namespace vmesh {
 class SphereChain {
  public:
   explicit SphereChain(const Centerline& centerline) : centerline_(centerline) {
+    first_.reserve(centerline.segments().size() + 1);
+    std::size_t within = 0;
+    for (Index s = 0; s < centerline.segments().size(); ++s) within += static_cast<std::size_t>(steps_along(s) - 1);
+    spheres_.reserve(centerline.nodes().size() + within);
+    segments_.reserve(within);
     for (const auto& node : centerline.nodes()) spheres_.push_back({node.position, node.radius});
     for (Index s = 0; s < centerline.segments().size(); ++s) {
       first_.push_back(size());
-      const double steps = std::ceil(centerline.length(s) / (kSampling * centerline.radius_at(s, 0.5)));
-      const int count = static_cast<int>(std::clamp(steps, 1.0, double{kMaxSamples}));
+      const int count = steps_along(s);
       for (int k = 1; k < count; ++k) {
         const double t = static_cast<double>(k) / count;
         spheres_.push_back({centerline.point_at(s, t), centerline.radius_at(s, t)});
@@ -86,6 +90,11 @@ class SphereChain {
     Vec3 center;
     double radius;
   };
+
+  int steps_along(Index s) const {
+    const double steps = std::ceil(centerline_.length(s) / (kSampling * centerline_.radius_at(s, 0.5)));
+    return static_cast<int>(std::clamp(steps, 1.0, double{kMaxSamples}));
+  }
 
   // Along segment `s`, whose first node has place 0.
   Index sphere_at(Index s, Index place) const {

@@ -16,16 +16,20 @@ constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
 VesselField::VesselField(const Centerline& centerline, double blend) : centerline_(&centerline), blend_(blend) {
   if (!(blend >= 0 && blend <= 2)) throw InvalidInput("blend must be in [0, 2]");
-  cones_.reserve(centerline.segments().size());
-  for (const auto& s : centerline.segments()) cones_.push_back(make_cone(centerline, s.a, s.b));
-  for (Index n = 0; n < centerline.nodes().size(); ++n) {
-    if (centerline.degree(n) == 0) cones_.push_back(make_cone(centerline, n, n));
-  }
+  make_cones();
   measure_runs();
   measure_spheres();
   find_local_cones();
   build_tree();
   lonely_.assign(cones_.size(), not_asked);
+}
+
+void VesselField::make_cones() {
+  cones_.reserve(centerline_->segments().size());
+  for (const auto& s : centerline_->segments()) cones_.push_back(make_cone(*centerline_, s.a, s.b));
+  for (Index n = 0; n < centerline_->nodes().size(); ++n) {
+    if (centerline_->degree(n) == 0) cones_.push_back(make_cone(*centerline_, n, n));
+  }
 }
 
 void VesselField::measure_runs() {

@@ -59,7 +59,7 @@ void VesselField::find_local_cones() {
       is_parting_[k] = parting.contains(c, local_[k]);
     }
   }
-  apart_ = apart.pairs();
+  apart_.assign(apart.pairs().begin(), apart.pairs().end());
   std::sort(apart_.begin(), apart_.end());
   for (const auto& [i, j] : apart_) cones_[i].is_apart = cones_[j].is_apart = true;
   for (Cone& cone : cones_) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "vmesh/centerline/centerline.h"
@@ -32,6 +33,11 @@ struct SimplifiedCenterline {
   /// The place of the original that parameter `t` of a cone stands for: of a segment, or an isolated node.
   Place original(Index cone, double t) const;
 };
+
+/// The place of the original that parameter `t` of a segment stands for; `pieces` are the segment's. The second says
+/// which of them it is on.
+SimplifiedCenterline::Place place_on(std::span<const SimplifiedCenterline::Piece> pieces, double t);
+std::size_t piece_at(std::span<const SimplifiedCenterline::Piece> pieces, double t);
 
 /// Leaves out nodes with two segments. Every sphere that is left out moves and changes its radius, together, by at most
 /// the tolerance of its node (mm) to become a sphere of the segment that replaces it, in their order along the vessel;

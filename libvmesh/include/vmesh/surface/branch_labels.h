@@ -16,6 +16,12 @@ struct BranchLabels {
   std::vector<Index> face;    ///< one per face: the label that most of its corners have
 };
 
+/// The label of every segment, then of every isolated node.
+std::vector<Index> branch_label_of_cones(const Centerline& centerline);
+
+/// The label of a face with these at its corners.
+Index label_of_face(Index a, Index b, Index c);
+
 /// Labels a surface that was grown around `centerline`; `binding` has one entry per vertex of `mesh`. A face whose
 /// three corners differ gets the lowest of their labels, which in canonical order (see CleaningOptions) is the branch
 /// nearest to the root. Throws InvalidInput when `binding` is not as long as the vertices or names a segment that does

@@ -8,6 +8,7 @@
 
 #include "vmesh/centerline/centerline.h"
 #include "vmesh/core/box_tree.h"
+#include "vmesh/volume/field_excerpt.h"
 
 namespace vmesh {
 
@@ -39,6 +40,15 @@ class VesselField {
   /// `blend` in [0, 2]. Keeps a reference to `centerline`, which must outlive the field.
   explicit VesselField(const Centerline& centerline, double blend = 0);
 
+  /// The part of another field that `excerpt` was taken of; `centerline` is the excerpt's. Local queries whose hints are
+  /// complete in it, and distance_to_others() within the reach it was taken with, answer as the other field does, to the
+  /// bit. A query that leads to another hint throws std::logic_error. Global queries see what is in the excerpt alone.
+  VesselField(const Centerline& centerline, const FieldExcerpt& excerpt);
+
+  /// What is needed to answer queries whose hints are among `cones` and those local to them: everything local to these,
+  /// and all cones within `reach` radii of the walls of `cones`.
+  FieldExcerpt excerpt(std::span<const Index> cones, double reach) const;
+
   const Centerline& centerline() const { return *centerline_; }
   double blend() const { return blend_; }
   std::size_t cone_count() const { return cones_.size(); }
@@ -66,6 +76,7 @@ class VesselField {
 
   /// The cones that take part in a local query with hint `cone`, `cone` included, ascending.
   std::span<const Index> local_cones(Index cone) const {
+    if (!complete_.empty() && !complete_[cone]) throw_incomplete(cone);
     return {local_.data() + local_offsets_[cone], local_.data() + local_offsets_[cone + 1]};
   }
 
@@ -147,6 +158,9 @@ class VesselField {
   bool is_lonely(Index cone, const Vec3& low, const Vec3& high) const;
   void fill_lanes(std::span<const Index> cones, const Vec3& center, double per_unit, ConeLanes& lanes) const;
   static std::uint64_t new_number();
+  [[noreturn]] static void throw_incomplete(Index cone);
+  void make_cones();
+  std::vector<Index> near_boxes(std::span<const Index> cones, double reach) const;
   void measure_runs();
   void measure_spheres();
   void find_local_cones();
@@ -160,6 +174,7 @@ class VesselField {
   std::vector<Run> runs_;
   std::vector<Sphere> spheres_;
   std::vector<Index> local_offsets_, local_;
+  std::vector<char> complete_;                  // of cones; empty: all are
   std::vector<char> is_parting_;                // of local_
   std::vector<std::pair<Index, Index>> apart_;  // ascending
   BoxTree tree_;                                // of pieces of cones

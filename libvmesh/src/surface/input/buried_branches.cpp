@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "vmesh/centerline/branches.h"
 
@@ -189,6 +190,21 @@ GrowthCenterline without_buried_branches(const VesselField& field) {
   for (Index c = static_cast<Index>(full.segments().size()); c < field.cone_count(); ++c) kept_cones.push_back(c);
   return {Centerline(std::move(nodes), std::move(segments)), std::move(kept_nodes), std::move(kept_segments),
           std::move(kept_cones), std::move(buried)};
+}
+
+std::vector<GrowthSimplification> notes_of_buried(const GrowthCenterline& growth, const Centerline& full) {
+  std::vector<GrowthSimplification> notes;
+  for (const BuriedBranch& buried : growth.buried) {
+    const Index middle = buried.segments[buried.segments.size() / 2];
+    GrowthSimplification note{
+        GrowthSimplification::Kind::buried_branch, full.point_at(middle, 0.5), {}, buried.segments, {}};
+    std::ostringstream text;
+    text << "the branch at (" << note.position.x() << ", " << note.position.y() << ", " << note.position.z()
+         << ") was left out: the other vessels cover it";
+    note.message = text.str();
+    notes.push_back(std::move(note));
+  }
+  return notes;
 }
 
 }  // namespace vmesh

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "vmesh/surface/generate.h"
 #include "vmesh/volume/vessel_field.h"
 
 namespace vmesh {
@@ -26,5 +27,8 @@ struct GrowthCenterline {
 /// its branch goes as well; needles there, thinner than half of that sphere, may stand out of it by a quarter of its
 /// radius. The volume is the same up to these; components never change.
 GrowthCenterline without_buried_branches(const VesselField& field);
+
+/// What was left out, in words. `full`: the centerline that it was left out of.
+std::vector<GrowthSimplification> notes_of_buried(const GrowthCenterline& growth, const Centerline& full);
 
 }  // namespace vmesh

@@ -4,6 +4,8 @@
 #include <map>
 #include <ranges>
 
+#include <tbb/parallel_for.h>
+
 #include "vmesh/core/disjoint_sets.h"
 #include "vmesh/surface/error_bound.h"
 
@@ -39,21 +41,20 @@ struct Band {
   }
 };
 
-// Chooses seams along the branches.
+// Chooses seams along a branch.
 class SeamSearch {
  public:
-  SeamSearch(const VesselTubes& tubes, const GenerateOptions& options)
-      : tubes_(tubes), field_(tubes.field()), options_(options), proof_(tubes.field()) {}
+  SeamSearch(const VesselAxes& axes, const GenerateOptions& options, Index branch, const std::vector<Ring>& rings)
+      : field_(axes.field()),
+        options_(options),
+        proof_(axes.field()),
+        axis_(axes.axes()[branch]),
+        branch_(branch),
+        rings_(rings) {}
 
   std::vector<RingPlace> run() {
-    for (Index b = 0; b < tubes_.axes().size(); ++b) search(b);
-    return std::move(seams_);
-  }
-
- private:
-  void search(Index branch) {
-    const std::vector<Ring>& rings = tubes_.rings(branch);
-    const BranchAxis& axis = tubes_.axes()[branch];
+    const std::vector<Ring>& rings = rings_;
+    const BranchAxis& axis = axis_;
     for (std::size_t k = 0; k < rings.size();) {
       if (!rings[k].free) {
         ++k;
@@ -63,50 +64,51 @@ class SeamSearch {
       while (k < rings.size() && rings[k].free) ++k;
       const bool free_begin = first == 0 && (axis.starts_at_tip() || axis.periodic());
       const bool free_end = k == rings.size() && (axis.ends_at_tip() || axis.periodic());
-      divide(branch, {first, k}, !free_begin, !free_end);
+      divide({first, k}, !free_begin, !free_end);
     }
+    return std::move(seams_);
   }
 
+ private:
   struct Run {
     std::size_t first, end;
   };
 
   // A run of rings, between junctions or not: in equal parts no longer than kLongest, between two junctions in two at
   // least; if it is long, without what stays with these.
-  void divide(Index branch, const Run& run, bool from_junction, bool to_junction) {
+  void divide(const Run& run, bool from_junction, bool to_junction) {
     const std::size_t count = run.end - run.first;
     std::size_t begin = run.first, last = run.end - 1;
     if (count > kShort) {
-      if (from_junction) add_near(branch, run, begin += kBeside);
+      if (from_junction) add_near(run, begin += kBeside);
       if (to_junction) last -= kBeside;
     }
     const std::size_t least = count <= kShort && from_junction && to_junction ? 2 : 1;
     const std::size_t parts = std::max(least, (last + 1 - begin + kLongest - 1) / kLongest);
-    for (std::size_t i = 1; i < parts; ++i) add_near(branch, run, begin + i * (last - begin) / parts);
-    if (last + 1 < run.end) add_near(branch, run, last);
+    for (std::size_t i = 1; i < parts; ++i) add_near(run, begin + i * (last - begin) / parts);
+    if (last + 1 < run.end) add_near(run, last);
   }
 
-  void add_near(Index branch, const Run& run, std::size_t middle) {
+  void add_near(const Run& run, std::size_t middle) {
     const std::size_t low = std::max(run.first + 1, middle - std::min(middle, kWindow));
     const std::size_t high = std::min(run.end - 1, middle + kWindow + 1);
-    add_best(branch, middle, low, high);
+    add_best(middle, low, high);
   }
 
   // Of the rings [low, high) the first that is even, the nearest to the middle before others; none if none is.
-  void add_best(Index branch, std::size_t middle, std::size_t low, std::size_t high) {
+  void add_best(std::size_t middle, std::size_t low, std::size_t high) {
     std::vector<std::pair<std::size_t, std::size_t>> order;
     for (std::size_t k = low; k < high; ++k) order.emplace_back(k > middle ? k - middle : middle - k, k);
     std::sort(order.begin(), order.end());
     for (const auto& [away, k] : order) {
-      if (!is_even(branch, k)) continue;
-      seams_.push_back({branch, static_cast<Index>(k)});
+      if (!is_even(k)) continue;
+      seams_.push_back({branch_, static_cast<Index>(k)});
       return;
     }
   }
 
-  bool is_even(Index branch, std::size_t k) const {
-    const std::vector<Ring>& rings = tubes_.rings(branch);
-    return is_even(Band(rings[k - 1], rings[k])) && is_even(Band(rings[k], rings[k + 1])) && !near_others(rings[k]);
+  bool is_even(std::size_t k) const {
+    return is_even(Band(rings_[k - 1], rings_[k])) && is_even(Band(rings_[k], rings_[k + 1])) && !near_others(rings_[k]);
   }
 
   // Whether the faces are as good as they will become, and as close to the boundary as is asked for.
@@ -149,18 +151,20 @@ class SeamSearch {
   // Of the error limit: neighbours with lower shells take some of it; idle 0.56 to 1.1.
   static constexpr double kSeamLimit = 0.8;
 
-  const VesselTubes& tubes_;
   const VesselField& field_;
   const GenerateOptions& options_;
   ErrorProof proof_;
+  const BranchAxis& axis_;
+  Index branch_;
+  const std::vector<Ring>& rings_;
   std::vector<RingPlace> seams_;
 };
 
 // The stretches of a branch between its seams.
-void add_stretches(const VesselTubes& tubes, Index branch, std::span<const RingPlace> seams,
+void add_stretches(const RingCounts& rings, Index branch, std::span<const RingPlace> seams,
                    std::vector<Stretch>& stretches) {
-  const auto count = static_cast<Index>(tubes.rings(branch).size());
-  const bool periodic = tubes.axes()[branch].periodic();
+  const auto count = rings.along(branch);
+  const bool periodic = rings.axes()[branch].periodic();
   if (seams.empty()) {
     stretches.push_back({branch, 0, count});
     return;
@@ -176,11 +180,11 @@ void add_stretches(const VesselTubes& tubes, Index branch, std::span<const RingP
   }
 }
 
-std::vector<Stretch> stretches_between(const VesselTubes& tubes, const std::vector<RingPlace>& seams) {
+std::vector<Stretch> stretches_between(const RingCounts& rings, const std::vector<RingPlace>& seams) {
   std::vector<Stretch> stretches;
-  for (auto first = seams.begin(); const auto b : std::views::iota(Index{0}, static_cast<Index>(tubes.axes().size()))) {
+  for (auto first = seams.begin(); const auto b : std::views::iota(Index{0}, static_cast<Index>(rings.axes().size()))) {
     const auto last = std::find_if(first, seams.end(), [&](const RingPlace& seam) { return seam.branch != b; });
-    add_stretches(tubes, b, std::span(first, last), stretches);
+    add_stretches(rings, b, std::span(first, last), stretches);
     first = last;
   }
   return stretches;
@@ -189,13 +193,13 @@ std::vector<Stretch> stretches_between(const VesselTubes& tubes, const std::vect
 // Stretches, then nodes, that hang together.
 class PlanMaker {
  public:
-  PlanMaker(const VesselTubes& tubes, std::vector<Stretch> stretches)
-      : tubes_(tubes),
+  PlanMaker(const RingCounts& rings, std::vector<Stretch> stretches)
+      : rings_(rings),
         stretches_(std::move(stretches)),
-        node_count_(static_cast<Index>(tubes.centerline().nodes().size())),
+        node_count_(static_cast<Index>(rings.centerline().nodes().size())),
         parts_(stretches_.size() + node_count_) {
     for (Index i = 0; i < stretches_.size(); ++i) {
-      const auto& branch = tubes.axes()[stretches_[i].branch].branch();
+      const auto& branch = rings.axes()[stretches_[i].branch].branch();
       if (!stretches_[i].seam_at_first) parts_.join(i, part_of(branch.nodes.front()));
       if (!stretches_[i].seam_at_last) parts_.join(i, part_of(branch.nodes.back()));
     }
@@ -216,7 +220,7 @@ class PlanMaker {
     };
     for (Index i = 0; i < stretches_.size(); ++i) plan_of(i).stretches.push_back(stretches_[i]);
     for (Index n = 0; n < node_count_; ++n) {
-      if (tubes_.centerline().degree(n) != 2) plan_of(part_of(n)).nodes.push_back(n);
+      if (rings_.centerline().degree(n) != 2) plan_of(part_of(n)).nodes.push_back(n);
     }
     return plans;
   }
@@ -226,26 +230,26 @@ class PlanMaker {
 
   Index part_of(const Anchor& anchor) const {
     if (anchor.node != kNone) return part_of(anchor.node);
-    const auto rings = static_cast<Index>(tubes_.rings(anchor.ring.branch).size());
+    const Index count = rings_.along(anchor.ring.branch);
     const auto holds = [&](const Stretch& stretch) {
       return stretch.branch == anchor.ring.branch &&
-             (anchor.ring.ring + rings - stretch.first) % rings + (stretch.seam_at_last ? 1 : 0) < stretch.count;
+             (anchor.ring.ring + count - stretch.first) % count + (stretch.seam_at_last ? 1 : 0) < stretch.count;
     };
     return static_cast<Index>(std::find_if(stretches_.begin(), stretches_.end(), holds) - stretches_.begin());
   }
 
-  const VesselTubes& tubes_;
+  const RingCounts& rings_;
   std::vector<Stretch> stretches_;
   Index node_count_;
   DisjointSets parts_;
 };
 
 // Seams with one piece on both sides: it would touch itself there. Ascending.
-std::vector<RingPlace> within_one_piece(const VesselTubes& tubes, const std::vector<PiecePlan>& plans) {
+std::vector<RingPlace> within_one_piece(const RingCounts& rings, const std::vector<PiecePlan>& plans) {
   std::map<RingPlace, Index> first;
   std::vector<RingPlace> within;
   for (Index p = 0; p < plans.size(); ++p) {
-    for (const RingPlace& seam : seams_of(tubes, plans[p])) {
+    for (const RingPlace& seam : seams_of(rings, plans[p])) {
       const auto [it, is_new] = first.emplace(seam, p);
       if (!is_new && it->second == p) within.push_back(seam);
     }
@@ -260,13 +264,13 @@ std::vector<RingPlace> without(const std::vector<RingPlace>& seams, const std::v
   return kept;
 }
 
-Division divide_at(const VesselTubes& tubes, std::vector<RingPlace> seams,
+Division divide_at(const RingCounts& rings, std::vector<RingPlace> seams,
                    std::vector<std::pair<Anchor, Anchor>> joined) {
   for (;;) {
-    PlanMaker maker(tubes, stretches_between(tubes, seams));
+    PlanMaker maker(rings, stretches_between(rings, seams));
     for (const auto& [a, b] : joined) maker.join(a, b);
     std::vector<PiecePlan> plans = maker.run();
-    const std::vector<RingPlace> within = within_one_piece(tubes, plans);
+    const std::vector<RingPlace> within = within_one_piece(rings, plans);
     if (within.empty()) return {std::move(seams), std::move(plans), std::move(joined)};
     seams = without(seams, within);
   }
@@ -274,12 +278,12 @@ Division divide_at(const VesselTubes& tubes, std::vector<RingPlace> seams,
 
 }  // namespace
 
-std::vector<RingPlace> seams_of(const VesselTubes& tubes, const PiecePlan& plan) {
+std::vector<RingPlace> seams_of(const RingCounts& rings, const PiecePlan& plan) {
   std::vector<RingPlace> seams;
   for (const Stretch& s : plan.stretches) {
-    const auto rings = static_cast<Index>(tubes.rings(s.branch).size());
+    const Index count = rings.along(s.branch);
     if (s.seam_at_first) seams.push_back({s.branch, s.first});
-    if (s.seam_at_last) seams.push_back({s.branch, (s.first + s.count - 1) % rings});
+    if (s.seam_at_last) seams.push_back({s.branch, (s.first + s.count - 1) % count});
   }
   return seams;
 }
@@ -289,15 +293,33 @@ Anchor anchor_of(const PiecePlan& plan) {
   return {{plan.stretches.front().branch, plan.stretches.front().first}, kNone};
 }
 
-Division divide(const VesselTubes& tubes, const GenerateOptions& options) {
-  return divide_at(tubes, SeamSearch(tubes, options).run(), {});
+RingCounts::RingCounts(const VesselTubes& tubes) : axes_(tubes) {
+  for (Index b = 0; b < tubes.axes().size(); ++b) counts_.push_back(static_cast<Index>(tubes.rings(b).size()));
 }
 
-Division regrouped(const VesselTubes& tubes, const Division& division, const std::vector<RingPlace>& dissolved,
+std::vector<RingPlace> find_seams(const VesselAxes& axes, const GenerateOptions& options, Index branch,
+                                  const std::vector<Ring>& rings) {
+  return SeamSearch(axes, options, branch, rings).run();
+}
+
+Division divide(const RingCounts& rings, std::vector<RingPlace> seams) { return divide_at(rings, std::move(seams), {}); }
+
+Division divide(const VesselTubes& tubes, const GenerateOptions& options) {
+  std::vector<std::vector<RingPlace>> found(tubes.axes().size());
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
+    const auto b = static_cast<Index>(i);
+    found[i] = find_seams(tubes, options, b, tubes.rings(b));
+  });
+  std::vector<RingPlace> seams;
+  for (const auto& of_branch : found) seams.insert(seams.end(), of_branch.begin(), of_branch.end());
+  return divide(RingCounts(tubes), std::move(seams));
+}
+
+Division regrouped(const RingCounts& rings, const Division& division, const std::vector<RingPlace>& dissolved,
                    const std::vector<std::pair<Anchor, Anchor>>& joined) {
   std::vector<std::pair<Anchor, Anchor>> all = division.joined;
   all.insert(all.end(), joined.begin(), joined.end());
-  return divide_at(tubes, without(division.seams, dissolved), std::move(all));
+  return divide_at(rings, without(division.seams, dissolved), std::move(all));
 }
 
 }  // namespace vmesh

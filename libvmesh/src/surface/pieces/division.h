@@ -12,8 +12,24 @@ struct Anchor {
   Index node = kNone;
 };
 
+/// How many rings lie along each branch.
+class RingCounts {
+ public:
+  /// `axes` must outlive it.
+  RingCounts(const VesselAxes& axes, std::vector<Index> counts) : axes_(axes), counts_(std::move(counts)) {}
+  explicit RingCounts(const VesselTubes& tubes);
+
+  const std::vector<BranchAxis>& axes() const { return axes_.axes(); }
+  const Centerline& centerline() const { return axes_.centerline(); }
+  Index along(Index branch) const { return counts_[branch]; }
+
+ private:
+  const VesselAxes& axes_;
+  std::vector<Index> counts_;
+};
+
 /// The seams at a piece's ends, in the order of its stretches.
-std::vector<RingPlace> seams_of(const VesselTubes& tubes, const PiecePlan& plan);
+std::vector<RingPlace> seams_of(const RingCounts& rings, const PiecePlan& plan);
 
 Anchor anchor_of(const PiecePlan& plan);
 
@@ -24,13 +40,19 @@ struct Division {
   std::vector<std::pair<Anchor, Anchor>> joined;  ///< places that are in one piece, although no vessel leads there
 };
 
-/// Divides a surface at rings where the tube around is as even as the rest will become, so that nothing is lost when
-/// they stay as they are: a ring about halfway between two junctions, and more along far ways.
-/// What the options would have refined there is no seam.
+/// Where a branch's rings may be seams, ascending: where the tube around is as even as the rest will become, so that
+/// nothing is lost when they stay as they are. About halfway between two junctions, and more along far ways. What the
+/// options would have refined there is no seam.
+std::vector<RingPlace> find_seams(const VesselAxes& axes, const GenerateOptions& options, Index branch,
+                                  const std::vector<Ring>& rings);
+
+/// Divides a surface at these seams.
+Division divide(const RingCounts& rings, std::vector<RingPlace> seams);
+/// At all that can be found.
 Division divide(const VesselTubes& tubes, const GenerateOptions& options);
 
 /// The division without some seams, with the pieces at both of these anchors as one.
-Division regrouped(const VesselTubes& tubes, const Division& division, const std::vector<RingPlace>& dissolved,
+Division regrouped(const RingCounts& rings, const Division& division, const std::vector<RingPlace>& dissolved,
                    const std::vector<std::pair<Anchor, Anchor>>& joined);
 
 }  // namespace vmesh

@@ -26,6 +26,7 @@ class PieceGrower {
   PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
               const Progress& progress)
       : tubes_(field, {options.around, options.placement, options.max_error}),
+        rings_(tubes_),
         options_(options),
         progress_(progress),
         context_{tubes_, open, options_, ask_},
@@ -89,7 +90,7 @@ class PieceGrower {
       part(gathered_.piece_of(f), gathered_.piece_of(g), dissolved, joined);
     }
     for (Index p = 0; p < pieces_.size(); ++p) {
-      for (const RingPlace& seam : seams_of(tubes_, division_.plans[p])) {
+      for (const RingPlace& seam : seams_of(rings_, division_.plans[p])) {
         if (has_fault_near(pieces_[p], seam)) dissolved.push_back(seam);
       }
     }
@@ -101,7 +102,7 @@ class PieceGrower {
     if (dissolved.empty() && joined.empty()) return false;
     std::sort(dissolved.begin(), dissolved.end());
     dissolved.erase(std::unique(dissolved.begin(), dissolved.end()), dissolved.end());
-    Division next = regrouped(tubes_, division_, dissolved, joined);
+    Division next = regrouped(rings_, division_, dissolved, joined);
     if (next.plans == division_.plans) return false;
     std::map<PiecePlan, PieceSurface> known;
     for (Index p = 0; p < pieces_.size(); ++p) known.emplace(std::move(division_.plans[p]), std::move(pieces_[p]));
@@ -132,9 +133,9 @@ class PieceGrower {
 
   void part(Index p, Index q, std::vector<RingPlace>& dissolved, std::vector<std::pair<Anchor, Anchor>>& joined) const {
     if (p == q) return;
-    const std::vector<RingPlace> of_p = seams_of(tubes_, division_.plans[p]);
+    const std::vector<RingPlace> of_p = seams_of(rings_, division_.plans[p]);
     bool neighbours = false;
-    for (const RingPlace& seam : seams_of(tubes_, division_.plans[q])) {
+    for (const RingPlace& seam : seams_of(rings_, division_.plans[q])) {
       if (std::find(of_p.begin(), of_p.end(), seam) == of_p.end()) continue;
       dissolved.push_back(seam);
       neighbours = true;
@@ -184,6 +185,7 @@ class PieceGrower {
   }
 
   VesselTubes tubes_;
+  RingCounts rings_;
   const GenerateOptions& options_;
   const Progress& progress_;
   std::mutex reporting_;

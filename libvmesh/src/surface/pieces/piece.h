@@ -7,14 +7,6 @@
 
 namespace vmesh {
 
-/// Why a piece is not sound.
-struct PieceFault {
-  DefectKind kind;
-  Vec3 position = Vec3::Zero();
-  double radius = 0;             ///< of the thinnest vessel there, mm
-  bool vessels_overlap = false;  ///< another vessel covers the place: no other surface would do better
-};
-
 /// Whether a vessel that `cone` does not see covers `p`.
 bool is_covered(const VesselField& field, const Vec3& p, Index cone);
 

@@ -243,15 +243,27 @@ class SkeletonMaker {
 
 }  // namespace
 
-VesselTubes::VesselTubes(const VesselField& field, const RingOptions& rings)
+VesselAxes::VesselAxes(const VesselField& field, const RingOptions& rings)
+    : VesselAxes(field, rings, find_branches(field.centerline())) {}
+
+VesselAxes::VesselAxes(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches)
     : field_(field),
-      branches_(find_branches(field.centerline())),
+      branches_(std::move(branches)),
       axes_(axes_of(field.centerline(), branches_)),
       places_(places_of(field.centerline(), branches_)),
-      layer_(field, axes_, places_, rings),
-      rings_(axes_.size()) {
-  tbb::parallel_for(std::size_t{0}, axes_.size(),
-                    [&](std::size_t b) { rings_[b] = layer_.lay(static_cast<Index>(b)); });
+      layer_(field, axes_, places_, rings) {}
+
+VesselTubes::VesselTubes(const VesselField& field, const RingOptions& rings) : VesselAxes(field, rings) { lay_all(); }
+
+VesselTubes::VesselTubes(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches)
+    : VesselAxes(field, rings, std::move(branches)) {
+  lay_all();
+}
+
+void VesselTubes::lay_all() {
+  rings_.resize(axes().size());
+  tbb::parallel_for(std::size_t{0}, rings_.size(),
+                    [&](std::size_t b) { rings_[b] = layer().lay(static_cast<Index>(b)); });
 }
 
 PiecePlan whole_plan(const VesselTubes& tubes) {

@@ -3,22 +3,24 @@
 #include <array>
 #include <span>
 
+#include "vmesh/surface/part.h"
+
 #include "surface/tubes/vessel_rings.h"
 
 namespace vmesh {
 
-/// All branches of a centerline with the rings laid along them.
-class VesselTubes {
+/// Branches of a centerline, ready for rings to be laid along them.
+class VesselAxes {
  public:
-  /// `field` must outlive it.
-  VesselTubes(const VesselField& field, const RingOptions& rings);
-  VesselTubes(const VesselTubes&) = delete;
-  VesselTubes& operator=(const VesselTubes&) = delete;
+  /// `field` must outlive it. All branches, or these.
+  VesselAxes(const VesselField& field, const RingOptions& rings);
+  VesselAxes(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches);
+  VesselAxes(const VesselAxes&) = delete;
+  VesselAxes& operator=(const VesselAxes&) = delete;
 
   const VesselField& field() const { return field_; }
   const Centerline& centerline() const { return field_.centerline(); }
   const std::vector<BranchAxis>& axes() const { return axes_; }
-  const std::vector<Ring>& rings(Index branch) const { return rings_[branch].rings; }
   const RingLayer& layer() const { return layer_; }
 
  private:
@@ -27,32 +29,20 @@ class VesselTubes {
   std::vector<BranchAxis> axes_;
   std::vector<SegmentPlace> places_;
   RingLayer layer_;
+};
+
+/// The same with the rings laid.
+class VesselTubes : public VesselAxes {
+ public:
+  VesselTubes(const VesselField& field, const RingOptions& rings);
+  VesselTubes(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches);
+
+  const std::vector<Ring>& rings(Index branch) const { return rings_[branch].rings; }
+
+ private:
+  void lay_all();
+
   std::vector<Rings> rings_;  // of every branch
-};
-
-/// Rings of a branch that follow each other, and what lies between and beyond them up to the next seam or the branch's
-/// end. A seam is a ring at which the surface is divided: it stays as it was laid.
-struct Stretch {
-  Index branch = kNone;
-  Index first = 0, count = 0;  ///< its rings; along a loop they go on with the first after the last
-  bool seam_at_first = false, seam_at_last = false;  ///< whether its outer rings are seams
-
-  auto operator<=>(const Stretch&) const = default;
-};
-
-/// What a piece of the surface is grown around.
-struct PiecePlan {
-  std::vector<Index> nodes;  ///< nodes where vessels branch or end, and isolated ones, ascending
-  std::vector<Stretch> stretches;
-
-  auto operator<=>(const PiecePlan&) const = default;
-};
-
-/// A ring of a branch by its number.
-struct RingPlace {
-  Index branch = kNone, ring = kNone;
-
-  auto operator<=>(const RingPlace&) const = default;
 };
 
 /// A stretch of a branch whose cross-sections are its own: rings that follow each other.

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "vmesh/centerline/centerline.h"
+
+namespace vmesh {
+
+/// What a VesselField needs to answer local queries around some of its cones as the whole field does, to the bit:
+/// these cones, all that are local to them or near, and what the whole field knows of each.
+/// Cones count as in VesselField: segments, then isolated nodes.
+struct FieldExcerpt {
+  double blend = 0;
+  std::vector<CenterlineNode> nodes;
+  std::vector<CenterlineSegment> segments;
+  std::vector<Index> node, cone;  ///< their numbers in the whole, ascending both
+  /// Of cones: the run that they belong to, and how far along it they end (mm).
+  std::vector<Index> run;
+  std::vector<double> travel;
+  /// Of cones: whether all that are local to them are here. Only these may be hints.
+  std::vector<char> complete;
+  /// Local to cone c, ascending: local[local_offsets[c]] to before local[local_offsets[c + 1]]; whether they part.
+  std::vector<Index> local_offsets, local;
+  std::vector<char> parting;
+  std::vector<std::pair<Index, Index>> apart;  ///< cones that are not blended, ascending
+  std::vector<std::array<double, 2>> rounding; ///< of cones, the shares of the blend at their ends
+
+  Centerline centerline() const { return {nodes, segments}; }
+};
+
+/// What several excerpts of one field know together.
+FieldExcerpt merged(std::span<const FieldExcerpt> excerpts);
+
+}  // namespace vmesh

@@ -1,0 +1,113 @@
+// Growing one part of a surface: vmesh generate part_00001.vpart
+#include <sstream>
+
+#include "vmesh/core/atomic_file.h"
+#include "vmesh/parts/part_files.h"
+
+#include "command_line/exit_code.h"
+#include "command_line/inputs.h"
+#include "command_line/interrupt.h"
+#include "command_line/outputs.h"
+#include "command_line/usage_error.h"
+#include "report/summary.h"
+#include "verbs/verbs.h"
+
+namespace vmesh::tool {
+namespace {
+
+/// What a part is grown with, it says itself.
+void check_arguments(const GenerateArguments& arguments) {
+  GenerateArguments plain;
+  plain.input = arguments.input;
+  if (!arguments.input.more.empty())
+    throw UsageError(arguments.input.more.front().string() + ": parts are grown one at a time");
+  if (describe(arguments) != describe(plain) || arguments.budget || !arguments.fitting.reference.path.empty() ||
+      arguments.bones)
+    throw UsageError(arguments.input.path.string() +
+                     ": a part is grown with the options that vmesh split was given; here --threads, --json and "
+                     "--quiet can be said");
+  if (extension_of(arguments.output) != kPartSurfaceExtension)
+    throw UsageError(arguments.output.string() + ": the surface of a part is written as " + kPartSurfaceExtension +
+                     "; vmesh join makes other formats of them");
+  check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, {arguments.input.path});
+  check_can_be_written(arguments.output);
+}
+
+std::string at(const Vec3& p) {
+  std::ostringstream text;
+  text << "(" << p.x() << ", " << p.y() << ", " << p.z() << ")";
+  return text.str();
+}
+
+std::string words(const PieceFault& fault) {
+  const char* what = fault.vessels_overlap                            ? "vessels overlap"
+                     : fault.kind == DefectKind::crossing_faces ? "faces cross"
+                     : fault.kind == DefectKind::bad_triangle   ? "a triangle is nearly degenerate"
+                                                                : "a node of the centerline is not inside";
+  return what + (" at " + at(fault.position));
+}
+
+std::vector<PieceFault> faults_of(const PartSurface& surface) {
+  std::vector<PieceFault> faults;
+  for (const PartSurface::Piece& piece : surface.pieces)
+    faults.insert(faults.end(), piece.faults.begin(), piece.faults.end());
+  return faults;
+}
+
+int refuse(const GenerateArguments& arguments, const std::vector<PieceFault>& faults, Console& console) {
+  constexpr std::size_t kNamed = 8;
+  for (std::size_t i = 0; i < std::min(kNamed, faults.size()); ++i) console.error(words(faults[i]));
+  if (faults.size() > kNamed) console.error("and " + std::to_string(faults.size() - kNamed) + " more");
+  console.error(arguments.input.path.string() +
+                ": no sound surface was found, nothing is written: look at the radii and nodes there, or grow the "
+                "whole in one go, which may join pieces");
+  return kDefective;
+}
+
+void write_summary(const GenerateArguments& arguments, const PartSurface& surface,
+                   const std::vector<StageTime>& stages) {
+  std::vector<std::size_t> rungs;
+  double worst = 0;
+  for (const PartSurface::Piece& piece : surface.pieces) {
+    if (rungs.size() <= piece.rung) rungs.resize(piece.rung + 1, 0);
+    ++rungs[piece.rung];
+    worst = std::max(worst, piece.worst_skewness);
+  }
+  Json json = {{"schema", "vmesh.part-summary/1"},
+               {"generator", generator_json()},
+               {"input", arguments.input.path.filename().string()},
+               {"output", arguments.output.filename().string()},
+               {"vertices", surface.mesh.vertices.size()},
+               {"faces", surface.mesh.faces.size()},
+               {"pieces", surface.pieces.size()},
+               {"pieces_by_rung", rungs},
+               {"walls_that_cross", surface.crossings.size()},
+               {"max_skewness", worst}};
+  for (const auto& [stage, seconds] : stages) json["seconds"][stage] = seconds;
+  write_json(arguments.common.json, json);
+}
+
+}  // namespace
+
+int run_part(const GenerateArguments& arguments, Console& console) {
+  check_arguments(arguments);
+  Stopwatch watch;
+  std::vector<StageTime> stages;
+  const StoredPart part = read_part(arguments.input.path);
+  stages.push_back({"read", watch.lap()});
+  stop_if_interrupted();
+  PartSurface surface = naming(arguments.input.path, [&] {
+    return grow_part(part.part, arguments.options.threads, console.progress());
+  });
+  stages.push_back({"grow", watch.lap()});
+  const std::vector<PieceFault> faults = faults_of(surface);
+  if (!faults.empty()) return refuse(arguments, faults, console);
+  const StoredPartSurface stored = refer_to_read(part, std::move(surface));
+  write_part_surface(arguments.output, stored);
+  stages.push_back({"write", watch.lap()});
+  console.log("wrote " + arguments.output.string() + ": " + std::to_string(stored.surface.mesh.faces.size()) + " faces");
+  if (!arguments.common.json.empty()) write_summary(arguments, stored.surface, stages);
+  return kOk;
+}
+
+}  // namespace vmesh::tool
