@@ -93,7 +93,10 @@ def main():
     step, name, threads, last_attempt = sys.argv[1:]
     plan = read_json("plan.json")
     make = {"surface": make_surface, "picture": draw_picture}[step]
-    make(plan["vmesh"], name, plan["cases"][name], threads, last_attempt == "1")
+    try:
+        make(plan["vmesh"], name, plan["cases"][name], threads, last_attempt == "1")
+    except OSError as error:
+        sys.exit(f"{name}: {step}: not finished: {error}")
 
 
 if __name__ == "__main__":
