@@ -42,11 +42,18 @@ def look_up(summary, path):
     return "" if summary is None else summary
 
 
+def last_words(name):
+    """What vmesh said of an error of a case that has no status."""
+    log = Path(f"log/{name}.surface.log")
+    lines = log.read_text(errors="replace").splitlines() if log.exists() else []
+    return "; ".join(line.removeprefix("vmesh: ") for line in lines if line.startswith("vmesh: "))
+
+
 def row_of(name, case):
     row = {column: "" for column in COLUMNS} | {"case": name, "input": case["input"]}
     status = read_json(f"status/{name}.surface.json")
     if status is None:
-        return row | {"result": "not finished", "message": f"interrupted or killed; run again, see log/{name}.*.log"}
+        return row | {"result": "not finished", "message": last_words(name) or "interrupted or killed; run again"}
     summary = read_json(status["summary"]) if status["summary"] else {}
     picture = read_json(f"status/{name}.picture.json") or {}
     row |= {measure: look_up(summary, path) for measure, path, _ in MEASURES}
