@@ -9,7 +9,6 @@ files do not count.
 import argparse
 import fnmatch
 import glob
-import json
 import os
 import re
 import sys

@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # What scripts/cohort/run and scripts/parts/run have in common; sourced by them, with $root set.
 
 # Prints the whole path of the command: $VMESH, that of this checkout, the one in the PATH, or one that is built now.

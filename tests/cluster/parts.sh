@@ -9,11 +9,7 @@ need_commands snakemake flock munged slurmctld slurmd sbatch
 begin_test
 export VMESH=$vmesh
 
-# What follows is a name for the whole, in a folder of its own.
-parts() {
-  mkdir -p "$(dirname "$1")"
-  echo "$scripts/parts/run" "$work/tree.swc" -o "$1" --vertices 40000 --set around=12 --memory 1000 --memory-whole 2000
-}
+options=(--vertices 40000 --set around=12 --memory 1000 --memory-whole 2000)
 
 count_parts() { find "$1.parts/parts" -name 'part_*.vpart' | wc -l; }
 
@@ -23,15 +19,17 @@ in_one_go() {
   say "done in one go"
 }
 
+parts_here() { "$scripts/parts/run" "$work/tree.swc" -o "$work/here/whole.ply" "${options[@]}"; }
+
 in_parts_here() {
   local whole=$work/here/whole.ply
-  $(parts "$whole") 2>"$work/here.log" || fail "the workflow ended with $?"
+  parts_here 2>"$work/here.log" || fail "the workflow ended with $?"
   (($(count_parts "$whole") >= 4)) || fail "there are only $(count_parts "$whole") parts"
   cmp "$work/once.ply" "$whole" || fail "in parts, the surface is another"
-  $(parts "$whole") 2>"$work/again.log"
+  parts_here 2>"$work/again.log"
   grep -q "Nothing to be done" "$work/again.log" || fail "a second run does something"
   rm "$whole" "$whole.parts/parts/part_00002.vsurf"
-  $(parts "$whole") 2>"$work/again.log"
+  parts_here 2>"$work/again.log"
   grep -Eq "^generate +1 " "$work/again.log" || fail "one part was lost, and not one was made again"
   cmp "$work/once.ply" "$whole" || fail "with a part made again, the surface is another"
   say "done in parts on this machine"
@@ -40,7 +38,8 @@ in_parts_here() {
 in_parts_on_cluster() {
   local whole=$work/there/whole.ply lost made
   start_slurm "$work/slurm"
-  start_driver "$work/there.log" $(parts "$whole") --profile slurm
+  start_driver "$work/there.log" \
+    "$scripts/parts/run" "$work/tree.swc" -o "$whole" "${options[@]}" --profile slurm
   wait_for 90 "a job of part 1" runs "$whole.parts" part_00001.vsurf
   kill_job "$(jobs_of "$whole.parts" part_00001.vsurf)"
   wait_for 90 "a job of part 3 or 4" runs "$whole.parts" 'part_0000[34].vsurf'

@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # A Slurm of this machine alone, in a folder of its own and on ports of its own; sourced by the tests. No containers, no
 # systemd, no accounting. start_slurm FOLDER, then slurmctld, slurmd and munged run until stop_slurm, which the test
 # calls from its EXIT trap.
