@@ -1,4 +1,7 @@
 #include <new>
+#include <optional>
+
+#include <tbb/global_control.h>
 
 #include "command_line/exit_code.h"
 #include "command_line/inputs.h"
@@ -9,10 +12,22 @@
 namespace vmesh::tool {
 namespace {
 
+/// --threads of a verb; 0: not said, or it has none.
+template <class VerbArguments>
+int threads_of(const VerbArguments& verb) {
+  if constexpr (requires { verb.threads; }) return verb.threads;
+  if constexpr (requires { verb.generate.options.threads; }) return verb.generate.options.threads;
+  if constexpr (requires { verb.options.threads; }) return verb.options.threads;
+  return 0;
+}
+
 int run_verb(const Arguments& arguments, Console& console) {
   return std::visit(
       [&console](const auto& verb) {
         console.set_quiet(verb.common.quiet);
+        std::optional<tbb::global_control> limit;
+        if (const int threads = threads_of(verb); threads > 0)
+          limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
         return run(verb, console);
       },
       arguments);

@@ -308,6 +308,22 @@ TEST(Clean, KeepsTheDigitsOfTinyVessels) {
   EXPECT_NEAR(result.centerline.length(0), 1.2345678e-4, 1e-10);
 }
 
+TEST(Clean, KeepsRadiiThatAreNextToNothing) {
+  const double least = 5e-324;  // there is no smaller number
+  const auto result = clean(raw_of({node(0, 0, least), node(9, 0, 1)}, {{0, 1}}));
+  EXPECT_EQ(std::min(result.centerline.node(0).radius, result.centerline.node(1).radius), least);
+}
+
+TEST(Clean, RefusesLengthsWhoseSquaresOverflow) {
+  for (const double large : {1e31, 1e200, -1e200}) {
+    const std::string problem =
+        message_of_failure(raw_of({node(0, 0, 1), node(large, 0, 0), node(9, 0, 1)}, {{0, 1}, {1, 2}}));
+    EXPECT_NE(problem.find("test.swc: line 1"), std::string::npos) << problem;
+    EXPECT_NE(problem.find("check the unit"), std::string::npos) << problem;
+  }
+  EXPECT_THROW(clean(raw_of({node(0, 0, 1e31), node(9, 0, 1)}, {{0, 1}})), InvalidInput);
+}
+
 TEST(Clean, OrdersByGeometryNotByFile) {
   std::mt19937 random(7);
   std::vector<CenterlineNode> nodes = {node(0, 0, 4)};

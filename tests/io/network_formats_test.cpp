@@ -163,6 +163,13 @@ TEST(ReadHdf5, DamagedFilesAreRefusedOrRead) {
     }
   }
 }
+
+// A billion points of which none is in the file.
+TEST(ReadHdf5, BelievesNoTableLargerThanItsFile) {
+  testing::expect_contains(
+      message_of<InvalidInput>([&] { read_centerline(VMESH_FOUND "/h5/a_table_larger_than_its_file.h5"); }),
+      "larger than the file can hold");
+}
 #else
 TEST(ReadHdf5, NeedsHdf5) {
   const testing::TemporaryFolder folder;

@@ -4,6 +4,7 @@
 #include "vmesh/io/surface_io.h"
 
 #include "run_vmesh.h"
+#include "shared_data.h"
 
 namespace vmesh::testing {
 namespace {
@@ -165,6 +166,21 @@ TEST_F(CenterlineInputs, ANetworkOfSecomb) {
   const std::string said = grow({"@network.dat"});
   EXPECT_EQ(said.find("does not say its unit"), std::string::npos) << said;
 }
+
+#if VMESH_TEST_WITH_HDF5
+TEST_F(CenterlineInputs, ANetworkOfMorphIo) {
+  VMESH_NEED_SHARED_DATA("microvascular_loops/vasculature2.h5");
+  grow({shared_data("microvascular_loops/vasculature2.h5").string()});
+  EXPECT_GT(nlohmann::json::parse(read("out.json")).at("centerline").at("nodes"), 500);
+}
+#else
+TEST_F(CenterlineInputs, ANetworkOfMorphIoNeedsHdf5) {
+  write("network.h5", "\x89HDF\r\n\x1a\n");
+  const Outcome run = vmesh({"generate", "@network.h5", "@out.ply"});
+  EXPECT_EQ(run.exit_code, 4) << run.err;
+  EXPECT_NE(run.err.find("VMESH_WITH_HDF5"), std::string::npos) << run.err;
+}
+#endif
 
 TEST_F(CenterlineInputs, ImplausibleRadiiAreHintedAt) {
   write("small.swc", "1 0 0 0 0 0.004 -1\n2 0 0 0 0.09 0.004 1\n");

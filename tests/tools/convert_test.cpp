@@ -134,6 +134,30 @@ TEST_F(Convert, NeedsAnOutput) {
   EXPECT_EQ(vmesh({"render", "@s.ply", "@s.png", "--width", "32", "--height", "32"}).exit_code, 0);
 }
 
+TEST_F(Convert, TheOutputMayComeLastForEveryVerb) {
+  write("scene.json", R"({"schema": "vmesh.scene/1", "duration_s": 0.02})");
+  const std::vector<std::vector<std::string>> runs = {
+      {"synth", "@s.json", "--vertices", "9"},
+      {"convert", "@y.swc", "@y.json"},
+      {"generate", "@y.swc", "@y.ply"},
+      {"cones", "@y.swc", "@cones.ply"},
+      {"centerline", "@y.ply", "@again.json"},
+      {"fit", "@y.ply", "@y.ply", "@fitted.ply", "--centerline", "@y.swc", "--fit-rounds", "1"},
+      {"render", "@y.ply", "@y.png", "--width", "32", "--height", "32"},
+      {"deform", "@y.swc", "@y.ply", "@frames", "--script", "@scene.json", "--format", "ply"},
+  };
+  for (const std::vector<std::string>& arguments : runs) {
+    const Outcome run = vmesh(arguments);
+    EXPECT_EQ(run.exit_code, 0) << arguments[0] << run.err;
+  }
+  for (const char* name : {"s.json", "y.json", "y.ply", "cones.ply", "again.json", "fitted.ply", "y.png", "frames"})
+    EXPECT_TRUE(exists(name)) << name;
+  if (VMESH_TEST_WITH_VTK) {
+    EXPECT_EQ(vmesh({"reference", "@y.swc", "@reference.ply", "--voxel", "1"}).exit_code, 0);
+    EXPECT_TRUE(exists("reference.ply"));
+  }
+}
+
 #if VMESH_TEST_WITH_VTK
 TEST_F(Convert, AVtpIsTakenForWhatItHolds) {
   ASSERT_EQ(vmesh({"convert", "@y.swc", "-o", "@lines.vtp"}).exit_code, 0);

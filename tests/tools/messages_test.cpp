@@ -58,6 +58,16 @@ TEST_F(Messages, AFileOfTheWrongKindIsAnsweredWithTheVerbThatTakesIt) {
   expect_says({"cones", "@scan.nii.gz", "-o", "@y.ply"}, 4, "vmesh centerline " + path("scan.nii.gz").string());
   expect_says({"render", "@y.swc", "-o", "@y.png"}, 4, "vmesh generate " + path("y.swc").string() + " -o y.ply");
   expect_says({"evaluate", "@y.swc"}, 4, "vmesh generate");
+  expect_says({"render", "@scan.nii.gz", "@y.png"}, 4,
+              "vmesh reference " + path("scan.nii.gz").string() + " -o scan.ply");
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"info", "@scan.mha"},
+                                                    {"convert", "@scan.mha", "@y.ply"},
+                                                    {"convert", "@scan.mha", "@y.swc"}}) {
+    expect_says(arguments, 4, "vmesh reference " + path("scan.mha").string() + " -o scan.ply");
+    expect_says(arguments, 4, "vmesh centerline " + path("scan.mha").string() + " -o scan.centerline.json");
+  }
+  expect_says({"convert", "@tube.off", "@y.swc"}, 2, "see vmesh centerline");
+  expect_says({"convert", "@y.swc", "@y.ply"}, 2, "see vmesh generate");
 #if VMESH_TEST_WITH_VTK
   ASSERT_EQ(vmesh({"convert", "@y.swc", "-o", "@line.vtp"}).exit_code, 0);
   ASSERT_EQ(vmesh({"convert", "@tube.off", "-o", "@wall.vtp"}).exit_code, 0);
@@ -78,10 +88,20 @@ TEST_F(Messages, AnUnknownVerbIsAnsweredWithTheNearestAndAll) {
 }
 
 TEST_F(Messages, AWarningComesOnce) {
-  write("bare.swc", "1 0 0 0 0 3.0 -1\n2 0 0 0 20 2.8 1\n");
-  const Outcome run = vmesh({"evaluate", "@tube.off", "--reference", "@tube.off"});
+  const Outcome run = vmesh({"evaluate", "@tube.off"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(occurrences(run.err, "names no unit"), 1u) << run.err;
+  EXPECT_EQ(occurrences(run.err, "warning: "), 2u) << run.err;
+  EXPECT_EQ(occurrences(run.err, "does not say its unit; taken as mm (set it with --unit "), 1u) << run.err;
+  EXPECT_EQ(occurrences(run.err, "does not say its frame; taken as LPS (set it with --space "), 1u) << run.err;
+}
+
+TEST_F(Messages, AWarningNamesTheOptionOfItsFile) {
+  write("bare.swc", "1 0 0 0 0 3.0 -1\n2 0 0 0 20 2.8 1\n");
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.ply"}).exit_code, 0);
+  const Outcome run = vmesh({"evaluate", "@y.ply", "--reference", "@tube.off", "--centerline", "@bare.swc"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  for (const char* option : {"--reference-unit ", "--reference-space ", "--centerline-unit ", "--centerline-space "})
+    EXPECT_EQ(occurrences(run.err, std::string("(set it with ") + option), 1u) << option << run.err;
 }
 
 TEST_F(Messages, PointsAndRangesAreWrittenAsTheHelpHasThem) {

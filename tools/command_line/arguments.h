@@ -36,6 +36,7 @@ struct InputArguments {
   CenterlineReadOptions read;               ///< of centerlines
   std::optional<LengthUnit> unit;
   std::optional<Space> space;
+  std::string options_of;  ///< before the names of these options: "reference-" for --reference-unit
 };
 
 /// What is done about vessels that touch without being neighbours: nothing, or they are narrowed until they do not.

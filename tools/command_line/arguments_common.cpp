@@ -36,6 +36,7 @@ void add_writing(CLI::App& verb, WritingArguments& writing) {
 }
 
 void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
+  input.options_of = of;
   verb.add_option_function<std::string>(
           "--" + of + "unit", [&input](const std::string& text) { input.unit = parse_length_unit(text); },
           "unit of the numbers in the file; overrides what the file says")

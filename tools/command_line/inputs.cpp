@@ -46,13 +46,15 @@ std::vector<std::filesystem::path> paths_of(const InputArguments& input) {
 void convert_to_internal(LoadedSurface& surface, const InputArguments& input) {
   if (input.unit) surface.unit = *input.unit;
   if (input.space) surface.space = *input.space;
-  const std::string name = input.path.string();
+  const std::string file = input.path.string() + ": the file", option = "--" + input.options_of;
   if (surface.unit == LengthUnit::unknown) {
-    surface.warnings.push_back(name + ": names no unit; millimetres are taken (--unit overrides)");
+    surface.warnings.push_back(file + " does not say its unit; taken as mm (set it with " + option +
+                               "unit um, mm, cm or m)");
     surface.unit = LengthUnit::mm;
   }
   if (surface.space == Space::unknown) {
-    surface.warnings.push_back(name + ": names no patient frame; LPS is taken (--space overrides)");
+    surface.warnings.push_back(file + " does not say its frame; taken as LPS (set it with " + option +
+                               "space LPS or RAS)");
     surface.space = Space::lps;
   }
   if (surface.unit != LengthUnit::mm) scale(surface, millimetres_per(surface.unit));
@@ -60,6 +62,16 @@ void convert_to_internal(LoadedSurface& surface, const InputArguments& input) {
     for (Vec3& p : surface.mesh.vertices) p = Vec3(-p.x(), -p.y(), p.z());
   surface.unit = LengthUnit::mm;
   surface.space = Space::lps;
+}
+
+/// Warnings of the library that speak of --unit and --space, with the names that these have for this file.
+void name_options(std::vector<std::string>& warnings, const InputArguments& input) {
+  for (std::string& warning : warnings) {
+    for (const char* option : {"--unit", "--space"}) {
+      const std::size_t at = warning.rfind(option);
+      if (at != std::string::npos) warning.insert(at + 2, input.options_of);
+    }
+  }
 }
 
 /// Not of a kind that may hold a surface as well.
@@ -78,6 +90,15 @@ std::string make_centerline_first(const std::filesystem::path& path, const std::
 std::string make_surface_first(const std::filesystem::path& path, const std::string& kind, const std::string& verb) {
   return path.string() + ": this is " + kind + ", and a surface is needed; make one first: vmesh " + verb + " " +
          path.string() + " -o " + path.stem().stem().string() + ".ply";
+}
+
+/// Where a surface or a centerline would do.
+std::string make_either_first(const std::filesystem::path& path) {
+  const std::string made = path.stem().stem().string();
+  return path.string() +
+         ": this is an image, and a surface or a centerline is needed; make one first: vmesh reference " +
+         path.string() + " -o " + made + ".ply, or vmesh centerline " + path.string() + " -o " + made +
+         ".centerline.json";
 }
 
 bool holds_centerline(const std::filesystem::path& path) {
@@ -191,7 +212,11 @@ RawCenterline read_centerline_of(const InputArguments& input) {
 RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said) {
   RawCenterline raw = read_centerline_of(input);
   if (said != nullptr) *said = {raw.unit, raw.space};
-  return convert_read(std::move(raw), input.read, input.unit, input.space, warnings);
+  std::vector<std::string> of_reading;
+  raw = convert_read(std::move(raw), input.read, input.unit, input.space, of_reading);
+  name_options(of_reading, input);
+  warnings.insert(warnings.end(), of_reading.begin(), of_reading.end());
+  return raw;
 }
 
 LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
@@ -235,7 +260,12 @@ LoadedImage load_image(const InputArguments& input, Console& console) {
   }
 }
 
+void check_is_no_image(const InputArguments& input) {
+  if (is_image(input.path)) throw Unsupported(make_either_first(input.path));
+}
+
 AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said) {
+  check_is_no_image(input);
   if (input.more.empty() && (may_be_both(input.path) || has_surface_extension(input.path))) {
     try {
       LoadedSurface surface = load_surface(input, said);

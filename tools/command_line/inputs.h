@@ -34,6 +34,9 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
 /// An image; --unit and --space are refused, as images say where they lie. Throws UsageError.
 LoadedImage load_image(const InputArguments& input, Console& console);
 
+/// Throws Unsupported, with the verbs that take images, if it is one.
+void check_is_no_image(const InputArguments& input);
+
 /// Either of the two, by extension; what a .vtp holds, its content decides. What the file says of itself goes to
 /// `said`.
 using AnyInput = std::variant<RawCenterline, LoadedSurface>;

@@ -22,11 +22,12 @@ std::optional<Kind> kind_of(const std::filesystem::path& path) {
 }
 
 void check_kinds(const ConvertArguments& arguments) {
+  check_is_no_image(arguments.input);
   const auto from = kind_of(arguments.input.path), to = kind_of(arguments.output);
   if (from && to && *from != *to)
     throw UsageError(arguments.output.string() + ": a " + (*from == Kind::surface ? "surface" : "centerline") +
-                     " cannot be converted to a " + (*to == Kind::surface ? "surface" : "centerline") +
-                     (*from == Kind::centerline ? "; see vmesh generate" : ""));
+                     " cannot be converted to a " + (*to == Kind::surface ? "surface" : "centerline") + "; see vmesh " +
+                     (*from == Kind::centerline ? "generate" : "centerline"));
 }
 
 std::vector<PlannedOutput> planned_outputs(const std::filesystem::path& output) {

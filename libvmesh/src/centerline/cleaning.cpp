@@ -26,6 +26,8 @@ std::string number(double value) {
   return text.str();
 }
 
+constexpr double kLargest = 1e30;  // mm; no surface is grown beyond, and squares of squares are finite up to there
+
 /// What cleaning cannot mend.
 std::vector<std::string> list_problems(const RawCenterline& raw) {
   std::vector<std::string> problems;
@@ -43,6 +45,9 @@ std::vector<std::string> list_problems(const RawCenterline& raw) {
       problems.push_back(raw.name_of_node(n) + ": the radius " + number(radius) +
                          " is negative; correct it, or set it to 0 to have it interpolated");
     }
+    const double size = std::max(position.cwiseAbs().maxCoeff(), radius);
+    if (std::isfinite(size) && size > kLargest)
+      problems.push_back(raw.name_of_node(n) + ": " + number(size) + " mm is too much; check the unit");
   }
   for (Index s = 0; s < raw.segments.size(); ++s) {
     const auto& [a, b] = raw.segments[s];
@@ -81,9 +86,10 @@ void remove_self_loops(Workspace& work) {
 
 /// Decimals of the grid that positions and radii are rounded to.
 int grid_decimals(const std::vector<CenterlineNode>& nodes) {
+  constexpr double kLeast = 1e-300;  // below, its ten-thousandth would be 0
   double smallest = std::numeric_limits<double>::infinity();
   for (const auto& node : nodes) {
-    if (node.radius > 0) smallest = std::min(smallest, node.radius);
+    if (node.radius > 0) smallest = std::clamp(node.radius, kLeast, smallest);
   }
   if (!std::isfinite(smallest)) return 6;
   return std::max(6, -static_cast<int>(std::floor(std::log10(smallest * 1e-4))));

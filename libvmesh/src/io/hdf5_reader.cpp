@@ -9,14 +9,15 @@
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 
-#include "core/child_process.h"
-
 #include "bytes.h"
+#include "core/child_process.h"
 #include "formats.h"
 #include "poly_lines.h"
 
 namespace vmesh::io {
 namespace {
+
+constexpr double kBestRatio = 1032;  // of zlib's format, with which HDF5 packs: what a byte can unpack to
 
 struct Table {
   std::size_t rows = 0, columns = 0;
@@ -47,7 +48,9 @@ class Handle {
 class Hdf5File {
  public:
   explicit Hdf5File(const std::filesystem::path& path)
-      : source_(path.string()), file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {
+      : source_(path.string()),
+        bytes_(std::filesystem::file_size(path)),
+        file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {
     if (!file_.good()) throw InvalidInput(source_ + ": this is no HDF5 file, or a damaged one");
   }
 
@@ -66,6 +69,9 @@ class Hdf5File {
     if (!space.good() || H5Sget_simple_extent_ndims(space) != 2 ||
         H5Sget_simple_extent_dims(space, size, nullptr) != 2 || size[1] < columns)
       fail("is no table of " + std::to_string(columns) + " columns");
+    const double most = kBestRatio * static_cast<double>(bytes_);
+    if (static_cast<double>(size[0]) * static_cast<double>(size[1]) > most)
+      fail("is larger than the file can hold; the file is damaged, get it again");
     Table table{static_cast<std::size_t>(size[0]), static_cast<std::size_t>(size[1]), {}};
     table.values.resize(table.rows * table.columns);
     if (H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, table.values.data()) < 0)
@@ -75,6 +81,7 @@ class Hdf5File {
 
  private:
   std::string source_;
+  std::uintmax_t bytes_;  ///< of the file
   Handle file_;
 };
 

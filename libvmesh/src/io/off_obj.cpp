@@ -28,7 +28,6 @@ class OffReader {
     for (std::string_view line; lines_.next(line);) {
       if (line.starts_with('#')) read_tags(line, surface_.unit, surface_.space);
     }
-    warn_without_tags(surface_, source_);
     return std::move(surface_);
   }
 
@@ -133,7 +132,6 @@ class ObjReader {
       faces_.add({corners_.begin() + begin, corners_.begin() + end}, "line " + std::to_string(number));
     }
     faces_.finish();
-    warn_without_tags(surface_, source_);
     return std::move(surface_);
   }
 

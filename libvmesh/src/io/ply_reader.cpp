@@ -113,7 +113,6 @@ class PlyReader {
     }
     faces.finish();
     keep_face_attributes(faces.face_of_triangle());
-    warn_without_tags(surface_, source_);
     return std::move(surface_);
   }
 

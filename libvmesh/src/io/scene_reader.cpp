@@ -189,7 +189,6 @@ LoadedSurface read_scene(const std::filesystem::path& path) {
     collector.add(corners, "face " + std::to_string(f));
   }
   collector.finish();
-  warn_without_tags(surface, source);
   return surface;
 }
 

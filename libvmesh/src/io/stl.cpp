@@ -115,7 +115,6 @@ LoadedSurface parse_stl(std::string_view content, const std::string& source) {
     throw InvalidInput(source + ": this is no STL file: it neither begins with \"solid\" nor has a binary header");
   }
   faces.finish();
-  warn_without_tags(surface, source);
   return surface;
 }
 

@@ -56,10 +56,4 @@ void FaceCollector::finish() {
   }
 }
 
-void warn_without_tags(LoadedSurface& surface, const std::string& source) {
-  if (surface.space == Space::unknown) surface.warnings.push_back(source + ": the file does not say its frame (SPACE)");
-  if (surface.unit == LengthUnit::unknown)
-    surface.warnings.push_back(source + ": the file does not say its unit (UNIT)");
-}
-
 }  // namespace vmesh::io

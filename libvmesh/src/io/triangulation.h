@@ -52,7 +52,4 @@ class FaceCollector {
   std::size_t faces_ = 0, polygons_ = 0, degenerate_ = 0;
 };
 
-/// Warns when the file does not say its unit or frame.
-void warn_without_tags(LoadedSurface& surface, const std::string& source);
-
 }  // namespace vmesh::io

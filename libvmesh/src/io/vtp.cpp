@@ -241,7 +241,6 @@ LoadedSurface parse_surface_vtp(std::string_view content, const std::string& sou
   kept.clear();
   for (const Index f : faces.face_of_triangle()) kept.push_back(cell_of_face[f]);
   surface.attributes.face = attributes_of(data.cell_arrays, kCellNames, data.cell_count(), kept);
-  warn_without_tags(surface, source);
   return surface;
 }
 

@@ -154,7 +154,7 @@ class Meetings {
   std::unordered_map<std::uint64_t, Index> number_;  // in facing_, or kNone, of the pairs that were looked at
 };
 
-// The share of the blend that is left to every node.
+// The share of the blend that is left to nodes next to gaps.
 class Rounding {
  public:
   Rounding(const Centerline& centerline, const SphereChain& chain, double blend)
@@ -164,28 +164,7 @@ class Rounding {
   void end_before_gap(Index p, Index q) { narrow(p, q, kReach); }
   /// Leaves two spheres no more than does not join them.
   void keep_gap_open(Index p, Index q) { narrow(p, q, 1); }
-  /// Growing again along the graph; empty if it is 1 everywhere.
-  std::vector<double> take() {
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-    for (Index n = 0; n < share_.size(); ++n) {
-      if (share_[n] < 1) open.emplace(share_[n], n);
-    }
-    if (open.empty()) return {};
-    while (!open.empty()) {
-      const auto [share, n] = open.top();
-      open.pop();
-      if (share > share_[n]) continue;
-      for (const Index s : centerline_.incident_segments(n)) {
-        const Index other = centerline_.segment(s).a == n ? centerline_.segment(s).b : centerline_.segment(s).a;
-        const double reached = share + kReturn * centerline_.length(s) / centerline_.radius_at(s, 0.5);
-        if (reached >= share_[other]) continue;
-        share_[other] = reached;
-        open.emplace(reached, other);
-      }
-    }
-    return std::move(share_);
-  }
+  std::vector<double> take() { return std::move(share_); }
 
  private:
   // The thinner of the two decides.
@@ -285,7 +264,35 @@ void keep_strangers_apart(const Centerline& centerline, const SphereChain& chain
 
 }  // namespace
 
+std::vector<double> returning(const Centerline& centerline, std::vector<double> share) {
+  using Entry = std::pair<double, Index>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  for (Index n = 0; n < share.size(); ++n) {
+    if (share[n] < 1) open.emplace(share[n], n);
+  }
+  if (open.empty()) return {};
+  while (!open.empty()) {
+    const auto [least, n] = open.top();
+    open.pop();
+    if (least > share[n]) continue;
+    for (const Index s : centerline.incident_segments(n)) {
+      const Index other = centerline.segment(s).a == n ? centerline.segment(s).b : centerline.segment(s).a;
+      const double reached = least + kReturn * centerline.length(s) / centerline.radius_at(s, 0.5);
+      if (reached >= share[other]) continue;
+      share[other] = reached;
+      open.emplace(reached, other);
+    }
+  }
+  return share;
+}
+
 Sight sight_between_segments(const Centerline& centerline, double blend) {
+  Sight sight = sight_before_return(centerline, blend);
+  sight.rounding = returning(centerline, std::move(sight.rounding));
+  return sight;
+}
+
+Sight sight_before_return(const Centerline& centerline, double blend) {
   const SphereChain chain(centerline);
   const Touch wide{kReach * blend, kOneVolume.larger};
   const bool sees_beyond = wide.smaller > kOneVolume.smaller && blend <= kMostBlend;

@@ -26,4 +26,9 @@ struct Sight {
 
 Sight sight_between_segments(const Centerline& centerline, double blend);
 
+/// The same, with the shares of nodes right at gaps alone: from there they have not grown yet.
+Sight sight_before_return(const Centerline& centerline, double blend);
+/// Shares of nodes, growing along the graph from where they are less than 1; empty where they are 1 everywhere.
+std::vector<double> returning(const Centerline& centerline, std::vector<double> share);
+
 }  // namespace vmesh

@@ -5,7 +5,7 @@
 
 #include "vmesh/volume/vessel_field.h"
 
-#include "volume/sight.h"
+#include "volume/sight_regions.h"
 
 namespace vmesh {
 namespace {
@@ -32,34 +32,40 @@ void keep_listed(std::span<const Index> list, std::vector<Index>& cones) {
 }  // namespace
 
 void VesselField::find_local_cones() {
-  const auto [local, parting, apart, rounding] = sight_between_segments(*centerline_, blend_);
+  const auto [local, parting, apart, rounding] = sight_by_regions(*centerline_, blend_);
 
   local_offsets_.assign(cones_.size() + 1, 0);
   for (std::size_t c = 0; c < cones_.size(); ++c) ++local_offsets_[c + 1];
-  for (const PairSet* set : {&local, &parting}) {
-    for (const auto& [i, j] : set->pairs()) {
+  for (const SightPairs::Pairs* pairs : {&local, &parting}) {
+    for (const auto& [i, j] : *pairs) {
       ++local_offsets_[i + 1];
       ++local_offsets_[j + 1];
     }
   }
   std::partial_sum(local_offsets_.begin(), local_offsets_.end(), local_offsets_.begin());
-  local_.resize(local_offsets_.back());
   std::vector<Index> next(local_offsets_.begin(), local_offsets_.end() - 1);
+  const auto fill = [&](const SightPairs::Pairs& pairs, std::vector<Index>& lists) {
+    for (const auto& [i, j] : pairs) {
+      lists[next[i]++] = j;
+      lists[next[j]++] = i;
+    }
+  };
+  local_.resize(local_offsets_.back());
   for (Index c = 0; c < cones_.size(); ++c) local_[next[c]++] = c;
-  for (const PairSet* set : {&local, &parting}) {
-    for (const auto& [i, j] : set->pairs()) {
-      local_[next[i]++] = j;
-      local_[next[j]++] = i;
-    }
-  }
+  fill(local, local_);
+  const std::vector<Index> first_parting = next;
+  fill(parting, local_);
   is_parting_.assign(local_.size(), 0);
+  std::vector<Index> partners;
   for (Index c = 0; c < cones_.size(); ++c) {
-    std::sort(local_.begin() + local_offsets_[c], local_.begin() + local_offsets_[c + 1]);
-    for (std::size_t k = local_offsets_[c]; k < local_offsets_[c + 1]; ++k) {
-      is_parting_[k] = parting.contains(c, local_[k]);
-    }
+    const auto end = local_.begin() + local_offsets_[c + 1];
+    partners.assign(local_.begin() + first_parting[c], end);
+    std::sort(partners.begin(), partners.end());
+    std::sort(local_.begin() + local_offsets_[c], end);
+    for (Index k = local_offsets_[c]; !partners.empty() && k < local_offsets_[c + 1]; ++k)
+      is_parting_[k] = std::binary_search(partners.begin(), partners.end(), local_[k]);
   }
-  apart_.assign(apart.pairs().begin(), apart.pairs().end());
+  apart_ = apart;
   std::sort(apart_.begin(), apart_.end());
   for (const auto& [i, j] : apart_) cones_[i].is_apart = cones_[j].is_apart = true;
   for (Cone& cone : cones_) {

@@ -2,6 +2,10 @@
 
 #include "vmesh/image/voxel_image.h"
 
+// Why not VTK's filters: on one thread vtkImageGaussianSmooth does the same to 3e-7 in 1 to 7.6 times the time (a liver
+// on 36 million voxels of 0.6 mm: 5.7 s, here 0.75 s), vtkImageResample lays another grid, vtkImageReslice this one to
+// 2e-5 in 0.8 to 1.9 times the time; and these are there without VTK.
+
 namespace vmesh {
 
 /// 1 where the value is at least `low` and at most `high`, 0 elsewhere.

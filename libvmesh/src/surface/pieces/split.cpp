@@ -1,5 +1,6 @@
 // Splitting a surface that is still to be grown into parts.
 #include <algorithm>
+#include <cmath>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -66,11 +67,22 @@ class PartMaker {
     }
   }
 
-  // Vertices of a piece, about.
-  double size_of(Index piece) const {
-    double rings = 0;
-    for (const Stretch& stretch : division_.plans[piece].stretches) rings += stretch.count;
-    return (rings + static_cast<double>(division_.plans[piece].nodes.size())) * options_.around;
+  // Numbers of pieces that begin parts, and the end: parts of about as many rings each.
+  std::vector<Index> beginnings(std::size_t parts) const {
+    std::vector<double> size = {0};  // up to every piece
+    for (const PiecePlan& plan : division_.plans) {
+      double rings = static_cast<double>(plan.nodes.size());
+      for (const Stretch& stretch : plan.stretches) rings += stretch.count;
+      size.push_back(size.back() + rings);
+    }
+    std::vector<Index> first = {0};
+    for (std::size_t k = 1; k < parts; ++k) {
+      const double until = size.back() * static_cast<double>(k) / static_cast<double>(parts);
+      const auto piece = static_cast<Index>(std::lower_bound(size.begin(), size.end(), until) - size.begin());
+      if (piece > first.back() && piece < division_.plans.size()) first.push_back(piece);
+    }
+    first.push_back(static_cast<Index>(division_.plans.size()));
+    return first;
   }
 
   SurfacePart make(Index first, Index end) const {
@@ -176,17 +188,14 @@ SplitSummary split(const Centerline& centerline, const GenerateOptions& options,
   summary.pieces = division.plans.size();
   summary.seams = division.seams.size();
   const PartMaker maker(axes, rings, division, options);
-  for (Index first = 0; first < division.plans.size();) {
-    report_progress(progress, "split", static_cast<double>(first) / static_cast<double>(division.plans.size()));
-    Index end = first;
-    for (double size = 0; end < division.plans.size() && (end == first || size + maker.size_of(end) / 2 < vertices);
-         ++end)
-      size += maker.size_of(end);
-    SurfacePart part = maker.make(first, end);
+  const double parts = std::clamp(std::round(summary.expected_vertices / vertices), 1.0, double(summary.pieces));
+  const std::vector<Index> first = maker.beginnings(static_cast<std::size_t>(parts));
+  summary.parts = first.size() - 1;
+  for (std::size_t p = 0; p < summary.parts; ++p) {
+    report_progress(progress, "split", static_cast<double>(p) / static_cast<double>(summary.parts));
+    SurfacePart part = maker.make(first[p], first[p + 1]);
     renumber(growth, part);
     take(std::move(part));
-    ++summary.parts;
-    first = end;
   }
   return summary;
 }

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "volume/sight.h"
+
+namespace vmesh {
+
+/// What Sight holds, in lists: for centerlines too large for tables.
+struct SightPairs {
+  using Pairs = std::vector<std::pair<Index, Index>>;
+
+  Pairs local, parting, apart;   ///< each pair with the lower index first
+  std::vector<double> rounding;  ///< of every node; empty where it is 1 for all
+};
+
+/// As sight_between_segments(), region by region on all threads. A centerline falls into cells at nodes along vessels
+/// whose spheres face none but those of their own vessel: pairs of spheres are followed from one to the next, so that
+/// what is related lies in one cell, or right at the node. A region consists of whole cells, one after the other along
+/// the graph. `region_size`: segments of a region, at least.
+SightPairs sight_by_regions(const Centerline& centerline, double blend, std::size_t region_size = 25'000);
+
+}  // namespace vmesh

@@ -1,0 +1,93 @@
+// Reads a surface with three.js, which runs without a display: node three_reader.js FOLDER_OF_THREE version,
+// node three_reader.js FOLDER_OF_THREE read FILE [POSE]. Prints JSON.
+// POSE is a JSON file: joints by name with position (metres) and quaternion (x, y, z, w). The mesh is then skinned as
+// three.js' vertex shader does it (its chunk skinning_vertex), in doubles.
+'use strict';
+const fs = require('fs');
+const vm = require('vm');
+
+const [folder, task, file, pose] = process.argv.slice(2);
+const THREE = global.THREE = require(folder + '/build/three.js');
+global.self = global;
+console.log = console.time = console.timeEnd = () => {};
+const print = (value) => process.stdout.write(JSON.stringify(value));
+
+function load(loader) {
+  vm.runInThisContext(fs.readFileSync(`${folder}/examples/js/loaders/${loader}.js`, 'utf8'), loader);
+  return new THREE[loader]();
+}
+
+function bytes(path) {
+  const content = fs.readFileSync(path);
+  return content.buffer.slice(content.byteOffset, content.byteOffset + content.length);
+}
+
+// Positions in the world, bent where the mesh has bones.
+function points(mesh) {
+  const {position, skinIndex, skinWeight} = mesh.geometry.attributes;
+  const result = [];
+  for (let v = 0; v < position.count; ++v) {
+    const p = new THREE.Vector3().fromBufferAttribute(position, v);
+    if (mesh.isSkinnedMesh) {
+      const bound = p.clone().applyMatrix4(mesh.bindMatrix);
+      p.set(0, 0, 0);
+      for (let i = 0; i < 4; ++i) {
+        const joint = skinIndex.array[4 * v + i];
+        const bone = new THREE.Matrix4().fromArray(mesh.skeleton.boneMatrices, 16 * joint);
+        p.addScaledVector(bound.clone().applyMatrix4(bone), skinWeight.array[4 * v + i]);
+      }
+      p.applyMatrix4(mesh.bindMatrixInverse);
+    }
+    p.applyMatrix4(mesh.matrixWorld);
+    result.push(p.x, p.y, p.z);
+  }
+  return result;
+}
+
+function report(mesh) {
+  const geometry = mesh.geometry;
+  const attributes = {};
+  for (const [name, attribute] of Object.entries(geometry.attributes)) {
+    if (attribute.itemSize === 1) attributes[name] = Array.from(attribute.array);
+  }
+  if (geometry.attributes.color) attributes.color = Array.from(geometry.attributes.color.array);
+  const count = geometry.attributes.position.count;
+  const faces = geometry.index ? Array.from(geometry.index.array) : Array.from({length: count}, (_, i) => i);
+  print({points: points(mesh), faces, attributes, bones: mesh.skeleton ? mesh.skeleton.bones.length : 0});
+}
+
+function bend(scene, mesh) {
+  const joints = JSON.parse(fs.readFileSync(pose, 'utf8')).joints;
+  for (const bone of mesh.skeleton.bones) {
+    // GLTFLoader makes "_" of blanks in names.
+    const joint = joints.find((j) => THREE.PropertyBinding.sanitizeNodeName(j.name) === bone.name);
+    const at = new THREE.Vector3().fromArray(joint.position);
+    bone.position.copy(bone.parent.worldToLocal(at));
+    bone.quaternion.fromArray(joint.quaternion);
+  }
+}
+
+function reportScene(scene) {
+  const meshes = [];
+  scene.traverse((object) => object.isMesh && meshes.push(object));
+  if (meshes.length !== 1) throw new Error(`${meshes.length} meshes`);
+  scene.updateMatrixWorld(true);
+  if (pose) {
+    bend(scene, meshes[0]);
+    scene.updateMatrixWorld(true);
+  }
+  if (meshes[0].isSkinnedMesh) meshes[0].skeleton.update();
+  report(meshes[0]);
+}
+
+if (task === 'version') {
+  print(THREE.REVISION);
+} else if (file.endsWith('.glb')) {
+  load('GLTFLoader').parse(bytes(file), '', (gltf) => reportScene(gltf.scene), (error) => {
+    throw error;
+  });
+} else if (file.endsWith('.obj')) {
+  reportScene(load('OBJLoader').parse(fs.readFileSync(file, 'utf8')));
+} else {
+  report(new THREE.Mesh(load(file.endsWith('.stl') ? 'STLLoader' : 'PLYLoader').parse(bytes(file))));
+}

@@ -1,0 +1,63 @@
+// What sees what, found region by region: as found in one go.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "volume/sight_regions.h"
+
+#include "random_vessels.h"
+
+namespace vmesh {
+namespace {
+
+SightPairs::Pairs sorted(const PairSet& set) {
+  SightPairs::Pairs pairs(set.pairs().begin(), set.pairs().end());
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+SightPairs::Pairs sorted(SightPairs::Pairs pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+// Returns whether there was more than one region.
+bool expect_same_by_regions(const Centerline& centerline, double blend, std::size_t region_size) {
+  const Sight whole = sight_between_segments(centerline, blend);
+  const SightPairs parts = sight_by_regions(centerline, blend, region_size);
+  EXPECT_TRUE(sorted(parts.local) == sorted(whole.local));
+  EXPECT_TRUE(sorted(parts.parting) == sorted(whole.parting));
+  EXPECT_TRUE(sorted(parts.apart) == sorted(whole.apart));
+  EXPECT_EQ(parts.rounding, whole.rounding);
+  // In one go, pairs come in the order in which they are found.
+  return parts.local != SightPairs::Pairs(whole.local.pairs().begin(), whole.local.pairs().end());
+}
+
+TEST(SightByRegions, IsThatOfTheWhole) {
+  int several = 0;
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    for (const double blend : {0.5, 0.0, 2.0}) {
+      several += expect_same_by_regions(testing::noisy_tree(seed), blend, 10);
+      several += expect_same_by_regions(testing::plausible_tree(seed, seed % 3), blend, 5);
+    }
+  }
+  EXPECT_GE(several, 300) << several;
+}
+
+// Vessels as far from each other as they are long, one component each: as many regions.
+TEST(SightByRegions, OfSeveralComponents) {
+  std::vector<CenterlineNode> nodes;
+  std::vector<CenterlineSegment> segments;
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    const Centerline tree = testing::noisy_tree(seed);
+    const auto first = static_cast<Index>(nodes.size());
+    for (const CenterlineNode& n : tree.nodes()) nodes.push_back({n.position + Vec3(0, 1000.0 * seed, 0), n.radius});
+    for (const auto& [a, b] : tree.segments()) segments.push_back({a + first, b + first});
+    nodes.push_back({Vec3(500, 1000.0 * seed, 0), 1});
+  }
+  EXPECT_TRUE(expect_same_by_regions({nodes, segments}, 0.5, 100));
+}
+
+}  // namespace
+}  // namespace vmesh
