@@ -25,41 +25,10 @@ bool has_surface_extension(const std::filesystem::path& path) {
   return false;
 }
 
-bool is_length(const std::string& attribute) {
-  return attribute == "radius" || attribute == "distance" || attribute == "volume_distance";
-}
-
-void scale(LoadedSurface& surface, double factor) {
-  for (Vec3& p : surface.mesh.vertices) p *= factor;
-  for (auto* attributes : {&surface.attributes.vertex, &surface.attributes.face})
-    for (MeshAttribute& attribute : *attributes)
-      if (is_length(attribute.name))
-        for (double& value : attribute.values) value *= factor;
-}
-
 std::vector<std::filesystem::path> paths_of(const InputArguments& input) {
   std::vector<std::filesystem::path> paths = {input.path};
   paths.insert(paths.end(), input.more.begin(), input.more.end());
   return paths;
-}
-
-void convert_to_internal(LoadedSurface& surface, const InputArguments& input) {
-  if (input.unit) surface.unit = *input.unit;
-  if (input.space) surface.space = *input.space;
-  const std::string name = input.path.string();
-  if (surface.unit == LengthUnit::unknown) {
-    surface.warnings.push_back(name + ": names no unit; millimetres are taken (--unit overrides)");
-    surface.unit = LengthUnit::mm;
-  }
-  if (surface.space == Space::unknown) {
-    surface.warnings.push_back(name + ": names no patient frame; LPS is taken (--space overrides)");
-    surface.space = Space::lps;
-  }
-  if (surface.unit != LengthUnit::mm) scale(surface, millimetres_per(surface.unit));
-  if (surface.space == Space::ras)
-    for (Vec3& p : surface.mesh.vertices) p = Vec3(-p.x(), -p.y(), p.z());
-  surface.unit = LengthUnit::mm;
-  surface.space = Space::lps;
 }
 
 /// Not of a kind that may hold a surface as well.
@@ -203,7 +172,7 @@ LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
   try {
     LoadedSurface surface = read_surface(input.path);
     if (said != nullptr) *said = {surface.unit, surface.space};
-    convert_to_internal(surface, input);
+    convert_to_internal(surface, input.path.string(), input.unit, input.space);
     return surface;
   } catch (const InvalidInput&) {
     if (may_be_both(input.path) && holds_centerline(input.path))
