@@ -74,9 +74,11 @@ function(vmesh_inspect_links name)
 endfunction()
 
 function(vmesh_install_module name)
-  install(TARGETS vmesh_${name} EXPORT vmesh-${name} ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
-  install(EXPORT vmesh-${name} NAMESPACE vmesh:: DESTINATION "${vmesh_package_dir}")
-  install(DIRECTORY include/vmesh/${name} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/vmesh" FILES_MATCHING PATTERN "*.h")
+  install(TARGETS vmesh_${name} EXPORT vmesh-${name} ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    COMPONENT development)
+  install(EXPORT vmesh-${name} NAMESPACE vmesh:: DESTINATION "${vmesh_package_dir}" COMPONENT development)
+  install(DIRECTORY include/vmesh/${name} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/vmesh" COMPONENT development
+    FILES_MATCHING PATTERN "*.h")
 endfunction()
 
 # Call with all modules in the order of the link graph: what a module links comes before it.
@@ -95,10 +97,11 @@ function(vmesh_install_package)
   write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/vmeshConfigVersion.cmake"
     VERSION "${PROJECT_VERSION}" COMPATIBILITY SameMinorVersion)
   install(FILES "${CMAKE_CURRENT_BINARY_DIR}/vmeshConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/vmeshConfigVersion.cmake"
-    DESTINATION "${vmesh_package_dir}")
+    DESTINATION "${vmesh_package_dir}" COMPONENT development)
   install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/CHANGELOG.md"
-    DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-  foreach(folder tools libvmesh bench)  # where README.md goes on
-    install(FILES "${PROJECT_SOURCE_DIR}/${folder}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}/${folder}")
+    DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT command)
+  foreach(folder tools libvmesh libvmesh/python bench)  # where README.md goes on
+    install(FILES "${PROJECT_SOURCE_DIR}/${folder}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}/${folder}"
+      COMPONENT command)
   endforeach()
 endfunction()

@@ -181,5 +181,11 @@ TEST(ExtractCenterline, CanBeCancelled) {
   EXPECT_THROW(extract_centerline(icosphere(2), {}, [](std::string_view, double) { return false; }), Cancelled);
 }
 
+TEST(ExtractCenterline, CanBeCancelledWithinAPart) {
+  int calls = 0;
+  EXPECT_THROW(extract_centerline(icosphere(2), {}, [&](std::string_view, double) { return ++calls < 3; }), Cancelled);
+  EXPECT_EQ(calls, 3);
+}
+
 }  // namespace
 }  // namespace vmesh::testing

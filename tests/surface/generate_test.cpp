@@ -423,6 +423,18 @@ TEST(Generate, StopsWithinAJunctionThatIsRefined) {
   EXPECT_THROW(generate_surface(fork(), options, stop_while_growing), Cancelled);  // it has one junction
 }
 
+// What one piece throws must not leave others half made: they have parallel loops of their own.
+TEST(Generate, StopsWhileManyPiecesGrowAtOnce) {
+  const Centerline tree = synthetic_tree({600, 1});
+  GenerateOptions options;
+  options.threads = 4;
+  for (int stop = 10; stop < 1000; stop += 30) {
+    int calls = 0;
+    const Progress stop_there = [&](std::string_view, double) { return ++calls < stop; };
+    EXPECT_THROW(generate_surface(tree, options, stop_there), Cancelled) << stop;
+  }
+}
+
 TEST(Generate, ReportsProgressBetweenZeroAndOne) {
   std::vector<std::string> stages;
   generate_surface(fork(), {}, [&](std::string_view stage, double fraction) {

@@ -25,43 +25,10 @@ bool has_surface_extension(const std::filesystem::path& path) {
   return false;
 }
 
-bool is_length(const std::string& attribute) {
-  return attribute == "radius" || attribute == "distance" || attribute == "volume_distance";
-}
-
-void scale(LoadedSurface& surface, double factor) {
-  for (Vec3& p : surface.mesh.vertices) p *= factor;
-  for (auto* attributes : {&surface.attributes.vertex, &surface.attributes.face})
-    for (MeshAttribute& attribute : *attributes)
-      if (is_length(attribute.name))
-        for (double& value : attribute.values) value *= factor;
-}
-
 std::vector<std::filesystem::path> paths_of(const InputArguments& input) {
   std::vector<std::filesystem::path> paths = {input.path};
   paths.insert(paths.end(), input.more.begin(), input.more.end());
   return paths;
-}
-
-void convert_to_internal(LoadedSurface& surface, const InputArguments& input) {
-  if (input.unit) surface.unit = *input.unit;
-  if (input.space) surface.space = *input.space;
-  const std::string file = input.path.string() + ": the file", option = "--" + input.options_of;
-  if (surface.unit == LengthUnit::unknown) {
-    surface.warnings.push_back(file + " does not say its unit; taken as mm (set it with " + option +
-                               "unit um, mm, cm or m)");
-    surface.unit = LengthUnit::mm;
-  }
-  if (surface.space == Space::unknown) {
-    surface.warnings.push_back(file + " does not say its frame; taken as LPS (set it with " + option +
-                               "space LPS or RAS)");
-    surface.space = Space::lps;
-  }
-  if (surface.unit != LengthUnit::mm) scale(surface, millimetres_per(surface.unit));
-  if (surface.space == Space::ras)
-    for (Vec3& p : surface.mesh.vertices) p = Vec3(-p.x(), -p.y(), p.z());
-  surface.unit = LengthUnit::mm;
-  surface.space = Space::lps;
 }
 
 /// Warnings of the library that speak of --unit and --space, with the names that these have for this file.
@@ -228,7 +195,8 @@ LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
   try {
     LoadedSurface surface = read_surface(input.path);
     if (said != nullptr) *said = {surface.unit, surface.space};
-    convert_to_internal(surface, input);
+    convert_to_internal(surface, input.path.string(), input.unit, input.space);
+    name_options(surface.warnings, input);
     return surface;
   } catch (const InvalidInput&) {
     if (may_be_both(input.path) && holds_centerline(input.path))

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "vmesh/io/sha256.h"
+#include "vmesh/surface/surface_attributes.h"
 
 #include "command_line/exit_code.h"
 #include "command_line/inputs.h"
@@ -9,7 +10,6 @@
 #include "command_line/outputs.h"
 #include "report/fit_report.h"
 #include "report/pages.h"
-#include "report/surface_attributes.h"
 #include "verbs/fitting.h"
 #include "verbs/verbs.h"
 

@@ -1,6 +1,6 @@
 #include "vmesh/deform/linear_skin.h"
 #include "vmesh/fit/flat_reference.h"
-#include "vmesh/surface/branch_labels.h"
+#include "vmesh/surface/surface_attributes.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "command_line/exit_code.h"
@@ -12,24 +12,12 @@
 #include "report/generate_log.h"
 #include "report/pages.h"
 #include "report/summary.h"
-#include "report/surface_attributes.h"
 #include "verbs/generate_input.h"
 #include "verbs/prepared_centerline.h"
 #include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
-
-/// As SimVascular has them: the wall is face 1, and no cap.
-void add_cap_labels(const FlatEnds& ends, MeshAttributes& attributes) {
-  MeshAttribute face{"ModelFaceID", {}, true}, cap{"CapID", {}, true};
-  for (const Index label : ends.cap_label) {
-    face.values.push_back(1.0 + label);
-    cap.values.push_back(label > 0 ? label : -1.0);
-  }
-  attributes.face.push_back(std::move(face));
-  attributes.face.push_back(std::move(cap));
-}
 
 /// Chooses the options that make the most of the budget.
 BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& centerline, GenerateArguments& arguments,

@@ -1,8 +1,5 @@
 #include "verbs/prepared_centerline.h"
 
-#include <algorithm>
-
-#include "vmesh/centerline/branches.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "report/generate_log.h"
@@ -41,45 +38,6 @@ std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, const
   return separated;
 }
 
-/// A binding to segments of a separated centerline, as one to those of the original.
-std::vector<CenterlineBinding> original_binding(const std::vector<CenterlineBinding>& binding,
-                                                const SeparatedCenterline& separated, const Centerline& original) {
-  std::vector<CenterlineBinding> result;
-  result.reserve(binding.size());
-  for (const auto& [segment, t] : binding) {
-    if (segment < separated.pieces.size()) {
-      const SegmentPiece& piece = separated.pieces[segment];
-      result.push_back({piece.segment, piece.original_t(t)});
-    } else {  // an isolated node
-      result.push_back({static_cast<Index>(segment - separated.pieces.size() + original.segments().size()), t});
-    }
-  }
-  return result;
-}
-
-/// Nodes and segments of a separated centerline, as those of the original; nodes that were added are left out.
-void renumber(std::vector<Defect>& defects, const SeparatedCenterline& separated, const Centerline& original) {
-  const std::vector<Branch> branches = find_branches(original);
-  for (Defect& defect : defects) {
-    if (defect.segment < separated.pieces.size()) defect.segment = separated.pieces[defect.segment].segment;
-    if (defect.node >= original.nodes().size()) defect.node = kNone;
-    defect.branch = kNone;
-    for (Index b = 0; b < branches.size(); ++b) {
-      const auto& segments = branches[b].segments;
-      if (std::find(segments.begin(), segments.end(), defect.segment) != segments.end()) defect.branch = b;
-    }
-  }
-}
-
-void renumber(GrowthSummary& growth, const SeparatedCenterline& separated, const Centerline& original) {
-  for (GrowthSimplification& note : growth.simplifications) {
-    std::erase_if(note.nodes, [&](Index n) { return n >= original.nodes().size(); });
-    for (Index& s : note.segments) s = separated.pieces[s].segment;
-    std::sort(note.segments.begin(), note.segments.end());
-    note.segments.erase(std::unique(note.segments.begin(), note.segments.end()), note.segments.end());
-  }
-}
-
 void refer_to_original(const SimplifiedCenterline& simplified, ContactSide& side) {
   const auto [segment, t] = simplified.original(side.segment, side.t);
   side.segment = segment;
@@ -115,11 +73,7 @@ PreparedCenterline prepare_centerline(GenerateReport& report, Console& console) 
 }
 
 void refer_to_cleaned(const PreparedCenterline& prepared, GenerateResult& result, GenerateReport& report) {
-  if (prepared.separated) {
-    result.binding = original_binding(result.binding, *prepared.separated, prepared.unseparated());
-    renumber(result.growth, *prepared.separated, prepared.unseparated());
-    renumber(result.defects, *prepared.separated, prepared.unseparated());
-  }
+  if (prepared.separated) vmesh::refer_to_original(*prepared.separated, prepared.unseparated(), result);
   if (prepared.simplified) {
     vmesh::refer_to_original(*prepared.simplified, result);
     refer_to_original(*prepared.simplified, report);

@@ -49,14 +49,18 @@ void check(const std::filesystem::path& path, SurfaceFormat format, const TriMes
   if (!good) throw InvalidInput(name + ": the skin does not fit the surface: joints and weights are one per vertex");
 }
 
-void convert(TriMesh& mesh, MeshAttributes& attributes, const SurfaceMetadata& metadata) {
-  const double scale = 1 / millimetres_per(metadata.unit);
-  const Vec3 axes = metadata.space == Space::ras ? Vec3(-scale, -scale, scale) : Vec3(scale, scale, scale);
+bool is_length(const std::string& attribute) {
+  return attribute == "radius" || attribute == "distance" || attribute == "displacement" ||
+         attribute == "volume_distance";
+}
+
+// Between LPS and another space, which is the same there and back.
+void convert(TriMesh& mesh, MeshAttributes& attributes, double scale, Space space) {
+  const Vec3 axes = space == Space::ras ? Vec3(-scale, -scale, scale) : Vec3(scale, scale, scale);
   for (Vec3& p : mesh.vertices) p = p.cwiseProduct(axes);
   for (auto* list : {&attributes.vertex, &attributes.face}) {
     for (MeshAttribute& a : *list) {
-      if (a.name != "radius" && a.name != "distance" && a.name != "displacement" && a.name != "volume_distance")
-        continue;
+      if (!is_length(a.name)) continue;
       for (double& value : a.values) value *= scale;
     }
   }
@@ -102,7 +106,7 @@ void write_surface(const std::filesystem::path& path, const TriMesh& given, cons
   if (converts) {
     converted = given;
     converted_attributes = given_attributes;
-    convert(converted, converted_attributes, metadata);
+    convert(converted, converted_attributes, 1 / millimetres_per(metadata.unit), metadata.space);
   }
   const TriMesh& mesh = converts ? converted : given;
   const MeshAttributes& attributes = converts ? converted_attributes : given_attributes;
@@ -158,6 +162,24 @@ LoadedSurface read_surface(const std::filesystem::path& path) {
   const SurfaceFormat format = surface_format(path);
   if (format == SurfaceFormat::glb || format == SurfaceFormat::scene) return io::read_scene(path);
   return parse_surface(read_file(path), format, path.string());
+}
+
+void convert_to_internal(LoadedSurface& surface, const std::string& source, std::optional<LengthUnit> unit,
+                         std::optional<Space> space) {
+  if (unit) surface.unit = *unit;
+  if (space) surface.space = *space;
+  if (surface.unit == LengthUnit::unknown) {
+    surface.warnings.push_back(source + ": the file does not say its unit; taken as mm (set it with --unit um, mm, cm or m)");
+    surface.unit = LengthUnit::mm;
+  }
+  if (surface.space == Space::unknown) {
+    surface.warnings.push_back(source + ": the file does not say its frame; taken as LPS (set it with --space LPS or RAS)");
+    surface.space = Space::lps;
+  }
+  if (surface.unit != LengthUnit::mm || surface.space != Space::lps)
+    convert(surface.mesh, surface.attributes, millimetres_per(surface.unit), surface.space);
+  surface.unit = LengthUnit::mm;
+  surface.space = Space::lps;
 }
 
 }  // namespace vmesh

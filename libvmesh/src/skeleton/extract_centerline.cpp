@@ -82,18 +82,20 @@ void tidy(Graph& graph, std::size_t loops, ExtractionReport& report) {
   skeleton::compact(graph);
 }
 
-void extract(Part& part, const ExtractOptions& options, ExtractionReport& report) {
+void extract(Part& part, const ExtractOptions& options, ExtractionReport& report, const Progress& progress) {
   Graph& graph = part.graph;
-  graph = skeleton::mean_curvature_skeleton(part.mesh);
+  graph = skeleton::mean_curvature_skeleton(part.mesh, progress);
   skeleton::connect(graph);
   const std::size_t loops = options.tree ? 0 : static_cast<std::size_t>(measure_topology(part.mesh).genus);
   const skeleton::SurfaceSamples samples = skeleton::samples_of(part.mesh);
   for (int i = 0; i < kRefinements; ++i) {
+    report_progress(progress, "skeleton", 0);
     tidy(graph, loops, report);
     graph = skeleton::resampled(graph, options.spacing);
     skeleton::fit_cones(graph, samples, kFitRounds);
   }
   for (int i = 0; i < kMerges; ++i) {
+    report_progress(progress, "skeleton", 0);
     const std::size_t merged = skeleton::merge_in_one_lumen(graph, samples);
     if (merged == 0) break;
     report.merged += merged;
@@ -234,8 +236,10 @@ ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOpti
   ExtractionReport report;
   report.parts = parts.size();
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    report_progress(progress, "skeleton", static_cast<double>(p) / static_cast<double>(parts.size()));
-    extract(parts[p], options, report);
+    const Progress ask = [&](std::string_view stage, double) {
+      return !progress || progress(stage, static_cast<double>(p) / static_cast<double>(parts.size()));
+    };
+    extract(parts[p], options, report, ask);
   }
   std::vector<Gap> joints;
   const std::vector<std::size_t> group = join(parts, options.join, joints);

@@ -100,17 +100,37 @@ void fill_radii(Graph& graph) {
   }
 }
 
+double area_of(const Flow& flow) {
+  const auto& mesh = flow.meso_skeleton();
+  return CGAL::Polygon_mesh_processing::area(
+      mesh, CGAL::parameters::vertex_point_map(get(CGAL::vertex_point, mesh)).geom_traits(Kernel()));
+}
+
+/// Flow::contract_until_convergence(), step by step.
+void contract(Flow& flow, const Progress& progress) {
+  const double original = area_of(flow);
+  double last = 0;
+  for (std::size_t i = 0; i < flow.max_iterations(); ++i) {
+    report_progress(progress, "skeleton", 0);  // how many more it takes is not known
+    flow.contract();
+    const double area = area_of(flow);
+    if (std::abs(last - area) / original < flow.area_variation_factor()) break;
+    last = area;
+  }
+}
+
 }  // namespace
 
-Graph mean_curvature_skeleton(const TriMesh& coarse) {
+Graph mean_curvature_skeleton(const TriMesh& coarse, const Progress& progress) {
   const TriMesh mesh = fine_enough(coarse);
   Surface surface = to_surface(mesh);
   const OrderedMemory memory(kBytesPerVertex * (mesh.vertices.size() + 1000));
   Flow flow(surface);
   // CGAL's default depends on the extent of the whole, which says nothing of its thin vessels.
   flow.set_min_edge_length(std::min(flow.min_edge_length(), 0.5 * mean_edge_length(mesh)));
+  contract(flow, progress);
   Flow::Skeleton skeleton;
-  flow(skeleton);
+  flow.convert_to_skeleton(skeleton);
 
   Graph graph;
   for (const auto v : CGAL::make_range(boost::vertices(skeleton))) {

@@ -68,6 +68,11 @@ struct LoadedSurface {
 /// Unsupported (a scene in a build without assimp).
 LoadedSurface read_surface(const std::filesystem::path& path);
 
+/// Converts it to millimetres and LPS, attributes that are lengths included. What is given here wins over what the file
+/// says; where neither knows, millimetres or LPS are taken, with a warning. `source` names the file in it.
+void convert_to_internal(LoadedSurface& surface, const std::string& source, std::optional<LengthUnit> unit,
+                         std::optional<Space> space);
+
 /// The same from memory, but no scenes; `source` names it in messages.
 LoadedSurface parse_surface(std::string_view content, SurfaceFormat format, const std::string& source);
 

@@ -14,6 +14,8 @@
 
 namespace vmesh {
 
+struct SeparatedCenterline;
+
 /// guided: a tube per stretch of vessel with a cross-section of its own, a seed per junction between them; the
 /// surface's topology is that of the centerline. paper: a single seed per component, as published.
 enum class GrowthMethod { guided, paper };
@@ -221,6 +223,10 @@ int least_around(const Centerline& centerline, const ErrorLimit& limit);
 /// From numbers of a simplified centerline to those of the original, and a note of what was left out: for a surface
 /// around the simplified one. What lies on nodes that are not the original's (kNone) stays so.
 void refer_to_original(const SimplifiedCenterline& simplified, GenerateResult& result);
+
+/// The same for a surface around what separate_contacts() made of `original`: nodes that were added are left out, or are
+/// kNone.
+void refer_to_original(const SeparatedCenterline& separated, const Centerline& original, GenerateResult& result);
 
 /// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.
 /// Throws InvalidInput for options out of range and for a centerline too long for its radii, Unsupported when the

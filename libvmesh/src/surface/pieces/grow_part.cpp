@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <atomic>
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
@@ -12,6 +11,7 @@
 
 #include "surface/pieces/parting.h"
 #include "surface/pieces/piece.h"
+#include "surface/pieces/whole_tasks.h"
 
 namespace vmesh {
 namespace {
@@ -67,7 +67,7 @@ class PartGrower {
       return !progress || progress("grow", static_cast<double>(done) / static_cast<double>(pieces.size()));
     };
     const PieceContext context{tubes_, open_, part_.options, ask};
-    tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
+    for_whole_tasks(pieces.size(), [&](std::size_t p) {
       report_progress(ask, "grow", 0);
       pieces[p] = make_piece(context, part_.pieces[p]);
       ++done;

@@ -5,13 +5,12 @@
 #include <mutex>
 #include <optional>
 
-#include <tbb/parallel_for.h>
-
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/error_bound.h"
 
 #include "surface/pieces/gathering.h"
 #include "surface/pieces/parting.h"
+#include "surface/pieces/whole_tasks.h"
 #include "surface/proof/notches.h"
 
 namespace vmesh {
@@ -63,7 +62,7 @@ class PieceGrower {
       }
     }
     done_ = pieces_.size() - missing.size();
-    tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
+    for_whole_tasks(missing.size(), [&](std::size_t i) {
       report_progress(ask_, "grow", 0);
       pieces_[missing[i]] = make_piece(context_, division_.plans[missing[i]]);
       const std::lock_guard lock(reporting_);

@@ -5,11 +5,10 @@
 #include <optional>
 #include <sstream>
 
-#include <tbb/parallel_for.h>
-
 #include "surface/junction/junction_piece.h"
 #include "surface/pieces/assembly.h"
 #include "surface/pieces/piece_check.h"
+#include "surface/pieces/whole_tasks.h"
 #include "surface/remesh/mend.h"
 #include "surface/remesh/optimize.h"
 
@@ -221,7 +220,7 @@ class PieceMaker {
       if (!will_do) missing.emplace_back(&junction, &known);
       pieces.push_back(&known.piece);
     }
-    tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
+    for_whole_tasks(missing.size(), [&](std::size_t i) {
       const auto& [junction, known] = missing[i];
       known->piece = make_junction_piece(tubes_, skeleton, *junction, context_.options, guarded, context_.progress);
       known->guarded = guarded;

@@ -1,9 +1,9 @@
-#include "report/surface_attributes.h"
+#include "vmesh/surface/surface_attributes.h"
 
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/branch_labels.h"
 
-namespace vmesh::tool {
+namespace vmesh {
 namespace {
 
 MeshAttribute branch_attribute(const std::vector<Index>& labels) {
@@ -40,4 +40,14 @@ MeshAttributes surface_attributes(const TriMesh& mesh, const std::vector<Centerl
   return attributes;
 }
 
-}  // namespace vmesh::tool
+void add_cap_labels(const FlatEnds& ends, MeshAttributes& attributes) {
+  MeshAttribute face{"ModelFaceID", {}, true}, cap{"CapID", {}, true};
+  for (const Index label : ends.cap_label) {
+    face.values.push_back(1.0 + label);
+    cap.values.push_back(label > 0 ? label : -1.0);
+  }
+  attributes.face.push_back(std::move(face));
+  attributes.face.push_back(std::move(cap));
+}
+
+}  // namespace vmesh

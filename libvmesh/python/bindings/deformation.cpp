@@ -1,0 +1,259 @@
+#include <chrono>
+
+#include "vmesh/deform/simulation.h"
+#include "vmesh/deform/surface_binding.h"
+
+#include "arrays.h"
+#include "binding.h"
+#include "module.h"
+#include "text.h"
+
+namespace vmesh::python {
+namespace {
+
+SimulationOptions options_of(double step, int iterations, const py::object& gravity, double drag,
+                             double squeeze_response, double rest_tolerance) {
+  SimulationOptions options;
+  options.step_s = step;
+  options.iterations = iterations;
+  options.gravity_mm_s2 = to_point(gravity, "gravity_mm_s2");
+  options.drag_per_s = drag;
+  options.squeeze_response_s = squeeze_response;
+  options.rest_tolerance = rest_tolerance;
+  return options;
+}
+
+const Centerline& centerline_of(const SurfaceObject& surface) {
+  if (!surface.centerline)
+    throw InvalidInput("the surface is bound to no centerline: read or make it with the one that it was grown around");
+  return surface.centerline->centerline;
+}
+
+/// vmesh.Deformation: a centerline that moves, and its surface.
+class Deformation {
+ public:
+  Deformation(SurfacePtr surface, const Material& material, const SimulationOptions& options)
+      : surface_(std::move(surface)),
+        simulation_(centerline_of(*surface_), segment_properties(centerline_of(*surface_), material), options),
+        binding_(centerline_of(*surface_), simulation_.tree(), surface_->mesh().vertices,
+                 vertex_normals(surface_->mesh()), places_of(*surface_)),
+        lanes_(binding_.make_surface(SurfaceBinding::Normals::with)),
+        step_s_(options.step_s),
+        vertices_(surface_->mesh().vertices.size()),
+        normals_(vertices_.size()),
+        nodes_(centerline_of(*surface_).nodes().size()) {
+    gather();
+  }
+
+  CenterlineSimulation& simulation() { return simulation_; }
+  const SurfacePtr& surface() const { return surface_; }
+  double time() const { return static_cast<double>(steps_) * step_s_; }
+  const std::vector<Vec3>& vertices() const { return vertices_; }
+  const std::vector<Vec3>& normals() const { return normals_; }
+  const std::vector<Vec3>& nodes() const { return nodes_; }
+
+  /// Without what the surface shows.
+  StepReport advance() {
+    ++steps_;
+    return simulation_.step();
+  }
+  /// The surface follows.
+  void synchronise() {
+    binding_.apply(simulation_.pose(), simulation_.moved(), lanes_);
+    simulation_.clear_moved();
+    gather();
+  }
+
+ private:
+  void gather() {
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+      const Index lane = binding_.lane_of_vertex()[v];
+      vertices_[v] = lanes_.position(lane);
+      normals_[v] = lanes_.normal(lane);
+    }
+    for (std::size_t n = 0; n < nodes_.size(); ++n) nodes_[n] = simulation_.position(static_cast<Index>(n));
+  }
+
+  SurfacePtr surface_;
+  CenterlineSimulation simulation_;
+  SurfaceBinding binding_;
+  DeformedSurface lanes_;
+  double step_s_;
+  std::size_t steps_ = 0;
+  std::vector<Vec3> vertices_, normals_, nodes_;
+};
+
+/// Steps, looking for signals now and then.
+StepReport step(Deformation& self, std::size_t count) {
+  constexpr std::chrono::milliseconds kBetweenLooks(50);
+  StepReport last;
+  std::size_t done = 0;
+  while (done < count) {
+    {
+      const py::gil_scoped_release release;
+      const auto until = std::chrono::steady_clock::now() + kBetweenLooks;
+      do last = self.advance();
+      while (++done < count && std::chrono::steady_clock::now() < until);
+      self.synchronise();
+    }
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  return last;
+}
+
+template <class T>
+bool write_as(const std::vector<Vec3>& vertices, py::array& out) {
+  if (!py::isinstance<py::array_t<T, py::array::c_style>>(out)) return false;
+  T* to = static_cast<T*>(out.mutable_data());  // refuses what is not writable
+  for (const Vec3& p : vertices) {
+    for (const double x : p) *to++ = static_cast<T>(x);
+  }
+  return true;
+}
+
+// Any other array would have to be copied, and what is written be lost.
+void write_into(const Deformation& self, py::array& out) {
+  const std::vector<Vec3>& vertices = self.vertices();
+  if (out.ndim() != 2 || static_cast<std::size_t>(out.shape(0)) != vertices.size() || out.shape(1) != 3)
+    throw InvalidInput("out: the shape is not (" + std::to_string(vertices.size()) + ", 3)");
+  if (!write_as<float>(vertices, out) && !write_as<double>(vertices, out))
+    throw InvalidInput("out: an array of float32 or float64 in C order is needed");
+}
+
+SurfacePtr as_surface(const Deformation& self) {
+  auto surface = std::make_shared<SurfaceObject>();
+  surface->result.mesh = {self.vertices(), self.surface()->mesh().faces};
+  surface->attributes.vertex.push_back({"displacement", {}});
+  const std::vector<Vec3>& rest = self.surface()->mesh().vertices;
+  for (std::size_t v = 0; v < rest.size(); ++v)
+    surface->attributes.vertex.back().values.push_back((self.vertices()[v] - rest[v]).norm());
+  return surface;
+}
+
+using DeformationClass = py::class_<Deformation, std::shared_ptr<Deformation>>;
+
+void bind_actions(DeformationClass& deformation) {
+  deformation
+      .def(
+          "fix", [](Deformation& d, Index node) { d.simulation().fix(node); }, py::arg("node"),
+          "Holds the position of a node; it may turn.")
+      .def(
+          "clamp", [](Deformation& d, Index node) { d.simulation().clamp(node); }, py::arg("node"),
+          "Holds the position of a node and its direction.")
+      .def(
+          "release", [](Deformation& d, Index node) { d.simulation().release(node); }, py::arg("node"),
+          "Undoes fix(), clamp() and drag().")
+      .def(
+          "drag",
+          [](Deformation& d, Index node, const py::object& to) { d.simulation().drag(node, to_point(to, "position")); },
+          py::arg("node"), py::arg("position"), "The next step moves a node there, (3,) mm; then it is fixed.")
+      .def(
+          "set_force",
+          [](Deformation& d, Index node, const py::object& f) {
+            d.simulation().set_force(node, to_point(f, "force_N"));
+          },
+          py::arg("node"), py::arg("force_N"), "On a node, (3,) N, until it is set again.")
+      .def(
+          "set_torque",
+          [](Deformation& d, Index node, const py::object& t) {
+            d.simulation().set_torque(node, to_point(t, "torque_N_mm"));
+          },
+          py::arg("node"), py::arg("torque_N_mm"), "On a node, (3,) N mm, until it is set again.")
+      .def(
+          "set_radial_scale",
+          [](Deformation& d, Index node, double scale) { d.simulation().set_radial_scale(node, scale); },
+          py::arg("node"), py::arg("scale"), "Of the vessel's profile at a node, above 0.")
+      .def(
+          "set_squeeze", [](Deformation& d, Index node, double force) { d.simulation().set_squeeze(node, force); },
+          py::arg("node"), py::arg("force_N"), "Presses on the wall around a node, evenly, N; negative widens.")
+      .def(
+          "set_velocity",
+          [](Deformation& d, Index node, const py::object& v) {
+            d.simulation().set_velocity(node, to_point(v, "velocity_mm_s"));
+          },
+          py::arg("node"), py::arg("velocity_mm_s"), "Of a node, (3,) mm/s.")
+      .def(
+          "set_gravity",
+          [](Deformation& d, const py::object& g) { d.simulation().set_gravity(to_point(g, "gravity_mm_s2")); },
+          py::arg("gravity_mm_s2"), "(3,) mm/s^2.");
+}
+
+void bind_state(DeformationClass& deformation) {
+  deformation
+      .def_property_readonly(
+          "vertices",
+          [](const py::object& self) { return points_view(self.cast<const Deformation&>().vertices(), self); },
+          "Where the surface is, (n, 3) float64, mm: a view that every step() changes. Copy what is to stay.")
+      .def_property_readonly(
+          "normals",
+          [](const py::object& self) { return points_view(self.cast<const Deformation&>().normals(), self); },
+          "Unit normals of the vertices, (n, 3) float64; changes with every step() likewise.")
+      .def_property_readonly(
+          "nodes", [](const py::object& self) { return points_view(self.cast<const Deformation&>().nodes(), self); },
+          "Where the centerline's nodes are, (k, 3) float64, mm; changes with every step() likewise.")
+      .def_property_readonly(
+          "faces", [](const Deformation& d) { return py::cast(d.surface()).attr("faces"); },
+          "Of the surface, (m, 3) uint32.")
+      .def_property_readonly("rest", &Deformation::surface, "The surface at rest.")
+      .def_property_readonly("time", &Deformation::time, "Since the beginning, s.")
+      .def_property_readonly(
+          "kinetic_energy", [](Deformation& d) { return d.simulation().kinetic_energy_J(); }, "J.")
+      .def_property_readonly(
+          "elastic_energy", [](Deformation& d) { return d.simulation().elastic_energy_J(); }, "J.")
+      .def("write_vertices", &write_into, py::arg("out").noconvert(),
+           "Writes the vertices into an array of yours, (n, 3), float32 or float64, in C order, mm.")
+      .def("surface", &as_surface,
+           "The surface as it is now, to keep or to save(), with the attribute displacement (mm, from rest).");
+}
+
+}  // namespace
+
+void bind_deformation(py::module_& module) {
+  py::class_<StepReport>(module, "StepReport", "What a step did.")
+      .def_readonly("iterations", &StepReport::iterations)
+      .def_readonly("rejections", &StepReport::rejections, "Steps of an iteration that would have raised the energy.")
+      .def_readonly("work", &StepReport::work_J, "By forces, gravity and dragged nodes, J.")
+      .def_readonly("movement", &StepReport::movement_mm, "Of the last iteration, mm: how far from converged.")
+      .def_readonly("awake", &StepReport::awake, "Nodes that are not at rest.");
+  const Material material;
+  const SimulationOptions options;
+  DeformationClass deformation(module, "Deformation",
+                               R"(A centerline that moves under forces, and the surface that follows.
+
+    surface           bound to a centerline, as generate() makes it
+    young_Pa          Young's modulus
+    density_kg_m3
+    poisson_ratio     0 to 0.5
+    wall_mm           thickness of the wall; 0: wall_ratio decides
+    wall_ratio        the same in local radii, up to 1, which is solid
+    damping_s         time in which a stretch relaxes
+    step_s            of time
+    iterations        of a step
+    gravity_mm_s2     (3,)
+    drag_per_s        velocities fade at this rate
+    squeeze_response_s  in which a profile follows a squeeze
+    rest_tolerance    what moves by less, in local radii, comes to rest; 0: nothing does
+
+Use it from one thread at a time.)");
+  deformation.def(py::init([](const SurfacePtr& surface, double young, double density, double poisson, double wall_mm,
+                              double wall_ratio, double damping, double step_s, int iterations,
+                              const py::object& gravity, double drag, double squeeze_response, double rest_tolerance) {
+                    return std::make_shared<Deformation>(
+                        surface, Material{young, density, poisson, wall_mm, wall_ratio, damping},
+                        options_of(step_s, iterations, gravity, drag, squeeze_response, rest_tolerance));
+                  }),
+                  py::arg("surface").none(false), py::kw_only(), py::arg("young_Pa") = material.young_Pa,
+                  py::arg("density_kg_m3") = material.density_kg_m3, py::arg("poisson_ratio") = material.poisson_ratio,
+                  py::arg("wall_mm") = material.wall_mm, py::arg("wall_ratio") = material.wall_ratio,
+                  py::arg("damping_s") = material.damping_s, py::arg("step_s") = options.step_s,
+                  py::arg("iterations") = options.iterations, py::arg("gravity_mm_s2") = py::make_tuple(0.0, 0.0, 0.0),
+                  py::arg("drag_per_s") = options.drag_per_s,
+                  py::arg("squeeze_response_s") = options.squeeze_response_s,
+                  py::arg("rest_tolerance") = options.rest_tolerance);
+  deformation.def("step", &step, py::arg("count") = 1,
+                  "Advances by so many steps, then the surface follows. Returns the StepReport of the last.");
+  bind_actions(deformation);
+  bind_state(deformation);
+}
+
+}  // namespace vmesh::python

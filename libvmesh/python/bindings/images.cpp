@@ -1,0 +1,120 @@
+#include <cmath>
+#include <variant>
+
+#include <pybind11/stl/filesystem.h>
+
+#include "vmesh/image/image_io.h"
+#include "vmesh/reference/reference_surface.h"
+#include "vmesh/skeleton/extract_centerline.h"
+
+#include "arrays.h"
+#include "module.h"
+#include "objects.h"
+#include "running.h"
+
+namespace vmesh::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `values` are indexed [i, j, k]; `affine` takes (i, j, k, 1) to LPS, mm.
+LoadedImage image_of(const py::array& values, const py::object& affine) {
+  if (values.ndim() != 3 || values.size() == 0) throw InvalidInput("values: an array of three dimensions is needed");
+  const char kind = values.dtype().kind();
+  if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'b') throw InvalidInput("values: not numbers");
+  const py::array_t<double, py::array::c_style | py::array::forcecast> matrix(affine);
+  if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
+    throw InvalidInput("affine: the shape is not (4, 4)");
+  // Fortran's order is ours: the first axis fastest.
+  const py::array_t<float, py::array::f_style | py::array::forcecast> ordered(values);
+  LoadedImage loaded;
+  loaded.integer = kind != 'f';
+  for (py::ssize_t a = 0; a < 3; ++a) {
+    loaded.image.size[static_cast<std::size_t>(a)] = static_cast<std::size_t>(ordered.shape(a));
+    loaded.image.origin[a] = matrix.at(a, 3);
+    for (py::ssize_t b = 0; b < 3; ++b) loaded.image.steps(a, b) = matrix.at(a, b);
+  }
+  loaded.image.values.assign(ordered.data(), ordered.data() + ordered.size());
+  for (const float value : loaded.image.values) {
+    if (!std::isfinite(value)) throw InvalidInput("values: not all are finite");
+  }
+  if (!(std::abs(loaded.image.steps.determinant()) > 0)) throw InvalidInput("affine: its axes span no volume");
+  return loaded;
+}
+
+SurfacePtr surface_of(const LoadedImage& image, const ReferenceOptions& options) {
+  auto surface = std::make_shared<SurfaceObject>();
+  surface->warnings = image.warnings;
+  surface->result.mesh = reference_surface(image, options).mesh;
+  return surface;
+}
+
+ReferenceOptions options_of(std::optional<double> label, std::optional<double> threshold, double spacing, double smooth,
+                            bool all_components) {
+  ReferenceOptions options;
+  options.label = label;
+  options.threshold = threshold;
+  options.spacing = spacing;
+  options.smooth = smooth;
+  options.all_components = all_components;
+  return options;
+}
+
+}  // namespace
+
+void bind_images(py::module_& module) {
+  module.def(
+      "reference_surface",
+      [](const std::variant<fs::path, py::array>& image, const py::object& affine, std::optional<double> label,
+         std::optional<double> threshold, double spacing, double smooth, bool all_components) {
+        const ReferenceOptions options = options_of(label, threshold, spacing, smooth, all_components);
+        const auto* path = std::get_if<fs::path>(&image);
+        if (path != nullptr)
+          return result_of(py::none(), [&](const Progress&) { return surface_of(read_image(*path), options); });
+        const LoadedImage loaded = image_of(std::get<py::array>(image), affine);
+        return result_of(py::none(), [&](const Progress&) { return surface_of(loaded, options); });
+      },
+      py::arg("image"), py::arg("affine") = py::none(), py::kw_only(), py::arg("label") = py::none(),
+      py::arg("threshold") = py::none(), py::arg("spacing") = 0.0, py::arg("smooth") = 0.0,
+      py::arg("all_components") = true,
+      R"(The surface of a segmentation, by marching cubes: what fit() fits to.
+
+    image           a file (.nii, .nii.gz, .nrrd, .mha ...), or an array (ni, nj, nk) indexed [i, j, k]
+    affine          (4, 4), of an array: takes (i, j, k, 1) to LPS, mm. NIfTI's is to RAS:
+                    numpy.diag([-1, -1, 1, 1]) @ image.affine
+    label           voxels of this value are inside; without label and threshold, those that are not 0
+    threshold       voxels of at least this value are inside
+    spacing         side of cubic voxels to resample to, mm; 0: the image's own
+    smooth          standard deviation of a Gaussian to smooth with, mm; 0: none
+    all_components  False: only the one that encloses the largest volume
+
+Raises ReadError, InvalidInput, Unsupported.)");
+  module.def(
+      "extract_centerline",
+      [](const SurfacePtr& surface, double spacing, double join, bool all_components, bool tree,
+         const py::object& progress) {
+        ExtractOptions options;
+        options.spacing = spacing;
+        options.join = join;
+        options.all_components = all_components;
+        options.tree = tree;
+        return result_of(progress, [&](const Progress& report) {
+          return std::make_shared<CenterlineObject>(
+              CenterlineObject{extract_centerline(surface->mesh(), options, report).centerline, {}, {}, {}});
+        });
+      },
+      py::arg("surface").none(false), py::kw_only(), py::arg("spacing") = ExtractOptions().spacing,
+      py::arg("join") = ExtractOptions().join, py::arg("all_components") = false, py::arg("tree") = false,
+      py::arg("progress") = py::none(),
+      R"(The centerline of a closed surface.
+
+    spacing         between nodes, in local radii, 0.1 to 10
+    join            parts closer than this times the smaller radius are joined
+    all_components  keep parts that remain apart instead of the largest
+    tree            break all loops
+    progress        a function of a stage and a fraction; returning False cancels
+
+Raises InvalidInput for a surface that is not closed, manifold and oriented.)");
+}
+
+}  // namespace vmesh::python

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace vmesh::python {
+
+namespace py = pybind11;
+
+/// Each fills the module with what is of its topic.
+void bind_errors();
+void bind_centerline(py::module_& module);
+void bind_surface(py::module_& module);
+void bind_generation(py::module_& module);
+void bind_fit(py::module_& module);
+void bind_evaluation(py::module_& module);
+void bind_images(py::module_& module);
+void bind_deformation(py::module_& module);
+
+}  // namespace vmesh::python

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vmesh/centerline/cleaning.h"
+#include "vmesh/fit/fit_surface.h"
+#include "vmesh/mesh/tri_mesh.h"
+#include "vmesh/surface/flat_ends.h"
+#include "vmesh/surface/generate.h"
+
+namespace vmesh::python {
+
+/// vmesh.Centerline.
+struct CenterlineObject {
+  Centerline centerline;
+  std::vector<std::string> cleaning;       ///< what was done to make it valid
+  std::vector<std::string> warnings;       ///< of the reader
+  std::vector<std::string> place_of_node;  ///< in the file, of every node; empty: not from one
+};
+using CenterlinePtr = std::shared_ptr<CenterlineObject>;
+
+/// vmesh.Surface. Never changes, as arrays look into it.
+struct SurfaceObject {
+  GenerateResult result;      ///< of what was not grown, the mesh and what is known of the rest
+  CenterlinePtr centerline;   ///< that result.binding is of; null: not bound to any
+  MeshAttributes attributes;  ///< of the file it was read from
+  std::vector<std::string> warnings;
+  FlatEnds ends;
+  std::optional<FitReport> fit;
+
+  const TriMesh& mesh() const { return result.mesh; }
+};
+using SurfacePtr = std::shared_ptr<SurfaceObject>;
+
+}  // namespace vmesh::python

@@ -1,0 +1,24 @@
+#include "text.h"
+
+#include "vmesh/core/error.h"
+#include "vmesh/core/version.h"
+
+namespace vmesh::python {
+
+std::string generator_name() { return "vmesh " + std::string(version()) + ", Python"; }
+
+std::string counted(std::size_t count, const std::string& word, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? word : many.empty() ? word + "s" : many);
+}
+
+LengthUnit unit_of(const std::string& text) {
+  if (const auto unit = parse_length_unit(text)) return *unit;
+  throw InvalidInput("unit: \"" + text + "\" is none; there are um, mm, cm, m");
+}
+
+Space space_of(const std::string& text) {
+  if (const auto space = parse_space(text)) return *space;
+  throw InvalidInput("space: \"" + text + "\" is none; there are LPS and RAS");
+}
+
+}  // namespace vmesh::python

@@ -1,0 +1,103 @@
+"""Vessel centerlines to surfaces.
+
+A centerline (points with radii, and the segments between them) becomes a closed triangle mesh with
+few, well-shaped triangles, that is measured, fitted to a segmentation and deformed:
+
+>>> import vmesh
+>>> tree = vmesh.read_centerline("tree.swc")
+>>> surface = vmesh.generate(tree, around=6)
+>>> surface.vertices, surface.faces                      # NumPy arrays, not copied
+>>> surface.save("tree.ply")
+
+Lengths are in millimetres, positions in the LPS frame (x to the left, y to the back, z up); a name
+says where it is otherwise. Long calls let other threads run and end on Ctrl-C. What vmesh raises is
+derived from vmesh.Error; bad arguments raise vmesh.InvalidInput, which is a ValueError too.
+"""
+
+from ._errors import (
+    Cancelled,
+    DefectiveSurface,
+    Error,
+    InvalidInput,
+    ReadError,
+    SurfaceWarning,
+    Unsupported,
+    WriteError,
+)
+from ._core import (
+    Centerline,
+    Defect,
+    Deformation,
+    Distribution,
+    Evaluation,
+    FitDistance,
+    FitReport,
+    FlatEnd,
+    Hausdorff,
+    OneSidedHausdorff,
+    Opening,
+    ReferenceDistance,
+    SampledDistance,
+    StepReport,
+    Surface,
+    Topology,
+    UnmatchedPart,
+    VesselDistance,
+    VesselDistanceSide,
+    __version__,
+    clean,
+    closest_points,
+    extract_centerline,
+    finish_ends,
+    read_centerline,
+    read_surface,
+    reference_surface,
+    synthetic_tree,
+)
+from ._functions import evaluate, fit, generate, hausdorff
+from ._vtk import from_vtk, to_vtk
+
+__all__ = [
+    "__version__",
+    "Cancelled",
+    "Centerline",
+    "clean",
+    "closest_points",
+    "Defect",
+    "DefectiveSurface",
+    "Deformation",
+    "Distribution",
+    "Error",
+    "evaluate",
+    "Evaluation",
+    "extract_centerline",
+    "finish_ends",
+    "fit",
+    "FitDistance",
+    "FitReport",
+    "FlatEnd",
+    "from_vtk",
+    "generate",
+    "Hausdorff",
+    "hausdorff",
+    "InvalidInput",
+    "OneSidedHausdorff",
+    "Opening",
+    "read_centerline",
+    "read_surface",
+    "ReadError",
+    "reference_surface",
+    "ReferenceDistance",
+    "SampledDistance",
+    "StepReport",
+    "Surface",
+    "SurfaceWarning",
+    "synthetic_tree",
+    "to_vtk",
+    "Topology",
+    "UnmatchedPart",
+    "Unsupported",
+    "VesselDistance",
+    "VesselDistanceSide",
+    "WriteError",
+]

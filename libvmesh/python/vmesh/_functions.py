@@ -1,0 +1,205 @@
+"""Functions of the package that take more than the compiled module does: arrays, pairs of arrays, numbers."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, Callable, Iterable, Optional, Sequence, Tuple, Union
+
+from numpy.typing import ArrayLike
+
+from . import _core
+from ._core import Centerline, Evaluation, Hausdorff, Surface
+from ._errors import DefectiveSurface, SurfaceWarning
+
+Progress = Optional[Callable[[str, float], Any]]
+SurfaceLike = Union[Surface, Tuple[ArrayLike, ArrayLike]]
+
+
+def _as_surface(surface: SurfaceLike) -> Surface:
+    if isinstance(surface, Surface):
+        return surface
+    if isinstance(surface, (tuple, list)) and len(surface) == 2:
+        return Surface(*surface)
+    raise TypeError(f"a vmesh.Surface or a pair (vertices, faces) is needed, not {type(surface).__name__}")
+
+
+def _as_limit(max_error: Union[None, float, str]) -> str:
+    if max_error is None:
+        return ""
+    return max_error if isinstance(max_error, str) else f"{float(max_error)!r}mm"
+
+
+def _checked(surface: Surface, told: Iterable[str], allow_defects: bool) -> Surface:
+    for line in surface.warnings:
+        if line not in told:
+            warnings.warn(line, SurfaceWarning, stacklevel=3)
+    if surface.defects and not allow_defects:
+        raise DefectiveSurface(surface)
+    return surface
+
+
+def generate(
+    centerline: Union[Centerline, ArrayLike],
+    radii: Optional[ArrayLike] = None,
+    segments: Optional[ArrayLike] = None,
+    *,
+    around: int = 6,
+    max_error: Union[None, float, str] = None,
+    blend: float = 0.5,
+    placement: str = "balanced",
+    growth: str = "guided",
+    overlap: str = "separate",
+    gap: float = 0.1,
+    ends: str = "round",
+    open_ends: Sequence[int] = (),
+    flow_extension: float = 0.0,
+    simplification: float = 0.35,
+    sweeps: int = 30,
+    max_vertices: int = 20_000_000,
+    threads: int = 0,
+    allow_defects: bool = False,
+    progress: Progress = None,
+) -> Surface:
+    """The surface around a centerline: generate(centerline), or generate(nodes, radii, segments).
+
+    centerline      a Centerline, or positions of its nodes, (n, 3), mm
+    radii           (n,) mm, and
+    segments        (m, 2) node numbers, where positions are given; numbers of the result are of these
+    around          vertices around a vessel, 3 to 200
+    max_error       limit on the distance to the vessels' boundary, both ways, proven: mm as a number, or
+                    "0.3mm", "5%" of the local radius
+    blend           width of the rounding at branches, in smaller radii, 0 to 2
+    placement       "balanced" keeps the volume, "inscribed" has all vertices on the boundary
+    growth          "guided", or "paper": a single seed, as published
+    overlap         "separate" narrows vessels that touch, or moves them apart; "keep" does not
+    gap             what is left between them, in smaller radii
+    ends            how vessels end: "round", "flat" (capped, numbered for flow solvers), "open"
+    open_ends       nodes at which the surface is left open whatever `ends` says
+    flow_extension  length of straight tubes that go on from ends that are not round, in radii
+    simplification  nodes are left out that change the vessels by at most this share of what edges across
+                    them cut off anyway, 0 to 1
+    sweeps          of the final optimisation
+    max_vertices    a centerline that asks for more is refused
+    threads         0: as many as there are; the result does not depend on it
+    allow_defects   return a surface that is not sound instead of raising
+    progress        a function of a stage and a fraction in [0, 1]; returning False cancels
+
+    The same options give the same surface, and the one that the command `vmesh generate` makes.
+    Raises InvalidInput, Unsupported (too large for the memory that is free), DefectiveSurface, Cancelled.
+    What else its user should know is in Surface.warnings, and issued as SurfaceWarning.
+    """
+    if not isinstance(centerline, Centerline):
+        if radii is None or segments is None:
+            raise TypeError("generate() takes a Centerline, or nodes, radii and segments")
+        centerline = Centerline(centerline, radii, segments)
+    elif radii is not None or segments is not None:
+        raise TypeError("a Centerline has radii and segments of its own")
+    surface = _core.generate(
+        centerline,
+        progress=progress,
+        around=around,
+        max_error=_as_limit(max_error),
+        blend=blend,
+        placement=placement,
+        growth=growth,
+        overlap=overlap,
+        gap=gap,
+        ends=ends,
+        open_ends=open_ends,
+        flow_extension=flow_extension,
+        simplification=simplification,
+        sweeps=sweeps,
+        max_vertices=max_vertices,
+        threads=threads,
+    )
+    return _checked(surface, (), allow_defects)
+
+
+def fit(
+    surface: Surface,
+    reference: SurfaceLike,
+    *,
+    rounds: int = 16,
+    resize: bool = True,
+    max_vertices: int = 0,
+    error: float = 0.0,
+    max_skewness: float = 0.4,
+    samples: int = 100_000,
+    tolerance: float = 1e-3,
+    threads: int = 0,
+    allow_defects: bool = False,
+    progress: Progress = None,
+) -> Surface:
+    """A copy of a surface, moved onto the wall of a segmentation; it stays sound.
+
+    surface        bound to its centerline, as generate() makes it, ends not finished
+    reference      a surface or a pair (vertices, faces); see reference_surface() for images
+    rounds         of correspondence, least squares and repair, 1 to 100
+    resize         make triangles finer where the error is large, coarser where it is small
+    max_vertices   0: a twentieth more than there are, or what `error` takes
+    error          mm: 95 % of both surfaces are to be nearer to the other, with as few vertices as that
+                   takes; 0: none
+    max_skewness   that no step makes a triangle worse than, 0.1 to 0.9
+    samples        points on each surface for mean, RMS and percentiles of the report
+    tolerance      width of the interval that holds a Hausdorff distance, mm
+    threads, allow_defects, progress  as for generate()
+
+    Surface.fit_report says what was reached and what does not correspond. Raises InvalidInput, Unsupported,
+    DefectiveSurface, Cancelled.
+    """
+    fitted = _core.fit(
+        surface,
+        _as_surface(reference),
+        progress=progress,
+        rounds=rounds,
+        resize=resize,
+        max_vertices=max_vertices,
+        error=error,
+        max_skewness=max_skewness,
+        samples=samples,
+        tolerance=tolerance,
+        threads=threads,
+    )
+    return _checked(fitted, surface.warnings, allow_defects)
+
+
+def evaluate(
+    surface: SurfaceLike,
+    reference: Optional[SurfaceLike] = None,
+    centerline: Optional[Centerline] = None,
+    *,
+    samples: int = 100_000,
+    tolerance: float = 1e-4,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Evaluation:
+    """Measures any surface: topology, crossing faces, shape of triangles, distances.
+
+    surface     a surface or a pair (vertices, faces)
+    reference   another one to compare with, both ways
+    centerline  whose volume (a union of round cones) to compare with, both ways
+    samples     points on each surface for mean, RMS and percentiles
+    tolerance   width of the interval that holds a Hausdorff distance, mm
+    threads     0: as many as there are; the result does not depend on it
+    progress    as for generate()
+
+    Raises InvalidInput for a mesh without faces or with corners that are not finite, Cancelled.
+    """
+    return _core.evaluate(
+        _as_surface(surface),
+        None if reference is None else _as_surface(reference),
+        centerline,
+        progress=progress,
+        samples=samples,
+        tolerance=tolerance,
+        threads=threads,
+    )
+
+
+def hausdorff(a: SurfaceLike, b: SurfaceLike, *, tolerance: float = 1e-4, progress: Progress = None) -> Hausdorff:
+    """The Hausdorff distance of two surfaces, as an interval of at most `tolerance` that holds it, mm.
+
+    Each is a surface or a pair (vertices, faces); open ones and soups of triangles will do. Raises
+    InvalidInput, Cancelled.
+    """
+    return _core.hausdorff(_as_surface(a), _as_surface(b), tolerance=tolerance, progress=progress)
