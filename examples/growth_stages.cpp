@@ -121,7 +121,8 @@ Drawing draw_skeleton(const VesselTubes& tubes, const Division& division,
       draw_axis(axis, begin, end, kTube, drawing);
     }
     for (const Junction& junction : skeleton.junctions) {
-      for (const Gap& gap : junction.gaps) draw_axis(tubes.axes()[gap.branch], gap.begin, gap.end, kJunction, drawing);
+      for (const BareStretch& bare : junction.bare_stretches)
+        draw_axis(tubes.axes()[bare.branch], bare.begin, bare.end, kJunction, drawing);
     }
   }
   for (const RingPlace& seam : division.seams) {

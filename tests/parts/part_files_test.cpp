@@ -41,8 +41,16 @@ class PartFiles : public ::testing::Test {
           ConeOrigins origins = plain_origins(part);
           parts_.push_back({"some id", std::move(part), std::move(origins)});
         });
-    manifest_ = {"some id", {"vmesh", "--around 6", "tree.swc", "0123"}, split.parts, split.pieces, split.seams,
-                 6,         split.components,                            split.cycle_rank, split.expected_vertices, {}};
+    manifest_ = {"some id",
+                 {"vmesh", "--around 6", "tree.swc", "0123"},
+                 split.parts,
+                 split.pieces,
+                 split.seams,
+                 6,
+                 split.components,
+                 split.cycle_rank,
+                 split.expected_vertices,
+                 {}};
   }
   ~PartFiles() override { fs::remove_all(folder_); }
 
@@ -59,9 +67,7 @@ class PartFiles : public ::testing::Test {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
-  static void write(const fs::path& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-  }
+  static void write(const fs::path& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
   fs::path folder_;
   std::vector<StoredPart> parts_;

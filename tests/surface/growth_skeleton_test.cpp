@@ -86,7 +86,7 @@ TEST(GrowthSkeleton, OfAForkIsAJunctionWithThreeTubes) {
   EXPECT_EQ(fork.skeleton.tubes.size(), 3u);
   ASSERT_EQ(fork.skeleton.junctions.size(), 1u);
   EXPECT_EQ(fork.skeleton.junctions[0].nodes, (std::vector<Index>{1}));
-  EXPECT_EQ(openings_of(fork.skeleton.junctions[0]).size(), 3u);
+  EXPECT_EQ(docks_of(fork.skeleton.junctions[0]).size(), 3u);
 }
 
 TEST(GrowthSkeleton, CountsComponentsAndCycles) {

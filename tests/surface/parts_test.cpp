@@ -35,7 +35,8 @@ Joined join(const std::vector<PartSurface>& parts, std::size_t seams) {
   const std::size_t around = parts.front().around;
   std::size_t count = seams * around;
   for (const PartSurface& part : parts) count += part.mesh.vertices.size() - part.seam_vertex_count();
-  Joined whole{TriMesh{std::vector<Vec3>(count), {}}, std::vector<CenterlineBinding>(count), std::vector<double>(count)};
+  Joined whole{TriMesh{std::vector<Vec3>(count), {}}, std::vector<CenterlineBinding>(count),
+               std::vector<double>(count)};
   std::size_t begin = seams * around;
   for (const PartSurface& part : parts) {
     const std::size_t of_seams = part.seam_vertex_count();
@@ -44,8 +45,8 @@ Joined join(const std::vector<PartSurface>& parts, std::size_t seams) {
     };
     for (std::size_t i = 0; i < part.mesh.vertices.size(); ++i) whole.set(number(i), part, i);
     for (const auto& [a, b, c] : part.mesh.faces)
-      whole.mesh.faces.push_back({static_cast<Index>(number(a)), static_cast<Index>(number(b)),
-                                  static_cast<Index>(number(c))});
+      whole.mesh.faces.push_back(
+          {static_cast<Index>(number(a)), static_cast<Index>(number(b)), static_cast<Index>(number(c))});
     begin += part.mesh.vertices.size() - of_seams;
     for (const PartSurface::Piece& piece : part.pieces) {
       whole.first_face.push_back(whole.first_face.back() + piece.face_count);

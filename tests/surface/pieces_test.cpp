@@ -103,7 +103,8 @@ TEST(Division, IsCoarserWithoutSomeSeams) {
   EXPECT_EQ(fewer.plans.size(), 4u);
   EXPECT_EQ(fewer.seams.size(), 3u);
   const auto& plans = divided.division.plans;
-  const Division joined = regrouped(RingCounts(divided.tubes), divided.division, {}, {{anchor_of(plans[0]), anchor_of(plans[4])}});
+  const Division joined =
+      regrouped(RingCounts(divided.tubes), divided.division, {}, {{anchor_of(plans[0]), anchor_of(plans[4])}});
   EXPECT_EQ(joined.plans.size(), 4u);
   EXPECT_EQ(joined.seams, divided.division.seams);
 }

@@ -111,7 +111,8 @@ TEST_F(Parts, AreRefusedWhereTheyDoNotFit) {
   ASSERT_EQ(vmesh({"split", "@tree.swc", "-o", "@parts", "--vertices", "1000"}).exit_code, 0);
   const Outcome early = vmesh({"join", "@parts", "-o", "@whole.ply"});
   EXPECT_EQ(early.exit_code, 3);
-  EXPECT_NE(early.err.find("part_00001.vsurf: is missing; make it with: vmesh generate"), std::string::npos) << early.err;
+  EXPECT_NE(early.err.find("part_00001.vsurf: is missing; make it with: vmesh generate"), std::string::npos)
+      << early.err;
   EXPECT_FALSE(exists("whole.ply"));
   const Outcome options = vmesh({"generate", "@parts/part_00001.vpart", "--around", "8"});
   EXPECT_EQ(options.exit_code, 2);

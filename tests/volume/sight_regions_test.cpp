@@ -1,9 +1,9 @@
 // What sees what, found region by region: as found in one go.
+#include "volume/sight_regions.h"
+
 #include <algorithm>
 
 #include <gtest/gtest.h>
-
-#include "volume/sight_regions.h"
 
 #include "random_vessels.h"
 

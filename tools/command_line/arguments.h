@@ -214,10 +214,10 @@ struct JoinArguments {
   int threads = 0;  ///< 0: as many as there are
 };
 
-using Arguments = std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments,
-                               EvaluateArguments, ReferenceArguments, ConesArguments, CenterlineArguments,
-                               Table2Arguments, TradeoffArguments, DeformArguments, Table1Arguments, FitArguments,
-                               SplitArguments, JoinArguments>;
+using Arguments =
+    std::variant<GenerateArguments, InfoArguments, SynthArguments, ConvertArguments, RenderArguments, EvaluateArguments,
+                 ReferenceArguments, ConesArguments, CenterlineArguments, Table2Arguments, TradeoffArguments,
+                 DeformArguments, Table1Arguments, FitArguments, SplitArguments, JoinArguments>;
 
 /// Whether the file is a part of a surface to be grown, by its name.
 bool is_part(const std::filesystem::path& path);

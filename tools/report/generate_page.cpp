@@ -87,9 +87,9 @@ void add_facts(Page& page, const GenerateReport& report) {
       {"Skewness, mean / max", mean_and_max(report.measurement.skewness.mean, report.measurement.skewness.max)}};
   if (report.fit) return add_fit_facts(page, *report.fit);
   page.facts.push_back(
-      {"To the vessels, mm, mean / max", mean_and_max(report.deviation.mean_mm, report.deviation.max_mm)});
+      {"Faces to the vessels, mm, mean / max", mean_and_max(report.deviation.mean_mm, report.deviation.max_mm)});
   page.facts.push_back(
-      {"In vessel radii, mean / max", mean_and_max(report.deviation.mean_relative, report.deviation.max_relative)});
+      {"The same in radii, mean / max", mean_and_max(report.deviation.mean_relative, report.deviation.max_relative)});
   page.facts.push_back({"Centerline", std::to_string(report.cleaned->centerline.nodes().size()) + " nodes"});
 }
 

@@ -1,9 +1,10 @@
+#include "vmesh/parts/join.h"
+
 #include <iomanip>
 
 #include "vmesh/core/atomic_file.h"
 #include "vmesh/io/ply_stream.h"
 #include "vmesh/mesh/triangle_quality.h"
-#include "vmesh/parts/join.h"
 #include "vmesh/surface/branch_labels.h"
 
 #include "command_line/exit_code.h"

@@ -40,7 +40,7 @@ std::string at(const Vec3& p) {
 }
 
 std::string words(const PieceFault& fault) {
-  const char* what = fault.vessels_overlap                            ? "vessels overlap"
+  const char* what = fault.vessels_overlap                      ? "vessels overlap"
                      : fault.kind == DefectKind::crossing_faces ? "faces cross"
                      : fault.kind == DefectKind::bad_triangle   ? "a triangle is nearly degenerate"
                                                                 : "a node of the centerline is not inside";
@@ -96,16 +96,16 @@ int run_part(const GenerateArguments& arguments, Console& console) {
   const StoredPart part = read_part(arguments.input.path);
   stages.push_back({"read", watch.lap()});
   stop_if_interrupted();
-  PartSurface surface = naming(arguments.input.path, [&] {
-    return grow_part(part.part, arguments.options.threads, console.progress());
-  });
+  PartSurface surface =
+      naming(arguments.input.path, [&] { return grow_part(part.part, arguments.options.threads, console.progress()); });
   stages.push_back({"grow", watch.lap()});
   const std::vector<PieceFault> faults = faults_of(surface);
   if (!faults.empty()) return refuse(arguments, faults, console);
   const StoredPartSurface stored = refer_to_read(part, std::move(surface));
   write_part_surface(arguments.output, stored);
   stages.push_back({"write", watch.lap()});
-  console.log("wrote " + arguments.output.string() + ": " + std::to_string(stored.surface.mesh.faces.size()) + " faces");
+  console.log("wrote " + arguments.output.string() + ": " + std::to_string(stored.surface.mesh.faces.size()) +
+              " faces");
   if (!arguments.common.json.empty()) write_summary(arguments, stored.surface, stages);
   return kOk;
 }

@@ -66,7 +66,8 @@ void SplitCenterline::add(Index cone, ConeOrigins& origins) const {
     segment = of.segment;
   }
   const auto& simplified = prepared_.simplified;
-  const Index begin = simplified ? simplified->offsets[segment] : 0, end = simplified ? simplified->offsets[segment + 1] : 1;
+  const Index begin = simplified ? simplified->offsets[segment] : 0,
+              end = simplified ? simplified->offsets[segment + 1] : 1;
   for (Index p = begin; p < end; ++p) {
     origins.pieces.push_back(simplified ? simplified->pieces[p] : SimplifiedCenterline::Piece{segment, 0, 0, 1});
     origins.within.emplace_back();

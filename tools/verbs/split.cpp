@@ -69,9 +69,8 @@ int run(const SplitArguments& given, Console& console) {
   const LoadedCenterline loaded = load_clean_centerline(given.input, console);
   PartsManifest manifest;
   manifest.source = {generator_name(), describe(arguments), file_name_of(given.input), sha256_of(given.input)};
-  manifest.id =
-      vmesh::sha256_of(manifest.source.generator + "\n" + manifest.source.options + "\n" + manifest.source.input_sha256 +
-                "\n" + std::to_string(given.vertices));
+  manifest.id = vmesh::sha256_of(manifest.source.generator + "\n" + manifest.source.options + "\n" +
+                                 manifest.source.input_sha256 + "\n" + std::to_string(given.vertices));
   stages.push_back({"read", watch.lap()});
   stop_if_interrupted();
 
@@ -109,8 +108,8 @@ int run(const SplitArguments& given, Console& console) {
   }
   write_manifest(given.output / kManifestName, manifest);
   stages.push_back({"split", watch.lap()});
-  console.log("wrote " + std::to_string(manifest.parts) + " parts, " + std::to_string(manifest.pieces) + " pieces, to " +
-              given.output.string());
+  console.log("wrote " + std::to_string(manifest.parts) + " parts, " + std::to_string(manifest.pieces) +
+              " pieces, to " + given.output.string());
   if (!given.common.json.empty()) write_summary(given.common.json, manifest, stages);
   return kOk;
 }

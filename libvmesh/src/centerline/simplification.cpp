@@ -127,8 +127,8 @@ class Simplifier {
 }  // namespace
 
 std::size_t piece_at(std::span<const Piece> pieces, double t) {
-  const auto above = std::upper_bound(pieces.begin() + 1, pieces.end(), t,
-                                      [](double u, const Piece& p) { return u < p.begin; });
+  const auto above =
+      std::upper_bound(pieces.begin() + 1, pieces.end(), t, [](double u, const Piece& p) { return u < p.begin; });
   return static_cast<std::size_t>(above - pieces.begin() - 1);
 }
 

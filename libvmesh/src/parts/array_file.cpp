@@ -79,7 +79,8 @@ ArrayFile::ArrayFile(const std::filesystem::path& path, const std::string& schem
     }
     array.offset += first + length;
     const std::size_t size = size_of(array.type);
-    if (size == 0 || array.offset > size_ || array.offset < first + length || array.count > (size_ - array.offset) / size)
+    if (size == 0 || array.offset > size_ || array.offset < first + length ||
+        array.count > (size_ - array.offset) / size)
       refuse("is cut off or damaged at the array " + array.name);
     arrays_.push_back(std::move(array));
   }
@@ -105,7 +106,8 @@ void ArrayFile::read_array(const std::string& name, const char* type, std::size_
                            std::size_t size) {
   const Array& array = find(name);
   if (array.type != type) refuse("is damaged: the array " + name + " is of another type");
-  if (first > array.count || bytes.size() / size > array.count - first) refuse("is damaged: the array " + name + " is too short");
+  if (first > array.count || bytes.size() / size > array.count - first)
+    refuse("is damaged: the array " + name + " is too short");
   if (!bytes.empty()) read_bytes(array.offset + first * size, bytes);
 }
 

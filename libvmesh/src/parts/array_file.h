@@ -14,8 +14,8 @@
 namespace vmesh {
 
 /// A file of named arrays of numbers behind a JSON header: "vmesh arrays 1\n", the header's size in eight bytes, the
-/// header, the arrays, little-endian. The header lists name, type, count and offset (from the file's beginning) of each,
-/// so that some of one array can be read without the rest.
+/// header, the arrays, little-endian. The header lists name, type, count and offset (from the file's beginning) of
+/// each, so that some of one array can be read without the rest.
 class ArrayWriter {
  public:
   explicit ArrayWriter(nlohmann::json header) : header_(std::move(header)) {}

@@ -46,8 +46,8 @@ struct Columns {
 
 // A part as it is in the whole, walls parted.
 struct LoadedPart {
-  Columns vertices;           // of its seams, then its own
-  std::vector<Index> number;  // in the whole
+  Columns vertices;             // of its seams, then its own
+  std::vector<Index> number;    // in the whole
   std::vector<Triangle> faces;  // by places in `vertices`, and behind them in the added ones
   std::size_t seam_vertices = 0;
 };
@@ -219,8 +219,7 @@ class Joiner {
     for (const Triangle& f : faces) {
       Triangle numbers = f;
       for (Index& v : numbers)
-        v = v < part.vertices.size() ? part.number[v]
-                                     : static_cast<Index>(index_.vertices + v - part.vertices.size());
+        v = v < part.vertices.size() ? part.number[v] : static_cast<Index>(index_.vertices + v - part.vertices.size());
       corners.push_back(numbers);
       skewness.push_back(equiangle_skewness(position(part, f[0]), position(part, f[1]), position(part, f[2])));
       label.push_back(label_of_face(branch(part, f[0]), branch(part, f[1]), branch(part, f[2])));
@@ -251,7 +250,7 @@ class Joiner {
   SurfaceSink& sink_;
   const Progress& progress_;
   Columns seams_, added_;
-  std::vector<std::array<Vec3, 3>> corners_;   // of added faces
+  std::vector<std::array<Vec3, 3>> corners_;  // of added faces
   std::vector<std::array<Index, 3>> labels_;
   double sum_ = 0;
 };
@@ -262,8 +261,8 @@ void add_crossings_left(const PartIndex& index, const PartedWalls& walls, std::v
     const PieceBox& box = index.boxes[index.piece_of_face(f)];
     const Vec3 middle = (box.low + box.high) / 2;
     std::ostringstream text;
-    text << "walls of pieces " << index.piece_of_face(f) << " and " << index.piece_of_face(g)
-         << " cross, near (" << middle.x() << ", " << middle.y() << ", " << middle.z() << ")";
+    text << "walls of pieces " << index.piece_of_face(f) << " and " << index.piece_of_face(g) << " cross, near ("
+         << middle.x() << ", " << middle.y() << ", " << middle.z() << ")";
     defects.push_back({DefectKind::crossing_faces, middle, text.str()});
   }
 }

@@ -52,7 +52,8 @@ std::vector<std::vector<Index>> read_lists(ArrayFile& file, const std::string& n
 }
 
 json to_json(const GenerateOptions& o) {
-  return {{"beta", o.beta},     {"blend", o.blend},   {"around", o.around},         {"max_center_distance", o.max_center_distance},
+  return {{"beta", o.beta},     {"blend", o.blend},
+          {"around", o.around}, {"max_center_distance", o.max_center_distance},
           {"sweeps", o.sweeps}, {"placement", to_string(o.placement)}};
 }
 
@@ -73,8 +74,11 @@ json to_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 Vec3 point_of(const json& j) { return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()}; }
 
 json to_json(const GrowthSimplification& note) {
-  return {{"kind", static_cast<int>(note.kind)}, {"position", to_json(note.position)}, {"nodes", note.nodes},
-          {"segments", note.segments},           {"message", note.message}};
+  return {{"kind", static_cast<int>(note.kind)},
+          {"position", to_json(note.position)},
+          {"nodes", note.nodes},
+          {"segments", note.segments},
+          {"message", note.message}};
 }
 
 GrowthSimplification note_of(const json& j) {
@@ -381,8 +385,8 @@ void write_part_surface(const std::filesystem::path& path, const StoredPartSurfa
   std::vector<Index> pieces;
   std::vector<double> worst;
   for (const PartSurface::Piece& piece : surface.pieces) {
-    pieces.insert(pieces.end(), {piece.vertex_count, piece.face_count, piece.junctions, piece.tubes,
-                                 piece.filled_loops, piece.rung});
+    pieces.insert(pieces.end(),
+                  {piece.vertex_count, piece.face_count, piece.junctions, piece.tubes, piece.filled_loops, piece.rung});
     worst.push_back(piece.worst_skewness);
     if (!piece.faults.empty()) throw InvalidInput(path.string() + ": a part that is not sound is not written");
   }
@@ -436,9 +440,11 @@ StoredPartSurface read_part_surface(const std::filesystem::path& path) {
   file.read("seams", surface.seams);
   file.read("vertices", surface.mesh.vertices);
   file.read("faces", faces);
-  for (std::size_t i = 0; i + 2 < faces.size(); i += 3) surface.mesh.faces.push_back({faces[i], faces[i + 1], faces[i + 2]});
+  for (std::size_t i = 0; i + 2 < faces.size(); i += 3)
+    surface.mesh.faces.push_back({faces[i], faces[i + 1], faces[i + 2]});
   file.read("crossings", crossings);
-  for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) surface.crossings.emplace_back(crossings[i], crossings[i + 1]);
+  for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
+    surface.crossings.emplace_back(crossings[i], crossings[i + 1]);
   file.read("radius", surface.radius);
   PlaceColumns binding, place;
   file.read("cone", binding.segment);

@@ -45,8 +45,8 @@ class Indexer {
     const PartSurface& surface = stored.surface;
     if (stored.id != index_.manifest.id || surface.around != index_.manifest.around ||
         surface.first_piece != index_.boxes.size())
-      throw InvalidInput(entry.surface.string() +
-                         ": is of another splitting than " + std::string(kManifestName) + "; generate it again");
+      throw InvalidInput(entry.surface.string() + ": is of another splitting than " + std::string(kManifestName) +
+                         "; generate it again");
     entry.first_vertex = static_cast<Index>(vertex_);
     entry.first_face = index_.first_face.back();
     entry.first_piece = index_.boxes.size();
@@ -144,7 +144,8 @@ class PiecesOfTwo {
 }  // namespace
 
 std::size_t PartIndex::piece_of_face(Index face) const {
-  return static_cast<std::size_t>(std::upper_bound(first_face.begin(), first_face.end(), face) - first_face.begin() - 1);
+  return static_cast<std::size_t>(std::upper_bound(first_face.begin(), first_face.end(), face) - first_face.begin() -
+                                  1);
 }
 
 std::size_t PartIndex::part_of_piece(std::size_t piece) const {

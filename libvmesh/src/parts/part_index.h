@@ -35,9 +35,9 @@ struct PartIndex {
 
   PartsManifest manifest;
   std::vector<Entry> parts;
-  std::vector<PieceBox> boxes;         ///< of all pieces
-  std::vector<Index> first_face;       ///< of all pieces in the whole, and the end
-  std::size_t vertices = 0, faces = 0;  ///< in all
+  std::vector<PieceBox> boxes;                     ///< of all pieces
+  std::vector<Index> first_face;                   ///< of all pieces in the whole, and the end
+  std::size_t vertices = 0, faces = 0;             ///< in all
   std::vector<std::pair<Index, Index>> crossings;  ///< within parts; faces of the whole
   GrowthSummary growth;
 
@@ -68,8 +68,8 @@ struct PartedWalls {
     Index branch;
   };
 
-  std::vector<Vertex> moved;  ///< ascending
-  std::vector<Vertex> added;  ///< behind all vertices of the whole
+  std::vector<Vertex> moved;                        ///< ascending
+  std::vector<Vertex> added;                        ///< behind all vertices of the whole
   std::vector<std::pair<Index, Triangle>> changed;  ///< faces, ascending
   std::vector<Triangle> added_faces;
   std::vector<std::pair<Index, Index>> left;  ///< that still cross

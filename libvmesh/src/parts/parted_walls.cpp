@@ -21,7 +21,8 @@ class WallParting {
     for (const auto& [f, g] : crossings_) local.emplace_back(local_face(f), local_face(g));
     std::vector<FieldExcerpt> excerpts;
     for (const StoredPart& part : parts_) excerpts.push_back(part.part.field);
-    for (const auto& [f, g] : part_walls(around, merged(excerpts), local)) result_.left.emplace_back(face_[f], face_[g]);
+    for (const auto& [f, g] : part_walls(around, merged(excerpts), local))
+      result_.left.emplace_back(face_[f], face_[g]);
     compare(around);
     return std::move(result_);
   }
@@ -37,8 +38,8 @@ class WallParting {
     }
     std::vector<std::size_t> parts;
     for (std::size_t piece = 0; piece < index_.boxes.size(); ++piece) {
-      const bool near =
-          std::any_of(hulls.begin(), hulls.end(), [&](const PieceBox& hull) { return hull.meets(index_.boxes[piece]); });
+      const bool near = std::any_of(hulls.begin(), hulls.end(),
+                                    [&](const PieceBox& hull) { return hull.meets(index_.boxes[piece]); });
       if (near) parts.push_back(index_.part_of_piece(piece));
     }
     parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
@@ -81,7 +82,11 @@ class WallParting {
       const auto it = std::lower_bound(cones.begin(), cones.end(), binding.segment);
       if (it == cones.end() || *it != binding.segment) continue;
       const auto cone = static_cast<Index>(it - cones.begin());
-      return {number, after.mesh.vertices[v], binding, after.radius[v], part.origins.original(cone, binding.t),
+      return {number,
+              after.mesh.vertices[v],
+              binding,
+              after.radius[v],
+              part.origins.original(cone, binding.t),
               part.origins.branch[cone]};
     }
     throw InvalidInput("parts of a surface do not belong together");
@@ -97,12 +102,12 @@ class WallParting {
         result_.moved.push_back(vertex_of(after, v, vertex_[v]));
       }
     }
-    std::sort(result_.moved.begin(), result_.moved.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+    std::sort(result_.moved.begin(), result_.moved.end(),
+              [](const auto& a, const auto& b) { return a.number < b.number; });
     for (Index f = 0; f < after.mesh.faces.size(); ++f) {
       Triangle corners = after.mesh.faces[f];
       if (f < face_.size() && corners == surface_.mesh.faces[f]) continue;
-      for (Index& v : corners)
-        v = v < vertex_.size() ? vertex_[v] : whole + v - static_cast<Index>(vertex_.size());
+      for (Index& v : corners) v = v < vertex_.size() ? vertex_[v] : whole + v - static_cast<Index>(vertex_.size());
       if (f < face_.size()) {
         result_.changed.emplace_back(face_[f], corners);
       } else {

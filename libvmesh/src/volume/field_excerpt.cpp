@@ -36,7 +36,8 @@ void check(const FieldExcerpt& e) {
               std::is_sorted(e.local_offsets.begin(), e.local_offsets.end()) && e.parting.size() == e.local.size(),
           "its local cones");
   require(std::all_of(e.local.begin(), e.local.end(), [&](Index c) { return c < count; }), "its local cones");
-  require(std::all_of(e.apart.begin(), e.apart.end(), [&](const auto& p) { return p.first < p.second && p.second < count; }) &&
+  require(std::all_of(e.apart.begin(), e.apart.end(),
+                      [&](const auto& p) { return p.first < p.second && p.second < count; }) &&
               std::is_sorted(e.apart.begin(), e.apart.end()),
           "its cones that are apart");
 }
@@ -153,7 +154,8 @@ FieldExcerpt merged(std::span<const FieldExcerpt> excerpts) {
   sort_unique(result.node);
   result.nodes.resize(result.node.size());
   for (const FieldExcerpt& excerpt : excerpts) {
-    for (Index n = 0; n < excerpt.node.size(); ++n) result.nodes[place_in(result.node, excerpt.node[n])] = excerpt.nodes[n];
+    for (Index n = 0; n < excerpt.node.size(); ++n)
+      result.nodes[place_in(result.node, excerpt.node[n])] = excerpt.nodes[n];
     for (const auto& [i, j] : excerpt.apart) result.apart.emplace_back(excerpt.cone[i], excerpt.cone[j]);
   }
   for (const Source& source : sources) result.cone.push_back(source.cone);

@@ -101,7 +101,7 @@ class PairSet {
     Index count_ = 0;
   };
 
-  std::vector<Row> above_;  // of every index its greater partners
+  std::vector<Row> above_;                     // of every index its greater partners
   std::deque<std::pair<Index, Index>> pairs_;  // many, and they grow: no copies
 };
 

@@ -224,8 +224,8 @@ int least_around(const Centerline& centerline, const ErrorLimit& limit);
 /// around the simplified one. What lies on nodes that are not the original's (kNone) stays so.
 void refer_to_original(const SimplifiedCenterline& simplified, GenerateResult& result);
 
-/// The same for a surface around what separate_contacts() made of `original`: nodes that were added are left out, or are
-/// kNone.
+/// The same for a surface around what separate_contacts() made of `original`: nodes that were added are left out, or
+/// are kNone.
 void refer_to_original(const SeparatedCenterline& separated, const Centerline& original, GenerateResult& result);
 
 /// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.

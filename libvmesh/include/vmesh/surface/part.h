@@ -114,8 +114,8 @@ struct SurfaceAround {
 };
 
 /// Parts walls of different pieces that cross, as generate_surface() does: edges of such faces are exchanged or halved,
-/// or vertices moved. Vertices and faces keep their numbers, new ones come last. `field`: of all parts near. Returns the
-/// pairs of faces that still cross.
+/// or vertices moved. Vertices and faces keep their numbers, new ones come last. `field`: of all parts near. Returns
+/// the pairs of faces that still cross.
 std::vector<std::pair<Index, Index>> part_walls(SurfaceAround& surface, const FieldExcerpt& field,
                                                 const std::vector<std::pair<Index, Index>>& crossings);
 

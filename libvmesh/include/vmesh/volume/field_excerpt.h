@@ -25,8 +25,8 @@ struct FieldExcerpt {
   /// Local to cone c, ascending: local[local_offsets[c]] to before local[local_offsets[c + 1]]; whether they part.
   std::vector<Index> local_offsets, local;
   std::vector<char> parting;
-  std::vector<std::pair<Index, Index>> apart;  ///< cones that are not blended, ascending
-  std::vector<std::array<double, 2>> rounding; ///< of cones, the shares of the blend at their ends
+  std::vector<std::pair<Index, Index>> apart;   ///< cones that are not blended, ascending
+  std::vector<std::array<double, 2>> rounding;  ///< of cones, the shares of the blend at their ends
 
   Centerline centerline() const { return {nodes, segments}; }
 };

@@ -40,9 +40,10 @@ class VesselField {
   /// `blend` in [0, 2]. Keeps a reference to `centerline`, which must outlive the field.
   explicit VesselField(const Centerline& centerline, double blend = 0);
 
-  /// The part of another field that `excerpt` was taken of; `centerline` is the excerpt's. Local queries whose hints are
-  /// complete in it, and distance_to_others() within the reach it was taken with, answer as the other field does, to the
-  /// bit. A query that leads to another hint throws std::logic_error. Global queries see what is in the excerpt alone.
+  /// The part of another field that `excerpt` was taken of; `centerline` is the excerpt's. Local queries whose hints
+  /// are complete in it, and distance_to_others() within the reach it was taken with, answer as the other field does,
+  /// to the bit. A query that leads to another hint throws std::logic_error. Global queries see what is in the excerpt
+  /// alone.
   VesselField(const Centerline& centerline, const FieldExcerpt& excerpt);
 
   /// What is needed to answer queries whose hints are among `cones` and those local to them: everything local to these,

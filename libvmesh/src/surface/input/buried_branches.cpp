@@ -75,16 +75,16 @@ class Burial {
 
   // Goes through the branches of what is left. What is a branch changes where one goes: then it has to be done again.
   bool bury_some() {
-    bool some = false;
+    bool left_out = false;
     for (const Branch& branch : branches_left()) {
       if (!is_covered(branch)) continue;
       const bool has_tip = degree_left(branch.nodes.front()) == 1 || degree_left(branch.nodes.back()) == 1;
       if (!has_tip) continue;  // what closes a loop joins vessels that overlap there, and has to stay
       for (const Index s : branch.segments) left_[s] = 0;
       buried_.push_back({branch.segments});
-      some = true;
+      left_out = true;
     }
-    return some;
+    return left_out;
   }
 
   // With the numbers of the full centerline, thinnest first.

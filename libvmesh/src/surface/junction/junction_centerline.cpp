@@ -30,7 +30,7 @@ class JunctionCenterlineMaker {
 
   JunctionCenterline make(const Junction& junction) {
     for (const Index n : junction.nodes) node_of(n);
-    for (Index g = 0; g < junction.gaps.size(); ++g) add(junction.gaps[g], g);
+    for (Index g = 0; g < junction.bare_stretches.size(); ++g) add(junction.bare_stretches[g], g);
     return std::move(result_);
   }
 
@@ -46,20 +46,21 @@ class JunctionCenterlineMaker {
     return it->second;
   }
 
-  Index end_node(const Gap& gap, int end) {
-    const BranchAxis& axis = axes_[gap.branch];
-    if (gap.openings[end].tube == kNone) return node_of(end ? axis.branch().nodes.back() : axis.branch().nodes.front());
-    const auto point = axis.at(end ? gap.end : gap.begin);
+  Index end_node(const BareStretch& bare, int end) {
+    const BranchAxis& axis = axes_[bare.branch];
+    if (bare.docks[end].tube == kNone) return node_of(end ? axis.branch().nodes.back() : axis.branch().nodes.front());
+    const auto point = axis.at(end ? bare.end : bare.begin);
     return add_node(point.position, point.radius);
   }
 
   // Their places along the branch, ascending.
-  static std::vector<double> nodes_within(const BranchAxis& axis, const Gap& gap) {
+  static std::vector<double> nodes_within(const BranchAxis& axis, const BareStretch& bare) {
     std::vector<double> places;
     for (double lap = 0; lap <= (axis.periodic() ? axis.length() : 0); lap += axis.length()) {
       for (std::size_t i = 0; i < axis.branch().nodes.size(); ++i) {
         const double place = lap + axis.node_place(i);
-        if (place > gap.begin && place < gap.end && (places.empty() || place > places.back())) places.push_back(place);
+        if (place > bare.begin && place < bare.end && (places.empty() || place > places.back()))
+          places.push_back(place);
       }
     }
     return places;
@@ -77,19 +78,19 @@ class JunctionCenterlineMaker {
       places.push_back(begin + (end - begin) * static_cast<double>(i) / static_cast<double>(needed + 1));
   }
 
-  void add(const Gap& gap, Index number) {
-    const BranchAxis& axis = axes_[gap.branch];
-    const std::vector<double> nodes = nodes_within(axis, gap);
-    std::vector<double> places = {gap.begin};
+  void add(const BareStretch& bare, Index number) {
+    const BranchAxis& axis = axes_[bare.branch];
+    const std::vector<double> nodes = nodes_within(axis, bare);
+    std::vector<double> places = {bare.begin};
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const double place = nodes[i], after = i + 1 < nodes.size() ? nodes[i + 1] : gap.end;
-      const double alone = std::min(place - places.back(), gap.end - place);
+      const double place = nodes[i], after = i + 1 < nodes.size() ? nodes[i + 1] : bare.end;
+      const double alone = std::min(place - places.back(), bare.end - place);
       if (alone > kShortestPiece * axis.at(place).radius || sticks_out(axis, places.back(), place, after))
         places.push_back(place);
     }
-    places.push_back(gap.end);
-    Index last = end_node(gap, 0);
-    const Index end = end_node(gap, 1);
+    places.push_back(bare.end);
+    Index last = end_node(bare, 0);
+    const Index end = end_node(bare, 1);
     keep_apart(last, end, places);
     for (std::size_t i = 1; i < places.size(); ++i) {
       const auto point = axis.at(places[i]);
@@ -104,15 +105,15 @@ class JunctionCenterlineMaker {
   const std::vector<BranchAxis>& axes_;
   JunctionCenterline result_;
   std::map<Index, Index> nodes_;
-  std::set<std::pair<Index, Index>> joined_;  // by a gap
+  std::set<std::pair<Index, Index>> joined_;  // by a bare stretch
 };
 
 }  // namespace
 
-Index JunctionCenterline::end_segment(Index gap, bool at_end) const {
+Index JunctionCenterline::end_segment(Index bare, bool at_end) const {
   Index found = kNone;
   for (Index s = 0; s < origins.size(); ++s) {
-    if (origins[s].gap == gap && (at_end || found == kNone)) found = s;
+    if (origins[s].bare == bare && (at_end || found == kNone)) found = s;
   }
   return found;
 }

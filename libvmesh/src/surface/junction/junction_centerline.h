@@ -4,10 +4,10 @@
 
 namespace vmesh {
 
-/// The part of a centerline that belongs to a junction, cut at its openings. Segments know the place they come from.
+/// The part of a centerline that belongs to a junction, cut at its docks. Segments know the place they come from.
 struct JunctionCenterline {
   struct Origin {
-    Index gap;
+    Index bare;
     double begin, end;  // places
   };
 
@@ -15,8 +15,8 @@ struct JunctionCenterline {
   std::vector<CenterlineSegment> segments;
   std::vector<Origin> origins;  // of the segments
 
-  /// The segment at that end of a gap.
-  Index end_segment(Index gap, bool at_end) const;
+  /// The segment at that end of a bare stretch.
+  Index end_segment(Index bare, bool at_end) const;
 };
 
 JunctionCenterline make_junction_centerline(const Centerline& centerline, const std::vector<BranchAxis>& axes,

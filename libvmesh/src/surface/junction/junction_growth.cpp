@@ -106,10 +106,10 @@ JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarde
   const GenerateResult piece = onto_boundary(finer, guarded);
   JunctionSurface result;
   DiscCutter cutter(piece.mesh.vertices, piece.mesh.faces);
-  for (Index g = 0; g < junction_.gaps.size(); ++g) {
+  for (Index g = 0; g < junction_.bare_stretches.size(); ++g) {
     for (const bool at_end : {false, true}) {
-      if (junction_.gaps[g].openings[at_end].tube != kNone)
-        result.rims.push_back(cut_opening(cutter, piece, g, at_end, smooth_rims));
+      if (junction_.bare_stretches[g].docks[at_end].tube != kNone)
+        result.rims.push_back(cut_at_dock(cutter, piece, g, at_end, smooth_rims));
     }
   }
   result.patch.faces = cutter.rest();
@@ -137,20 +137,20 @@ GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
 }
 
 // The cross-section at which the junction ends, half a step before its tube.
-CrossSection JunctionGrowth::way_out(const TubeEnd& opening) const {
-  const Tube& tube = skeleton_.tubes[opening.tube];
-  CrossSection section = (opening.at_end ? tube.rings.back() : tube.rings.front()).beside[opening.at_end];
-  if (opening.at_end) section.normal = -section.normal;
+CrossSection JunctionGrowth::way_out(const TubeEnd& dock) const {
+  const Tube& tube = skeleton_.tubes[dock.tube];
+  CrossSection section = (dock.at_end ? tube.rings.back() : tube.rings.front()).beside[dock.at_end];
+  if (dock.at_end) section.normal = -section.normal;
   return section;
 }
 
 // Returns the rim; moved onto the boundary and rid of short edges, or as it was cut.
-std::vector<Index> JunctionGrowth::cut_opening(DiscCutter& cutter, const GenerateResult& piece, Index gap, bool at_end,
+std::vector<Index> JunctionGrowth::cut_at_dock(DiscCutter& cutter, const GenerateResult& piece, Index bare, bool at_end,
                                                bool smooth) const {
-  const auto [place, center, normal, radius] = way_out(junction_.gaps[gap].openings[at_end]);
+  const auto [place, center, normal, radius] = way_out(junction_.bare_stretches[bare].docks[at_end]);
   const double shortest = smooth ? kShortestRimEdge * edge_length_per_radius(options_.around) * radius : 0;
   std::vector<Index> rim =
-      cutter.cut(center, normal, vertices_near_end(piece, gap, at_end, kOwnReach * radius), shortest);
+      cutter.cut(center, normal, vertices_near_end(piece, bare, at_end, kOwnReach * radius), shortest);
   if (smooth) move_onto_boundary(cutter, rim, piece, kRimStep * radius);
   return rim;
 }
@@ -172,21 +172,21 @@ Index JunctionGrowth::original_cone(Index cone) const {
     return ball;
   }
   const auto& origin = local_.origins[cone];
-  const BranchAxis& axis = axes_[junction_.gaps[origin.gap].branch];
+  const BranchAxis& axis = axes_[junction_.bare_stretches[origin.bare].branch];
   return axis.branch().segments[axis.at(0.5 * (origin.begin + origin.end)).piece];
 }
 
-// The vertices bound to a gap, near one of its ends and nearer than to the other.
-std::vector<Index> JunctionGrowth::vertices_near_end(const GenerateResult& piece, Index gap, bool at_end,
+// The vertices bound to a bare stretch, near one of its ends and nearer than to the other.
+std::vector<Index> JunctionGrowth::vertices_near_end(const GenerateResult& piece, Index bare, bool at_end,
                                                      double reach) const {
-  const double begin = junction_.gaps[gap].begin, end = junction_.gaps[gap].end;
+  const double begin = junction_.bare_stretches[bare].begin, end = junction_.bare_stretches[bare].end;
   std::vector<Index> near;
   for (Index v = 0; v < piece.binding.size(); ++v) {
     const auto& [segment, t] = piece.binding[v];
     const auto& origin = local_.origins[segment];
     const double place = origin.begin + t * (origin.end - origin.begin);
     const double away = at_end ? end - place : place - begin;
-    if (origin.gap == gap && away < reach && away < 0.5 * (end - begin)) near.push_back(v);
+    if (origin.bare == bare && away < reach && away < 0.5 * (end - begin)) near.push_back(v);
   }
   return near;
 }

@@ -23,14 +23,14 @@ struct SurfacePatch {
   std::vector<Triangle> faces;
 };
 
-/// A junction's surface with a hole for every opening of its gaps, in their order.
+/// A junction's surface with a hole for every dock of its bare stretches, in their order.
 struct JunctionSurface {
   SurfacePatch patch;
   std::vector<std::vector<Index>> rims;  ///< counter-clockwise about the direction away from the junction
 };
 
 /// Grows the surface of a junction from its widest place, in a lattice as fine as the vessel at every place
-/// (grow_in_lattice), brings it onto the boundary and to a size field, and cuts its openings.
+/// (grow_in_lattice), brings it onto the boundary and to a size field, and cuts it at its docks.
 class JunctionGrowth {
  public:
   JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes, const GrowthSkeleton& skeleton,
@@ -49,11 +49,11 @@ class JunctionGrowth {
 
  private:
   GenerateResult onto_boundary(double finer, bool guarded) const;
-  CrossSection way_out(const TubeEnd& opening) const;
-  std::vector<Index> cut_opening(DiscCutter& cutter, const GenerateResult& piece, Index gap, bool at_end,
+  CrossSection way_out(const TubeEnd& dock) const;
+  std::vector<Index> cut_at_dock(DiscCutter& cutter, const GenerateResult& piece, Index bare, bool at_end,
                                  bool smooth) const;
   Index original_cone(Index cone) const;
-  std::vector<Index> vertices_near_end(const GenerateResult& piece, Index gap, bool at_end, double reach) const;
+  std::vector<Index> vertices_near_end(const GenerateResult& piece, Index bare, bool at_end, double reach) const;
   void move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& piece,
                           double longest) const;
 

@@ -35,19 +35,14 @@ std::span<const Variant> variants_of(bool guarded, bool hub) {
 class PieceMaker {
  public:
   PieceMaker(const VesselField& field, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
-             const std::vector<TubeEnd>& openings, const GenerateOptions& options, const Progress& progress)
-      : skeleton_(skeleton),
-        growth_(growth),
-        openings_(openings),
-        options_(options),
-        progress_(progress),
-        surface_(field) {}
+             const std::vector<TubeEnd>& docks, const GenerateOptions& options, const Progress& progress)
+      : skeleton_(skeleton), growth_(growth), docks_(docks), options_(options), progress_(progress), surface_(field) {}
 
   JunctionPiece make(const Variant& variant) {
     const JunctionSurface junction = growth_.make(variant.finer, variant.smooth_rims, variant.guarded);
     add(junction.patch);
     for (const Vertex v : surface_.mesh.vertices()) surface_.fineness[v] = variant.fineness;
-    for (Index i = 0; i < openings_.size(); ++i) dock(i, junction.rims[i]);
+    for (Index i = 0; i < docks_.size(); ++i) dock(i, junction.rims[i]);
     if (variant.guarded) surface_.guard_crossings();
     JunctionPiece piece;
     piece.filled_loops = growth_.filled_loops();
@@ -69,21 +64,21 @@ class PieceMaker {
   }
 
   // Joins the rim to the first ring of the tube's end, that to the next one, up to the ring that is kept.
-  void dock(Index number_of_opening, const std::vector<Index>& rim) {
-    const TubeEnd& opening = openings_[number_of_opening];
-    const Tube& tube = skeleton_.tubes[opening.tube];
+  void dock(Index number_of_dock, const std::vector<Index>& rim) {
+    const TubeEnd& dock = docks_[number_of_dock];
+    const Tube& tube = skeleton_.tubes[dock.tube];
     std::vector<Vertex> last;
     for (const Index v : rim) last.push_back(vertex_[v]);
     const std::size_t count = rings_given_away(tube) + 1;
     for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t number = opening.at_end ? tube.rings.size() - 1 - k : k;
+      const std::size_t number = dock.at_end ? tube.rings.size() - 1 - k : k;
       std::vector<Vertex> ring;
       for (const BoundaryPoint& p : tube.rings[number].points) {
         ring.push_back(add_vertex(p.position, p.sample.cone));
         if (is_seam(tube, number)) surface_.lift[ring.back()] = surface_.distance[ring.back()];
       }
-      if (k + 1 == count) kept_.push_back({number_of_opening, ring});
-      if (opening.at_end) std::reverse(ring.begin(), ring.end());
+      if (k + 1 == count) kept_.push_back({number_of_dock, ring});
+      if (dock.at_end) std::reverse(ring.begin(), ring.end());
       band(last, ring);
       last = std::move(ring);
       if (k + 1 == count) surface_.close_with_lid(last, tube.rings[number].center);
@@ -117,7 +112,7 @@ class PieceMaker {
       piece.tangles = find_tangles(SweepState(surface_)).size();
       return;
     }
-    const double radii = growth_.length_in_radii() + static_cast<double>(openings_.size() * (kRingsGivenAway + 1));
+    const double radii = growth_.length_in_radii() + static_cast<double>(docks_.size() * (kRingsGivenAway + 1));
     const GrownMesh grown{double(options_.around), expected_vertices(radii, options_.around / fineness),
                           GrownMesh::Stage::piece};
     const OptimizeReport report = optimize(surface_, options_, grown, progress_);
@@ -135,10 +130,10 @@ class PieceMaker {
       piece.vertices.push_back(
           {surface_.position(v), surface_.cone[v], surface_.fineness[v], surface_.lift[v], kNone, 0});
     }
-    for (const auto& [opening, vertices] : kept_) {
+    for (const auto& [dock, vertices] : kept_) {
       for (Index j = 0; j < vertices.size(); ++j) {
         PieceVertex& v = piece.vertices[number[vertices[j].idx()]];
-        v.opening = opening;
+        v.dock = dock;
         v.number = j;
       }
     }
@@ -151,13 +146,13 @@ class PieceMaker {
   }
 
   struct KeptRing {
-    Index opening;
+    Index dock;
     std::vector<Vertex> vertices;  // in the order of the ring
   };
 
   const GrowthSkeleton& skeleton_;
   const JunctionGrowth& growth_;
-  const std::vector<TubeEnd>& openings_;
+  const std::vector<TubeEnd>& docks_;
   const GenerateOptions& options_;
   const Progress& progress_;
   BoundSurface surface_;
@@ -180,16 +175,16 @@ Index kept_ring(const Tube& tube, bool at_end) {
 JunctionPiece make_junction_piece(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
                                   const GenerateOptions& options, bool guarded, const Progress& progress) {
   const VesselField& field = tubes.field();
-  const std::vector<TubeEnd> openings = openings_of(junction);
+  const std::vector<TubeEnd> docks = docks_of(junction);
   const auto flaws = [](const JunctionPiece& p) { return std::tuple(p.crossings, p.tangles, p.unproven); };
   std::optional<JunctionPiece> best;
   const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options);
   // With the guard, what is refined for the limit on the error is refined on the whole piece.
   GenerateOptions piece_options = options;
   if (guarded) piece_options.max_error = {};
-  const bool hub = guarded && openings.size() >= kHub;
+  const bool hub = guarded && docks.size() >= kHub;
   for (const Variant& variant : variants_of(guarded, hub)) {
-    JunctionPiece piece = PieceMaker(field, skeleton, growth, openings, piece_options, progress).make(variant);
+    JunctionPiece piece = PieceMaker(field, skeleton, growth, docks, piece_options, progress).make(variant);
     if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);
     if (best->tangles == 0 && best->unproven == 0) break;
     if (hub && best->crossings == 0) break;

@@ -16,8 +16,8 @@ struct PieceVertex {
   Vec3 position;
   Index cone;
   double fineness, lift;
-  Index opening = kNone;  ///< of the junction's (openings_of), at whose tube the ring is
-  Index number = 0;       ///< in the ring
+  Index dock = kNone;  ///< of the junction's (docks_of), at whose tube the ring is
+  Index number = 0;    ///< in the ring
 };
 
 /// The finished surface of a junction and of the tubes around it up to a ring each that is kept as it was.

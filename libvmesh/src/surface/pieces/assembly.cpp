@@ -56,14 +56,14 @@ RingPlace Assembly::seam_at(const Tube& tube, bool at_last) const {
 }
 
 void Assembly::add_junction(const Junction& junction, const JunctionPiece& piece) {
-  const std::vector<TubeEnd> openings = openings_of(junction);
+  const std::vector<TubeEnd> docks = docks_of(junction);
   std::vector<Index> number;
   for (const PieceVertex& v : piece.vertices) {
-    if (v.opening == kNone) {
+    if (v.dock == kNone) {
       number.push_back(size());
       vertices_.push_back({v.position, v.cone, v.fineness, v.lift});
     } else {
-      const auto [tube, at_end] = openings[v.opening];
+      const auto [tube, at_end] = docks[v.dock];
       number.push_back(first_[tube][kept_ring(skeleton_.tubes[tube], at_end)] + v.number);
     }
   }

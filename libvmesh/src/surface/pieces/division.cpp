@@ -108,7 +108,8 @@ class SeamSearch {
   }
 
   bool is_even(std::size_t k) const {
-    return is_even(Band(rings_[k - 1], rings_[k])) && is_even(Band(rings_[k], rings_[k + 1])) && !near_others(rings_[k]);
+    return is_even(Band(rings_[k - 1], rings_[k])) && is_even(Band(rings_[k], rings_[k + 1])) &&
+           !near_others(rings_[k]);
   }
 
   // Whether the faces are as good as they will become, and as close to the boundary as is asked for.
@@ -302,7 +303,9 @@ std::vector<RingPlace> find_seams(const VesselAxes& axes, const GenerateOptions&
   return SeamSearch(axes, options, branch, rings).run();
 }
 
-Division divide(const RingCounts& rings, std::vector<RingPlace> seams) { return divide_at(rings, std::move(seams), {}); }
+Division divide(const RingCounts& rings, std::vector<RingPlace> seams) {
+  return divide_at(rings, std::move(seams), {});
+}
 
 Division divide(const VesselTubes& tubes, const GenerateOptions& options) {
   std::vector<std::vector<RingPlace>> found(tubes.axes().size());

@@ -105,8 +105,9 @@ class PartGrower {
   }
 
   Index number_of(const SeamVertex& v) const {
-    const auto it = std::lower_bound(part_.seams.begin(), part_.seams.end(), v.seam,
-                                     [](const SurfacePart::Seam& s, const RingPlace& place) { return s.place < place; });
+    const auto it =
+        std::lower_bound(part_.seams.begin(), part_.seams.end(), v.seam,
+                         [](const SurfacePart::Seam& s, const RingPlace& place) { return s.place < place; });
     if (it == part_.seams.end() || it->place != v.seam) require(false, "its seams");
     return static_cast<Index>(it - part_.seams.begin()) * result_.around + v.number;
   }

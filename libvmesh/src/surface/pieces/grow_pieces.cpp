@@ -83,7 +83,8 @@ class PieceGrower {
   bool regroup() {
     std::vector<RingPlace> dissolved;
     std::vector<std::pair<Anchor, Anchor>> joined;
-    if (std::any_of(pieces_.begin(), pieces_.end(), [](const PieceSurface& p) { return p.hopeless; })) return false;
+    if (std::any_of(pieces_.begin(), pieces_.end(), [](const PieceSurface& p) { return p.cannot_be_sound; }))
+      return false;
     for (const auto& [f, g] : crossings_) {
       if (vessels_overlap(f, g)) return false;
       part(gathered_.piece_of(f), gathered_.piece_of(g), dissolved, joined);

@@ -50,9 +50,9 @@ void note_simplifications(const VesselTubes& tubes, const Junction& junction, st
   GrowthSimplification note;
   std::size_t inner_branches = 0;
   note.nodes = junction.nodes;
-  for (const Gap& gap : junction.gaps) {
-    if (gap.openings[0].tube != kNone || gap.openings[1].tube != kNone) continue;
-    const auto& segments = tubes.axes()[gap.branch].branch().segments;
+  for (const BareStretch& bare : junction.bare_stretches) {
+    if (bare.docks[0].tube != kNone || bare.docks[1].tube != kNone) continue;
+    const auto& segments = tubes.axes()[bare.branch].branch().segments;
     note.segments.insert(note.segments.end(), segments.begin(), segments.end());
     ++inner_branches;
   }
@@ -63,8 +63,8 @@ void note_simplifications(const VesselTubes& tubes, const Junction& junction, st
     note.position = centerline.node(n).position;
   }
   if (junction.nodes.empty()) {
-    const Gap& gap = junction.gaps.front();
-    note.position = tubes.axes()[gap.branch].at(gap.begin).position;
+    const BareStretch& bare = junction.bare_stretches.front();
+    note.position = tubes.axes()[bare.branch].at(bare.begin).position;
   }
   if (junction.nodes.size() > 1) {
     note.kind = GrowthSimplification::Kind::merged_nodes;
@@ -108,10 +108,10 @@ class PieceMaker {
       PieceSurface piece = make(kLadder[rung]);
       piece.rung = rung;
       last = piece.faults;
-      const bool hopeless = vessels_overlap(last);
+      const bool cannot_be_sound = vessels_overlap(last);
       if (rung == first || badness(piece, mended()) < badness(best, mended())) best = std::move(piece);
-      best.hopeless = hopeless && !best.faults.empty();
-      if (badness(best, mended()) == kNoBadness || hopeless) break;
+      best.cannot_be_sound = cannot_be_sound && !best.faults.empty();
+      if (badness(best, mended()) == kNoBadness || cannot_be_sound) break;
     }
     return best;
   }
@@ -228,14 +228,14 @@ class PieceMaker {
     return pieces;
   }
 
-  // What a junction's piece depends on: its nodes, its gaps, and how many rings it replaces at each end of a gap.
+  // What a junction's piece depends on: its nodes, its bare stretches, and how many rings it replaces at each end of a
+  // bare stretch.
   static std::vector<double> key_of(const GrowthSkeleton& skeleton, const Junction& junction) {
     std::vector<double> key(junction.nodes.begin(), junction.nodes.end());
-    for (const Gap& gap : junction.gaps) {
-      key.insert(key.end(), {-1.0 - gap.branch, gap.begin, gap.end});
-      for (const TubeEnd& opening : gap.openings)
-        key.push_back(opening.tube == kNone ? -1.0
-                                            : static_cast<double>(rings_given_away(skeleton.tubes[opening.tube])));
+    for (const BareStretch& bare : junction.bare_stretches) {
+      key.insert(key.end(), {-1.0 - bare.branch, bare.begin, bare.end});
+      for (const TubeEnd& dock : bare.docks)
+        key.push_back(dock.tube == kNone ? -1.0 : static_cast<double>(rings_given_away(skeleton.tubes[dock.tube])));
     }
     return key;
   }

@@ -36,7 +36,7 @@ struct PieceSurface {
   double worst_skewness = 0;     ///< equiangle, of its triangles
   int rung = 0;                  ///< of the ladder at which it was found
   std::vector<PieceFault> faults;
-  bool hopeless = false;  ///< on some rung it was found that vessels overlap in it: it cannot be sound
+  bool cannot_be_sound = false;  ///< on some rung it was found that vessels overlap in it: it cannot be sound
 };
 
 /// What all pieces of a surface have in common.

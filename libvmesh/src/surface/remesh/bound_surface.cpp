@@ -73,13 +73,13 @@ void BoundSurface::guard_crossings() {
   for (const Vertex v : mesh.vertices()) cones.push_back(cone[v]);
   std::sort(cones.begin(), cones.end());
   cones.erase(std::unique(cones.begin(), cones.end()), cones.end());
-  std::vector<CrossingGuard::Thread> threads;
+  std::vector<CrossingGuard::AxisLine> axes;
   for (const Index c : cones) {
     const Vec3 from = field.axis_point(c, 0), to = field.axis_point(c, 1);
-    if (from != to) threads.push_back({from, to});
+    if (from != to) axes.push_back({from, to});
   }
   guard_ = std::make_unique<CrossingGuard>(
-      mesh, [this](Vertex v) { return role[v] == Role::lid; }, std::move(threads));
+      mesh, [this](Vertex v) { return role[v] == Role::lid; }, std::move(axes));
 }
 
 void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {

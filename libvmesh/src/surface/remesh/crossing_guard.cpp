@@ -6,8 +6,8 @@ namespace vmesh {
 namespace {
 
 constexpr std::size_t kMostLatest = 32;  // faces that are looked at one by one; idle 22 to 45
-// Each in a box of its own: that of an aslant thread is mostly empty; idle 6 to 11.
-constexpr int kPartsOfThread = 8;
+// Each in a box of its own: that of an aslant axis is mostly empty; idle 6 to 11.
+constexpr int kPartsOfLine = 8;
 // Derived: of coordinates, in a point between two others, a few units in the last place.
 constexpr double kRounding = 1e-15;
 // Around a face in its box, in the diagonal of what it needs; idle 0.17 to 0.35.
@@ -24,19 +24,19 @@ bool are_apart(const Vec3& low, const Vec3& high, const Vec3& other_low, const V
 
 }  // namespace
 
-CrossingGuard::CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_lid, std::vector<Thread> threads)
-    : mesh_(mesh), is_lid_(std::move(is_lid)), threads_(std::move(threads)) {
+CrossingGuard::CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_lid, std::vector<AxisLine> axes)
+    : mesh_(mesh), is_lid_(std::move(is_lid)), axes_(std::move(axes)) {
   std::vector<Vec3> low, high;
-  for (const auto& [from, to] : threads_) {
-    for (int i = 0; i < kPartsOfThread; ++i) {
-      const double t0 = double(i) / kPartsOfThread, t1 = double(i + 1) / kPartsOfThread;
+  for (const auto& [from, to] : axes_) {
+    for (int i = 0; i < kPartsOfLine; ++i) {
+      const double t0 = double(i) / kPartsOfLine, t1 = double(i + 1) / kPartsOfLine;
       const Vec3 begin = (1 - t0) * from + t0 * to, end = (1 - t1) * from + t1 * to;
       const double rounding = kRounding * (from.cwiseAbs() + to.cwiseAbs()).maxCoeff();
       low.push_back(begin.cwiseMin(end).array() - rounding);
       high.push_back(begin.cwiseMax(end).array() + rounding);
     }
   }
-  thread_tree_ = BoxTree(low, high);
+  axis_tree_ = BoxTree(low, high);
   for (const Face f : mesh.faces()) insert(f);
 }
 
@@ -102,22 +102,22 @@ bool CrossingGuard::clear(const std::vector<PlacedFace>& faces, const std::vecto
       if (intersect(faces[i], faces[j])) return false;
     }
   }
-  return !cross_threads(faces, gone) && !cross_others(faces, gone);
+  return !cross_axes(faces, gone) && !cross_others(faces, gone);
 }
 
-bool CrossingGuard::cross_threads(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const {
-  const auto meets = [&](const PlacedFace& face, Index thread) {
-    return meets_segment(face, threads_[thread][0], threads_[thread][1]);
+bool CrossingGuard::cross_axes(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const {
+  const auto meets = [&](const PlacedFace& face, Index axis) {
+    return meets_segment(face, axes_[axis][0], axes_[axis][1]);
   };
   return std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
     const auto [low, high] = box_of(face);
     bool crossed = false;
-    thread_tree_.visit_overlapping(low, high, [&](Index part) {
-      const Index thread = part / kPartsOfThread;
-      if (crossed || !meets(face, thread)) return;
+    axis_tree_.visit_overlapping(low, high, [&](Index part) {
+      const Index axis = part / kPartsOfLine;
+      if (crossed || !meets(face, axis)) return;
       crossed = std::none_of(gone.begin(), gone.end(), [&](Face f) {
         const PlacedFace before = placed(f);
-        return !is_degenerate(before) && meets(before, thread);
+        return !is_degenerate(before) && meets(before, axis);
       });
     });
     return crossed;

@@ -14,7 +14,7 @@
 
 namespace vmesh {
 
-/// Tells for a step of remeshing whether faces would cross each other afterwards, or a thread that they did not cross
+/// Tells for a step of remeshing whether faces would cross each other afterwards, or a axis that they did not cross
 /// before. Keeps all faces in box trees; whoever changes the mesh says so (touch). Faces of lids do not count.
 class CrossingGuard {
  public:
@@ -23,11 +23,11 @@ class CrossingGuard {
   using Halfedge = Mesh::Halfedge_index;
   using Face = Mesh::Face_index;
 
-  using Thread = std::array<Vec3, 2>;
+  using AxisLine = std::array<Vec3, 2>;
 
-  /// `is_lid`: for every vertex, whether it is the middle of a lid; the mesh is kept as a reference. `threads`:
+  /// `is_lid`: for every vertex, whether it is the middle of a lid; the mesh is kept as a reference. `axes`:
   /// straight pieces of the axes of the vessels, which belong inside.
-  CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_lid, std::vector<Thread> threads);
+  CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_lid, std::vector<AxisLine> axes);
 
   /// Whether `v` may go to `p`.
   bool may_move(Vertex v, const Vec3& p) const;
@@ -62,8 +62,8 @@ class CrossingGuard {
   // Whether no face but `gone` crosses one of `faces`, nor they each other.
   bool clear(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const;
   bool cross_others(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const;
-  // Whether one of `faces` meets a thread that none of `gone` meets.
-  bool cross_threads(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const;
+  // Whether one of `faces` meets a axis that none of `gone` meets.
+  bool cross_axes(const std::vector<PlacedFace>& faces, const std::vector<Face>& gone) const;
 
   const Mesh& mesh_;
   std::function<bool(Vertex)> is_lid_;
@@ -71,8 +71,8 @@ class CrossingGuard {
   Index next_number_ = 0;
   std::vector<Layer> layers_;  // each less than half as large as the one before
   std::vector<Entry> latest_;  // not in a layer yet
-  std::vector<Thread> threads_;
-  BoxTree thread_tree_;  // of their parts
+  std::vector<AxisLine> axes_;
+  BoxTree axis_tree_;  // of their parts
 };
 
 }  // namespace vmesh

@@ -19,7 +19,7 @@ constexpr double kVerticesPerRadius = 7;  // and unit of length, at kGrownAround
 constexpr double kMaxExcess = 1.5;
 constexpr int kStrayInterval = 4;  // safe 3 to 6
 // Share of the vertices in tangles: growth covered vessels twice; safe 0.014 to 0.028.
-constexpr double kHopeless = 0.02;
+constexpr double kMostTangled = 0.02;
 // Of the tangles: if more are left after a round of untangling, there is no other.
 constexpr double kStillTangled = 0.9;
 // A second round changes mean skewness and mean error by less than 1 % (ten liver trees, tree1560); what is proven with
@@ -30,7 +30,7 @@ constexpr int kBalanceRounds = 1, kBalanceRoundsWithLimit = 2, kBalanceSweeps = 
 // leaves a better mean. Proofs need the second.
 // kGoodEnergy: safe there alone, below that skewer, slower, above skewer; kGoodEnergyWithLimit: safe 0.77 to 1.5.
 constexpr double kGoodEnergy = 1.2, kGoodEnergyWithLimit = 1.1;
-constexpr int kSinkRounds = 4;  // idle 3 to 6
+constexpr int kMostSinkRounds = 4;  // idle 3 to 6
 // Without fewer faces over the limit: a last one may need its edges to be a seventh; idle 10 to 20.
 constexpr int kErrorRounds = 14;
 constexpr int kErrorSweeps = 4;       // safe 3 to 6
@@ -124,7 +124,7 @@ class Optimizer {
   bool sink_crossing_walls() {
     std::vector<Vertex> crossing = find_crossing_walls(state_);
     for (const bool last : {false, true}) {
-      for (int round = 0; balanced() && round < kSinkRounds && !crossing.empty(); ++round) {
+      for (int round = 0; balanced() && round < kMostSinkRounds && !crossing.empty(); ++round) {
         sink(state_, crossing);
         crossing = find_crossing_walls(state_);
       }
@@ -160,7 +160,7 @@ class Optimizer {
         best = round;
       }
       // Finer folds of a folded surface prove nothing.
-      if (hopeless(find_tangles(state_))) break;
+      if (too_tangled(find_tangles(state_))) break;
       if (!make_finer(unproven_)) break;
       refine();
       unproven_ = check_.unproven_faces(state_);
@@ -215,7 +215,7 @@ class Optimizer {
 
   void untangle() {
     std::vector<Vertex> tangles = find_tangles(state_);
-    while (!tangles.empty() && !hopeless(tangles)) {
+    while (!tangles.empty() && !too_tangled(tangles)) {
       const std::vector<Vertex> loosened = loosen(state_, tangles);
       sweep_from(options_.sweeps / 2, [&] { stir_loosened(loosened); });
       const std::size_t before = tangles.size();
@@ -234,8 +234,8 @@ class Optimizer {
     }
   }
 
-  bool hopeless(const std::vector<Vertex>& tangles) const {
-    return static_cast<double>(tangles.size()) > kHopeless * state_.mesh.number_of_vertices();
+  bool too_tangled(const std::vector<Vertex>& tangles) const {
+    return static_cast<double>(tangles.size()) > kMostTangled * state_.mesh.number_of_vertices();
   }
 
   // Sweeps from number `first` on: towards the size field, then for shape alone. Each until nothing changes any more.

@@ -10,10 +10,10 @@ constexpr int kPower = 32;                // of the energies: close to their max
 constexpr int kEaseSweeps = 6;            // that give back to all what the worst do not need; safe 4 to 8
 // In target lengths, for the neighbours to be looked at again; safe 0.0035 to 0.007.
 constexpr double kNoticeableMove = 0.005;
-constexpr int kPatience = 10;  // faces in a row that no flip helps: the worst stays as it is; safe 7 to 14
+constexpr int kPatience = 10;  // faces tried in a row without a flip that helps, then the worst stays; safe 7 to 14
 // A flip is worth a look if the worst face near it is not much worse at once, and kept if it is better in the end.
-// Worst energy against that before; kWorthALook: safe 1.4 to 2.8; kPaysOff: safe 0.7 to 1.4.
-constexpr double kWorthALook = 2, kPaysOff = 0.997;
+// Worst energy against that before; kNearlyAsGood: safe 1.4 to 2.8; kPaysOff: safe 0.7 to 1.4.
+constexpr double kNearlyAsGood = 2, kPaysOff = 0.997;
 constexpr int kFlipSweeps = 8;  // safe 6 to 11
 
 template <class T>
@@ -94,7 +94,7 @@ class Polisher {
     const std::vector<Vertex> nearby = surroundings(e);
     const double before = worst_energy(nearby);
     if (!remesher_.flip_with_foresight(e)) return false;
-    if (worst_energy(nearby) < kWorthALook * before) {
+    if (worst_energy(nearby) < kNearlyAsGood * before) {
       const std::vector<Place> places = places_of(nearby);
       for (int sweep = 0; sweep < kFlipSweeps; ++sweep) relocate_vertices(state_, nearby, {.power = kPower});
       if (worst_energy(nearby) < kPaysOff * before) {

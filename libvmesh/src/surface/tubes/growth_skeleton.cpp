@@ -76,7 +76,7 @@ class SkeletonMaker {
 
   void divide_all() {
     skeleton_ = {};
-    gaps_.clear();
+    bare_.clear();
     capped_.clear();
     for (std::size_t i = 0; i < plan_.stretches.size(); ++i) divide(plan_.stretches[i], rings_[i]);
     collect_junctions();
@@ -85,19 +85,19 @@ class SkeletonMaker {
   // A short tube with both ends at one junction cannot be grown apart from it: the ends of the junction's vessels would
   // overlap there.
   bool dissolve_handles() {
-    bool some = false;
+    bool dissolved = false;
     std::vector<Index> first(skeleton_.tubes.size(), kNone);
     for (Index j = 0; j < skeleton_.junctions.size(); ++j) {
-      for (const TubeEnd& end : openings_of(skeleton_.junctions[j])) {
+      for (const TubeEnd& end : docks_of(skeleton_.junctions[j])) {
         if (first[end.tube] == kNone) {
           first[end.tube] = j;
         } else if (first[end.tube] == j && skeleton_.tubes[end.tube].rings.size() <= kShortHandle) {
           cover(skeleton_.tubes[end.tube]);
-          some = true;
+          dissolved = true;
         }
       }
     }
-    return some;
+    return dissolved;
   }
 
   void cover(const Tube& tube) {
@@ -115,7 +115,7 @@ class SkeletonMaker {
     return {rings.data() + first, k - first};
   }
 
-  // Runs of free rings become tubes; what lies between them, gaps.
+  // Runs of free rings become tubes; what lies between them, bare stretches.
   void divide(const Stretch& stretch, std::vector<Ring>& rings) {
     if (is_loop(stretch)) {
       divide_loop(stretch, rings);
@@ -124,7 +124,7 @@ class SkeletonMaker {
     const BranchAxis& axis = axis_of(stretch);
     const Index b = stretch.branch;
     const bool from_begin = !stretch.seam_at_first, to_end = !stretch.seam_at_last;
-    Gap gap{b, 0, 0, {}};
+    BareStretch bare{b, 0, 0, {}};
     for (std::size_t k = 0; k < rings.size();) {
       if (!rings[k].free) {
         ++k;
@@ -140,21 +140,21 @@ class SkeletonMaker {
       const auto number = static_cast<Index>(skeleton_.tubes.size());
       if (tube.starts_at_tip) capped_[axis.branch().nodes.front()] = 1;
       if (tube.starts_at_junction()) {
-        gap.end = tube.rings.front().place;
-        if (axis.periodic() && gap.end <= gap.begin) gap.end += axis.length();
-        gap.openings[1] = {number, false};
-        gaps_.push_back(gap);
+        bare.end = tube.rings.front().place;
+        if (axis.periodic() && bare.end <= bare.begin) bare.end += axis.length();
+        bare.docks[1] = {number, false};
+        bare_.push_back(bare);
       }
       if (tube.ends_at_tip) capped_[axis.branch().nodes.back()] = 1;
-      gap = {b, tube.rings.back().place, axis.length(), {}};
-      gap.openings[0] = {number, true};
+      bare = {b, tube.rings.back().place, axis.length(), {}};
+      bare.docks[0] = {number, true};
       skeleton_.tubes.push_back(std::move(tube));
     }
     const bool closed =
         !skeleton_.tubes.empty() && skeleton_.tubes.back().branch == b && to_end && skeleton_.tubes.back().ends_at_tip;
     if (to_end && !closed) {
-      gap.end = axis.length();
-      gaps_.push_back(gap);
+      bare.end = axis.length();
+      bare_.push_back(bare);
     }
   }
 
@@ -183,20 +183,20 @@ class SkeletonMaker {
       skeleton_.tubes.push_back(std::move(tube));
     }
     const std::size_t count = skeleton_.tubes.size() - first_tube;
-    if (count == 0) gaps_.push_back({b, 0, axis.length(), {}});
+    if (count == 0) bare_.push_back({b, 0, axis.length(), {}});
     for (std::size_t i = 0; i < count; ++i) {
       const auto from = static_cast<Index>(first_tube + i), to = static_cast<Index>(first_tube + (i + 1) % count);
-      Gap gap{b, skeleton_.tubes[from].rings.back().place, skeleton_.tubes[to].rings.front().place, {}};
-      if (gap.end <= gap.begin) gap.end += axis.length();
-      gap.openings = {TubeEnd{from, true}, TubeEnd{to, false}};
-      gaps_.push_back(gap);
+      BareStretch bare{b, skeleton_.tubes[from].rings.back().place, skeleton_.tubes[to].rings.front().place, {}};
+      if (bare.end <= bare.begin) bare.end += axis.length();
+      bare.docks = {TubeEnd{from, true}, TubeEnd{to, false}};
+      bare_.push_back(bare);
     }
   }
 
-  // Gaps and nodes that touch form one junction.
+  // Bare stretches and nodes that touch form one junction.
   void collect_junctions() {
     const auto node_count = static_cast<Index>(plan_.nodes.size());
-    DisjointSets parts(node_count + gaps_.size());
+    DisjointSets parts(node_count + bare_.size());
     std::vector<char> taken(node_count, 0);
     for (Index i = 0; i < node_count; ++i) taken[i] = !capped_.contains(plan_.nodes[i]);
     const auto join = [&](Index node, Index part) {
@@ -206,12 +206,12 @@ class SkeletonMaker {
       taken[i] = 1;
       parts.join(i, part);
     };
-    for (Index g = 0; g < gaps_.size(); ++g) {
-      const auto& nodes = tubes_.axes()[gaps_[g].branch].branch().nodes;
-      if (gaps_[g].openings[0].tube == kNone) join(nodes.front(), node_count + g);
-      if (gaps_[g].openings[1].tube == kNone) join(nodes.back(), node_count + g);
+    for (Index g = 0; g < bare_.size(); ++g) {
+      const auto& nodes = tubes_.axes()[bare_[g].branch].branch().nodes;
+      if (bare_[g].docks[0].tube == kNone) join(nodes.front(), node_count + g);
+      if (bare_[g].docks[1].tube == kNone) join(nodes.back(), node_count + g);
     }
-    std::vector<Index> number(node_count + gaps_.size(), kNone);
+    std::vector<Index> number(node_count + bare_.size(), kNone);
     const auto junction_of = [&](Index part) -> Junction& {
       Index& n = number[parts.find(part)];
       if (n == kNone) {
@@ -223,12 +223,12 @@ class SkeletonMaker {
     for (Index i = 0; i < node_count; ++i) {
       if (taken[i]) junction_of(i).nodes.push_back(plan_.nodes[i]);
     }
-    for (Index g = 0; g < gaps_.size(); ++g) {
+    for (Index g = 0; g < bare_.size(); ++g) {
       Junction& junction = junction_of(node_count + g);
-      const auto& nodes = tubes_.axes()[gaps_[g].branch].branch().nodes;
-      // A loop that is one gap all around hangs at its own first node.
-      if (junction.nodes.empty() && gaps_[g].openings[0].tube == kNone) junction.nodes.push_back(nodes.front());
-      junction.gaps.push_back(gaps_[g]);
+      const auto& nodes = tubes_.axes()[bare_[g].branch].branch().nodes;
+      // A loop that is one bare stretch all around hangs at its own first node.
+      if (junction.nodes.empty() && bare_[g].docks[0].tube == kNone) junction.nodes.push_back(nodes.front());
+      junction.bare_stretches.push_back(bare_[g]);
     }
   }
 
@@ -237,7 +237,7 @@ class SkeletonMaker {
   std::vector<std::vector<Ring>> rings_;  // of the stretches
   std::vector<std::vector<BoundaryPoint>> seam_points_;
   std::map<Index, char> capped_;  // tips that a tube's cap closes
-  std::vector<Gap> gaps_;
+  std::vector<BareStretch> bare_;
   GrowthSkeleton skeleton_;
 };
 
@@ -277,14 +277,14 @@ PiecePlan whole_plan(const VesselTubes& tubes) {
   return plan;
 }
 
-std::vector<TubeEnd> openings_of(const Junction& junction) {
-  std::vector<TubeEnd> openings;
-  for (const Gap& gap : junction.gaps) {
-    for (const TubeEnd& opening : gap.openings) {
-      if (opening.tube != kNone) openings.push_back(opening);
+std::vector<TubeEnd> docks_of(const Junction& junction) {
+  std::vector<TubeEnd> docks;
+  for (const BareStretch& bare : junction.bare_stretches) {
+    for (const TubeEnd& dock : bare.docks) {
+      if (dock.tube != kNone) docks.push_back(dock);
     }
   }
-  return openings;
+  return docks;
 }
 
 std::size_t GrowthSkeleton::component_count() const {
@@ -292,8 +292,8 @@ std::size_t GrowthSkeleton::component_count() const {
   DisjointSets parts(junctions.size());
   std::vector<Index> first(tubes.size(), kNone);
   for (Index j = 0; j < junctions.size(); ++j) {
-    for (const TubeEnd& opening : openings_of(junctions[j])) {
-      Index& other = first[opening.tube];
+    for (const TubeEnd& dock : docks_of(junctions[j])) {
+      Index& other = first[dock.tube];
       if (other == kNone) {
         other = j;
       } else {

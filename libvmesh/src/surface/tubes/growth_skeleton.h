@@ -68,21 +68,22 @@ struct TubeEnd {
   bool at_end = false;  ///< at its last ring; at its first otherwise
 };
 
-/// A stretch of a branch between tubes, nodes or both. Ends without an opening are at the branch's ends.
-struct Gap {
+/// A stretch of a branch without rings, between tubes, branching nodes or both. Where an end has no dock it is the
+/// branch's end.
+struct BareStretch {
   Index branch = kNone;
   double begin = 0, end = 0;  ///< places
-  std::array<TubeEnd, 2> openings;
+  std::array<TubeEnd, 2> docks;
 };
 
-/// What tubes leave over, as far as it hangs together: branching nodes and the gaps around them.
+/// A connected remainder of the graph that no tube covers: branching nodes and the bare stretches around them.
 struct Junction {
   std::vector<Index> nodes;
-  std::vector<Gap> gaps;
+  std::vector<BareStretch> bare_stretches;
 };
 
-/// The ends of a junction's gaps at tubes, in the order of the gaps.
-std::vector<TubeEnd> openings_of(const Junction& junction);
+/// The ends of tubes at which a junction docks, in the order of its bare stretches.
+std::vector<TubeEnd> docks_of(const Junction& junction);
 
 /// The graph that steers growth: junctions joined by tubes. Crowded branching nodes fall into one junction, siblings
 /// part into tubes of their own where their cross-sections do, and a branch without a cross-section of its own is part
@@ -101,7 +102,7 @@ struct GrowthSkeleton {
 PiecePlan whole_plan(const VesselTubes& tubes);
 
 /// The skeleton of a piece. Rings in `covered` (ascending) are left to junctions; seams cannot be. Isolated nodes
-/// become junctions without gaps.
+/// become junctions without bare stretches.
 GrowthSkeleton make_growth_skeleton(const VesselTubes& tubes, const PiecePlan& plan,
                                     const std::vector<RingPlace>& covered = {});
 
