@@ -121,14 +121,14 @@ TEST(Parts, GrowTheSameSurfaceWithLoopsIsolatedNodesAndComponents) {
 // Vessels that come as near as separating allows.
 TEST(Parts, GrowTheSameSurfaceOfCrowdedVessels) {
   int compared = 0;
-  for (std::uint32_t seed = 0; seed < 15; ++seed) {
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const SeparatedCenterline noisy = separate_contacts(testing::noisy_tree(seed));
     compared += expect_same_in_parts(noisy.centerline, 1, all_nodes()) > 1;
     const SeparatedCenterline looped = separate_contacts(testing::plausible_tree(seed, 1));
     compared += expect_same_in_parts(looped.centerline, 1, all_nodes()) > 1;
   }
-  EXPECT_GE(compared, 20);
+  EXPECT_GE(compared, 8);
 }
 
 TEST(Parts, AreRefusedForWhatIsKnownOfTheWholeOnly) {

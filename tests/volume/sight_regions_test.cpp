@@ -35,14 +35,14 @@ bool expect_same_by_regions(const Centerline& centerline, double blend, std::siz
 
 TEST(SightByRegions, IsThatOfTheWhole) {
   int several = 0;
-  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     for (const double blend : {0.5, 0.0, 2.0}) {
       several += expect_same_by_regions(testing::noisy_tree(seed), blend, 10);
       several += expect_same_by_regions(testing::plausible_tree(seed, seed % 3), blend, 5);
     }
   }
-  EXPECT_GE(several, 300) << several;
+  EXPECT_GE(several, 200);
 }
 
 // Vessels as far from each other as they are long, one component each: as many regions.
