@@ -1,8 +1,10 @@
 #include "parts/array_file.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
+
+#include <zlib.h>
 
 #include "vmesh/core/atomic_file.h"
 #include "vmesh/core/error.h"
@@ -17,6 +19,18 @@ constexpr std::size_t kAligned = 8;
 constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 30;
 
 std::size_t aligned(std::size_t size) { return (size + kAligned - 1) / kAligned * kAligned; }
+
+// Continues the check sum.
+std::uint32_t sum(std::uint32_t crc, std::span<const std::byte> bytes) {
+  return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+std::uint32_t sum_of_header(const nlohmann::json& header) {
+  nlohmann::json without = header;
+  without.erase("crc32");
+  const std::string text = without.dump();
+  return sum(0, std::as_bytes(std::span(text)));
+}
 
 std::size_t size_of(const std::string& type) { return type == "f8" ? 8 : type == "u4" ? 4 : type == "u1" ? 1 : 0; }
 
@@ -35,6 +49,13 @@ void ArrayWriter::write(const std::filesystem::path& path) {
     offset += aligned(arrays_[i].size());
   }
   header_["arrays"] = list_;
+  std::uint32_t crc = sum_of_header(header_);
+  constexpr std::array<std::byte, kAligned> kPadding{};
+  const auto padding = [&](std::span<const std::byte> bytes) {
+    return std::span(kPadding).first(aligned(bytes.size()) - bytes.size());
+  };
+  for (const auto& bytes : arrays_) crc = sum(sum(crc, bytes), padding(bytes));
+  header_["crc32"] = crc;
   std::string header = header_.dump();
   header.resize(aligned(kMagic.size() + 8 + header.size()) - kMagic.size() - 8, ' ');
   const auto length = std::bit_cast<std::array<char, 8>>(static_cast<std::uint64_t>(header.size()));
@@ -44,7 +65,7 @@ void ArrayWriter::write(const std::filesystem::path& path) {
   file.write(header);
   for (const auto& bytes : arrays_) {
     file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    file.write(std::string(aligned(bytes.size()) - bytes.size(), '\0'));
+    file.write(std::string(padding(bytes).size(), '\0'));
   }
   file.commit();
 }
@@ -61,6 +82,7 @@ ArrayFile::ArrayFile(const std::filesystem::path& path, const std::string& schem
   if (magic != kMagic) refuse("is no part of a surface; vmesh split writes those");
   read_bytes(kMagic.size(), std::as_writable_bytes(std::span(&length, 1)));
   const std::uint64_t first = kMagic.size() + 8;
+  first_ = first + length;
   if (length > kLongestHeader || length > size_ - first) refuse("is cut off or damaged: its header ends early");
   std::string header(length, '\0');
   read_bytes(first, std::as_writable_bytes(std::span(header)));
@@ -111,15 +133,23 @@ void ArrayFile::read_array(const std::string& name, const char* type, std::size_
   if (!bytes.empty()) read_bytes(array.offset + first * size, bytes);
 }
 
-void ArrayFile::read_points(const std::string& array, std::size_t first, std::size_t count, std::vector<Vec3>& points) {
-  points.resize(count);
-  if (count == 0) return;
-  read_array(array, "f8", 3 * first, std::as_writable_bytes(std::span(points.front().data(), 3 * count)), 8);
+void ArrayFile::read(const std::string& array, std::vector<Vec3>& points) {
+  points.resize(count(array) / 3);
+  if (points.empty()) return;
+  read_array(array, "f8", 0, std::as_writable_bytes(std::span(points.front().data(), 3 * points.size())), 8);
 }
 
-void ArrayFile::read_some(const std::string& array, std::size_t first, std::size_t count, std::vector<Index>& numbers) {
-  numbers.resize(count);
-  read_array(array, "u4", first, std::as_writable_bytes(std::span(numbers)), 4);
+void ArrayFile::verify() {
+  const auto written = header_.find("crc32");
+  require(written != header_.end() && written->is_number_unsigned(), "is damaged: it has no check sum");
+  std::uint32_t crc = sum_of_header(header_);
+  std::vector<std::byte> block(std::size_t{1} << 20);
+  for (std::uint64_t at = first_; at < size_; at += block.size()) {
+    block.resize(std::min<std::uint64_t>(block.size(), size_ - at));
+    read_bytes(at, block);
+    crc = sum(crc, block);
+  }
+  require(crc == written->get<std::uint64_t>(), "is damaged: its check sum is another; make it again");
 }
 
 }  // namespace vmesh

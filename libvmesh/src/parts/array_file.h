@@ -14,8 +14,8 @@
 namespace vmesh {
 
 /// A file of named arrays of numbers behind a JSON header: "vmesh arrays 1\n", the header's size in eight bytes, the
-/// header, the arrays, little-endian. The header lists name, type, count and offset (from the file's beginning) of
-/// each, so that some of one array can be read without the rest.
+/// header, the arrays, little-endian. The header lists name, type, count and offset (from its own end) of each, and has
+/// a check sum (CRC-32) of all, itself included.
 class ArrayWriter {
  public:
   explicit ArrayWriter(nlohmann::json header) : header_(std::move(header)) {}
@@ -53,10 +53,9 @@ class ArrayFile {
   void read(const std::string& array, std::vector<double>& numbers) { read_all(array, "f8", numbers); }
   void read(const std::string& array, std::vector<Index>& numbers) { read_all(array, "u4", numbers); }
   void read(const std::string& array, std::vector<char>& numbers) { read_all(array, "u1", numbers); }
-  void read(const std::string& array, std::vector<Vec3>& points) { read_points(array, 0, count(array) / 3, points); }
-  /// `count` points from number `first` on.
-  void read_points(const std::string& array, std::size_t first, std::size_t count, std::vector<Vec3>& points);
-  void read_some(const std::string& array, std::size_t first, std::size_t count, std::vector<Index>& numbers);
+  void read(const std::string& array, std::vector<Vec3>& points);
+  /// Reads all of it once. Throws InvalidInput if the check sum is not that of what was written.
+  void verify();
 
   /// Throws InvalidInput, "NAME: WHAT".
   [[noreturn]] void refuse(const std::string& what) const;
@@ -82,7 +81,7 @@ class ArrayFile {
 
   std::string name_;
   std::ifstream file_;
-  std::uint64_t size_ = 0;
+  std::uint64_t size_ = 0, first_ = 0;  // of the file; where arrays begin
   nlohmann::json header_;
   std::vector<Array> arrays_;
 };

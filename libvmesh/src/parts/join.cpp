@@ -103,7 +103,7 @@ class Joiner {
   }
 
   LoadedPart load(std::size_t p) const {
-    StoredPartSurface stored = read_part_surface(index_.parts[p].surface);
+    StoredPartSurface stored = read_part_surface(index_.parts[p].surface, false);
     PartSurface& surface = stored.surface;
     LoadedPart part;
     part.seam_vertices = surface.seam_vertex_count();

@@ -70,6 +70,12 @@ GenerateOptions options_of(const json& j) {
   return o;
 }
 
+Index around_of(const json& j) {
+  const Index around = j.get<Index>();
+  if (!(around >= 3 && around <= 200)) throw InvalidInput("the number of vertices around a vessel is out of range");
+  return around;
+}
+
 json to_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 Vec3 point_of(const json& j) { return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()}; }
 
@@ -275,7 +281,7 @@ PartsManifest read_manifest(const std::filesystem::path& path) {
     m.parts = j.at("parts").get<std::size_t>();
     m.pieces = j.at("pieces").get<std::size_t>();
     m.seams = j.at("seams").get<std::size_t>();
-    m.around = j.at("around").get<Index>();
+    m.around = around_of(j.at("around"));
     m.components = j.at("components").get<std::size_t>();
     m.cycle_rank = j.at("cycle_rank").get<std::size_t>();
     m.expected_vertices = j.at("expected_vertices").get<double>();
@@ -283,6 +289,8 @@ PartsManifest read_manifest(const std::filesystem::path& path) {
     return m;
   } catch (const json::exception&) {
     throw InvalidInput(path.string() + ": is damaged: something is missing or of another kind");
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(path.string() + ": is damaged: " + error.what());
   }
 }
 
@@ -335,6 +343,7 @@ void write_part(const std::filesystem::path& path, const StoredPart& stored) {
 
 StoredPart read_part(const std::filesystem::path& path) {
   ArrayFile file(path, kPartSchema);
+  file.verify();
   StoredPart stored;
   SurfacePart& part = stored.part;
   from_header(file, [&](const json& header) {
@@ -417,8 +426,9 @@ void write_part_surface(const std::filesystem::path& path, const StoredPartSurfa
   file.write(path);
 }
 
-StoredPartSurface read_part_surface(const std::filesystem::path& path) {
+StoredPartSurface read_part_surface(const std::filesystem::path& path, bool verify) {
   ArrayFile file(path, kSurfaceSchema);
+  if (verify) file.verify();
   StoredPartSurface stored;
   PartSurface& surface = stored.surface;
   std::vector<Index> pieces, faces, crossings;
@@ -433,7 +443,7 @@ StoredPartSurface read_part_surface(const std::filesystem::path& path) {
   from_header(file, [&](const json& header) {
     stored.id = header.at("id").get<std::string>();
     surface.first_piece = header.at("first_piece").get<Index>();
-    surface.around = header.at("around").get<Index>();
+    surface.around = around_of(header.at("around"));
     for (const json& note : header.at("simplifications")) surface.simplifications.push_back(note_of(note));
     return 0;
   });
@@ -453,7 +463,7 @@ StoredPartSurface read_part_surface(const std::filesystem::path& path) {
   file.read("parameter", place.t);
   file.read("branch", stored.branch);
   const std::size_t count = surface.mesh.vertices.size();
-  std::size_t own = surface.seam_vertex_count(), face_count = 0;
+  std::size_t own = surface.seams.size() * std::size_t{surface.around}, face_count = 0;
   for (const PartSurface::Piece& piece : surface.pieces) {
     own += piece.vertex_count;
     face_count += piece.face_count;

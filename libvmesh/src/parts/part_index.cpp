@@ -183,9 +183,9 @@ std::vector<std::pair<Index, Index>> crossings_between_parts(const PartIndex& in
       std::sort(list->begin(), list->end());
       list->erase(std::unique(list->begin(), list->end()), list->end());
     }
-    if (loaded != a) first = read_part_surface(index.parts[a].surface);
+    if (loaded != a) first = read_part_surface(index.parts[a].surface, false);
     loaded = a;
-    const StoredPartSurface second = read_part_surface(index.parts[b].surface);
+    const StoredPartSurface second = read_part_surface(index.parts[b].surface, false);
     PiecesOfTwo both(index);
     both.add(a, first.surface, pieces.first);
     both.add(b, second.surface, pieces.second);

@@ -2,6 +2,7 @@
 #include "vmesh/volume/field_excerpt.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 #include <tuple>
 
@@ -28,6 +29,14 @@ void require(bool holds, const char* what) {
 
 void check(const FieldExcerpt& e) {
   const std::size_t count = e.cone.size();
+  const auto ascends = [](const std::vector<Index>& list) {
+    return std::adjacent_find(list.begin(), list.end(), std::greater_equal<>()) == list.end();
+  };
+  require(ascends(e.node) && ascends(e.cone), "the order of its nodes and cones");
+  require(e.segments.size() <= count && std::all_of(e.segments.begin(), e.segments.end(), [&](const auto& s) {
+            return s.a < e.nodes.size() && s.b < e.nodes.size();
+          }),
+          "its segments");
   require(e.blend >= 0 && e.blend <= 2, "its blend");
   require(e.run.size() == count && e.travel.size() == count && e.complete.size() == count &&
               e.rounding.size() == count && e.local_offsets.size() == count + 1 && e.node.size() == e.nodes.size(),
@@ -133,6 +142,7 @@ VesselField::VesselField(const Centerline& centerline, const FieldExcerpt& excer
 }
 
 FieldExcerpt merged(std::span<const FieldExcerpt> excerpts) {
+  for (const FieldExcerpt& excerpt : excerpts) check(excerpt);
   struct Source {
     Index cone, excerpt, place;
     bool complete;

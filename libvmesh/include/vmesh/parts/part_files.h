@@ -73,10 +73,10 @@ struct StoredPartSurface {
 };
 void write_part_surface(const std::filesystem::path& path, const StoredPartSurface& surface);
 
-/// Throw ReadError and InvalidInput, which name the file.
+/// Throw ReadError and InvalidInput, which name the file; a check sum tells what is damaged. `verify` it, or not again.
 PartsManifest read_manifest(const std::filesystem::path& path);
 StoredPart read_part(const std::filesystem::path& path);
-StoredPartSurface read_part_surface(const std::filesystem::path& path);
+StoredPartSurface read_part_surface(const std::filesystem::path& path, bool verify = true);
 
 /// The surface with bindings as in the centerline that was read.
 StoredPartSurface refer_to_read(const StoredPart& part, PartSurface surface);

@@ -31,7 +31,7 @@ struct FieldExcerpt {
   Centerline centerline() const { return {nodes, segments}; }
 };
 
-/// What several excerpts of one field know together.
+/// What several excerpts of one field know together. Throws InvalidInput for one that does not fit together.
 FieldExcerpt merged(std::span<const FieldExcerpt> excerpts);
 
 }  // namespace vmesh
