@@ -20,8 +20,9 @@ constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 30;
 
 std::size_t aligned(std::size_t size) { return (size + kAligned - 1) / kAligned * kAligned; }
 
-// Continues the check sum.
+// Continues the check sum. For no bytes zlib may begin a new one.
 std::uint32_t sum(std::uint32_t crc, std::span<const std::byte> bytes) {
+  if (bytes.empty()) return crc;
   return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
