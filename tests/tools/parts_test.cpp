@@ -37,7 +37,8 @@ class Parts : public CommandTest {
 
   // Returns the number of parts.
   std::size_t expect_same(const std::string& centerline, const std::string& vertices, const Words& options = {}) const {
-    const Outcome whole = vmesh(Words{"generate", "@" + centerline, "-o", "@whole.ply"} + options);
+    const Outcome whole =
+        vmesh(Words{"generate", "@" + centerline, "-o", "@whole.ply", "--json", "@whole.json"} + options);
     EXPECT_EQ(whole.exit_code, 0) << whole.err;
     const Outcome split = vmesh(Words{"split", "@" + centerline, "-o", "@parts", "--vertices", vertices} + options);
     EXPECT_EQ(split.exit_code, 0) << split.err;
@@ -45,6 +46,9 @@ class Parts : public CommandTest {
     const Outcome join = vmesh({"join", "@parts", "-o", "@joined.ply", "--json", "@joined.json"});
     EXPECT_EQ(join.exit_code, 0) << join.err;
     EXPECT_TRUE(read("whole.ply") == read("joined.ply"));
+    // Junctions, tubes, rungs, and all that was merged, filled or left out, as numbers of the file's centerline.
+    EXPECT_EQ(nlohmann::json::parse(read("whole.json"))["growth"],
+              nlohmann::json::parse(read("joined.json"))["growth"]);
     return parts;
   }
 };
@@ -70,6 +74,17 @@ TEST_F(Parts, MakeTheBytesOfTheWholeOfCrowdedVessels) {
   EXPECT_GE(parted, 1u);
 }
 
+// A twig within another vessel is left out of the surface, and told.
+TEST_F(Parts, TellOfBranchesThatWereLeftOut) {
+  write("buried.swc",
+        "1 2 0 0 0 3 -1\n2 2 10 0 0 3 1\n3 2 20 0 0 3 2\n4 2 30 0 0 3 3\n5 2 40 0 0 3 4\n6 2 50 0 0 3 5\n"
+        "7 2 21 0.8 0 0.5 3\n8 2 22 1.2 0 0.5 7\n");
+  expect_same("buried.swc", "100");
+  const auto notes = nlohmann::json::parse(read("joined.json"))["growth"]["simplifications"];
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0]["kind"], "buried_branch");
+}
+
 TEST_F(Parts, TellInTheirSummaries) {
   write_tree("tree.swc", 200, 1);
   ASSERT_EQ(vmesh({"split", "@tree.swc", "-o", "@parts", "--vertices", "1000", "--json", "@split.json"}).exit_code, 0);
@@ -85,7 +100,7 @@ TEST_F(Parts, TellInTheirSummaries) {
   EXPECT_EQ(joined["faces"], whole["faces"]);
   EXPECT_EQ(joined["skewness"], whole["skewness"]);
   EXPECT_EQ(joined["topology"]["euler_characteristic"], whole["topology"]["euler_characteristic"]);
-  EXPECT_EQ(joined["growth"]["pieces"], whole["growth"]["pieces"]);
+  EXPECT_EQ(joined["growth"], whole["growth"]);
 }
 
 TEST_F(Parts, AreListedForParaView) {
@@ -117,6 +132,7 @@ TEST_F(Parts, AreRefusedWhereTheyDoNotFit) {
   const Outcome options = vmesh({"generate", "@parts/part_00001.vpart", "--around", "8"});
   EXPECT_EQ(options.exit_code, 2);
   EXPECT_NE(options.err.find("options that vmesh split was given"), std::string::npos) << options.err;
+  EXPECT_EQ(vmesh({"generate", "@parts/part_00001.vpart", "--allow-defects"}).exit_code, 2);
   const Outcome format = vmesh({"generate", "@parts/part_00001.vpart", "-o", "@part.ply"});
   EXPECT_EQ(format.exit_code, 2);
   EXPECT_NE(format.err.find("vmesh join"), std::string::npos) << format.err;
@@ -133,6 +149,19 @@ TEST_F(Parts, AreRefusedWhereTheyDoNotFit) {
   EXPECT_EQ(folder.exit_code, 2);
   EXPECT_NE(folder.err.find("is not empty"), std::string::npos) << folder.err;
   EXPECT_EQ(vmesh({"join", "@mine", "-o", "@whole.ply"}).exit_code, 3);
+}
+
+TEST_F(Parts, StayWhereANewSplittingDoesNotBegin) {
+  write_tree("tree.swc", 200, 1);
+  write("broken.swc", "1 2 0 0 x\n");
+  ASSERT_EQ(vmesh({"split", "@tree.swc", "-o", "@parts", "--vertices", "2000"}).exit_code, 0);
+  generate_all("parts");
+  EXPECT_EQ(vmesh({"split", "@broken.swc", "-o", "@parts"}).exit_code, 3);
+  EXPECT_EQ(vmesh({"split", "@missing.swc", "-o", "@parts"}).exit_code, 3);
+  EXPECT_EQ(vmesh({"join", "@parts", "-o", "@whole.ply"}).exit_code, 0);
+  EXPECT_EQ(vmesh({"split", "@tree.swc", "-o", "@parts", "--max-vertices", "100"}).exit_code, 3);
+  EXPECT_FALSE(exists("parts/parts.json"));
+  EXPECT_EQ(vmesh({"split", "@tree.swc", "-o", "@parts", "--vertices", "2000"}).exit_code, 0);
 }
 
 TEST_F(Parts, OfAnotherSplittingAreTakenAway) {

@@ -125,14 +125,21 @@ void warn_of_error(GenerateReport& report, Console& console) {
 }
 
 void log_refusal(const GenerateReport& report, Console& console) {
+  std::vector<std::string> lines;
+  for (const Defect& defect : report.result->defects)
+    lines.push_back(std::string(to_string(defect.kind)) + ": " + defect.message);
+  log_refusal(lines,
+              report.arguments->input.path.string() +
+                  ": no sound surface was found, nothing is written: look at the radii and nodes there, try another "
+                  "--around or --blend, or take the surface as it is with --allow-defects",
+              console);
+}
+
+void log_refusal(const std::vector<std::string>& defects, const std::string& what_to_do, Console& console) {
   constexpr std::size_t kNamed = 8;
-  const std::vector<Defect>& defects = report.result->defects;
-  for (std::size_t i = 0; i < std::min(kNamed, defects.size()); ++i)
-    console.error(std::string(to_string(defects[i].kind)) + ": " + defects[i].message);
+  for (std::size_t i = 0; i < std::min(kNamed, defects.size()); ++i) console.error(defects[i]);
   if (defects.size() > kNamed) console.error("and " + std::to_string(defects.size() - kNamed) + " defects more");
-  console.error(report.arguments->input.path.string() +
-                ": no sound surface was found, nothing is written: look at the radii and nodes there, try another "
-                "--around or --blend, or take the surface as it is with --allow-defects");
+  console.error(what_to_do);
 }
 
 }  // namespace vmesh::tool

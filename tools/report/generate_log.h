@@ -22,5 +22,7 @@ void warn_of_error(GenerateReport& report, Console& console);
 
 /// Says why nothing is written.
 void log_refusal(const GenerateReport& report, Console& console);
+/// The same for whatever is wrong, one line each, of which the first are told, and what to do.
+void log_refusal(const std::vector<std::string>& defects, const std::string& what_to_do, Console& console);
 
 }  // namespace vmesh::tool

@@ -11,6 +11,7 @@
 #include "command_line/inputs.h"
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
+#include "report/generate_log.h"
 #include "report/summary.h"
 #include "verbs/verbs.h"
 
@@ -103,14 +104,14 @@ class NoSink : public SurfaceSink {
 };
 
 int refuse(const JoinArguments& arguments, const JoinSummary& summary, Console& console) {
-  constexpr std::size_t kNamed = 8;
-  for (std::size_t i = 0; i < std::min(kNamed, summary.defects.size()); ++i)
-    console.error(std::string(to_string(summary.defects[i].kind)) + ": " + summary.defects[i].message);
-  if (summary.defects.size() > kNamed)
-    console.error("and " + std::to_string(summary.defects.size() - kNamed) + " defects more");
-  console.error(arguments.folder.string() +
-                ": the parts make no sound surface, nothing is written: grow the whole in one go, which makes pieces "
-                "that cross again as one");
+  std::vector<std::string> lines;
+  for (const JoinDefect& defect : summary.defects)
+    lines.push_back(std::string(to_string(defect.kind)) + ": " + defect.message);
+  log_refusal(lines,
+              arguments.folder.string() +
+                  ": the parts make no sound surface, nothing is written: grow the whole in one go, which makes pieces "
+                  "that cross again as one",
+              console);
   return kDefective;
 }
 

@@ -9,6 +9,7 @@
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
+#include "report/generate_log.h"
 #include "report/summary.h"
 #include "verbs/verbs.h"
 
@@ -22,7 +23,8 @@ void check_arguments(const GenerateArguments& arguments) {
   if (!arguments.input.more.empty())
     throw UsageError(arguments.input.more.front().string() + ": parts are grown one at a time");
   if (describe(arguments) != describe(plain) || arguments.budget || !arguments.fitting.reference.path.empty() ||
-      arguments.bones || !arguments.common.html.empty())
+      arguments.bones || arguments.check || arguments.allow_defects || !arguments.common.html.empty() ||
+      !arguments.centerline_output.empty())
     throw UsageError(arguments.input.path.string() +
                      ": a part is grown with the options that vmesh split was given; here --threads, --json and "
                      "--quiet can be said");
@@ -47,29 +49,19 @@ std::string words(const PieceFault& fault) {
   return what + (" at " + at(fault.position));
 }
 
-std::vector<PieceFault> faults_of(const PartSurface& surface) {
-  std::vector<PieceFault> faults;
-  for (const PartSurface::Piece& piece : surface.pieces)
-    faults.insert(faults.end(), piece.faults.begin(), piece.faults.end());
+std::vector<std::string> faults_of(const PartSurface& surface) {
+  std::vector<std::string> faults;
+  for (const PartSurface::Piece& piece : surface.pieces) {
+    for (const PieceFault& fault : piece.faults) faults.push_back(words(fault));
+  }
   return faults;
-}
-
-int refuse(const GenerateArguments& arguments, const std::vector<PieceFault>& faults, Console& console) {
-  constexpr std::size_t kNamed = 8;
-  for (std::size_t i = 0; i < std::min(kNamed, faults.size()); ++i) console.error(words(faults[i]));
-  if (faults.size() > kNamed) console.error("and " + std::to_string(faults.size() - kNamed) + " more");
-  console.error(arguments.input.path.string() +
-                ": no sound surface was found, nothing is written: look at the radii and nodes there, or grow the "
-                "whole in one go, which may join pieces");
-  return kDefective;
 }
 
 void write_summary(const GenerateArguments& arguments, const PartSurface& surface,
                    const std::vector<StageTime>& stages) {
-  std::vector<std::size_t> rungs;
+  std::vector<std::size_t> rungs(kRungs, 0);
   double worst = 0;
   for (const PartSurface::Piece& piece : surface.pieces) {
-    if (rungs.size() <= piece.rung) rungs.resize(piece.rung + 1, 0);
     ++rungs[piece.rung];
     worst = std::max(worst, piece.worst_skewness);
   }
@@ -99,8 +91,14 @@ int run_part(const GenerateArguments& arguments, Console& console) {
   PartSurface surface =
       naming(arguments.input.path, [&] { return grow_part(part.part, arguments.options.threads, console.progress()); });
   stages.push_back({"grow", watch.lap()});
-  const std::vector<PieceFault> faults = faults_of(surface);
-  if (!faults.empty()) return refuse(arguments, faults, console);
+  if (const std::vector<std::string> faults = faults_of(surface); !faults.empty()) {
+    log_refusal(faults,
+                arguments.input.path.string() +
+                    ": no sound surface was found, nothing is written: look at the radii and nodes there, or grow the "
+                    "whole in one go, which may join pieces",
+                console);
+    return kDefective;
+  }
   const StoredPartSurface stored = refer_to_read(part, std::move(surface));
   write_part_surface(arguments.output, stored);
   stages.push_back({"write", watch.lap()});

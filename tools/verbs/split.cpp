@@ -1,3 +1,5 @@
+#include <numeric>
+
 #include "vmesh/core/atomic_file.h"
 #include "vmesh/io/sha256.h"
 #include "vmesh/parts/part_files.h"
@@ -23,21 +25,53 @@ bool is_ours(const fs::path& path) {
   return name.starts_with("part_") && (extension == kPartExtension || extension == kPartSurfaceExtension);
 }
 
-/// An empty folder, or one that held parts: these go, as they would not fit to the new ones.
+/// Throws unless it is a folder for parts: one that is not there yet, or holds nothing but parts.
 void prepare_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder)) throw WriteError(folder.string() + ": cannot be made a folder for the parts");
   check_can_be_written(folder / kManifestName);
-  if (!fs::exists(folder / kManifestName)) {
-    if (!fs::is_empty(folder))
+  if (fs::exists(folder / kManifestName)) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!is_ours(entry.path()))
       throw UsageError(folder.string() + ": is not empty, and no parts are in it; name a folder of their own");
-    return;
   }
+}
+
+/// Takes away parts: those of before would not fit to new ones, and some of a splitting are of no use.
+void clear_folder(const fs::path& folder) {
+  std::error_code error;
   fs::remove(folder / kManifestName, error);
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (is_ours(entry.path())) fs::remove(entry.path(), error);
   }
+}
+
+/// Writes the parts. Returns how they were made.
+SplitSummary write_parts(const fs::path& folder, const SplitCenterline& centerline, double vertices,
+                         const std::string& id, Console& console) {
+  std::size_t number = 0;
+  const auto write = [&](SurfacePart part) {
+    StoredPart stored{id, std::move(part), {}};
+    stored.origins = centerline.origins_of(stored.part.field.node, stored.part.field.cone);
+    write_part(folder / (part_name(number++) + kPartExtension), stored);
+  };
+  clear_folder(folder);
+  try {
+    return split_surface(centerline.centerline(), centerline.options(), vertices, write, console.progress());
+  } catch (...) {
+    clear_folder(folder);
+    throw;
+  }
+}
+
+/// As the note counts them, of the centerline that was read.
+GrowthSimplification as_read(GrowthSimplification note, const SplitCenterline& centerline) {
+  const ConeOrigins origins = centerline.origins_of(note.nodes, note.segments);
+  std::iota(note.nodes.begin(), note.nodes.end(), Index{0});
+  std::iota(note.segments.begin(), note.segments.end(), Index{0});
+  origins.refer_to_original(note);
+  return note;
 }
 
 void write_summary(const fs::path& path, const PartsManifest& manifest, const std::vector<StageTime>& stages) {
@@ -82,30 +116,17 @@ int run(const SplitArguments& given, Console& console) {
   stages.push_back({"prepare", watch.lap()});
   stop_if_interrupted();
 
-  const SplitSummary summary = naming(given.input.path, [&] {
-    return split_surface(
-        centerline.centerline(), centerline.options(), given.vertices,
-        [&](SurfacePart part) {
-          StoredPart stored{manifest.id, std::move(part), {}};
-          stored.origins = centerline.origins_of(stored.part.field.node, stored.part.field.cone);
-          write_part(given.output / (part_name(manifest.parts++) + kPartExtension), stored);
-        },
-        console.progress());
-  });
+  const SplitSummary summary = naming(
+      given.input.path, [&] { return write_parts(given.output, centerline, given.vertices, manifest.id, console); });
+  manifest.parts = summary.parts;
   manifest.pieces = summary.pieces;
   manifest.seams = summary.seams;
   manifest.around = static_cast<Index>(summary.options.around);
   manifest.components = summary.components;
   manifest.cycle_rank = summary.cycle_rank;
   manifest.expected_vertices = summary.expected_vertices;
-  for (GrowthSimplification note : summary.simplifications) {
-    const std::vector<Index> nodes = note.nodes, segments = note.segments;
-    const ConeOrigins origins = centerline.origins_of(nodes, segments);
-    for (Index i = 0; i < nodes.size(); ++i) note.nodes[i] = i;
-    for (Index i = 0; i < segments.size(); ++i) note.segments[i] = i;
-    origins.refer_to_original(note);
-    manifest.simplifications.push_back(std::move(note));
-  }
+  for (const GrowthSimplification& note : summary.simplifications)
+    manifest.simplifications.push_back(as_read(note, centerline));
   write_manifest(given.output / kManifestName, manifest);
   stages.push_back({"split", watch.lap()});
   console.log("wrote " + std::to_string(manifest.parts) + " parts, " + std::to_string(manifest.pieces) +

@@ -1,11 +1,11 @@
 #include "vmesh/parts/join.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
 #include <tbb/task_arena.h>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/branch_labels.h"
@@ -58,11 +58,6 @@ class Joiner {
       : index_(index), walls_(walls), sink_(sink), progress_(progress) {}
 
   void run(JoinSummary& summary) {
-    summary.vertices = index_.vertices + walls_.added.size();
-    summary.faces = index_.faces + walls_.added_faces.size();
-    // Every edge has two faces.
-    summary.euler_characteristic =
-        static_cast<std::int64_t>(summary.vertices) - static_cast<std::int64_t>(summary.faces / 2);
     added_.resize(walls_.added.size());
     for (std::size_t i = 0; i < walls_.added.size(); ++i) set(added_, i, walls_.added[i]);
     collect_seams();
@@ -84,7 +79,7 @@ class Joiner {
     for (std::size_t p = 0; p < index_.parts.size(); ++p) {
       tell("write faces", p);
       const LoadedPart part = load(p);
-      write_faces(part, part.faces, summary);
+      write_faces(part, summary);
     }
     write_added_faces(summary);
     summary.mean_skewness = sum_ / static_cast<double>(std::max<std::size_t>(1, summary.faces));
@@ -132,9 +127,7 @@ class Joiner {
   // Numbers ascend in a part: its seams', then its own.
   Index place_in(const LoadedPart& part, Index number) const {
     if (number >= index_.vertices) return static_cast<Index>(part.vertices.size() + number - index_.vertices);
-    const auto it = std::lower_bound(part.number.begin(), part.number.end(), number);
-    if (it == part.number.end() || *it != number) return kNone;
-    return static_cast<Index>(it - part.number.begin());
+    return vmesh::place_in(part.number, number);
   }
 
   const Vec3& position(const LoadedPart& part, Index v) const {
@@ -211,12 +204,12 @@ class Joiner {
     return v < part.vertices.size() ? part.vertices.branch[v] : added_.branch[v - part.vertices.size()];
   }
 
-  void write_faces(const LoadedPart& part, const std::vector<Triangle>& faces, JoinSummary& summary) {
+  void write_faces(const LoadedPart& part, JoinSummary& summary) {
     std::vector<Triangle> corners;
     std::vector<double> skewness;
     std::vector<Index> label;
-    corners.reserve(faces.size());
-    for (const Triangle& f : faces) {
+    corners.reserve(part.faces.size());
+    for (const Triangle& f : part.faces) {
       Triangle numbers = f;
       for (Index& v : numbers)
         v = v < part.vertices.size() ? part.number[v] : static_cast<Index>(index_.vertices + v - part.vertices.size());
@@ -294,7 +287,7 @@ JoinSummary join_parts(const std::filesystem::path& folder, SurfaceSink& sink, i
     add_crossings_left(index, walls, summary.defects);
     summary.vertices = index.vertices + walls.added.size();
     summary.faces = index.faces + walls.added_faces.size();
-    summary.euler_characteristic =
+    summary.euler_characteristic =  // every edge has two faces
         static_cast<std::int64_t>(summary.vertices) - static_cast<std::int64_t>(summary.faces / 2);
     check_topology(summary);
     if (!summary.is_sound()) return;

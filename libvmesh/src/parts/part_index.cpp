@@ -4,6 +4,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/box_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/topology.h"
@@ -18,7 +19,7 @@ class Indexer {
   PartIndex run() {
     index_.manifest = read_manifest(folder_ / kManifestName);
     const PartsManifest& manifest = index_.manifest;
-    index_.growth.rungs.clear();
+    index_.growth.rungs.assign(kRungs, 0);
     vertex_ = manifest.seams * manifest.around;
     seen_.assign(manifest.seams, 0);
     index_.first_face = {0};
@@ -54,7 +55,7 @@ class Indexer {
       if (seam >= seen_.size() || seen_[seam] == 2)
         throw InvalidInput(entry.surface.string() + ": is damaged: its seams are not those of the whole");
     }
-    add_pieces(surface, entry);
+    add_pieces(surface);
     for (const auto& [f, g] : surface.crossings)
       index_.crossings.emplace_back(entry.first_face + f, entry.first_face + g);
     vertex_ += surface.mesh.vertices.size() - surface.seam_vertex_count();
@@ -63,7 +64,7 @@ class Indexer {
     index_.parts.push_back(std::move(entry));
   }
 
-  void add_pieces(const PartSurface& surface, PartIndex::Entry& entry) {
+  void add_pieces(const PartSurface& surface) {
     Index face = 0;
     for (const PartSurface::Piece& piece : surface.pieces) {
       PieceBox box;
@@ -74,17 +75,14 @@ class Indexer {
           if (v < surface.seam_vertex_count()) seams.push_back(surface.seams[v / surface.around]);
         }
       }
-      std::sort(seams.begin(), seams.end());
-      seams.erase(std::unique(seams.begin(), seams.end()), seams.end());
+      sort_unique(seams);
       for (const Index seam : seams) ++seen_[seam];
-      entry.box.add(box);
       index_.boxes.push_back(box);
       index_.first_face.push_back(index_.first_face.back() + piece.face_count);
       GrowthSummary& growth = index_.growth;
       growth.junctions += piece.junctions;
       growth.tubes += piece.tubes;
       filled_ += piece.filled_loops;
-      if (growth.rungs.size() <= piece.rung) growth.rungs.resize(piece.rung + 1, 0);
       ++growth.rungs[piece.rung];
     }
     for (const GrowthSimplification& note : surface.simplifications) index_.growth.simplifications.push_back(note);
@@ -96,6 +94,8 @@ class Indexer {
     growth.tubes -= index_.manifest.seams;  // a tube on either side is one
     growth.components = index_.manifest.components;
     growth.cycle_rank = index_.manifest.cycle_rank - filled_;
+    const std::vector<GrowthSimplification>& left_out = index_.manifest.simplifications;
+    growth.simplifications.insert(growth.simplifications.end(), left_out.begin(), left_out.end());
   }
 
   const std::filesystem::path& folder_;
@@ -179,10 +179,8 @@ std::vector<std::pair<Index, Index>> crossings_between_parts(const PartIndex& in
   for (auto& [parts, pieces] : near) {
     report_progress(progress, "compare", static_cast<double>(done++) / static_cast<double>(near.size()));
     const auto [a, b] = parts;
-    for (auto* list : {&pieces.first, &pieces.second}) {
-      std::sort(list->begin(), list->end());
-      list->erase(std::unique(list->begin(), list->end()), list->end());
-    }
+    sort_unique(pieces.first);
+    sort_unique(pieces.second);
     if (loaded != a) first = read_part_surface(index.parts[a].surface, false);
     loaded = a;
     const StoredPartSurface second = read_part_surface(index.parts[b].surface, false);

@@ -30,7 +30,6 @@ struct PartIndex {
     std::filesystem::path part, surface;
     Index first_vertex = 0, first_face = 0;  ///< in the whole; of its pieces, without its seams
     std::size_t first_piece = 0;
-    PieceBox box;
   };
 
   PartsManifest manifest;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
 
 #include "parts/part_index.h"
@@ -18,7 +19,7 @@ class WallParting {
     for (const std::size_t p : parts_near()) load(p);
     SurfaceAround around = surface_;
     std::vector<std::pair<Index, Index>> local;
-    for (const auto& [f, g] : crossings_) local.emplace_back(local_face(f), local_face(g));
+    for (const auto& [f, g] : crossings_) local.emplace_back(place_in(face_, f), place_in(face_, g));
     std::vector<FieldExcerpt> excerpts;
     for (const StoredPart& part : parts_) excerpts.push_back(part.part.field);
     for (const auto& [f, g] : part_walls(around, merged(excerpts), local))
@@ -50,7 +51,7 @@ class WallParting {
     parts_.push_back(read_part(index_.parts[p].part));
     if (parts_.back().id != index_.manifest.id)
       throw InvalidInput(index_.parts[p].part.string() + ": is of another splitting than " + kManifestName);
-    const StoredPartSurface stored = read_part_surface(index_.parts[p].surface);
+    const StoredPartSurface stored = read_part_surface(index_.parts[p].surface, false);
     const PartSurface& surface = stored.surface;
     for (Index f = 0; f < surface.mesh.faces.size(); ++f) {
       Triangle corners = surface.mesh.faces[f];
@@ -71,17 +72,11 @@ class WallParting {
     return it->second;
   }
 
-  Index local_face(Index f) const {
-    return static_cast<Index>(std::lower_bound(face_.begin(), face_.end(), f) - face_.begin());
-  }
-
   PartedWalls::Vertex vertex_of(const SurfaceAround& after, Index v, Index number) const {
     const CenterlineBinding& binding = after.binding[v];
     for (const StoredPart& part : parts_) {
-      const std::vector<Index>& cones = part.part.field.cone;
-      const auto it = std::lower_bound(cones.begin(), cones.end(), binding.segment);
-      if (it == cones.end() || *it != binding.segment) continue;
-      const auto cone = static_cast<Index>(it - cones.begin());
+      const Index cone = place_in(part.part.field.cone, binding.segment);
+      if (cone == kNone) continue;
       return {number,
               after.mesh.vertices[v],
               binding,

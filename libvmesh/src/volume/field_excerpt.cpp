@@ -6,22 +6,12 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
 #include "vmesh/volume/vessel_field.h"
 
 namespace vmesh {
 namespace {
-
-void sort_unique(std::vector<Index>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
-// The place of `number` in an ascending list; kNone if it is not there.
-Index place_in(const std::vector<Index>& list, Index number) {
-  const auto it = std::lower_bound(list.begin(), list.end(), number);
-  return it != list.end() && *it == number ? static_cast<Index>(it - list.begin()) : kNone;
-}
 
 void require(bool holds, const char* what) {
   if (!holds) throw InvalidInput(std::string("an excerpt of a field does not fit together: ") + what);
@@ -33,9 +23,9 @@ void check(const FieldExcerpt& e) {
     return std::adjacent_find(list.begin(), list.end(), std::greater_equal<>()) == list.end();
   };
   require(ascends(e.node) && ascends(e.cone), "the order of its nodes and cones");
-  require(e.segments.size() <= count && std::all_of(e.segments.begin(), e.segments.end(), [&](const auto& s) {
-            return s.a < e.nodes.size() && s.b < e.nodes.size();
-          }),
+  require(e.segments.size() <= count &&
+              std::all_of(e.segments.begin(), e.segments.end(),
+                          [&](const auto& s) { return s.a < e.nodes.size() && s.b < e.nodes.size(); }),
           "its segments");
   require(e.blend >= 0 && e.blend <= 2, "its blend");
   require(e.run.size() == count && e.travel.size() == count && e.complete.size() == count &&

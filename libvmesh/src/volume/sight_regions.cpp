@@ -4,6 +4,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/box_tree.h"
 #include "vmesh/core/disjoint_sets.h"
 
@@ -13,6 +14,7 @@ namespace {
 // Cosine of the angle by which a vessel may leave the way at a border, and the share by which radii may differ there:
 // then spheres between two that face each other do too.
 constexpr double kStraight = 0.8, kEven = 0.4;  // safe 0.7 to 0.9; 0.2 to 0.5
+
 // Finds the nodes at which cells end: their spheres face none but those of their own vessel right before and after.
 // Pairs of spheres are followed from sphere to sphere, so that none gets past.
 class Borders {
@@ -138,8 +140,7 @@ class Cells {
         }
       }
     }
-    std::sort(segments.begin(), segments.end());
-    segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
+    sort_unique(segments);
     return segments;
   }
 
@@ -188,16 +189,12 @@ RegionSight sight_of_region(const Centerline& centerline, double blend, const Ce
   const std::vector<Index> segments = cells.segments_around(region);
   std::vector<Index> nodes;
   for (const Index s : segments) nodes.insert(nodes.end(), {centerline.segment(s).a, centerline.segment(s).b});
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  const auto number_of = [&](Index n) {
-    return static_cast<Index>(std::lower_bound(nodes.begin(), nodes.end(), n) - nodes.begin());
-  };
+  sort_unique(nodes);
   std::vector<CenterlineNode> part_nodes;
   std::vector<CenterlineSegment> part_segments;
   for (const Index n : nodes) part_nodes.push_back(centerline.node(n));
   for (const Index s : segments)
-    part_segments.push_back({number_of(centerline.segment(s).a), number_of(centerline.segment(s).b)});
+    part_segments.push_back({place_in(nodes, centerline.segment(s).a), place_in(nodes, centerline.segment(s).b)});
   const Sight sight = sight_before_return({std::move(part_nodes), std::move(part_segments)}, blend);
   RegionSight result;
   const auto keep_own = [&](const PairSet& from, SightPairs::Pairs& to) {
@@ -241,8 +238,7 @@ SightPairs sight_by_regions(const Centerline& centerline, double blend, std::siz
     for (const auto& [node, least] : region.shares) share[node] = std::min(share[node], least);
     region = {};
   }
-  std::sort(whole.apart.begin(), whole.apart.end());  // those at borders are in two regions
-  whole.apart.erase(std::unique(whole.apart.begin(), whole.apart.end()), whole.apart.end());
+  sort_unique(whole.apart);  // those at borders are in two regions
   whole.rounding = returning(centerline, std::move(share));
   return whole;
 }

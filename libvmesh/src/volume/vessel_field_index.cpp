@@ -3,6 +3,7 @@
 #include <limits>
 #include <numeric>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "volume/sight_regions.h"
@@ -17,11 +18,6 @@ constexpr double kLongPiece = 2;
 constexpr int kMostPieces = 16;  // of a cone; idle 11 to 22
 constexpr std::size_t kFewCones =
     100;  // up to here going through all is as fast; measured on stars: 60 to 512 are near
-
-void sort_unique(std::vector<Index>& cones) {
-  std::sort(cones.begin(), cones.end());
-  cones.erase(std::unique(cones.begin(), cones.end()), cones.end());
-}
 
 // Of the cones those in the ascending list.
 void keep_listed(std::span<const Index> list, std::vector<Index>& cones) {

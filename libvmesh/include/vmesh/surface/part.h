@@ -35,6 +35,9 @@ struct RingPlace {
   auto operator<=>(const RingPlace&) const = default;
 };
 
+/// Ways to make a piece, on a ladder; see make_piece().
+inline constexpr int kRungs = 8;
+
 /// Why a piece is not sound.
 struct PieceFault {
   DefectKind kind;

@@ -4,6 +4,7 @@
 
 #include <tbb/task_arena.h>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/part.h"
@@ -152,9 +153,9 @@ std::vector<std::pair<Index, Index>> part_walls(SurfaceAround& surface, const Fi
   const Centerline centerline = excerpt.centerline();
   const VesselField field(centerline, excerpt);
   const auto place_of = [&](Index cone) {
-    const auto it = std::lower_bound(excerpt.cone.begin(), excerpt.cone.end(), cone);
-    if (it == excerpt.cone.end() || *it != cone) throw InvalidInput("a surface and its parts do not fit together");
-    return static_cast<Index>(it - excerpt.cone.begin());
+    const Index place = place_in(excerpt.cone, cone);
+    if (place == kNone) throw InvalidInput("a surface and its parts do not fit together");
+    return place;
   };
   GatheredSurface gathered{std::move(surface.mesh), std::move(surface.binding), std::move(surface.radius), {}, {}};
   for (CenterlineBinding& binding : gathered.binding) binding.segment = place_of(binding.segment);

@@ -47,12 +47,10 @@ struct PieceContext {
   const Progress& progress;
 };
 
-/// Rungs of the ladder, cheapest first: the piece as planned; rings around its faults left to junctions, farther and
-/// farther; finer triangles around them; the same with a guard against crossings; all from one lattice.
-inline constexpr int kRungs = 8;
-
-/// Makes a piece on the first rung on which it is sound and without bad triangles, or the one with the fewest faults.
-/// Once it is found that vessels overlap that do not belong together no further rung would help.
+/// kRungs rungs of a ladder, cheapest first: the piece as planned; rings around its faults left to junctions, farther
+/// and farther; finer triangles around them; the same with a guard against crossings; all from one lattice. Makes a
+/// piece on the first rung on which it is sound and without bad triangles, or the one with the fewest faults. Once it
+/// is found that vessels overlap that do not belong together no further rung would help.
 PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan);
 
 }  // namespace vmesh

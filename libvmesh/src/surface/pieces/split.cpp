@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
 #include "vmesh/surface/part.h"
 #include "vmesh/volume/vessel_field.h"
@@ -17,8 +18,8 @@
 namespace vmesh {
 namespace {
 
-// Radii around the walls of a part within which it knows other vessels. Derived: more than any stage asks for, of which
-// lifting a vertex asks farthest, for a radius and a half.
+// Radii around the walls of a part within which it knows other vessels. Derived: more than any stage asks for, half a
+// radius at most (kClear of division.cpp), and more than the radius and a half in which a cone's company is looked for.
 constexpr double kReach = 3;
 
 void check_parts_suffice(const GenerateOptions& options) {
@@ -45,16 +46,6 @@ Division divide_scanning(const VesselAxes& axes, const GenerateOptions& options,
   std::vector<RingPlace> seams;
   for (const auto& of_branch : found) seams.insert(seams.end(), of_branch.begin(), of_branch.end());
   return divide(RingCounts(axes, counts), std::move(seams));
-}
-
-// The number of `n` in an ascending list that has it.
-Index number_in(const std::vector<Index>& list, Index n) {
-  return static_cast<Index>(std::lower_bound(list.begin(), list.end(), n) - list.begin());
-}
-
-void sort_unique(std::vector<Index>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
 class PartMaker {
@@ -95,9 +86,9 @@ class PartMaker {
     for (Index p = first; p < end; ++p) {
       PiecePlan plan = division_.plans[p];
       for (const RingPlace& seam : seams_of(rings_, plan))
-        part.seams.push_back({{number_in(branches, seam.branch), seam.ring}, number_of(seam)});
-      for (Index& n : plan.nodes) n = number_in(part.field.node, n);
-      for (Stretch& s : plan.stretches) s.branch = number_in(branches, s.branch);
+        part.seams.push_back({{place_in(branches, seam.branch), seam.ring}, number_of(seam)});
+      for (Index& n : plan.nodes) n = place_in(part.field.node, n);
+      for (Stretch& s : plan.stretches) s.branch = place_in(branches, s.branch);
       part.pieces.push_back(std::move(plan));
     }
     merge(part.seams);
@@ -134,7 +125,7 @@ class PartMaker {
     for (Index p = first; p < end; ++p) {
       for (const Index n : division_.plans[p].nodes) {
         if (centerline.degree(n) == 0)
-          cones.push_back(static_cast<Index>(centerline.segments().size() + number_in(isolated_, n)));
+          cones.push_back(static_cast<Index>(centerline.segments().size() + place_in(isolated_, n)));
       }
     }
     sort_unique(cones);
@@ -143,8 +134,8 @@ class PartMaker {
 
   static Branch as_in(const FieldExcerpt& field, const Branch& branch) {
     Branch result;
-    for (const Index n : branch.nodes) result.nodes.push_back(number_in(field.node, n));
-    for (const Index s : branch.segments) result.segments.push_back(number_in(field.cone, s));
+    for (const Index n : branch.nodes) result.nodes.push_back(place_in(field.node, n));
+    for (const Index s : branch.segments) result.segments.push_back(place_in(field.cone, s));
     return result;
   }
 

@@ -1,5 +1,7 @@
 #include "surface/remesh/polish.h"
 
+#include "vmesh/core/ascending.h"
+
 #include "surface/remesh/relocation.h"
 
 namespace vmesh {
@@ -15,12 +17,6 @@ constexpr int kPatience = 10;  // faces tried in a row without a flip that helps
 // Worst energy against that before; kNearlyAsGood: safe 1.4 to 2.8; kPaysOff: safe 0.7 to 1.4.
 constexpr double kNearlyAsGood = 2, kPaysOff = 0.997;
 constexpr int kFlipSweeps = 8;  // safe 6 to 11
-
-template <class T>
-void sort_unique(std::vector<T>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
 
 class Polisher {
  public:

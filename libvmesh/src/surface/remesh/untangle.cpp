@@ -1,5 +1,6 @@
 #include "surface/remesh/untangle.h"
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/mesh/topology.h"
 
 namespace vmesh {
@@ -7,11 +8,6 @@ namespace {
 
 constexpr int kRings = 2;   // around a tangle that take part; safe 1 to 3
 constexpr int kPasses = 5;  // safe 4 to 7
-
-void sort_unique(std::vector<Vertex>& vertices) {
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-}
 
 bool neighbours(const BoundSurface& surface, const Triangle& f, const Triangle& g) {
   for (const Index v : f) {
