@@ -14,19 +14,19 @@ namespace vmesh {
 namespace {
 
 constexpr int kSectionSteps = 48;  // derived: 0.618^48 = 1e-10 of the axis
-// Vessels that part have walls of their own from a gap of half a smaller radius on (kOneVolume): never more than this
-// is asked of them there.
+// Vessels that part have walls of their own from a gap of half a smaller radius on (kOneVolume); no larger gap than
+// this is required there.
 constexpr double kForkGap = 0.4;       // idle 0.28 to 0.56
 constexpr double kMostRounding = 0.2;  // sums of radii; safe 0.14 to 0.28
-// Largest radius of a cone against the one at which a gap of so many mm is turned into one of so many radii. A waist of
-// 1e-6 mm would ask for a gap of 260 radii. Idle 5.6 to 11.
+// Largest ratio of a cone's greatest radius to the one by which a gap in mm is expressed in radii. Without it, a waist
+// of 1e-6 mm would require a gap of 260 radii. Idle 5.6 to 11.
 constexpr double kThinnest = 8;
-constexpr Touch kFork{0.5, 0.25};  // what then still counts as a place where vessels part
-// Derived: of lengths, more than what rounding at any angle does to an axis distance.
+constexpr Touch kFork{0.5, 0.25};  // at a fork, vessels are still parting up to this gap
+// Derived: relative to lengths, more than the rounding of an axis distance at any angle.
 constexpr double kNearlyParallel = 1e-6;
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
-// The sphere of a cone that is closest to a point, for radii that count `weight` times.
+// The sphere of a cone that is closest to a point, with its radii multiplied by `weight`.
 class NearestSphere {
  public:
   NearestSphere(const AxisStretch& cone, double weight) : cone_(cone) {
@@ -51,7 +51,7 @@ class NearestSphere {
   double inv_length2_ = 0, lag_ = 0, low_ = 0, high_ = 1;
 };
 
-// The excess is convex on the two axes together: a norm of a linear map, less linear radii, less the gap times a
+// The excess is jointly convex on the two axes: the norm of a linear map, minus linear radii, minus the gap times a
 // minimum of linear functions. So its minimum over the second axis is convex on the first.
 class Approach {
  public:
@@ -104,7 +104,7 @@ class Approach {
   NearestSphere plain_, widened_;
 };
 
-// The distance between the two axes; by a little too much at most where they are nearly parallel.
+// The distance between the two axes; slightly too large at most where they are nearly parallel.
 double axis_distance(const AxisStretch& first, const AxisStretch& second) {
   const Vec3 between = first.origin - second.origin;
   const double a = first.axis.squaredNorm(), b = first.axis.dot(second.axis), e = second.axis.squaredNorm();
@@ -119,7 +119,7 @@ struct Box {
   Vec3 low, high;
 };
 
-// Of the cone and what is within `margin` larger radii around it.
+// Box of the cone grown by `margin` times its larger radius.
 Box box_of(const AxisStretch& cone, double margin) {
   const Vec3 end = cone.origin + cone.axis;
   Box box{(cone.origin.array() - cone.r0).min(end.array() - cone.r1),
@@ -131,8 +131,7 @@ Box box_of(const AxisStretch& cone, double margin) {
   return box;
 }
 
-// Besides the gap, vessels must leave room for what the blend adds to either: at most half of it in radii of the
-// vessel.
+// Besides the gap, vessels must leave room for what the blend adds to each: at most half the blend, in its radii.
 class PairFinder {
  public:
   PairFinder(const VesselField& field, double gap)
@@ -161,7 +160,7 @@ class PairFinder {
   }
 
  private:
-  // Close along the graph in a wider sense: at a fork that a gap wider than what a fork has would find still open.
+  // Whether the pair is at a fork: close along the graph in the wider sense of kFork.
   bool are_parting(Index i, Index j) {
     if (gap_ <= kForkGap) return false;
     if (!parting_) parting_ = local_pairs(field_.centerline(), {std::max(kFork.smaller, gap_ / 0.8), kFork.larger});
@@ -184,7 +183,7 @@ class PairFinder {
     if (pair.closest.excess >= 0) {
       const double r = cones_[i].radius(pair.closest.s), q = cones_[j].radius(pair.closest.t);
       if (pair.closest.excess >= most_rounding_ * (r + q)) return;
-      // The gap is asked for all along, also where radii are much larger.
+      // The gap is required all along the cones, also where radii are much larger.
       const double smaller = std::max(std::min(r, q), std::min(largest(i), largest(j)) / kThinnest);
       const double most = std::max(gap, are_parting(i, j) ? kForkGap : kMostRounding * (r + q) / smaller);
       pair.gap = std::min(gap + rounding(pair) / smaller, most);
@@ -195,14 +194,14 @@ class PairFinder {
 
   double largest(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
 
-  // How far the walls come out towards each other because vessels branch there, mm. Seen from the axes: no wall comes
-  // closer to the other than its blended distance from the other's axis tells.
+  // How far rounding at branches moves the walls towards each other, mm. Measured at the axes: the blended distance at
+  // the other's axis bounds how close a wall comes.
   double rounding(const ContactPair& pair) const {
     return rounding_at(cones_[pair.j].point(pair.closest.t), pair.i, pair.j) +
            rounding_at(cones_[pair.i].point(pair.closest.s), pair.j, pair.i);
   }
 
-  // By how much the blend of cone `c` with others that are apart from `other` lowers the distance at `p`.
+  // How much the blend of cone `c` with cones other than `other` lowers the distance at `p`.
   double rounding_at(const Vec3& p, Index c, Index other) const {
     const FieldSample own = field_.sample_cone(p, c);
     const double reach = reach_at(c, own.t);

@@ -1,4 +1,4 @@
-// Taking a part out of a VesselField, and making a field of it.
+// Taking an excerpt of a VesselField, and making a field of it.
 #include "vmesh/volume/field_excerpt.h"
 
 #include <algorithm>

@@ -13,10 +13,10 @@
 namespace vmesh {
 namespace {
 
-// More than the gap is aimed for, so that rounds of narrowing end.
+// Aims for a little more than the gap, so that rounds of narrowing end.
 constexpr double kSpare = 0.02;  // safe 0.014 to 0.028
-constexpr double kMoved = 1e-9;  // derived: radii, more than rounding moves
-// At moving where moves were in vain.
+constexpr double kMoved = 1e-9;  // derived: radii, more than rounding can move a node
+// Tried in turn where moves were in vain.
 constexpr MovingChoice kAttempts[] = {{}, {false, true}, {true, false}, {true, true}};
 
 void check(const SeparationOptions& options) {
@@ -29,13 +29,13 @@ void check(const SeparationOptions& options) {
   if (options.max_moves < 0) throw InvalidInput("max_moves must not be negative");
 }
 
-// What one vessel has to give up at a contact.
+// What one vessel must give up at a contact.
 struct Hold {
   Index segment, leaf;  // of the original; or an isolated node and kNone
   double share;
 };
 
-// One look at the narrowed vessels: which shares must be held so that they come apart.
+// One round: finds the shares that must be held for the narrowed vessels to come apart.
 class Round {
  public:
   Round(const Centerline& original, const Narrowing& narrowing, const DividedCenterline& narrowed,
@@ -96,7 +96,7 @@ class Round {
     }
   }
 
-  // The share of both radii at which the gap is left.
+  // The share of both radii that leaves the gap.
   static double kept(const ClosestApproach& closest, const AxisStretch& a, const AxisStretch& b, double gap) {
     const double r = a.radius(closest.s), q = b.radius(closest.t);
     return closest.distance / (r + q + gap * std::min(r, q));
@@ -233,7 +233,7 @@ class Narrower {
         narrowing_(vessels, options.taper),
         narrowed_(undivided(vessels)) {}
 
-  /// At contacts that need at most this share.
+  /// Narrows at contacts that need at most this share.
   void narrow(double most_taken) {
     for (; rounds_ < options_.max_rounds; ++rounds_) {
       report_progress(progress_, "separate", static_cast<double>(rounds_) / options_.max_rounds);
@@ -289,7 +289,7 @@ void move_vessels(const Centerline& original, const SeparationOptions& options, 
   }
 }
 
-// Moves of vessels that still touch where they were moved. Returns whether there were any.
+// Undoes the moves of vessels that still touch where they were moved. Returns whether there were any.
 bool take_back_moves_in_vain(const Centerline& original, Moving& moving, const std::vector<Contact>& left) {
   const std::size_t count = moving.shifts().size();
   for (const Contact& contact : left) {
@@ -304,7 +304,7 @@ bool take_back_moves_in_vain(const Centerline& original, Moving& moving, const s
   return moving.shifts().size() < count;
 }
 
-// Where moves were in vain they are taken back, and tried anew beside those that were not.
+// Undoes moves that were in vain and tries other choices for them, keeping those that helped.
 SeparatedCenterline moved_and_narrowed(const Centerline& original, const SeparationOptions& options,
                                        const Progress& progress) {
   Moving moving(original, options.slope);

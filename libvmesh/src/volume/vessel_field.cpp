@@ -75,8 +75,8 @@ VesselField::Cone VesselField::make_cone(const Centerline& centerline, Index a, 
   return cone;
 }
 
-// The closest of the spheres that sweep the cone: the touching sphere's centre lies where the axis is met by the
-// normal of the lateral surface through p, clamped to the axis.
+// The closest of the spheres that sweep the cone: its centre is where the normal of the lateral surface through p meets
+// the axis, clamped to the axis.
 VesselField::Distance VesselField::distance_to(const Cone& cone, const Vec3& p) {
   const Vec3 q = p - cone.origin;
   const double foot = q.dot(cone.axis) * cone.inv_length2;
@@ -106,14 +106,14 @@ FieldSample VesselField::sample(const Vec3& p, Index hint) const {
 }
 
 FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, Index first) const {
-  // Kept from call to call, so that a query allocates nothing.
+  // Kept between calls, so that a query allocates nothing.
   thread_local std::vector<Candidate> candidates;
   candidates.clear();
   const Distance nearby = distance_to(cones_[first], p);
   candidates.push_back({nearby.value, nearby.t, first});
   double least = nearby.value;
-  // One pass keeps the cones within the widest possible blend of the best so far. After a cone out of reach it passes
-  // over those of its run that cannot be within reach; what is far by its bounding sphere is not looked at closely.
+  // One pass keeps the cones within the widest possible blend of the best so far. After a cone out of reach it skips
+  // those of its run that cannot be within reach, and cones whose bounding spheres are far.
   Run out_of_reach;
   for (const Index c : cones) {
     if (c == first || (runs_[c].number == out_of_reach.number && runs_[c].travel < out_of_reach.travel)) continue;
@@ -121,7 +121,7 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, In
     if (reach <= 0 || (p - spheres_[c].center).squaredNorm() >= reach * reach) continue;
     const Distance d = distance_to(cones_[c], p);
     const double excess = d.value - least - 2 * blend_ * max_radius(c);
-    if (excess >= 0 && d.value > least) {  // of equally near cones the lowest number counts: they are all kept
+    if (excess >= 0 && d.value > least) {  // of equally near cones the lowest number counts, so all are kept
       out_of_reach = {runs_[c].number, runs_[c].travel + excess};
       continue;
     }
@@ -140,9 +140,9 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, In
   return sample;
 }
 
-// Cones that begin with one and the same sphere are alike to the bit where that is what is near. At a thick node of
-// many branches nearly all are. One that blends with every other speaks for them. Looks back at a few, which is enough
-// there.
+// Cones that start at the same sphere have equal distances to the bit where that sphere is nearest; at a thick node of
+// many branches that is nearly all of them. One of them represents the rest. Compares with a few predecessors, which is
+// enough there.
 std::span<VesselField::Candidate> VesselField::at_different_places(std::span<Candidate> candidates) const {
   constexpr std::size_t kLookBack = 8;
   std::size_t kept = 0;
@@ -158,7 +158,7 @@ std::span<VesselField::Candidate> VesselField::at_different_places(std::span<Can
 }
 
 // The least of the pairwise smooth minima: continuous, and the plain minimum where gradients agree. Few of the many
-// pairs blend: whether they do is found out for several at a time.
+// pairs blend; several are tested at a time.
 void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidates, FieldSample& sample) const {
   constexpr std::size_t kBatch = 32;
   struct Batch {

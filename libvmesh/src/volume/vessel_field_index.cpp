@@ -1,4 +1,4 @@
-// How a VesselField finds the cones that matter at a point: along the graph, and in space.
+// How a VesselField finds the cones that matter at a point, along the graph and in space.
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -13,13 +13,12 @@ namespace {
 
 // Relative to coordinates: covers the rounding in a distance and in a box.
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
-// Lengths of a piece of a cone, in the widths from its axis that count as near; idle 1.4 to 2.8.
+// Length of an interval of a cone, relative to the distance from its axis that counts as near; idle 1.4 to 2.8.
 constexpr double kLongPiece = 2;
-constexpr int kMostPieces = 16;  // of a cone; idle 11 to 22
-constexpr std::size_t kFewCones =
-    100;  // up to here going through all is as fast; measured on stars: 60 to 512 are near
+constexpr int kMostPieces = 16;         // of a cone; idle 11 to 22
+constexpr std::size_t kFewCones = 100;  // up to here a linear scan is as fast; measured on stars: 60 to 512 are near
 
-// Of the cones those in the ascending list.
+// Keeps those of `cones` that are in the ascending list.
 void keep_listed(std::span<const Index> list, std::vector<Index>& cones) {
   sort_unique(cones);
   std::erase_if(cones, [&](Index c) { return !std::binary_search(list.begin(), list.end(), c); });
@@ -83,9 +82,9 @@ bool VesselField::are_blended(Index i, Index j) const {
   return !std::binary_search(apart_.begin(), apart_.end(), pair);
 }
 
-// The box of a piece of a cone holds all points at which it may be blended in: those closer to it than the widest
-// blend. Cones that are long for their width are taken in pieces: across the axes, their boxes would be as wide as
-// long.
+// The box of an interval of a cone holds all points at which it may be blended: those closer to it than the widest
+// blend. Cones that are long for their width are divided into intervals; oblique to the coordinate axes, their boxes
+// would be as wide as long.
 void VesselField::build_tree() {
   std::vector<Vec3> low, high;
   for (Index c = 0; c < cones_.size(); ++c) {
@@ -120,7 +119,7 @@ void VesselField::local_cones_near(const Vec3& p, Index cone, double limit, std:
   keep_listed(local, near);
 }
 
-// As blended(p, local_cones(hint), hint).
+// Same as blended(p, local_cones(hint), hint).
 FieldSample VesselField::blended_local(const Vec3& p, Index hint) const {
   const std::span<const Index> local = local_cones(hint);
   if (local.size() <= kFewCones) return blended(p, local, hint);

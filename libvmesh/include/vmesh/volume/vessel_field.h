@@ -25,51 +25,51 @@ struct FieldSample {
 /// The vessel volume of a centerline: the union of its round cones (convex hulls of two spheres), as a signed
 /// distance. Cone i < segments().size() belongs to segment i; then follow the isolated nodes as spheres.
 ///
-/// The distance to one cone is exact. The union's is exact outside and on the boundary; inside it is a lower bound of
-/// the depth, so that a step of |distance| never leaves the volume. With `blend` > 0 branches are rounded: where
-/// two cones of radii r1, r2 meet under gradients g1, g2 the minimum is smooth over a width of
-/// blend * min(r1, r2) * (1 - g1.g2); along a straight chain the gradients agree and, up to blend 1, nothing bulges.
-/// Where vessels part and come near again, as around a tight turn, less is rounded, so that their walls stay apart.
+/// The distance to one cone is exact. The distance to the union is exact outside and on the boundary; inside it is a
+/// lower bound of the depth, so that a step of |distance| never leaves the volume. With `blend` > 0 branches are
+/// rounded: where two cones of radii r1, r2 meet under gradients g1, g2 the minimum is smooth over a width of blend *
+/// min(r1, r2) * (1 - g1.g2); along a straight chain the gradients agree and, up to blend 1, nothing bulges. Where
+/// vessels part and come near again, as around a tight turn, there is less rounding, so that their walls stay apart.
 ///
-/// Local queries carry a cone they were last closest to; only cones near it along the graph take part: those whose
-/// spheres it touches without a break from a common place on, and on to where the rounding between vessels that part
-/// ends: up to the default blend, the boundary has no step there. Vessels that part and meet again closely, or come
-/// close in space but not along the graph, do not see each other. Global queries see every cone, for evaluation.
+/// Local queries carry a hint, the cone they were last closest to; only cones local to it take part: those whose
+/// spheres it touches without a break from a common point on, and beyond that up to where the rounding between parting
+/// vessels ends; up to the default blend, the boundary has no step there. Vessels that part and come near again, or
+/// come close in space but not along the graph, are not local to each other. Global queries take every cone into
+/// account, for evaluation.
 class VesselField {
  public:
   /// `blend` in [0, 2]. Keeps a reference to `centerline`, which must outlive the field.
   explicit VesselField(const Centerline& centerline, double blend = 0);
 
-  /// The part of another field that `excerpt` was taken of; `centerline` is the excerpt's. Local queries whose hints
-  /// are complete in it, and distance_to_others() within the reach it was taken with, answer as the other field does,
-  /// to the bit. A query that leads to another hint throws std::logic_error. Global queries see what is in the excerpt
-  /// alone.
+  /// The part of another field from which `excerpt` was taken; `centerline` is the excerpt's. Local queries whose hints
+  /// are complete in it, and distance_to_others() within its reach, answer as the other field does, to the bit. A query
+  /// that leads to another hint throws std::logic_error. Global queries cover the excerpt only.
   VesselField(const Centerline& centerline, const FieldExcerpt& excerpt);
 
-  /// What is needed to answer queries whose hints are among `cones` and those local to them: everything local to these,
-  /// and all cones within `reach` radii of the walls of `cones`.
+  /// What is needed to answer queries whose hints are among `cones` and the cones local to them: everything local to
+  /// these, and all cones within `reach` radii of the walls of `cones`.
   FieldExcerpt excerpt(std::span<const Index> cones, double reach) const;
 
   const Centerline& centerline() const { return *centerline_; }
   double blend() const { return blend_; }
   std::size_t cone_count() const { return cones_.size(); }
 
-  /// Signed distance at `p` from the cones near `hint` along the graph. The closest cone found becomes the next
-  /// hint until it no longer changes.
+  /// Signed distance at `p` from the cones local to `hint`. The closest cone becomes the next hint until it no longer
+  /// changes.
   FieldSample sample(const Vec3& p, Index hint) const;
 
-  /// The same in single precision, good to a few 1e-5 of the radius there, and several cones at a time: for steps that
-  /// are tested by other means. In double precision where vessels are very long or thin beside their neighbours. Same
-  /// bits on every machine of one architecture.
+  /// The same in single precision, several cones at a time and accurate to a few 1e-5 of the local radius: for steps
+  /// that are verified by other means. Uses double precision where vessels are very long or thin beside their
+  /// neighbours. Same bits on every machine of one architecture.
   FieldSample sample_fast(const Vec3& p, Index hint) const;
-  /// From here on sample_fast() answers in double precision too: for surfaces whose error is to be proven.
+  /// Makes sample_fast() use double precision, too: for surfaces whose error is to be proven.
   void use_double_precision() { only_double_ = true; }
 
   /// Signed distance of the union of all cones at `p`.
   FieldSample sample_global(const Vec3& p) const;
 
-  /// Signed distance at `p` to the nearest cone that a local query with hint `cone` does not see, if that is less than
-  /// `limit`, else `limit`.
+  /// Signed distance at `p` to the nearest cone that is not local to `cone`, if that is less than `limit`, else
+  /// `limit`.
   double distance_to_others(const Vec3& p, Index cone, double limit) const;
 
   /// Exact signed distance to one cone.
@@ -81,15 +81,15 @@ class VesselField {
     return {local_.data() + local_offsets_[cone], local_.data() + local_offsets_[cone + 1]};
   }
 
-  /// Whether two cones count as one volume: each takes part in local queries with the other as hint, and not just
-  /// because, where their vessels part, the rounding between them reaches farther than they touch.
+  /// Whether two cones count as one volume: they are local to each other, and not only because, where their vessels
+  /// part, the rounding between them extends farther than they touch.
   bool are_one_volume(Index i, Index j) const;
 
   /// Whether two cones are blended where both are near: not if their vessels have parted and come near again.
   bool are_blended(Index i, Index j) const;
 
-  /// Of local_cones(cone) those whose distance at `p` (mm), less the widest blend, is at most `limit` (mm), and perhaps
-  /// others; ascending. They are found in space where there are many, as around a node of many branches.
+  /// A superset of those local_cones(cone) whose distance at `p` (mm), less the widest blend, is at most `limit` (mm);
+  /// ascending. Uses a search in space where there are many, as around a node of many branches.
   void local_cones_near(const Vec3& p, Index cone, double limit, std::vector<Index>& near) const;
 
   /// The node a cone starts and ends at (equal for an isolated node).
@@ -114,19 +114,19 @@ class VesselField {
     double lag = 0;                       // tan(half angle) / |axis|: how far the touching sphere lags the foot point
     double t_low = 0, t_high = 1;         // equal where one end sphere contains the other
     Index a = kNone, b = kNone;
-    bool is_apart = false;  // from some other: in apart_
+    bool is_apart = false;  // apart from some other: listed in apart_
   };
-  // Cones that follow each other along the graph form a run. From sphere to sphere along it, neither a distance nor
-  // that less the widest blend changes by more than `travel` does.
+  // Consecutive cones along the graph form a run. From sphere to sphere along it, neither a distance nor a distance
+  // less the widest blend changes by more than `travel` does.
   struct Run {
     Index number = kNone;
-    double travel = 0;  // from the run's begin to the cone's end, mm
+    double travel = 0;  // from the run's start to the cone's end, mm
   };
   struct Distance {
     double value;
     double t;
   };
-  // Farther from `center` than `reach` plus the distance of the nearest cone, a cone can neither be nearest nor
+  // At points farther from `center` than `reach` plus the distance of the nearest cone, the cone is neither nearest nor
   // blended.
   struct Sphere {
     Vec3 center = Vec3::Zero();
@@ -170,7 +170,7 @@ class VesselField {
   const Centerline* centerline_;
   double blend_;
   bool only_double_ = false;
-  std::uint64_t number_ = new_number();  // of this field and its copies, which are alike
+  std::uint64_t number_ = new_number();  // of this field and its copies, which are equal
   std::vector<Cone> cones_;
   std::vector<Run> runs_;
   std::vector<Sphere> spheres_;
@@ -180,7 +180,7 @@ class VesselField {
   std::vector<std::pair<Index, Index>> apart_;  // ascending
   BoxTree tree_;                                // of pieces of cones
   std::vector<Index> cone_of_item_;             // in the tree
-  // Of cones: whether no others are near but their local ones, once somebody has asked.
+  // For every cone: whether only local ones are near, once that has been determined.
   enum Lonely : char { not_asked, lonely, in_company };
   mutable std::vector<char> lonely_;
 };

@@ -9,13 +9,14 @@
 namespace vmesh {
 namespace {
 
-// Radii: length of the pieces that have to lie in one cone each; idle 0.35 to 0.7.
+// Radii: length of the intervals, each of which must lie in a single cone; idle 0.35 to 0.7.
 constexpr double kPiece = 0.5;
-constexpr double kSlack = 0.1;  // radii that a piece may stand out; idle 0.07 to 0.14
-// Of a sphere's radius: thinner spheres may stand out of it ... (safe 0.35 to 0.7).
+constexpr double kSlack = 0.1;  // radii by which an interval may protrude; idle 0.07 to 0.14
+// Of the radius of a node's sphere: vessels thinner than that are needles; safe 0.35 to 0.7.
 constexpr double kNeedle = 0.5;
-constexpr double kNeedleSlack = 0.25;  // ... by this part of it where a branch ends; safe 0.17 to 0.35
-constexpr int kMaxPieces = 2000;       // derived: per segment; a hair that long is not buried, or not worth finding out
+constexpr double kNeedleSlack =
+    0.25;  // of that radius: how far a needle may protrude where a branch ends; safe 0.17 to 0.35
+constexpr int kMaxPieces = 2000;  // derived: per segment; a hair that long is not buried, or not worth testing
 
 class Burial {
  public:
@@ -37,7 +38,7 @@ class Burial {
   bool is_left(Index segment) const { return left_[segment]; }
 
  private:
-  // From an end on, what lies within the sphere of one node of the branch: the radius falls there faster than the
+  // Trims from an end what lies within the sphere of one node of the branch: there the radius falls faster than the
   // length grows.
   void trim(Index tip) {
     std::vector<Index> nodes = {tip}, segments;
@@ -51,7 +52,7 @@ class Burial {
       along += centerline_.length(s);
       const bool holds_all =
           std::all_of(nodes.rbegin() + 1, nodes.rend(), [&](Index n) { return sphere_within(n, nodes.back()); });
-      const bool goes_on = degree_left(nodes.back()) > 1;  // something has to be left of the vessel
+      const bool goes_on = degree_left(nodes.back()) > 1;  // some of the vessel must remain
       if (holds_all && goes_on) trimmed = segments.size();
     }
     if (trimmed == 0) return;
@@ -73,13 +74,13 @@ class Burial {
     return kNone;
   }
 
-  // Goes through the branches of what is left. What is a branch changes where one goes: then it has to be done again.
+  // One pass over the remaining branches. Removing one changes the branches around it, so passes are repeated.
   bool bury_some() {
     bool left_out = false;
     for (const Branch& branch : branches_left()) {
       if (!is_covered(branch)) continue;
       const bool has_tip = degree_left(branch.nodes.front()) == 1 || degree_left(branch.nodes.back()) == 1;
-      if (!has_tip) continue;  // what closes a loop joins vessels that overlap there, and has to stay
+      if (!has_tip) continue;  // a branch that closes a loop joins vessels that overlap there, and must stay
       for (const Index s : branch.segments) left_[s] = 0;
       buried_.push_back({branch.segments});
       left_out = true;
@@ -87,7 +88,7 @@ class Burial {
     return left_out;
   }
 
-  // With the numbers of the full centerline, thinnest first.
+  // The remaining branches in the numbers of the full centerline, thinnest first.
   std::vector<Branch> branches_left() const {
     std::vector<CenterlineSegment> segments;
     std::vector<Index> number;
@@ -144,7 +145,7 @@ class Burial {
 
   bool is_other(Index cone) const { return left_[cone] && !in_branch_[cone]; }
 
-  // The distance from another cone that holds the vessel at that place.
+  // The signed distance from another cone at which it contains the vessel there.
   double depth_in_others(Index s, double t) const { return (kSlack - 1) * centerline_.radius_at(s, t); }
 
   bool holds(Index cone, Index s, double t) const {

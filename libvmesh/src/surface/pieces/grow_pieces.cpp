@@ -16,8 +16,8 @@
 namespace vmesh {
 namespace {
 
-constexpr int kRounds = 3;  // of making pieces again as one; idle 2 to 4
-// Radii: what is wrong so near to a seam may be because of it; idle 2.8 to 5.6.
+constexpr int kRounds = 3;  // of remaking pieces as one; idle 2 to 4
+// Radii: a fault this near to a seam may be caused by it; idle 2.8 to 5.6.
 constexpr double kNearSeam = 4.0;
 
 class PieceGrower {
@@ -48,7 +48,7 @@ class PieceGrower {
   }
 
  private:
-  // Makes those that are not in `known` yet.
+  // Makes the pieces that are not in `known`.
   void make_pieces(std::map<PiecePlan, PieceSurface> known) {
     pieces_.clear();
     pieces_.resize(division_.plans.size());
@@ -70,7 +70,7 @@ class PieceGrower {
     });
   }
 
-  // Pieces were looked at on their own.
+  // Crossings within a piece are its own faults; only those between pieces are looked for here.
   std::vector<std::pair<Index, Index>> find_crossings() const {
     const bool all_right = std::all_of(pieces_.begin(), pieces_.end(), [](const PieceSurface& piece) {
       return std::none_of(piece.faults.begin(), piece.faults.end(),
@@ -79,7 +79,7 @@ class PieceGrower {
     return all_right ? intersections_between(gathered_.mesh, gathered_.first_face) : self_intersections(gathered_.mesh);
   }
 
-  // Joins pieces at what is wrong between them. Returns whether there was something that this may mend.
+  // Merges pieces where there are faults between them. Returns whether there were any that this may mend.
   bool regroup() {
     std::vector<RingPlace> dissolved;
     std::vector<std::pair<Anchor, Anchor>> joined;
@@ -150,7 +150,7 @@ class PieceGrower {
     });
   }
 
-  // All seams have as many vertices as there are around a vessel, and come first.
+  // The seams' vertices come first, `around` for each.
   std::optional<RingPlace> seam_of_vertex(Index v) const {
     const std::size_t seam = v / static_cast<std::size_t>(options_.around);
     if (seam >= division_.seams.size()) return std::nullopt;
@@ -170,7 +170,7 @@ class PieceGrower {
       ++growth.rungs[static_cast<std::size_t>(piece.rung)];
       for (GrowthSimplification& note : piece.simplifications) growth.simplifications.push_back(std::move(note));
     }
-    growth.tubes -= division_.seams.size();  // a tube on either side is one
+    growth.tubes -= division_.seams.size();  // the tubes on both sides of a seam count as one
     growth.components = centerline.component_count();
     growth.cycle_rank = centerline.cycle_rank() - filled;
     if (filled > 0)
@@ -190,7 +190,7 @@ class PieceGrower {
   const Progress& progress_;
   std::mutex reporting_;
   std::size_t done_ = 0;
-  // Every sweep of a piece asks whether to go on; what it tells is how many pieces are done.
+  // Every sweep of a piece polls for cancellation; the progress reported is the share of finished pieces.
   const Progress ask_ = [this](std::string_view, double) {
     const std::lock_guard lock(reporting_);
     const double fraction = static_cast<double>(done_) / static_cast<double>(std::max<std::size_t>(1, pieces_.size()));

@@ -1,4 +1,4 @@
-// Splitting a surface that is still to be grown into parts.
+// Splitting a surface into parts before it is grown.
 #include <algorithm>
 #include <cmath>
 
@@ -24,14 +24,14 @@ constexpr double kReach = 3;
 
 void check_parts_suffice(const GenerateOptions& options) {
   const auto refuse = [](const char* what) {
-    throw Unsupported(std::string(what) + ": generate the surface in one go, it cannot be made in parts");
+    throw Unsupported(std::string(what) + "; this surface cannot be made in parts, generate it in one go");
   };
   if (options.growth == GrowthMethod::paper) refuse("paper growth starts from a single seed");
-  if (options.max_error.is_set()) refuse("a limit on the error is proven of the whole");
-  if (options.open_ends.all || !options.open_ends.nodes.empty()) refuse("open ends are finished on the whole");
+  if (options.max_error.is_set()) refuse("a limit on the error is proven on the whole surface");
+  if (options.open_ends.all || !options.open_ends.nodes.empty()) refuse("open ends are finished on the whole surface");
 }
 
-// Rings are laid for one branch after the other, and forgotten.
+// Rings are laid for one branch at a time and not kept, to save memory.
 Division divide_scanning(const VesselAxes& axes, const GenerateOptions& options, std::vector<Index>& counts,
                          const Progress& progress) {
   counts.resize(axes.axes().size());
@@ -58,9 +58,9 @@ class PartMaker {
     }
   }
 
-  // Numbers of pieces that begin parts, and the end: parts of about as many rings each.
+  // The first piece of every part, then the total: parts have about equally many rings.
   std::vector<Index> beginnings(std::size_t parts) const {
-    std::vector<double> size = {0};  // up to every piece
+    std::vector<double> size = {0};  // cumulative, by piece
     for (const PiecePlan& plan : division_.plans) {
       double rings = static_cast<double>(plan.nodes.size());
       for (const Stretch& stretch : plan.stretches) rings += stretch.count;
@@ -110,7 +110,7 @@ class PartMaker {
     return branches;
   }
 
-  // All along the branches, and what begins where they end: how a vessel is seen at its end depends on what is there.
+  // The cones along the branches and those that begin where these end: the field at a vessel's end depends on them.
   std::vector<Index> cones_of(const std::vector<Index>& branches, Index first, Index end) const {
     const Centerline& centerline = axes_.centerline();
     std::vector<Index> cones;
@@ -139,7 +139,7 @@ class PartMaker {
     return result;
   }
 
-  // A seam between two of the part's pieces was added for both.
+  // Merges duplicates: a seam between two pieces of the part was added by both.
   static void merge(std::vector<SurfacePart::Seam>& seams) {
     std::sort(seams.begin(), seams.end(), [](const auto& a, const auto& b) { return a.place < b.place; });
     const auto same = [](const auto& a, const auto& b) { return a.place == b.place; };
