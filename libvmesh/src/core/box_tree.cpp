@@ -9,7 +9,7 @@ constexpr Index kLeafSize = 4;
 
 }  // namespace
 
-// Twice the middles lie beside the numbers, so that dividing them reads memory in order.
+// Twice the box centres are stored beside the numbers, so that partitioning reads memory in order.
 struct BoxTree::Item {
   Vec3 middle;
   Index number;
@@ -21,7 +21,7 @@ BoxTree::BoxTree(const std::vector<Vec3>& low, const std::vector<Vec3>& high) {
   std::vector<Item> items;
   items.reserve(count);
   for (Index i = 0; i < count; ++i) items.push_back({low[i] + high[i], i});
-  nodes_.reserve(count);  // a leaf has two items or more, unless it is the only one
+  nodes_.reserve(count);  // a leaf has at least two items, unless it is the only one
   nodes_.emplace_back();
   divide(0, items, 0, count);
   order_.reserve(count);
