@@ -14,7 +14,7 @@ class PlanError(Exception):
 
 
 def read_json(path):
-    """None where there is no such file, or where it is no JSON."""
+    """None where there is no such file, or if it is not JSON."""
     try:
         return json.loads(Path(path).read_text())
     except (FileNotFoundError, ValueError):

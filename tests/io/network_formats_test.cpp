@@ -83,10 +83,10 @@ TEST(ReadGxl, NeedsTheVoxelAndNamesWhatIsWrong) {
                   "--voxel-size");
   expect_contains(error(gxl(kNodes + edge("n0", "n9", "2"))), "t.gxl: edge entry 0: there is no node \"n9\"");
   expect_contains(error(gxl(kNodes + edge("n0", "n1", "wide"))), "t.gxl: edge entry 0: its radius \"wide\"");
-  expect_contains(error(gxl(kNodes + node("n1", floats(1, 1, 1)))), "node entry 4: the id \"n1\" was there before");
+  expect_contains(error(gxl(kNodes + node("n1", floats(1, 1, 1)))), "node entry 4: the id \"n1\" occurs twice");
   expect_contains(error(gxl(node("n0", "<float>1</float>"))), "node entry 0: its position");
   expect_contains(error(gxl(kNodes)), "no <edge>");
-  expect_contains(error("<svg/>"), "no GXL file");
+  expect_contains(error("<svg/>"), "not a GXL file");
 }
 
 const std::string kNetwork =
@@ -121,8 +121,8 @@ TEST(ReadNetwork, NamesTheLineThatIsWrong) {
         [&] { parse_centerline(network_with(from, to), CenterlineFormat::network, "t.dat"); });
   };
   expect_contains(wrong("2 5 12 13 12.5", "2 5 12 14 12.5"), "t.dat: line 11: there is no node 14");
-  expect_contains(wrong("2 5 12 13 12.5", "2 5 12 13 wide"), "t.dat: line 11: \"wide\" is no number");
-  expect_contains(wrong("12 100 0 0", "11 100 0 0"), "t.dat: line 15: the node 11 was there before");
+  expect_contains(wrong("2 5 12 13 12.5", "2 5 12 13 wide"), "t.dat: line 11: \"wide\" is not a number");
+  expect_contains(wrong("12 100 0 0", "11 100 0 0"), "t.dat: line 15: the node 11 occurs twice");
   expect_contains(wrong("2 total number of segments", "many segments"), "t.dat: line 8: \"many\"");
   expect_contains(wrong("3 total number of nodes", "9 total number of nodes"), "t.dat: line 17");
   expect_contains(wrong(kNetwork, "1 2 3\n"), "the file ends where");

@@ -65,7 +65,7 @@ OpenEnds parse_open_ends(const std::string& text) {
     const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), node);
     if (error != std::errc() || end != item.data() + item.size())
       throw CLI::ValidationError("--open-ends",
-                                 "\"" + item + "\" is no node number; give all, or numbers such as 3,17");
+                                 "\"" + item + "\" is not a node number; give all, or numbers such as 3,17");
     ends.nodes.push_back(node);
   }
   return ends;

@@ -82,7 +82,7 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
   for (std::string item; std::getline(list, item, ',');) {
     double number = 0;
     if (!CLI::detail::lexical_cast(item, number) || !std::isfinite(number))
-      throw CLI::ValidationError(option, "\"" + item + "\" is no number");
+      throw CLI::ValidationError(option, "\"" + item + "\" is not a number");
     numbers.push_back(number);
   }
   if (numbers.size() != count || text.ends_with(','))

@@ -17,7 +17,7 @@ struct HelpArguments {
 
 void add_help(CLI::App& app, HelpArguments& arguments);
 
-/// Throws UsageError for a first word that is no verb: with the one that was meant, perhaps, and all.
+/// Throws UsageError for a first word that is not a verb: with the one that was meant, perhaps, and all.
 void check_verb(const CLI::App& app, std::string_view word);
 
 /// Whether one of these verbs was called; then it is done.

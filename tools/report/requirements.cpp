@@ -81,7 +81,7 @@ double parse_limit(const std::string& item, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw UsageError("--require: \"" + item + "\": \"" + text + "\" is no number");
+    throw UsageError("--require: \"" + item + "\": \"" + text + "\" is not a number");
   return value;
 }
 

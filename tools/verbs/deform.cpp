@@ -61,7 +61,8 @@ class Series {
   Series(fs::path folder, std::string extension) : folder_(std::move(folder)), extension_(std::move(extension)) {
     std::error_code error;
     made_folder_ = fs::create_directory(folder_, error);
-    if (!fs::is_directory(folder_, error)) throw WriteError(folder_.string() + ": is no folder and cannot be made one");
+    if (!fs::is_directory(folder_, error))
+      throw WriteError(folder_.string() + ": is not a folder and cannot be made one");
     if (!fs::is_empty(folder_, error) || error)
       throw UsageError(folder_.string() + ": the folder is not empty; name an empty or a new one for the frames");
   }

@@ -234,7 +234,7 @@ Scene parse_scene(const std::string& text, const std::string& source, std::size_
   try {
     document = Json::parse(text);
   } catch (const Json::exception& error) {
-    throw InvalidInput(source + ": this is no valid JSON: " + error.what());
+    throw InvalidInput(source + ": this is not valid JSON: " + error.what());
   }
   return read(Element(document, "", source), nodes);
 }

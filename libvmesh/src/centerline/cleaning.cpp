@@ -64,7 +64,7 @@ void check(const RawCenterline& raw) {
   if (raw.unit != LengthUnit::mm || raw.space != Space::lps) {
     throw InvalidInput(prefix + "a centerline must be in mm and LPS before it is cleaned (convert_to_internal)");
   }
-  if (raw.nodes.empty()) throw InvalidInput(prefix + "there is no point in it; give at least one point with a radius");
+  if (raw.nodes.empty()) throw InvalidInput(prefix + "it contains no point; give at least one point with a radius");
   if (raw.nodes.size() >= kNone || raw.segments.size() >= kNone) throw InvalidInput(prefix + "too many nodes");
   const auto problems = list_problems(raw);
   if (problems.empty()) return;

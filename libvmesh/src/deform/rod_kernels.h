@@ -35,7 +35,7 @@ struct RodKernels {
   void (*eliminate)(RodBatch* batches, Index batch, const std::array<Index, kLanes>* children, std::size_t pose,
                     const char* active);
   /// Computes x from the parent's. Zero for lanes in `rests` where it is within the tolerance, and where it is not
-  /// finite: a result spoilt by overflow is no solution, and standing still is always allowed.
+  /// finite: a result spoilt by overflow is not a solution, and standing still is always allowed.
   void (*substitute)(RodBatch* batches, Index batch, std::size_t pose, const char* active, const char* rests,
                      double tolerance);
   /// Moves and evaluates.

@@ -1,4 +1,4 @@
-// What other programs exchange scenes in, through assimp: GLB, glTF, 3MF, COLLADA, X3D and FBX.
+// Scene formats, read through assimp: GLB, glTF, 3MF, COLLADA, X3D and FBX.
 #include <array>
 #include <map>
 
@@ -20,7 +20,7 @@
 namespace vmesh::io {
 namespace {
 
-/// The faces of a scene, its nodes' transformations applied; corners at one place are one vertex.
+/// The faces of a scene with its nodes' transformations applied; coincident corners become one vertex.
 class SceneFaces {
  public:
   void add(const aiScene& scene) { add_node(scene, *scene.mRootNode, aiMatrix4x4()); }
@@ -70,7 +70,7 @@ class SceneFaces {
   std::size_t faces_ = 0;
 };
 
-/// How a format's numbers are meant.
+/// Frame and unit of a format's numbers.
 struct SceneFrame {
   bool y_up = false;
   LengthUnit unit = LengthUnit::unknown;
@@ -79,7 +79,7 @@ struct SceneFrame {
 
 /// The beginning of the model in a 3MF file, which is a ZIP archive; empty when there is none.
 std::string beginning_of_model(const std::filesystem::path& path) {
-  constexpr std::size_t kEnough = 1 << 16;  // for what comes before the first vertex
+  constexpr std::size_t kEnough = 1 << 16;  // for everything before the first vertex
   constexpr int kAnyCase = 2;
   const unzFile archive = unzOpen64(path.c_str());
   if (archive == nullptr) return {};
@@ -94,11 +94,11 @@ std::string beginning_of_model(const std::filesystem::path& path) {
   return text;
 }
 
-/// Of which assimp does not tell: millimetres where the model does not say (3MF Core Specification 1.2, 3.4).
+/// The unit, which assimp does not report; millimetres by default (3MF Core Specification 1.2, 3.4).
 SceneFrame frame_of_3mf(const std::filesystem::path& path) {
   const std::string text = beginning_of_model(path);
   pugi::xml_document document;
-  document.load_buffer(text.data(), text.size());  // as far as it goes
+  document.load_buffer(text.data(), text.size());  // parses as far as possible
   const std::string unit = document.document_element().attribute("unit").as_string("millimeter");
   if (unit == "micron") return {false, LengthUnit::um, 1};
   if (unit == "millimeter") return {false, LengthUnit::mm, 1};
@@ -129,7 +129,7 @@ std::string imported(const std::filesystem::path& path, const std::string& conte
   const std::string source = path.string();
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  // A .gltf names other files beside it.
+  // A .gltf refers to other files beside it.
   const aiScene* scene = extension == ".gltf"
                              ? importer.ReadFile(path.string(), 0)
                              : importer.ReadFileFromMemory(content.data(), content.size(), 0, extension.c_str() + 1);
@@ -145,7 +145,7 @@ std::string imported(const std::filesystem::path& path, const std::string& conte
   return answer + faces.bytes();
 }
 
-/// Takes numbers from the answer of the child.
+/// Reads numbers from the child process's answer.
 class Answer {
  public:
   explicit Answer(const std::string& bytes) : bytes_(bytes) {}

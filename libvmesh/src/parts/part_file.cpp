@@ -11,7 +11,7 @@ using nlohmann::json;
 
 constexpr const char* kSchema = "vmesh.part/1";
 
-// A list of lists as one, and where each begins.
+// A list of lists as a flat one, and where each begins.
 struct Lists {
   std::vector<Index> offsets = {0}, all;
 
@@ -63,7 +63,7 @@ GenerateOptions options_of(const json& j) {
   return o;
 }
 
-// What of an excerpt is not in columns yet.
+// The members of an excerpt that are not columns yet.
 struct FieldColumns {
   explicit FieldColumns(const FieldExcerpt& f) : field(f) {
     for (const CenterlineNode& n : f.nodes)
@@ -117,7 +117,7 @@ FieldExcerpt read_field(ArrayFile& file) {
   return field;
 }
 
-// The pieces' nodes and stretches, five numbers for each of these.
+// The pieces' nodes and stretches, five numbers per stretch.
 struct PlanLists {
   Lists nodes, stretches;
 };
@@ -164,7 +164,7 @@ std::vector<ConeOrigins::Stretch> read_stretches(ArrayFile& file, const std::str
   return stretches;
 }
 
-// The same of what its cones stand for.
+// The same for the cones' origins.
 struct OriginColumns {
   explicit OriginColumns(const ConeOrigins& o)
       : origins(o), stretch(numbers_of(o.stretch)), within(numbers_of(o.within)) {

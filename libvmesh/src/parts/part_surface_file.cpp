@@ -11,7 +11,7 @@ using nlohmann::json;
 
 constexpr const char* kSchema = "vmesh.part-surface/1";
 
-// Places in columns.
+// Places on the centerline in columns.
 struct PlaceColumns {
   std::vector<Index> segment;
   std::vector<double> t;

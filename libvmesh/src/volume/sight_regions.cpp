@@ -13,8 +13,8 @@ namespace {
 
 // Cosine of the angle by which a vessel may leave the way at a border, and the share by which radii may differ there:
 // then spheres between two that face each other do too.
-// The same as in one go in 6,000 comparisons (SightByRegions, 1,000 seeds) each from 0.56 to 0.95 and from 0.28 to 0.56,
-// and with both at their loosest.
+// The same as in one go in 6,000 comparisons (SightByRegions, 1,000 seeds) each from 0.56 to 0.95 and from 0.28 to
+// 0.56, and with both at their loosest.
 constexpr double kStraight = 0.8, kEven = 0.4;
 
 // Finds the nodes at which cells end: their spheres face none but those of their own vessel right before and after.
@@ -33,7 +33,7 @@ class Borders {
     boxes_ = BoxTree(low, high);
   }
 
-  // The segments of the vessel that the node may face; none where it is no border.
+  // The segments of the vessel that the node may face; none where it is not a border.
   std::vector<Index> faced_at(Index node) const {
     if (centerline_.degree(node) != 2) return {};
     std::vector<Index> own;

@@ -9,7 +9,7 @@
 namespace vmesh {
 
 /// Which branch of a centerline each vertex and face of its surface belongs to. A label is an index into
-/// find_branches(); isolated node i of the centerline (a sphere, which is no branch) has the label
+/// find_branches(); isolated node i of the centerline (a sphere, which is not a branch) has the label
 /// find_branches().size() + its rank among isolated nodes, as CenterlineBinding counts segments.
 struct BranchLabels {
   std::vector<Index> vertex;  ///< one per vertex: the branch of the segment it is bound to
