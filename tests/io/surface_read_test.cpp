@@ -102,7 +102,7 @@ TEST(ReadStl, JoinsEqualCornersOfTextAndBinary) {
 }
 
 TEST(ReadStl, NamesWhatIsWrong) {
-  expect_contains(error(SurfaceFormat::stl, "hello"), "no STL");
+  expect_contains(error(SurfaceFormat::stl, "hello"), "not an STL");
   expect_contains(error(SurfaceFormat::stl, std::string(80, ' ') + "\xff\xff\xff\xff" + std::string(50, '\0')),
                   "promises");
   expect_contains(error(SurfaceFormat::stl, "solid\nvertex 0 0\n"), "line 2");

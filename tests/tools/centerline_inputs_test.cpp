@@ -52,7 +52,7 @@ TEST_F(CenterlineInputs, AnotherFolderIsRefusedWithWhatIsInIt) {
   std::filesystem::create_directory(path("trees"));
   Outcome run = vmesh({"generate", "@trees", "-o", "@out.ply"});
   EXPECT_EQ(run.exit_code, 3);
-  EXPECT_NE(run.err.find("no file in it is one that vmesh reads"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("contains no file that vmesh can read"), std::string::npos) << run.err;
   write_y("trees/y.swc");
   run = vmesh({"generate", "@trees", "-o", "@out.ply"});
   EXPECT_EQ(run.exit_code, 3);

@@ -84,7 +84,7 @@ TEST_F(Outputs, TheSecondFileOfACsvPairIsAnInputToo) {
 }
 
 TEST_F(Outputs, SurfaceAndSummaryMayNotShareAFile) {
-  expect_refused({"generate", "@y.swc", "-o", "@y.ply", "--json", "@y.ply"}, 2, "named for");
+  expect_refused({"generate", "@y.swc", "-o", "@y.ply", "--json", "@y.ply"}, 2, "given both for");
 }
 
 TEST_F(Outputs, LinksInACircleAndNamesTooLongCannotBeWritten) {

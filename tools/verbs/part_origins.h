@@ -6,15 +6,15 @@
 
 namespace vmesh::tool {
 
-/// The centerline that is split: the prepared one, and what of the cleaned one its cones stand for. As
-/// generate_surface() does, nodes are left out of vessels that were separated if none were before.
+/// The prepared centerline that is split, and the origins of its cones on the cleaned one. Like generate_surface(),
+/// leaves nodes out of separated vessels if none were left out before.
 class SplitCenterline {
  public:
   SplitCenterline(const PreparedCenterline& prepared, const GenerateOptions& options);
 
   const Centerline& centerline() const { return again_ ? again_->centerline : prepared_.grown(); }
   const GenerateOptions& options() const { return options_; }
-  /// Of nodes and cones of the centerline that is split.
+  /// Origins of nodes and cones of the centerline that is split.
   ConeOrigins origins_of(const std::vector<Index>& nodes, const std::vector<Index>& cones) const;
 
  private:

@@ -25,7 +25,7 @@ bool is_ours(const fs::path& path) {
   return name.starts_with("part_") && (extension == kPartExtension || extension == kPartSurfaceExtension);
 }
 
-/// Throws unless it is a folder for parts: one that is not there yet, or holds nothing but parts.
+/// Throws unless the folder does not exist yet or contains nothing but parts.
 void prepare_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -34,11 +34,11 @@ void prepare_folder(const fs::path& folder) {
   if (fs::exists(folder / kManifestName)) return;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (!is_ours(entry.path()))
-      throw UsageError(folder.string() + ": is not empty, and no parts are in it; name a folder of their own");
+      throw UsageError(folder.string() + ": is not empty and contains no parts; give a separate folder");
   }
 }
 
-/// Takes away parts: those of before would not fit to new ones, and some of a splitting are of no use.
+/// Removes parts: old ones would not match new ones, and an incomplete set is useless.
 void clear_folder(const fs::path& folder) {
   std::error_code error;
   fs::remove(folder / kManifestName, error);
@@ -65,7 +65,7 @@ SplitSummary write_parts(const fs::path& folder, const SplitCenterline& centerli
   }
 }
 
-/// As the note counts them, of the centerline that was read.
+/// The note in numbers of the centerline that was read.
 GrowthSimplification as_read(GrowthSimplification note, const SplitCenterline& centerline) {
   const ConeOrigins origins = centerline.origins_of(note.nodes, note.segments);
   std::iota(note.nodes.begin(), note.nodes.end(), Index{0});

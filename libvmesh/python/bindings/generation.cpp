@@ -66,7 +66,7 @@ void bind_generation(py::module_& module) {
 
     cap        close them by flat caps
     left_open  but not at these nodes of the centerline
-    extension  length of straight tubes that go on from there first, in radii
+    extension  length of straight extensions there, in radii
     keep_area  scale the rings to the area of the round cross-section; not for fitted surfaces
 
 `Surface.flat_ends` lists them, `Surface.cap_label` says which faces are caps.)");

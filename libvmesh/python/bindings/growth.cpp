@@ -23,7 +23,7 @@ SettledEnds settle(const GrowthRequest& request) {
   SettledEnds ends{request.options, request.ends, {}};
   OpenEnds& open = ends.options.open_ends;
   if (request.extension > 0 && ends.shape == EndShape::round && !open.all && open.nodes.empty())
-    throw InvalidInput("flow_extension needs ends to go on from: ends=\"flat\" or \"open\"");
+    throw InvalidInput("flow_extension needs ends that are not round: ends=\"flat\" or \"open\"");
   if (ends.shape == EndShape::round) return ends;
   if (open.all) ends.shape = EndShape::open;
   ends.left_open = std::move(open.nodes);
@@ -60,7 +60,7 @@ void warn_of_error(const ErrorSummary& error, const ErrorLimit& limit, std::vect
   warnings.push_back("the surface may be farther than " + to_string(limit) +
                      " from the boundary, or the boundary from it, at " + counted(error.unproven_faces, "face") +
                      " in " + counted(error.unproven_places.size(), "place") +
-                     ": triangles became as small as they may; allow more there, or look at the radii");
+                     ": triangles are already as small as allowed; allow a larger error there, or check the radii");
 }
 
 std::optional<SimplifiedCenterline> simplify(const Centerline& centerline, const GenerateOptions& options) {

@@ -75,7 +75,7 @@ def generate(
     gap             what is left between them, in smaller radii
     ends            how vessels end: "round", "flat" (capped, numbered for flow solvers), "open"
     open_ends       nodes at which the surface is left open whatever `ends` says
-    flow_extension  length of straight tubes that go on from ends that are not round, in radii
+    flow_extension  length of straight extensions at ends that are not round, in radii
     simplification  nodes are left out that change the vessels by at most this share of what edges across
                     them cut off anyway, 0 to 1
     sweeps          of the final optimisation
