@@ -1,6 +1,6 @@
-// What fitting brings and costs, beside edge collapse of the reference (Lindstrom and Turk, CGAL) to as many vertices:
-// a table in Markdown. Distances are the larger of both ways, mm; time is user CPU on one thread, the report's own
-// measuring included. Usage:
+// Gain and cost of fitting, beside edge collapse of the reference (Lindstrom and Turk, CGAL) to as many vertices: a
+// table in Markdown. Distances are the larger of both directions, mm; time is user CPU on one thread, including the
+// report's own measurements. Usage:
 //   bench_fit; cases are those of ../shared/data named below.
 #include <cstdio>
 #include <optional>

@@ -1,5 +1,5 @@
-// Which surfaces are sound and which are not: over files, and over random trees. A table in Markdown of those that are
-// not (--all: of all) and one closing line. Usage:
+// Counts sound and unsound surfaces, over files and over random trees. A table in Markdown of those that are not
+// (--all: of all) and one closing line. Usage:
 //   bench_soundness [--all] [--keep] [--around N] [--blend B] [--rotate] [FILE...]
 //                   [--noisy FIRST COUNT] [--plausible FIRST COUNT] [--looped FIRST COUNT]
 // --rotate grows each random tree with the next of a list of options; --keep does not separate vessels that touch.
@@ -35,7 +35,7 @@ struct Tally {
   double seconds = 0;
 };
 
-// Nodes of branches that are listed as left out do not count.
+// Nodes of branches listed as left out do not count.
 std::size_t nodes_outside(const GenerateResult& result) {
   return static_cast<std::size_t>(std::count_if(result.defects.begin(), result.defects.end(), [](const Defect& defect) {
     return defect.kind == DefectKind::node_outside;
@@ -48,7 +48,7 @@ void examine(const std::string& name, const Centerline& given, const GenerateOpt
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   ++tally.cases;
   std::size_t left = 0;
-  // As `vmesh generate` does: nodes that growth does not need are left out before vessels are separated.
+  // As in `vmesh generate`, nodes that growth does not need are left out before vessels are separated.
   SimplifiedCenterline simplified = simplify_for_growth(given, wanted);
   const GenerateOptions options = after_simplification(wanted, simplified);
   Centerline centerline = std::move(simplified.centerline);

@@ -18,7 +18,7 @@ GrowthRequest request_of(int around, const std::string& max_error, double blend,
   options.placement = parse_placement(placement);
   options.growth = parse_growth_method(growth);
   if (overlap != "separate" && overlap != "keep")
-    throw InvalidInput("overlap: \"" + overlap + "\" is none; there are separate and keep");
+    throw InvalidInput("overlap: \"" + overlap + "\" is not known; there are separate and keep");
   request.separate = overlap == "separate";
   request.gap = gap;
   request.ends = parse_end_shape(ends);
@@ -64,8 +64,8 @@ void bind_generation(py::module_& module) {
       py::arg("extension") = 0.0, py::arg("keep_area") = false,
       R"(A copy of a surface, its openings finished flat.
 
-    cap        close them by flat caps
-    left_open  but not at these nodes of the centerline
+    cap        close the ends by flat caps
+    left_open  nodes of the centerline whose ends stay open even so
     extension  length of straight extensions there, in radii
     keep_area  scale the rings to the area of the round cross-section; not for fitted surfaces
 

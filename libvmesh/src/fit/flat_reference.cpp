@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "surface/ends/disc.h"
-#include "surface/ends/opening_tube.h"
+#include "surface/ends/opening_extension.h"
 #include "surface/proof/defects.h"
 
 namespace vmesh {
@@ -16,7 +16,7 @@ namespace {
 constexpr double kFarthest = 2.5;                // radii along the vessel from an opening to a cap
 constexpr double kFarthestBack = 0.5;            // the same backwards: at most this much is cut off
 constexpr double kFacing = 0.7;                  // cosine between an opening's normal and a cap's
-constexpr double kFlat = 0.87;                   // cosine between normals of one cap: 30 degrees, as rims are rounded
+constexpr double kFlat = 0.87;                   // cosine between normals of one cap: 30 degrees, as their edges are rounded
 constexpr double kSmallest = 0.5, kLargest = 5;  // areas of caps, relative to the opening's: a hemisphere has no cap
 constexpr double kShifted = 0.75;                // edges: a nearer opening is moved without an extension
 constexpr double kStretch = 0.25;                // of edges, at most
@@ -79,12 +79,12 @@ class CapFinder {
     return along > -kFarthestBack * radius && along < kFarthest * radius && (offset - along * normal).norm() < radius;
   }
 
-  std::vector<Index> flat_part(Index seed, std::vector<char>& seen) const {
-    std::vector<Index> faces = {seed};
-    seen[seed] = 1;
+  std::vector<Index> flat_part(Index start, std::vector<char>& seen) const {
+    std::vector<Index> faces = {start};
+    seen[start] = 1;
     for (std::size_t i = 0; i < faces.size(); ++i) {
       for (const Index next : across_[faces[i]]) {
-        if (next == kNone || seen[next] || !(normals_[next].dot(normals_[seed]) > kFlat)) continue;
+        if (next == kNone || seen[next] || !(normals_[next].dot(normals_[start]) > kFlat)) continue;
         seen[next] = 1;
         faces.push_back(next);
       }

@@ -19,7 +19,7 @@ constexpr int kSectionSteps = 48;  // derived: 0.618^48 = 1e-10 of the axis
 constexpr double kForkGap = 0.4;       // idle 0.28 to 0.56
 constexpr double kMostRounding = 0.2;  // sums of radii; safe 0.14 to 0.28
 // Largest ratio of a cone's greatest radius to the one by which a gap in mm is expressed in radii. Without it, a waist
-// of 1e-6 mm would require a gap of 260 radii. Idle 5.6 to 11.
+// of 1e-6 mm would require a gap of 260 radii; idle 5.6 to 11.
 constexpr double kThinnest = 8;
 constexpr Touch kFork{0.5, 0.25};  // at a fork, vessels are still parting up to this gap
 // Derived: relative to lengths, more than the rounding of an axis distance at any angle.

@@ -12,7 +12,7 @@ namespace {
 
 // Lattice spacing, in radii of the junction's thinnest vessel, but no finer than kFiner radii of the local vessel.
 // Measured on 14 liver and synthetic trees: at 0.5 to 1 for kFiner vertices, skewness and mean error are the same to 2
-// %; kSpacing 1.3 is unsafe. kSpacing: safe 0.85 to 1.4, below that slower; kFiner: safe 0.51 to 0.84, below that
+// %; kSpacing 1.3 is unsafe. kSpacing: safe 0.85 to 1.4, below slower; kFiner: safe 0.51 to 0.84, below
 // slower.
 constexpr double kSpacing = 1, kFiner = 0.7;
 // Balls in which the lattice is that fine: their distance along the axis and their radius, in vessel radii. Derived:

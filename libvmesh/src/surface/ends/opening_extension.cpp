@@ -1,4 +1,4 @@
-#include "surface/ends/opening_tube.h"
+#include "surface/ends/opening_extension.h"
 
 #include <algorithm>
 #include <cmath>
