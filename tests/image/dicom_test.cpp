@@ -230,7 +230,7 @@ TEST_F(Dicom, WhatIsCutOffOrDamagedIsAnError) {
   for (std::size_t size = 0; size < whole.size(); size += size < 700 ? 5 : 23) {
     folder_.write("IM2", whole.substr(0, size));
     EXPECT_THROW(read_image(folder()), InvalidInput)
-        << size;  // also where it is not a DICOM file any more: one is missing
+        << size;  // even if it is no longer a DICOM file: then one is missing
   }
   std::filesystem::remove_all(folder());
   std::filesystem::create_directory(folder());

@@ -129,7 +129,7 @@ TEST(ReadNetwork, NamesTheLineThatIsWrong) {
 }
 
 #if VMESH_WITH_HDF5
-// The other formats of the files were made of them elsewhere, with ends that sections share as one point.
+// The same networks in other formats, converted elsewhere, in which sections share end points.
 TEST(ReadHdf5, NetworksOfMorphIoAreThoseInVtp) {
   VMESH_NEED_SHARED_DATA("microvascular_loops");
   for (const std::string name : {"vasculature1", "vasculature2"}) {
@@ -164,7 +164,7 @@ TEST(ReadHdf5, DamagedFilesAreRefusedOrRead) {
   }
 }
 
-// A billion points of which none is in the file.
+// A billion points, none of which is in the file.
 TEST(ReadHdf5, BelievesNoTableLargerThanItsFile) {
   testing::expect_contains(
       message_of<InvalidInput>([&] { read_centerline(VMESH_FOUND "/h5/a_table_larger_than_its_file.h5"); }),

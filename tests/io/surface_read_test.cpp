@@ -240,7 +240,7 @@ TEST(ReadScene, TakesNodesAndUnitsInGlbAndCollada) {
   EXPECT_LT((collada.mesh.vertices[collada.mesh.faces[1][2]] - Vec3(0.01, 0.04, 0.02)).norm(), 1e-7);
 }
 
-/// A ZIP archive of files that are not packed.
+/// A ZIP archive of uncompressed files.
 std::string zip(const std::vector<std::pair<std::string, std::string>>& files) {
   const auto number = [](std::size_t value, int bytes) {
     std::string text;

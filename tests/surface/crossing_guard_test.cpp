@@ -1,4 +1,4 @@
-// Steps of remeshing after which faces would cross are told from those that may be taken.
+// Remeshing steps after which faces would cross are refused, others allowed.
 #include "surface/remesh/crossing_guard.h"
 
 #include <algorithm>
@@ -98,7 +98,7 @@ TEST(Ease, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
   EXPECT_LE(spheres.worst_skewness(), 0.24);
   EXPECT_LE(surface.mesh.number_of_vertices(), vertices);
   EXPECT_EQ(spheres.crossings(), 0u);
-  // What easing asks for, in radii, and what that leaves to the distance.
+  // What easing requires, in radii, and what that leaves to the distance.
   for (const Vertex v : surface.mesh.vertices()) EXPECT_NEAR(surface.distance[v], kLift, 2e-3) << v.idx();
 }
 

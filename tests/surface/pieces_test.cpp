@@ -1,4 +1,4 @@
-// How a surface is divided, and that nothing depends on it.
+// How a surface is divided into pieces, and that the result does not depend on it.
 #include <gtest/gtest.h>
 
 #include "vmesh/mesh/topology.h"

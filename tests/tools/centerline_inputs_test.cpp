@@ -1,4 +1,4 @@
-// What other programs write of vessels goes from file to surface in one command.
+// Centerline files of other programs become surfaces in one command.
 #include <nlohmann/json.hpp>
 
 #include "vmesh/io/surface_io.h"
@@ -11,7 +11,7 @@ namespace {
 
 class CenterlineInputs : public CommandTest {
  protected:
-  /// Runs `vmesh generate` with these files and options, and checks the surface. Returns what was said.
+  /// Runs `vmesh generate` with these files and options, and checks the surface. Returns its messages.
   std::string grow(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "generate");
     for (const char* more : {"-o", "@out.ply", "--check", "--json", "@out.json"}) arguments.emplace_back(more);

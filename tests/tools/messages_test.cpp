@@ -1,4 +1,4 @@
-// What the command says: that it leads on.
+// Messages of the command: they say what to do next.
 #include <chrono>
 #include <csignal>
 #include <thread>

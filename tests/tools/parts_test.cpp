@@ -74,7 +74,7 @@ TEST_F(Parts, MakeTheBytesOfTheWholeOfCrowdedVessels) {
   EXPECT_GE(parted, 1u);
 }
 
-// A twig within another vessel is left out of the surface, and told.
+// A twig within another vessel is left out of the surface, and reported.
 TEST_F(Parts, TellOfBranchesThatWereLeftOut) {
   write("buried.swc",
         "1 2 0 0 0 3 -1\n2 2 10 0 0 3 1\n3 2 20 0 0 3 2\n4 2 30 0 0 3 3\n5 2 40 0 0 3 4\n6 2 50 0 0 3 5\n"

@@ -136,7 +136,7 @@ void expect_moves_as_reported(const Centerline& original, const SeparatedCenterl
   EXPECT_EQ(report.nodes_moved == 0, report.moves.empty());
 }
 
-// What a separation promises whatever the centerline: the places and the tapers.
+// What a separation guarantees for any centerline: positions and tapers.
 void expect_sound(const Centerline& original, const SeparatedCenterline& separated, double taper) {
   const Centerline& result = separated.centerline;
   ASSERT_EQ(separated.pieces.size(), result.segments().size());
@@ -426,7 +426,7 @@ TEST(Separation, MovesVesselsThatCross) {
         EXPECT_TRUE(report.left.empty());
         ASSERT_EQ(report.moves.size(), 1u) << distance << ", " << pieces;
         EXPECT_LE(report.max_taken_relative, 0.5);
-        // No more than it takes, square to both.
+        // No more than needed, perpendicular to both.
         EXPECT_NEAR(report.max_moved, (1 - 0.475) * 2.1 - distance, 0.01);
         EXPECT_NEAR(std::abs(report.moves[0].displacement.z()), report.max_moved, 1e-6);
         EXPECT_LT(report.moves[0].position.head<2>().norm(), 2.01);
@@ -620,7 +620,7 @@ TEST(Separation, MindsTheRoundingAtBranches) {
       const VesselField field(separated.centerline, blend);
       for (Index s = 0; s < separated.pieces.size(); ++s) {
         if (separated.pieces[s].segment < y.segments().size()) continue;
-        for (const double t : {0.0, 0.5, 1.0}) {  // a local query from the fork does not see the thin vessel
+        for (const double t : {0.0, 0.5, 1.0}) {  // the thin vessel is not local to the fork
           EXPECT_GT(field.sample(field.axis_point(s, t), 0).distance, 1.05 * field.radius_at(s, t))
               << radius << ", " << blend;
         }
