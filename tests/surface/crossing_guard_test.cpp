@@ -75,7 +75,7 @@ TEST(Mend, TakesNeedlesOutWithoutACrossing) {
   EXPECT_FALSE(mend_worst_faces(spheres.surface, 0.5));
 }
 
-// A third of the way to a neighbour, which is not a bad place.
+// Vertices a third of the way to a neighbour: skewed, yet not bad enough to mend.
 TEST(Ease, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
   constexpr double kLift = 0.02;
   TwoSpheres spheres(2.3);
@@ -98,7 +98,7 @@ TEST(Ease, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
   EXPECT_LE(spheres.worst_skewness(), 0.24);
   EXPECT_LE(surface.mesh.number_of_vertices(), vertices);
   EXPECT_EQ(spheres.crossings(), 0u);
-  // What easing requires, in radii, and what that leaves to the distance.
+  // The vertices are at their lift above the boundary, to twice the tolerance of easing, 1e-3 radii.
   for (const Vertex v : surface.mesh.vertices()) EXPECT_NEAR(surface.distance[v], kLift, 2e-3) << v.idx();
 }
 

@@ -29,7 +29,7 @@ void check(const SeparationOptions& options) {
   if (options.max_moves < 0) throw InvalidInput("max_moves must not be negative");
 }
 
-// What one vessel must give up at a contact.
+// To what share of its radius one vessel must narrow at a contact.
 struct Hold {
   Index segment, leaf;  // of the original; or an isolated node and kNone
   double share;
@@ -51,7 +51,7 @@ class Round {
     }
   }
 
-  /// The holds for every contact that can be separated.
+  /// Those for every contact that can be separated.
   std::vector<Hold> holds() {
     const std::vector<ContactPair> pairs = find_contact_pairs(field_, options_.gap);
     Index regions = 0;

@@ -31,7 +31,7 @@ constexpr int kBalanceRounds = 1, kBalanceRoundsWithLimit = 2, kBalanceSweeps = 
 // skewer; kGoodEnergyWithLimit: safe 0.77 to 1.5.
 constexpr double kGoodEnergy = 1.2, kGoodEnergyWithLimit = 1.1;
 constexpr int kMostLiftDropRounds = 4;  // idle 3 to 6
-// Rounds in a row that prove no more faces: the last one may need edges a seventh as long; idle 10 to 20.
+// Patience: rounds without another face proven; the last one may need edges a seventh as long; idle 10 to 20.
 constexpr int kErrorRounds = 14;
 constexpr int kErrorSweeps = 4;       // safe 3 to 6
 constexpr int kSpotRounds = 10;       // each at most halves the edges; idle 7 to 14
