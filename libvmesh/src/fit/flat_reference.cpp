@@ -13,10 +13,10 @@
 namespace vmesh {
 namespace {
 
-constexpr double kFarthest = 2.5;                // radii along the vessel from an opening to a cap
-constexpr double kFarthestBack = 0.5;            // the same backwards: at most this much is cut off
-constexpr double kFacing = 0.7;                  // cosine between an opening's normal and a cap's
-constexpr double kFlat = 0.87;                   // cosine between normals of one cap: 30 degrees, as their edges are rounded
+constexpr double kFarthest = 2.5;      // radii along the vessel from an opening to a cap
+constexpr double kFarthestBack = 0.5;  // the same backwards: at most this much is cut off
+constexpr double kFacing = 0.7;        // cosine between an opening's normal and a cap's
+constexpr double kFlat = 0.87;         // cosine between normals of one cap: 30 degrees, as their edges are rounded
 constexpr double kSmallest = 0.5, kLargest = 5;  // areas of caps, relative to the opening's: a hemisphere has no cap
 constexpr double kShifted = 0.75;                // edges: a nearer opening is moved without an extension
 constexpr double kStretch = 0.25;                // of edges, at most
