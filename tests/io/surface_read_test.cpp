@@ -308,6 +308,14 @@ TEST(ReadScene, DamagedFilesAreRefusedOrRead) {
     }
   }
 }
+
+// assimp passes on what the file says.
+TEST(ReadScene, FacesReferToVerticesThatAreThere) {
+  const std::string path = VMESH_FOUND "/x3d/face_beyond_the_vertices.x3d";
+  const std::string refused = message_of<InvalidInput>([&] { read_surface(path); });
+  expect_contains(refused, path);
+  expect_contains(refused, "vertex 3 of a mesh with 3");
+}
 #else
 TEST(ReadScene, NeedsAssimp) {
   const TemporaryFolder folder;

@@ -18,7 +18,7 @@ namespace vmesh {
 namespace {
 
 /// First byte of the answer.
-constexpr char kDone = 'd', kInvalid = 'i', kUnsupported = 'u', kNoMemory = 'm';
+constexpr char kDone = 'd', kInvalid = 'i', kUnsupported = 'u', kNoMemory = 'm', kFailed = 'f';
 
 bool write_all(int to, const char* data, std::size_t size) {
   while (size > 0) {
@@ -59,7 +59,7 @@ std::string answer_of(const std::function<std::string()>& work) {
   } catch (const std::bad_alloc&) {
     return std::string(1, kNoMemory);
   } catch (const std::exception& error) {
-    return kInvalid + std::string(error.what());
+    return kFailed + std::string(error.what());
   }
 }
 
@@ -109,6 +109,8 @@ std::string in_child_process(const std::string& source, std::size_t file_size,
   answer.erase(0, 1);
   if (kind == kNoMemory) throw InvalidInput(source + ": reading it takes more than half of the free memory");
   if (kind == kInvalid) throw InvalidInput(answer);
+  if (kind == kFailed)
+    throw InvalidInput(source + ": the library that reads such files failed; the file may be damaged: " + answer);
   if (kind == kUnsupported) throw Unsupported(answer);
   return answer;
 }

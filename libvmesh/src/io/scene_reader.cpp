@@ -23,6 +23,9 @@ namespace {
 /// The faces of a scene with its nodes' transformations applied; coincident corners become one vertex.
 class SceneFaces {
  public:
+  /// `source`: for messages.
+  explicit SceneFaces(const std::string& source) : source_(source) {}
+
   void add(const aiScene& scene) { add_node(scene, *scene.mRootNode, aiMatrix4x4()); }
 
   /// Counts of vertices, faces and corners; vertices; for every face its number of corners and these.
@@ -59,11 +62,18 @@ class SceneFaces {
       if (face.mNumIndices < 3) continue;
       ++faces_;
       corners_.push_back(face.mNumIndices);
-      for (unsigned i = 0; i < face.mNumIndices; ++i)
-        corners_.push_back(number.at(face.mIndices[mirrored ? face.mNumIndices - 1 - i : i]));
+      for (unsigned i = 0; i < face.mNumIndices; ++i) {
+        const unsigned v = face.mIndices[mirrored ? face.mNumIndices - 1 - i : i];
+        if (v >= number.size()) {  // assimp checks some formats only
+          throw InvalidInput(source_ + ": a face refers to vertex " + std::to_string(v) + " of a mesh with " +
+                             std::to_string(number.size()));
+        }
+        corners_.push_back(number[v]);
+      }
     }
   }
 
+  const std::string& source_;
   std::map<std::array<float, 3>, std::uint32_t> number_;
   std::vector<std::array<float, 3>> vertices_;
   std::vector<std::uint32_t> corners_;
@@ -135,7 +145,7 @@ std::string imported(const std::filesystem::path& path, const std::string& conte
                              : importer.ReadFileFromMemory(content.data(), content.size(), 0, extension.c_str() + 1);
   if (!scene || !scene->mRootNode)
     throw InvalidInput(source + ": " + one_line(std::string_view(importer.GetErrorString()).substr(0, 300)));
-  SceneFaces faces;
+  SceneFaces faces(source);
   faces.add(*scene);
   const SceneFrame frame = frame_of(path, extension, *scene);
   std::string answer;
