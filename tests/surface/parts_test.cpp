@@ -170,7 +170,7 @@ TEST(Parts, ExcerptsAnswerAsTheWholeFieldDoes) {
   const Centerline tree = synthetic_tree({.vertices = 300, .seed = 9});
   const VesselField whole(tree, 0.5);
   const std::vector<Index> cones = {100, 101, 102, 103};
-  const FieldExcerpt excerpt = whole.excerpt(cones, 3);
+  const FieldExcerpt excerpt = FieldExcerpts(whole.relations()).take(cones, 3);
   const Centerline centerline = excerpt.centerline();
   const VesselField field(centerline, excerpt);
   ASSERT_LT(field.cone_count(), whole.cone_count() / 2);

@@ -83,7 +83,7 @@ TEST(Soundness, OfVesselsThatPartAndComeNearAgain) {
     }
   }
   const Centerline centerline(nodes, segments);
-  EXPECT_FALSE(find_contacts(VesselField(centerline, 0.5), 0.1).empty());
+  EXPECT_FALSE(find_contacts(ConeRelations(centerline, 0.5), 0.1).empty());
   expect_sound(centerline);
 }
 

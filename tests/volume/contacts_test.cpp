@@ -98,7 +98,7 @@ Centerline random_forest(Draw& draw, int trees, int nodes_each, double extent) {
 }
 
 std::vector<Contact> contacts_of(const Centerline& centerline, double gap, double blend = 0.5) {
-  return find_contacts(VesselField(centerline, blend), gap);
+  return find_contacts(ConeRelations(centerline, blend), gap);
 }
 
 double original_radius(const Centerline& original, const SegmentPiece& piece, double t) {
@@ -253,7 +253,7 @@ TEST(Contacts, NoneIsMissed) {
   for (int trial = 0; trial < 20; ++trial) {
     const Centerline centerline = random_forest(draw, 3, 25, 3);
     const VesselField field(centerline);
-    const auto contacts = find_contacts(field, 0.1);
+    const auto contacts = find_contacts(field.relations(), 0.1);
     double deepest = -1e9;
     constexpr int kSteps = 60;
     for (Index i = 0; i < field.cone_count(); ++i) {

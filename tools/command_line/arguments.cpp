@@ -191,7 +191,7 @@ void add_synth(CLI::App& app, SynthArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("synth", "Make a synthetic tree like a liver's portal vein");
   add_output(verb, arguments.output, "centerline");
   verb.add_option("--vertices", arguments.options.vertices, "nodes of the centerline")
-      ->check(in_range(2, 1000000))
+      ->check(in_range(2, 10000000))
       ->capture_default_str();
   verb.add_option("--seed", arguments.options.seed, "of the random numbers; each gives a different tree")
       ->capture_default_str();

@@ -21,7 +21,8 @@ class SplitCenterline {
   void add(Index cone, ConeOrigins& origins) const;
   SimplifiedCenterline::Piece piece_of(Index segment) const;
 
-  const PreparedCenterline& prepared_;
+  const PreparedCenterline& prepared_;  // its cleaned centerline, if simplified, is not asked again
+  Index cleaned_segments_;
   std::optional<SimplifiedCenterline> again_;
   GenerateOptions options_;
   std::vector<Index> label_;  // of cones of the cleaned centerline

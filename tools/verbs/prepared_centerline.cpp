@@ -1,6 +1,6 @@
 #include "verbs/prepared_centerline.h"
 
-#include "vmesh/volume/vessel_field.h"
+#include "vmesh/volume/cone_relations.h"
 
 #include "report/generate_log.h"
 
@@ -22,7 +22,7 @@ std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, const
                                                    Console& console) {
   const GenerateArguments& arguments = *report.arguments;
   if (arguments.overlap == OverlapHandling::keep) {
-    report.contacts = find_contacts(VesselField(centerline, arguments.options.blend), arguments.gap);
+    report.contacts = find_contacts(ConeRelations(centerline, arguments.options.blend), arguments.gap);
     if (!report.contacts.empty()) warn_of_contacts(report, console);
     return std::nullopt;
   }

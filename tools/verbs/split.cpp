@@ -1,6 +1,8 @@
 #include <numeric>
+#include <optional>
 
 #include "vmesh/core/atomic_file.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/io/sha256.h"
 #include "vmesh/parts/part_files.h"
 
@@ -100,7 +102,8 @@ int run(const SplitArguments& given, Console& console) {
   check_outputs({{given.common.json, PlannedOutput::Kind::summary}}, files_of(given.input));
   Stopwatch watch;
   std::vector<StageTime> stages;
-  const LoadedCenterline loaded = load_clean_centerline(given.input, console);
+  std::optional<LoadedCenterline> loaded = load_clean_centerline(given.input, console);
+  release_freed_memory();
   PartsManifest manifest;
   manifest.source = {generator_name(), describe(arguments), file_name_of(given.input), sha256_of(given.input)};
   manifest.id = vmesh::sha256_of(manifest.source.generator + "\n" + manifest.source.options + "\n" +
@@ -110,9 +113,12 @@ int run(const SplitArguments& given, Console& console) {
 
   GenerateReport report;
   report.arguments = &arguments;
-  report.cleaned = &loaded.cleaned;
+  report.cleaned = &loaded->cleaned;
   const PreparedCenterline prepared = prepare_centerline(report, console);
   const SplitCenterline centerline(prepared, arguments.options);
+  report.cleaned = nullptr;
+  if (prepared.simplified) loaded.reset();  // not needed any more, and large
+  release_freed_memory();
   stages.push_back({"prepare", watch.lap()});
   stop_if_interrupted();
 

@@ -48,7 +48,7 @@ void warn_of_contacts_left(const std::vector<Contact>& left, std::vector<std::st
 }
 
 void warn_of_contacts(const Centerline& centerline, const GrowthRequest& request, std::vector<std::string>& warnings) {
-  const std::vector<Contact> contacts = find_contacts(VesselField(centerline, request.options.blend), request.gap);
+  const std::vector<Contact> contacts = find_contacts(ConeRelations(centerline, request.options.blend), request.gap);
   if (contacts.empty()) return;
   warnings.push_back("vessels that are not neighbours touch in " + counted(contacts.size(), "place") +
                      ", the deepest " + describe(contacts.front()) +

@@ -23,7 +23,7 @@ using growth::Branch;
 using growth::RadiusLaw;
 using portable::norm;
 
-constexpr std::size_t kMaxVertices = 1'000'000;
+constexpr std::size_t kMaxVertices = 10'000'000;
 constexpr double kVerticesPerEnd = 7.8;
 constexpr double kLeafTaper = 0.9;  // end radius of a twig / start radius
 constexpr double kGap = 1.04;       // between capsules' axes, in sums of radii

@@ -6,6 +6,9 @@
 #include <limits>
 #include <string_view>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -82,6 +85,12 @@ void require_memory(double bytes, const std::string& what, const std::string& ad
   if (!available || bytes <= static_cast<double>(*available)) return;
   throw Unsupported(what + " needs about " + gigabytes(bytes) + " of memory and " +
                     gigabytes(static_cast<double>(*available)) + " are free; " + advice);
+}
+
+void release_freed_memory() {
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
 }
 
 }  // namespace vmesh

@@ -156,7 +156,7 @@ void renumber(const GrowthCenterline& growth, const Centerline& full, GenerateRe
     for (Index& s : note.segments) s = growth.segment[s];
     for (Index& n : note.nodes) n = growth.node[n];
   }
-  for (GrowthSimplification& note : notes_of_buried(growth, full))
+  for (GrowthSimplification& note : notes_of_buried(growth.buried, full))
     result.growth.simplifications.push_back(std::move(note));
 }
 

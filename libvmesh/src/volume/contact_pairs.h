@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "vmesh/volume/vessel_field.h"
+#include "vmesh/volume/cone_relations.h"
 
 namespace vmesh {
 
@@ -16,7 +16,7 @@ struct AxisStretch {
 };
 
 /// The stretch of `cone` between parameters `first` and `last`.
-AxisStretch stretch_of(const VesselField& field, Index cone, double first = 0, double last = 1);
+AxisStretch stretch_of(const ConeRelations& cones, Index cone, double first = 0, double last = 1);
 
 /// Where two cones come closest, in terms of the wall distance minus `gap` times the smaller local radius.
 struct ClosestApproach {
@@ -40,6 +40,6 @@ struct ContactPair {
 };
 
 /// All such pairs, ordered by (i, j).
-std::vector<ContactPair> find_contact_pairs(const VesselField& field, double gap);
+std::vector<ContactPair> find_contact_pairs(const ConeRelations& cones, double gap);
 
 }  // namespace vmesh

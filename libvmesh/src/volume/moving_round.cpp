@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include "vmesh/volume/vessel_field.h"
+
 #include "volume/contact_pairs.h"
 
 namespace vmesh {
@@ -73,7 +75,7 @@ class MovingRound {
   // The leaves that would lose too much, by region.
   std::map<Index, Region> close_regions() const {
     std::map<Index, Region> regions;
-    for (const ContactPair& pair : find_contact_pairs(field_, task_.gap)) {
+    for (const ContactPair& pair : find_contact_pairs(field_.relations(), task_.gap)) {
       for (const auto& [cone, other] : {std::pair{pair.i, pair.j}, std::pair{pair.j, pair.i}}) {
         for (CloseLeaf& leaf : close_leaves(cone, other, pair.gap)) regions[pair.region].push_back(std::move(leaf));
       }
@@ -83,11 +85,11 @@ class MovingRound {
 
   Region close_leaves(Index cone, Index other, double gap) const {
     Region leaves;
-    const AxisStretch across = stretch_of(field_, other);
+    const AxisStretch across = stretch_of(field_.relations(), other);
     const Index count = cone < task_.narrowed.pieces.size() ? leaf_count_of(task_.narrowed.centerline, cone) : 1;
     for (Index n = 0; n < count; ++n) {
       const double first = static_cast<double>(n) / count, last = static_cast<double>(n + 1) / count;
-      const AxisStretch part = stretch_of(field_, cone, first, last);
+      const AxisStretch part = stretch_of(field_.relations(), cone, first, last);
       if (are_apart(part, across, gap, 0)) continue;
       const ClosestApproach closest = closest_approach(part, across, gap);
       if (closest.excess >= 0) continue;

@@ -45,7 +45,7 @@ class Round {
         narrowed_(narrowed),
         options_(options),
         most_taken_(most_taken),
-        field_(narrowed.centerline, options.blend) {
+        cones_(narrowed.centerline, options.blend) {
     for (Index n = 0; n < original.nodes().size(); ++n) {
       if (original.degree(n) == 0) isolated_.push_back(n);
     }
@@ -53,7 +53,7 @@ class Round {
 
   /// Those for every contact that can be separated.
   std::vector<Hold> holds() {
-    const std::vector<ContactPair> pairs = find_contact_pairs(field_, options_.gap);
+    const std::vector<ContactPair> pairs = find_contact_pairs(cones_, options_.gap);
     Index regions = 0;
     for (const ContactPair& pair : pairs) regions = std::max(regions, pair.region + 1);
     std::vector<std::vector<Hold>> per_region(regions);
@@ -73,11 +73,11 @@ class Round {
 
  private:
   void hold_cone(Index cone, Index other, double gap, std::vector<Hold>& holds) const {
-    const AxisStretch across = stretch_of(field_, other);
+    const AxisStretch across = stretch_of(cones_, other);
     if (cone >= narrowed_.pieces.size()) {
       const Index node = isolated_[cone - narrowed_.pieces.size()];
-      const double kept = kept_share(stretch_of(field_, cone), across, gap);
-      holds.push_back({node, kNone, kept * field_.radius_at(cone, 0) / original_.node(node).radius});
+      const double kept = kept_share(stretch_of(cones_, cone), across, gap);
+      holds.push_back({node, kNone, kept * cones_.radius_at(cone, 0) / original_.node(node).radius});
       return;
     }
     const SegmentPiece& piece = narrowed_.pieces[cone];
@@ -86,12 +86,12 @@ class Round {
       const double first = std::max(0.0, (leaf / count - piece.t_first) / width);
       const double last = std::min(1.0, ((leaf + 1) / count - piece.t_first) / width);
       if (!(first < last)) continue;
-      const AxisStretch part = stretch_of(field_, cone, first, last);
+      const AxisStretch part = stretch_of(cones_, cone, first, last);
       if (are_apart(part, across, gap, 0)) continue;
       const ClosestApproach closest = closest_approach(part, across, gap);
       if (closest.excess >= 0) continue;
       const double t = first + closest.s * (last - first);
-      const double share = field_.radius_at(cone, t) / original_.radius_at(piece.segment, piece.original_t(t));
+      const double share = cones_.radius_at(cone, t) / original_.radius_at(piece.segment, piece.original_t(t));
       holds.push_back({piece.segment, leaf, share * kept(closest, part, across, gap)});
     }
   }
@@ -110,7 +110,7 @@ class Round {
   const DividedCenterline& narrowed_;
   const SeparationOptions& options_;
   double most_taken_;
-  VesselField field_;
+  ConeRelations cones_;
   std::vector<Index> isolated_;
 };
 
@@ -137,7 +137,7 @@ std::vector<Index> branch_of_segments(const Centerline& centerline) {
 std::vector<Contact> contacts_left(const Centerline& original, const DividedCenterline& narrowed,
                                    const SeparationOptions& options) {
   const std::vector<Index> branch_of = branch_of_segments(original);
-  std::vector<Contact> contacts = find_contacts(VesselField(narrowed.centerline, options.blend), options.gap);
+  std::vector<Contact> contacts = find_contacts(ConeRelations(narrowed.centerline, options.blend), options.gap);
   for (Contact& contact : contacts) {
     for (ContactSide& side : contact.sides) {
       if (side.segment >= narrowed.pieces.size()) {
@@ -329,7 +329,7 @@ SeparatedCenterline moved_and_narrowed(const Centerline& original, const Separat
 SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options,
                                       const Progress& progress) {
   check(options);
-  std::vector<Contact> before = find_contacts(VesselField(centerline, options.blend), options.gap);
+  std::vector<Contact> before = find_contacts(ConeRelations(centerline, options.blend), options.gap);
   if (before.empty()) {
     DividedCenterline whole = undivided(centerline);
     return {std::move(whole.centerline), std::move(whole.pieces), {}};

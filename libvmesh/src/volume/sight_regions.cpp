@@ -23,14 +23,12 @@ class Borders {
  public:
   Borders(const Centerline& centerline, double blend)
       : centerline_(centerline), wide_{std::max(kOneVolume.smaller, 2 * blend), kOneVolume.larger} {
-    std::vector<Vec3> low, high;
-    for (const auto& [a, b] : centerline.segments()) {
-      const auto &from = centerline.node(a), &to = centerline.node(b);
+    boxes_ = BoxTree(static_cast<Index>(centerline.segments().size()), [&](Index s) {
+      const auto &from = centerline.node(centerline.segment(s).a), &to = centerline.node(centerline.segment(s).b);
       const double widest = std::max(from.radius, to.radius), reach = widest + wide_.gap(widest, widest);
-      low.push_back(from.position.cwiseMin(to.position).array() - reach);
-      high.push_back(from.position.cwiseMax(to.position).array() + reach);
-    }
-    boxes_ = BoxTree(low, high);
+      return BoxTree::Box{from.position.cwiseMin(to.position).array() - reach,
+                          from.position.cwiseMax(to.position).array() + reach};
+    });
   }
 
   // The segments of the vessel that the node may face; empty if the node is not a border.

@@ -8,7 +8,7 @@ namespace vmesh {
 
 /// Which synthetic tree to make.
 struct SyntheticTreeOptions {
-  std::size_t vertices = 1560;  ///< nodes of the centerline, exactly; 2 to 1,000,000
+  std::size_t vertices = 1560;  ///< nodes of the centerline, exactly; 2 to 10,000,000
   std::uint64_t seed = 1;       ///< of the random numbers; each gives a different tree
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "vmesh/core/types.h"
@@ -13,6 +14,12 @@ class BoxTree {
   BoxTree() = default;
   /// `low`, `high`: the items' boxes (mm). O(n log n), deterministic.
   BoxTree(const std::vector<Vec3>& low, const std::vector<Vec3>& high);
+
+  struct Box {
+    Vec3 low, high;
+  };
+  /// The same for items 0 to `count` - 1 whose boxes are computed when they are needed, twice each: takes less memory.
+  BoxTree(Index count, const std::function<Box(Index)>& box_of);
 
   /// Calls visit(item) for every item whose signed distance at `p` may be at most `limit`, near boxes first. The
   /// visitor may lower `limit` as it goes, which finds a minimum.
@@ -49,7 +56,7 @@ class BoxTree {
 
   struct Item;
   void divide(Index node, std::vector<Item>& items, Index first, Index count);
-  void enclose(Node& node, const std::vector<Vec3>& low, const std::vector<Vec3>& high) const;
+  void enclose(Node& node, const std::function<Box(Index)>& box_of) const;
 
   template <class Visit>
   void visit_node(Index n, const Vec3& p, const double& limit, Visit&& visit_item) const {

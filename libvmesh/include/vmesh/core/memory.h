@@ -14,4 +14,8 @@ std::optional<std::uint64_t> available_memory();
 /// free; ADVICE".
 void require_memory(double bytes, const std::string& what, const std::string& advice);
 
+/// Returns to the system what has been freed and the allocator keeps (glibc; elsewhere nothing happens): worth it after
+/// a stage that freed gigabytes in small blocks.
+void release_freed_memory();
+
 }  // namespace vmesh

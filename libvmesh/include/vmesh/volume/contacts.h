@@ -6,7 +6,7 @@
 
 #include "vmesh/centerline/centerline.h"
 #include "vmesh/core/progress.h"
-#include "vmesh/volume/vessel_field.h"
+#include "vmesh/volume/cone_relations.h"
 
 namespace vmesh {
 
@@ -19,7 +19,7 @@ struct ContactSide {
 };
 
 /// A region where two vessels come close in space without being neighbours along the graph: their cones are not local
-/// to each other (VesselField::local_cones), so each gets a wall of its own and the walls meet.
+/// to each other (ConeRelations::local_cones), so each gets a wall of its own and the walls meet.
 struct Contact {
   Vec3 position =
       Vec3::Zero();  ///< midway between the two walls where they are closest relative to the smaller radius, mm
@@ -31,10 +31,10 @@ struct Contact {
 /// All regions where vessels that are not neighbours come closer than `gap` times the smaller of their radii. Each is
 /// described at its deepest pair of cones. Deepest first, ties by segments. Time is near linear in the cones and linear
 /// in the pairs of cones whose boxes overlap. At a fork, the walls count as two vessels once they have parted by a
-/// quarter of the sum of the radii; there a gap of at most 0.4 is required of them. Rounding at branches (the field's
-/// blend) counts where it narrows the gap, up to a fifth of the sum of the radii. Throws InvalidInput unless `gap` is
-/// in [0, 1].
-std::vector<Contact> find_contacts(const VesselField& field, double gap);
+/// quarter of the sum of the radii; there a gap of at most 0.4 is required of them. Rounding at branches (the blend)
+/// counts where it narrows the gap, up to a fifth of the sum of the radii. Throws InvalidInput unless `gap` is in
+/// [0, 1].
+std::vector<Contact> find_contacts(const ConeRelations& cones, double gap);
 
 struct SeparationOptions {
   double gap = 0.1;         ///< gap to be left between two vessels, in smaller (narrowed) radii; in (0, 1]

@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "vmesh/centerline/centerline.h"
+#include "vmesh/core/box_tree.h"
+#include "vmesh/volume/cone_relations.h"
 
 namespace vmesh {
 
@@ -30,6 +31,25 @@ struct FieldExcerpt {
   std::vector<std::array<double, 2>> rounding;  ///< of cones, the shares of the blend at their ends
 
   Centerline centerline() const { return {nodes, segments}; }
+};
+
+/// Takes excerpts of the VesselField of a centerline without making that field: for centerlines too large for one.
+class FieldExcerpts {
+ public:
+  /// `relations` must outlive it.
+  explicit FieldExcerpts(const ConeRelations& relations);
+
+  const ConeRelations& relations() const { return relations_; }
+
+  /// What is needed to answer queries whose hints are among `cones` and the cones local to them: everything local to
+  /// these, and all cones within `reach` radii of the walls of `cones`.
+  FieldExcerpt take(std::span<const Index> cones, double reach) const;
+
+ private:
+  std::vector<Index> near_boxes(std::span<const Index> cones, double reach) const;
+
+  const ConeRelations& relations_;
+  BoxTree tree_;  // of cones
 };
 
 /// The union of several excerpts of one field. Throws InvalidInput for an inconsistent one.

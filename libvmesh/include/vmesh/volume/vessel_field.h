@@ -6,21 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "vmesh/centerline/centerline.h"
 #include "vmesh/core/box_tree.h"
-#include "vmesh/volume/field_excerpt.h"
+#include "vmesh/volume/cone_relations.h"
 
 namespace vmesh {
 
 struct ConeLanes;
-
-/// What a VesselField knows about a point.
-struct FieldSample {
-  double distance = 0;           ///< signed, mm; negative inside the vessel
-  Vec3 gradient = Vec3::Zero();  ///< of the distance; unit for the plain union, zero on a vessel's axis
-  Index cone = kNone;            ///< the closest round cone
-  double t = 0;                  ///< parameter on its axis of the sphere that touches the boundary there, in [0, 1]
-};
 
 /// The vessel volume of a centerline: the union of its round cones (convex hulls of two spheres), as a signed
 /// distance. Cone i < segments().size() belongs to segment i; then follow the isolated nodes as spheres.
@@ -46,11 +37,8 @@ class VesselField {
   /// that leads to another hint throws std::logic_error. Global queries cover the excerpt only.
   VesselField(const Centerline& centerline, const FieldExcerpt& excerpt);
 
-  /// What is needed to answer queries whose hints are among `cones` and the cones local to them: everything local to
-  /// these, and all cones within `reach` radii of the walls of `cones`.
-  FieldExcerpt excerpt(std::span<const Index> cones, double reach) const;
-
-  const Centerline& centerline() const { return *centerline_; }
+  const ConeRelations& relations() const { return relations_; }
+  const Centerline& centerline() const { return relations_.centerline(); }
   double blend() const { return blend_; }
   std::size_t cone_count() const { return cones_.size(); }
 
@@ -76,14 +64,10 @@ class VesselField {
   FieldSample sample_cone(const Vec3& p, Index cone) const;
 
   /// The cones that take part in a local query with hint `cone`, `cone` included, ascending.
-  std::span<const Index> local_cones(Index cone) const {
-    if (!complete_.empty() && !complete_[cone]) throw_incomplete(cone);
-    return {local_.data() + local_offsets_[cone], local_.data() + local_offsets_[cone + 1]};
-  }
+  std::span<const Index> local_cones(Index cone) const { return relations_.local_cones(cone); }
 
-  /// Whether two cones count as one volume: they are local to each other, and not only because, where their vessels
-  /// part, the rounding between them extends farther than they touch.
-  bool are_one_volume(Index i, Index j) const;
+  /// See ConeRelations.
+  bool are_one_volume(Index i, Index j) const { return relations_.are_one_volume(i, j); }
 
   /// Whether two cones are blended where both are near: not if their vessels have parted and come near again.
   bool are_blended(Index i, Index j) const;
@@ -106,6 +90,8 @@ class VesselField {
   Vec3 axis_point(Index cone, double t) const { return cones_[cone].origin + t * cones_[cone].axis; }
 
  private:
+  friend class ConeRelations;
+
   struct Cone {
     Vec3 origin, axis;  // axis = last - first, mm
     double r0 = 0, r1 = 0;
@@ -114,13 +100,7 @@ class VesselField {
     double lag = 0;                       // tan(half angle) / |axis|: how far the touching sphere lags the foot point
     double t_low = 0, t_high = 1;         // equal where one end sphere contains the other
     Index a = kNone, b = kNone;
-    bool is_apart = false;  // apart from some other: listed in apart_
-  };
-  // Consecutive cones along the graph form a run. From sphere to sphere along it, neither a distance nor a distance
-  // less the widest blend changes by more than `travel` does.
-  struct Run {
-    Index number = kNone;
-    double travel = 0;  // from the run's start to the cone's end, mm
+    bool is_apart = false;  // apart from some other: listed in relations_
   };
   struct Distance {
     double value;
@@ -140,6 +120,7 @@ class VesselField {
   };
 
   static Cone make_cone(const Centerline& centerline, Index a, Index b);
+  static FieldSample sample_of(const Cone& cone, const Vec3& p, Index number);
   static Distance distance_to(const Cone& cone, const Vec3& p);
   static Vec3 gradient_of(const Cone& cone, const Vec3& p, double t);
   double max_radius(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
@@ -159,27 +140,19 @@ class VesselField {
   bool is_lonely(Index cone, const Vec3& low, const Vec3& high) const;
   void fill_lanes(std::span<const Index> cones, const Vec3& center, double per_unit, ConeLanes& lanes) const;
   static std::uint64_t new_number();
-  [[noreturn]] static void throw_incomplete(Index cone);
+  void finish();
   void make_cones();
-  std::vector<Index> near_boxes(std::span<const Index> cones, double reach) const;
-  void measure_runs();
   void measure_spheres();
-  void find_local_cones();
   void build_tree();
 
-  const Centerline* centerline_;
+  ConeRelations relations_;
   double blend_;
   bool only_double_ = false;
   std::uint64_t number_ = new_number();  // of this field and its copies, which are equal
   std::vector<Cone> cones_;
-  std::vector<Run> runs_;
   std::vector<Sphere> spheres_;
-  std::vector<Index> local_offsets_, local_;
-  std::vector<char> complete_;                  // of cones; empty: all are
-  std::vector<char> is_parting_;                // of local_
-  std::vector<std::pair<Index, Index>> apart_;  // ascending
-  BoxTree tree_;                                // of pieces of cones
-  std::vector<Index> cone_of_item_;             // in the tree
+  BoxTree tree_;                     // of pieces of cones
+  std::vector<Index> cone_of_item_;  // in the tree
   // For every cone: whether only local ones are near, once that has been determined.
   enum Lonely : char { not_asked, lonely, in_company };
   mutable std::vector<char> lonely_;

@@ -18,11 +18,13 @@ constexpr double kNeedleSlack =
     0.25;  // of that radius: how far a needle may protrude where a branch ends; safe 0.17 to 0.35
 constexpr int kMaxPieces = 2000;  // derived: per segment; a hair that long is not buried, or not worth testing
 
+// In a VesselField, or in the relations of its cones alone.
+template <class Cones>
 class Burial {
  public:
-  explicit Burial(const VesselField& field)
-      : field_(field),
-        centerline_(field.centerline()),
+  explicit Burial(const Cones& cones)
+      : cones_(cones),
+        centerline_(cones.centerline()),
         left_(centerline_.segments().size(), 1),
         in_branch_(left_.size(), 0) {}
 
@@ -35,7 +37,6 @@ class Burial {
     }
     return std::move(buried_);
   }
-  bool is_left(Index segment) const { return left_[segment]; }
 
  private:
   // Trims from an end what lies within the sphere of one node of the branch: there the radius falls faster than the
@@ -134,7 +135,7 @@ class Burial {
     if (pieces > kMaxPieces) return false;
     for (int k = 0; k < pieces; ++k) {
       const double begin = k / pieces, end = (k + 1) / pieces;
-      field_.local_cones_near(centerline_.point_at(s, begin), s, depth_in_others(s, begin), near_);
+      cones_.local_cones_near(centerline_.point_at(s, begin), s, depth_in_others(s, begin), near_);
       const bool covered = std::any_of(near_.begin(), near_.end(), [&](Index cone) {
         return is_other(cone) && holds(cone, s, begin) && holds(cone, s, end);
       });
@@ -149,10 +150,10 @@ class Burial {
   double depth_in_others(Index s, double t) const { return (kSlack - 1) * centerline_.radius_at(s, t); }
 
   bool holds(Index cone, Index s, double t) const {
-    return field_.sample_cone(centerline_.point_at(s, t), cone).distance <= depth_in_others(s, t);
+    return cones_.sample_cone(centerline_.point_at(s, t), cone).distance <= depth_in_others(s, t);
   }
 
-  const VesselField& field_;
+  const Cones& cones_;
   const Centerline& centerline_;
   double widest_ = 0;
   std::vector<char> left_, in_branch_;
@@ -162,40 +163,46 @@ class Burial {
 
 }  // namespace
 
-GrowthCenterline without_buried_branches(const VesselField& field) {
-  const Centerline& full = field.centerline();
-  Burial burial(field);
-  std::vector<BuriedBranch> buried = burial.run();
+std::vector<BuriedBranch> find_buried_branches(const VesselField& field) { return Burial(field).run(); }
+
+std::vector<BuriedBranch> find_buried_branches(const ConeRelations& cones) { return Burial(cones).run(); }
+
+GrowthCenterline without_buried_branches(const Centerline& full, std::vector<BuriedBranch> buried) {
+  std::vector<char> left(full.segments().size(), 1);
+  for (const BuriedBranch& branch : buried) {
+    for (const Index s : branch.segments) left[s] = 0;
+  }
   std::vector<Index> number(full.nodes().size(), kNone), kept_nodes, kept_segments, kept_cones;
   std::vector<CenterlineNode> nodes;
   std::vector<CenterlineSegment> segments;
-  const auto number_of = [&](Index n) {
-    if (number[n] == kNone) {
-      number[n] = static_cast<Index>(nodes.size());
-      nodes.push_back(full.node(n));
-      kept_nodes.push_back(n);
-    }
-    return number[n];
-  };
+  std::size_t isolated = 0;
   for (Index n = 0; n < full.nodes().size(); ++n) {
     const auto incident = full.incident_segments(n);
-    if (incident.empty() || std::any_of(incident.begin(), incident.end(), [&](Index s) { return burial.is_left(s); }))
-      number_of(n);
+    isolated += incident.empty();
+    if (!incident.empty() && std::none_of(incident.begin(), incident.end(), [&](Index s) { return left[s] != 0; }))
+      continue;
+    number[n] = static_cast<Index>(nodes.size());
+    nodes.push_back(full.node(n));
+    kept_nodes.push_back(n);
   }
   for (Index s = 0; s < full.segments().size(); ++s) {
-    if (!burial.is_left(s)) continue;
+    if (!left[s]) continue;
     segments.push_back({number[full.segment(s).a], number[full.segment(s).b]});
     kept_segments.push_back(s);
   }
   kept_cones = kept_segments;
-  for (Index c = static_cast<Index>(full.segments().size()); c < field.cone_count(); ++c) kept_cones.push_back(c);
+  for (std::size_t i = 0; i < isolated; ++i) kept_cones.push_back(static_cast<Index>(full.segments().size() + i));
   return {Centerline(std::move(nodes), std::move(segments)), std::move(kept_nodes), std::move(kept_segments),
           std::move(kept_cones), std::move(buried)};
 }
 
-std::vector<GrowthSimplification> notes_of_buried(const GrowthCenterline& growth, const Centerline& full) {
+GrowthCenterline without_buried_branches(const VesselField& field) {
+  return without_buried_branches(field.centerline(), find_buried_branches(field));
+}
+
+std::vector<GrowthSimplification> notes_of_buried(const std::vector<BuriedBranch>& all_buried, const Centerline& full) {
   std::vector<GrowthSimplification> notes;
-  for (const BuriedBranch& buried : growth.buried) {
+  for (const BuriedBranch& buried : all_buried) {
     const Index middle = buried.segments[buried.segments.size() / 2];
     GrowthSimplification note{
         GrowthSimplification::Kind::buried_branch, full.point_at(middle, 0.5), {}, buried.segments, {}};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <ranges>
 
 #include <tbb/parallel_for.h>
 
@@ -165,7 +164,7 @@ class SeamSearch {
 void add_stretches(const RingCounts& rings, Index branch, std::span<const RingPlace> seams,
                    std::vector<Stretch>& stretches) {
   const auto count = rings.along(branch);
-  const bool periodic = rings.axes()[branch].periodic();
+  const bool periodic = is_loop(rings.centerline(), rings.branches()[branch]);
   if (seams.empty()) {
     stretches.push_back({branch, 0, count});
     return;
@@ -183,7 +182,8 @@ void add_stretches(const RingCounts& rings, Index branch, std::span<const RingPl
 
 std::vector<Stretch> stretches_between(const RingCounts& rings, const std::vector<RingPlace>& seams) {
   std::vector<Stretch> stretches;
-  for (auto first = seams.begin(); const auto b : std::views::iota(Index{0}, static_cast<Index>(rings.axes().size()))) {
+  auto first = seams.begin();
+  for (Index b = 0; b < rings.branches().size(); ++b) {
     const auto last = std::find_if(first, seams.end(), [&](const RingPlace& seam) { return seam.branch != b; });
     add_stretches(rings, b, std::span(first, last), stretches);
     first = last;
@@ -200,7 +200,7 @@ class PlanMaker {
         node_count_(static_cast<Index>(rings.centerline().nodes().size())),
         parts_(stretches_.size() + node_count_) {
     for (Index i = 0; i < stretches_.size(); ++i) {
-      const auto& branch = rings.axes()[stretches_[i].branch].branch();
+      const auto& branch = rings.branches()[stretches_[i].branch];
       if (!stretches_[i].seam_at_first) parts_.join(i, part_of(branch.nodes.front()));
       if (!stretches_[i].seam_at_last) parts_.join(i, part_of(branch.nodes.back()));
     }
@@ -294,7 +294,7 @@ Anchor anchor_of(const PiecePlan& plan) {
   return {{plan.stretches.front().branch, plan.stretches.front().first}, kNone};
 }
 
-RingCounts::RingCounts(const VesselTubes& tubes) : axes_(tubes) {
+RingCounts::RingCounts(const VesselTubes& tubes) : centerline_(tubes.centerline()), branches_(tubes.branches()) {
   for (Index b = 0; b < tubes.axes().size(); ++b) counts_.push_back(static_cast<Index>(tubes.rings(b).size()));
 }
 

@@ -15,16 +15,18 @@ struct Anchor {
 /// How many rings lie along each branch.
 class RingCounts {
  public:
-  /// `axes` must outlive it.
-  RingCounts(const VesselAxes& axes, std::vector<Index> counts) : axes_(axes), counts_(std::move(counts)) {}
+  /// `centerline` and `branches` must outlive it.
+  RingCounts(const Centerline& centerline, const std::vector<Branch>& branches, std::vector<Index> counts)
+      : centerline_(centerline), branches_(branches), counts_(std::move(counts)) {}
   explicit RingCounts(const VesselTubes& tubes);
 
-  const std::vector<BranchAxis>& axes() const { return axes_.axes(); }
-  const Centerline& centerline() const { return axes_.centerline(); }
+  const Centerline& centerline() const { return centerline_; }
+  const std::vector<Branch>& branches() const { return branches_; }
   Index along(Index branch) const { return counts_[branch]; }
 
  private:
-  const VesselAxes& axes_;
+  const Centerline& centerline_;
+  const std::vector<Branch>& branches_;
   std::vector<Index> counts_;
 };
 

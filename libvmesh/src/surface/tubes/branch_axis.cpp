@@ -19,7 +19,7 @@ double radii_along(double length, double r0, double r1) {
 BranchAxis::BranchAxis(const Centerline& centerline, const Branch& branch)
     : centerline_(&centerline),
       branch_(&branch),
-      periodic_(branch.nodes.front() == branch.nodes.back() && centerline.degree(branch.nodes.front()) == 2),
+      periodic_(is_loop(centerline, branch)),
       starts_at_tip_(centerline.degree(branch.nodes.front()) == 1),
       ends_at_tip_(centerline.degree(branch.nodes.back()) == 1),
       places_(1, 0),

@@ -6,6 +6,11 @@
 
 namespace vmesh {
 
+/// Whether a branch is a loop without a branching node.
+inline bool is_loop(const Centerline& centerline, const Branch& branch) {
+  return branch.nodes.front() == branch.nodes.back() && centerline.degree(branch.nodes.front()) == 2;
+}
+
 /// A branch by arc length: its axis from place 0 to place length(), in mm.
 class BranchAxis {
  public:
