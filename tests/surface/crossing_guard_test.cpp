@@ -76,7 +76,7 @@ TEST(Mend, TakesNeedlesOutWithoutACrossing) {
 }
 
 // Vertices a third of the way to a neighbour: skewed, yet not bad enough to mend.
-TEST(Ease, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
+TEST(ImproveWorstFaces, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
   constexpr double kLift = 0.02;
   TwoSpheres spheres(2.3);
   BoundSurface& surface = spheres.surface;
@@ -94,11 +94,11 @@ TEST(Ease, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
   const auto vertices = surface.mesh.number_of_vertices();
   ASSERT_LT(even, 0.24);
   ASSERT_GT(spheres.worst_skewness(), 0.35);
-  ease_worst_faces(surface, 0.24);
+  improve_worst_faces(surface, 0.24);
   EXPECT_LE(spheres.worst_skewness(), 0.24);
   EXPECT_LE(surface.mesh.number_of_vertices(), vertices);
   EXPECT_EQ(spheres.crossings(), 0u);
-  // The vertices are at their lift above the boundary, to twice the tolerance of easing, 1e-3 radii.
+  // The vertices are at their lift above the boundary, to twice the tolerance of improving, 1e-3 radii.
   for (const Vertex v : surface.mesh.vertices()) EXPECT_NEAR(surface.distance[v], kLift, 2e-3) << v.idx();
 }
 

@@ -86,7 +86,7 @@ TEST(Generate, MakesForksOfManyAngles) {
   }
 }
 
-// Measured on seeds 11 to 20: .241 to .258; .311 to .316 if the worst triangles are polished, but not eased.
+// Measured on seeds 11 to 20: .241 to .258; .311 to .316 if the worst triangles are polished, but not improved.
 TEST(Generate, LeavesNoTriangleOfATreeSkew) {
   SyntheticTreeOptions tree;
   tree.vertices = 400;

@@ -30,7 +30,7 @@ void require_offsets(const ArrayFile& file, const std::string& name, const std::
                      std::size_t count) {
   file.require(!offsets.empty() && offsets.front() == 0 && offsets.back() == count &&
                    std::is_sorted(offsets.begin(), offsets.end()),
-               "is damaged: the lists of " + name + " do not fit together");
+               "is damaged: the lists of " + name + " are inconsistent");
 }
 
 std::vector<std::vector<Index>> read_lists(ArrayFile& file, const std::string& name) {
@@ -137,7 +137,7 @@ PlanLists lists_of(const std::vector<PiecePlan>& pieces) {
 std::vector<PiecePlan> read_plans(ArrayFile& file) {
   std::vector<std::vector<Index>> nodes = read_lists(file, "pieces.nodes");
   const std::vector<std::vector<Index>> stretches = read_lists(file, "pieces.stretches");
-  file.require(nodes.size() == stretches.size(), "is damaged: the pieces do not fit together");
+  file.require(nodes.size() == stretches.size(), "is damaged: the pieces are inconsistent");
   std::vector<PiecePlan> pieces;
   for (std::size_t p = 0; p < nodes.size(); ++p) {
     PiecePlan plan{std::move(nodes[p]), {}};
@@ -211,7 +211,7 @@ ConeOrigins read_origins(ArrayFile& file, std::size_t cones, std::size_t nodes) 
                    origins.within.size() == count && origins.stretch.size() == cones &&
                    origins.branch.size() == cones && origins.offsets.size() == cones + 1 &&
                    origins.node.size() == nodes,
-               "is damaged: what its cones stand for does not fit together");
+               "is damaged: what its cones stand for is inconsistent");
   require_offsets(file, "origins", origins.offsets, count);
   file.require(std::adjacent_find(origins.offsets.begin(), origins.offsets.end()) == origins.offsets.end(),
                "is damaged: a cone stands for nothing");
@@ -260,7 +260,7 @@ StoredPart read_part(const std::filesystem::path& path) {
   part.field.blend = part.options.blend;
   std::vector<std::vector<Index>> nodes = read_lists(file, "branches.nodes");
   std::vector<std::vector<Index>> segments = read_lists(file, "branches.segments");
-  file.require(nodes.size() == segments.size(), "is damaged: the branches do not fit together");
+  file.require(nodes.size() == segments.size(), "is damaged: the branches are inconsistent");
   for (std::size_t b = 0; b < nodes.size(); ++b) part.branches.push_back({std::move(nodes[b]), std::move(segments[b])});
   part.pieces = read_plans(file);
   std::vector<Index> seams;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates: in a box
 
 void require(bool holds, const char* what) {
-  if (!holds) throw InvalidInput(std::string("an excerpt of a field does not fit together: ") + what);
+  if (!holds) throw InvalidInput(std::string("an excerpt of a field is inconsistent: ") + what);
 }
 
 void check(const FieldExcerpt& e) {

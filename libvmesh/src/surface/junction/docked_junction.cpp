@@ -93,7 +93,7 @@ class JunctionDocker {
 
   void add_face(Vertex a, Vertex b, Vertex c) {
     if (surface_.mesh.add_face(a, b, c) == SurfaceMesh::null_face())
-      throw std::logic_error("the surfaces of a junction and its tubes do not fit together");
+      throw std::logic_error("the surfaces of a junction and its tubes are inconsistent");
   }
 
   void band(const std::vector<Vertex>& bottom, const std::vector<Vertex>& top) {

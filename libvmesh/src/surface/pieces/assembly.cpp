@@ -84,7 +84,7 @@ std::vector<PieceLoop> Assembly::build(BoundSurface& surface) const {
   }
   for (const auto& [a, b, c] : faces_) {
     if (surface.mesh.add_face(vertex[a], vertex[b], vertex[c]) == SurfaceMesh::null_face())
-      throw std::logic_error("pieces of the surface do not fit together");
+      throw std::logic_error("pieces of the surface are inconsistent");
   }
   std::vector<PieceLoop> loops;
   for (const Loop& loop : loops_) {

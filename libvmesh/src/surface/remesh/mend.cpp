@@ -13,11 +13,12 @@ namespace {
 
 constexpr int kRounds = 20;          // through all bad faces; idle 14 to 28
 constexpr double kPaysOff = 0.998;   // ratio of the worst skewness around after a step to that before; safe 0.7 to 1.4
-constexpr double kTolerance = 1e-3;  // vessel radii: distance of an eased vertex from its lift, as in all sweeps
+constexpr double kTolerance = 1e-3;  // vessel radii: distance of an improved vertex from its lift, as in all sweeps
 
-// Cosine between two faces down to which easing may fold their edge further; idle 0.5 to 0.85 on ten synthetic trees.
+// Cosine between two faces down to which improving may fold their edge further; idle 0.5 to 0.85 on ten synthetic
+// trees.
 constexpr double kFlat = 0.85;
-// Mean distance from the boundary of the faces around a vertex that an easing move may lead to: relative to that
+// Mean distance from the boundary of the faces around a vertex that an improving move may lead to: relative to that
 // before, and in vessel radii (about that of an even tube). Measured on fourteen trees: without this bound the mean
 // distance of one tree grows by 1.4 %; with a tighter one the maximum skewness grows by up to 9 %.
 constexpr double kFarther = 1.03, kNear = 0.05;
@@ -32,7 +33,7 @@ constexpr std::array<std::array<double, 2>, 8> kDirections = {{{1, 0},
                                                                {0, -1},
                                                                {kDiagonal, -kDiagonal}}};
 
-// Steps per face that easing tries: where the best are refused, most are. Measured on fourteen trees: without this
+// Steps per face that improving tries: where the best are refused, most are. Measured on fourteen trees: without this
 // bound the average maximum skewness is 0.3 % less.
 constexpr std::size_t kTries = 8;
 
@@ -302,6 +303,6 @@ class Mender {
 
 bool mend_worst_faces(BoundSurface& surface, double limit) { return Mender(surface, limit, Keeps::nothing).run(); }
 
-void ease_worst_faces(BoundSurface& surface, double limit) { Mender(surface, limit, Keeps::to_boundary).run(); }
+void improve_worst_faces(BoundSurface& surface, double limit) { Mender(surface, limit, Keeps::to_boundary).run(); }
 
 }  // namespace vmesh

@@ -10,8 +10,8 @@ namespace vmesh {
 /// triangles.
 bool mend_worst_faces(BoundSurface& surface, double limit);
 
-/// Eases triangles that are not bad but could be better: like mending, but vertices stay at their lifts from the
+/// Improves triangles that are not bad but could be better: like mending, but vertices stay at their lifts from the
 /// boundary, none are added, and moves leave the faces around hardly farther from it.
-void ease_worst_faces(BoundSurface& surface, double limit);
+void improve_worst_faces(BoundSurface& surface, double limit);
 
 }  // namespace vmesh
