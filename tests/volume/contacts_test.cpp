@@ -1,5 +1,6 @@
 // Vessels that touch without being neighbours: found, and narrowed until they do not.
 #include "vmesh/volume/contacts.h"
+#include "vmesh/volume/vessel_field.h"
 
 #include <cmath>
 
