@@ -91,6 +91,14 @@ class Burial {
 
   // The remaining branches in the numbers of the full centerline, thinnest first.
   std::vector<Branch> branches_left() const {
+    std::vector<Branch> branches = find_branches_left();
+    std::stable_sort(branches.begin(), branches.end(),
+                     [&](const Branch& a, const Branch& b) { return mean_radius(a) < mean_radius(b); });
+    return branches;
+  }
+
+  std::vector<Branch> find_branches_left() const {
+    if (std::all_of(left_.begin(), left_.end(), [](char left) { return left != 0; })) return find_branches(centerline_);
     std::vector<CenterlineSegment> segments;
     std::vector<Index> number;
     for (Index s = 0; s < left_.size(); ++s) {
@@ -102,8 +110,6 @@ class Burial {
     for (Branch& branch : branches) {
       for (Index& s : branch.segments) s = number[s];
     }
-    std::stable_sort(branches.begin(), branches.end(),
-                     [&](const Branch& a, const Branch& b) { return mean_radius(a) < mean_radius(b); });
     return branches;
   }
 

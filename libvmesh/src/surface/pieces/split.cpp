@@ -9,6 +9,7 @@
 
 #include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/surface/part.h"
 #include "vmesh/volume/vessel_field.h"
 
@@ -238,6 +239,7 @@ SplitSummary split(const Centerline& centerline, const GenerateOptions& options,
     growth.emplace(without_buried_branches(centerline, std::move(buried)));
     relations.emplace(growth->centerline, options.blend);
   }
+  release_freed_memory();
   summary.components = relations->centerline().component_count();
   summary.cycle_rank = relations->centerline().cycle_rank();
 
