@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "vmesh/volume/vessel_field.h"
+
 #include "hard_vessels.h"
 #include "sound_surface.h"
 
