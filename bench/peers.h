@@ -15,6 +15,8 @@ class CgalMesh {
 
   /// The mesh with edges collapsed (Lindstrom and Turk) until this share of them is left.
   TriMesh decimated(double share) const;
+  /// The same in the order of quadric errors (Garland and Heckbert).
+  TriMesh quadric_decimated(double share) const;
   TriMesh mesh() const;
   double bounded_error_hausdorff(const CgalMesh& to, double tolerance) const;
 
@@ -28,6 +30,9 @@ bool have_vtk();
 /// Largest distance of the vertices of one mesh from another (vtkImplicitPolyDataDistance): not a bound of the
 /// distance.
 double vtk_vertex_distance(const TriMesh& from, const TriMesh& to);
+/// The mesh with edges collapsed in the order of quadric errors (vtkQuadricDecimation) until this share of its faces is
+/// left.
+TriMesh vtk_quadric_decimated(const TriMesh& mesh, double share);
 /// The level set 0 of a distance on a grid (vtkFlyingEdges3D), `value` called for every grid point.
 TriMesh vtk_isosurface(const Vec3& low, const Vec3& high, double spacing, double (*value)(const Vec3&, const void*),
                        const void* context);
