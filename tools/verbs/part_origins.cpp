@@ -4,27 +4,36 @@
 
 namespace vmesh::tool {
 
-SplitCenterline::SplitCenterline(const PreparedCenterline& prepared, const GenerateOptions& options)
-    : prepared_(prepared),
-      cleaned_segments_(static_cast<Index>(prepared.cleaned->segments().size())),
-      options_(prepared.simplified ? after_simplification(options, *prepared.simplified) : options),
-      label_(branch_label_of_cones(*prepared.cleaned)) {
+SplitCenterline::SplitCenterline(PreparedCenterline prepared, const GenerateOptions& options)
+    : prepared_(std::move(prepared)),
+      cleaned_segments_(static_cast<Index>(prepared_.cleaned->segments().size())),
+      segments_(static_cast<Index>(prepared_.grown().segments().size())),
+      unseparated_nodes_(static_cast<Index>(prepared_.unseparated().nodes().size())),
+      options_(prepared_.simplified ? after_simplification(options, *prepared_.simplified) : options),
+      label_(branch_label_of_cones(*prepared_.cleaned)) {
   if (options_.simplification == 0) return;
-  again_ = simplify_for_growth(prepared.grown(), options_);
+  again_ = simplify_for_growth(prepared_.grown(), options_);
   if (!again_->is_simpler()) again_.reset();
+  if (again_) segments_ = static_cast<Index>(again_->centerline.segments().size());
   options_.simplification = 0;
+}
+
+Centerline SplitCenterline::take_centerline() {
+  if (again_) return std::move(again_->centerline);
+  if (prepared_.separated) return std::move(prepared_.separated->centerline);
+  if (prepared_.simplified) return std::move(prepared_.simplified->centerline);
+  return *prepared_.cleaned;
 }
 
 ConeOrigins SplitCenterline::origins_of(const std::vector<Index>& nodes, const std::vector<Index>& cones) const {
   ConeOrigins origins;
   origins.offsets.push_back(0);
-  const auto segments = static_cast<Index>(centerline().segments().size());
   for (const Index cone : cones) {
-    if (cone < segments) {
+    if (cone < segments_) {
       add(cone, origins);
     } else {  // an isolated node
       origins.stretch.emplace_back();
-      origins.pieces.push_back({cone - segments + cleaned_segments_, 0, 0, 1});
+      origins.pieces.push_back({cone - segments_ + cleaned_segments_, 0, 0, 1});
       origins.within.emplace_back();
     }
     origins.branch.push_back(label_[origins.pieces.back().segment]);
@@ -32,7 +41,7 @@ ConeOrigins SplitCenterline::origins_of(const std::vector<Index>& nodes, const s
   }
   for (Index n : nodes) {
     if (again_) n = again_->node[n];
-    if (prepared_.separated && n >= prepared_.unseparated().nodes().size()) {
+    if (prepared_.separated && n >= unseparated_nodes_) {
       origins.node.push_back(kNone);
     } else {
       origins.node.push_back(prepared_.simplified ? prepared_.simplified->node[n] : n);

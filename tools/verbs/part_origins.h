@@ -10,20 +10,20 @@ namespace vmesh::tool {
 /// leaves nodes out of separated vessels if none were left out before.
 class SplitCenterline {
  public:
-  SplitCenterline(const PreparedCenterline& prepared, const GenerateOptions& options);
+  SplitCenterline(PreparedCenterline prepared, const GenerateOptions& options);
 
-  const Centerline& centerline() const { return again_ ? again_->centerline : prepared_.grown(); }
+  /// The centerline that is split; to be called once. A copy only if it is the cleaned one.
+  Centerline take_centerline();
   const GenerateOptions& options() const { return options_; }
   /// Origins of nodes and cones of the centerline that is split.
   ConeOrigins origins_of(const std::vector<Index>& nodes, const std::vector<Index>& cones) const;
 
  private:
   void add(Index cone, ConeOrigins& origins) const;
-  SimplifiedCenterline::Piece piece_of(Index segment) const;
 
-  const PreparedCenterline& prepared_;  // its cleaned centerline, if simplified, is not asked again
-  Index cleaned_segments_;
+  PreparedCenterline prepared_;
   std::optional<SimplifiedCenterline> again_;
+  Index cleaned_segments_, segments_, unseparated_nodes_;  // how many
   GenerateOptions options_;
   std::vector<Index> label_;  // of cones of the cleaned centerline
 };

@@ -50,8 +50,8 @@ void clear_folder(const fs::path& folder) {
 }
 
 /// Writes the parts. Returns how they were made.
-SplitSummary write_parts(const fs::path& folder, const SplitCenterline& centerline, double vertices,
-                         const std::string& id, Console& console) {
+SplitSummary write_parts(const fs::path& folder, SplitCenterline& centerline, double vertices, const std::string& id,
+                         Console& console) {
   std::size_t number = 0;
   const auto write = [&](SurfacePart part) {
     StoredPart stored{id, std::move(part), {}};
@@ -60,7 +60,7 @@ SplitSummary write_parts(const fs::path& folder, const SplitCenterline& centerli
   };
   clear_folder(folder);
   try {
-    return split_surface(centerline.centerline(), centerline.options(), vertices, write, console.progress());
+    return split_surface(centerline.take_centerline(), centerline.options(), vertices, write, console.progress());
   } catch (...) {
     clear_folder(folder);
     throw;
@@ -114,10 +114,11 @@ int run(const SplitArguments& given, Console& console) {
   GenerateReport report;
   report.arguments = &arguments;
   report.cleaned = &loaded->cleaned;
-  const PreparedCenterline prepared = prepare_centerline(report, console);
-  const SplitCenterline centerline(prepared, arguments.options);
+  PreparedCenterline prepared = prepare_centerline(report, console);
+  const bool is_simplified = prepared.simplified.has_value();
+  SplitCenterline centerline(std::move(prepared), arguments.options);
   report.cleaned = nullptr;
-  if (prepared.simplified) loaded.reset();  // not needed any more, and large
+  if (is_simplified) loaded.reset();  // not needed any more, and large
   release_freed_memory();
   stages.push_back({"prepare", watch.lap()});
   stop_if_interrupted();

@@ -3,17 +3,24 @@
 namespace vmesh {
 namespace {
 
+// Follows branches from node to node, and appends them to three arrays.
 class BranchFinder {
  public:
-  explicit BranchFinder(const Centerline& centerline)
-      : centerline_(centerline), found_(centerline.segments().size(), 0) {}
+  BranchFinder(const Centerline& centerline, std::vector<Index>& offsets, std::vector<Index>& nodes,
+               std::vector<Index>& segments)
+      : centerline_(centerline),
+        found_(centerline.segments().size(), 0),
+        offsets_(offsets),
+        nodes_(nodes),
+        segments_(segments) {}
 
-  std::vector<Branch> run() {
+  void run() {
+    segments_.reserve(found_.size());
     for (Index n = 0; n < centerline_.nodes().size(); ++n) {
       if (centerline_.degree(n) != 2) follow_all(n);
     }
     for (Index n = 0; n < centerline_.nodes().size(); ++n) follow_all(n);  // loops without a branching node
-    return std::move(branches_);
+    offsets_.push_back(static_cast<Index>(segments_.size()));
   }
 
  private:
@@ -24,16 +31,15 @@ class BranchFinder {
   }
 
   void follow(Index node, Index segment) {
-    Branch branch;
-    branch.nodes.push_back(node);
+    offsets_.push_back(static_cast<Index>(segments_.size()));
+    nodes_.push_back(node);
     while (segment != kNone) {
       found_[segment] = 1;
       node = centerline_.other_node(segment, node);
-      branch.segments.push_back(segment);
-      branch.nodes.push_back(node);
+      segments_.push_back(segment);
+      nodes_.push_back(node);
       segment = next_segment(node);
     }
-    branches_.push_back(std::move(branch));
   }
 
   // The other segment of an inner node; none at the end of a branch.
@@ -47,11 +53,25 @@ class BranchFinder {
 
   const Centerline& centerline_;
   std::vector<char> found_;
-  std::vector<Branch> branches_;
+  std::vector<Index>&offsets_, &nodes_, &segments_;
 };
 
 }  // namespace
 
-std::vector<Branch> find_branches(const Centerline& centerline) { return BranchFinder(centerline).run(); }
+BranchTable::BranchTable(const Centerline& centerline) { BranchFinder(centerline, offsets_, nodes_, segments_).run(); }
+
+void BranchTable::renumber_segments(const std::vector<Index>& number) {
+  for (Index& s : segments_) s = number[s];
+}
+
+std::vector<Branch> find_branches(const Centerline& centerline) {
+  const BranchTable table(centerline);
+  std::vector<Branch> branches(table.size());
+  for (Index b = 0; b < branches.size(); ++b) {
+    const auto nodes = table.nodes(b), segments = table.segments(b);
+    branches[b] = {{nodes.begin(), nodes.end()}, {segments.begin(), segments.end()}};
+  }
+  return branches;
+}
 
 }  // namespace vmesh

@@ -10,6 +10,11 @@ namespace {
 
 using Piece = SimplifiedCenterline::Piece;
 
+// A Branch that is not owned.
+struct BranchSpans {
+  std::span<const Index> nodes, segments;
+};
+
 // Simplifies one branch at a time, from its first node on.
 class Simplifier {
  public:
@@ -17,11 +22,13 @@ class Simplifier {
       : centerline_(centerline), tolerance_(tolerance), kept_(centerline.nodes().size(), 1) {}
 
   SimplifiedCenterline run() {
-    const std::vector<Branch> branches = find_branches(centerline_);
-    for (const Branch& branch : branches) {
-      if (branch.segments.size() == 1) joined_.insert(std::minmax(branch.nodes.front(), branch.nodes.back()));
+    pieces_.reserve(centerline_.segments().size());
+    const BranchTable branches(centerline_);
+    for (Index b = 0; b < branches.size(); ++b) {
+      if (branches.segments(b).size() == 1)
+        joined_.insert(std::minmax(branches.nodes(b).front(), branches.nodes(b).back()));
     }
-    for (const Branch& branch : branches) simplify(branch);
+    for (Index b = 0; b < branches.size(); ++b) simplify({branches.nodes(b), branches.segments(b)});
     std::vector<Index> number(kept_.size(), kNone), node;
     std::vector<CenterlineNode> nodes;
     for (Index n = 0; n < kept_.size(); ++n) {
@@ -41,7 +48,7 @@ class Simplifier {
   }
 
  private:
-  void simplify(const Branch& branch) {
+  void simplify(const BranchSpans& branch) {
     const std::size_t last = branch.segments.size();
     std::vector<std::size_t> keep = {0};
     const bool closed = branch.nodes.front() == branch.nodes.back();
@@ -63,7 +70,7 @@ class Simplifier {
   }
 
   // The farthest node of the branch, up to `end`, found to be reachable from node `first` by a single segment.
-  std::size_t farthest(const Branch& branch, std::size_t first, std::size_t end) {
+  std::size_t farthest(const BranchSpans& branch, std::size_t first, std::size_t end) {
     std::size_t good = first + 1, step = 1;
     while (good < end && fits(branch, first, std::min(end, good + step))) {
       good = std::min(end, good + step);
@@ -77,7 +84,7 @@ class Simplifier {
 
   // Whether a single segment may replace the nodes between two nodes of the branch. Fills places_ with where these go
   // on it, ascending.
-  bool fits(const Branch& branch, std::size_t first, std::size_t last) {
+  bool fits(const BranchSpans& branch, std::size_t first, std::size_t last) {
     const CenterlineNode &a = centerline_.node(branch.nodes[first]), &b = centerline_.node(branch.nodes[last]);
     const Vec3 axis = b.position - a.position;
     const double length2 = axis.squaredNorm();
@@ -99,7 +106,7 @@ class Simplifier {
     return true;
   }
 
-  void add(const Branch& branch, std::size_t first, std::size_t last) {
+  void add(const BranchSpans& branch, std::size_t first, std::size_t last) {
     fits(branch, first, last);
     deviation_ = std::max(deviation_, worst_);
     deviation_relative_ = std::max(deviation_relative_, worst_relative_);

@@ -3,11 +3,6 @@
 #include <algorithm>
 
 namespace vmesh {
-namespace {
-
-constexpr Index kLeafSize = 4;
-
-}  // namespace
 
 // Twice the box centres are stored beside the numbers, so that partitioning reads memory in order.
 struct BoxTree::Item {
@@ -20,7 +15,7 @@ BoxTree::BoxTree(const std::vector<Vec3>& low, const std::vector<Vec3>& high)
         return Box{low[i], high[i]};
       }) {}
 
-BoxTree::BoxTree(Index count, const std::function<Box(Index)>& box_of) {
+BoxTree::BoxTree(Index count, const std::function<Box(Index)>& box_of, Index leaf_size) {
   if (count == 0) return;
   std::vector<Item> items;
   items.reserve(count);
@@ -28,17 +23,18 @@ BoxTree::BoxTree(Index count, const std::function<Box(Index)>& box_of) {
     const Box box = box_of(i);
     items.push_back({box.low + box.high, i});
   }
-  nodes_.reserve(count);  // a leaf has at least two items, unless it is the only one
+  nodes_.reserve(4 * static_cast<std::size_t>(count) /
+                 leaf_size);  // a leaf is more than half full, unless it is the only one
   nodes_.emplace_back();
-  divide(0, items, 0, count);
+  divide(0, items, 0, count, leaf_size);
   order_.reserve(count);
   for (const Item& item : items) order_.push_back(item.number);
   // Children come after their parents.
   for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) enclose(*node, box_of);
 }
 
-void BoxTree::divide(Index node, std::vector<Item>& items, Index first, Index count) {
-  if (count <= kLeafSize) {
+void BoxTree::divide(Index node, std::vector<Item>& items, Index first, Index count, Index leaf_size) {
+  if (count <= leaf_size) {
     nodes_[node].first = first;
     nodes_[node].count = count;
     return;
@@ -59,8 +55,8 @@ void BoxTree::divide(Index node, std::vector<Item>& items, Index first, Index co
   const auto children = static_cast<Index>(nodes_.size());
   nodes_[node].first = children;
   nodes_.resize(nodes_.size() + 2);
-  divide(children, items, first, half);
-  divide(children + 1, items, first + half, count - half);
+  divide(children, items, first, half, leaf_size);
+  divide(children + 1, items, first + half, count - half, leaf_size);
 }
 
 void BoxTree::enclose(Node& node, const std::function<Box(Index)>& box_of) const {

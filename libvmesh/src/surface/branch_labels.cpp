@@ -7,10 +7,10 @@
 
 namespace vmesh {
 std::vector<Index> branch_label_of_cones(const Centerline& centerline) {
-  const std::vector<Branch> branches = find_branches(centerline);
+  const BranchTable branches(centerline);
   std::vector<Index> labels(centerline.segments().size(), kNone);
   for (Index b = 0; b < branches.size(); ++b) {
-    for (const Index s : branches[b].segments) labels[s] = b;
+    for (const Index s : branches.segments(b)) labels[s] = b;
   }
   auto next = static_cast<Index>(branches.size());
   for (Index n = 0; n < centerline.nodes().size(); ++n) {

@@ -15,9 +15,9 @@ namespace {
 
 std::vector<Index> branch_of_cones(const ConeRelations& cones) {
   std::vector<Index> branch_of(cones.cone_count(), kNone);
-  const std::vector<Branch> branches = find_branches(cones.centerline());
+  const BranchTable branches(cones.centerline());
   for (Index b = 0; b < branches.size(); ++b) {
-    for (const Index s : branches[b].segments) branch_of[s] = b;
+    for (const Index s : branches.segments(b)) branch_of[s] = b;
   }
   return branch_of;
 }

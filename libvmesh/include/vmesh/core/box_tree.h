@@ -11,15 +11,22 @@ namespace vmesh {
 /// A balanced tree of axis-aligned boxes over items with a bounding box each.
 class BoxTree {
  public:
+  static constexpr Index kLeafSize = 4;  // items, at most
+
   BoxTree() = default;
   /// `low`, `high`: the items' boxes (mm). O(n log n), deterministic.
   BoxTree(const std::vector<Vec3>& low, const std::vector<Vec3>& high);
 
   struct Box {
     Vec3 low, high;
+
+    bool overlaps(const Vec3& other_low, const Vec3& other_high) const {
+      return (low.array() <= other_high.array()).all() && (other_low.array() <= high.array()).all();
+    }
   };
-  /// The same for items 0 to `count` - 1 whose boxes are computed when they are needed, twice each: takes less memory.
-  BoxTree(Index count, const std::function<Box(Index)>& box_of);
+  /// The same for items 0 to `count` - 1 whose boxes are computed when they are needed, twice each: takes less memory,
+  /// even less with more items to a leaf.
+  BoxTree(Index count, const std::function<Box(Index)>& box_of, Index leaf_size = kLeafSize);
 
   /// Calls visit(item) for every item whose signed distance at `p` may be at most `limit`, near boxes first. The
   /// visitor may lower `limit` as it goes, which finds a minimum.
@@ -41,8 +48,7 @@ class BoxTree {
   }
 
  private:
-  struct Node {
-    Vec3 low, high;
+  struct Node : Box {
     Index first = 0;  // leaf: first of its items in order_; inner: first of its two children
     Index count = 0;  // items of a leaf; 0 for an inner node
 
@@ -55,7 +61,7 @@ class BoxTree {
   };
 
   struct Item;
-  void divide(Index node, std::vector<Item>& items, Index first, Index count);
+  void divide(Index node, std::vector<Item>& items, Index first, Index count, Index leaf_size);
   void enclose(Node& node, const std::function<Box(Index)>& box_of) const;
 
   template <class Visit>
@@ -75,17 +81,13 @@ class BoxTree {
   template <class Visit>
   void visit_overlapping_node(Index n, const Vec3& low, const Vec3& high, Visit&& visit_item) const {
     const Node& node = nodes_[n];
-    if ((node.low.array() > high.array()).any() || (node.high.array() < low.array()).any()) return;
+    if (!node.overlaps(low, high)) return;
     if (node.count > 0) {
       for (Index i = 0; i < node.count; ++i) visit_item(order_[node.first + i]);
       return;
     }
     visit_overlapping_node(node.first, low, high, visit_item);
     visit_overlapping_node(node.first + 1, low, high, visit_item);
-  }
-
-  static bool overlap(const Node& a, const Node& b) {
-    return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
   }
 
   template <class Visit>
@@ -105,7 +107,7 @@ class BoxTree {
   template <class Visit>
   void visit_pairs_between(Index m, Index n, Visit&& visit_pair) const {
     const Node &a = nodes_[m], &b = nodes_[n];
-    if (!overlap(a, b)) return;
+    if (!a.overlaps(b.low, b.high)) return;
     if (a.count > 0 && b.count > 0) {
       for (Index i = 0; i < a.count; ++i) {
         for (Index j = 0; j < b.count; ++j) visit_pair(order_[a.first + i], order_[b.first + j]);

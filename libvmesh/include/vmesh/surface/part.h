@@ -97,10 +97,11 @@ struct SplitSummary {
 
 /// Divides the surface that generate_surface() would grow into its pieces, and calls take(part) for parts of about
 /// `vertices` vertices and at least one piece each, in order. A part contains the whole centerline of every branch that
-/// it touches. Memory is that of the volume, not of the surface. All nodes steer the surface; see simplify_for_growth()
-/// for leaving some out first. Throws like generate_surface(), and Unsupported for what needs the whole surface: paper
-/// growth, an error limit, open ends.
-SplitSummary split_surface(const Centerline& centerline, const GenerateOptions& options, double vertices,
+/// it touches. Memory is that of the volume, not of the surface; the centerline is taken over because it may be large
+/// and is dropped when it is not needed any more. All nodes steer the surface; see simplify_for_growth() for leaving
+/// some out first. Throws like generate_surface(), and Unsupported for what needs the whole surface: paper growth, an
+/// error limit, open ends.
+SplitSummary split_surface(Centerline centerline, const GenerateOptions& options, double vertices,
                            const std::function<void(SurfacePart)>& take, const Progress& progress = {});
 
 /// Grows the pieces of a part on so many threads (0: all); vertices and faces are those of the whole surface, to the

@@ -38,6 +38,12 @@ class ConeRelations {
   Index first_node(Index cone) const { return is_sphere(cone) ? isolated_node(cone) : centerline_->segment(cone).a; }
   Index last_node(Index cone) const { return is_sphere(cone) ? isolated_node(cone) : centerline_->segment(cone).b; }
 
+  /// The cone of an isolated node.
+  Index sphere_of(Index node) const {
+    const auto rank = std::lower_bound(isolated_.begin(), isolated_.end(), node) - isolated_.begin();
+    return static_cast<Index>(centerline_->segments().size()) + static_cast<Index>(rank);
+  }
+
   /// Vessel radius at parameter `t` of `cone`.
   double radius_at(Index cone, double t) const {
     const double r0 = radius_of(first_node(cone));

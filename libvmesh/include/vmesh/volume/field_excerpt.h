@@ -46,6 +46,7 @@ class FieldExcerpts {
   FieldExcerpt take(std::span<const Index> cones, double reach) const;
 
  private:
+  BoxTree::Box box_of(Index cone) const;
   std::vector<Index> near_boxes(std::span<const Index> cones, double reach) const;
 
   const ConeRelations& relations_;

@@ -75,30 +75,37 @@ class Burial {
     return kNone;
   }
 
-  // One pass over the remaining branches. Removing one changes the branches around it, so passes are repeated.
+  // One pass over the remaining branches, thinnest first. Removing one changes the branches around it, so passes are
+  // repeated.
   bool bury_some() {
+    const BranchTable branches = branches_left();
     bool left_out = false;
-    for (const Branch& branch : branches_left()) {
-      if (!is_covered(branch)) continue;
-      const bool has_tip = degree_left(branch.nodes.front()) == 1 || degree_left(branch.nodes.back()) == 1;
+    for (const Index b : thinnest_first(branches)) {
+      const auto nodes = branches.nodes(b), segments = branches.segments(b);
+      if (!is_covered(segments)) continue;
+      const bool has_tip = degree_left(nodes.front()) == 1 || degree_left(nodes.back()) == 1;
       if (!has_tip) continue;  // a branch that closes a loop joins vessels that overlap there, and must stay
-      for (const Index s : branch.segments) left_[s] = 0;
-      buried_.push_back({branch.segments});
+      for (const Index s : segments) left_[s] = 0;
+      buried_.push_back({{segments.begin(), segments.end()}});
       left_out = true;
     }
     return left_out;
   }
 
-  // The remaining branches in the numbers of the full centerline, thinnest first.
-  std::vector<Branch> branches_left() const {
-    std::vector<Branch> branches = find_branches_left();
-    std::stable_sort(branches.begin(), branches.end(),
-                     [&](const Branch& a, const Branch& b) { return mean_radius(a) < mean_radius(b); });
-    return branches;
+  std::vector<Index> thinnest_first(const BranchTable& branches) const {
+    std::vector<std::pair<double, Index>> by_radius;
+    by_radius.reserve(branches.size());
+    for (Index b = 0; b < branches.size(); ++b) by_radius.emplace_back(mean_radius(branches.segments(b)), b);
+    std::sort(by_radius.begin(), by_radius.end());
+    std::vector<Index> order;
+    order.reserve(by_radius.size());
+    for (const auto& [radius, b] : by_radius) order.push_back(b);
+    return order;
   }
 
-  std::vector<Branch> find_branches_left() const {
-    if (std::all_of(left_.begin(), left_.end(), [](char left) { return left != 0; })) return find_branches(centerline_);
+  // In the numbers of the full centerline.
+  BranchTable branches_left() const {
+    if (std::all_of(left_.begin(), left_.end(), [](char left) { return left != 0; })) return BranchTable(centerline_);
     std::vector<CenterlineSegment> segments;
     std::vector<Index> number;
     for (Index s = 0; s < left_.size(); ++s) {
@@ -106,10 +113,8 @@ class Burial {
       segments.push_back(centerline_.segment(s));
       number.push_back(s);
     }
-    std::vector<Branch> branches = find_branches(Centerline(centerline_.nodes(), std::move(segments)));
-    for (Branch& branch : branches) {
-      for (Index& s : branch.segments) s = number[s];
-    }
+    BranchTable branches(Centerline(centerline_.nodes(), std::move(segments)));
+    branches.renumber_segments(number);
     return branches;
   }
 
@@ -119,20 +124,20 @@ class Burial {
         std::count_if(incident.begin(), incident.end(), [&](Index s) { return left_[s] != 0; }));
   }
 
-  double mean_radius(const Branch& branch) const {
+  double mean_radius(std::span<const Index> segments) const {
     double sum = 0, length = 0;
-    for (const Index s : branch.segments) {
+    for (const Index s : segments) {
       sum += centerline_.length(s) * centerline_.radius_at(s, 0.5);
       length += centerline_.length(s);
     }
     return sum / length;
   }
 
-  bool is_covered(const Branch& branch) {
-    for (const Index s : branch.segments) in_branch_[s] = 1;
+  bool is_covered(std::span<const Index> segments) {
+    for (const Index s : segments) in_branch_[s] = 1;
     const bool covered =
-        std::all_of(branch.segments.begin(), branch.segments.end(), [&](Index s) { return is_covered_by_others(s); });
-    for (const Index s : branch.segments) in_branch_[s] = 0;
+        std::all_of(segments.begin(), segments.end(), [&](Index s) { return is_covered_by_others(s); });
+    for (const Index s : segments) in_branch_[s] = 0;
     return covered;
   }
 
@@ -181,6 +186,11 @@ GrowthCenterline without_buried_branches(const Centerline& full, std::vector<Bur
   std::vector<Index> number(full.nodes().size(), kNone), kept_nodes, kept_segments, kept_cones;
   std::vector<CenterlineNode> nodes;
   std::vector<CenterlineSegment> segments;
+  const auto count = static_cast<std::size_t>(std::count(left.begin(), left.end(), 1));
+  nodes.reserve(full.nodes().size());
+  kept_nodes.reserve(full.nodes().size());
+  segments.reserve(count);
+  kept_segments.reserve(count);
   std::size_t isolated = 0;
   for (Index n = 0; n < full.nodes().size(); ++n) {
     const auto incident = full.incident_segments(n);

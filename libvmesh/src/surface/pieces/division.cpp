@@ -1,7 +1,6 @@
 #include "surface/pieces/division.h"
 
 #include <algorithm>
-#include <map>
 
 #include <tbb/parallel_for.h>
 
@@ -164,7 +163,7 @@ class SeamSearch {
 void add_stretches(const RingCounts& rings, Index branch, std::span<const RingPlace> seams,
                    std::vector<Stretch>& stretches) {
   const auto count = rings.along(branch);
-  const bool periodic = is_loop(rings.centerline(), rings.branches()[branch]);
+  const bool periodic = rings.is_loop(branch);
   if (seams.empty()) {
     stretches.push_back({branch, 0, count});
     return;
@@ -183,7 +182,7 @@ void add_stretches(const RingCounts& rings, Index branch, std::span<const RingPl
 std::vector<Stretch> stretches_between(const RingCounts& rings, const std::vector<RingPlace>& seams) {
   std::vector<Stretch> stretches;
   auto first = seams.begin();
-  for (Index b = 0; b < rings.branches().size(); ++b) {
+  for (Index b = 0; b < rings.branch_count(); ++b) {
     const auto last = std::find_if(first, seams.end(), [&](const RingPlace& seam) { return seam.branch != b; });
     add_stretches(rings, b, std::span(first, last), stretches);
     first = last;
@@ -200,9 +199,9 @@ class PlanMaker {
         node_count_(static_cast<Index>(rings.centerline().nodes().size())),
         parts_(stretches_.size() + node_count_) {
     for (Index i = 0; i < stretches_.size(); ++i) {
-      const auto& branch = rings.branches()[stretches_[i].branch];
-      if (!stretches_[i].seam_at_first) parts_.join(i, part_of(branch.nodes.front()));
-      if (!stretches_[i].seam_at_last) parts_.join(i, part_of(branch.nodes.back()));
+      const RingCounts::Ends& ends = rings.ends(stretches_[i].branch);
+      if (!stretches_[i].seam_at_first) parts_.join(i, part_of(ends.first));
+      if (!stretches_[i].seam_at_last) parts_.join(i, part_of(ends.last));
     }
   }
 
@@ -247,15 +246,15 @@ class PlanMaker {
 
 // Seams with the same piece on both sides, where it would touch itself. Ascending.
 std::vector<RingPlace> within_one_piece(const RingCounts& rings, const std::vector<PiecePlan>& plans) {
-  std::map<RingPlace, Index> first;
-  std::vector<RingPlace> within;
+  std::vector<std::pair<RingPlace, Index>> sides;
   for (Index p = 0; p < plans.size(); ++p) {
-    for (const RingPlace& seam : seams_of(rings, plans[p])) {
-      const auto [it, is_new] = first.emplace(seam, p);
-      if (!is_new && it->second == p) within.push_back(seam);
-    }
+    for (const RingPlace& seam : seams_of(rings, plans[p])) sides.emplace_back(seam, p);
   }
-  std::sort(within.begin(), within.end());
+  std::sort(sides.begin(), sides.end());
+  std::vector<RingPlace> within;
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    if (sides[i] == sides[i - 1]) within.push_back(sides[i].first);
+  }
   return within;
 }
 
@@ -294,8 +293,12 @@ Anchor anchor_of(const PiecePlan& plan) {
   return {{plan.stretches.front().branch, plan.stretches.front().first}, kNone};
 }
 
-RingCounts::RingCounts(const VesselTubes& tubes) : centerline_(tubes.centerline()), branches_(tubes.branches()) {
-  for (Index b = 0; b < tubes.axes().size(); ++b) counts_.push_back(static_cast<Index>(tubes.rings(b).size()));
+RingCounts::RingCounts(const VesselTubes& tubes) : centerline_(tubes.centerline()) {
+  for (Index b = 0; b < tubes.axes().size(); ++b) {
+    const Branch& branch = tubes.branches()[b];
+    ends_.push_back({branch.nodes.front(), branch.nodes.back()});
+    counts_.push_back(static_cast<Index>(tubes.rings(b).size()));
+  }
 }
 
 std::vector<RingPlace> find_seams(const VesselAxes& axes, const GenerateOptions& options, Index branch,

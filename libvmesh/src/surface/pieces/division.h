@@ -12,21 +12,30 @@ struct Anchor {
   Index node = kNone;
 };
 
-/// How many rings lie along each branch.
+/// The branches of a centerline by their ends, and how many rings lie along each.
 class RingCounts {
  public:
-  /// `centerline` and `branches` must outlive it.
-  RingCounts(const Centerline& centerline, const std::vector<Branch>& branches, std::vector<Index> counts)
-      : centerline_(centerline), branches_(branches), counts_(std::move(counts)) {}
+  struct Ends {
+    Index first = kNone, last = kNone;  ///< nodes
+  };
+
+  /// `centerline` must outlive it.
+  RingCounts(const Centerline& centerline, std::vector<Ends> ends, std::vector<Index> counts)
+      : centerline_(centerline), ends_(std::move(ends)), counts_(std::move(counts)) {}
   explicit RingCounts(const VesselTubes& tubes);
 
   const Centerline& centerline() const { return centerline_; }
-  const std::vector<Branch>& branches() const { return branches_; }
+  std::size_t branch_count() const { return ends_.size(); }
+  const Ends& ends(Index branch) const { return ends_[branch]; }
+  /// Whether a branch is a loop without a branching node.
+  bool is_loop(Index branch) const {
+    return ends_[branch].first == ends_[branch].last && centerline_.degree(ends_[branch].first) == 2;
+  }
   Index along(Index branch) const { return counts_[branch]; }
 
  private:
   const Centerline& centerline_;
-  const std::vector<Branch>& branches_;
+  std::vector<Ends> ends_;
   std::vector<Index> counts_;
 };
 

@@ -42,16 +42,18 @@ constexpr std::size_t kChunk = 25'000;
 class WholeBranches {
  public:
   explicit WholeBranches(const FieldExcerpts& excerpts)
-      : excerpts_(excerpts), branches_(find_branches(excerpts.relations().centerline())) {}
+      : excerpts_(excerpts), branches_(excerpts.relations().centerline()) {}
 
-  const Centerline& centerline() const { return excerpts_.relations().centerline(); }
-  const std::vector<Branch>& all() const { return branches_; }
+  const ConeRelations& relations() const { return excerpts_.relations(); }
+  const Centerline& centerline() const { return relations().centerline(); }
+  std::size_t size() const { return branches_.size(); }
 
   // The cones along a branch and those that begin where it ends: the field at a vessel's end depends on them.
   void add_cones(Index branch, std::vector<Index>& cones) const {
-    const auto& [nodes, segments] = branches_[branch];
+    const auto segments = branches_.segments(branch);
     cones.insert(cones.end(), segments.begin(), segments.end());
-    for (const Index n : {nodes.front(), nodes.back()}) {
+    const auto [first, last] = ends(branch);
+    for (const Index n : {first, last}) {
       const auto incident = centerline().incident_segments(n);
       cones.insert(cones.end(), incident.begin(), incident.end());
     }
@@ -65,9 +67,19 @@ class WholeBranches {
 
   Branch as_in(const FieldExcerpt& field, Index branch) const {
     Branch result;
-    for (const Index n : branches_[branch].nodes) result.nodes.push_back(place_in(field.node, n));
-    for (const Index s : branches_[branch].segments) result.segments.push_back(place_in(field.cone, s));
+    for (const Index n : branches_.nodes(branch)) result.nodes.push_back(place_in(field.node, n));
+    for (const Index s : branches_.segments(branch)) result.segments.push_back(place_in(field.cone, s));
     return result;
+  }
+
+  RingCounts::Ends ends(Index branch) const {
+    return {branches_.nodes(branch).front(), branches_.nodes(branch).back()};
+  }
+  std::vector<RingCounts::Ends> all_ends() const {
+    std::vector<RingCounts::Ends> all;
+    all.reserve(size());
+    for (Index b = 0; b < size(); ++b) all.push_back(ends(b));
+    return all;
   }
 
   // The first branches of chunks of about kChunk segments, and the end.
@@ -75,7 +87,7 @@ class WholeBranches {
     std::vector<Index> first = {0};
     std::size_t segments = 0;
     for (Index b = 0; b < branches_.size(); ++b) {
-      segments += branches_[b].segments.size();
+      segments += branches_.segments(b).size();
       if (segments < kChunk && b + 1 < branches_.size()) continue;
       first.push_back(b + 1);
       segments = 0;
@@ -85,7 +97,7 @@ class WholeBranches {
 
  private:
   const FieldExcerpts& excerpts_;
-  std::vector<Branch> branches_;
+  BranchTable branches_;
 };
 
 // Lays the rings of the branches [first, end) and chooses their seams. Only counts and seams are kept, to save memory.
@@ -111,7 +123,7 @@ std::vector<RingPlace> scan(const WholeBranches& whole, const GenerateOptions& o
 // The seams of all branches, chunk by chunk. Fills in how many rings lie along each.
 std::vector<RingPlace> scan_all(const WholeBranches& whole, const GenerateOptions& options, std::vector<Index>& counts,
                                 const Progress& progress) {
-  counts.resize(whole.all().size());
+  counts.resize(whole.size());
   if (counts.empty()) return {};
   const std::vector<Index> first = whole.chunks();
   std::vector<std::vector<RingPlace>> found(first.size() - 1);
@@ -133,12 +145,7 @@ class PartMaker {
  public:
   PartMaker(const WholeBranches& whole, const RingCounts& rings, const Division& division,
             const GenerateOptions& options)
-      : whole_(whole), rings_(rings), division_(division), options_(options) {
-    const Centerline& centerline = whole.centerline();
-    for (Index n = 0; n < centerline.nodes().size(); ++n) {
-      if (centerline.degree(n) == 0) isolated_.push_back(n);
-    }
-  }
+      : whole_(whole), rings_(rings), division_(division), options_(options) {}
 
   // The first piece of every part, then the total: parts have about equally many rings.
   std::vector<Index> beginnings(std::size_t parts) const {
@@ -193,13 +200,11 @@ class PartMaker {
   }
 
   std::vector<Index> cones_of(const std::vector<Index>& branches, Index first, Index end) const {
-    const Centerline& centerline = whole_.centerline();
     std::vector<Index> cones;
     for (const Index b : branches) whole_.add_cones(b, cones);
     for (Index p = first; p < end; ++p) {
       for (const Index n : division_.plans[p].nodes) {
-        if (centerline.degree(n) == 0)
-          cones.push_back(static_cast<Index>(centerline.segments().size() + place_in(isolated_, n)));
+        if (whole_.centerline().degree(n) == 0) cones.push_back(whole_.relations().sphere_of(n));
       }
     }
     return cones;
@@ -216,7 +221,6 @@ class PartMaker {
   const RingCounts& rings_;
   const Division& division_;
   const GenerateOptions& options_;
-  std::vector<Index> isolated_;  // nodes
 };
 
 // From numbers of the growth centerline to those of the one that was split.
@@ -226,17 +230,20 @@ void renumber(const GrowthCenterline& growth, SurfacePart& part) {
 }
 
 // Nothing is kept longer than it is needed: for ten million segments, every array counts.
-SplitSummary split(const Centerline& centerline, const GenerateOptions& options, double vertices,
+SplitSummary split(Centerline given, const GenerateOptions& options, double vertices,
                    const std::function<void(SurfacePart)>& take, const Progress& progress) {
   SplitSummary summary;
   summary.options = options;
-  summary.expected_vertices = expected_vertices(centerline, options.around);
-  std::optional<ConeRelations> relations(std::in_place, centerline, options.blend);
+  std::optional<Centerline> centerline = std::move(given);
+  summary.expected_vertices = expected_vertices(*centerline, options.around);
+  std::optional<ConeRelations> relations(std::in_place, *centerline, options.blend);
   std::optional<GrowthCenterline> growth;
   if (std::vector<BuriedBranch> buried = find_buried_branches(*relations); !buried.empty()) {
-    summary.simplifications = notes_of_buried(buried, centerline);
+    summary.simplifications = notes_of_buried(buried, *centerline);
     relations.reset();
-    growth.emplace(without_buried_branches(centerline, std::move(buried)));
+    growth.emplace(without_buried_branches(*centerline, std::move(buried)));
+    centerline.reset();
+    release_freed_memory();
     relations.emplace(growth->centerline, options.blend);
   }
   release_freed_memory();
@@ -247,7 +254,8 @@ SplitSummary split(const Centerline& centerline, const GenerateOptions& options,
   const WholeBranches whole(excerpts);
   std::vector<Index> counts;
   std::vector<RingPlace> seams = scan_all(whole, options, counts, progress);
-  const RingCounts rings(whole.centerline(), whole.all(), std::move(counts));
+  release_freed_memory();
+  const RingCounts rings(whole.centerline(), whole.all_ends(), std::move(counts));
   const Division division = divide(rings, std::move(seams));
   summary.pieces = division.plans.size();
   summary.seams = division.seams.size();
@@ -266,14 +274,14 @@ SplitSummary split(const Centerline& centerline, const GenerateOptions& options,
 
 }  // namespace
 
-SplitSummary split_surface(const Centerline& centerline, const GenerateOptions& given, double vertices,
+SplitSummary split_surface(Centerline centerline, const GenerateOptions& given, double vertices,
                            const std::function<void(SurfacePart)>& take, const Progress& progress) {
   const GenerateOptions options = settled(given, centerline);
   check_parts_suffice(options);
   if (!(vertices >= 1)) throw InvalidInput("a part must have vertices");
   SplitSummary summary;
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  arena.execute([&] { summary = split(centerline, options, vertices, take, progress); });
+  arena.execute([&] { summary = split(std::move(centerline), options, vertices, take, progress); });
   return summary;
 }
 
