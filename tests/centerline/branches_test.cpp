@@ -1,5 +1,7 @@
 #include "vmesh/centerline/branches.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace vmesh {
@@ -56,6 +58,27 @@ TEST(Branches, CoverEverySegmentOnceInAnyGraph) {
     for (std::size_t i = 1; i + 1 < branch.nodes.size(); ++i) EXPECT_EQ(mixed.degree(branch.nodes[i]), 2u);
   }
   EXPECT_EQ(seen, std::vector<int>(seen.size(), 1));
+}
+
+TEST(BranchTable, HoldsTheSameBranches) {
+  const Centerline mixed =
+      graph(12, {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {4, 6}, {6, 7}, {7, 4}, {8, 9}, {9, 10}});  // 11 alone
+  BranchTable table(mixed);
+  // One from 3 and two at 4, the chain from 8, and the ring.
+  ASSERT_EQ(table.size(), 5u);
+  EXPECT_TRUE(std::ranges::equal(table.nodes(1), std::vector<Index>{4, 5}));
+  EXPECT_TRUE(std::ranges::equal(table.segments(1), std::vector<Index>{4}));
+  EXPECT_TRUE(std::ranges::equal(table.nodes(4), std::vector<Index>{0, 1, 2, 0}));
+  const auto branches = find_branches(mixed);
+  ASSERT_EQ(branches.size(), table.size());
+  std::vector<Index> doubled;
+  for (Index s = 0; s < mixed.segments().size(); ++s) doubled.push_back(2 * s);
+  for (Index b = 0; b < table.size(); ++b) {
+    EXPECT_TRUE(std::ranges::equal(table.nodes(b), branches[b].nodes));
+    EXPECT_TRUE(std::ranges::equal(table.segments(b), branches[b].segments));
+  }
+  table.renumber_segments(doubled);
+  EXPECT_TRUE(std::ranges::equal(table.segments(1), std::vector<Index>{8}));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace vmesh {
 namespace {
 
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates: in a box
-// Cones: the tree takes an eighth of the memory that one with smaller leaves would, and is asked rarely.
+// Cones: a quarter of the memory of a tree with leaves of the usual size, and it is asked rarely.
 constexpr Index kLeafSize = 16;
 
 void require(bool holds, const char* what) {
