@@ -1,5 +1,6 @@
 #include "verbs/prepared_centerline.h"
 
+#include "vmesh/core/memory.h"
 #include "vmesh/volume/cone_relations.h"
 
 #include "report/generate_log.h"
@@ -68,6 +69,7 @@ PreparedCenterline prepare_centerline(GenerateReport& report, Console& console) 
   prepared.cleaned = &report.cleaned->centerline;
   prepared.simplified = simplify(*prepared.cleaned, *report.arguments);
   if (prepared.simplified) log_simplification(*prepared.simplified, console);
+  release_freed_memory();
   prepared.separated = handle_contacts(report, prepared.unseparated(), console);
   return prepared;
 }

@@ -21,9 +21,10 @@
 namespace vmesh {
 namespace {
 
-// Radii around the walls of a part within which it knows other vessels. Derived: more than any stage asks for, half a
-// radius at most (kClear of division.cpp), and more than the radius and a half in which a cone's company is looked for.
-constexpr double kReach = 3;
+// Radii around the walls of a part within which it knows other vessels. Derived: more than any stage asks for, less
+// than a radius (kClear of division.cpp, the gap looked for in balance.cpp), and more than the radius and a half in
+// which a cone's company is looked for.
+constexpr double kReach = 2;
 
 void check_parts_suffice(const GenerateOptions& options) {
   const auto refuse = [](const char* what) {
