@@ -1,5 +1,6 @@
 #include "vmesh/deform/linear_skin.h"
 #include "vmesh/fit/flat_reference.h"
+#include "vmesh/surface/metric_skewness.h"
 #include "vmesh/surface/surface_attributes.h"
 #include "vmesh/volume/vessel_field.h"
 
@@ -109,6 +110,8 @@ MeshAttributes attributes_of(const GenerateReport& report) {
   const GenerateResult& result = *report.result;
   MeshAttributes attributes =
       surface_attributes(result.mesh, result.binding, result.radius, result.openings, report.cleaned->centerline);
+  if (!result.elongation.empty())
+    attributes.face.push_back({"MetricSkewness", metric_skewness(result.mesh, result.elongation)});
   if (!report.ends.ends.empty()) add_cap_labels(report.ends, attributes);
   return attributes;
 }
@@ -123,10 +126,20 @@ void write(const GenerateReport& report) {
                 arguments.writing, skin ? &*skin : nullptr);
 }
 
+/// Fitting makes triangles even again.
+void check_elongation(const GenerateArguments& arguments) {
+  if (arguments.options.elongation == 1) return;
+  if (!arguments.fitting.reference.path.empty() || is_image(arguments.input.path))
+    throw UsageError(std::string(kElongationFlag) + " does not go with fitting, which makes triangles even");
+  if (arguments.options.growth == GrowthMethod::paper)
+    throw UsageError(std::string(kElongationFlag) + " needs --growth guided");
+}
+
 /// What can be refused before anything is read.
 void check_arguments(const GenerateArguments& arguments) {
   using Kind = PlannedOutput::Kind;
   check_input(arguments);
+  check_elongation(arguments);
   check_writing(arguments.output, arguments.writing);
   if (arguments.bones && extension_of(arguments.output) != ".glb")
     throw UsageError(arguments.output.string() + ": --bones are for .glb only");

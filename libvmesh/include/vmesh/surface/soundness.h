@@ -17,7 +17,7 @@ enum class DefectKind {
   wrong_topology,  ///< components or holes that the centerline does not have, or lacks some that it has
   inside_out,      ///< a component that encloses a negative volume
   crossing_faces,  ///< faces that intersect other than in what they have in common
-  bad_triangle,    ///< a triangle of equiangle skewness above kWorstSkewness
+  bad_triangle,    ///< a triangle of skewness above kWorstSkewness, see metric_skewness()
   node_outside     ///< a node of the centerline that is not inside
 };
 

@@ -18,6 +18,7 @@ struct PieceVertex {
   double fineness, lift;
   Index dock = kNone;  ///< of the junction's (docks_of), at whose tube the ring is
   Index number = 0;    ///< in the ring
+  double elongation_share = 1;
 };
 
 /// The finished surface of a junction and of the tubes around it up to a ring each that is kept as it was.

@@ -24,7 +24,7 @@ class PieceGrower {
  public:
   PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
               const Progress& progress)
-      : tubes_(field, {options.around, options.placement, options.max_error}),
+      : tubes_(field, RingOptions::of(options)),
         rings_(tubes_),
         options_(options),
         progress_(progress),
@@ -180,6 +180,12 @@ class PieceGrower {
                " loops of the centerline are too short to have a hole; the surface is filled there"});
     result.mesh = std::move(gathered_.mesh);
     result.binding = std::move(gathered_.binding);
+    if (tubes_.elongation_field()) {
+      for (const auto& [cone, t] : result.binding) {
+        const Elongation allowed = tubes_.elongation_at(cone, t);
+        result.elongation.push_back(allowed.times > 1 ? Vec3(allowed.times * allowed.direction) : Vec3(Vec3::Zero()));
+      }
+    }
     result.radius = std::move(gathered_.radius);
     result.openings = std::move(gathered_.openings);
   }

@@ -28,6 +28,7 @@ void check_parts_suffice(const GenerateOptions& options) {
   };
   if (options.growth == GrowthMethod::paper) refuse("paper growth starts from a single seed");
   if (options.max_error.is_set()) refuse("a limit on the error is proven of the whole");
+  if (options.elongation > 1) refuse("elongated triangles are told from bad ones on the whole");
   if (options.open_ends.all || !options.open_ends.nodes.empty()) refuse("open ends are finished on the whole");
 }
 
@@ -172,7 +173,7 @@ SplitSummary split(const Centerline& centerline, const GenerateOptions& options,
   summary.expected_vertices = expected_vertices(centerline, options.around);
   summary.simplifications = notes_of_buried(growth, centerline);
 
-  const VesselAxes axes(*field, {options.around, options.placement, options.max_error});
+  const VesselAxes axes(*field, RingOptions::of(options));
   std::vector<Index> counts;
   const Division division = divide_scanning(axes, options, counts, progress);
   const RingCounts rings(axes, std::move(counts));
