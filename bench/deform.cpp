@@ -1,6 +1,6 @@
-// What it costs to move a vessel tree and to keep its surface attached, on synthetic trees from 118 to 100,000
-// segments; and the synchronisation next to a naive one: an array of vertices in the surface's order, each with two
-// rest vectors, in double, Eq. 10 as it is written. items_per_second counts segments or vertices.
+// The cost of moving a vessel tree and keeping its surface attached, on synthetic trees of 118 to 100,000 segments; and
+// of the synchronisation beside a naive one: an array of vertices in the surface's order, each with two rest vectors,
+// in double, Eq. 10 as written. items_per_second counts segments or vertices.
 #include <cmath>
 
 #include <benchmark/benchmark.h>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace vmesh;
 
-/// A tree in motion and points on its wall, spread as the paper's 12,867 vertices on 1,559 segments, in random order.
+/// A moving tree and points on its wall, as dense as the paper's 12,867 vertices on 1,559 segments, in random order.
 struct Scene {
   Centerline tree;
   CenterlineSimulation simulation;
@@ -61,7 +61,7 @@ void step(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 
-/// Only one end of the tree trembles; the rest has come to rest before.
+/// Only one end of the tree moves; everything else is at rest.
 void step_of_a_twig(benchmark::State& state) {
   const Centerline tree = synthetic_tree({.vertices = static_cast<std::size_t>(state.range(0)) + 1, .seed = 1});
   CenterlineSimulation simulation(tree, segment_properties(tree, {.young_Pa = 1e8}), {.rest_tolerance = 1e-5});

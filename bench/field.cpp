@@ -1,4 +1,4 @@
-// What it costs to ask the vessel field, on synthetic trees.
+// The cost of queries of the vessel field, on synthetic trees.
 #include <benchmark/benchmark.h>
 
 #include "vmesh/centerline/synthetic_tree.h"
@@ -14,7 +14,7 @@ Centerline tree_of(benchmark::State& state) {
   return synthetic_tree(options);
 }
 
-// Points at half and at one and a half radii from the axis, as growth and optimisation ask for.
+// Points at half and one and a half radii from the axis, as in growth and optimisation.
 template <class Query>
 void ask(benchmark::State& state, const VesselField& field, Query&& query) {
   Index cone = 0;

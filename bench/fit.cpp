@@ -1,6 +1,6 @@
-// What fitting brings and costs, beside edge collapse of the reference (Lindstrom and Turk, CGAL) to as many vertices:
-// a table in Markdown. Distances are the larger of both ways, mm; time is user CPU on one thread, the report's own
-// measuring included. Usage:
+// Gain and cost of fitting, beside edge collapse of the reference to as many vertices (Garland and Heckbert by CGAL and
+// by VTK; Lindstrom and Turk by CGAL): a table in Markdown. Distances are the larger of both directions, mm; time is
+// user CPU on one thread, including the report's own measurements. Usage:
 //   bench_fit; cases are those of ../shared/data named below.
 #include <cstdio>
 #include <optional>
@@ -76,6 +76,10 @@ void print(const char* name, const char* method, const TriMesh& mesh, const Dist
   std::printf(" |\n");
 }
 
+void print_collapsed(const char* method, const TriMesh& collapsed, const TriMesh& reference) {
+  print("", method, collapsed, distances(collapsed, reference), 0);
+}
+
 void measure(const Case& c) {
   const TriMesh reference = reference_of(c);
   ExtractOptions extraction;
@@ -94,8 +98,11 @@ void measure(const Case& c) {
   print("", "fitted", result.mesh, fitted, seconds);
   const double share =
       static_cast<double>(result.mesh.vertices.size()) / static_cast<double>(reference.vertices.size());
-  const TriMesh collapsed = bench::CgalMesh(reference).decimated(share);
-  print("", "edge collapse", collapsed, distances(collapsed, reference), 0);
+  const bench::CgalMesh peer(reference);
+  print_collapsed("quadric decimation, CGAL", peer.quadric_decimated(share), reference);
+  if (bench::have_vtk())
+    print_collapsed("quadric decimation, VTK", bench::vtk_quadric_decimated(reference, share), reference);
+  print_collapsed("edge collapse, Lindstrom and Turk", peer.decimated(share), reference);
 }
 
 }  // namespace

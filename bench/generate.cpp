@@ -1,6 +1,5 @@
-// What a surface costs, from a centerline that was read to a mesh that was checked: user CPU on one thread, and the
-// wall clock on one and on two, medians. A table in Markdown, with CGAL's Mesh_3 on the same volume beside tree1560.
-// Usage:
+// The cost of a surface, from a centerline in memory to a checked mesh: user CPU on one thread, and wall time on one
+// and on two, medians. A table in Markdown, with CGAL's Mesh_3 on the same volume beside tree1560. Usage:
 //   bench_generate [--runs N] [--no-mesh-3] [FILE...]; without files, those of ../shared/data named below.
 #include "vmesh/surface/generate.h"
 
@@ -78,7 +77,7 @@ Cost median_cost(int runs, Work&& work) {
   return {median(user), median(wall)};
 }
 
-// As `vmesh generate` does it.
+// The surface that `vmesh generate` makes.
 GenerateResult surface_around(const Centerline& centerline, int threads) {
   GenerateOptions options;
   options.threads = threads;

@@ -45,10 +45,10 @@ double cpu_seconds() {
 
 struct Cost {
   double ms = 0;  // median
-  double mb = 0;  // most memory above what was there before
+  double mb = 0;  // peak memory above that at the start
 };
 
-// Most memory that a child process of ours had in use, MB.
+// Peak memory of a child process that runs `work`, MB.
 double peak_mb(const std::function<void()>& work) {
   malloc_trim(0);
   const pid_t child = fork();

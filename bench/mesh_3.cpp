@@ -38,7 +38,7 @@ TriMesh mesh_3(const Centerline& centerline, double around, double blend) {
       inside,
       Kernel::Iso_cuboid_3(box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()),
       CGAL::parameters::relative_error_bound = 1e-5);
-  // The size follows the vessels, as that of vmesh does.
+  // The size follows the vessels, as in vmesh.
   const auto edge = [&](const Kernel::Point_3& p, int, const Domain::Index&) {
     const FieldSample s = field.sample_global({p.x(), p.y(), p.z()});
     return 2 * std::sin(M_PI / around) * field.radius_at(s.cone, s.t);

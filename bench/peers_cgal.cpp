@@ -5,6 +5,7 @@
 #include <CGAL/Polygon_mesh_processing/repair_polygon_soup.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_ratio_stop_predicate.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_plane_policies.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 
 #include "peers.h"
@@ -55,6 +56,15 @@ CgalMesh::~CgalMesh() = default;
 TriMesh CgalMesh::decimated(double share) const {
   Mesh mesh = surface_->mesh;
   SMS::edge_collapse(mesh, SMS::Count_ratio_stop_predicate<Mesh>(share));
+  mesh.collect_garbage();
+  return to_tri_mesh(mesh);
+}
+
+TriMesh CgalMesh::quadric_decimated(double share) const {
+  Mesh mesh = surface_->mesh;
+  const SMS::GarlandHeckbert_plane_policies<Mesh, Kernel> quadrics(mesh);
+  SMS::edge_collapse(mesh, SMS::Count_ratio_stop_predicate<Mesh>(share),
+                     CGAL::parameters::get_cost(quadrics.get_cost()).get_placement(quadrics.get_placement()));
   mesh.collect_garbage();
   return to_tri_mesh(mesh);
 }

@@ -5,6 +5,7 @@
 #include <vtkImplicitPolyDataDistance.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
+#include <vtkQuadricDecimation.h>
 
 #include "peers.h"
 
@@ -23,6 +24,18 @@ vtkNew<vtkPolyData> to_poly_data(const TriMesh& mesh) {
   return data;
 }
 
+TriMesh to_tri_mesh(vtkPolyData& surface) {
+  TriMesh mesh;
+  for (vtkIdType v = 0; v < surface.GetNumberOfPoints(); ++v) mesh.vertices.emplace_back(surface.GetPoint(v));
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType f = 0; f < surface.GetNumberOfPolys(); ++f) {
+    surface.GetPolys()->GetCellAtId(f, corners);
+    mesh.faces.push_back({static_cast<Index>(corners->GetId(0)), static_cast<Index>(corners->GetId(1)),
+                          static_cast<Index>(corners->GetId(2))});
+  }
+  return mesh;
+}
+
 }  // namespace
 
 bool have_vtk() { return true; }
@@ -35,6 +48,15 @@ double vtk_vertex_distance(const TriMesh& from, const TriMesh& to) {
   for (const Vec3& v : from.vertices)
     largest = std::max(largest, std::abs(distance->EvaluateFunction(v.x(), v.y(), v.z())));
   return largest;
+}
+
+TriMesh vtk_quadric_decimated(const TriMesh& mesh, double share) {
+  const vtkNew<vtkPolyData> data = to_poly_data(mesh);
+  vtkNew<vtkQuadricDecimation> decimation;
+  decimation->SetInputData(data);
+  decimation->SetTargetReduction(1 - share);
+  decimation->Update();
+  return to_tri_mesh(*decimation->GetOutput());
 }
 
 TriMesh vtk_isosurface(const Vec3& low, const Vec3& high, double spacing, double (*value)(const Vec3&, const void*),
@@ -57,16 +79,7 @@ TriMesh vtk_isosurface(const Vec3& low, const Vec3& high, double spacing, double
   contour->ComputeGradientsOff();
   contour->ComputeScalarsOff();
   contour->Update();
-  vtkPolyData* surface = contour->GetOutput();
-  TriMesh mesh;
-  for (vtkIdType v = 0; v < surface->GetNumberOfPoints(); ++v) mesh.vertices.emplace_back(surface->GetPoint(v));
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType f = 0; f < surface->GetNumberOfPolys(); ++f) {
-    surface->GetPolys()->GetCellAtId(f, corners);
-    mesh.faces.push_back({static_cast<Index>(corners->GetId(0)), static_cast<Index>(corners->GetId(1)),
-                          static_cast<Index>(corners->GetId(2))});
-  }
-  return mesh;
+  return to_tri_mesh(*contour->GetOutput());
 }
 
 }  // namespace vmesh::bench

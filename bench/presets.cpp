@@ -1,4 +1,4 @@
-// What the presets give on real and synthetic trees: triangles, errors and the time of every stage, as a table in
+// Results of the presets on real and synthetic trees: triangles, errors and the time of every stage, as a table in
 // Markdown or as JSON. Usage: bench_presets [--json] [FILE...]; without files all trees that the shared data has.
 #include <algorithm>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// What it costs to measure all faces of a surface of 178,000 faces, to summarize the measures, and to find defects.
+// The cost of measuring all faces of a surface of 178,000 faces, summarising the measures, and finding defects.
 #include <cmath>
 #include <numbers>
 
@@ -10,7 +10,7 @@ namespace {
 
 using namespace vmesh;
 
-// A torus, its vertices a little off so that no two faces are alike.
+// A torus with slightly displaced vertices, so that no two faces are alike.
 TriMesh uneven_torus() {
   constexpr Index kAlong = 446, kAround = 200;
   TriMesh mesh;

@@ -1,10 +1,10 @@
-// Time and memory of generating and of evaluating a surface as the centerline grows, as a table in Markdown: medians
-// of some runs, and the exponent of the step from one line to the next beside that of n log n. Every run is a process
-// of its own, so that its peak memory is its own; all sizes are run once before one is run again, so that a machine
-// that changes its speed changes it for all. What is measured is told on standard error as it comes. Usage:
-// bench_scaling [--runs=N] [--threads=N] [--shape=tree|star|chain|walk] [SEGMENTS...]; 3 runs each on one thread and
-// on two, of 100 to 100,000. The other shapes are those of tests/support/hard_vessels.h; vessels that touch are
-// separated first, which counts.
+// Time and memory of generating and of evaluating a surface as the centerline grows, as a table in Markdown: medians of
+// some runs, and the exponent of the step from one line to the next beside that of n log n. Every run is a process of
+// its own, so that its peak memory is its own; all sizes are run once before any is run again, so that changes in the
+// machine's speed affect all. Measurements are reported on standard error as they are made. Usage: bench_scaling
+// [--runs=N] [--threads=N] [--shape=tree|star|chain|walk] [SEGMENTS...]; 3 runs each on one thread and on two, of 100
+// to 100,000. The other shapes are those of tests/support/hard_vessels.h; vessels that touch are separated first, which
+// counts.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -84,7 +84,7 @@ Run measure(std::string_view shape, int segments, int threads) {
   return run;
 }
 
-// In a process of its own. Without a value it has failed, and said why.
+// Measures in a separate process; returns false if that failed, having said why.
 bool measure_apart(std::string_view shape, int segments, int threads, Run& run) {
   std::array<int, 2> ends;
   if (pipe(ends.data()) != 0) return false;
@@ -120,7 +120,7 @@ Run medians(std::vector<Run> runs) {
   return median;
 }
 
-// Runs of every size. Empty when one has failed.
+// Runs of every size; empty if one has failed.
 std::vector<std::vector<Run>> measure_all(std::string_view shape, const std::vector<int>& sizes, int threads,
                                           int runs) {
   std::vector<std::vector<Run>> measured(sizes.size());

@@ -1,5 +1,6 @@
-// What `vmesh tradeoff` shows, with CGAL's Mesh_3 on the same field as one more curve. Writes PREFIX.md and PREFIX.svg.
-// Usage: bench_tradeoff PREFIX [CENTERLINE]; without a centerline the synthetic portal vein of 1,560 vertices.
+// The results of `vmesh tradeoff`, with CGAL's Mesh_3 on the same field as an additional curve. Writes PREFIX.md and
+// PREFIX.svg. Usage: bench_tradeoff PREFIX [CENTERLINE]; without a centerline the synthetic portal vein of 1,560
+// vertices.
 #include "vmesh/tuning/tradeoff.h"
 
 #include <chrono>

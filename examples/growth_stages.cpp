@@ -1,5 +1,5 @@
-// Writes what a surface is before it is a surface, for pictures (libvmesh/README.md): skeleton.ply, rings.ply and
-// lattice.ply. It looks into the library, through headers that are not installed.
+// Writes the stages of growth before there is a surface, for pictures (libvmesh/README.md): skeleton.ply, rings.ply and
+// lattice.ply. Uses internal headers that are not installed.
 //   growth_stages [CENTERLINE [FOLDER]]
 #include <cstdio>
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace {
 
 using namespace vmesh;
 
-// A mesh whose faces have a group: what `vmesh render --color group` gives a colour of its own.
+// A mesh whose faces have a group, which `vmesh render --color group` shows in different colours.
 class Drawing {
  public:
   void add(const std::vector<Vec3>& vertices, const std::vector<Triangle>& faces, int group) {
@@ -75,7 +75,7 @@ class Drawing {
 // Colours of the pictures.
 enum Group { kTube = 0, kJunction = 1, kSeam = 2 };
 constexpr double kLine = 0.08;  // radii of the vessel, half the width of lines
-constexpr double kAxis = 0.15;  // the same of axes
+constexpr double kAxis = 0.15;  // the same for axes
 
 std::vector<Vec3> positions(std::span<const BoundaryPoint> points) {
   std::vector<Vec3> result;
@@ -83,7 +83,7 @@ std::vector<Vec3> positions(std::span<const BoundaryPoint> points) {
   return result;
 }
 
-// A ring that was refused may lack points.
+// The outline of a ring; a ring that is not free may lack points.
 std::vector<Vec3> outline(const Ring& ring) {
   if (!ring.points.empty()) return positions(ring.points);
   const Vec3 side = ring.normal.unitOrthogonal(), up = ring.normal.cross(side);
@@ -103,14 +103,14 @@ void draw_axis(const BranchAxis& axis, double begin, double end, int group, Draw
   }
 }
 
-// Where a tube's rings lie on its branch; a cap reaches on to the tip.
+// The extent of a tube on its branch; a cap extends it to the tip.
 std::pair<double, double> reach_of(const Tube& tube, const BranchAxis& axis) {
   const double begin = tube.starts_at_tip ? 0 : tube.rings.front().place;
   const double end = tube.ends_at_tip || tube.periodic ? axis.length() : tube.rings.back().place;
   return {begin, end < begin ? end + axis.length() : end};
 }
 
-// The graph that steers growth, along the axes of the vessels: tubes, junctions, and the seams where pieces meet.
+// The graph that steers growth, along the axes of the vessels: tubes, junctions, and the seams between pieces.
 Drawing draw_skeleton(const VesselTubes& tubes, const Division& division,
                       const std::vector<GrowthSkeleton>& skeletons) {
   Drawing drawing;
@@ -132,7 +132,7 @@ Drawing draw_skeleton(const VesselTubes& tubes, const Division& division,
   return drawing;
 }
 
-// All rings as they were laid: free ones, seams among them, and those that are left to junctions.
+// All rings as laid: free ones, seams among them, and those left to junctions.
 Drawing draw_rings(const VesselTubes& tubes, const Division& division) {
   Drawing drawing;
   for (Index b = 0; b < tubes.axes().size(); ++b) {

@@ -1,10 +1,10 @@
-// Asks the volume of a vessel how far points are from its wall, and which segment is closest.
+// Queries how far points are from a vessel's wall, and which segment is closest.
 #include <cstdio>
 
 #include "vmesh/volume/vessel_field.h"
 
 int main() {
-  // Two vessels that meet in a node, in mm.
+  // Two vessels that meet at a node, in mm.
   const vmesh::Centerline centerline({{{0, 0, 0}, 3.0}, {{0, 0, 20}, 2.5}, {{10, 0, 30}, 2.0}}, {{0, 1}, {1, 2}});
   const vmesh::VesselField field(centerline, /*blend=*/0.5);
 

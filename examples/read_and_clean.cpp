@@ -1,4 +1,4 @@
-// Reads a centerline file and says what is wrong with it and what cleaning made of it.
+// Reads a centerline file and reports its problems and the result of cleaning.
 #include <cstdio>
 
 #include "vmesh/centerline/validation.h"

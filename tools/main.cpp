@@ -13,7 +13,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// --threads of a verb; 0: not said, or it has none.
+/// --threads of a verb; 0 if not given, or if it has no such option.
 template <class VerbArguments>
 int threads_of(const VerbArguments& verb) {
   if constexpr (requires { verb.threads; }) return verb.threads;

@@ -1,5 +1,5 @@
 # Installation and the package vmesh: one export set per module, so that a consumer needs only the libraries of the
-# modules it asks for. What the package has to look for follows from what the modules link.
+# modules it requests. The package's dependencies follow from what the modules link.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -45,7 +45,7 @@ function(vmesh_inspect_links name)
     if(library MATCHES "^vmesh::(.*)$")
       list(APPEND modules ${CMAKE_MATCH_1})
     elseif(library MATCHES "BUILD_INTERFACE:CGAL::CGAL")
-      # CGAL is headers only; what it calls has to be linked all the same.
+      # CGAL is header-only, but the libraries that it calls must be linked.
       target_link_libraries(vmesh_${name} PRIVATE $<INSTALL_INTERFACE:mpfr> $<INSTALL_INTERFACE:gmp>)
     elseif(library MATCHES "^VTK::(.*)$")
       list(APPEND vtk_components ${CMAKE_MATCH_1})
@@ -81,7 +81,7 @@ function(vmesh_install_module name)
     FILES_MATCHING PATTERN "*.h")
 endfunction()
 
-# Call with all modules in the order of the link graph: what a module links comes before it.
+# To be called with all modules in the order of the link graph: a module's dependencies come before it.
 function(vmesh_install_package)
   set(graph "")
   foreach(module IN LISTS ARGN)

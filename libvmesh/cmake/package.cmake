@@ -13,7 +13,7 @@ if(VMESH_WITH_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 
-# What the command and the module need follows from the shared libraries that they load.
+# Dependencies of the command and the module follow from the shared libraries that they load.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME vmesh)
@@ -26,7 +26,7 @@ completion for bash.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvmesh-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)  # static libraries tell nothing
-# Every module needs the first; what the others need is looked for by the modules that are asked for.
+# Every module needs the first; the others are needed only by some modules.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libgmp-dev, libmpfr-dev, libtbb-dev")
 set(recommended libembree-dev libpng-dev libpugixml-dev libssl-dev zlib1g-dev)
 if(VMESH_WITH_VTK)
@@ -64,7 +64,7 @@ measured and deformed.")
 endif()
 
 include(GNUInstallDirs)
-# Debian looks for the license there.
+# Debian expects the license there.
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/libvmesh-dev"
   RENAME copyright COMPONENT development)
 if(VMESH_WITH_PYTHON)

@@ -42,7 +42,7 @@ def check_keys(where, given, known):
 
 
 def check_settings(where, settings):
-    """What may stand at the top, for inputs and for cases."""
+    """Checks settings, which may be at the top, for inputs and for cases."""
     for key in ("options", "picture"):
         if settings.get(key) in (None, False) and key == "picture":
             continue
@@ -54,7 +54,7 @@ def check_settings(where, settings):
             raise PlanError(f"{where}: options: {option} is set by the workflow; leave it out")
     for key in ("threads", "memory_mb", "minutes"):
         if key in settings and (type(settings[key]) is not int or settings[key] < 1):
-            raise PlanError(f"{where}: {key}: expected a whole number of at least 1, got {settings[key]!r}")
+            raise PlanError(f"{where}: {key}: expected an integer of at least 1, got {settings[key]!r}")
 
 
 def merged(*levels):
@@ -156,7 +156,7 @@ def plan_case(path, name, settings, folder, surface, hashes):
     return case
 
 
-# What a surface does not depend on; a picture depends on its surface.
+# Keys on which a surface does not depend; a picture depends on its surface.
 NOT_OF_SURFACE = {"picture", "picture_arguments", "threads", "memory_mb", "minutes"}
 
 
@@ -190,7 +190,7 @@ def make_cases(config, where, folder, hashes):
             cases[name] = plan_case(path, name, settings, folder, config.get("surface", "ply"), hashes)
     for pattern in overrides:
         if pattern not in used:
-            raise PlanError(f"{where}: cases: {pattern} is no case; the first are {', '.join(sorted(cases)[:3])}")
+            raise PlanError(f"{where}: cases: {pattern} is not a case; the first are {', '.join(sorted(cases)[:3])}")
     return dict(sorted(cases.items()))
 
 

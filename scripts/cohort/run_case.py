@@ -36,7 +36,7 @@ def run(command, log):
 
 
 def message_of(exit_code, log, path):
-    """What vmesh said of its error, without the folders of the input."""
+    """vmesh's error messages, without the folders of the input."""
     if exit_code == 0:
         return ""
     lines = log.read_text(errors="replace").splitlines()

@@ -30,7 +30,7 @@ MEASURES = (
 COSTS = (("seconds", 2), ("cpu_seconds", 2), ("peak_memory_mb", 0))
 COLUMNS = ["case", "result", "exit_code", *(name for name, _, _ in MEASURES), *(name for name, _ in COSTS), "surface",
            "picture", "message", "input"]
-# unmet: a surface was written, but a check or a limit that was asked for does not hold.
+# unmet: a surface was written, but a requested check or limit does not hold.
 RESULTS = ("ok", "unmet", "failed", "not finished")
 MARKDOWN = ("vertices", "skewness_mean", "skewness_max", "distance_mean", "distance_max", "reference_mean_mm",
             "reference_hausdorff_mm", "seconds", "cpu_seconds", "peak_memory_mb")
@@ -43,7 +43,7 @@ def look_up(summary, path):
 
 
 def last_words(name):
-    """What vmesh said of an error of a case that has no status."""
+    """vmesh's error messages for a case without a status."""
     log = Path(f"log/{name}.surface.log")
     lines = log.read_text(errors="replace").splitlines() if log.exists() else []
     return "; ".join(line.removeprefix("vmesh: ") for line in lines if line.startswith("vmesh: "))

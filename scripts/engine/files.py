@@ -1,4 +1,4 @@
-"""Files that appear complete or not at all, and what is in others."""
+"""Files that appear complete or not at all, and their contents."""
 
 import hashlib
 import json
@@ -14,7 +14,7 @@ class PlanError(Exception):
 
 
 def read_json(path):
-    """None where there is no such file, or where it is no JSON."""
+    """None where there is no such file, or if it is not JSON."""
     try:
         return json.loads(Path(path).read_text())
     except (FileNotFoundError, ValueError):
@@ -40,7 +40,7 @@ def write_json(path, content):
 
 
 def write_changed(path, content):
-    """A file that is the same stays as old as it is."""
+    """A file with the same content keeps its time."""
     if read_json(path) != content:
         write_json(path, content)
 
@@ -88,7 +88,7 @@ class Hashes:
         return digest
 
     def of_input(self, path):
-        """Of what cannot be read it is the reason, which vmesh will tell as well."""
+        """For an unreadable file it is the reason, which vmesh will report as well."""
         try:
             return self.of_readable(path)
         except OSError as error:

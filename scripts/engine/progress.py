@@ -16,7 +16,7 @@ def say(text):
 
 
 def say_errors(log):
-    """What vmesh said of an error in its log."""
+    """Shows vmesh's error messages from a log."""
     try:
         with open(log, errors="replace") as lines:
             for line in lines:

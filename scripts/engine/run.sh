@@ -1,5 +1,4 @@
-# shellcheck shell=bash
-# What scripts/cohort/run and scripts/parts/run have in common; sourced by them, with $root set.
+# shellcheck shell=bash Common to scripts/cohort/run and scripts/parts/run; sourced by them, with $root set.
 
 # Prints the whole path of the command: $VMESH, that of this checkout, the one in the PATH, or one that is built now.
 find_vmesh() {
@@ -23,8 +22,8 @@ install_engine() {
   fi
 }
 
-# run_snakemake SNAKEFILE RESULTS [OPTION...]: one at a time in a folder. Whoever is killed leaves nothing locked: the
-# lock is that of a file that is open, here and in all that runs on this machine.
+# run_snakemake SNAKEFILE RESULTS [OPTION...]: one at a time in a folder. A killed run leaves nothing locked: the lock
+# belongs to a file that is open here and in all its processes on this machine.
 run_snakemake() {
   local snakefile=$1 results=$2
   shift 2
@@ -40,7 +39,7 @@ run_snakemake() {
   }
   VMESH_JOB_NAME=vmesh-$(sha256sum <<<"$(uname -n) $results" | cut -c 1-12)
   export VMESH_JOB_NAME VMESH_PROGRESS=8
-  # Jobs that a run left behind when it was killed would do the same work twice.
+  # Jobs left behind by a killed run would do the same work twice.
   if command -v scancel >/dev/null && [[ "$profile" != */local ]]; then
     scancel --quiet --user "$(id -un)" --name "$VMESH_JOB_NAME" || true
   fi
@@ -56,7 +55,7 @@ run_snakemake() {
   mkdir -p "$results/log"
   "${command[@]}" --log-handler-script "$root/scripts/engine/progress.py" 8>&2 2>"$log" || {
     local code=$?
-    echo "$0: not everything finished; Snakemake's own words are in $log" >&2
+    echo "$0: not everything finished; Snakemake's messages are in $log" >&2
     return "$code"
   }
 }

@@ -1,4 +1,4 @@
-"""Options of the vmesh command as a configuration or the command line of a workflow gives them."""
+"""Options of the vmesh command, from the configuration or the command line of a workflow."""
 
 import subprocess
 

@@ -182,8 +182,8 @@ TEST(Clean, MakesNoFalseLoopsOfPathsThatMeetAgainAfterParting) {
   EXPECT_GT(result.report.count(Kind::kept_crossing), 0u);
 }
 
-// From x = 0 along the axis, then from x = 40 on at an angle; `step` mm apart, and `beside` mm off the axis before
-// that.
+// Along the axis from x = 0 on, at an angle from x = 40 on; points `step` mm apart, and `beside` mm off the axis up to
+// there.
 std::vector<CenterlineNode> inlet_to_outlet(double slope, double step, double beside, double radius = 2) {
   std::vector<CenterlineNode> path;
   for (double x = 0; x <= 60; x += step) {
@@ -210,7 +210,7 @@ TEST(Clean, MergesPathsFromOneInletThoughTheyDoNotShareTheirPoints) {
   EXPECT_EQ(result.centerline.component_count(), 1u);
   EXPECT_EQ(result.centerline.cycle_rank(), 0u);
   EXPECT_EQ(std::count_if(result.raw_segment.begin(), result.raw_segment.end(), [](Index s) { return s == kNone; }), 0);
-  // The third leaves neither of the others by a tenth of the radius before it is past the fork.
+  // The third stays within a tenth of the radius of both others until after the fork.
   const auto lengths = branch_lengths(result.centerline);
   EXPECT_NEAR(*std::max_element(lengths.begin(), lengths.end()), 40, 1.5);
   for (const auto& n : result.centerline.nodes()) {

@@ -15,7 +15,7 @@ auto a_twentieth(const Centerline& centerline) {
   return [&](Index node) { return kTolerance * centerline.node(node).radius; };
 }
 
-// Branches between random nodes, wavy, finely sampled, some of their segments backwards, and a node alone.
+// Wavy, finely sampled branches between random nodes, some segments backwards, and an isolated node.
 Centerline random_graph(std::uint32_t seed) {
   Draw draw(seed);
   std::vector<CenterlineNode> nodes;

@@ -13,7 +13,7 @@ Centerline y_tree() {
   return {{{{0, 0, 0}, 3.0}, {{0, 0, 20}, 2.8}, {{-9, 0, 32}, 2.1}, {{8, 3, 33}, 2.3}}, {{0, 1}, {1, 2}, {3, 1}}};
 }
 
-/// Stands for marching cubes: many small triangles on the plain union of the cones.
+/// In place of marching cubes: many small triangles on the plain union of the cones.
 TriMesh fine_surface() {
   GenerateOptions options;
   options.around = 30;
@@ -104,7 +104,7 @@ TEST_F(ComparedMethods, AreMeasuredAgainstTheReferenceBothWays) {
     EXPECT_LE(hausdorff.upper() - hausdorff.lower(), 1e-4);
     EXPECT_LE(from_surface.distance.max, hausdorff.forward.upper);
     EXPECT_LE(from_reference.distance.max, hausdorff.backward.upper);
-    // Which way is which: seen from the surface, the witness is a point of one of its faces.
+    // Directions are not swapped: from the surface, the witness is a point of one of its faces.
     EXPECT_LT(hausdorff.forward.witness.from_face, row.mesh.faces.size());
     EXPECT_NEAR(from_surface.samples_per_mm2, 100'000 / surface_area(row.mesh), 1e-6);
     EXPECT_NEAR(from_reference.samples_per_mm2, 100'000 / surface_area(reference), 1e-6);

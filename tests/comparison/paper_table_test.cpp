@@ -37,7 +37,7 @@ std::vector<bool> met(const MethodComparison& comparison) {
   return result;
 }
 
-/// A comparison that meets all demands, with no room in those that may be reached.
+/// A comparison that meets all requirements, exactly at the limit where equality is allowed.
 MethodComparison just_good_enough() {
   MethodComparison comparison = as_printed();
   row_of(comparison, marching_cubes).mesh.vertices.resize(10'000);
@@ -65,7 +65,7 @@ TEST(PaperTable, SharesAreThoseThatThePaperStates) {
 
 TEST(PaperTable, NamesWhatIsWorse) {
   MethodComparison comparison = as_printed();
-  comparison.rows.push_back(comparison.row(low_resolution));  // the paper has nothing to say of the preset
+  comparison.rows.push_back(comparison.row(low_resolution));  // the preset is not in the paper
   comparison.rows.back().method = low_preset;
   row_of(comparison, high_resolution).skewness.max = 0.985;
   row_of(comparison, low_resolution).distance->hausdorff.backward.upper = 7.68;

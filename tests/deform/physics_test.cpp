@@ -12,7 +12,7 @@ constexpr double kLength = 100, kRadius = 1;
 const Material kSoft{.young_Pa = 1e6, .density_kg_m3 = 1000, .poisson_ratio = 0.3};
 constexpr double kYoung_N_mm2 = 1;  // of kSoft
 
-/// A torque acts on the frame as it was at the step's start: what turned far needs more than one step.
+/// A torque acts on the frame as of the start of the step, so large rotations need more than one step.
 void settle(CenterlineSimulation& rod) {
   for (int i = 0; i < 10; ++i) rod.step();
 }

@@ -8,7 +8,7 @@
 namespace vmesh::testing {
 namespace {
 
-/// `tree` with lengths times `factor`, and a few nodes moved to all but the place of their neighbours.
+/// `tree` scaled by `factor`, with a few nodes moved almost onto their neighbours.
 Centerline scaled(const Centerline& tree, double factor, Draw& draw) {
   std::vector<CenterlineNode> nodes = tree.nodes();
   for (CenterlineNode& node : nodes) {
@@ -26,8 +26,8 @@ struct Case {
   double young_Pa, step_s, radius_mm;
 };
 
-/// A tree under torment, and the most energy that a step can have brought in: what a blow of all loads at its start and
-/// dragging with all else standing still bring.
+/// A tree under extreme loads, and a bound on the energy that a step can add: that of all loads acting as an impulse at
+/// its start, and of dragging with everything else standing still.
 class Victim {
  public:
   Victim(const Case& c, Draw& draw)

@@ -60,7 +60,7 @@ Pose bent_pose(const Centerline& tree) {
   return simulation.pose();
 }
 
-/// What apply() promises of a vertex at `arm` from its place: single precision of arms and of coordinates.
+/// The accuracy of apply() for a vertex at `arm` from its place: single precision of arms and of coordinates.
 double precision(const DeformedSurface& surface, const Vec3& arm) {
   double largest = 0;
   for (const std::vector<float>* values : {&surface.x, &surface.y, &surface.z})

@@ -34,7 +34,7 @@ Centerline fork(bool with_twig = true) {
   return {nodes, segments};
 }
 
-/// What a patient's wall is: flat where it lies on something, with bulges.
+/// Like a patient's vessel wall: flattened where it touches something, with bulges.
 Vec3 deformed(const Vec3& p) {
   const double swell = 1 + 0.12 * std::sin(0.45 * p.z()) + 0.08 * std::cos(0.6 * p.x() + 0.4 * p.y());
   return {p.x() + 0.35 * std::sin(0.5 * p.y()), 0.75 * swell * p.y(), p.z()};
@@ -172,7 +172,7 @@ TEST(FitSurface, LeavesPartsThatLieApartOut) {
   const FitResult both = fit_surface(grown(centerline), centerline, joined({reference, other}), quick());
   expect_sound(both, centerline);
   EXPECT_EQ(both.report.parts_apart, 1u);
-  // The samples of the reference are other ones, so the surface is another, and about as near.
+  // The samples of the reference differ, so the surface differs as well, but is about as near.
   EXPECT_NEAR(both.report.after.mean(), alone.report.after.mean(), 0.3 * alone.report.after.mean());
 }
 

@@ -1,4 +1,4 @@
-// Walls of real vessels, with the figures that were asked for.
+// Walls of real vessels, with the required figures.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -46,7 +46,7 @@ void expect_fitted(const TriMesh& reference, const Centerline& centerline, const
   EXPECT_LT(skewness.max, 0.5);
 }
 
-// From surfaces that are equally good, but not the same.
+// Starting from surfaces that are equally good but different.
 void expect_fitted(const std::string& file, const Demand& demand) {
   const TriMesh reference = read_surface(testing::shared_data(file)).mesh;
   const Centerline centerline = separate_contacts(extract_centerline(reference).centerline).centerline;
@@ -70,7 +70,7 @@ TEST(FitRealSurfaces, Aorta) {
   expect_fitted(file, {0.19, 0.49, 1.0});
 }
 
-/// The caps of the models that flow is computed in, by their ModelFaceID.
+/// The caps of flow models, by ModelFaceID.
 std::map<int, ReferenceCap> caps_of(const LoadedSurface& model) {
   const auto id = std::find_if(model.attributes.face.begin(), model.attributes.face.end(),
                                [](const MeshAttribute& a) { return a.name == "ModelFaceID"; });

@@ -1,6 +1,5 @@
-// bent_tree TREE SURFACE.ply POSE.json: bends a tree by 40 degrees at a branching node and writes what the deformer
-// makes of that: the joints of make_linear_skin() as they are then, in the frame of GLB files, and the surface's
-// vertices, mm.
+// bent_tree TREE SURFACE.ply POSE.json: bends a tree by 40 degrees at a branching node and writes the deformer's
+// result: the joints of make_linear_skin() in the frame of GLB files, and the surface's vertices, mm.
 #include <algorithm>
 #include <fstream>
 #include <iostream>
@@ -25,14 +24,14 @@ const Mat3& y_up() {
   return turn;
 }
 
-/// Slots from `first` on that descend from it; a subtree is in one piece.
+/// Number of slots from `first` on that descend from it; a subtree is contiguous.
 Index end_of_subtree(const RodTree& tree, Index first) {
   Index end = first + 1;
   while (end < tree.size() && tree.parent[end] != kNone && tree.parent[end] >= first) ++end;
   return end;
 }
 
-/// The slot whose subtree is the largest of those that do not hold half of the tree.
+/// The slot with the largest subtree that contains less than half of the tree.
 Index hinge_of(const RodTree& tree) {
   Index best = kNone;
   std::size_t most = 0;

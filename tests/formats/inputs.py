@@ -85,7 +85,7 @@ def check_vtk(table, vtk, written, shared_data):
 
     for mode, word in ((0, "text"), (1, "binary"), (2, "appended")):
         surface(".vtp", "vtkXMLPolyDataWriter", DOUBLE, True, NORMAL_NAMES, FACE_NAMES, f"in, {word}", DataMode=mode)
-    surface(".vtp", "vtkXMLPolyDataWriter", DOUBLE, True, NORMAL_NAMES, FACE_NAMES, "in, not packed", CompressorType=0)
+    surface(".vtp", "vtkXMLPolyDataWriter", DOUBLE, True, NORMAL_NAMES, FACE_NAMES, "in, uncompressed", CompressorType=0)
     for kind, word in ((2, "LZ4"), (3, "LZMA")):
         name = vtk.write("vtkXMLPolyDataWriter", data, path("packed.vtp"), CompressorType=kind)
         table.check(

@@ -17,7 +17,7 @@ void require(bool holds, const std::string& what) {
   if (!holds) throw std::logic_error(what);
 }
 
-/// Names the file, can be shown as it is and is no novel.
+/// Whether a message names the file, is printable and not too long.
 void check_message(const std::string& message, const std::string& source) {
   constexpr std::size_t kLongest = 1000;
   require(message.find(source) != std::string::npos, "the message does not name the file: " + message);

@@ -1,4 +1,4 @@
-// Every reader of the library under one name each, for fuzzing and for replaying what fuzzing has found.
+// Every reader of the library by name, for fuzzing and for replaying the findings.
 #pragma once
 
 #include <ostream>
@@ -15,9 +15,9 @@ struct Reader {
   std::string_view name;    ///< "swc", "surface_vtp", "nii_gz" ...
   std::string_view ending;  ///< of its files, ".swc"
 
-  /// Reads a file's content the way programs do: centerlines are cleaned, too. Refused is what the reader throws
-  /// InvalidInput or Unsupported for. Anything else that is thrown is a finding; so is std::logic_error, thrown when
-  /// what was read does not hold together or when the message of a refusal is not fit to be shown.
+  /// Reads a file's content like programs do: centerlines are also cleaned. InvalidInput and Unsupported are refusals.
+  /// Any other exception is a finding; std::logic_error is thrown if the result is inconsistent or the message of a
+  /// refusal is not presentable.
   Verdict (*read)(std::string_view content);
 
   /// Small valid files that show what the format can do.

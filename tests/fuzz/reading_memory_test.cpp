@@ -1,4 +1,4 @@
-// What reading a file takes at most is a multiple of the file, whatever the file says.
+// Reading a file takes at most a multiple of its size in memory, whatever its content claims.
 #include <atomic>
 #include <cstdlib>
 #include <new>

@@ -68,7 +68,7 @@ inline std::string pixel_spacing_of(const SampleImage& image) {
   return decimals({image.spacing.y(), image.spacing.x()});
 }
 
-/// Slice k; `values` are what they are after rescaling, of the whole image.
+/// Slice k; `values` are those of the whole image after rescaling.
 inline std::string dicom_slice(const SampleImage& image, const std::vector<double>& values, int k,
                                const DicomTags& tags = {}) {
   const std::string ct = "1.2.840.10008.5.1.4.1.1.2", instance = tags.series + "." + std::to_string(k + 1);

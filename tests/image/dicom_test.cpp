@@ -112,7 +112,7 @@ TEST_F(Dicom, SeveralSeriesAreListedAndOneIsChosenByAFileOfIt) {
   write_series(values, {.series = "1.2.3.5", .description = "Arterial 1.0"}, "A");
   write_series(mask, {.series = "1.2.3.6", .description = "mask"}, "B");
   const std::string message = message_of<InvalidInput>([&] { read_image(folder()); });
-  for (const char* part : {"2 DICOM series", "name a file", "\n  CT \"Arterial 1.0\", 36 slices of 48 x 40: ", "/A0",
+  for (const char* part : {"2 DICOM series", "give a file", "\n  CT \"Arterial 1.0\", 36 slices of 48 x 40: ", "/A0",
                            "CT \"mask\", 36 slices", "/B0"})
     expect_contains(message, part);
   expect_same(read_image(folder_ / "A1").image, as_nifti(values));
@@ -154,7 +154,7 @@ TEST_F(Dicom, MissingSlicesAreNoticed) {
 
 TEST_F(Dicom, OneSliceIsNoVolume) {
   folder_.write("IM0", dicom_slice(image_, image_.values(), 0));
-  expect_contains(message_of<InvalidInput>([&] { read_image(folder()); }), "one slice only");
+  expect_contains(message_of<InvalidInput>([&] { read_image(folder()); }), "only one slice");
 }
 
 TEST_F(Dicom, WhatIsNoImageIsLeftOut) {
@@ -164,8 +164,8 @@ TEST_F(Dicom, WhatIsNoImageIsLeftOut) {
   folder_.write("SR", dicom_file(report, "1.2.9", element(8, 0x16, "UI", report) + element(8, 0x60, "CS", "SR")));
   folder_.write("notes.txt", "not DICOM");
   expect_same(read_image(folder()).image, as_nifti(values));
-  expect_contains(message_of<InvalidInput>([&] { read_image(folder_ / "SR"); }), "holds no image");
-  expect_contains(message_of<InvalidInput>([&] { read_image(folder_.write("a.dcm", "x")); }), "no DICOM file");
+  expect_contains(message_of<InvalidInput>([&] { read_image(folder_ / "SR"); }), "contains no image");
+  expect_contains(message_of<InvalidInput>([&] { read_image(folder_.write("a.dcm", "x")); }), "not a DICOM file");
 }
 
 TEST_F(Dicom, FramesOfOneFileAreSortedAndRescaledEachByItself) {
@@ -230,7 +230,7 @@ TEST_F(Dicom, WhatIsCutOffOrDamagedIsAnError) {
   for (std::size_t size = 0; size < whole.size(); size += size < 700 ? 5 : 23) {
     folder_.write("IM2", whole.substr(0, size));
     EXPECT_THROW(read_image(folder()), InvalidInput)
-        << size;  // also where it is no DICOM file any more: one is missing
+        << size;  // even if it is no longer a DICOM file: then one is missing
   }
   std::filesystem::remove_all(folder());
   std::filesystem::create_directory(folder());

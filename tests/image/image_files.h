@@ -145,7 +145,7 @@ inline std::string mha_header(const SampleImage& image, const std::string& type,
          "\nElementType = " + type + "\nElementDataFile = LOCAL\n";
 }
 
-/// Packed with zlib, or with gzip.
+/// Compressed with zlib, or with gzip.
 inline std::string packed(const std::string& bytes, bool gzip, int level = 6) {
   z_stream stream{};
   if (deflateInit2(&stream, level, Z_DEFLATED, gzip ? 31 : 15, 8, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();

@@ -63,7 +63,7 @@ TEST_F(TwoFiles, AnalyzeWarnsThatItHasNoFrame) {
   header.replace(252, 4, std::string(4, '\0'));
   const LoadedImage loaded = read_image(folder_.write("c.hdr", header));
   ASSERT_EQ(loaded.warnings.size(), 1u);
-  expect_contains(loaded.warnings[0], "left and right");
+  expect_contains(loaded.warnings[0], "which side is left");
 }
 
 TEST_F(TwoFiles, WhatIsCutOffIsAnError) {

@@ -1,4 +1,4 @@
-// ITK brings an Eigen of its own that cannot be compiled together with ours, so nothing of either may appear here.
+// ITK has its own Eigen, which cannot be compiled together with ours, so neither may appear here.
 #pragma once
 
 #include <array>

@@ -103,9 +103,9 @@ TEST(ReadAmira, TakesTheRadiusOfEdgesOrOneForAll) {
 }
 
 TEST(ReadAmira, NamesTheLineThatIsWrong) {
-  expect_contains(error("solid x\n"), "t.am: line 1: this is no file of Amira");
-  expect_contains(error(with("1 0 25", "1 O 25")), "\"O\" is no number");
-  expect_contains(error(with("1 0 25\n", "")), "\"@5\" is no number");
+  expect_contains(error("solid x\n"), "t.am: line 1: this is not an Amira file");
+  expect_contains(error(with("1 0 25", "1 O 25")), "\"O\" is not a number");
+  expect_contains(error(with("1 0 25\n", "")), "\"@5\" is not a number");
   expect_contains(error(with("@3\n3\n3\n2", "@3\n3\n3\n3")), "edge 2 has more points than there are");
   expect_contains(error(with("@2\n0 1", "@2\n0 4")), "edge 0 runs to a vertex that is not there");
   expect_contains(error(with("define POINT 8", "define POINT 99999999999")), "more than the file can hold");
@@ -113,7 +113,7 @@ TEST(ReadAmira, NamesTheLineThatIsWrong) {
   expect_contains(error(with("float[3] VertexCoordinates", "quaternion Vertex")),
                   "the type \"quaternion\" is not known");
   expect_contains(error(with("EdgeConnectivity", "Edges")), "no EdgeConnectivity");
-  expect_contains(error(with("@5\n5\n", "@6\n5\n")), "\"@6\" is no place that the header declares");
+  expect_contains(error(with("@5\n5\n", "@6\n5\n")), "\"@6\" is not a place that the header declares");
   expect_contains(error(kFile.substr(0, kFile.find("@4\n0"))), "the data of EdgePointCoordinates are not there");
   expect_contains(message_of<Unsupported>([] { parse(with("thickness } @5", "thickness } @5(HxLzma,9)")); }), "hxlzma");
 }

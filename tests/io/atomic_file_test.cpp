@@ -31,7 +31,7 @@ std::set<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-/// For its life, a signal arrives every 20 ms that ends waiting calls and does nothing else.
+/// During its lifetime, a signal that only interrupts waiting calls arrives every 20 ms.
 class Alarms {
  public:
   Alarms() {
@@ -53,7 +53,7 @@ class Alarms {
   struct sigaction before_ = {};
 };
 
-/// For its life, files may not be larger than `bytes`, and trying is an error of the write.
+/// During its lifetime, files may not be larger than `bytes`; exceeding that is a write error.
 class LargestFile {
  public:
   explicit LargestFile(rlim_t bytes) {

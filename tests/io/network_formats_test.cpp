@@ -83,10 +83,10 @@ TEST(ReadGxl, NeedsTheVoxelAndNamesWhatIsWrong) {
                   "--voxel-size");
   expect_contains(error(gxl(kNodes + edge("n0", "n9", "2"))), "t.gxl: edge entry 0: there is no node \"n9\"");
   expect_contains(error(gxl(kNodes + edge("n0", "n1", "wide"))), "t.gxl: edge entry 0: its radius \"wide\"");
-  expect_contains(error(gxl(kNodes + node("n1", floats(1, 1, 1)))), "node entry 4: the id \"n1\" was there before");
+  expect_contains(error(gxl(kNodes + node("n1", floats(1, 1, 1)))), "node entry 4: the id \"n1\" occurs twice");
   expect_contains(error(gxl(node("n0", "<float>1</float>"))), "node entry 0: its position");
   expect_contains(error(gxl(kNodes)), "no <edge>");
-  expect_contains(error("<svg/>"), "no GXL file");
+  expect_contains(error("<svg/>"), "not a GXL file");
 }
 
 const std::string kNetwork =
@@ -121,15 +121,15 @@ TEST(ReadNetwork, NamesTheLineThatIsWrong) {
         [&] { parse_centerline(network_with(from, to), CenterlineFormat::network, "t.dat"); });
   };
   expect_contains(wrong("2 5 12 13 12.5", "2 5 12 14 12.5"), "t.dat: line 11: there is no node 14");
-  expect_contains(wrong("2 5 12 13 12.5", "2 5 12 13 wide"), "t.dat: line 11: \"wide\" is no number");
-  expect_contains(wrong("12 100 0 0", "11 100 0 0"), "t.dat: line 15: the node 11 was there before");
+  expect_contains(wrong("2 5 12 13 12.5", "2 5 12 13 wide"), "t.dat: line 11: \"wide\" is not a number");
+  expect_contains(wrong("12 100 0 0", "11 100 0 0"), "t.dat: line 15: the node 11 occurs twice");
   expect_contains(wrong("2 total number of segments", "many segments"), "t.dat: line 8: \"many\"");
   expect_contains(wrong("3 total number of nodes", "9 total number of nodes"), "t.dat: line 17");
   expect_contains(wrong(kNetwork, "1 2 3\n"), "the file ends where");
 }
 
 #if VMESH_WITH_HDF5
-// The other formats of the files were made of them elsewhere, with ends that sections share as one point.
+// The same networks in other formats, converted elsewhere, in which sections share end points.
 TEST(ReadHdf5, NetworksOfMorphIoAreThoseInVtp) {
   VMESH_NEED_SHARED_DATA("microvascular_loops");
   for (const std::string name : {"vasculature1", "vasculature2"}) {
@@ -164,7 +164,7 @@ TEST(ReadHdf5, DamagedFilesAreRefusedOrRead) {
   }
 }
 
-// A billion points of which none is in the file.
+// A billion points, none of which is in the file.
 TEST(ReadHdf5, BelievesNoTableLargerThanItsFile) {
   testing::expect_contains(
       message_of<InvalidInput>([&] { read_centerline(VMESH_FOUND "/h5/a_table_larger_than_its_file.h5"); }),

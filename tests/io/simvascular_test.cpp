@@ -100,7 +100,7 @@ TEST(ReadPath, NeedsARadius) {
   EXPECT_EQ(raw.nodes[1].radius, 4);  // mm, whatever the file's unit
   EXPECT_EQ(raw.segments.size(), 1u);
   expect_contains(message_of<InvalidInput>([&] { parse(path("<path_point/>"), CenterlineFormat::pth, options); }),
-                  "path point 0: its x=\"\" is no number");
+                  "path point 0: its x=\"\" is not a number");
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(ReadSlicerMarkups, TakesOneRadiusForAllWhereThereIsNone) {
 TEST(ReadSlicerMarkups, NamesTheElementThatIsWrong) {
   expect_contains(error(with("[1.0, 2.0, 8.0]", "[1.0, 2.0]")), "markups[0].controlPoints[2]: \"position\"");
   expect_contains(error(with("[1.0, 2.0, 8.0]", "[1.0, 2.0, \"x\"]")), "markups[0].controlPoints[2]");
-  expect_contains(error(with("0.25]", "\"thin\"]")), "markups[0].controlPoints[2]: its radius is no number");
+  expect_contains(error(with("0.25]", "\"thin\"]")), "markups[0].controlPoints[2]: its radius is not a number");
   expect_contains(error(with(", 0.25]", "]")), "controlPointValues, one for every point");
   expect_contains(error(with("RAS", "NOWHERE")), "NOWHERE");
   expect_contains(error(with("\"cm\"", "\"furlong\"")), "furlong");

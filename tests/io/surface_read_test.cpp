@@ -102,7 +102,7 @@ TEST(ReadStl, JoinsEqualCornersOfTextAndBinary) {
 }
 
 TEST(ReadStl, NamesWhatIsWrong) {
-  expect_contains(error(SurfaceFormat::stl, "hello"), "no STL");
+  expect_contains(error(SurfaceFormat::stl, "hello"), "not an STL");
   expect_contains(error(SurfaceFormat::stl, std::string(80, ' ') + "\xff\xff\xff\xff" + std::string(50, '\0')),
                   "promises");
   expect_contains(error(SurfaceFormat::stl, "solid\nvertex 0 0\n"), "line 2");
@@ -240,7 +240,7 @@ TEST(ReadScene, TakesNodesAndUnitsInGlbAndCollada) {
   EXPECT_LT((collada.mesh.vertices[collada.mesh.faces[1][2]] - Vec3(0.01, 0.04, 0.02)).norm(), 1e-7);
 }
 
-/// A ZIP archive of files that are not packed.
+/// A ZIP archive of uncompressed files.
 std::string zip(const std::vector<std::pair<std::string, std::string>>& files) {
   const auto number = [](std::size_t value, int bytes) {
     std::string text;
@@ -307,6 +307,14 @@ TEST(ReadScene, DamagedFilesAreRefusedOrRead) {
       }
     }
   }
+}
+
+// assimp passes on what the file says.
+TEST(ReadScene, FacesReferToVerticesThatAreThere) {
+  const std::string path = VMESH_FOUND "/x3d/face_beyond_the_vertices.x3d";
+  const std::string refused = message_of<InvalidInput>([&] { read_surface(path); });
+  expect_contains(refused, path);
+  expect_contains(refused, "vertex 3 of a mesh with 3");
 }
 #else
 TEST(ReadScene, NeedsAssimp) {

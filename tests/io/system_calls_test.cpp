@@ -1,5 +1,5 @@
-// What AtomicFile asks of the system, in order: that a file is new and no link, and on the disk before it is renamed.
-// Sanitizers have these calls in hand themselves.
+// The system calls of AtomicFile, in order: the file must be new and not a link, and on disk before it is renamed. Not
+// under sanitizers, which intercept these calls themselves.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #include <cstdarg>
 #include <string>
@@ -29,7 +29,7 @@ void note(Call call) {
 
 }  // namespace
 
-// In the place of the C library's for all of this program.
+// Replaces the C library's function in this program.
 extern "C" {
 int open(const char* path, int flags, ...) {
   mode_t mode = 0;

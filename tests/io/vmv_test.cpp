@@ -155,7 +155,7 @@ TEST(ReadVmv, RefusesSectionsThatAreMissingRepeatedOrMixedUp) {
   expect_contains(error(kLoop.substr(0, kLoop.find("$STRANDS"))), "line 15: the file ends without a section $STRANDS");
   expect_contains(error(kLoop.substr(kLoop.find("$STRANDS"))), "without a section $VERT_LIST_BEGIN");
   expect_contains(error(kLoop + "$VERT_LIST_BEGIN\n$VERT_LIST_END\n"),
-                  "line 21: this section was there before, in line 7");
+                  "line 21: this section occurs twice, first in line 7");
   expect_contains(error(with("$VERT_LIST_END\n", "")), "line 15: \"$STRANDS_LIST_BEGIN\" comes before the end");
   expect_contains(error(with("$VERT_LIST_END", "$PARAM_END")),
                   "line 14: \"$PARAM_END\" ends a section that is not open");

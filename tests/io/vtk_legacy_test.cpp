@@ -172,12 +172,12 @@ TEST(ReadLegacyVtk, ReadsFrameAndUnitFromTitleOrFieldData) {
 }
 
 TEST(ReadLegacyVtk, NamesTheLineThatIsWrong) {
-  expect_contains(error("1 1 0 0 0 1 -1\n"), "line 1: this is no legacy VTK file");
-  expect_contains(error(with("1e0", "one")), "line 7: \"one\" is no number");
+  expect_contains(error("1 1 0 0 0 1 -1\n"), "line 1: this is not a legacy VTK file");
+  expect_contains(error(with("1e0", "one")), "line 7: \"one\" is not a number");
   expect_contains(error(with("2 2 4\n", "2 2 5\n")), "line 10: there is no point 5");
   expect_contains(error(with("2 2 4\n", "2 2 -1\n")), "line 10: there is no point -1");
   expect_contains(error(with("LINES 2 7", "LINES 2 8")), "line 10: the cells do not have the 8 numbers");
-  expect_contains(error(with("LINES 2 7", "LINES 1 4")), "line 10: \"2\" is no keyword");
+  expect_contains(error(with("LINES 2 7", "LINES 1 4")), "line 10: \"2\" is not a keyword");
   expect_contains(error(with("2 2 4\n", "9999999 2 4\n")), "line 10: the count 9999999");
   expect_contains(error(with("POINTS 5", "POINTS 99999999999")), "line 5: the count 99999999999");
   expect_contains(error(with("POINTS 5", "POINTS -5")), "line 5: the count -5 is negative");
@@ -185,8 +185,8 @@ TEST(ReadLegacyVtk, NamesTheLineThatIsWrong) {
   expect_contains(error(with("Radius 1 5", "Radius 9999999 9999999")), "line 13: the count 9999999");
   expect_contains(error(with(kLines, "LINES 3 5\nOFFSETS int\n0 3 6\nCONNECTIVITY int\n0 1 2 2 4\n")),
                   "line 10: the offset 6");
-  expect_contains(error(with(kLines, "")), "there is no line in it");
-  expect_contains(error(kHeader), "there is no point in it");
+  expect_contains(error(with(kLines, "")), "it contains no line");
+  expect_contains(error(kHeader), "it contains no point");
 }
 
 TEST(ReadLegacyVtk, EveryCutFileIsRefused) {

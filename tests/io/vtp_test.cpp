@@ -112,7 +112,7 @@ TEST(ReadVtp, ReadsNumbersInEveryEncoding) {
   expect_point(one_point("header_type='UInt64'", "type='Int8' format='binary'> AwAAAAAAAAABAv0=\n" + end, radius));
   expect_point(one_point("byte_order='BigEndian'", "type='Int16' format='binary'>AAAABgABAAL//Q==" + end,
                          "type='UInt32' format='binary'>AAAABAAAAAc=" + end));
-  // The number of blocks, their size, that of the last, their packed sizes, then zlib's bytes.
+  // The number of blocks, their size, that of the last, their compressed sizes, then zlib's bytes.
   expect_point(one_point("compressor='vtkZLibDataCompressor'",
                          "type='Int8' format='binary'>AQAAAAMAAAADAAAACwAAAA==eJxjZPoLAAEHAQE=" + end, radius));
   expect_point(one_point("", "type='Int8' format='appended' offset='0'/>",

@@ -88,7 +88,7 @@ TEST(SelfIntersections, FindDuplicates) {
 }
 
 TEST(SelfIntersections, BetweenPartsAreThoseOfTheirFaces) {
-  // Three spheres in a row, each into the next, and the last folded into itself.
+  // Three spheres in a row, each reaching into the next, and the last folded into itself.
   TriMesh last = moved(icosphere(2), {3, 0.1, 0});
   last.vertices[0] = 2 * Vec3(3, 0.1, 0) - last.vertices[0];
   const TriMesh sphere = icosphere(2), mesh = sphere + moved(sphere, {1.5, 0, 0.1}) + last;
@@ -110,7 +110,7 @@ TEST(SelfIntersections, LeaveDegenerateFacesOut) {
   EXPECT_TRUE(self_intersections(mesh).empty());
 }
 
-// What two faces have in common, constructed exactly: must be no more than their common vertices and edge.
+// The intersection of two faces, constructed exactly: must be no more than their common vertices and edge.
 class Oracle {
  public:
   explicit Oracle(const TriMesh& mesh) : mesh_(mesh) {}

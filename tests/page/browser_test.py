@@ -110,7 +110,7 @@ class PageInABrowser(unittest.TestCase):
                 dragged = browser.ask(CAMERA)
                 self.assertGreater(distance(still[:3], dragged[:3]), 1)
                 self.assertLess(distance(still[3:], dragged[3:]), 1e-6)
-                self.assertTrue(browser.ask("document.getElementById('picked').hidden"), "a drag is no click")
+                self.assertTrue(browser.ask("document.getElementById('picked').hidden"), "a drag is not a click")
                 browser.press("ArrowLeft")
                 turned = browser.ask(CAMERA)
                 self.assertGreater(distance(dragged[:3], turned[:3]), 1)

@@ -1,4 +1,4 @@
-// A motion on a page: what moved, and not too much of it.
+// A motion on a page: moves correctly and stays small.
 #include <gtest/gtest.h>
 
 #include "page/page.h"

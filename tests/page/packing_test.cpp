@@ -1,4 +1,4 @@
-// Numbers survive their way into a page's text.
+// Numbers survive encoding in a page's text.
 #include "page/packing.h"
 
 #include <limits>

@@ -1,4 +1,4 @@
-// Pages hold what was made and measured, stand alone, and let no name become markup.
+// Pages contain the results, are self-contained, and escape names.
 #include <algorithm>
 #include <filesystem>
 #include <regex>

@@ -8,7 +8,7 @@ namespace vmesh::testing {
 
 std::string from_base64(const std::string& text);
 
-/// All whole numbers that a page's text holds; the reverse of pack().
+/// All integers in a page's text; the reverse of pack().
 std::vector<std::int64_t> unpack(const std::string& text, std::size_t stride = 1);
 
 }  // namespace vmesh::testing

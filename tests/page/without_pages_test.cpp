@@ -1,4 +1,4 @@
-// A command that was built without three.js says so before it does anything.
+// A command built without three.js says so before it does anything else.
 #include "run_vmesh.h"
 
 namespace vmesh::testing {

@@ -1,4 +1,4 @@
-// Files of parts: what was written comes back, and what is damaged is refused, whatever the damage.
+// Files of parts: what was written is read back, and damaged files are refused, whatever the damage.
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -110,7 +110,7 @@ TEST_F(PartFiles, ComeBackAsTheyWereWritten) {
     EXPECT_EQ(read(folder_ / "again.vpart"), read(part(p)));
     write_part_surface(folder_ / "again.vsurf", read_part_surface(surface(p)));
     EXPECT_EQ(read(folder_ / "again.vsurf"), read(surface(p)));
-    // What is read grows as what was written.
+    // A part read from a file grows like the one written.
     write_part_surface(folder_ / "again.vsurf", refer_to_read(back, grow_part(back.part, 1)));
     EXPECT_EQ(read(folder_ / "again.vsurf"), read(surface(p)));
   }
@@ -166,7 +166,7 @@ TEST_F(PartFiles, CutOffAnywhereAreRefused) {
   }
 }
 
-// Bytes changed at random are found by the check sum; where that is not looked at again, they do no harm.
+// Bytes changed at random are detected by the checksum; where that is not verified again, they do no harm.
 TEST_F(PartFiles, DamagedAnywhereAreRefused) {
   write_all();
   std::mt19937 random(1);

@@ -58,7 +58,7 @@ def test_a_sphere_has_no_segments():
     [
         ([[0, 0]], [1], [], "nodes: the shape is (1, 2); (n, 3) is needed"),
         ([[0, 0, 0]], [1, 2], [], "radii: the shape is (2,); (1,) is needed"),
-        ([[0, 0, 0], [1, 0, 0]], [1, 1], [[0, 1.5]], "segments: whole numbers are needed"),
+        ([[0, 0, 0], [1, 0, 0]], [1, 1], [[0, 1.5]], "segments: integers are needed"),
         ([[0, 0, 0], [1, 0, 0]], [1, 1], [[0, -1]], "segments: row 0 has the index -1"),
         ([[0, 0, 0], [1, 0, 0]], [1, 1], [[0, 1, 2]], "segments: the shape is (1, 3)"),
         ([[0, 0, 0], [1, 0, 0]], [1, 1], [[0, 7]], "there is no node 7"),

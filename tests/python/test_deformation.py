@@ -131,7 +131,7 @@ def test_what_is_out_of_range_is_refused(rod):
         vmesh.Deformation(rod, poisson_ratio=0.7)
     with pytest.raises(vmesh.InvalidInput):
         vmesh.Deformation(rod, step_s=0)
-    with pytest.raises(vmesh.InvalidInput, match="bound to no centerline"):
+    with pytest.raises(vmesh.InvalidInput, match="not bound to a centerline"):
         vmesh.Deformation(vmesh.Surface(rod.vertices, rod.faces))
 
 

@@ -48,7 +48,7 @@ def test_a_surface_from_a_file_is_fitted_too(tmp_path):
     surface = vmesh.read_surface(tmp_path / "fork.ply", centerline=tree)
     fitted = vmesh.fit(surface, widened(1.1))
     assert is_as_near_as_grown(fitted, widened(1.1))
-    with pytest.raises(vmesh.InvalidInput, match="bound to no centerline"):
+    with pytest.raises(vmesh.InvalidInput, match="not bound to a centerline"):
         vmesh.fit(vmesh.read_surface(tmp_path / "fork.ply"), widened(1.1))
 
 

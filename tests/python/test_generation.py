@@ -169,7 +169,7 @@ def test_an_error_limit_is_proven(limit):
         ({"growth": "x"}, "x"),
         ({"overlap": "x"}, "separate and keep"),
         ({"ends": "x"}, "round, flat and open"),
-        ({"flow_extension": 2}, "ends to go on from"),
+        ({"flow_extension": 2}, "ends that are not round"),
         ({"gap": 2}, "gap"),
         ({"max_vertices": 100}, "vertices"),
     ],

@@ -12,7 +12,7 @@
 namespace vmesh {
 namespace {
 
-// What the bounds say agrees with what samples say.
+// Bounds agree with samples.
 void expect_sound(const TriMesh& mesh, const TriMesh& other) {
   HausdorffOptions options;
   options.tolerance =
@@ -35,7 +35,7 @@ TEST(RealSurfaces, AreMeasuredWhateverIsWrongWithThem) {
     try {
       mesh = read_surface(entry.path()).mesh;
     } catch (const Error&) {
-      continue;  // what cannot be read is not about measuring
+      continue;  // unreadable files are tested elsewhere
     }
     ++measured;
     TriMesh ball = testing::icosphere(2);

@@ -5,7 +5,7 @@
 
 namespace vmesh::testing {
 
-/// Triangles strewn in a cube, each with corners of its own; one in three without area.
+/// Triangles scattered in a cube, each with its own corners; one in three without area.
 inline TriMesh random_soup(Draw& draw, Index faces, double size) {
   TriMesh mesh;
   for (Index f = 0; f < faces; ++f) {

@@ -9,7 +9,7 @@
 
 namespace vmesh::testing {
 
-/// How points of one axis lie to another one, in radii of the latter.
+/// Distances of points of one axis from another one, in radii of the latter.
 struct AxisComparison {
   double mean_distance = 0, distance_95 = 0, max_distance = 0;
   double mean_radius_error = 0, radius_error_95 = 0;  ///< absolute, in true radii
@@ -47,7 +47,7 @@ inline AxisPoint nearest(const Centerline& centerline, const Vec3& p) {
   return point;
 }
 
-/// How the points of `axis` lie to the axis of `truth`.
+/// Distances of the points of `axis` from the axis of `truth`.
 inline AxisComparison compare(const Centerline& axis, const Centerline& truth) {
   std::vector<double> distances, errors;
   AxisComparison result;

@@ -30,8 +30,8 @@ TEST(ExtractCenterline, OfAGrownTreeIsCloseToTheOriginal) {
   EXPECT_EQ(extracted.centerline.component_count(), 1u);
   EXPECT_EQ(extracted.centerline.cycle_rank(), 0u);
   EXPECT_EQ(end_count(extracted.centerline), end_count(tree));
-  // What was measured on this tree, 0.02 radii in the mean and 0.08 at 95 %, with room for other compilers; far below
-  // what a grown surface with six vertices around is off itself (0.13 radii).
+  // As measured on this tree, 0.02 radii in the mean and 0.08 at 95 %, with a margin for other compilers; far below the
+  // error of a grown surface with six vertices around itself (0.13 radii).
   const AxisComparison there = compare(extracted.centerline, tree), back = compare(tree, extracted.centerline);
   for (const AxisComparison& one : {there, back}) {
     EXPECT_LT(one.mean_distance, 0.04);
@@ -58,7 +58,7 @@ TEST(ExtractCenterline, TellsHowFarTheSurfaceIsByBranches) {
     sum += branch.area * branch.mean;
     max = std::max(max, branch.max);
   }
-  // The same samples, added up in another order.
+  // The same samples, summed in another order.
   double whole = 0;
   for (Index f = 0; f < surface.faces.size(); ++f) whole += area_normal(surface, f).norm() / 2;
   EXPECT_NEAR(area, whole, 1e-9 * area);
@@ -146,7 +146,7 @@ TEST(ExtractCenterline, TurnsASurfaceThatFacesInwards) {
 TEST(ExtractCenterline, HasTheSameResultWheneverItRuns) {
   const TriMesh tube = grown(straight());
   const Centerline first = extract_centerline(tube).centerline;
-  // Other addresses for the same work.
+  // The same work at other addresses.
   std::vector<std::vector<int>> between;
   for (int i = 0; i < 1000; ++i) between.emplace_back(static_cast<std::size_t>(1 + 37 * i % 991));
   for (std::size_t i = 0; i < between.size(); i += 2) between[i] = {};

@@ -1,4 +1,4 @@
-// Centerlines that take longest for their size: everything in one junction, or no vessel anywhere.
+// Centerlines that take longest for their size: everything in one junction, or no tube anywhere.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace vmesh::testing {
 
-/// So many equal branches of one node, 120 radii long, evenly in all directions.
+/// Equal branches of one node, 120 radii long, spread evenly in all directions.
 inline Centerline star(int branches) {
   constexpr double kLength = 60, kRadius = 0.5;
   std::vector<CenterlineNode> nodes = {{Vec3::Zero(), kRadius}};
@@ -46,7 +46,7 @@ Centerline line_of(int count, const Step& step, const Radius& radius) {
 
 }  // namespace detail
 
-/// A line of nodes of any radius from .05 to 3, mostly within each other; it drifts, so that it does not meet itself.
+/// A line of nodes of random radii from .05 to 3, mostly within each other; it drifts, so that it does not meet itself.
 inline Centerline uneven_chain(int count, std::uint32_t seed) {
   Draw draw(seed);
   return detail::line_of(
@@ -54,7 +54,7 @@ inline Centerline uneven_chain(int count, std::uint32_t seed) {
       [&] { return draw.uniform(0.05, 3); });
 }
 
-/// A line that goes anywhere, through itself too, by steps of two to four diameters.
+/// A random walk in steps of two to four diameters, also through itself.
 inline Centerline random_walk(int count, std::uint32_t seed) {
   Draw draw(seed);
   return detail::line_of(

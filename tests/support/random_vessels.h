@@ -1,4 +1,4 @@
-// Random vessels as segmentations give them: what a surface must be sound around.
+// Random vessels as from segmentations, around which surfaces must be sound.
 #pragma once
 
 #include <cmath>
@@ -62,7 +62,7 @@ inline Centerline noisy_tree(std::uint32_t seed) {
 }
 
 /// A tree with 3 to 13 places where 1 to 3 children leave, each .3 to 1 of its parent's radius; steps of .4 to 4 radii.
-/// With `loops`, so many pairs of its nodes are joined.
+/// `loops` pairs of its nodes are joined.
 inline Centerline plausible_tree(std::uint32_t seed, int loops = 0) {
   Draw draw(seed);
   struct Tip {

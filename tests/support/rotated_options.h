@@ -6,7 +6,7 @@
 
 namespace vmesh::testing {
 
-/// The options that change most what a surface is like, one after the other; every tenth time none.
+/// The options with the largest effect on a surface, in turn; every tenth time none.
 inline GenerateOptions rotated_options(std::uint32_t seed) {
   GenerateOptions options;
   switch (seed % 10) {

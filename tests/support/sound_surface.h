@@ -1,4 +1,4 @@
-// Whether a surface is sound, measured anew: apart from what generate_surface() measures with.
+// Whether a surface is sound, measured independently of generate_surface().
 #pragma once
 
 #include <cstdio>
@@ -19,7 +19,7 @@ inline SeparatedCenterline separated(const Centerline& centerline, double blend)
   return separate_contacts(centerline, options);
 }
 
-/// The surface of vessels that have been separated; what it says of itself is true. With defects, it names them.
+/// The surface of separated vessels; checks that its own report is correct, and shows any defects.
 inline GenerateResult honest_surface(const Centerline& centerline, GenerateOptions options = {}) {
   options.threads = 1;
   GenerateResult result = generate_surface(centerline, options);
@@ -42,7 +42,7 @@ inline void expect_sound(const Centerline& centerline, const GenerateOptions& op
   EXPECT_TRUE(honest_surface(separated(centerline, options.blend).centerline, options).is_sound());
 }
 
-/// Sound; or refused, where vessels touch that could not be separated.
+/// Expects a sound surface, or a refusal where vessels touch that could not be separated.
 inline void expect_sound_or_refused_with_reason(const Centerline& centerline, const GenerateOptions& options = {}) {
   const SeparatedCenterline given = separated(centerline, options.blend);
   const GenerateResult result = honest_surface(given.centerline, options);

@@ -14,8 +14,8 @@
 namespace vmesh {
 namespace {
 
-// Files that can be read are meshed or refused with a reason: the number of vertices stays in proportion to length and
-// radii, whatever the radii do.
+// Readable files are meshed or refused with a reason: the number of vertices stays in proportion to length and radii,
+// whatever the radii are.
 TEST(AdversarialSwc, MeshesOrRefusesWithinBounds) {
   VMESH_NEED_SHARED_DATA("adversarial_swc_neurom");
   std::set<std::string> refused;

@@ -1,4 +1,4 @@
-// Steps of remeshing after which faces would cross are told from those that may be taken.
+// Remeshing steps after which faces would cross are refused, others allowed.
 #include "surface/remesh/crossing_guard.h"
 
 #include <algorithm>
@@ -75,8 +75,8 @@ TEST(Mend, TakesNeedlesOutWithoutACrossing) {
   EXPECT_FALSE(mend_worst_faces(spheres.surface, 0.5));
 }
 
-// A third of the way to a neighbour, which is not a bad place.
-TEST(Ease, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
+// Vertices a third of the way to a neighbour: skewed, yet not bad enough to mend.
+TEST(ImproveWorstFaces, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
   constexpr double kLift = 0.02;
   TwoSpheres spheres(2.3);
   BoundSurface& surface = spheres.surface;
@@ -94,11 +94,11 @@ TEST(Ease, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
   const auto vertices = surface.mesh.number_of_vertices();
   ASSERT_LT(even, 0.24);
   ASSERT_GT(spheres.worst_skewness(), 0.35);
-  ease_worst_faces(surface, 0.24);
+  improve_worst_faces(surface, 0.24);
   EXPECT_LE(spheres.worst_skewness(), 0.24);
   EXPECT_LE(surface.mesh.number_of_vertices(), vertices);
   EXPECT_EQ(spheres.crossings(), 0u);
-  // What easing asks for, in radii, and what that leaves to the distance.
+  // The vertices are at their lift above the boundary, to twice the tolerance of improving, 1e-3 radii.
   for (const Vertex v : surface.mesh.vertices()) EXPECT_NEAR(surface.distance[v], kLift, 2e-3) << v.idx();
 }
 

@@ -9,7 +9,7 @@
 namespace vmesh {
 namespace {
 
-// Where branch nodes crowd together a single seed covers some places twice; growth must end all the same.
+// Where branching nodes crowd together, a single seed covers some vessels twice; growth must still terminate.
 class CrowdedTree : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(CrowdedTree, EndsWithABoundedNumberOfVertices) {

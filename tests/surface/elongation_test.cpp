@@ -4,8 +4,8 @@
 #include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/error_bound.h"
 #include "vmesh/surface/metric_skewness.h"
-#include "vmesh/surface/part.h"
 
 #include "centerlines.h"
 #include "surface/tubes/growth_skeleton.h"
@@ -151,21 +151,38 @@ TEST(Elongation, TreesStaySoundAndTakeFewerVertices) {
   }
 }
 
-TEST(Elongation, KeepsALimitOnTheError) {
-  GenerateOptions options = with_elongation(8);
-  options.max_error.relative = 0.1;
-  const GenerateResult result = generate_surface(testing::fork(), options);
-  EXPECT_TRUE(result.is_sound());
-  EXPECT_EQ(result.error.unproven_faces, 0u);
+// Vertices are left out, and the limit is proven for what is left.
+TEST(Elongation, LimitsOnTheErrorTakeFarFewerVertices) {
+  const Centerline fork = testing::fork();
+  const VesselField field(fork, GenerateOptions{}.blend);
+  for (const bool open : {false, true}) {
+    SCOPED_TRACE(open);
+    GenerateOptions options = with_elongation(1);
+    options.max_error.relative = 0.1;
+    options.open_ends.all = open;
+    options.threads = 1;
+    const GenerateResult even = generate_surface(fork, options);
+    options.elongation = 8;
+    const GenerateResult result = generate_surface(fork, options);
+    EXPECT_TRUE(result.is_sound());
+    EXPECT_EQ(result.openings.size(), even.openings.size());
+    EXPECT_LT(2 * result.mesh.vertices.size(), even.mesh.vertices.size());
+    EXPECT_EQ(result.error.unproven_faces, 0u);
+    EXPECT_TRUE(unproven_faces(result.mesh, result.binding, field, options.max_error).empty());
+    EXPECT_LT(summarize_skewness(metric_skewness(result.mesh, result.elongation)).max, 0.75 + kRounding);
+    options.threads = 2;
+    const GenerateResult again = generate_surface(fork, options);
+    EXPECT_EQ(again.mesh.vertices, result.mesh.vertices);
+    EXPECT_EQ(again.mesh.faces, result.mesh.faces);
+  }
 }
 
-TEST(Elongation, IsRefusedOutOfRangeAndWhereItCannotBe) {
+TEST(Elongation, IsRefusedOutOfRangeAndWithPaperGrowth) {
   for (const double elongation : {0.5, 16.5, std::nan("")})
     EXPECT_THROW(generate_surface(long_tube(), with_elongation(elongation)), InvalidInput);
   GenerateOptions paper = with_elongation(2);
   paper.growth = GrowthMethod::paper;
   EXPECT_THROW(generate_surface(long_tube(), paper), InvalidInput);
-  EXPECT_THROW(split_surface(long_tube(), with_elongation(2), 1000, [](SurfacePart) {}), Unsupported);
 }
 
 TEST(MetricSkewness, TellsLongTrianglesFromBadOnes) {

@@ -55,8 +55,8 @@ TEST(ErrorProof, TriesLowerShellsWhereTheNextWallIsNear) {
   EXPECT_LT(shares.outer, 1);
 }
 
-// What is proven must be true: dense points of the copies are on their sides of the boundary. What is true by a margin
-// should be proven.
+// What is proven must be true: dense points of the copies are on their sides of the boundary. What is true with a
+// margin should be proven.
 TEST(ErrorProof, HoldsOnlyWhatDensePointsConfirm) {
   const Centerline centerline = testing::fork(50);
   for (const double blend : {0.0, 0.5}) {

@@ -1,4 +1,4 @@
-// What every surface must be, whatever its centerline is like.
+// Properties that every surface must have, whatever its centerline.
 #pragma once
 
 #include <cmath>

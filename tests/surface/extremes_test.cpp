@@ -157,7 +157,7 @@ TEST(Extremes, AnyWeightOfTheBoundary) {
     GenerateOptions options;
     options.beta = beta;
     for (const Centerline& centerline : {fork(), star(12), ring(24)}) expect_valid_within_a_fifth(centerline, options);
-    // The published growth gets by without attraction, and with nothing else it says that it fails.
+    // The published growth works without attraction, and with attraction alone reports that it fails.
     options.growth = GrowthMethod::paper;
     const GenerateResult result = generate_surface(fork(), options);
     const Topology topology = measure_topology(result.mesh);

@@ -86,7 +86,7 @@ TEST(Generate, MakesForksOfManyAngles) {
   }
 }
 
-// Measured on seeds 11 to 20: .241 to .258; .311 to .316 if the worst triangles are polished, but not eased.
+// Measured on seeds 11 to 20: .241 to .258; .311 to .316 if the worst triangles are polished, but not improved.
 TEST(Generate, LeavesNoTriangleOfATreeSkew) {
   SyntheticTreeOptions tree;
   tree.vertices = 400;
@@ -423,7 +423,7 @@ TEST(Generate, StopsWithinAJunctionThatIsRefined) {
   EXPECT_THROW(generate_surface(fork(), options, stop_while_growing), Cancelled);  // it has one junction
 }
 
-// What one piece throws must not leave others half made: they have parallel loops of their own.
+// An exception in one piece must not leave others half made: they have parallel loops of their own.
 TEST(Generate, StopsWhileManyPiecesGrowAtOnce) {
   const Centerline tree = synthetic_tree({600, 1});
   GenerateOptions options;

@@ -54,12 +54,12 @@ TEST(GradedLattice, FitsTogether) {
         ++faces[face];
       }
     }
-    std::vector<char> at_rim(lattice.size(), 0);
+    std::vector<char> at_border(lattice.size(), 0);
     for (const auto& [face, count] : faces) {
       EXPECT_TRUE(count == 1 || count == 2) << count << " tetrahedra at a face, seed " << seed;
-      for (const Index p : face) at_rim[p] = at_rim[p] || count == 1;
+      for (const Index p : face) at_border[p] = at_border[p] || count == 1;
     }
-    for (Index p = 0; p < lattice.size(); ++p) EXPECT_EQ(lattice.at_rim(p), at_rim[p] != 0) << "point " << p;
+    for (Index p = 0; p < lattice.size(); ++p) EXPECT_EQ(lattice.at_border(p), at_border[p] != 0) << "point " << p;
   }
 }
 

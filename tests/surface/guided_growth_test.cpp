@@ -1,4 +1,4 @@
-// Guided growth on graphs of every shape that its construction tells apart.
+// Guided growth on graphs of every kind that its construction distinguishes.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -285,7 +285,7 @@ TEST_P(FlatEndsOf, AForkAreCappedByGoodTrianglesOfTheVesselsCrossSection) {
     for (Index f = 0; f < flat.cap_label.size(); ++f) {
       if (flat.cap_label[f] != end.label) continue;
       EXPECT_GT(area_normal(result.mesh, f).normalized().dot(end.normal), 1 - 1e-9) << f;
-      EXPECT_LT(skewness[f], 0.5) << f;  // what walls that grew well reach
+      EXPECT_LT(skewness[f], 0.5) << f;  // the largest of well-grown walls
       area += area_normal(result.mesh, f) / 2;
     }
     EXPECT_LT((area - end.area * end.normal).norm(), 1e-9);
@@ -322,7 +322,7 @@ TEST(FlatEnds, KeepTheirNumbersWhicheverAreCapped) {
   EXPECT_EQ(flat.ends[0].label, 3u);
 }
 
-// Two vessels end opposite each other: tubes that go on from there cross.
+// Two vessels end opposite each other: their extensions cross.
 TEST(FlatEnds, ThatRunIntoAVesselAreDefects) {
   const Centerline centerline({{{0, 0, 0}, 1}, {{10, 0, 0}, 1}, {{14, 0, 0}, 1}, {{24, 0, 0}, 1}}, {{0, 1}, {2, 3}});
   GenerateOptions open;

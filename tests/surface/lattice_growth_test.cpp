@@ -18,7 +18,7 @@ TriMesh mesh_of(const LatticeSurface& surface) { return {surface.vertices, surfa
 
 Eigen::Matrix3d any_frame() { return Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix(); }
 
-// A lattice that is even, or in every vessel as fine as `fineness` radii ask for, around all of a volume.
+// A lattice around all of a volume, uniform or as fine as `fineness` radii in every vessel.
 GradedLattice lattice_around(const VesselField& field, const Vec3& origin, double spacing, double fineness = 0) {
   std::vector<LatticeBall> balls;
   for (Index cone = 0; cone < field.cone_count(); ++cone) {

@@ -253,7 +253,7 @@ TEST_P(NarrowFork, IsProvenWithFewVerticesInOnePlace) {
   EXPECT_LE(worst_deviation(result, VesselField(centerline, blend), limit_of(relative)), 1);
 }
 
-// At its crease single precision does not tell which of two vessels is the nearer: eight in forty were not proven then.
+// At the crease, single precision cannot tell which of two vessels is nearer: eight in forty were then not proven.
 TEST(NarrowForkAnyhow, IsProvenHoweverItLies) {
   std::mt19937 random(11);
   std::normal_distribution<double> normal;

@@ -1,4 +1,4 @@
-// Walls of finished pieces that cross each other are parted in place, or left and told.
+// Walls of finished pieces that cross each other are parted in place, or left and reported.
 #include "surface/pieces/parting.h"
 
 #include <algorithm>

@@ -104,6 +104,9 @@ TEST(Parts, GrowTheSameSurfaceUnderOtherOptions) {
   options.blend = 2;
   options.placement = Placement::inscribed;
   EXPECT_GE(expect_same_in_parts(tree, 250, options), 2u);
+  options = all_nodes();
+  options.elongation = 4;
+  EXPECT_GE(expect_same_in_parts(tree, 250, options), 2u);
 }
 
 TEST(Parts, GrowTheSameSurfaceWithLoopsIsolatedNodesAndComponents) {
@@ -170,7 +173,7 @@ TEST(Parts, ExcerptsAnswerAsTheWholeFieldDoes) {
   const Centerline tree = synthetic_tree({.vertices = 300, .seed = 9});
   const VesselField whole(tree, 0.5);
   const std::vector<Index> cones = {100, 101, 102, 103};
-  const FieldExcerpt excerpt = whole.excerpt(cones, 3);
+  const FieldExcerpt excerpt = FieldExcerpts(whole.relations()).take(cones, 3);
   const Centerline centerline = excerpt.centerline();
   const VesselField field(centerline, excerpt);
   ASSERT_LT(field.cone_count(), whole.cone_count() / 2);

@@ -1,4 +1,4 @@
-// How a surface is divided, and that nothing depends on it.
+// How a surface is divided into pieces, and that the result does not depend on it.
 #include <gtest/gtest.h>
 
 #include "vmesh/mesh/topology.h"
@@ -15,7 +15,7 @@ struct Divided {
       : options(o),
         centerline(std::move(c)),
         field(centerline, options.blend),
-        tubes(field, {options.around, options.placement, options.max_error}),
+        tubes(field, RingOptions::of(options)),
         division(divide(tubes, options)),
         open(centerline.nodes().size(), 0) {}
 

@@ -13,7 +13,7 @@
 
 namespace vmesh::testing {
 
-/// What makes guided growth hard, at random.
+/// Random parameters that make guided growth hard.
 enum class GraphKind {
   crowded_tree,
   shallow_siblings,

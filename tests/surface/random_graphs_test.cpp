@@ -16,7 +16,7 @@ constexpr std::uint32_t kCount = VMESH_RANDOM_GRAPHS;
 constexpr std::uint32_t kParts = 8;
 constexpr double kPerNode = 40;  // vertices: a junction of one node with its docked ends, or a cap
 
-// Whatever touches: the topology is right, and it is sound or says what it is not.
+// Whatever touches, the topology is right, and the surface is sound or lists its defects.
 void expect_guarantees(const Centerline& centerline) {
   const GenerateResult result = testing::honest_surface(centerline);
   const Topology topology = measure_topology(result.mesh);
@@ -44,7 +44,7 @@ TEST_P(RandomGraphs, BecomeSurfacesOfTheirTopology) {
     try {
       centerline.emplace(testing::random_graph(seed));
     } catch (const InvalidInput&) {
-      continue;  // two nodes at one place
+      continue;  // two nodes at one position
     }
     expect_guarantees(*centerline);
     testing::expect_sound_or_refused_with_reason(*centerline);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "vmesh/volume/vessel_field.h"
+
 #include "hard_vessels.h"
 #include "sound_surface.h"
 
@@ -179,8 +181,9 @@ TEST(SoundShapes, ThickNodesNextToThinOnes) {
   for (const Vec3& v : result.mesh.vertices) EXPECT_GT(field.sample_global(v).distance, -0.3 * 1.586);
 }
 
-// Six nodes that took three minutes and stayed unsound: seen from the thread, what is thick was blended over the gap.
-TEST(SoundShapes, AThreadBetweenThickVessels) {
+// Six nodes that took three minutes and stayed unsound: in queries of the twig, the thick vessels were blended over the
+// gap.
+TEST(SoundShapes, ATwigBetweenThickVessels) {
   const Centerline centerline({{{0, 0, 0}, 2.54134},
                                {{3.2, 2.0302, -0.3186}, 2.5202},
                                {{5.3, 2.0761, 1.0256}, 0.056945},

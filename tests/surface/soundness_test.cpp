@@ -1,5 +1,5 @@
-// Surfaces of vessels as they come: sound, every one of them. VMESH_RANDOM_VESSELS noisy ones, and of the others a part
-// of that.
+// Surfaces of vessels of all kinds must all be sound: VMESH_RANDOM_VESSELS noisy ones, and a fraction of that of the
+// others.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -51,7 +51,7 @@ TEST(Soundness, OfPlausibleTreesWhateverTheOptions) {
                         [](Seed seed) { expect_sound(testing::plausible_tree(seed), testing::rotated_options(seed)); });
 }
 
-// Pieces of BraVa and trees in their likeness, random trees that came out broken, vessels that touch.
+// Excerpts of BraVa and similar trees, random trees that were once unsound, vessels that touch.
 TEST(Soundness, OfCrowdedFiles) {
   VMESH_NEED_SHARED_DATA("crowded");
   for (const char* file : {"hairpin_28.swc", "hairpin_120.swc", "noisy_34.swc",    "noisy_8.swc",
@@ -69,7 +69,7 @@ TEST(Soundness, OfCrowdedFiles) {
   }
 }
 
-// Two legs that part at a bend and come near again: no vessels of which the graph knows that they are apart.
+// Two legs that part at a bend and come near again: the graph does not say that they are apart.
 TEST(Soundness, OfVesselsThatPartAndComeNearAgain) {
   std::vector<CenterlineNode> nodes = {{{0, 0, 0}, 1}};
   std::vector<CenterlineSegment> segments;
@@ -83,11 +83,11 @@ TEST(Soundness, OfVesselsThatPartAndComeNearAgain) {
     }
   }
   const Centerline centerline(nodes, segments);
-  EXPECT_FALSE(find_contacts(VesselField(centerline, 0.5), 0.1).empty());
+  EXPECT_FALSE(find_contacts(ConeRelations(centerline, 0.5), 0.1).empty());
   expect_sound(centerline);
 }
 
-// A vessel within another one from end to end: its wall is no wall of the volume.
+// A vessel within another one from end to end: its wall is not part of the boundary.
 TEST(Soundness, IsNotClaimedOfOneVesselInAnother) {
   const Centerline centerline({{{0, 0, 0}, 2}, {{12, 0, 0}, 2}, {{1, 0, 0.01}, 0.5}, {{11, 0, 0.01}, 0.5}},
                               {{0, 1}, {2, 3}});

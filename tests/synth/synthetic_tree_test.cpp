@@ -228,7 +228,7 @@ TEST(SyntheticTreeStatistics, KeepTheirBytes) {
 TEST(SyntheticTreeOptions, OutOfRangeAreRejected) {
   EXPECT_THROW(synthetic_tree({0, 1}), InvalidInput);
   EXPECT_THROW(synthetic_tree({1, 1}), InvalidInput);
-  EXPECT_THROW(synthetic_tree({1'000'001, 1}), InvalidInput);
+  EXPECT_THROW(synthetic_tree({10'000'001, 1}), InvalidInput);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What other programs write of vessels goes from file to surface in one command.
+// Centerline files of other programs become surfaces in one command.
 #include <nlohmann/json.hpp>
 
 #include "vmesh/io/surface_io.h"
@@ -11,7 +11,7 @@ namespace {
 
 class CenterlineInputs : public CommandTest {
  protected:
-  /// Runs `vmesh generate` with these files and options, and checks the surface. Returns what was said.
+  /// Runs `vmesh generate` with these files and options, and checks the surface. Returns its messages.
   std::string grow(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "generate");
     for (const char* more : {"-o", "@out.ply", "--check", "--json", "@out.json"}) arguments.emplace_back(more);
@@ -52,7 +52,7 @@ TEST_F(CenterlineInputs, AnotherFolderIsRefusedWithWhatIsInIt) {
   std::filesystem::create_directory(path("trees"));
   Outcome run = vmesh({"generate", "@trees", "-o", "@out.ply"});
   EXPECT_EQ(run.exit_code, 3);
-  EXPECT_NE(run.err.find("no file in it is one that vmesh reads"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("contains no file that vmesh can read"), std::string::npos) << run.err;
   write_y("trees/y.swc");
   run = vmesh({"generate", "@trees", "-o", "@out.ply"});
   EXPECT_EQ(run.exit_code, 3);

@@ -1,4 +1,4 @@
-// A DICOM series goes to a surface in one command.
+// A DICOM series becomes a surface in one command.
 #include <nlohmann/json.hpp>
 
 #include "vmesh/io/surface_io.h"

@@ -1,4 +1,4 @@
-// A surface that was grown goes onto another one, by the command and in one go with its growth.
+// A grown surface is fitted to another one, by `vmesh fit` and together with growth.
 #include <nlohmann/json.hpp>
 
 #include "vmesh/io/surface_io.h"
@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The surface of the small tree, and one as a scan would have it: a tenth wider, oval, finer.
+/// The surface of the small tree, and one as from a scan: a tenth wider, oval, finer.
 class Fit : public CommandTest {
  protected:
   Fit() {

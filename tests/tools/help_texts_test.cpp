@@ -1,4 +1,4 @@
-// What is made from the text of the help: completion and manual pages.
+// What is generated from the help texts: completion and manual pages.
 #include <cstdlib>
 
 #include "run_vmesh.h"

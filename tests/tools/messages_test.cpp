@@ -1,4 +1,4 @@
-// What the command says: that it leads on.
+// Messages of the command: they say what to do next.
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -113,7 +113,7 @@ TEST_F(Messages, PointsAndRangesAreWrittenAsTheHelpHasThem) {
                              "--color", "radius", "--range", "1,2.5", "--width", "64", "--height", "64"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   expect_says({"render", "@y.ply", "-o", "@y.png", "--look-at", "1,2"}, 2, "needs 3 numbers");
-  expect_says({"render", "@y.ply", "-o", "@y.png", "--range", "1,nan"}, 2, "is no number");
+  expect_says({"render", "@y.ply", "-o", "@y.png", "--range", "1,nan"}, 2, "is not a number");
 }
 
 TEST_F(Messages, ALogGetsALineOfProgressEveryFewSeconds) {

@@ -1,4 +1,4 @@
-// Inputs are never touched, outputs appear complete or not at all, and what cannot be written is refused at once.
+// Inputs are never changed, outputs appear complete or not at all, and what cannot be written is refused at once.
 #include <csignal>
 #include <fstream>
 #include <thread>
@@ -84,7 +84,7 @@ TEST_F(Outputs, TheSecondFileOfACsvPairIsAnInputToo) {
 }
 
 TEST_F(Outputs, SurfaceAndSummaryMayNotShareAFile) {
-  expect_refused({"generate", "@y.swc", "-o", "@y.ply", "--json", "@y.ply"}, 2, "named for");
+  expect_refused({"generate", "@y.swc", "-o", "@y.ply", "--json", "@y.ply"}, 2, "given both for");
 }
 
 TEST_F(Outputs, LinksInACircleAndNamesTooLongCannotBeWritten) {
@@ -174,10 +174,10 @@ TEST_F(Outputs, ControlCharactersInNamesAreNotPrinted) {
 TEST_F(Outputs, WhatTheMemoryDoesNotHoldIsRefusedBeforeItStarts) {
   rlimit before = {};
   getrlimit(RLIMIT_AS, &before);
-  const rlimit limit = {300'000'000'000, before.rlim_max};  // less than the thread below needs
+  const rlimit limit = {300'000'000'000, before.rlim_max};  // less than the twig below needs
   setrlimit(RLIMIT_AS, &limit);
-  write("thread.swc", "# SPACE=LPS\n# UNIT=mm\n1 0 0 0 0 0.001 -1\n2 0 0 0 2800 0.001 1\n");
-  expect_refused({"generate", "@thread.swc", "-o", "@y.ply", "--around", "40", "--max-vertices", "1000000000"}, 4,
+  write("twig.swc", "# SPACE=LPS\n# UNIT=mm\n1 0 0 0 0 0.001 -1\n2 0 0 0 2800 0.001 1\n");
+  expect_refused({"generate", "@twig.swc", "-o", "@y.ply", "--around", "40", "--max-vertices", "1000000000"}, 4,
                  "of memory");
   write("image.nii", "");
   std::filesystem::resize_file(path("image.nii"), 400'000'000'000);  // takes no space

@@ -74,7 +74,7 @@ TEST_F(Parts, MakeTheBytesOfTheWholeOfCrowdedVessels) {
   EXPECT_GE(parted, 1u);
 }
 
-// A twig within another vessel is left out of the surface, and told.
+// A twig within another vessel is left out of the surface, and reported.
 TEST_F(Parts, TellOfBranchesThatWereLeftOut) {
   write("buried.swc",
         "1 2 0 0 0 3 -1\n2 2 10 0 0 3 1\n3 2 20 0 0 3 2\n4 2 30 0 0 3 3\n5 2 40 0 0 3 4\n6 2 50 0 0 3 5\n"
@@ -131,7 +131,7 @@ TEST_F(Parts, AreRefusedWhereTheyDoNotFit) {
   EXPECT_FALSE(exists("whole.ply"));
   const Outcome options = vmesh({"generate", "@parts/part_00001.vpart", "--around", "8"});
   EXPECT_EQ(options.exit_code, 2);
-  EXPECT_NE(options.err.find("options that vmesh split was given"), std::string::npos) << options.err;
+  EXPECT_NE(options.err.find("options given to vmesh split"), std::string::npos) << options.err;
   EXPECT_EQ(vmesh({"generate", "@parts/part_00001.vpart", "--allow-defects"}).exit_code, 2);
   const Outcome format = vmesh({"generate", "@parts/part_00001.vpart", "-o", "@part.ply"});
   EXPECT_EQ(format.exit_code, 2);

@@ -9,7 +9,7 @@
 
 namespace vmesh::testing {
 
-/// What a run of the command left behind.
+/// The results of running the command.
 struct Outcome {
   int exit_code = -1;  ///< minus the signal's number when a signal ended it
   std::string out, err;

@@ -15,7 +15,7 @@ using testing::Draw;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-// Arms from the origin: every cone is near every other along the graph, so that local and global queries see the same.
+// Arms from the origin: every cone is local to every other, so that local and global queries agree.
 Centerline random_star(Draw& draw, int arms, double thinnest) {
   CenterlineBuilder star;
   const Index center = star.add({0, 0, 0}, 1);

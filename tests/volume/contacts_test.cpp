@@ -1,5 +1,6 @@
 // Vessels that touch without being neighbours: found, and narrowed until they do not.
 #include "vmesh/volume/contacts.h"
+#include "vmesh/volume/vessel_field.h"
 
 #include <cmath>
 
@@ -98,7 +99,7 @@ Centerline random_forest(Draw& draw, int trees, int nodes_each, double extent) {
 }
 
 std::vector<Contact> contacts_of(const Centerline& centerline, double gap, double blend = 0.5) {
-  return find_contacts(VesselField(centerline, blend), gap);
+  return find_contacts(ConeRelations(centerline, blend), gap);
 }
 
 double original_radius(const Centerline& original, const SegmentPiece& piece, double t) {
@@ -136,7 +137,7 @@ void expect_moves_as_reported(const Centerline& original, const SeparatedCenterl
   EXPECT_EQ(report.nodes_moved == 0, report.moves.empty());
 }
 
-// What a separation promises whatever the centerline: the places and the tapers.
+// What a separation guarantees for any centerline: positions and tapers.
 void expect_sound(const Centerline& original, const SeparatedCenterline& separated, double taper) {
   const Centerline& result = separated.centerline;
   ASSERT_EQ(separated.pieces.size(), result.segments().size());
@@ -253,7 +254,7 @@ TEST(Contacts, NoneIsMissed) {
   for (int trial = 0; trial < 20; ++trial) {
     const Centerline centerline = random_forest(draw, 3, 25, 3);
     const VesselField field(centerline);
-    const auto contacts = find_contacts(field, 0.1);
+    const auto contacts = find_contacts(field.relations(), 0.1);
     double deepest = -1e9;
     constexpr int kSteps = 60;
     for (Index i = 0; i < field.cone_count(); ++i) {
@@ -426,7 +427,7 @@ TEST(Separation, MovesVesselsThatCross) {
         EXPECT_TRUE(report.left.empty());
         ASSERT_EQ(report.moves.size(), 1u) << distance << ", " << pieces;
         EXPECT_LE(report.max_taken_relative, 0.5);
-        // No more than it takes, square to both.
+        // No more than needed, perpendicular to both.
         EXPECT_NEAR(report.max_moved, (1 - 0.475) * 2.1 - distance, 0.01);
         EXPECT_NEAR(std::abs(report.moves[0].displacement.z()), report.max_moved, 1e-6);
         EXPECT_LT(report.moves[0].position.head<2>().norm(), 2.01);
@@ -620,7 +621,7 @@ TEST(Separation, MindsTheRoundingAtBranches) {
       const VesselField field(separated.centerline, blend);
       for (Index s = 0; s < separated.pieces.size(); ++s) {
         if (separated.pieces[s].segment < y.segments().size()) continue;
-        for (const double t : {0.0, 0.5, 1.0}) {  // a local query from the fork does not see the thin vessel
+        for (const double t : {0.0, 0.5, 1.0}) {  // the thin vessel is not local to the fork
           EXPECT_GT(field.sample(field.axis_point(s, t), 0).distance, 1.05 * field.radius_at(s, t))
               << radius << ", " << blend;
         }

@@ -14,7 +14,7 @@ namespace {
 
 using testing::Draw;
 
-// A vessel of many short segments that turns by little at every node, as centerlines do, with side branches.
+// A vessel of many short segments that bends slightly at every node, like real centerlines, with side branches.
 Centerline random_vessel(Draw& draw, int nodes) {
   std::vector<CenterlineNode> places;
   std::vector<CenterlineSegment> segments;
@@ -92,7 +92,7 @@ TEST(FastSample, IsExactUnderPowersOfTwo) {
 }
 
 TEST(FastSample, IsDoubleWhereSinglePrecisionWillNotDo) {
-  // A thread a thousand times thinner than the vessel that it leaves.
+  // A twig a thousand times thinner than the vessel that it leaves.
   const Centerline centerline({{{0, 0, 0}, 1}, {{3, 0, 0}, 1}, {{0, 40, 0}, 0.001}}, {{0, 1}, {0, 2}});
   const VesselField field(centerline, 0.5);
   for (double y = 1.2; y < 39; y += 0.37) {
@@ -103,7 +103,7 @@ TEST(FastSample, IsDoubleWhereSinglePrecisionWillNotDo) {
   }
 }
 
-// Any numbers will do for that.
+// Any numbers are possible there.
 TEST(FastSample, IsTheSameOnEveryMachine) {
   ASSERT_EQ(avx2_lane_sampler() != nullptr, has_avx2());
   const LaneSampler plain = plain_lane_sampler(), best = best_lane_sampler();
@@ -136,7 +136,7 @@ TEST(FastSample, IsTheSameOnEveryMachine) {
   }
 }
 
-// What a thread keeps of one field is not taken for another's.
+// Cached surroundings of one field are not used for another.
 TEST(FastSample, KnowsItsFieldFromOthersAtItsPlace) {
   for (const double radius : {1.0, 2.0, 3.0}) {
     const Centerline centerline({{{0, 0, 0}, radius}, {{5, 0, 0}, radius}}, {{0, 1}});

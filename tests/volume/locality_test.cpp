@@ -1,4 +1,4 @@
-// Which cones a query along the graph sees.
+// Which cones are local to each other.
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What sees what, found region by region: as found in one go.
+// Locality found region by region is the same as in one go.
 #include "volume/sight_regions.h"
 
 #include <algorithm>

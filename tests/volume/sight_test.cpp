@@ -1,4 +1,4 @@
-// Cones that are seen beyond what counts as one volume, because the rounding between them reaches farther.
+// Cones that are local beyond what counts as one volume, because the rounding between them extends farther.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -114,7 +114,7 @@ TEST(Sight, EndsBeforeWallsThatMeetAgainClosely) {
   const Mouth mouth = mouth_of(field);
   EXPECT_LT(mouth.gap, 0.25);
   EXPECT_FALSE(sees(field, mouth.begin, mouth.end));
-  // On their walls nothing is rounded that reaches over the gap.
+  // On their walls, no rounding reaches across the gap.
   Draw draw(5);
   int points = 0;
   for (int k = 0; k < 2000; ++k) {
@@ -163,8 +163,8 @@ TEST(Sight, EndsWithoutAStep) {
   }
 }
 
-// Two thick vessels less than half a radius apart, and between them a thread.
-Centerline thread_between_thick_ones() {
+// Two thick vessels less than half a radius apart, and between them a twig.
+Centerline twig_between_thick_ones() {
   return {{{{0, 0, 0}, 2.5},
            {{3.8, 0, 0}, 2.5},
            {{6.2, 0.8, 0}, 0.06},
@@ -174,13 +174,13 @@ Centerline thread_between_thick_ones() {
           {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}}};
 }
 
-TEST(Sight, OfAThreadDoesNotJoinWhatDoesNotSeeEachOther) {
-  const Centerline centerline = thread_between_thick_ones();
+TEST(Sight, OfATwigDoesNotJoinWhatIsNotLocal) {
+  const Centerline centerline = twig_between_thick_ones();
   const VesselField field(centerline, 0.5);
   ASSERT_TRUE(sees(field, 2, 1) && sees(field, 2, 3));
   ASSERT_FALSE(sees(field, 1, 3));
   EXPECT_FALSE(field.are_blended(1, 3));
-  // The distance beside the thread changes by no more than the way does, whatever is the nearest.
+  // The distance beside the twig changes by no more than the distance moved, whichever cone is nearest.
   constexpr double kStep = 1e-3;
   for (const double beside : {0.1, 0.2, 0.3}) {
     Index hint = 2;

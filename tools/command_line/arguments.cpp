@@ -65,7 +65,7 @@ OpenEnds parse_open_ends(const std::string& text) {
     const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), node);
     if (error != std::errc() || end != item.data() + item.size())
       throw CLI::ValidationError("--open-ends",
-                                 "\"" + item + "\" is no node number; give all, or numbers such as 3,17");
+                                 "\"" + item + "\" is not a node number; give all, or numbers such as 3,17");
     ends.nodes.push_back(node);
   }
   return ends;
@@ -83,20 +83,20 @@ void add_ends(CLI::App& verb, GenerateArguments& arguments) {
       ->default_str("round");
   verb.add_option_function<std::string>(
           "--open-ends", [&arguments](const std::string& text) { arguments.options.open_ends = parse_open_ends(text); },
-          "leave the surface open at these ends of the centerline, whatever --ends says: all, or node numbers as in "
+          "leave the surface open at these ends of the centerline, regardless of --ends: all, or node numbers as in "
           "the summary, separated by commas")
       ->type_name("all|N,N,...");
   verb.add_option("--flow-extensions", arguments.flow_extension,
-                  "length of straight tubes that go on from ends that are not round, in radii; 0: none")
+                  "length of straight extensions at ends that are not round, in radii; 0: none")
       ->check(in_range(0.0, 1000.0))
       ->capture_default_str();
 }
 
-/// With --ends flat or open all ends are grown open; `left_open` are those to stay so.
+/// With --ends flat or open, all ends are grown open; those in `left_open` stay open.
 GenerateArguments settled(GenerateArguments arguments) {
   OpenEnds& open = arguments.options.open_ends;
   if (arguments.flow_extension > 0 && arguments.ends == EndShape::round && !open.all && open.nodes.empty())
-    throw UsageError("--flow-extensions needs ends to go on from: --ends flat, or --ends open");
+    throw UsageError("--flow-extensions needs ends that are not round: --ends flat, or --ends open");
   if (arguments.ends == EndShape::round) return arguments;
   if (open.all) arguments.ends = EndShape::open;
   arguments.left_open = std::move(open.nodes);
@@ -104,7 +104,7 @@ GenerateArguments settled(GenerateArguments arguments) {
   return arguments;
 }
 
-/// A part's surface goes beside it.
+/// By default, a part's surface is written beside it.
 void settle_generate(GenerateArguments& arguments) {
   if (is_part(arguments.input.path) && arguments.output.empty() && arguments.input.more.empty()) {
     arguments.output = arguments.input.path;
@@ -113,7 +113,7 @@ void settle_generate(GenerateArguments& arguments) {
   settle_output(arguments);
 }
 
-// What the presets stand for can be overridden by its own option, wherever that is on the line.
+// The values of a preset can be overridden by their own options, wherever these are on the line.
 void add_preset(CLI::App& verb, GenerateOptions& options) {
   CLI::Option* preset = verb.add_option("--preset", "low: 6 vertices around; high: 12, about four times as many in all")
                             ->check(CLI::IsMember({"low", "high"}))
@@ -131,11 +131,11 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
       "centerline, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files) to extract it from and to fit to");
   add_output_after_several(verb, arguments.output, "surface (.ply, .vtp, .stl, .obj, .off, .glb)");
   add_writing(verb, arguments.writing);
-  verb.add_flag("--bones", arguments.bones, "a .glb gets bones along the centerline, to bend it by");
+  verb.add_flag("--bones", arguments.bones, "add bones along the centerline to a .glb, for bending it");
   add_growth(verb, arguments);
   verb.add_option_function<std::string>(
           "--growth", [&arguments](const std::string& text) { arguments.options.growth = parse_growth_method(text); },
-          "guided: topology as the centerline's; paper: a single seed, as published")
+          "guided: with the topology of the centerline; paper: a single seed, as published")
       ->check(CLI::IsMember({"guided", "paper"}))
       ->default_str("guided");
   verb.add_option_function<std::string>(
@@ -162,20 +162,20 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   add_ends(verb, arguments);
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
-                "self-intersections, of the expected topology, and holds every centerline node");
+                "self-intersections, of the expected topology, and contains every centerline node");
   verb.add_flag("--allow-defects", arguments.allow_defects,
-                "write the surface even if it is not sound; the summary lists what is wrong with it, and where");
+                "write the surface even if it is not sound; the summary lists its defects with their positions");
   verb.add_option("--fit", arguments.fitting.reference.path,
-                  "fit the surface to this one, or to an image: the vessels' own walls instead of round cones");
+                  "fit to this surface or image: the vessels' own walls instead of round cones");
   add_fitting(verb, arguments.fitting);
   verb.add_option("--centerline-output", arguments.centerline_output,
-                  "of an image: the centerline that was extracted, to keep it");
+                  "with an image as input: where to save the extracted centerline");
   add_extraction(verb, arguments.extraction);
   add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   group(verb, "Resolution",
         {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification", "--elongation",
-                              "--deformable"});
+         "--deformable"});
   group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
   group(verb, "Ends", {"--ends", "--open-ends", "--flow-extensions"});
   group(verb, "How it is made", {"--growth", "--beta", "--max-center-distance", "--sweeps", "--threads"});
@@ -184,7 +184,7 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
 }
 
 void add_info(CLI::App& app, InfoArguments& arguments) {
-  CLI::App& verb = *app.add_subcommand("info", "Tell what is in a centerline or surface, and what is wrong with it");
+  CLI::App& verb = *app.add_subcommand("info", "Show what a centerline or surface contains, and what is wrong with it");
   add_centerline_input(verb, arguments.input, "centerline or surface");
   verb.add_flag("--check", arguments.check, "exit with 1 when there is a problem");
   add_common(verb, arguments.common);
@@ -195,9 +195,10 @@ void add_synth(CLI::App& app, SynthArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("synth", "Make a synthetic tree like a liver's portal vein");
   add_output(verb, arguments.output, "centerline");
   verb.add_option("--vertices", arguments.options.vertices, "nodes of the centerline")
-      ->check(in_range(2, 1000000))
+      ->check(in_range(2, 10000000))
       ->capture_default_str();
-  verb.add_option("--seed", arguments.options.seed, "each number gives another tree")->capture_default_str();
+  verb.add_option("--seed", arguments.options.seed, "of the random numbers; each gives a different tree")
+      ->capture_default_str();
   add_common(verb, arguments.common, false);
   verb.footer(kSynthExamples);
 }
@@ -231,7 +232,7 @@ void add_render_view(CLI::App& verb, RenderOptions& options) {
             const std::vector<double> p = parse_numbers("--look-at", text, 3);
             options.look_at = Vec3(p[0], p[1], p[2]);
           },
-          "point in the middle of the picture, mm; default: the middle of the mesh")
+          "point at the centre of the picture, mm; default: the centre of the mesh")
       ->type_name("X,Y,Z");
   verb.add_option("--view-height", options.view_height_mm, "height of the scene in the picture, mm; 0: the whole mesh")
       ->check(in_range(0.0, 1e9))
@@ -247,9 +248,10 @@ void add_render_look(CLI::App& verb, RenderArguments& arguments) {
   verb.add_flag("--edges", options.edges, "draw the triangles' edges");
   verb.add_option("--edge-width", options.edge_width_px, "pixels")->check(in_range(0.01, 100.0))->capture_default_str();
   verb.add_flag("!--flat", options.smooth, "shade facet by facet");
-  verb.add_flag("!--no-back-faces", options.highlight_back_faces, "do not show the inside of the surface in magenta");
-  verb.add_flag("!--no-legend", options.legend, "leave the colour scale out");
-  verb.add_option("--occlusion", options.occlusion, "darkening where little light gets in")
+  verb.add_flag("!--no-back-faces", options.highlight_back_faces,
+                "do not highlight the inside of the surface in magenta");
+  verb.add_flag("!--no-legend", options.legend, "omit the colour scale");
+  verb.add_option("--occlusion", options.occlusion, "darkening where little ambient light arrives")
       ->check(in_range(0.0, 1.0))
       ->capture_default_str();
   verb.add_option("--color", arguments.color,
@@ -283,11 +285,12 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
   CLI::App& verb = *app.add_subcommand(
       "evaluate", "Measure a surface: faces, defects, distance to a reference surface or to a centerline's vessels");
   add_input(verb, arguments.input, "surface");
-  verb.add_option("--reference", arguments.reference.path,
-                  "surface to compare with: guaranteed Hausdorff distance, mean, RMS and percentiles, both ways");
+  verb.add_option(
+      "--reference", arguments.reference.path,
+      "surface to compare with: guaranteed Hausdorff distance, mean, RMS and percentiles, in both directions");
   add_reading(verb, arguments.reference, "reference-");
   verb.add_option("--centerline", arguments.centerline.path,
-                  "compare with the exact volume of its round cones, both ways, in mm and in local radii");
+                  "compare with the exact volume of its round cones, in both directions, in mm and in local radii");
   add_reading(verb, arguments.centerline, "centerline-");
   add_centerline_reading(verb, arguments.centerline, "centerline-");
   verb.add_option("-o,--output", arguments.output,
@@ -295,7 +298,7 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
                   "volume_distance (.ply, .vtp)");
   add_report(verb, arguments.report, arguments.format);
   add_measuring(verb, arguments.tolerance_mm, arguments.samples);
-  verb.add_option("--threads", arguments.threads, "to work on; 0: as many as there are; the result is the same")
+  verb.add_option("--threads", arguments.threads, "to work on; 0: all; the result does not depend on it")
       ->check(in_range(0, 4096))
       ->capture_default_str();
   verb.add_option("--require", arguments.require,
@@ -316,10 +319,10 @@ void add_growth(CLI::App& verb, GenerateArguments& arguments) {
   add_preset(verb, arguments.options);
   verb.add_option_function<std::string>(
           "--placement", [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },
-          "inscribed: vertices on the boundary; balanced: lifted off it, so that volume is kept")
+          "inscribed: vertices on the boundary; balanced: lifted off it, so that the volume is kept")
       ->check(CLI::IsMember({"inscribed", "balanced"}))
       ->default_str("balanced");
-  verb.add_option("--threads", arguments.options.threads, "to work on; 0: as many as there are; the result is the same")
+  verb.add_option("--threads", arguments.options.threads, "to work on; 0: all; the result does not depend on it")
       ->check(in_range(0, 4096))
       ->capture_default_str();
   verb.add_option_function<std::string>(
@@ -327,11 +330,11 @@ void add_growth(CLI::App& verb, GenerateArguments& arguments) {
           [&arguments](const std::string& text) {
             arguments.overlap = text == "separate" ? OverlapHandling::separate : OverlapHandling::keep;
           },
-          "where vessels touch that are not neighbours: separate them by narrowing, and by moving those that cross; or "
-          "keep them as they are: the surface then intersects itself there and is refused")
+          "vessels that touch without being neighbours: separate them by narrowing, and by moving those that cross; or "
+          "keep them: the surface then intersects itself there and is refused")
       ->check(CLI::IsMember({"keep", "separate"}))
       ->default_str("separate");
-  verb.add_option("--gap", arguments.gap, "free space between vessels below which they touch, in smaller radii")
+  verb.add_option("--gap", arguments.gap, "gap between vessels below which they count as touching, in smaller radii")
       ->check(in_range(0.001, 1.0))
       ->capture_default_str();
 }
@@ -348,7 +351,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   CLI::App app("vmesh turns vessel centerlines into surfaces.", "vmesh");
   app.set_version_flag("--version", "vmesh " + std::string(version()));
   app.footer(
-      "vmesh VERB --help tells the options of a verb and shows examples.\n"
+      "vmesh VERB --help lists the options of a verb with examples.\n"
       "Exit codes: 0 ok, 1 a requested check failed, 2 usage, 3 bad input, 4 unsupported or not built in,\n"
       "5 cannot write, 6 did not converge, 7 no sound surface was found, 130 interrupted.");
   app.require_subcommand(1);
@@ -391,7 +394,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int&
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    std::ostringstream complaint;  // with what was typed in it
+    std::ostringstream complaint;  // may quote what was typed
     // CLI11's own codes run from 100 to 127.
     exit_code = app.exit(error, std::cout, complaint) == 0 ? kOk : kUsage;
     std::istringstream lines(complaint.str());

@@ -23,25 +23,25 @@
 
 namespace vmesh::tool {
 
-/// What every verb takes.
+/// Options common to all verbs.
 struct CommonArguments {
   bool quiet = false;
-  std::filesystem::path json;  ///< where a summary goes; "-" for stdout, empty for nowhere
-  std::filesystem::path html;  ///< where a page goes; empty for nowhere. Not of all verbs
+  std::filesystem::path json;  ///< file for the summary; "-" for stdout, empty for none
+  std::filesystem::path html;  ///< file for the page; empty for none. Not for all verbs
   std::string command_line;    ///< as it was typed, for the page
 };
 
 /// A centerline or surface file and how to read its numbers.
 struct InputArguments {
   std::filesystem::path path;
-  std::vector<std::filesystem::path> more;  ///< further files that make one centerline with it
+  std::vector<std::filesystem::path> more;  ///< further files that form one centerline with it
   CenterlineReadOptions read;               ///< of centerlines
   std::optional<LengthUnit> unit;
   std::optional<Space> space;
-  std::string options_of;  ///< before the names of these options: "reference-" for --reference-unit
+  std::string options_of;  ///< prefix of these options' names: "reference-" for --reference-unit
 };
 
-/// What is done about vessels that touch without being neighbours: nothing, or they are narrowed until they do not.
+/// What to do about vessels that touch without being neighbours: nothing, or separate them.
 enum class OverlapHandling { keep, separate };
 
 std::string_view to_string(OverlapHandling overlap);
@@ -53,12 +53,12 @@ struct WritingArguments {
   std::string attributes = "all";  ///< of surfaces: "all", "vertex" or "none"
 };
 
-/// How vessels end: in a hemisphere, a flat cap, or a hole.
+/// How vessels end: in a hemisphere, with a flat cap, or open.
 enum class EndShape { round, flat, open };
 
 std::string_view to_string(EndShape shape);
 
-/// What a surface is fitted to, and how.
+/// The target of a fit, and its options.
 struct FittingArguments {
   InputArguments reference;  ///< surface or image; empty path: none
   ReferenceOptions image;    ///< how an image becomes a surface
@@ -76,23 +76,23 @@ struct GenerateArguments {
   double gap = 0.1;  ///< vessels closer than this times the smaller radius count as touching
   EndShape ends = EndShape::round;
   std::vector<Index> left_open;  ///< nodes of --open-ends beside --ends
-  double flow_extension = 0;     ///< length of tubes at ends that are not round, in radii
-  bool bones = false;            ///< a .glb gets some along the centerline
+  double flow_extension = 0;     ///< length of extensions at ends that are not round, in radii
+  bool bones = false;            ///< add bones along the centerline to a .glb
   bool check = false;            ///< exit code 1 unless the surface is flawless
-  bool allow_defects = false;    ///< a surface that is not sound is written all the same
-  FittingArguments fitting;  ///< of the surface that was grown; the image's options are the input's without a reference
-  ExtractOptions extraction;                ///< of the centerline, from an input that is an image
-  std::filesystem::path centerline_output;  ///< for it; empty: none
+  bool allow_defects = false;    ///< write a surface even if it is not sound
+  FittingArguments fitting;      ///< of the grown surface; without a reference, the image options apply to the input
+  ExtractOptions extraction;     ///< of the centerline, from an input that is an image
+  std::filesystem::path centerline_output;  ///< file for it; empty: none
 };
 
 struct FitArguments {
   CommonArguments common;
   InputArguments input;       ///< surface
-  InputArguments centerline;  ///< that the surface was grown around
+  InputArguments centerline;  ///< around which the surface was grown
   std::filesystem::path output;
   WritingArguments writing;
   FittingArguments fitting;
-  std::optional<Budget> budget;  ///< says the fitting's max_vertices or its error
+  std::optional<Budget> budget;  ///< sets the fit's max_vertices or its error
 };
 
 struct InfoArguments {
@@ -203,7 +203,7 @@ struct SplitArguments {
   CommonArguments common;
   InputArguments input;
   std::filesystem::path output;  ///< folder
-  double vertices = 1'000'000;   ///< of a part's surface, about
+  double vertices = 1'000'000;   ///< approximate, of a part's surface
   GenerateArguments generate;    ///< its options of growth
 };
 
@@ -225,8 +225,8 @@ bool is_part(const std::filesystem::path& path);
 /// Named only where it is not 1.
 inline constexpr std::string_view kElongationFlag = "--elongation";
 
-/// Calls `visit(flag, member, low, high, help)` for every option of the growth. The one list behind the command line
-/// and the summary.
+/// Calls `visit(flag, member, low, high, help)` for every option of growth: the common list behind the command line and
+/// the summary.
 template <class Options, class Visitor>
 void for_each_generate_option(Options& options, Visitor visit) {
   visit("--beta", options.beta, 0.0, 1.0, "attraction by the vessel wall against the vertex normal");
@@ -237,14 +237,15 @@ void for_each_generate_option(Options& options, Visitor visit) {
   visit(kElongationFlag.data(), options.elongation, 1.0, double(kMostElongation),
         "along vessels, triangles as long as the error allows, at most so many times their even length; 1: even");
   visit("--simplification", options.simplification, 0.0, 1.0,
-        "leave out nodes that change the vessels by at most this share of what edges across them cut off; 0: none");
+        "leave out nodes where that changes the vessels by at most this share of what edges across them cut off; 0: "
+        "none");
   visit("--sweeps", options.sweeps, 0, 1000, "sweeps of the final optimisation; 0: leave the surface as grown");
   visit("--max-vertices", options.max_vertices, 100, 1'000'000'000,
-        "refuse a centerline whose length and radii ask for more than this");
+        "refuse a centerline whose length and radii would need more than this");
 }
 
-/// Parses the command line. Without a value the command is done with `exit_code`: help, version or a usage error
-/// were printed.
+/// Parses the command line. Returns nullopt if the command is finished with `exit_code`: help, version or a usage error
+/// was printed.
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int& exit_code);
 
 }  // namespace vmesh::tool

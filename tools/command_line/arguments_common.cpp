@@ -36,7 +36,7 @@ void add_writing(CLI::App& verb, WritingArguments& writing) {
       ->check(CLI::IsMember({"LPS", "RAS"}))
       ->default_str("LPS");
   verb.add_option("--attributes", writing.attributes,
-                  "of a surface: all; vertex: none of faces, which some readers of PLY do not take; or none")
+                  "of a surface: all; vertex: none of faces, which some PLY readers reject; or none")
       ->check(CLI::IsMember({"all", "vertex", "none"}))
       ->capture_default_str();
   group(verb, "How to write the output", {"--output-unit", "--output-space", "--attributes"});
@@ -82,7 +82,7 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
   for (std::string item; std::getline(list, item, ',');) {
     double number = 0;
     if (!CLI::detail::lexical_cast(item, number) || !std::isfinite(number))
-      throw CLI::ValidationError(option, "\"" + item + "\" is no number");
+      throw CLI::ValidationError(option, "\"" + item + "\" is not a number");
     numbers.push_back(number);
   }
   if (numbers.size() != count || text.ends_with(','))
@@ -96,7 +96,7 @@ void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::st
       ->type_name("NAME");
   verb.add_option_function<double>(
           "--" + of + "radius", [&input](const double& radius) { input.read.radius = radius; },
-          "radius of all nodes of a file that holds none, mm")
+          "radius of all nodes of a file without radii, mm")
       ->check(in_range(1e-9, 1e9));
   verb.add_option_function<std::string>(
           "--" + of + "voxel-size",
@@ -108,7 +108,7 @@ void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::st
             if (!(input.read.voxel_size->minCoeff() > 0))
               throw CLI::ValidationError(option, "must be above 0: " + text);
           },
-          "sides of the voxels that a GXL file of VascuSynth counts in, in the unit of its radii")
+          "sides of the voxels in which VascuSynth's GXL files give positions, in the unit of the radii")
       ->type_name("S|SX,SY,SZ");
 }
 
@@ -119,7 +119,7 @@ void add_centerline_input(CLI::App& verb, InputArguments& input, const std::stri
             input.path = paths.front();
             input.more.assign(paths.begin() + 1, paths.end());
           },
-          help + "; several files with a branch each make one")
+          help + "; several files with a branch each form one")
       ->required()
       ->type_name("FILE");
   add_reading(verb, input, "");
@@ -128,14 +128,14 @@ void add_centerline_input(CLI::App& verb, InputArguments& input, const std::stri
 }
 
 void add_report(CLI::App& verb, std::filesystem::path& report, std::string& format) {
-  verb.add_option("--report", report, "write the report to this file too (.txt, .md, .csv, .json)");
+  verb.add_option("--report", report, "also write the report to this file (.txt, .md, .csv, .json)");
   verb.add_option("--format", format, "of the report on stdout")
       ->check(CLI::IsMember({"text", "markdown", "csv"}))
       ->capture_default_str();
 }
 
 void add_measuring(CLI::App& verb, double& tolerance_mm, std::size_t& samples) {
-  verb.add_option("--tolerance", tolerance_mm, "width of the interval that holds a Hausdorff distance, mm")
+  verb.add_option("--tolerance", tolerance_mm, "width of the interval that contains a Hausdorff distance, mm")
       ->check(in_range(1e-12, 1e6))
       ->capture_default_str();
   verb.add_option("--samples", samples, "points on each surface for mean, RMS and percentiles")

@@ -13,10 +13,10 @@ constexpr const char* kTable1Examples = R"(Examples:
 }  // namespace
 
 void add_deform(CLI::App& app, DeformArguments& arguments) {
-  CLI::App& verb = *app.add_subcommand("deform", "Move a centerline under forces, its surface with it");
+  CLI::App& verb = *app.add_subcommand("deform", "Move a centerline under forces, and its surface with it");
   add_input(verb, arguments.input, "centerline");
   add_centerline_reading(verb, arguments.input, "");
-  verb.add_option("SURFACE", arguments.surface.path, "surface around it: grown by vmesh, or any other")->required();
+  verb.add_option("SURFACE", arguments.surface.path, "surface around it, grown by vmesh or not")->required();
   add_reading(verb, arguments.surface, "surface-");
   verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (tools/README.md, Scenes)")
       ->required();
@@ -33,7 +33,7 @@ void add_table1(CLI::App& app, Table1Arguments& arguments) {
   CLI::App& verb = *app.add_subcommand(
       "table1", "Measure deformation and synchronisation as in the paper's Table 1, on synthetic trees of its sizes");
   add_report(verb, arguments.report, arguments.format);
-  verb.add_option("--plot", arguments.plot, "what time buys in accuracy, as a picture (.svg)");
+  verb.add_option("--plot", arguments.plot, "accuracy against time, as a picture (.svg)");
   add_common(verb, arguments.common);
   verb.footer(kTable1Examples);
 }

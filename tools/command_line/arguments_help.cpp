@@ -18,7 +18,7 @@ constexpr const char* kManualExamples = R"(Examples:
   vmesh man generate | man -l -
   vmesh man -o ~/.local/share/man/man1)";
 
-/// How many letters it takes to make `b` of `a`: put in, taken out or replaced.
+/// How many letters must be inserted, removed or replaced to turn `a` into `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -50,7 +50,7 @@ void add_help(CLI::App& app, HelpArguments& arguments) {
 
 void check_verb(const CLI::App& app, std::string_view word) {
   std::string nearest, all;
-  std::size_t least = word.size() / 2 + 1;  // beyond that, nothing was meant
+  std::size_t least = word.size() / 2 + 1;  // beyond that, no suggestion
   for (const CLI::App* verb : app.get_subcommands({})) {
     const std::string& name = verb->get_name();
     if (name == word) return;

@@ -8,7 +8,7 @@
 
 namespace vmesh::tool {
 
-/// The verbs that tell of the others.
+/// The verbs that document the others.
 struct HelpArguments {
   std::string shell;
   std::string verb;
@@ -17,10 +17,10 @@ struct HelpArguments {
 
 void add_help(CLI::App& app, HelpArguments& arguments);
 
-/// Throws UsageError for a first word that is no verb: with the one that was meant, perhaps, and all.
+/// Throws UsageError for a first word that is not a verb, suggesting the nearest one and listing all.
 void check_verb(const CLI::App& app, std::string_view word);
 
-/// Whether one of these verbs was called; then it is done.
+/// Runs one of these verbs if it was called; returns whether it was.
 bool ran_help(const CLI::App& app, const HelpArguments& arguments);
 
 }  // namespace vmesh::tool

@@ -34,10 +34,10 @@ constexpr const char* kTradeoffExamples = R"(Examples:
 void add_image_options(CLI::App& verb, ReferenceOptions& options) {
   CLI::Option* label = verb.add_option("--label", options.label, "image: voxels of this value are inside");
   verb.add_option("--threshold", options.threshold, "image: voxels of at least this value are inside")->excludes(label);
-  verb.add_option("--spacing", options.spacing, "image: resample to cubic voxels of this side, mm; 0: as it is")
+  verb.add_option("--spacing", options.spacing, "image: resample to cubic voxels of this side, mm; 0: do not resample")
       ->check(in_range(0.0, 1e6))
       ->capture_default_str();
-  verb.add_option("--smooth", options.smooth, "smooth with a Gaussian of this standard deviation, mm; 0: not at all")
+  verb.add_option("--smooth", options.smooth, "smooth with a Gaussian of this standard deviation, mm; 0: do not smooth")
       ->check(in_range(0.0, 1e6))
       ->capture_default_str();
 }
@@ -67,37 +67,36 @@ void add_fitting(CLI::App& verb, FittingArguments& arguments) {
               throw CLI::ValidationError("--fit-error", error.what());
             }
           },
-          "as many vertices as it takes for 95 % of both surfaces to be nearer than this to the other")
+          "as many vertices as needed for 95 % of either surface to be nearer than this to the other")
       ->type_name("Xmm");
   verb.add_option("--fit-rounds", arguments.options.rounds, "rounds of the fit")
       ->check(in_range(1, 100))
       ->capture_default_str();
   verb.add_flag("!--keep-triangles", arguments.options.resize,
-                "move the vertices alone; otherwise triangles become finer where the error is large, and coarser where "
+                "only move the vertices; otherwise triangles become finer where the error is large, and coarser where "
                 "it is small");
 }
 
 void add_fit(CLI::App& app, FitArguments& arguments) {
-  CLI::App& verb =
-      *app.add_subcommand("fit", "Move a surface that vmesh grew onto a segmentation's own: a surface or an image");
+  CLI::App& verb = *app.add_subcommand("fit", "Fit a surface grown by vmesh to a segmentation: a surface or an image");
   add_input(verb, arguments.input, "surface, with places on the centerline (.ply, .vtp)");
   verb.add_option("REFERENCE", arguments.fitting.reference.path,
                   "surface, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files)")
       ->required();
   add_output(verb, arguments.output, "surface");
   add_writing(verb, arguments.writing);
-  verb.add_option("--centerline", arguments.centerline.path, "that the surface was grown around")->required();
+  verb.add_option("--centerline", arguments.centerline.path, "around which the surface was grown")->required();
   add_reading(verb, arguments.centerline, "centerline-");
   add_fitting(verb, arguments.fitting);
   verb.add_option("--max-vertices", arguments.fitting.options.max_vertices,
-                  "0: a twentieth more than the surface has, or as many as --fit-error takes")
+                  "0: a twentieth more than the surface has, or as many as --fit-error needs")
       ->capture_default_str();
   add_budget(verb, arguments.budget, "vertices=N: as --max-vertices N; error=Xmm: as --fit-error Xmm")
       .type_name("vertices=N|error=Xmm")
       ->excludes("--max-vertices")
       ->excludes("--fit-error");
   verb.add_option("--threads", arguments.fitting.options.threads,
-                  "to work on; 0: as many as there are; the result is the same")
+                  "to work on; 0: all; the result does not depend on it")
       ->check(in_range(0, 4096))
       ->capture_default_str();
   add_html(verb, arguments.common);
@@ -113,7 +112,7 @@ void add_reference(CLI::App& app, ReferenceArguments& arguments) {
   add_image_options(verb, arguments.options);
   verb.add_option("--voxel", arguments.voxel, "centerline: side of the voxels, mm")->check(in_range(1e-6, 1e6));
   verb.add_flag("--binary", arguments.options.binary,
-                "contour inside and outside alone instead of grey values: a staircase of better triangles");
+                "contour only inside and outside instead of grey values: a staircase, with better triangles");
   verb.add_flag("--all-components", arguments.options.all_components,
                 "keep all components and cavities, not only the component of the largest volume");
   add_common(verb, arguments.common);
@@ -121,8 +120,7 @@ void add_reference(CLI::App& app, ReferenceArguments& arguments) {
 }
 
 void add_cones(CLI::App& app, ConesArguments& arguments) {
-  CLI::App& verb =
-      *app.add_subcommand("cones", "Put a truncated cone around every segment of a centerline, not joined");
+  CLI::App& verb = *app.add_subcommand("cones", "Make a separate truncated cone around every segment of a centerline");
   add_centerline_input(verb, arguments.input, "centerline");
   add_output_after_several(verb, arguments.output, "surface");
   verb.add_option("--sides", arguments.sides, "of a cone")->check(in_range(3, 1000))->capture_default_str();
@@ -146,7 +144,7 @@ void add_centerline(CLI::App& app, CenterlineArguments& arguments) {
 void add_table2(CLI::App& app, Table2Arguments& arguments) {
   CLI::App& verb = *app.add_subcommand(
       "table2",
-      "Compare marching cubes, truncated cones and both presets, as the paper's Table 2; without a file, on a "
+      "Compare marching cubes, truncated cones and both presets as in the paper's Table 2; without a file, on a "
       "synthetic portal vein");
   verb.add_option("--reference", arguments.reference.path,
                   "image or closed surface to compare with; centerline and surfaces are made from it");
@@ -155,11 +153,11 @@ void add_table2(CLI::App& app, Table2Arguments& arguments) {
                   "centerline to start from; without a reference, its sampled volume is the reference");
   add_reading(verb, arguments.centerline, "centerline-");
   add_image_options(verb, arguments.image);
-  verb.add_flag("--binary", arguments.image.binary, "contour inside and outside alone instead of grey values");
+  verb.add_flag("--binary", arguments.image.binary, "contour only inside and outside instead of grey values");
   verb.add_flag("--all-components", arguments.all_components,
                 "keep all components of the reference, not only that of the largest volume");
   verb.add_option("--voxel", arguments.voxel,
-                  "without a reference: side of the voxels that the centerline's volume is sampled on, mm")
+                  "without a reference: side of the voxels on which the centerline's volume is sampled, mm")
       ->check(in_range(1e-6, 1e6))
       ->default_str("0.665");
   add_extraction(verb, arguments.extraction);
@@ -169,7 +167,7 @@ void add_table2(CLI::App& app, Table2Arguments& arguments) {
   verb.add_option("--surfaces", arguments.surfaces,
                   "folder for reference.ply, cones.ply, low.ply and high.ply with distances (the reference's: to low), "
                   "and centerline.json");
-  verb.add_flag("--check", arguments.check, "exit with 1 unless all that is demanded of the low resolution holds");
+  verb.add_flag("--check", arguments.check, "exit with 1 unless the low resolution meets all requirements");
   add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   verb.footer(kTable2Examples);
@@ -177,14 +175,14 @@ void add_table2(CLI::App& app, Table2Arguments& arguments) {
 
 void add_tradeoff(CLI::App& app, TradeoffArguments& arguments) {
   CLI::App& verb = *app.add_subcommand(
-      "tradeoff", "Grow a centerline's surface with many settings and show what time and vertices buy in accuracy");
+      "tradeoff", "Grow a centerline's surface with many settings, and compare accuracy against time and vertices");
   add_centerline_input(verb, arguments.input, "centerline");
   add_report(verb, arguments.report, arguments.format);
   verb.add_option("--plot", arguments.plot, "error against time and against vertices, as a picture (.svg)");
   verb.add_option("--samples", arguments.options.samples, "points on each surface and on the vessels")
       ->check(in_range<std::size_t>(1, 10'000'000))
       ->capture_default_str();
-  verb.add_option("--threads", arguments.options.generate.threads, "to work on; 0: as many as there are")
+  verb.add_option("--threads", arguments.options.generate.threads, "to work on; 0: all")
       ->check(in_range(0, 4096))
       ->capture_default_str();
   add_html(verb, arguments.common);

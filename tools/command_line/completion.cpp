@@ -7,7 +7,7 @@ namespace {
 
 bool takes_value(const CLI::Option& option) { return option.get_type_size() != 0; }
 
-/// A type without further words is a path; numbers and the like have other names.
+/// A plain TEXT type is a path; numbers and choices have other type names.
 bool takes_file(const CLI::Option& option) { return takes_value(option) && option.get_type_name() == "TEXT"; }
 
 std::string joined(const std::vector<std::string>& words, const char* separator) {
@@ -16,7 +16,7 @@ std::string joined(const std::vector<std::string>& words, const char* separator)
   return text;
 }
 
-/// "    generate:--unit) words=\"um mm cm m\" ;;": what may follow an option.
+/// "    generate:--unit) words=\"um mm cm m\" ;;": the values of an option.
 std::string case_of(const CLI::App& verb, const CLI::Option& option) {
   if (!option.nonpositional() || !takes_value(option) || takes_file(option)) return {};
   std::vector<std::string> patterns;
@@ -34,7 +34,7 @@ std::vector<std::string> options_of(const CLI::App& verb) {
   return all;
 }
 
-/// The words that a verb takes where others take a file.
+/// The choices of a verb's positional argument, where others take a file.
 std::vector<std::string> words_of(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options()) {
     if (option->get_positional()) return choices_of(*option);

@@ -10,8 +10,8 @@
 
 namespace vmesh::tool {
 
-/// `text` with a ? for every control character, as names of files may hold what moves a terminal's cursor. Lines that
-/// begin with two blanks remain: those of a list in a message.
+/// `text` with a ? for every control character, as file names may contain terminal escapes. Line breaks before two
+/// blanks, the lists in messages, are kept.
 std::string printable(std::string_view text);
 
 /// Everything the command says that is not data. All of it goes to stderr, each line printable().
@@ -25,13 +25,13 @@ class Console {
 
   void set_quiet(bool quiet);
   void log(std::string_view line);
-  /// Every warning is told once, however often it comes.
+  /// Every warning is shown once, however often it occurs.
   void warn(std::string_view line);
   void warn(const std::vector<std::string>& lines);
   void error(std::string_view line);
 
-  /// Asks to stop once the process was interrupted; draws a bar when stderr is a terminal, and writes a line every
-  /// few seconds when it is none. Must not outlive the console.
+  /// Cancels once the process was interrupted; draws a bar if stderr is a terminal, else writes a line every few
+  /// seconds. Must not outlive the console.
   Progress progress();
 
  private:

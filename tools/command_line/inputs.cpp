@@ -12,7 +12,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// VTK's files may hold a surface or a centerline.
+/// VTK's files may contain a surface or a centerline.
 bool may_be_both(const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
   return extension == ".vtp" || extension == ".vtk";
@@ -31,7 +31,7 @@ std::vector<std::filesystem::path> paths_of(const InputArguments& input) {
   return paths;
 }
 
-/// Warnings of the library that speak of --unit and --space, with the names that these have for this file.
+/// Renames --unit and --space in the library's warnings to the options for this file.
 void name_options(std::vector<std::string>& warnings, const InputArguments& input) {
   for (std::string& warning : warnings) {
     for (const char* option : {"--unit", "--space"}) {
@@ -41,13 +41,13 @@ void name_options(std::vector<std::string>& warnings, const InputArguments& inpu
   }
 }
 
-/// Not of a kind that may hold a surface as well.
+/// Whether the file can only contain a centerline, not a surface.
 bool holds_only_a_centerline(const std::filesystem::path& path) {
   const auto format = find_centerline_format(path);
   return format && format != CenterlineFormat::vtp && format != CenterlineFormat::vtk;
 }
 
-/// "wall.stl: this is a surface; ...": what to do with a file of another kind, and the command for it.
+/// "wall.stl: this is a surface; ...": what to do with a file of the wrong kind, with the command.
 std::string make_centerline_first(const std::filesystem::path& path, const std::string& kind) {
   const std::string made = path.stem().stem().string() + ".centerline.json";
   return path.string() + ": this is " + kind + ", and a centerline is needed; extract one first: vmesh centerline " +
@@ -59,7 +59,7 @@ std::string make_surface_first(const std::filesystem::path& path, const std::str
          path.string() + " -o " + path.stem().stem().string() + ".ply";
 }
 
-/// Where a surface or a centerline would do.
+/// The same where a surface or a centerline would be accepted.
 std::string make_either_first(const std::filesystem::path& path) {
   const std::string made = path.stem().stem().string();
   return path.string() +
@@ -86,7 +86,7 @@ bool holds_surface(const std::filesystem::path& path) {
   }
 }
 
-/// In the order of their names, without hidden ones.
+/// The files in a folder by name, without hidden ones.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code error;
@@ -99,7 +99,7 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
   return files;
 }
 
-/// ".pth", say, for files that hold one branch of a tree each; empty for others.
+/// ".pth", say, for files that contain one branch of a tree each; empty for others.
 std::string branch_extension(const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
   if (extension == ".ctgr" || extension == ".pth") return extension;
@@ -110,7 +110,7 @@ bool is_readable(const std::filesystem::path& path) {
   return find_centerline_format(path) || has_surface_extension(path) || is_image_path(path);
 }
 
-/// "a.swc, b.swc and 7 more": what is in a folder and could have been meant.
+/// "a.swc, b.swc and 7 more": readable files that could have been meant.
 std::string names_of_readable(const std::vector<std::filesystem::path>& files) {
   constexpr std::size_t kNamed = 3;
   std::string names;
@@ -121,7 +121,7 @@ std::string names_of_readable(const std::vector<std::filesystem::path>& files) {
   return count > kNamed ? names + " and " + std::to_string(count - kNamed) + " more" : names;
 }
 
-/// Folders in a folder that hold DICOM files: a study's series often lie so.
+/// Subfolders with DICOM files: a study's series are often stored so.
 std::vector<std::filesystem::path> scans_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> scans;
   std::error_code error;
@@ -132,7 +132,7 @@ std::vector<std::filesystem::path> scans_in(const std::filesystem::path& folder)
   return scans;
 }
 
-/// The files that stand for a path: itself, unless it is a folder of branches. A folder of DICOM files is an image.
+/// The files meant by a path: itself, unless it is a folder of branches. A folder of DICOM files is an image.
 std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_directory(path, error)) return {path};
@@ -145,7 +145,7 @@ std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& 
   if (branches.size() == 1) return branches.begin()->second;
   if (branches.size() > 1) {
     const auto& [first, second] = std::pair(*branches.begin(), *std::next(branches.begin()));
-    throw InvalidInput(folder.string() + ": this folder holds branches of several kinds (" + first.first + ", " +
+    throw InvalidInput(folder.string() + ": this folder contains branches of several kinds (" + first.first + ", " +
                        second.first + "); name the files of one, as in " + folder.string() + "/*" + first.first);
   }
   if (is_image(folder)) return {folder};  // of DICOM slices
@@ -154,7 +154,7 @@ std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& 
   const std::string names = names_of_readable(meant);
   throw ReadError(
       folder.string() + ": this is a folder, and " +
-      (names.empty() ? "no file in it is one that vmesh reads" : "one of what is in it is needed; there are " + names));
+      (names.empty() ? "it contains no file that vmesh can read" : "one of its files is needed; there are " + names));
 }
 
 RawCenterline read_centerline_of(const InputArguments& input) {
@@ -188,7 +188,7 @@ RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::
 
 LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
   if (!input.more.empty())
-    throw UsageError(input.more.front().string() + ": several files make a centerline, no surface");
+    throw UsageError(input.more.front().string() + ": several files can form a centerline, but not a surface");
   if (is_image(input.path)) throw Unsupported(make_surface_first(input.path, "an image", "reference"));
   if (holds_only_a_centerline(input.path))
     throw Unsupported(make_surface_first(input.path, "a centerline", "generate"));
@@ -217,13 +217,14 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
 
 LoadedImage load_image(const InputArguments& input, Console& console) {
   if (input.unit || input.space)
-    throw UsageError(input.path.string() + ": an image says where it lies; --unit and --space do not apply");
+    throw UsageError(input.path.string() +
+                     ": an image contains its position and unit; --unit and --space do not apply");
   try {
     LoadedImage loaded = read_image(input.path);
     console.warn(loaded.warnings);
     return loaded;
   } catch (const InvalidInput&) {
-    stop_if_interrupted();  // which ends the process that reads as well
+    stop_if_interrupted();  // which also ends the reading process
     throw;
   }
 }
@@ -240,7 +241,7 @@ AnyInput load_any(const InputArguments& input, std::vector<std::string>& warning
       warnings.insert(warnings.end(), surface.warnings.begin(), surface.warnings.end());
       return surface;
     } catch (const InvalidInput&) {
-      if (!may_be_both(input.path)) throw;  // a file without faces may hold a centerline
+      if (!may_be_both(input.path)) throw;  // a file without faces may contain a centerline
     }
   }
   return load_raw_centerline(input, warnings, said);

@@ -14,35 +14,34 @@
 
 namespace vmesh::tool {
 
-/// What a file says of its numbers.
+/// Unit and frame as stated in a file.
 struct FileFrame {
   LengthUnit unit = LengthUnit::unknown;
   Space space = Space::unknown;
 };
 
-/// A centerline as its file tells it, in mm and LPS; warnings are appended, what the file says of its
-/// numbers goes to `said`. Files of another kind are refused with the command that makes a centerline of them.
+/// A centerline as in its file, in mm and LPS; warnings are appended, the file's unit and frame go to `said`. Files of
+/// another kind are refused with the command that makes a centerline from them.
 RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings,
                                   FileFrame* said = nullptr);
 
 /// A surface in mm and LPS, likewise. Attributes that are lengths are converted too.
 LoadedSurface load_surface(const InputArguments& input, FileFrame* said = nullptr);
 
-/// The same, cleaned; warnings and what cleaning did are told.
+/// The same, cleaned; reports warnings and what cleaning did.
 LoadedCenterline load_clean_centerline(const InputArguments& input, Console& console);
 
-/// An image; --unit and --space are refused, as images say where they lie. Throws UsageError.
+/// An image; --unit and --space are refused (UsageError), as images contain their position and unit.
 LoadedImage load_image(const InputArguments& input, Console& console);
 
-/// Throws Unsupported, with the verbs that take images, if it is one.
+/// Throws Unsupported, naming the verbs that take images, if it is one.
 void check_is_no_image(const InputArguments& input);
 
-/// Either of the two, by extension; what a .vtp holds, its content decides. What the file says of itself goes to
-/// `said`.
+/// Either of the two, by extension, or for a .vtp by content. The file's unit and frame go to `said`.
 using AnyInput = std::variant<RawCenterline, LoadedSurface>;
 AnyInput load_any(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said = nullptr);
 
-/// Calls `function` and names the file in what it finds wrong with it.
+/// Calls `function` and adds the file's name to its errors.
 template <class Function>
 auto naming(const std::filesystem::path& path, Function function) {
   try {
@@ -53,9 +52,8 @@ auto naming(const std::filesystem::path& path, Function function) {
   }
 }
 
-/// Puts the branches in the place of a folder that holds files with one each (.mrk.json, .ctgr or .pth), in the order
-/// of their names. A folder of DICOM files remains: it is an image. Others are refused (ReadError), with files that
-/// could be meant.
+/// Replaces a folder of files with one branch each (.mrk.json, .ctgr or .pth) by these files, ordered by name. A folder
+/// of DICOM files stays: it is an image. Others are refused (ReadError), suggesting files that could be meant.
 void expand_folders(InputArguments& input);
 
 /// The same for all inputs of a verb.
@@ -68,17 +66,16 @@ void expand_all_folders(VerbArguments& verb) {
   if constexpr (requires { verb.fitting; }) expand_folders(verb.fitting.reference);
 }
 
-/// All files behind an input or output: a CSV centerline has two.
+/// All files of an input or output: a CSV centerline has two.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& input);
-/// The same of an input, which may be a folder of DICOM files.
+/// The same for an input, which may be a folder of DICOM files.
 std::vector<std::filesystem::path> files_of_input(const std::filesystem::path& input);
 std::vector<std::filesystem::path> files_of(const InputArguments& input);
 
-/// For metadata: the name of the file, or the names of all; its SHA-256, or the SHA-256 of all theirs, one after
-/// another.
+/// For metadata: the name of the file, or of all files; its SHA-256, or the SHA-256 of their concatenated SHA-256s.
 std::string file_name_of(const InputArguments& input);
 std::string sha256_of(const InputArguments& input);
-/// Of a file, or of a folder of DICOM files likewise.
+/// The same for a file or a folder of DICOM files.
 std::string sha256_of_input(const std::filesystem::path& path);
 
 }  // namespace vmesh::tool

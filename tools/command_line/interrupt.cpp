@@ -22,7 +22,7 @@ void catch_interrupts() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file too large for its limit is an error of the write
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit becomes a write error
 }
 
 bool interrupted() noexcept { return interrupt_flag; }

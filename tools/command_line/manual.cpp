@@ -12,7 +12,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// Text as roff has it: hyphens that can be copied, no request by accident.
+/// Text escaped for roff: copyable hyphens, no accidental requests.
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -31,7 +31,7 @@ std::string escaped(const std::string& text) {
 std::string bold(const std::string& text) { return "\\fB" + escaped(text) + "\\fP"; }
 std::string italic(const std::string& text) { return "\\fI" + escaped(text) + "\\fP"; }
 
-/// In capitals, as sections are.
+/// In capitals, for section titles.
 std::string capitals(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
@@ -51,7 +51,7 @@ std::string value_of(const CLI::Option& option) {
   return type == "TEXT" ? "FILE" : type.substr(0, type.find(':'));
 }
 
-/// The range of a number and what it is unless given, in brackets.
+/// The range and the default of an option, in brackets.
 std::string limits_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   std::string text;
@@ -91,7 +91,7 @@ std::string options_of(const CLI::App& verb) {
   return text;
 }
 
-/// "Examples:" and lines that are kept as they are.
+/// The "Examples:" of a verb, with lines kept as they are.
 std::string examples_of(const CLI::App& verb) {
   std::istringstream footer(verb.get_footer());
   std::string text, line;
@@ -119,9 +119,9 @@ std::string exit_status() {
       {"1", "a requested check failed (--check, --require)"},
       {"2", "the command line is wrong"},
       {"3", "an input is missing or wrong"},
-      {"4", "unsupported, not built in, or more than the memory holds"},
+      {"4", "unsupported, not built in, or not enough memory"},
       {"5", "an output cannot be written"},
-      {"6", "--max-error is not met everywhere, or nothing keeps to the --budget"},
+      {"6", "--max-error is not proven everywhere, or the --budget cannot be met"},
       {"7", "no sound surface was found; nothing was written"},
       {"70", "a defect of vmesh"},
       {"130", "interrupted; nothing was written"}};

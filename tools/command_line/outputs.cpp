@@ -44,7 +44,7 @@ bool needs_no_check(const PlannedOutput& output) {
   return output.path.empty() || (output.kind == Kind::summary && output.path == "-");
 }
 
-/// Whether both names lead to one file, through links and detours; also when it does not exist yet.
+/// Whether both names lead to the same file, through links and relative paths; even if it does not exist yet.
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
@@ -92,7 +92,8 @@ void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<
         throw UsageError(name + ": is an input; choose another name for the " + name_of(output->kind));
     for (auto other = outputs.begin(); other != output; ++other)
       if (!needs_no_check(*other) && same_file(output->path, other->path))
-        throw UsageError(name + ": named for the " + name_of(other->kind) + " and for the " + name_of(output->kind));
+        throw UsageError(name + ": given both for the " + name_of(other->kind) + " and for the " +
+                         name_of(output->kind));
     check_can_be_written(output->path);
   }
 }

@@ -20,20 +20,20 @@ struct PlannedOutput {
   Kind kind;
 };
 
-/// Refuses what could not be written later: throws Unsupported for an extension this build cannot write, WriteError for
-/// a folder that does not exist or cannot be written, UsageError for a file that is an input or another output, under
-/// whatever name. An empty path, and "-" (stdout) for a summary, are always fine.
+/// Refuses what could not be written later. Throws Unsupported for an extension this build cannot write, WriteError for
+/// a folder that does not exist or cannot be written, UsageError for a file that is also an input or another output,
+/// under whatever name. An empty path, and "-" (stdout) for a summary, are always fine.
 void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<std::filesystem::path>& inputs);
 
 /// Writes `text` to stdout when `path` is "-", else to the file: complete or not at all. Throws WriteError.
 void write_text(const std::filesystem::path& path, const std::string& text);
 
-/// write_surface() as the command line asks for it. In PLY and GLB, vertices with a `branch` get a colour for each; in
-/// PLY, what MeshLab shows by itself, `quality`: the distance or displacement, else the radius.
+/// write_surface() as requested on the command line. In PLY and GLB, vertices with a `branch` are coloured by it; PLY
+/// also gets `quality`, which MeshLab shows by default: the distance or displacement, else the radius.
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, MeshAttributes attributes,
                    SurfaceMetadata metadata, const WritingArguments& writing, const SurfaceSkin* skin = nullptr);
 
-/// What write_surface() adds to the attributes of vertices for this extension: colours, and in PLY the quality.
+/// Adds what write_surface() adds to the attributes of vertices for this extension: colours, and in PLY the quality.
 void add_for_viewers(const std::string& extension, std::vector<MeshAttribute>& attributes);
 
 /// Throws UsageError for a unit or frame that the format does not have.

@@ -1,4 +1,4 @@
-// Directions of the patient (LPS: x to the left, y to the back, z up) and the little axes that show and choose them.
+// Directions of the patient (LPS: x to the left, y to the back, z up) and the small axes that show and select them.
 
 const DIRECTIONS = {
   A: { name: "anterior", at: [0, -1, 0] }, P: { name: "posterior", at: [0, 1, 0] },
@@ -7,7 +7,7 @@ const DIRECTIONS = {
 };
 const AXES = [["R", "L"], ["A", "P"], ["I", "S"]];
 
-/** Draws axes into `svg` whenever the scene is drawn; a click on a letter looks from there. */
+/** Draws axes into `svg` whenever the scene is drawn; a click on a letter moves the camera there. */
 function addAxes(svg, scene, look) {
   const reach = 27;
   const parts = AXES.map(([minus, plus]) => {

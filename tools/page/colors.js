@@ -1,5 +1,5 @@
-// Colour scales, computed in OKLab (Ottosson, 2020), whose L is how light a colour looks. Along a scale of values L
-// rises evenly, so that it reads the same without red or green.
+// Colour scales, computed in OKLab (Ottosson, 2020), whose L is perceived lightness. Along a scale of values L
+// rises evenly, so that it remains readable with colour blindness.
 
 function linearRgb(L, a, b) {
   const l = (L + 0.3963377774 * a + 0.2158037573 * b) ** 3;
@@ -17,7 +17,7 @@ function encoded(channel) {
   return Math.round(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055));
 }
 
-/** sRGB of a lightness, chroma and hue in degrees; with less chroma where a screen cannot show as much. */
+/** sRGB of a lightness, chroma and hue in degrees; with less chroma where sRGB cannot represent it. */
 function oklch(L, chroma, hue) {
   const angle = (hue * Math.PI) / 180;
   for (let share = 1; ; share -= 0.05) {
@@ -45,17 +45,17 @@ const DIVERGING = table((t) => {
   return oklch(0.94 - 0.46 * Math.abs(s), 0.15 * Math.abs(s), s < 0 ? 255 : 55);
 });
 
-/** A colour for a label: hues far apart, and three lightnesses, for eyes that see fewer hues. */
+/** A colour for a label: distinct hues, and three lightnesses for colour blindness. */
 function labelColor(label) {
   if (!(label >= 0)) return MISSING;
   return oklch([0.72, 0.55, 0.85][label % 3], 0.12, (25 + 137.508 * label) % 360);
 }
 
-/** Values from `low` to `high` to colours. Those on both sides of zero get the scale that is pale there. */
+/** Values from `low` to `high` to colours. Values on both sides of zero get the scale that is pale at zero. */
 function makeScale({ low, high, min = low, max = high, labels = false }) {
   if (labels) return { labels, low, high, color: labelColor };
   const reach = Math.max(-low, high);
-  const signed = Math.min(-low, high) > 0.2 * reach;  // with next to nothing on one side, the other gets all colours
+  const signed = Math.min(-low, high) > 0.2 * reach;  // if one side has hardly any values, the other gets all colours
   const from = signed ? -reach : low;
   const to = signed ? reach : high;
   const colors = signed ? DIVERGING : SEQUENTIAL;

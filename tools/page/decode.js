@@ -1,7 +1,7 @@
 "use strict";
-// Reads what packing.h wrote.
+// Decodes the numbers written by packing.h.
 
-/** `count` whole numbers of a packed text, as an Int32Array. */
+/** `count` integers of an encoded text, as an Int32Array. */
 function unpack(text, count, stride = 1) {
   const bytes = atob(text);
   const numbers = new Int32Array(count);
@@ -21,14 +21,14 @@ function unpack(text, count, stride = 1) {
   return numbers;
 }
 
-/** Positions in mm, less `origin`, three to a point. */
+/** Positions in mm relative to `origin`, three numbers per point. */
 function positionsOf(places, low, step, origin) {
   const positions = new Float32Array(places.length);
   for (let i = 0; i < places.length; ++i) positions[i] = places[i] * step + low[i % 3] - origin[i % 3];
   return positions;
 }
 
-/** Values are whole numbers of steps; -1 is none, but for labels. */
+/** Values are integers, in steps; -1 means none, except for labels. */
 function decodeAttribute(json, vertices, faces) {
   const steps = unpack(json.values, json.on === "vertex" ? vertices : faces);
   const none = json.labels ? NaN : -1;
@@ -39,7 +39,7 @@ function decodeAttribute(json, vertices, faces) {
   };
 }
 
-/** Areas of faces, and the third of those around every vertex. */
+/** Areas of faces, and a third of those around every vertex. */
 function areasOf({ positions, corners, vertices, faces }) {
   const ofFace = new Float32Array(faces);
   const ofVertex = new Float32Array(vertices);
@@ -129,7 +129,7 @@ function vertexNormals(positions, corners) {
   return normals;
 }
 
-/** A number with as many digits as it takes to tell it from others of its kind. */
+/** A number with enough digits to distinguish it from others of its kind. */
 function numberText(value, digits = 3) {
   if (!isFinite(value)) return "none";
   const text = value.toFixed(Math.min(digits, 6));

@@ -1,4 +1,4 @@
-// A motion: frames are moves of the vertices and nodes from the frame before.
+// A motion: frames are displacements of the vertices and nodes from the previous frame.
 
 class Player {
   constructor(json, view, centerline, origin, show) {
@@ -20,7 +20,7 @@ class Player {
     if (this.displacement) this.follow(this.displacement, surface.vertices);
   }
 
-  /** The attribute displacement then is that of the frame shown; its range that of all frames. */
+  /** The attribute displacement is that of the frame shown, with the range of all frames. */
   follow(attribute, vertices) {
     const at = (frame, v) => {
       const rest = this.positions[0];
@@ -61,7 +61,7 @@ class Player {
     const begin = performance.now() - 1000 * (this.frame + 1 < this.times.length ? this.times[this.frame] : 0);
     const tick = (now) => {
       if (!this.playing) return;
-      const time = Math.max(0, (now - begin) / 1000) % (last + 0.4);  // it stays at the end for a moment
+      const time = Math.max(0, (now - begin) / 1000) % (last + 0.4);  // pauses at the end
       let frame = this.times.length - 1;
       while (frame > 0 && this.times[frame] > time) --frame;
       if (frame !== this.frame) this.go(frame);

@@ -11,7 +11,7 @@ function niceTicks(low, high, count) {
   return ticks;
 }
 
-/** All with the digits that the finest of them needs. */
+/** All numbers with the digits that the finest of them needs. */
 function tickTexts(ticks) {
   const step = ticks.length > 1 ? ticks[1] - ticks[0] : Math.abs(ticks[0]) || 1;
   const digits = Math.max(0, Math.ceil(-Math.log10(step) - 1e-6));
@@ -38,7 +38,7 @@ function gradient(scale) {
   return `linear-gradient(to right, ${stops.join(",")})`;
 }
 
-/** Fills `box` with the scale of an attribute; it is pointed where values go on beyond it. */
+/** Fills `box` with the scale of an attribute; its end is pointed where values extend beyond it. */
 function drawLegend(box, attribute, scale) {
   box.replaceChildren(element("div", { class: "legend-title" }, withUnit(attribute.label, attribute.unit)));
   if (scale.labels) {

@@ -149,11 +149,11 @@ class Viewer {
     try {
       history.replaceState(null, "", place < 0 ? "#" : `#place=${place + 1}`);
     } catch (error) {
-      // Some browsers do not let a page from a file change its address; it then just does not say the place.
+      // Some browsers do not let a page from a file change its address; the place is then not in it.
     }
   }
 
-  /** Flies to a place of the list, to look at it from outside. */
+  /** Flies to a place in the list, looking at it from outside. */
   goTo(i, atOnce) {
     const place = this.page.places[(i + this.page.places.length) % this.page.places.length];
     if (!place) return;
@@ -173,7 +173,7 @@ class Viewer {
     this.scene.flyTo(target, direction, this.scene.distanceFor(this.sizeAt(target, vertex)), atOnce);
   }
 
-  /** How far around a place there should be in view: some triangles, and the surface if it is not there. */
+  /** How much around a place should be in view: some triangles, and the surface if the place is off it. */
   sizeAt(target, vertex) {
     if (vertex < 0) return 0.1 * this.scene.bounds.radius;
     const size = Math.max(7 * this.shown.edgeAt(vertex), 1.5 * target.distanceTo(this.shown.vertex(vertex)));
@@ -221,7 +221,7 @@ class Viewer {
     this.scene.draw();
   }
 
-  /** What links can say: #place=2&color=radius&edges=1&surface=low&view=L&frame=12. */
+  /** What links can contain: #place=2&color=radius&edges=1&surface=low&view=L&frame=12. */
   follow(fragment) {
     const wanted = new URLSearchParams(fragment.replace(/^#/, ""));
     if (wanted.has("surface")) this.showSurface(wanted.get("surface"));

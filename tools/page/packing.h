@@ -1,4 +1,4 @@
-// Numbers as the short text that a page carries them in; page/decode.js reads it.
+// Compact text encoding of the numbers in a page; page/decode.js reads it.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,12 @@ namespace vmesh::tool {
 /// RFC 4648, padded.
 std::string base64(std::span<const unsigned char> bytes);
 
-/// Every number less the one `stride` before it (the first ones as they are), the sign as the lowest bit, seven bits a
-/// byte, the lowest first, all but the last with the highest bit set; then base64().
+/// Differences from the number `stride` before (the first ones as they are), with the sign in the lowest bit, as
+/// variable-length integers (seven bits per byte, lowest first, the highest bit set in all but the last); then
+/// base64().
 std::string pack(std::span<const std::int64_t> numbers, std::size_t stride = 1);
 
-/// Points, or values, as whole numbers of steps.
+/// A grid that represents points as integers.
 struct PointGrid {
   Vec3 low = Vec3::Zero();
   double step = 1;
@@ -27,16 +28,16 @@ struct ValueGrid {
   double step = 1;
 };
 
-/// What stands for a value that is not finite.
+/// Represents a value that is not finite.
 inline constexpr std::int64_t kNoValue = -1;
 
-/// 65,535 steps along the longest side of the box around the points. What is not finite does not count.
+/// 65,535 steps along the longest side of the box around the points. Points that are not finite are ignored.
 PointGrid grid_over(std::span<const Vec3> points);
-/// Three numbers to a point: the nearest place of the grid. Points may lie outside of its box; what is not finite lies
-/// at its lowest place.
+/// Three numbers per point: the nearest grid point. Points may be outside the box; those that are not finite become its
+/// lowest corner.
 std::vector<std::int64_t> on_grid(std::span<const Vec3> points, const PointGrid& grid);
 
-/// 4,095 steps from the lowest to the highest value; steps of 1 from 0 for labels (whole numbers, -1 for none).
+/// 4,095 steps from the lowest to the highest value; steps of 1 from 0 for labels (integers, -1 for none).
 ValueGrid grid_over(std::span<const double> values, bool labels);
 std::vector<std::int64_t> on_grid(std::span<const double> values, const ValueGrid& grid);
 

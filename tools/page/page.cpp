@@ -12,7 +12,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// Text of a page's title.
+/// Text escaped for HTML.
 std::string escaped(std::string_view text) {
   std::string safe;
   for (const char c : text) {
@@ -29,7 +29,7 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
-/// JSON between <script> tags: nothing in it may look like the end of them.
+/// JSON for use between <script> tags: it must not contain anything like the end tag.
 std::string script_safe(const std::string& json) {
   std::string safe;
   safe.reserve(json.size());
@@ -43,7 +43,7 @@ std::string script_safe(const std::string& json) {
   return safe;
 }
 
-/// The template with every "@NAME@" in it replaced; what is put in is not looked at again.
+/// The template with every "@NAME@" replaced; replacements are not scanned again.
 std::string filled(std::string_view text, const std::vector<std::pair<std::string_view, std::string_view>>& parts) {
   std::string result;
   while (!text.empty()) {

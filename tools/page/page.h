@@ -1,4 +1,4 @@
-// A page that shows surfaces and what was found of them, in one HTML file that needs nothing else.
+// A page that shows surfaces and the findings about them, in one self-contained HTML file.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace vmesh::tool {
 
-/// A surface to look at, coloured by any of its attributes. One without any is a reference and no more.
+/// A surface to show, coloured by any of its attributes. One without attributes only serves as a reference.
 struct PageSurface {
   std::string name;
   TriMesh mesh;
@@ -23,12 +23,12 @@ struct PageSurface {
   bool reference = false;  ///< shown in transparency around the others
 };
 
-/// A place that a click leads to.
+/// A position that a click leads to.
 struct PagePlace {
   std::string label, value;
   Vec3 position = Vec3::Zero();
-  std::string attribute;  ///< to colour by, there; empty: as it is
-  std::string surface;    ///< to show, there; empty: as it is
+  std::string attribute;  ///< to colour by; empty: unchanged
+  std::string surface;    ///< to show; empty: unchanged
 };
 
 struct PageHistogram {
@@ -37,13 +37,13 @@ struct PageHistogram {
   Distribution distribution;
 };
 
-/// A motion of the first surface and of the centerline. Positions are packed as they come.
+/// A motion of the first surface and of the centerline. Positions are encoded as they arrive.
 class PageFrames {
  public:
-  /// Takes every frame of `count`, or every second, third ... and the last, so that they stay within about 16 MB.
+  /// Keeps all of `count` frames, or every second, third ... and the last, to stay within about 16 MB.
   PageFrames(const TriMesh& mesh, const Centerline& centerline, std::size_t count);
 
-  /// Frames come in the order of their time; the first one is at rest.
+  /// Frames are added in order of time; the first one is at rest.
   void add(double time_s, const std::vector<Vec3>& vertices, const std::vector<Vec3>& nodes);
 
   std::size_t every() const { return every_; }
@@ -63,7 +63,7 @@ struct Page {
   std::string title;  ///< of the file it is about
   std::string verb;
   std::string command_line;
-  std::string options;                                     ///< that stand behind the surface, where it has some
+  std::string options;                                     ///< with which the surface was made, if known
   std::vector<std::pair<std::string, std::string>> facts;  ///< name and value, the most important first
   std::vector<std::string> warnings;
   std::vector<PageSurface> surfaces;
@@ -75,13 +75,13 @@ struct Page {
   std::optional<PageFrames> frames;
 };
 
-/// Throws Unsupported when this build cannot make pages.
+/// Throws Unsupported if this build cannot make pages.
 void check_can_make_pages();
 
 /// The whole page, UTF-8. Deterministic. Throws Unsupported likewise.
 std::string to_html(const Page& page);
 
-/// Throws WriteError; complete or not at all. Says where it is and how large.
+/// Writes the page, completely or not at all, and reports its name and size. Throws WriteError.
 void write_page(const std::filesystem::path& path, const Page& page, Console& console);
 
 }  // namespace vmesh::tool

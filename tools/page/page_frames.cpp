@@ -4,7 +4,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// A vertex takes about three bytes a frame, four as base64.
+/// A vertex takes about three bytes per frame, four in base64.
 constexpr double kBytesOfVertex = 4, kMostBytes = 16e6;
 
 std::vector<Vec3> joined(const std::vector<Vec3>& vertices, const std::vector<Vec3>& nodes) {

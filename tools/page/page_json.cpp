@@ -8,7 +8,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// How attributes are called on a page. Others keep their names.
+/// Names of attributes on a page. Others keep theirs.
 struct Naming {
   const char *name, *label, *unit;
 };
@@ -25,7 +25,7 @@ constexpr Naming kNamings[] = {{"EquiangleSkewness", "Skewness", ""},
                                {"opening", "Opening", ""},
                                {"ModelFaceID", "Face of the model", ""},
                                {"CapID", "Cap", ""}};
-/// Colours that a file has are made of what is an attribute anyway.
+/// Colours in a file are derived from other attributes.
 constexpr const char* kHidden[] = {"red", "green", "blue", "alpha", "quality", "nx", "ny", "nz"};
 
 std::vector<std::int64_t> corners(const TriMesh& mesh) {
@@ -35,7 +35,7 @@ std::vector<std::int64_t> corners(const TriMesh& mesh) {
   return all;
 }
 
-/// Written so that the numbers of a face are near each other and near those of the face before.
+/// Ordered so that the numbers of a face are close to each other and to those of the previous face.
 std::string pack_corners(const TriMesh& mesh) {
   std::vector<std::int64_t> numbers = corners(mesh);
   for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
@@ -66,8 +66,8 @@ bool is_hidden(const MeshAttribute& attribute) {
   return std::find(std::begin(kHidden), std::end(kHidden), attribute.name) != std::end(kHidden);
 }
 
-/// One list; what vertices have comes before the same of faces, which is then left out, but for labels, whose borders
-/// run along faces.
+/// All attributes in one list. An attribute of vertices replaces the same one of faces, except for labels, whose
+/// borders follow faces.
 Json attributes_json(const MeshAttributes& attributes) {
   Json list = Json::array();
   for (const MeshAttribute& a : attributes.vertex) {
@@ -167,7 +167,7 @@ Json pictures_json(const std::vector<std::pair<std::string, std::string>>& pictu
   return json;
 }
 
-/// UTF-8, whatever it was.
+/// `text` as valid UTF-8.
 std::string repaired(const std::string& text) {
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }

@@ -5,7 +5,7 @@
 
 namespace vmesh::tool {
 
-/// What the script of a page reads. Schema "vmesh.page/1".
+/// The data read by the script of a page. Schema "vmesh.page/1".
 Json to_json(const Page& page);
 
 }  // namespace vmesh::tool

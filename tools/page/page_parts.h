@@ -4,7 +4,7 @@
 
 namespace vmesh::tool {
 
-/// What pages are made of; the build puts it into the command (see embed.cmake).
+/// The parts of pages; the build embeds them in the command (see embed.cmake).
 struct PageParts {
   std::string_view page, style, script;
   std::string_view three, controls;  ///< three.js and its OrbitControls; empty: not built in

@@ -1,11 +1,11 @@
-// What stands beside the picture.
+// The panel beside the picture.
 
 const byId = (id) => document.getElementById(id);
 
-/** Cells that are numbers are set to the right. */
+/** Cells with numbers are right-aligned. */
 const isNumber = (text) => /^[-+]?[\d.,]+(e[-+]?\d+)?$/i.test(text);
 
-/** Rows of a name and a value, as most reports have, need no heads. */
+/** Tables of names and values, as in most reports, need no column headings. */
 function propertyTable(rows) {
   return element("table", { class: "properties" }, element("tbody", {}, ...rows.map(([name, value]) =>
     element("tr", {}, element("th", {}, name), element("td", {}, value)))));
@@ -22,7 +22,7 @@ function tableElement({ columns, rows }) {
     element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
 }
 
-/** Opens under its heading; `open`: at once. */
+/** A section that opens under its heading; `open`: initially open. */
 function fold(title, open, ...content) {
   return element("details", { open }, element("summary", {}, title), ...content);
 }
@@ -37,7 +37,7 @@ function fillHeader(page) {
   byId("warnings").hidden = page.warnings.length === 0;
 }
 
-/** `go(i)` is called for the place chosen. Returns what marks it in the list. */
+/** `go(i)` is called for the place chosen. Returns a function that marks a place in the list. */
 function fillPlaces(page, go) {
   const list = byId("places");
   page.places.forEach((place, i) => {
@@ -81,7 +81,7 @@ function fillSelect(select, options) {
   select.replaceChildren(...options.map(([value, text]) => element("option", { value }, text)));
 }
 
-/** Tells of a vertex, and of the face it was picked on. */
+/** Shows the values of a vertex, and of the face on which it was picked. */
 function showPicked(surface, vertex, face, origin) {
   const rows = [];
   const where = [0, 1, 2].map((axis) => numberText(surface.positions[3 * vertex + axis] + origin[axis], 2));

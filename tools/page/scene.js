@@ -11,7 +11,7 @@ class Scene {
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.canvas = this.renderer.domElement;
     this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", "The surface in 3D. Drag to turn, wheel to zoom, click to ask a vertex.");
+    this.canvas.setAttribute("aria-label", "The surface in 3D. Drag to rotate, wheel to zoom, click for the values at a vertex.");
     box.prepend(this.canvas);
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
     this.controls.enableKeys = false;
@@ -66,7 +66,7 @@ class Scene {
     return { x: ((p.x + 1) / 2) * this.box.clientWidth, y: ((1 - p.y) / 2) * this.box.clientHeight };
   }
 
-  /** The face of a mesh under a place of the window; null: none. */
+  /** The face of a mesh at a position in the window; null: none. */
   pick(mesh, clientX, clientY) {
     const box = this.canvas.getBoundingClientRect();
     const at = new THREE.Vector2(((clientX - box.left) / box.width) * 2 - 1, 1 - ((clientY - box.top) / box.height) * 2);
@@ -81,13 +81,13 @@ class Scene {
     return { high, wide: high * this.camera.aspect };
   }
 
-  /** How far away a sphere fills the picture. */
+  /** The distance at which a sphere fills the picture. */
   distanceFor(radius) {
     const { high, wide } = this.spread();
     return (1.08 * radius) / Math.sin(Math.atan(Math.min(high, wide)));
   }
 
-  /** How far away everything fills it, seen from `direction`. */
+  /** The distance at which everything fills it, seen from `direction`. */
   distanceForAll(direction) {
     const { high, wide } = this.spread();
     const back = direction.clone().normalize();
@@ -148,7 +148,7 @@ class Scene {
     this.flyTo(this.bounds.center, direction, this.distanceForAll(direction), atOnce);
   }
 
-  /** Turns by angles in radians about the target, or comes nearer. */
+  /** Rotates by angles in radians about the target, or moves closer. */
   turn(across, along) {
     const offset = this.camera.position.clone().sub(this.controls.target);
     const spherical = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
@@ -167,7 +167,7 @@ class Scene {
   }
 }
 
-/** The middle of the box around points, three numbers each, and the radius of a sphere that holds them. */
+/** The centre of the box around points (three numbers each), and the radius of a sphere that contains them. */
 function boundsOf(lists) {
   const box = new THREE.Box3();
   const point = new THREE.Vector3();

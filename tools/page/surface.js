@@ -1,4 +1,4 @@
-// Surfaces as three.js draws them: every face has corners of its own, so that faces can have colours.
+// Surfaces for three.js: every face has its own corners, so that faces can be coloured.
 
 function spread(perVertex, corners, target) {
   for (let i = 0; i < corners.length; ++i) {
@@ -53,7 +53,7 @@ class SurfaceView {
       depthWrite: false, shininess: 4, specular: 0x111111 });
   }
 
-  /** After the positions of vertices have changed. */
+  /** To be called after the positions of vertices have changed. */
   update() {
     const { positions, corners } = this.surface;
     this.normals = vertexNormals(positions, corners);

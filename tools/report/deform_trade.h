@@ -1,4 +1,4 @@
-// What the deformer's time buys in accuracy.
+// Accuracy of the deformer against time.
 #pragma once
 
 #include <limits>
@@ -15,7 +15,7 @@ namespace vmesh::tool {
 Centerline tree_of(std::size_t segments);
 
 /// A tree in motion. The widest end's node is held, the last node is dragged around a circle of 10 mm, everything hangs
-/// in the earth's gravity: nothing is ever at rest.
+/// in the Earth's gravity: nothing is ever at rest.
 class Swing {
  public:
   Swing(const Centerline& centerline, SimulationOptions options);
@@ -31,7 +31,7 @@ class Swing {
   Vec3 from_;
 };
 
-/// One way to integrate, and what it costs.
+/// An integrator setting and its cost.
 struct DeformTrade {
   static constexpr double kNoDistance = std::numeric_limits<double>::quiet_NaN();
 
@@ -39,8 +39,8 @@ struct DeformTrade {
   double step_ms = 0;
   int iterations = 0;       ///< Gauss-Newton iterations, or substeps, of a step
   double frame_cpu_ms = 0;  ///< per frame of 20 ms
-  /// Distances of nodes, at the frames of 1 s: from many iterations of the same step, where there are such, and from
-  /// the motion that shorter and shorter steps lead to.
+  /// Distances of nodes at the frames of 1 s: from many iterations of the same step, if it iterates, and from
+  /// the limit of ever shorter steps.
   double unconverged_mean_mm = kNoDistance, unconverged_max_mm = kNoDistance;
   double off_mean_mm = 0, off_max_mm = 0;
 };
@@ -52,7 +52,7 @@ Json to_json(const DeformTrade& trade);
 std::string plot_deform_trades(const std::vector<DeformTrade>& trades);
 
 double median(std::vector<double> values);
-/// With as many digits as a table has room for.
+/// `value` with a suitable number of digits for a table.
 std::string fixed(double value);
 
 }  // namespace vmesh::tool

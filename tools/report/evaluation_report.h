@@ -12,7 +12,7 @@
 
 namespace vmesh::tool {
 
-/// A surface against another one.
+/// A surface compared with another one.
 struct ReferenceComparison {
   std::string file;
   std::size_t faces = 0;
@@ -21,13 +21,13 @@ struct ReferenceComparison {
   SampledDistance forward, backward;
 };
 
-/// A surface against the round cones of a centerline.
+/// A surface compared with the round cones of a centerline.
 struct VolumeComparison {
   std::string file;
   VesselDistance distance;
 };
 
-/// A demand of the caller and what was found.
+/// A requirement of the caller and what was found.
 struct CheckedRequirement {
   std::string text;
   std::string found;

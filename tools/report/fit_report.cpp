@@ -59,7 +59,7 @@ void name_parts(const std::vector<UnmatchedPart>& parts, const std::string& what
   };
   for (std::size_t i = 0; i < std::min(parts.size(), kNamed); ++i) tell(what + ": " + text_of(parts[i]));
   if (parts.size() > kNamed)
-    tell(what + ", " + std::to_string(parts.size() - kNamed) + " parts more: the summary lists them");
+    tell(what + ", " + std::to_string(parts.size() - kNamed) + " more: the summary lists them");
 }
 
 }  // namespace
@@ -78,30 +78,30 @@ Json to_json(const FitReport& report) {
 
 void log_fit(const FitReport& report, std::vector<std::string>& warnings, Console& console) {
   const FitDistance &a = report.before, &b = report.after;
-  if (report.turned) console.log("the reference faced inwards and was turned");
+  if (report.turned) console.log("the reference faced inwards and was turned over");
   console.log(
-      line("distance to the reference, the larger way, mm: mean %.3f, was %.3f; 95 %% %.3f, was %.3f; Hausdorff "
+      line("distance to the reference, larger direction, mm: mean %.3f, was %.3f; 95 %% %.3f, was %.3f; Hausdorff "
            "%.3f, was %.3f",
            b.mean(), a.mean(), b.p95(), a.p95(), b.hausdorff.upper(), a.hausdorff.upper()));
   if (report.parts_apart > 0)
-    console.log(line("%zu parts of the reference, %.1f mm^2, belong to no vessel and were left out of that",
+    console.log(line("%zu components of the reference, %.1f mm^2, belong to no vessel and were left out",
                      report.parts_apart, report.area_apart));
   for (const Defect& defect : report.nodes_outside) {
     console.warn(defect.message);
     warnings.push_back(defect.message);
   }
-  name_parts(report.uncovered, "the reference has what no vessel covers", warnings, console);
+  name_parts(report.uncovered, "region of the reference that no vessel covers", warnings, console);
   std::vector<UnmatchedPart> inside, outside;
   for (const UnmatchedPart& part : report.unsupported) (part.inside ? inside : outside).push_back(part);
-  name_parts(inside, "walls within the reference, as of a hairpin in a wide vessel", warnings, console);
-  name_parts(outside, "the surface has what the reference does not", warnings, console);
+  name_parts(inside, "wall within the reference, as of a hairpin in a wide vessel", warnings, console);
+  name_parts(outside, "region of the surface that the reference lacks", warnings, console);
 }
 
 bool keeps_error(const FitReport& report, double error, std::vector<std::string>& warnings, Console& console) {
   if (error == 0 || report.after.p95() <= error) return true;
   warnings.push_back(
-      line("95 %% of the surfaces are nearer than %.3f mm to each other, not %.3f: parts that the other "
-           "surface does not have count as well",
+      line("95 %% of the surfaces are within %.3f mm of each other, not %.3f: regions that the other "
+           "surface lacks count as well",
            report.after.p95(), error));
   console.warn(warnings.back());
   return false;

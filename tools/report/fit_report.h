@@ -5,13 +5,13 @@
 
 namespace vmesh::tool {
 
-/// What a fit did, for a summary.
+/// The results of a fit, for a summary.
 Json to_json(const FitReport& report);
 
-/// The same in a few lines; what is not matched is a warning each.
+/// The same in a few lines, with a warning for every unmatched region.
 void log_fit(const FitReport& report, std::vector<std::string>& warnings, Console& console);
 
-/// Whether 95 % keep to the error that was asked for; says so when they do not.
+/// Whether 95 % keep to the requested error; warns if not.
 bool keeps_error(const FitReport& report, double error, std::vector<std::string>& warnings, Console& console);
 
 /// "--fit-error 0.3mm ...": how a surface was fitted.

@@ -22,15 +22,15 @@ void tell_of_notches(const ErrorSummary& error, Console& console) {
   const ClosedNotch& deepest = error.closed_notches.front();
   const std::size_t count = error.closed_notches.size();
   console.log(std::to_string(count) + (count == 1 ? " notch" : " notches") +
-              " closed, too narrow for triangles across; the limit counts that: the deepest by " +
+              " too narrow for triangles closed, which the limit accounts for: the deepest by " +
               number(deepest.depth) + " mm at " + text_of(deepest.position));
 }
 
 }  // namespace
 
 void log_simplification(const SimplifiedCenterline& simplified, Console& console) {
-  console.log(std::to_string(simplified.node.size()) + " of the nodes steer the surface; without the others the " +
-              "vessels are the same up to " + number(100 * simplified.max_deviation_relative, 1) +
+  console.log(std::to_string(simplified.node.size()) + " of the nodes steer the surface; leaving out the others " +
+              "changes the vessels by at most " + number(100 * simplified.max_deviation_relative, 1) +
               " % of their radius");
 }
 
@@ -38,7 +38,7 @@ void log_separation(const SeparationReport& separation, Console& console) {
   if (separation.nodes_narrowed > 0) {
     console.log("vessels that are not neighbours touched in " + places(separation.before) + "; " +
                 std::to_string(separation.nodes_narrowed) + " nodes were narrowed, by " +
-                percent(separation.mean_taken_relative) + " of the radius in the mean, " +
+                percent(separation.mean_taken_relative) + " of the radius on average, " +
                 percent(separation.max_taken_relative) + " (" + number(separation.max_taken) + " mm) at most");
   }
   if (separation.nodes_moved > 0) {
@@ -51,7 +51,7 @@ void log_separation(const SeparationReport& separation, Console& console) {
 }
 
 void log_choice(const BudgetedSurface& surface, const GenerateArguments& arguments, Console& console) {
-  console.log("for " + to_string(*arguments.budget) + " there were:");
+  console.log("for " + to_string(*arguments.budget) + " these were tried:");
   for (const OperatingPoint& point : surface.tried) {
     console.log(std::string(&point == &surface.choice() ? "* " : "  ") + std::to_string(point.options.around) +
                 " around: " + std::to_string(point.vertices) + " vertices, " + number(point.seconds) + " s, distance " +
@@ -106,7 +106,7 @@ void warn_of_contacts_left(GenerateReport& report, const std::vector<Contact>& l
   for (std::size_t c = 0; c < std::min(kNamed, left.size()); ++c) {
     warn(report,
          "vessels still touch " + describe(left[c]) +
-             "; neither narrowing nor a small move can part them: move the nodes of one, or join them if they are one "
+             "; neither narrowing nor a small move can part them: move nodes of one, or join them if they are one "
              "vessel",
          console);
   }
@@ -123,7 +123,7 @@ void warn_of_error(GenerateReport& report, Console& console) {
                      " faces in " + std::to_string(error.unproven_places.size()) + " places, the largest at ";
   for (std::size_t i = 0; i < std::min(kNamed, error.unproven_places.size()); ++i)
     text += (i > 0 ? ", " : "") + text_of(error.unproven_places[i].position);
-  text += ": triangles became as small as they may; allow more there, or look at the radii";
+  text += ": triangles are already as small as allowed; allow a larger error there, or check the radii";
   warn(report, text, console);
 }
 
@@ -133,15 +133,15 @@ void log_refusal(const GenerateReport& report, Console& console) {
     lines.push_back(std::string(to_string(defect.kind)) + ": " + defect.message);
   log_refusal(lines,
               report.arguments->input.path.string() +
-                  ": no sound surface was found, nothing is written: look at the radii and nodes there, try another "
-                  "--around or --blend, or take the surface as it is with --allow-defects",
+                  ": no sound surface was found, nothing is written: check the radii and nodes there, try another "
+                  "--around or --blend, or write the surface as it is with --allow-defects",
               console);
 }
 
 void log_refusal(const std::vector<std::string>& defects, const std::string& what_to_do, Console& console) {
   constexpr std::size_t kNamed = 8;
   for (std::size_t i = 0; i < std::min(kNamed, defects.size()); ++i) console.error(defects[i]);
-  if (defects.size() > kNamed) console.error("and " + std::to_string(defects.size() - kNamed) + " defects more");
+  if (defects.size() > kNamed) console.error("and " + std::to_string(defects.size() - kNamed) + " more defects");
   console.error(what_to_do);
 }
 

@@ -5,7 +5,7 @@
 
 namespace vmesh::tool {
 
-/// What `vmesh generate` tells while it works; the summary has all of it.
+/// Messages of `vmesh generate` while it works; the summary contains all of it.
 void log_simplification(const SimplifiedCenterline& simplified, Console& console);
 void log_separation(const SeparationReport& separation, Console& console);
 /// The operating points tried for a budget, and the command that makes the one chosen.
@@ -15,14 +15,14 @@ void log_result(const GenerateReport& report, Console& console);
 /// Warns, and keeps the warning for the summary.
 void warn(GenerateReport& report, const std::string& text, Console& console);
 void warn_of_contacts(GenerateReport& report, Console& console);
-/// Of vessels that could not be parted.
+/// Warns of vessels that could not be separated.
 void warn_of_contacts_left(GenerateReport& report, const std::vector<Contact>& left, Console& console);
-/// Of faces whose distance is not proven to keep to the limit.
+/// Warns of faces that are not proven to keep to the limit.
 void warn_of_error(GenerateReport& report, Console& console);
 
 /// Says why nothing is written.
 void log_refusal(const GenerateReport& report, Console& console);
-/// The same for whatever is wrong, one line each, of which the first are told, and what to do.
+/// The same for any defects, one line each, of which the first are shown, and what to do.
 void log_refusal(const std::vector<std::string>& defects, const std::string& what_to_do, Console& console);
 
 }  // namespace vmesh::tool

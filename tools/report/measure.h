@@ -13,7 +13,7 @@
 
 namespace vmesh::tool {
 
-/// What can be told of a surface alone.
+/// Measurements of a surface alone.
 struct SurfaceMeasurement {
   Topology topology;
   SkewnessSummary skewness;
@@ -25,12 +25,12 @@ struct SurfaceMeasurement {
 
 SurfaceMeasurement measure_surface(const TriMesh& mesh);
 
-/// The same for a surface that was generated, as it was measured then. It may be open at ends of the vessel: topology
+/// The same for a generated surface, from its checks. It may be open at ends of vessels: topology
 /// is with these closed, `open_elsewhere` are the boundary edges that do not belong to an opening.
 SurfaceMeasurement measurement_of(const GenerateResult& result);
 
 /// What a surface should be, given its centerline and, if that steered growth, the skeleton: loops too short to have a
-/// hole are left out there, and said to be.
+/// hole are left out there, with a note.
 struct SurfaceExpectation {
   std::size_t components = 0;
   std::size_t genus = 0;
@@ -38,10 +38,10 @@ struct SurfaceExpectation {
 
 SurfaceExpectation expected_surface(const Centerline& centerline, const GenerateResult& result);
 
-/// What keeps a surface from being flawless, one line each.
+/// The problems of a surface, one line each.
 std::vector<std::string> problems_of(const SurfaceMeasurement& measurement);
 
-/// The same for a surface of which more is expected.
+/// The same for a surface with further expectations.
 std::vector<std::string> problems_of(const SurfaceMeasurement& measurement, const SurfaceExpectation& expected,
                                      std::optional<std::size_t> nodes_inside, std::size_t nodes);
 

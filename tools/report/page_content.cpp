@@ -12,7 +12,7 @@ namespace vmesh::tool {
 namespace {
 
 constexpr std::size_t kBins = 40;
-/// Places closer to each other than this share of the diagonal of the surface's box are one.
+/// Places closer to each other than this share of the diagonal of the surface's box are shown as one.
 constexpr double kApart = 0.03;
 constexpr const char* kSkewness = "EquiangleSkewness";
 
@@ -155,8 +155,8 @@ void add_unmatched(Page& page, const FitReport& fit, std::size_t count) {
     for (const UnmatchedPart& part : std::span(parts).first(std::min(count, parts.size())))
       page.places.push_back({label, short_number(part.distance) + " mm", part.position, "distance", ""});
   };
-  add(fit.uncovered, "The reference has what no vessel covers");
-  add(fit.unsupported, "The surface has what the reference does not");
+  add(fit.uncovered, "Region of the reference that no vessel covers");
+  add(fit.unsupported, "Region of the surface that the reference lacks");
 }
 
 }  // namespace vmesh::tool

@@ -13,17 +13,17 @@ namespace vmesh::tool {
 /// A page about `title` with the command line that made it.
 Page make_page(const char* verb, const std::filesystem::path& title, const CommonArguments& common);
 
-/// With three digits after the point.
+/// `value` with three decimals.
 std::string short_number(double value);
 /// "0.072 / 0.256"
 std::string mean_and_max(double mean, double max);
 std::string point_text(const Vec3& p);
 
-/// Tells places of a surface apart.
+/// Selects places of a surface that are apart from each other.
 class PlacesApart {
  public:
   explicit PlacesApart(const TriMesh& mesh);
-  /// Whether `place` is apart from all that were taken; then it is taken too.
+  /// Takes `place` if it is apart from all taken before; returns whether it was taken.
   bool take(const Vec3& place);
 
  private:
@@ -31,19 +31,19 @@ class PlacesApart {
   std::vector<Vec3> taken_;
 };
 
-/// Skewness of faces, angles, and what attributes of vertices are distances.
+/// Adds histograms of skewness, angles, and the vertex attributes that are distances.
 void add_histograms(Page& page, const PageSurface& surface);
 
-/// Where an attribute of the surface is largest, signs aside, at most `count` places apart from each other, as
-/// "LABEL" with the value and `unit`.
+/// Adds at most `count` separate places where an attribute's absolute value is largest, as "LABEL" with the value and
+/// `unit`.
 void add_largest(Page& page, const PageSurface& surface, std::string_view attribute, const std::string& label,
                  const std::string& unit, std::size_t count);
 
-/// What a fit left unmatched, the largest parts.
+/// Adds the largest regions that a fit left unmatched.
 void add_unmatched(Page& page, const FitReport& fit, std::size_t count);
 
-/// A summary as tables: one of its numbers and words, one per object in it. What it lists is counted; what differs from
-/// run to run (seconds) is left out.
+/// A summary as tables: one for its numbers and texts, one per nested object. Lists are counted; what differs between
+/// runs (seconds) is left out.
 std::vector<ReportTable> tables_of(const Json& summary);
 
 }  // namespace vmesh::tool

@@ -5,7 +5,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// What a page says elsewhere, or what says nothing on it.
+/// What a page shows elsewhere, or what is irrelevant on it.
 constexpr const char* kLeftOut[] = {"schema", "generator", "seconds", "warnings", "problems", "options"};
 
 bool is_left_out(const std::string& key) {

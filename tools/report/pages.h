@@ -1,4 +1,4 @@
-// What pages of the verbs show.
+// The pages of the verbs.
 #pragma once
 
 #include <optional>
@@ -12,16 +12,15 @@
 
 namespace vmesh::tool {
 
-/// Of a surface that was grown around `grown` with `attributes` as they are written; `reference`: what it was fitted
-/// to, or none.
+/// Page of a surface grown around `grown`, with `attributes` as written; `reference`: what it was fitted to, or null.
 Page page_of(const GenerateReport& report, const Centerline& grown, MeshAttributes attributes,
              const TriMesh* reference);
 
-/// Of a surface that was measured. `attributes` with distances.
+/// Page of a measured surface. `attributes` include distances.
 Page page_of(const EvaluateArguments& arguments, const EvaluationReport& report, const TriMesh& mesh,
              MeshAttributes attributes, const TriMesh* reference, const Centerline* centerline);
 
-/// Of a surface that was fitted; `summary` is what --json writes.
+/// Page of a fitted surface; `summary` is what --json writes.
 Page page_of(const FitArguments& arguments, const FitReport& report, const Json& summary, const TriMesh& mesh,
              MeshAttributes attributes, const TriMesh& reference, const Centerline& centerline);
 
@@ -30,7 +29,7 @@ Page page_of(const Table2Arguments& arguments, const Table2Report& report);
 Page page_of(const TradeoffArguments& arguments, const Centerline& centerline, const std::vector<TradeoffPoint>& points,
              std::vector<ReportTable> tables);
 
-/// Of a motion from `rest` to `moved`, whose `attributes` it has; `summary` is what --json writes.
+/// Page of a motion from `rest` to `moved`, which has the `attributes`; `summary` is what --json writes.
 Page page_of(const DeformArguments& arguments, const Json& summary, const TriMesh& rest, const TriMesh& moved,
              MeshAttributes attributes, const Centerline& centerline, PageFrames frames);
 

@@ -9,7 +9,7 @@
 
 namespace vmesh::tool {
 
-/// Where a report goes.
+/// The outputs of a report.
 struct ReportOutputs {
   std::string format;          ///< of stdout: text, markdown or csv
   std::filesystem::path json;  ///< "-": stdout gets JSON instead; empty: none

@@ -19,14 +19,14 @@ enum class ReportFormat { text, markdown, csv };
 /// "text", "markdown" or "csv".
 ReportFormat parse_report_format(std::string_view name);
 
-/// Text and Markdown: one table after the other, columns aligned. CSV: one line `table,row,column,value` per cell, so
-/// that every number has its name beside it.
+/// Text and Markdown: tables with aligned columns. CSV: one line `table,row,column,value` per cell, so that every
+/// number has its name beside it.
 std::string format_report(const std::vector<ReportTable>& tables, ReportFormat format);
 
 /// A number with six significant digits.
 std::string format_number(double value);
 
-/// The same for a bound: rounded so that it still is one.
+/// The same for a bound, rounded so that it remains one.
 std::string format_lower_bound(double value);
 std::string format_upper_bound(double value);
 

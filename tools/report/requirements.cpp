@@ -81,7 +81,7 @@ double parse_limit(const std::string& item, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw UsageError("--require: \"" + item + "\": \"" + text + "\" is no number");
+    throw UsageError("--require: \"" + item + "\": \"" + text + "\" is not a number");
   return value;
 }
 
@@ -125,9 +125,9 @@ void check_requirements_can_be_checked(const std::vector<Requirement>& requireme
   for (const Requirement& requirement : requirements) {
     const Needs needs = rule_of(requirement.name).needs;
     if (needs == Needs::reference && !with_reference)
-      throw UsageError("--require " + requirement.name + " is about a reference surface; name it with --reference");
+      throw UsageError("--require " + requirement.name + " needs a reference surface; give it with --reference");
     if (needs == Needs::centerline && !with_centerline)
-      throw UsageError("--require " + requirement.name + " is about a vessel volume; name its --centerline");
+      throw UsageError("--require " + requirement.name + " needs a vessel volume; give its --centerline");
   }
 }
 

@@ -8,24 +8,24 @@
 
 namespace vmesh::tool {
 
-/// One demand on a surface: "closed", "max-skewness=0.9".
+/// One requirement on a surface: "closed", "max-skewness=0.9".
 struct Requirement {
   std::string name;
   std::optional<double> value;
 };
 
-/// Parses "closed,max-skewness=0.9". Throws UsageError for an unknown name (and lists those that are), a number that is
-/// missing, superfluous or none.
+/// Parses "closed,max-skewness=0.9". Throws UsageError for an unknown name (listing the known ones), and for a missing,
+/// superfluous or invalid number.
 std::vector<Requirement> parse_requirements(const std::string& list);
 
-/// Throws UsageError when a requirement needs a comparison that was not asked for.
+/// Throws UsageError if a requirement needs a comparison that was not requested.
 void check_requirements_can_be_checked(const std::vector<Requirement>& requirements, bool with_reference,
                                        bool with_centerline);
 
 /// A guaranteed distance meets a requirement when its upper bound does.
 CheckedRequirement check_requirement(const Requirement& requirement, const EvaluationReport& report);
 
-/// Names and what they ask for, for help.
+/// Names and meanings, for help.
 std::string describe_requirements();
 
 }  // namespace vmesh::tool

@@ -25,7 +25,7 @@ std::string key_of(const char* flag) {
   return key;
 }
 
-/// The shortest text that reads as the same number.
+/// The shortest text that reads back as the same number.
 template <class Number>
 std::string exact_text(Number value) {
   char text[32];
@@ -129,7 +129,7 @@ Json to_json(const SeparationReport& separation) {
           {"contacts_left", to_json(separation.left)}};
 }
 
-/// What the surface was grown around and is compared with.
+/// The centerline around which the surface was grown and with which it is compared.
 std::string measured_centerline(const GenerateReport& report) {
   if (!report.separation || report.separation->nodes_narrowed + report.separation->nodes_moved == 0)
     return report.result->simplification.nodes_left_out > 0 ? "the simplified vessels" : "the vessels";
@@ -223,8 +223,7 @@ Json to_json(const SurfaceMeasurement& measurement) {
             {"boundary_edges", topology.boundary_edges},
             {"euler_characteristic", topology.euler_characteristic}}},
           {"skewness", {{"mean", measurement.skewness.mean}, {"max", measurement.skewness.max}}},
-          {"metric_skewness",
-           {{"mean", measurement.metric_skewness.mean}, {"max", measurement.metric_skewness.max}}},
+          {"metric_skewness", {{"mean", measurement.metric_skewness.mean}, {"max", measurement.metric_skewness.max}}},
           {"self_intersections", measurement.self_intersections}};
 }
 

@@ -26,13 +26,13 @@ struct GenerateReport {
   std::vector<Contact> contacts;               ///< of the cleaned centerline
   std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed or moved
   const GenerateResult* result = nullptr;
-  FlatEnds ends;                      ///< those that are not round
-  std::size_t wall_vertices = 0;      ///< before ends were capped or went on
+  FlatEnds ends;                      ///< the ends that are not round
+  std::size_t wall_vertices = 0;      ///< before ends were capped or extended
   std::vector<OperatingPoint> tried;  ///< for a budget
   SurfaceMeasurement measurement;
-  std::size_t grown_nodes = 0;              ///< of the centerline that was grown: with those a separation added
+  std::size_t grown_nodes = 0;              ///< of the centerline that was grown, including those added by separation
   std::optional<std::size_t> nodes_inside;  ///< of them
-  Deviation deviation;            ///< from the vessels that were grown: the narrowed and moved ones after a separation
+  Deviation deviation;            ///< from the vessels as grown: after separation, the narrowed and moved ones
   Deviation rounding;             ///< of the boundary at branches, against the plain union
   std::optional<FitReport> fit;   ///< with a reference to fit to
   std::vector<StageTime> stages;  ///< of the whole run
@@ -41,7 +41,7 @@ struct GenerateReport {
 
 Json to_json(const GenerateReport& report);
 
-/// Parts that several verbs use.
+/// JSON that several verbs use.
 Json to_json(const Centerline& centerline);
 Json to_json(const CleaningReport& report);
 Json to_json(const GrowthSummary& growth);

@@ -10,17 +10,17 @@
 
 namespace vmesh::tool {
 
-/// A file that something was read from; without a path, none was.
+/// An input file; no path: none.
 struct SourceFile {
   std::string path, sha256;
 };
 
-/// What Table 2 is about.
+/// The vessels of Table 2.
 struct Table2Source {
   std::string vessels;          ///< in words
-  std::string contour_of;       ///< "binary" or "grey"; empty when the reference is a surface as it came
+  std::string contour_of;       ///< "binary" or "grey"; empty if the reference is a given surface
   Vec3 spacing = Vec3::Zero();  ///< of the voxels contoured, mm
-  std::size_t components = 0;   ///< that the contour had
+  std::size_t components = 0;   ///< of the contour, before any were removed
   SourceFile reference, centerline;
   std::optional<ExtractionReport> extraction;  ///< when the centerline was extracted
 };
@@ -37,7 +37,7 @@ struct Table2Report {
 Json to_json(const Table2Report& report);
 std::vector<ReportTable> to_tables(const Table2Report& report);
 
-/// With its resolution, of what vmesh grew: "low resolution, 6 around".
+/// The method, and for surfaces grown by vmesh its resolution: "low resolution, 6 around".
 std::string name_of(const MethodRow& row);
 
 /// The figures that are worse than the paper's, in one line.

@@ -34,7 +34,7 @@ std::string describe(const CenterlineArguments& arguments) {
 TriMesh surface_of(const CenterlineArguments& arguments, Console& console) {
   if (is_image(arguments.input.path)) {
     ReferenceOptions options = arguments.image;
-    options.all_components = true;  // what belongs together, the vessels decide
+    options.all_components = true;  // extraction decides which components belong together
     return reference_surface(load_image(arguments.input, console), options).mesh;
   }
   LoadedSurface surface = load_surface(arguments.input);

@@ -12,7 +12,7 @@ namespace {
 
 using Kind = PlannedOutput::Kind;
 
-/// What a file of that name holds; nothing for VTK's, which may hold both.
+/// What a file of that name contains; nullopt for VTK's, which may contain either.
 std::optional<Kind> kind_of(const std::filesystem::path& path) {
   const auto centerline = find_centerline_format(path);
   if (centerline == CenterlineFormat::vtp || centerline == CenterlineFormat::vtk) return std::nullopt;
@@ -65,8 +65,8 @@ int run(const ConvertArguments& arguments, Console& console) {
   stop_if_interrupted();
   const bool is_surface = std::holds_alternative<LoadedSurface>(input);
   if (const auto to = kind_of(arguments.output); to && (*to == Kind::surface) != is_surface)
-    throw UsageError(arguments.input.path.string() + ": holds a " + (is_surface ? "surface" : "centerline") +
-                     ", which " + arguments.output.string() + " cannot take");
+    throw UsageError(arguments.input.path.string() + ": contains a " + (is_surface ? "surface" : "centerline") +
+                     ", which cannot be written to " + arguments.output.string());
   std::visit([&](const auto& content) { convert(content, arguments, console); }, input);
   console.log("wrote " + arguments.output.string());
   return kOk;

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A vertex farther from its place than this many local radii was bound to another centerline.
+/// A vertex farther from its place than this many local radii must be bound to another centerline.
 constexpr double kFarthestPlace = 4;
 
 const MeshAttribute* find(const std::vector<MeshAttribute>& attributes, const std::string& name) {
@@ -36,7 +36,7 @@ bool is_place(const Centerline& centerline, double segment, double t, const Vec3
   return (vertex - centerline.point_at(s, t)).norm() <= kFarthestPlace * centerline.radius_at(s, t);
 }
 
-/// Places that the surface's file has, if they are of this centerline.
+/// The places on the centerline stored in the surface's file, if they belong to this centerline.
 std::optional<std::vector<SurfacePlace>> places_in_file(const Centerline& centerline, const LoadedSurface& surface) {
   const MeshAttribute* segment = find(surface.attributes.vertex, "segment");
   const MeshAttribute* t = find(surface.attributes.vertex, "parameter");
@@ -51,7 +51,7 @@ std::optional<std::vector<SurfacePlace>> places_in_file(const Centerline& center
 
 std::vector<SurfacePlace> places_of(const Centerline& centerline, const LoadedSurface& surface, Console& console) {
   if (auto places = places_in_file(centerline, surface)) return *places;
-  console.log("the surface's file has no places on this centerline; every vertex goes to the nearest segment");
+  console.log("the surface's file has no places on this centerline; every vertex is bound to the nearest segment");
   return nearest_places(centerline, surface.mesh.vertices);
 }
 
@@ -61,9 +61,10 @@ class Series {
   Series(fs::path folder, std::string extension) : folder_(std::move(folder)), extension_(std::move(extension)) {
     std::error_code error;
     made_folder_ = fs::create_directory(folder_, error);
-    if (!fs::is_directory(folder_, error)) throw WriteError(folder_.string() + ": is no folder and cannot be made one");
+    if (!fs::is_directory(folder_, error))
+      throw WriteError(folder_.string() + ": is not a folder and cannot be made one");
     if (!fs::is_empty(folder_, error) || error)
-      throw UsageError(folder_.string() + ": the folder is not empty; name an empty or a new one for the frames");
+      throw UsageError(folder_.string() + ": the folder is not empty; give an empty or a new one for the frames");
   }
   ~Series() {
     if (kept_) return;
@@ -124,7 +125,8 @@ class Stage {
       simulation_.release(drag.node);
   }
 
-  /// Segments stretched by more than this, in what is longer, their length or radius, are no vessels any more.
+  /// Segments stretched to more than this many times their length or radius, whichever is longer, are no longer
+  /// vessels.
   static constexpr double kMostStretched = 100;
 
   void check_range(double time) const {
@@ -143,7 +145,7 @@ class Stage {
       } else {
         text << "its position is not finite";
       }
-      text << "; shorten step_s, or look at the forces, the paths and the material";
+      text << "; shorten step_s, or check the forces, the paths and the material";
       throw InvalidInput(text.str());
     }
   }
@@ -158,7 +160,7 @@ struct Timing {
   double simulate_s = 0, synchronise_s = 0;
 };
 
-/// The input surface, moved, with how far its vertices are from rest.
+/// Writes the moved input surface with the displacements of its vertices.
 class FrameWriter {
  public:
   FrameWriter(const DeformArguments& arguments, const LoadedSurface& rest, const SurfaceBinding& binding)
@@ -180,7 +182,7 @@ class FrameWriter {
   }
 
   double largest_displacement_mm() const { return largest_mm_; }
-  /// Of the frame written last.
+  /// The mesh of the last frame written.
   const TriMesh& mesh() const { return mesh_; }
   const MeshAttributes& attributes() const { return attributes_; }
 
@@ -197,7 +199,7 @@ std::size_t steps_of(const Scene& scene) {
   return static_cast<std::size_t>(std::llround(scene.duration_s / scene.options.step_s));
 }
 
-/// At rest, then every so many steps, and the last.
+/// Number of frames: at rest, then after every few steps, and the last.
 std::size_t frames_of(const Scene& scene) {
   const auto every = static_cast<std::size_t>(scene.frame_every);
   return 1 + (steps_of(scene) + every - 1) / every;
@@ -209,7 +211,7 @@ std::vector<Vec3> node_positions(const CenterlineSimulation& simulation, std::si
   return positions;
 }
 
-/// `show(time)` is called after every frame that is written.
+/// Calls `show(time)` after every frame that is written.
 template <class Show>
 Timing play(const Scene& scene, Stage& stage, const SurfaceBinding& binding, FrameWriter& writer, Series& series,
             const Progress& progress, Show show) {

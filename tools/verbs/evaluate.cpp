@@ -15,7 +15,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// What is compared with what, loaded.
+/// The inputs of a comparison, loaded.
 struct Comparison {
   LoadedSurface surface;
   std::optional<LoadedSurface> reference;
@@ -77,7 +77,7 @@ SurfaceMetadata metadata_of(const EvaluateArguments& arguments, const std::strin
   return {generator_name(), options, arguments.input.path.filename().string(), sha256};
 }
 
-/// Names the file in what is wrong with the surface.
+/// Adds the file's name to errors about the surface.
 ClosestPointIndex index_of(const TriMesh& mesh, const std::filesystem::path& path) {
   try {
     return ClosestPointIndex(mesh);
@@ -86,7 +86,7 @@ ClosestPointIndex index_of(const TriMesh& mesh, const std::filesystem::path& pat
   }
 }
 
-/// The reference and the volume, each with what finds distances to it.
+/// The reference and the volume, each with its search structure.
 class Evaluation {
  public:
   Evaluation(const EvaluateArguments& arguments, const Comparison& comparison)
@@ -112,7 +112,7 @@ class Evaluation {
     return report;
   }
 
-  /// The attributes of the surface's file, skewness and distances.
+  /// The attributes of the surface's file, plus skewness and distances.
   MeshAttributes attributes(const FaceMeasures& measures) const {
     MeshAttributes attributes = comparison_.surface.attributes;
     replace(attributes.face, {"EquiangleSkewness", measures.equiangle_skewness});

@@ -34,7 +34,7 @@ std::vector<CenterlineBinding> binding_of(const LoadedSurface& surface, const Ce
     if (!(s >= 0 && s < static_cast<double>(centerline.segments().size() + centerline.nodes().size())))
       throw InvalidInput("vertex " + std::to_string(v) +
                          " is bound to a segment that the centerline does not have; is "
-                         "it the one that the surface was grown around?");
+                         "it the one around which the surface was grown?");
     binding.push_back({static_cast<Index>(s), std::clamp((*t)[v], 0.0, 1.0)});
   }
   return binding;

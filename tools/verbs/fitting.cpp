@@ -27,7 +27,7 @@ TriMesh load_fit_reference(const FittingArguments& arguments, Console& console) 
   if (is_image(path)) {
     return naming(path, [&] {
       ReferenceOptions options = image;
-      options.all_components = true;  // what belongs to a vessel, the fit decides
+      options.all_components = true;  // the fit decides what belongs to a vessel
       return reference_surface(load_image(arguments.reference, console), options).mesh;
     });
   }

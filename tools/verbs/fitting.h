@@ -8,10 +8,10 @@ namespace vmesh::tool {
 /// Whether any of --label, --threshold, --spacing, --smooth is given.
 bool has_options(const ReferenceOptions& image);
 
-/// What a budget means for a fit. Those of time, or of an error in radii, are refused (UsageError).
+/// Applies a budget to a fit. Budgets of time, or of an error in radii, are refused (UsageError).
 void set_budget(const Budget& budget, FitOptions& options);
 
-/// The surface to fit to: of a file, or contoured from an image. Options that do not apply are refused (UsageError).
+/// The surface to fit to: from a file, or contoured from an image. Options that do not apply are refused (UsageError).
 TriMesh load_fit_reference(const FittingArguments& arguments, Console& console);
 
 }  // namespace vmesh::tool

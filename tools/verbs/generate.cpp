@@ -1,6 +1,5 @@
 #include "vmesh/deform/linear_skin.h"
 #include "vmesh/fit/flat_reference.h"
-#include "vmesh/surface/metric_skewness.h"
 #include "vmesh/surface/surface_attributes.h"
 #include "vmesh/volume/vessel_field.h"
 
@@ -20,7 +19,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// Chooses the options that make the most of the budget.
+/// Chooses the options that make the best use of the budget.
 BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& centerline, GenerateArguments& arguments,
                                    Console& console) {
   BudgetedSurface surface = naming(arguments.input.path, [&] {
@@ -31,13 +30,13 @@ BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& cen
   log_choice(surface, arguments, console);
   if (!surface.met())
     warn(report,
-         "nothing keeps to the budget " + to_string(*arguments.budget) +
-             "; the surface written is what comes closest: allow more, or look at the radii",
+         "nothing is within the budget " + to_string(*arguments.budget) +
+             "; the closest surface is written: allow more, or check the radii",
          console);
   return surface;
 }
 
-/// Returns whether the error that was asked for is kept.
+/// Fits the surface; returns whether the requested error is kept.
 bool fit(GenerateReport& report, GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
          Console& console) {
   Stopwatch watch;
@@ -60,12 +59,12 @@ void measure_distance(GenerateReport& report, const Centerline& grown) {
   const GenerateOptions& options = report.arguments->options;
   const VesselField field(grown, options.blend);
   report.deviation = measure_deviation(result.mesh, result.binding, field, options.threads);
-  if (!report.arguments->common.json.empty())  // nothing else tells of it
+  if (!report.arguments->common.json.empty())  // reported there only
     report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown), options.threads);
   stop_if_interrupted();
 }
 
-/// Caps and extends ends, whose nodes are those of the original centerline.
+/// Caps and extends ends; nodes are those of the original centerline.
 void finish_ends(GenerateReport& report, GenerateResult& result) {
   const GenerateArguments& arguments = *report.arguments;
   const Centerline& centerline = report.cleaned->centerline;
@@ -79,7 +78,7 @@ void finish_ends(GenerateReport& report, GenerateResult& result) {
   report.ends = vmesh::finish_ends(result, centerline, options);
 }
 
-/// Fills in what the surface around `grown` is like and what is wrong with it.
+/// Fills in the measurements and problems of the surface around `grown`.
 void judge(GenerateReport& report, const Centerline& grown, Console& console) {
   const GenerateResult& result = *report.result;
   report.measurement = measurement_of(result);
@@ -91,7 +90,7 @@ void judge(GenerateReport& report, const Centerline& grown, Console& console) {
   for (const std::string& problem : report.problems) console.warn("surface: " + problem);
 }
 
-/// Adds the nodes that are nearest, as the file names them, and the branches.
+/// Adds the nearest nodes (as named in the file) and branches.
 void name_nodes(std::vector<Defect>& defects, const LoadedCenterline& loaded) {
   for (Defect& defect : defects) {
     if (defect.node < loaded.cleaned.raw_node.size())
@@ -110,8 +109,6 @@ MeshAttributes attributes_of(const GenerateReport& report) {
   const GenerateResult& result = *report.result;
   MeshAttributes attributes =
       surface_attributes(result.mesh, result.binding, result.radius, result.openings, report.cleaned->centerline);
-  if (!result.elongation.empty())
-    attributes.face.push_back({"MetricSkewness", metric_skewness(result.mesh, result.elongation)});
   if (!report.ends.ends.empty()) add_cap_labels(report.ends, attributes);
   return attributes;
 }
@@ -130,12 +127,12 @@ void write(const GenerateReport& report) {
 void check_elongation(const GenerateArguments& arguments) {
   if (arguments.options.elongation == 1) return;
   if (!arguments.fitting.reference.path.empty() || is_image(arguments.input.path))
-    throw UsageError(std::string(kElongationFlag) + " does not go with fitting, which makes triangles even");
+    throw UsageError(std::string(kElongationFlag) + " cannot be combined with fitting, which makes triangles even");
   if (arguments.options.growth == GrowthMethod::paper)
     throw UsageError(std::string(kElongationFlag) + " needs --growth guided");
 }
 
-/// What can be refused before anything is read.
+/// Refuses what can be refused before anything is read.
 void check_arguments(const GenerateArguments& arguments) {
   using Kind = PlannedOutput::Kind;
   check_input(arguments);
@@ -180,7 +177,7 @@ GrownSurface grow(GenerateReport& report, const PreparedCenterline& prepared, Ge
 int run(const GenerateArguments& given, Console& console) {
   if (is_part(given.input.path)) return run_part(given, console);
   check_arguments(given);
-  GenerateArguments arguments = given;  // a budget chooses some of them
+  GenerateArguments arguments = given;  // a budget may change some of them
   apply_budget_to_fit(arguments);
   Stopwatch watch;
   GenerateReport report;
@@ -199,7 +196,7 @@ int run(const GenerateArguments& given, Console& console) {
 
   auto [result, kept_budget] = grow(report, prepared, arguments, console);
   if (prepared.simplified && !result.is_sound()) {
-    console.log("that surface is not sound: once more, with all nodes");
+    console.log("that surface is not sound: growing it once more, with all nodes");
     arguments.options.simplification = 0;
     return run(arguments, console);
   }

@@ -22,7 +22,7 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
   return loaded;
 }
 
-/// The centerline of the vessels in an image, and their surface, which is what the one that grows is fitted to.
+/// The centerline of the vessels in an image, and their surface, to which the grown one is fitted.
 LoadedCenterline extract(const GenerateArguments& arguments, std::optional<TriMesh>& reference, Console& console) {
   FittingArguments image = arguments.fitting;
   image.reference = arguments.input;
@@ -60,11 +60,11 @@ void check_input(const GenerateArguments& arguments) {
   const bool fits = !arguments.fitting.reference.path.empty();
   if (has_image(arguments)) {
     if (!arguments.input.more.empty())
-      throw UsageError(arguments.input.more.front().string() + ": beside an image nothing else makes a centerline");
+      throw UsageError(arguments.input.more.front().string() + ": an image must be the only input");
     if (fits && has_options(image) && is_image(arguments.fitting.reference.path))
       throw UsageError(
-          "--label, --threshold, --spacing and --smooth would be for two images; extract the centerline "
-          "first (vmesh centerline), or leave --fit out: the surface is fitted to the image it is from");
+          "--label, --threshold, --spacing and --smooth would apply to two images; extract the centerline "
+          "first (vmesh centerline), or omit --fit: the surface is then fitted to its own image");
     return;
   }
   if (!arguments.centerline_output.empty())
@@ -87,7 +87,7 @@ void apply_budget_to_fit(GenerateArguments& arguments) {
   fitting.options.threads = arguments.options.threads;
   if (!arguments.budget) return;
   set_budget(*arguments.budget, fitting.options);
-  // What is grown keeps to a number of vertices as well.
+  // A budget of vertices applies to growth as well.
   if (arguments.budget->kind == Budget::Kind::error) arguments.budget.reset();
 }
 
@@ -100,7 +100,7 @@ GenerateInput load_input(const GenerateArguments& arguments, Console& console) {
   std::optional<TriMesh> reference;
   if (!arguments.fitting.reference.path.empty()) {
     FittingArguments fitting = arguments.fitting;
-    if (has_image(arguments) && !is_image(fitting.reference.path)) fitting.image = {};  // the input's
+    if (has_image(arguments) && !is_image(fitting.reference.path)) fitting.image = {};  // they are the input's
     reference = load_fit_reference(fitting, console);
   }
   LoadedCenterline loaded =

@@ -6,16 +6,16 @@
 
 namespace vmesh::tool {
 
-/// Options that only an image or a reference gives a meaning to are refused where there is none (UsageError).
+/// Refuses options that only apply to an image or a reference where there is none (UsageError).
 void check_input(const GenerateArguments& arguments);
 
-/// With a reference, a budget is the fit's: of vertices or of the distance to the reference.
+/// With a reference, a budget applies to the fit: vertices, or distance to the reference.
 void apply_budget_to_fit(GenerateArguments& arguments);
 
-/// Where the surface to fit to is from; empty if there is none.
+/// The file of the surface to fit to; empty if there is none.
 std::filesystem::path fit_reference(const GenerateArguments& arguments);
 
-/// What `vmesh generate` starts from.
+/// The input of `vmesh generate`.
 struct GenerateInput {
   LoadedCenterline centerline;       ///< clean
   std::optional<TriMesh> reference;  ///< to fit to

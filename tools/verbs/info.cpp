@@ -41,8 +41,8 @@ std::vector<std::string> messages_of(const std::vector<CenterlineProblem>& probl
   return messages;
 }
 
-/// What is in the file, what is wrong with it, and what cleaning makes of it. A file that cannot be cleaned has its
-/// reason under "error".
+/// Describes what the file contains, its problems, and the result of cleaning. If it cannot be cleaned, the reason is
+/// under "error".
 void describe(const RawCenterline& raw, Json& json) {
   json["kind"] = "centerline";
   json["in_file"] = {{"nodes", raw.nodes.size()}, {"segments", raw.segments.size()}};

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As surface_attributes() has them.
+/// The attributes of surface_attributes().
 std::vector<MeshAttribute> attributes_of(const SurfaceSink::Vertices& vertices) {
   MeshAttribute segment{"segment", {}, true}, parameter{"parameter", {}};
   for (const auto& [s, t] : vertices.place) {
@@ -42,7 +42,7 @@ SurfaceMetadata metadata_of(const PartsSource& source) {
   return {source.generator, source.options, source.input_name, source.input_sha256};
 }
 
-/// Block by block into the file.
+/// Writes block by block.
 class PlySink : public SurfaceSink {
  public:
   PlySink(const fs::path& path, SurfaceMetadata metadata) : path_(path), metadata_(std::move(metadata)) {}
@@ -75,7 +75,7 @@ void append(std::vector<MeshAttribute>& whole, std::vector<MeshAttribute> block)
     whole[i].values.insert(whole[i].values.end(), block[i].values.begin(), block[i].values.end());
 }
 
-/// All in memory.
+/// Collects everything in memory.
 class MemorySink : public SurfaceSink {
  public:
   void begin(std::size_t vertices, std::size_t faces) override {
@@ -95,7 +95,7 @@ class MemorySink : public SurfaceSink {
   MeshAttributes attributes;
 };
 
-/// Nowhere: the parts themselves are listed.
+/// Discards the surface: the parts themselves are listed.
 class NoSink : public SurfaceSink {
  public:
   void begin(std::size_t, std::size_t) override {}
@@ -107,11 +107,12 @@ int refuse(const JoinArguments& arguments, const JoinSummary& summary, Console& 
   std::vector<std::string> lines;
   for (const JoinDefect& defect : summary.defects)
     lines.push_back(std::string(to_string(defect.kind)) + ": " + defect.message);
-  log_refusal(lines,
-              arguments.folder.string() +
-                  ": the parts make no sound surface, nothing is written: grow the whole in one go, which makes pieces "
-                  "that cross again as one",
-              console);
+  log_refusal(
+      lines,
+      arguments.folder.string() +
+          ": the parts do not form a sound surface, nothing is written: grow the whole in one go, which makes pieces "
+          "that cross again as one",
+      console);
   return kDefective;
 }
 
@@ -125,7 +126,7 @@ std::string vtm_text(const std::string& folder, std::size_t parts) {
   return text + "  </vtkMultiBlockDataSet>\n</VTKFile>\n";
 }
 
-/// A .vtp file for each part, with the vertices of its seams, in a folder beside the list.
+/// Writes a .vtp file for each part, with the vertices of its seams, in a folder beside the list.
 void write_list(const JoinArguments& arguments, const JoinSummary& summary) {
   if (summary.walls_parted > 0)
     throw Unsupported(arguments.output.string() +

@@ -16,7 +16,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// What a part is grown with, it says itself.
+/// A part contains the options with which it is grown.
 void check_arguments(const GenerateArguments& arguments) {
   GenerateArguments plain;
   plain.input = arguments.input;
@@ -26,8 +26,8 @@ void check_arguments(const GenerateArguments& arguments) {
       arguments.bones || arguments.check || arguments.allow_defects || !arguments.common.html.empty() ||
       !arguments.centerline_output.empty())
     throw UsageError(arguments.input.path.string() +
-                     ": a part is grown with the options that vmesh split was given; here --threads, --json and "
-                     "--quiet can be said");
+                     ": a part is grown with the options given to vmesh split; only --threads, --json and "
+                     "--quiet apply");
   if (extension_of(arguments.output) != kPartSurfaceExtension)
     throw UsageError(arguments.output.string() + ": the surface of a part is written as " + kPartSurfaceExtension +
                      "; vmesh join makes other formats of them");
@@ -94,8 +94,8 @@ int run_part(const GenerateArguments& arguments, Console& console) {
   if (const std::vector<std::string> faults = faults_of(surface); !faults.empty()) {
     log_refusal(faults,
                 arguments.input.path.string() +
-                    ": no sound surface was found, nothing is written: look at the radii and nodes there, or grow the "
-                    "whole in one go, which may join pieces",
+                    ": no sound surface was found, nothing is written: check the radii and nodes there, or grow the "
+                    "whole in one go, which may merge pieces",
                 console);
     return kDefective;
   }

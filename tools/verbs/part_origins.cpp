@@ -6,6 +6,7 @@ namespace vmesh::tool {
 
 SplitCenterline::SplitCenterline(const PreparedCenterline& prepared, const GenerateOptions& options)
     : prepared_(prepared),
+      cleaned_segments_(static_cast<Index>(prepared.cleaned->segments().size())),
       options_(prepared.simplified ? after_simplification(options, *prepared.simplified) : options),
       label_(branch_label_of_cones(*prepared.cleaned)) {
   if (options_.simplification == 0) return;
@@ -18,13 +19,12 @@ ConeOrigins SplitCenterline::origins_of(const std::vector<Index>& nodes, const s
   ConeOrigins origins;
   origins.offsets.push_back(0);
   const auto segments = static_cast<Index>(centerline().segments().size());
-  const auto cleaned_segments = static_cast<Index>(prepared_.cleaned->segments().size());
   for (const Index cone : cones) {
     if (cone < segments) {
       add(cone, origins);
     } else {  // an isolated node
       origins.stretch.emplace_back();
-      origins.pieces.push_back({cone - segments + cleaned_segments, 0, 0, 1});
+      origins.pieces.push_back({cone - segments + cleaned_segments_, 0, 0, 1});
       origins.within.emplace_back();
     }
     origins.branch.push_back(label_[origins.pieces.back().segment]);

@@ -1,14 +1,14 @@
 #include "verbs/prepared_centerline.h"
 
-#include "vmesh/volume/vessel_field.h"
+#include "vmesh/volume/cone_relations.h"
 
 #include "report/generate_log.h"
 
 namespace vmesh::tool {
 namespace {
 
-/// Leaves out the nodes that the surface does not need. Without a value all are needed; or the budget decides, for
-/// every surface that is tried, which are.
+/// Leaves out the nodes that the surface does not need; nullopt if all are needed, or if a budget decides for every
+/// trial.
 std::optional<SimplifiedCenterline> simplify(const Centerline& centerline, const GenerateArguments& arguments) {
   const GenerateOptions& options = arguments.options;
   if (arguments.budget || options.growth == GrowthMethod::paper || options.simplification == 0) return std::nullopt;
@@ -17,12 +17,12 @@ std::optional<SimplifiedCenterline> simplify(const Centerline& centerline, const
   return simplified;
 }
 
-/// Finds where vessels touch and, when asked to, narrows or moves them. Without a value the vessels stay as they are.
+/// Finds where vessels touch and, if requested, narrows or moves them; nullopt if the vessels stay as they are.
 std::optional<SeparatedCenterline> handle_contacts(GenerateReport& report, const Centerline& centerline,
                                                    Console& console) {
   const GenerateArguments& arguments = *report.arguments;
   if (arguments.overlap == OverlapHandling::keep) {
-    report.contacts = find_contacts(VesselField(centerline, arguments.options.blend), arguments.gap);
+    report.contacts = find_contacts(ConeRelations(centerline, arguments.options.blend), arguments.gap);
     if (!report.contacts.empty()) warn_of_contacts(report, console);
     return std::nullopt;
   }
@@ -44,7 +44,7 @@ void refer_to_original(const SimplifiedCenterline& simplified, ContactSide& side
   side.t = t;
 }
 
-/// Contacts and moves of a simplified centerline, as those of the original. Branches are the same.
+/// Converts contacts and moves from a simplified centerline to the original. Branches are the same.
 void refer_to_original(const SimplifiedCenterline& simplified, GenerateReport& report) {
   const auto refer = [&](std::vector<Contact>& contacts) {
     for (Contact& contact : contacts) {

@@ -5,8 +5,8 @@
 
 namespace vmesh::tool {
 
-/// The centerline that the surface grows around: without the nodes that it does not need, and where vessels touched
-/// narrowed or moved. Refers to the cleaned centerline, which must outlive it.
+/// The centerline around which the surface grows: without the nodes that it does not need, and with vessels that
+/// touched narrowed or moved. Refers to the cleaned centerline, which must outlive it.
 struct PreparedCenterline {
   const Centerline* cleaned = nullptr;
   std::optional<SimplifiedCenterline> simplified;
@@ -16,10 +16,10 @@ struct PreparedCenterline {
   const Centerline& grown() const { return separated ? separated->centerline : unseparated(); }
 };
 
-/// Prepares report.cleaned as its arguments say. Fills in what the report says of contacts and their separation.
+/// Prepares report.cleaned according to the arguments. Fills in contacts and their separation in the report.
 PreparedCenterline prepare_centerline(GenerateReport& report, Console& console);
 
-/// Makes a surface around the grown centerline, and what the report says of contacts, refer to the cleaned one.
+/// Makes a surface around the grown centerline, and the contacts in the report, refer to the cleaned one.
 void refer_to_cleaned(const PreparedCenterline& prepared, GenerateResult& result, GenerateReport& report);
 
 }  // namespace vmesh::tool

@@ -21,7 +21,7 @@ struct FoundAttribute {
 
 bool is_label(const std::string& name) { return name == "branch" || name == "group"; }
 
-/// Values of vertices are preferred, as they run smoothly; labels of faces are, as they have crisp borders.
+/// Vertex attributes are preferred, as they vary smoothly; for labels face attributes are, as their borders are crisp.
 FoundAttribute find_attribute(const LoadedSurface& surface, const std::string& name) {
   std::string known;
   std::array lists = {std::pair{&surface.attributes.vertex, AttributeDomain::vertex},

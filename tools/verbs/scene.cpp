@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* kSchema = "vmesh.scene/1";
-/// What a scene may ask for, so that a slip of a digit ends in a message and not in a night's work.
+/// Limit on a scene's length, so that a mistyped digit gives an error instead of an overnight run.
 constexpr double kMostSteps = 10e6;
 
 /// An element of the document and its name for messages: "drag[0].path".
@@ -29,7 +29,7 @@ class Element {
     throw InvalidInput(source_ + ": " + (name_.empty() ? "" : name_ + ": ") + what);
   }
 
-  /// Refuses members that are not listed: a misspelt one would go unnoticed.
+  /// Refuses members that are not listed, as a misspelt one would go unnoticed.
   void allow(std::initializer_list<const char*> known) const {
     if (!json_.is_object()) fail("it must be an object {...}");
     for (const auto& [key, value] : json_.items()) {
@@ -70,14 +70,14 @@ class Element {
     return value;
   }
 
-  /// Overwrites `value` when there is such a member.
+  /// Overwrites `value` if there is such a member.
   void take(const char* key, double low, double high, double& value) const {
     if (has(key)) value = member(key).number(low, high);
   }
   void take(const char* key, double low, double high, int& value) const {
     if (!has(key)) return;
     const double number = member(key).number(low, high);
-    if (number != std::floor(number)) member(key).fail("it must be a whole number");
+    if (number != std::floor(number)) member(key).fail("it must be an integer");
     value = static_cast<int>(number);
   }
 
@@ -88,7 +88,7 @@ class Element {
 
   Index node(std::size_t nodes) const {
     const double value = number(0, static_cast<double>(nodes) - 1);
-    if (value != std::floor(value)) fail("it must be a whole number, a node of the centerline");
+    if (value != std::floor(value)) fail("it must be an integer, the number of a node of the centerline");
     return static_cast<Index>(value);
   }
 
@@ -143,7 +143,7 @@ Material read_material(const Element& element) {
   element.take("density_kg_m3", 1e-3, 1e6, material.density_kg_m3);
   element.take("poisson_ratio", 0, 0.5, material.poisson_ratio);
   if (element.has("wall_mm") && element.has("wall_ratio"))
-    element.member("wall_ratio").fail("the wall is given as wall_mm already; leave one of them out");
+    element.member("wall_ratio").fail("the wall is already given as wall_mm; leave one of them out");
   element.take("wall_mm", 0, 1e6, material.wall_mm);
   element.take("wall_ratio", 1e-6, 1, material.wall_ratio);
   element.take("damping_s", 0, 1e6, material.damping_s);
@@ -181,7 +181,7 @@ Scene::Drag read_drag(const Element& element, std::size_t nodes) {
   return drag;
 }
 
-/// The last drag against what else holds or drags its node.
+/// Checks the last drag against everything else that holds or drags its node.
 void check_drag(const Element& element, const Scene& scene) {
   const Index node = scene.drags.back().node;
   const std::string name = "node " + std::to_string(node);
@@ -234,7 +234,7 @@ Scene parse_scene(const std::string& text, const std::string& source, std::size_
   try {
     document = Json::parse(text);
   } catch (const Json::exception& error) {
-    throw InvalidInput(source + ": this is no valid JSON: " + error.what());
+    throw InvalidInput(source + ": this is not valid JSON: " + error.what());
   }
   return read(Element(document, "", source), nodes);
 }

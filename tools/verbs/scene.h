@@ -8,7 +8,7 @@
 
 namespace vmesh::tool {
 
-/// A quantity over time: straight between its points, constant before the first and after the last.
+/// A quantity over time: linear between its points, constant before the first and after the last.
 template <class Value>
 struct Course {
   std::vector<double> time_s;  ///< ascending, at least one
@@ -24,18 +24,18 @@ struct Course {
   }
 };
 
-/// What happens to a vessel tree, as a scene file tells it. tools/README.md describes the file.
+/// The contents of a scene file, which tools/README.md describes: what happens to a vessel tree.
 struct Scene {
   struct Drag {
     Index node;
-    Course<Vec3> offset_mm;  ///< from where the node is at rest
+    Course<Vec3> offset_mm;  ///< from the node's position at rest
     double release_s;        ///< infinite: never
   };
   struct Force {
     Index node;
     Course<Vec3> force_N;
   };
-  /// Of a node's profile: its scale, or what presses on it.
+  /// The scale of a node's profile, or the force on it, over time.
   struct Profile {
     Index node;
     Course<double> value;
@@ -51,8 +51,8 @@ struct Scene {
   std::vector<Profile> scales, squeezes;
 };
 
-/// Throws ReadError, and InvalidInput that names the file, the element, what is wrong and what to do. Nodes are checked
-/// to be below `nodes`.
+/// Throws ReadError, and InvalidInput naming the file, the element, what is wrong and what to do. Node numbers must be
+/// below `nodes`.
 Scene read_scene(const std::filesystem::path& path, std::size_t nodes);
 
 /// The same from text; `source` names it in messages.

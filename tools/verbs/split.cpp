@@ -1,6 +1,8 @@
 #include <numeric>
+#include <optional>
 
 #include "vmesh/core/atomic_file.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/io/sha256.h"
 #include "vmesh/parts/part_files.h"
 
@@ -25,7 +27,7 @@ bool is_ours(const fs::path& path) {
   return name.starts_with("part_") && (extension == kPartExtension || extension == kPartSurfaceExtension);
 }
 
-/// Throws unless it is a folder for parts: one that is not there yet, or holds nothing but parts.
+/// Throws unless the folder does not exist yet or contains nothing but parts.
 void prepare_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -34,11 +36,11 @@ void prepare_folder(const fs::path& folder) {
   if (fs::exists(folder / kManifestName)) return;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (!is_ours(entry.path()))
-      throw UsageError(folder.string() + ": is not empty, and no parts are in it; name a folder of their own");
+      throw UsageError(folder.string() + ": is not empty and contains no parts; give a separate folder");
   }
 }
 
-/// Takes away parts: those of before would not fit to new ones, and some of a splitting are of no use.
+/// Removes parts: old ones would not match new ones, and an incomplete set is useless.
 void clear_folder(const fs::path& folder) {
   std::error_code error;
   fs::remove(folder / kManifestName, error);
@@ -65,7 +67,7 @@ SplitSummary write_parts(const fs::path& folder, const SplitCenterline& centerli
   }
 }
 
-/// As the note counts them, of the centerline that was read.
+/// The note in numbers of the centerline that was read.
 GrowthSimplification as_read(GrowthSimplification note, const SplitCenterline& centerline) {
   const ConeOrigins origins = centerline.origins_of(note.nodes, note.segments);
   std::iota(note.nodes.begin(), note.nodes.end(), Index{0});
@@ -100,7 +102,8 @@ int run(const SplitArguments& given, Console& console) {
   check_outputs({{given.common.json, PlannedOutput::Kind::summary}}, files_of(given.input));
   Stopwatch watch;
   std::vector<StageTime> stages;
-  const LoadedCenterline loaded = load_clean_centerline(given.input, console);
+  std::optional<LoadedCenterline> loaded = load_clean_centerline(given.input, console);
+  release_freed_memory();
   PartsManifest manifest;
   manifest.source = {generator_name(), describe(arguments), file_name_of(given.input), sha256_of(given.input)};
   manifest.id = vmesh::sha256_of(manifest.source.generator + "\n" + manifest.source.options + "\n" +
@@ -110,9 +113,12 @@ int run(const SplitArguments& given, Console& console) {
 
   GenerateReport report;
   report.arguments = &arguments;
-  report.cleaned = &loaded.cleaned;
+  report.cleaned = &loaded->cleaned;
   const PreparedCenterline prepared = prepare_centerline(report, console);
   const SplitCenterline centerline(prepared, arguments.options);
+  report.cleaned = nullptr;
+  if (prepared.simplified) loaded.reset();  // not needed any more, and large
+  release_freed_memory();
   stages.push_back({"prepare", watch.lap()});
   stop_if_interrupted();
 

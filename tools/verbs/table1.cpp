@@ -28,7 +28,7 @@ constexpr std::array kPaper = {PaperCase{"B", 118, 2426, 1215, 0.4, 1.5, 1.9},
                                PaperCase{"D", 1559, 25730, 12867, 5.5, 21, 26.5}};
 constexpr int kFrames = 200;
 
-/// The surface whose number of vertices is nearest to `vertices`: it grows with `around`.
+/// The surface whose number of vertices is nearest to `vertices`, found by varying `around`.
 GenerateResult surface_of(const Centerline& centerline, std::size_t vertices) {
   const auto at = [&](int around) {
     stop_if_interrupted();
@@ -57,7 +57,7 @@ struct Cost {
   double total_ms() const { return deform_ms + synchronise_ms; }
 };
 
-/// Of one vessel in motion at so many iterations.
+/// Times of one moving vessel with a given number of iterations.
 struct FrameTimes {
   std::vector<double> deform, synchronise, synchronise_plain;
 };

@@ -14,7 +14,7 @@
 namespace vmesh::tool {
 namespace {
 
-// Marching cubes of the synthetic tree then has about as many vertices as in the paper.
+// With it, marching cubes of the synthetic tree has about as many vertices as in the paper.
 constexpr double kVoxel = 0.665;
 
 struct SurfaceFile {
@@ -73,7 +73,7 @@ void describe_contour(const ReferenceSurface& surface, Table2Source& source) {
   source.components = surface.components;
 }
 
-/// The vessels' surface that the others are compared with, and their centerline.
+/// The reference surface of the vessels, and their centerline.
 struct Vessels {
   TriMesh reference;
   Centerline centerline;
@@ -153,7 +153,7 @@ Table2Report make_table(const Table2Arguments& arguments, Console& console) {
   const auto& named = arguments.reference.path.empty() ? arguments.centerline.path : arguments.reference.path;
   MethodComparison comparison = naming(named, [&] {
     MethodOptions methods = arguments.methods;
-    methods.fitted = !arguments.reference.path.empty();  // round cones are what is grown around anyway
+    methods.fitted = !arguments.reference.path.empty();  // without a reference, the vessels are round cones anyway
     methods.paper_growth = true;
     return compare_methods(std::move(vessels.reference), vessels.centerline, methods, console.progress());
   });

@@ -37,10 +37,10 @@ ReportTable points_table(const std::vector<TradeoffPoint>& points) {
   return table;
 }
 
-// How vmesh does where a peer is: vertices for the same maximum error, mean error and skewness with as many vertices.
+// vmesh at the points of its peers: vertices for the same maximum error, mean error and skewness with as many vertices.
 ReportTable peers_table(const std::vector<TradeoffPoint>& points) {
   ReportTable table{"peers",
-                    "vmesh against marching cubes: ratios below 1 are in favour of vmesh, - where the curve has ended",
+                    "vmesh against marching cubes: ratios below 1 favour vmesh, - where the curve has ended",
                     {"peer", "vertices", "vmesh curve", "vertices at its max error, ratio",
                      "mean error with its vertices, ratio", "mean skewness with its vertices, ratio"},
                     {}};

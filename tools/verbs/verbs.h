@@ -5,7 +5,7 @@
 
 namespace vmesh::tool {
 
-/// One function per verb. Returns the exit code; throws what the library throws, and UsageError.
+/// One function per verb. Returns the exit code; throws like the library, and UsageError.
 int run(const GenerateArguments& arguments, Console& console);
 int run(const InfoArguments& arguments, Console& console);
 int run(const SynthArguments& arguments, Console& console);

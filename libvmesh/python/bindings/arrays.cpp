@@ -34,11 +34,11 @@ py::array_t<double, py::array::c_style | py::array::forcecast> as_doubles(const 
   return py::array_t<double, py::array::c_style | py::array::forcecast>(array);
 }
 
-// Whole numbers only: 1.7 is no node.
+// Integers only: 1.7 is not a node.
 py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> as_integers(const py::array& array,
                                                                                  const std::string& name) {
   if (const char kind = array.dtype().kind(); !is_empty(array) && kind != 'i' && kind != 'u')
-    throw InvalidInput(name + ": whole numbers are needed, these are of dtype " +
+    throw InvalidInput(name + ": integers are needed, these are of dtype " +
                        py::str(array.dtype()).cast<std::string>());
   return py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(array);
 }

@@ -18,14 +18,14 @@ namespace py = pybind11;
 template <class T>
 py::array view(const T* data, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
                const py::object& owner) {
-  // An array without memory of its own needs an address even when it is empty.
+  // An array without memory of its own needs an address even if it is empty.
   static const T nothing{};
   py::array array(py::dtype::of<T>(), std::move(shape), std::move(strides), data != nullptr ? data : &nothing, owner);
   array.attr("setflags")(py::arg("write") = false);
   return array;
 }
 
-/// One number per element of a vector of `Element`, its strides those of the elements.
+/// One number per element of a vector of `Element`, with the elements' stride.
 template <class T, class Element>
 py::array member_view(const std::vector<Element>& elements, const T* first, const py::object& owner) {
   return view(elements.empty() ? nullptr : first, {static_cast<py::ssize_t>(elements.size())},
@@ -41,7 +41,7 @@ py::array vector_view(const std::vector<T>& values, const py::object& owner) {
 py::array points_view(const std::vector<Vec3>& points, const py::object& owner);        ///< (n, 3) float64
 py::array triangles_view(const std::vector<Triangle>& faces, const py::object& owner);  ///< (m, 3) uint32
 
-/// An array that takes the values over, without a copy.
+/// An array that takes over the values without a copy.
 template <class T>
 py::array array_of(std::vector<T> values) {
   auto* kept = new std::vector<T>(std::move(values));
@@ -51,8 +51,8 @@ py::array array_of(std::vector<T> values) {
 
 py::array array_of(const Vec3& point);  ///< (3,), a copy
 
-/// What Python hands over, as `name` in messages. All throw InvalidInput that says what is wrong with shape, kind or
-/// element, and copy.
+/// Conversions of arguments from Python, called `name` in messages. All copy, and throw InvalidInput describing a wrong
+/// shape, type or element.
 Vec3 to_point(const py::object& object, const std::string& name);
 std::vector<Vec3> to_points(const py::object& object, const std::string& name);                        ///< (n, 3)
 std::vector<double> to_numbers(const py::object& object, const std::string& name, std::size_t count);  ///< (count,)

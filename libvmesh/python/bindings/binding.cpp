@@ -5,7 +5,7 @@
 namespace vmesh::python {
 namespace {
 
-/// A vertex farther from its place than this many local radii was bound to another centerline.
+/// A vertex farther from its place than this many local radii must be bound to another centerline.
 constexpr double kFarthestPlace = 4;
 
 const std::vector<double>* find(const std::vector<MeshAttribute>& attributes, const std::string& name) {

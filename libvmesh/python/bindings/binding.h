@@ -6,11 +6,11 @@
 
 namespace vmesh::python {
 
-/// Binds a surface that was not grown here: every vertex to the place that the surface's attributes name, if all are of
-/// this centerline, else to the nearest.
+/// Binds a surface that was not grown here: every vertex to the place given by the surface's attributes if all fit this
+/// centerline, else to the nearest.
 void bind_to(SurfaceObject& surface, const CenterlinePtr& centerline);
 
-/// The binding as what deforms takes it.
+/// The binding in the form needed for deformation.
 std::vector<SurfacePlace> places_of(const SurfaceObject& surface);
 
 }  // namespace vmesh::python

@@ -140,15 +140,16 @@ Arrays are copied. Raises InvalidInput that lists what is wrong; clean() mends t
           "Number of the component of every node, (n,) uint32. A view, not writable.")
       .def_property_readonly(
           "components", [](const CenterlineObject& self) { return self.centerline.component_count(); },
-          "How many parts there are that no segment joins.")
+          "Number of connected components.")
       .def_property_readonly(
           "loops", [](const CenterlineObject& self) { return self.centerline.cycle_rank(); },
           "Independent loops; 0 for a forest.")
       .def_property_readonly(
           "length_in_radii", [](const CenterlineObject& self) { return self.centerline.length_in_radii(); },
-          "Sum over the segments of length / mean radius: the size of the meshing job, whatever the scale.")
-      .def_readonly("cleaning", &CenterlineObject::cleaning, "What cleaning did, a line each.")
-      .def_readonly("warnings", &CenterlineObject::warnings, "What a file does not say and was assumed, a line each.")
+          "Sum of length / mean radius over the segments: the size of the meshing task, independent of scale.")
+      .def_readonly("cleaning", &CenterlineObject::cleaning, "What cleaning did, one line each.")
+      .def_readonly("warnings", &CenterlineObject::warnings,
+                    "What was assumed because the file does not say, one line each.")
       .def("branches", &branches_of,
            "The nodes of every branch, uint32 each: stretches between nodes where vessels branch or end. The labels\n"
            "of Surface.branch are indices into this list.")
@@ -238,7 +239,7 @@ Raises ReadError, InvalidInput that names file and line, Unsupported.)");
         return std::make_shared<CenterlineObject>(CenterlineObject{synthetic_tree({vertices, seed}), {}, {}, {}});
       },
       py::arg("vertices") = SyntheticTreeOptions().vertices, py::arg("seed") = SyntheticTreeOptions().seed,
-      "A tree like a liver's portal vein, of exactly so many nodes, 2 to 1,000,000. A seed gives the same tree "
+      "A tree like a liver's portal vein, of exactly so many nodes, 2 to 10,000,000. A seed gives the same tree "
       "always.");
 }
 

@@ -25,7 +25,8 @@ SimulationOptions options_of(double step, int iterations, const py::object& grav
 
 const Centerline& centerline_of(const SurfaceObject& surface) {
   if (!surface.centerline)
-    throw InvalidInput("the surface is bound to no centerline: read or make it with the one that it was grown around");
+    throw InvalidInput(
+        "the surface is not bound to a centerline: read or make it with the one around which it was grown");
   return surface.centerline->centerline;
 }
 
@@ -52,12 +53,12 @@ class Deformation {
   const std::vector<Vec3>& normals() const { return normals_; }
   const std::vector<Vec3>& nodes() const { return nodes_; }
 
-  /// Without what the surface shows.
+  /// Advances without updating the surface.
   StepReport advance() {
     ++steps_;
     return simulation_.step();
   }
-  /// The surface follows.
+  /// Updates the surface.
   void synchronise() {
     binding_.apply(simulation_.pose(), simulation_.moved(), lanes_);
     simulation_.clear_moved();
@@ -83,7 +84,7 @@ class Deformation {
   std::vector<Vec3> vertices_, normals_, nodes_;
 };
 
-/// Steps, looking for signals now and then.
+/// Steps, checking for signals now and then.
 StepReport step(Deformation& self, std::size_t count) {
   constexpr std::chrono::milliseconds kBetweenLooks(50);
   StepReport last;
@@ -104,14 +105,14 @@ StepReport step(Deformation& self, std::size_t count) {
 template <class T>
 bool write_as(const std::vector<Vec3>& vertices, py::array& out) {
   if (!py::isinstance<py::array_t<T, py::array::c_style>>(out)) return false;
-  T* to = static_cast<T*>(out.mutable_data());  // refuses what is not writable
+  T* to = static_cast<T*>(out.mutable_data());  // throws if it is not writable
   for (const Vec3& p : vertices) {
     for (const double x : p) *to++ = static_cast<T>(x);
   }
   return true;
 }
 
-// Any other array would have to be copied, and what is written be lost.
+// Any other array would be copied, and the result lost.
 void write_into(const Deformation& self, py::array& out) {
   const std::vector<Vec3>& vertices = self.vertices();
   if (out.ndim() != 2 || static_cast<std::size_t>(out.shape(0)) != vertices.size() || out.shape(1) != 3)
@@ -136,7 +137,7 @@ void bind_actions(DeformationClass& deformation) {
   deformation
       .def(
           "fix", [](Deformation& d, Index node) { d.simulation().fix(node); }, py::arg("node"),
-          "Holds the position of a node; it may turn.")
+          "Holds the position of a node; it may rotate.")
       .def(
           "clamp", [](Deformation& d, Index node) { d.simulation().clamp(node); }, py::arg("node"),
           "Holds the position of a node and its direction.")
@@ -152,26 +153,26 @@ void bind_actions(DeformationClass& deformation) {
           [](Deformation& d, Index node, const py::object& f) {
             d.simulation().set_force(node, to_point(f, "force_N"));
           },
-          py::arg("node"), py::arg("force_N"), "On a node, (3,) N, until it is set again.")
+          py::arg("node"), py::arg("force_N"), "Sets the force on a node, (3,) N, until it is set again.")
       .def(
           "set_torque",
           [](Deformation& d, Index node, const py::object& t) {
             d.simulation().set_torque(node, to_point(t, "torque_N_mm"));
           },
-          py::arg("node"), py::arg("torque_N_mm"), "On a node, (3,) N mm, until it is set again.")
+          py::arg("node"), py::arg("torque_N_mm"), "Sets the torque on a node, (3,) N mm, until it is set again.")
       .def(
           "set_radial_scale",
           [](Deformation& d, Index node, double scale) { d.simulation().set_radial_scale(node, scale); },
-          py::arg("node"), py::arg("scale"), "Of the vessel's profile at a node, above 0.")
+          py::arg("node"), py::arg("scale"), "Sets the scale of the vessel's profile at a node, above 0.")
       .def(
           "set_squeeze", [](Deformation& d, Index node, double force) { d.simulation().set_squeeze(node, force); },
-          py::arg("node"), py::arg("force_N"), "Presses on the wall around a node, evenly, N; negative widens.")
+          py::arg("node"), py::arg("force_N"), "Presses evenly on the wall around a node, N; negative forces widen it.")
       .def(
           "set_velocity",
           [](Deformation& d, Index node, const py::object& v) {
             d.simulation().set_velocity(node, to_point(v, "velocity_mm_s"));
           },
-          py::arg("node"), py::arg("velocity_mm_s"), "Of a node, (3,) mm/s.")
+          py::arg("node"), py::arg("velocity_mm_s"), "Sets the velocity of a node, (3,) mm/s.")
       .def(
           "set_gravity",
           [](Deformation& d, const py::object& g) { d.simulation().set_gravity(to_point(g, "gravity_mm_s2")); },
@@ -183,37 +184,39 @@ void bind_state(DeformationClass& deformation) {
       .def_property_readonly(
           "vertices",
           [](const py::object& self) { return points_view(self.cast<const Deformation&>().vertices(), self); },
-          "Where the surface is, (n, 3) float64, mm: a view that every step() changes. Copy what is to stay.")
+          "Positions of the vertices, (n, 3) float64, mm: a view that every step() changes. Copy it to keep it.")
       .def_property_readonly(
           "normals",
           [](const py::object& self) { return points_view(self.cast<const Deformation&>().normals(), self); },
-          "Unit normals of the vertices, (n, 3) float64; changes with every step() likewise.")
+          "Unit normals of the vertices, (n, 3) float64; also changes with every step().")
       .def_property_readonly(
           "nodes", [](const py::object& self) { return points_view(self.cast<const Deformation&>().nodes(), self); },
-          "Where the centerline's nodes are, (k, 3) float64, mm; changes with every step() likewise.")
+          "Positions of the centerline's nodes, (k, 3) float64, mm; also changes with every step().")
       .def_property_readonly(
           "faces", [](const Deformation& d) { return py::cast(d.surface()).attr("faces"); },
           "Of the surface, (m, 3) uint32.")
       .def_property_readonly("rest", &Deformation::surface, "The surface at rest.")
-      .def_property_readonly("time", &Deformation::time, "Since the beginning, s.")
+      .def_property_readonly("time", &Deformation::time, "Simulated time, s.")
       .def_property_readonly(
           "kinetic_energy", [](Deformation& d) { return d.simulation().kinetic_energy_J(); }, "J.")
       .def_property_readonly(
           "elastic_energy", [](Deformation& d) { return d.simulation().elastic_energy_J(); }, "J.")
       .def("write_vertices", &write_into, py::arg("out").noconvert(),
-           "Writes the vertices into an array of yours, (n, 3), float32 or float64, in C order, mm.")
+           "Writes the vertices into your own array, (n, 3), float32 or float64, in C order, mm.")
       .def("surface", &as_surface,
-           "The surface as it is now, to keep or to save(), with the attribute displacement (mm, from rest).");
+           "The present surface, to keep or to save(), with the attribute displacement (mm, from rest).");
 }
 
 }  // namespace
 
 void bind_deformation(py::module_& module) {
-  py::class_<StepReport>(module, "StepReport", "What a step did.")
+  py::class_<StepReport>(module, "StepReport", "What happened in a step.")
       .def_readonly("iterations", &StepReport::iterations)
-      .def_readonly("rejections", &StepReport::rejections, "Steps of an iteration that would have raised the energy.")
-      .def_readonly("work", &StepReport::work_J, "By forces, gravity and dragged nodes, J.")
-      .def_readonly("movement", &StepReport::movement_mm, "Of the last iteration, mm: how far from converged.")
+      .def_readonly("rejections", &StepReport::rejections,
+                    "Updates rejected because they would have raised the energy.")
+      .def_readonly("work", &StepReport::work_J, "Work done by forces, gravity and dragged nodes, J.")
+      .def_readonly("movement", &StepReport::movement_mm,
+                    "Largest movement in the last iteration, mm: a measure of convergence.")
       .def_readonly("awake", &StepReport::awake, "Nodes that are not at rest.");
   const Material material;
   const SimulationOptions options;
@@ -251,7 +254,7 @@ Use it from one thread at a time.)");
                   py::arg("squeeze_response_s") = options.squeeze_response_s,
                   py::arg("rest_tolerance") = options.rest_tolerance);
   deformation.def("step", &step, py::arg("count") = 1,
-                  "Advances by so many steps, then the surface follows. Returns the StepReport of the last.");
+                  "Advances by `count` steps, then updates the surface. Returns the StepReport of the last step.");
   bind_actions(deformation);
   bind_state(deformation);
 }

@@ -63,7 +63,7 @@ Evaluation evaluate(const TriMesh& mesh, const TriMesh* reference, const Centerl
   return result;
 }
 
-/// On so many threads; 0: as many as there are.
+/// Runs `work` on so many threads; 0: all.
 template <class Work>
 auto on_threads(int threads, const Work& work) {
   if (threads < 0) throw InvalidInput("threads must be >= 0");
@@ -72,7 +72,7 @@ auto on_threads(int threads, const Work& work) {
 }
 
 void bind_distribution(py::module_& module) {
-  py::class_<Distribution>(module, "Distribution", "What many numbers look like together.")
+  py::class_<Distribution>(module, "Distribution", "Summary statistics of a set of numbers.")
       .def_readonly("count", &Distribution::count)
       .def_readonly("min", &Distribution::min)
       .def_readonly("max", &Distribution::max)
@@ -91,7 +91,7 @@ void bind_distribution(py::module_& module) {
 }
 
 void bind_topology(py::module_& module) {
-  py::class_<Topology>(module, "Topology", "How the faces of a mesh hang together.")
+  py::class_<Topology>(module, "Topology", "The topology of a mesh.")
       .def_readonly("closed", &Topology::closed, "Every edge has two faces or more.")
       .def_readonly("manifold", &Topology::manifold, "No edge has more than two faces, no vertex two fans.")
       .def_readonly("oriented", &Topology::oriented, "Neighbouring faces agree about the outside.")
@@ -107,7 +107,7 @@ void bind_topology(py::module_& module) {
 void bind_distances(py::module_& module) {
   py::class_<OneSidedHausdorff>(
       module, "OneSidedHausdorff",
-      "The largest distance of a point of one surface from the other: an interval that holds it, mm.")
+      "The largest distance of a point of one surface from the other: an interval that contains it, mm.")
       .def_readonly("lower", &OneSidedHausdorff::lower)
       .def_readonly("upper", &OneSidedHausdorff::upper)
       .def_property_readonly(
@@ -116,7 +116,8 @@ void bind_distances(py::module_& module) {
       .def_property_readonly(
           "to_point", [](const OneSidedHausdorff& h) { return array_of(h.witness.to); },
           "(3,) mm: the point of the other surface closest to it.");
-  py::class_<Hausdorff>(module, "Hausdorff", "The Hausdorff distance of two surfaces: an interval that holds it, mm.")
+  py::class_<Hausdorff>(module, "Hausdorff",
+                        "The Hausdorff distance of two surfaces: an interval that contains it, mm.")
       .def_property_readonly("lower", &Hausdorff::lower)
       .def_property_readonly("upper", &Hausdorff::upper)
       .def_readonly("forward", &Hausdorff::forward, "From the first surface to the second.")
@@ -133,17 +134,18 @@ void bind_distances(py::module_& module) {
       .def_property_readonly(
           "max_at", [](const VesselDistanceSide& s) { return array_of(s.max_at); }, "(3,) mm.")
       .def_readonly("samples_per_mm2", &VesselDistanceSide::samples_per_mm2);
-  py::class_<VesselDistance>(module, "VesselDistance", "A surface against the exact volume of a centerline, both ways.")
+  py::class_<VesselDistance>(module, "VesselDistance",
+                             "The distance between a surface and the exact volume of a centerline, both ways.")
       .def_readonly("from_surface", &VesselDistance::from_mesh)
       .def_readonly("from_volume", &VesselDistance::from_volume);
-  py::class_<ReferenceDistance>(module, "ReferenceDistance", "A surface against another one, both ways.")
+  py::class_<ReferenceDistance>(module, "ReferenceDistance", "The distance between two surfaces, both ways.")
       .def_readonly("hausdorff", &ReferenceDistance::hausdorff)
       .def_readonly("from_surface", &ReferenceDistance::from_surface)
       .def_readonly("from_reference", &ReferenceDistance::from_reference);
 }
 
 void bind_report(py::module_& module) {
-  py::class_<Evaluation>(module, "Evaluation", "What was measured of a surface.")
+  py::class_<Evaluation>(module, "Evaluation", "Measurements of a surface.")
       .def_readonly("vertices", &Evaluation::vertices)
       .def_readonly("faces", &Evaluation::faces)
       .def_readonly("area", &Evaluation::area, "mm^2.")
@@ -155,11 +157,11 @@ void bind_report(py::module_& module) {
       .def_property_readonly(
           "degenerate_faces",
           [](const Evaluation& e) { return array_of(std::vector<Index>(e.defects.degenerate_faces)); },
-          "Without area, uint32.")
+          "Faces without area, uint32.")
       .def_property_readonly(
           "duplicate_faces",
           [](const Evaluation& e) { return array_of(std::vector<Index>(e.defects.duplicate_faces)); },
-          "With the corners of an earlier one, uint32.")
+          "Faces with the corners of an earlier one, uint32.")
       .def_property_readonly(
           "crossing_faces",
           [](const Evaluation& e) {

@@ -15,7 +15,7 @@ namespace {
 
 bool was_grown(const SurfaceObject& surface) { return surface.result.check.topology.components > 0; }
 
-/// Of a surface that was grown here: openings go to flat ends of the reference, defects are looked for.
+/// Fits a surface grown here: moves openings to flat ends of the reference, and looks for defects.
 void fit_grown(SurfaceObject& surface, const TriMesh& reference, const FitOptions& options, const Progress& progress) {
   const Centerline& centerline = surface.centerline->centerline;
   const FlatReference flat = end_at_caps(surface.result, reference);
@@ -44,10 +44,11 @@ void fit_bound(SurfaceObject& surface, const TriMesh& reference, const FitOption
 SurfacePtr fit(const SurfaceObject& surface, const SurfaceObject& reference, const FitOptions& options,
                const Progress& progress) {
   if (!surface.centerline)
-    throw InvalidInput("the surface is bound to no centerline: read or make it with the one that it was grown around");
+    throw InvalidInput(
+        "the surface is not bound to a centerline: read or make it with the one around which it was grown");
   const std::vector<FlatEnd>& ends = surface.ends.ends;
   if (std::any_of(ends.begin(), ends.end(), [](const FlatEnd& end) { return end.capped; }))
-    throw InvalidInput("the surface's ends are capped already: fit it with ends=\"open\", then finish_ends()");
+    throw InvalidInput("the surface's ends are already capped: fit it with ends=\"open\", then use finish_ends()");
   auto result = std::make_shared<SurfaceObject>(surface);
   result->ends = {};
   was_grown(surface) ? fit_grown(*result, reference.mesh(), options, progress)
@@ -63,13 +64,13 @@ void bind_reports(py::module_& module) {
       .def_property_readonly("mean", &FitDistance::mean, "Of the worse direction.")
       .def_property_readonly("rms", &FitDistance::rms, "Of the worse direction.")
       .def_property_readonly("p95", &FitDistance::p95, "95 % are nearer, in the worse direction.");
-  py::class_<UnmatchedPart>(module, "UnmatchedPart", "A part of one surface that nothing of the other answers to.")
+  py::class_<UnmatchedPart>(module, "UnmatchedPart", "A region of one surface without a counterpart on the other.")
       .def_property_readonly(
           "position", [](const UnmatchedPart& p) { return array_of(p.position); },
           "(3,) mm: its point farthest from the other surface.")
       .def_readonly("distance", &UnmatchedPart::distance, "Of that point, mm.")
       .def_readonly("area", &UnmatchedPart::area, "mm^2.")
-      .def_readonly("inside", &UnmatchedPart::inside, "That point lies inside of the other surface.")
+      .def_readonly("inside", &UnmatchedPart::inside, "That point lies inside the other surface.")
       .def_property_readonly(
           "segment", [](const UnmatchedPart& p) { return optional_index(p.segment); },
           "The nearest of the centerline, or None.");
@@ -78,13 +79,13 @@ void bind_reports(py::module_& module) {
       .def_readonly("before", &FitReport::before, "The distance before.")
       .def_readonly("after", &FitReport::after, "The distance after.")
       .def_readonly("parts_apart", &FitReport::parts_apart,
-                    "Components of the reference most of which belongs to no vessel; they were left out.")
+                    "Components of the reference that mostly belong to no vessel; they were left out.")
       .def_readonly("area_apart", &FitReport::area_apart, "Their area, mm^2.")
-      .def_readonly("uncovered", &FitReport::uncovered, "Of the reference, what no vessel covers. Largest first.")
-      .def_readonly("unsupported", &FitReport::unsupported, "Of the surface, what the reference does not have.")
-      .def_readonly("nodes_outside", &FitReport::nodes_outside,
-                    "Nodes of the centerline outside of the fitted surface.")
-      .def_readonly("turned", &FitReport::turned, "The reference faced inwards, and was turned.")
+      .def_readonly("uncovered", &FitReport::uncovered,
+                    "Regions of the reference that no vessel covers. Largest first.")
+      .def_readonly("unsupported", &FitReport::unsupported, "Regions of the surface that the reference lacks.")
+      .def_readonly("nodes_outside", &FitReport::nodes_outside, "Nodes of the centerline outside the fitted surface.")
+      .def_readonly("turned", &FitReport::turned, "The reference faced inwards and was turned over.")
       .def_readonly("rounds", &FitReport::rounds);
 }
 

@@ -18,7 +18,7 @@ GrowthRequest request_of(int around, const std::string& max_error, double blend,
   options.placement = parse_placement(placement);
   options.growth = parse_growth_method(growth);
   if (overlap != "separate" && overlap != "keep")
-    throw InvalidInput("overlap: \"" + overlap + "\" is none; there are separate and keep");
+    throw InvalidInput("overlap: \"" + overlap + "\" is not known; there are separate and keep");
   request.separate = overlap == "separate";
   request.gap = gap;
   request.ends = parse_end_shape(ends);
@@ -49,8 +49,9 @@ void bind_generation(py::module_& module) {
       },
       py::arg("centerline").none(false), py::kw_only(), py::arg("progress"), py::arg("around"), py::arg("max_error"),
       py::arg("blend"), py::arg("placement"), py::arg("growth"), py::arg("overlap"), py::arg("gap"), py::arg("ends"),
-      py::arg("open_ends"), py::arg("flow_extension"), py::arg("simplification"), py::arg("elongation"), py::arg("deformable"), py::arg("sweeps"),
-      py::arg("max_vertices"), py::arg("threads"), "vmesh.generate() without its checks.");
+      py::arg("open_ends"), py::arg("flow_extension"), py::arg("simplification"), py::arg("elongation"),
+      py::arg("deformable"), py::arg("sweeps"), py::arg("max_vertices"), py::arg("threads"),
+      "vmesh.generate() without its checks.");
   module.def(
       "finish_ends",
       [](const SurfaceObject& surface, bool cap, const py::object& left_open, double extension, bool keep_area) {
@@ -66,9 +67,9 @@ void bind_generation(py::module_& module) {
       py::arg("extension") = 0.0, py::arg("keep_area") = false,
       R"(A copy of a surface, its openings finished flat.
 
-    cap        close them by flat caps
-    left_open  but not at these nodes of the centerline
-    extension  length of straight tubes that go on from there first, in radii
+    cap        close the ends by flat caps
+    left_open  nodes of the centerline whose ends stay open even so
+    extension  length of straight extensions there, in radii
     keep_area  scale the rings to the area of the round cross-section; not for fitted surfaces
 
 `Surface.flat_ends` lists them, `Surface.cap_label` says which faces are caps.)");

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kNamed = 5;  // places, in a warning
 
-/// With flat or open ends all are grown open; `left_open` are those to stay so.
+/// With flat or open ends, all are grown open; those in `left_open` stay open.
 struct SettledEnds {
   GenerateOptions options;
   EndShape shape;
@@ -23,7 +23,7 @@ SettledEnds settle(const GrowthRequest& request) {
   SettledEnds ends{request.options, request.ends, {}};
   OpenEnds& open = ends.options.open_ends;
   if (request.extension > 0 && ends.shape == EndShape::round && !open.all && open.nodes.empty())
-    throw InvalidInput("flow_extension needs ends to go on from: ends=\"flat\" or \"open\"");
+    throw InvalidInput("flow_extension needs ends that are not round: ends=\"flat\" or \"open\"");
   if (ends.shape == EndShape::round) return ends;
   if (open.all) ends.shape = EndShape::open;
   ends.left_open = std::move(open.nodes);
@@ -43,16 +43,16 @@ void warn_of_contacts_left(const std::vector<Contact>& left, std::vector<std::st
   for (std::size_t c = 0; c < std::min(kNamed, left.size()); ++c)
     warnings.push_back("vessels still touch " + describe(left[c]) +
                        "; neither narrowing nor a small move can part them: "
-                       "move the nodes of one, or join them if they are one vessel");
+                       "move nodes of one, or join them if they are one vessel");
   if (left.size() > kNamed) warnings.push_back("vessels still touch in " + counted(left.size(), "place"));
 }
 
 void warn_of_contacts(const Centerline& centerline, const GrowthRequest& request, std::vector<std::string>& warnings) {
-  const std::vector<Contact> contacts = find_contacts(VesselField(centerline, request.options.blend), request.gap);
+  const std::vector<Contact> contacts = find_contacts(ConeRelations(centerline, request.options.blend), request.gap);
   if (contacts.empty()) return;
   warnings.push_back("vessels that are not neighbours touch in " + counted(contacts.size(), "place") +
                      ", the deepest " + describe(contacts.front()) +
-                     "; there the surface intersects itself (overlap=\"separate\", the default, parts them)");
+                     "; there the surface intersects itself (overlap=\"separate\", the default, moves them apart)");
 }
 
 void warn_of_error(const ErrorSummary& error, const ErrorLimit& limit, std::vector<std::string>& warnings) {
@@ -60,7 +60,7 @@ void warn_of_error(const ErrorSummary& error, const ErrorLimit& limit, std::vect
   warnings.push_back("the surface may be farther than " + to_string(limit) +
                      " from the boundary, or the boundary from it, at " + counted(error.unproven_faces, "face") +
                      " in " + counted(error.unproven_places.size(), "place") +
-                     ": triangles became as small as they may; allow more there, or look at the radii");
+                     ": triangles are already as small as allowed; allow a larger error there, or check the radii");
 }
 
 std::optional<SimplifiedCenterline> simplify(const Centerline& centerline, const GenerateOptions& options) {
@@ -70,7 +70,7 @@ std::optional<SimplifiedCenterline> simplify(const Centerline& centerline, const
   return simplified;
 }
 
-/// Around the centerline, or the nodes of it that `simplified` kept.
+/// Grows a surface around the centerline, or around the nodes kept by `simplified`.
 GenerateResult grow_around(const Centerline& centerline, const std::optional<SimplifiedCenterline>& simplified,
                            const GenerateOptions& wanted, const GrowthRequest& request, const Progress& progress,
                            std::vector<std::string>& warnings) {
@@ -107,7 +107,7 @@ EndShape parse_end_shape(const std::string& text) {
   if (text == "round") return EndShape::round;
   if (text == "flat") return EndShape::flat;
   if (text == "open") return EndShape::open;
-  throw InvalidInput("ends: \"" + text + "\" is none; there are round, flat and open");
+  throw InvalidInput("ends: \"" + text + "\" is not known; there are round, flat and open");
 }
 
 SurfacePtr grow(const CenterlinePtr& centerline, const GrowthRequest& request, const Progress& progress) {
@@ -139,10 +139,10 @@ SurfacePtr grow(const CenterlinePtr& centerline, const GrowthRequest& request, c
 }
 
 SurfacePtr with_finished_ends(const SurfaceObject& surface, const FlatEndOptions& options) {
-  if (!surface.centerline) throw InvalidInput("the surface is bound to no centerline, whose ends these would be");
+  if (!surface.centerline) throw InvalidInput("the surface is not bound to a centerline whose ends could be finished");
   for (const Opening& opening : surface.result.openings) {
     if (opening.node == kNone)
-      throw InvalidInput("which ends of the centerline the openings are at is not known of a surface from a file");
+      throw InvalidInput("for a surface from a file it is not known at which ends of the centerline its openings are");
   }
   auto result = std::make_shared<SurfaceObject>(surface);
   result->ends = finish_ends(result->result, surface.centerline->centerline, options);

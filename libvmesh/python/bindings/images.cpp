@@ -25,7 +25,7 @@ LoadedImage image_of(const py::array& values, const py::object& affine) {
   const py::array_t<double, py::array::c_style | py::array::forcecast> matrix(affine);
   if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
     throw InvalidInput("affine: the shape is not (4, 4)");
-  // Fortran's order is ours: the first axis fastest.
+  // Fortran order, as in VoxelImage: the first axis fastest.
   const py::array_t<float, py::array::f_style | py::array::forcecast> ordered(values);
   LoadedImage loaded;
   loaded.integer = kind != 'f';

@@ -6,7 +6,7 @@
 
 PYBIND11_MODULE(_core, module) {
   using namespace vmesh::python;
-  module.doc() = "What vmesh is made of. Use the package vmesh.";
+  module.doc() = "The compiled part of vmesh. Use the package vmesh.";
   module.attr("__version__") = std::string(vmesh::version());
   bind_errors();
   bind_centerline(module);

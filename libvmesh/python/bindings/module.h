@@ -6,7 +6,7 @@ namespace vmesh::python {
 
 namespace py = pybind11;
 
-/// Each fills the module with what is of its topic.
+/// Each adds the functions and classes of its topic to the module.
 void bind_errors();
 void bind_centerline(py::module_& module);
 void bind_surface(py::module_& module);

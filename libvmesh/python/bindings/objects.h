@@ -16,16 +16,16 @@ namespace vmesh::python {
 /// vmesh.Centerline.
 struct CenterlineObject {
   Centerline centerline;
-  std::vector<std::string> cleaning;       ///< what was done to make it valid
+  std::vector<std::string> cleaning;       ///< what cleaning did to make it valid
   std::vector<std::string> warnings;       ///< of the reader
-  std::vector<std::string> place_of_node;  ///< in the file, of every node; empty: not from one
+  std::vector<std::string> place_of_node;  ///< in the file, for every node; empty: not from a file
 };
 using CenterlinePtr = std::shared_ptr<CenterlineObject>;
 
-/// vmesh.Surface. Never changes, as arrays look into it.
+/// vmesh.Surface. Immutable, as arrays are views of it.
 struct SurfaceObject {
-  GenerateResult result;      ///< of what was not grown, the mesh and what is known of the rest
-  CenterlinePtr centerline;   ///< that result.binding is of; null: not bound to any
+  GenerateResult result;      ///< for a surface that was not grown: the mesh and whatever else is known
+  CenterlinePtr centerline;   ///< to which result.binding refers; null: not bound
   MeshAttributes attributes;  ///< of the file it was read from
   std::vector<std::string> warnings;
   FlatEnds ends;

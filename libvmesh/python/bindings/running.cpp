@@ -15,7 +15,7 @@ namespace py = pybind11;
 
 constexpr std::chrono::milliseconds kBetweenLooks(50);
 
-/// What the thread that works and the one that waits tell each other.
+/// Communication between the working thread and the waiting one.
 class Exchange {
  public:
   Progress progress() {
@@ -65,7 +65,7 @@ class Exchange {
   std::exception_ptr error_;
 };
 
-/// Returns whether to go on.
+/// Reports to the callback; returns whether to continue.
 bool tell(const py::object& callback, Exchange& exchange) {
   if (callback.is_none()) return true;
   const auto report = exchange.take_report();

@@ -9,10 +9,10 @@
 
 namespace vmesh::python {
 
-/// Runs `work` on a thread of its own, without the interpreter's lock, so that other threads of Python go on. Meanwhile
-/// this thread looks for signals and calls `callback(stage, fraction)`, unless it is None, up to 20 times a second.
-/// A signal whose handler raises (Ctrl-C: KeyboardInterrupt), a callback that raises or one that returns False
-/// cancels the work as soon as it reports progress; what was raised, or Cancelled, is thrown once it has ended.
+/// Runs `work` on a separate thread without the interpreter's lock, so that other Python threads continue. Meanwhile
+/// this thread checks for signals and calls `callback(stage, fraction)`, unless it is None, up to 20 times a second. A
+/// signal whose handler raises (Ctrl-C: KeyboardInterrupt), or a callback that raises or returns False, cancels the
+/// work at its next progress report; the exception, or Cancelled, is thrown once the work has ended.
 void run(const pybind11::object& callback, const std::function<void(const Progress&)>& work);
 
 /// The same with a result.

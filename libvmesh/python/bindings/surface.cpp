@@ -67,7 +67,7 @@ void save(const SurfaceObject& self, const fs::path& path, const std::string& un
   metadata.generator = generator_name();
   metadata.unit = unit_of(unit);
   metadata.space = space_of(space);
-  if (bones && !self.centerline) throw InvalidInput("bones are along a centerline, and this surface is bound to none");
+  if (bones && !self.centerline) throw InvalidInput("bones need a centerline, and this surface is not bound to one");
   const py::gil_scoped_release release;
   std::optional<SurfaceSkin> skin;
   if (bones) {
@@ -89,7 +89,7 @@ py::dict as_dict(const std::vector<MeshAttribute>& attributes) {
 
 const GenerateResult& result_of(const py::object& self) { return self.cast<const SurfaceObject&>().result; }
 
-/// None where the surface is bound to no centerline.
+/// None if the surface is not bound to a centerline.
 template <class T>
 py::object binding_view(const py::object& self, T CenterlineBinding::*member) {
   if (!self.cast<const SurfaceObject&>().centerline) return py::none();
@@ -108,7 +108,7 @@ py::object branch_of(const SurfaceObject& self, std::vector<Index> BranchLabels:
   return array_of(std::move(labels.*of));
 }
 
-/// As VTK and PyVista have faces: the number of corners before them.
+/// Faces as in VTK and PyVista: the number of corners, then the corners.
 py::array padded_faces(const SurfaceObject& self) {
   std::vector<std::int64_t> cells;
   cells.reserve(4 * self.mesh().faces.size());
@@ -142,7 +142,7 @@ std::string describe(const SurfaceObject& self) {
 }
 
 void bind_parts(py::module_& module) {
-  py::class_<Defect>(module, "Defect", "Something that a sound surface does not have.")
+  py::class_<Defect>(module, "Defect", "Something that a sound surface must not have.")
       .def_property_readonly(
           "kind", [](const Defect& d) { return std::string(to_string(d.kind)); },
           "not_closed, not_manifold, wrong_topology, inside_out, crossing_faces, bad_triangle or node_outside.")
@@ -156,7 +156,7 @@ void bind_parts(py::module_& module) {
           "Of Centerline.branches(), nearby, or None.")
       .def_property_readonly(
           "node", [](const Defect& d) { return optional_index(d.node); }, "The nearest of the centerline, or None.")
-      .def_readonly("message", &Defect::message, "What, how many, where.")
+      .def_readonly("message", &Defect::message, "A description with number and position.")
       .def("__repr__",
            [](const Defect& d) { return "<vmesh.Defect " + std::string(to_string(d.kind)) + ": " + d.message + ">"; });
   py::class_<Opening>(module, "Opening", "A hole at an end of a vessel.")
@@ -193,7 +193,7 @@ void bind_arrays(py::class_<SurfaceObject, SurfacePtr>& surface) {
       .def_property_readonly(
           "segment", [](const py::object& self) { return binding_view(self, &CenterlineBinding::segment); },
           "Of the centerline, that every vertex belongs to, (n,) uint32; isolated nodes are numbered after\n"
-          "the segments. None where the surface is bound to no centerline. A view, not writable.")
+          "the segments. None if the surface is not bound to a centerline. A view, not writable.")
       .def_property_readonly(
           "parameter", [](const py::object& self) { return binding_view(self, &CenterlineBinding::t); },
           "Where on that segment, (n,) float64 in [0, 1] from its first node to its second, or None. A\n"
@@ -205,7 +205,7 @@ void bind_arrays(py::class_<SurfaceObject, SurfacePtr>& surface) {
           "Index into centerline.branches() of every vertex, (n,) uint32, or None. Made anew each time.")
       .def_property_readonly(
           "face_branch", [](const SurfaceObject& self) { return branch_of(self, &BranchLabels::face); },
-          "The same of every face, (m,) uint32.")
+          "The same for every face, (m,) uint32.")
       .def_property_readonly(
           "skewness", [](const SurfaceObject& self) { return array_of(equiangle_skewness(self.mesh())); },
           "Equiangle skewness of every face, (m,) float64: 0 equilateral, 1 degenerate. Made anew each time.")
@@ -241,7 +241,7 @@ whole numbers. With a centerline every vertex is bound to the nearest place on i
           "defects", [](const SurfaceObject& self) { return self.result.defects; },
           "What is wrong with a surface that was grown or fitted; none: it is sound. For others see\n"
           "evaluate().")
-      .def_readonly("warnings", &SurfaceObject::warnings, "What a user should know of it, a line each.")
+      .def_readonly("warnings", &SurfaceObject::warnings, "What a user should know about it, one line each.")
       .def_property_readonly(
           "unproven_faces", [](const SurfaceObject& self) { return self.result.error.unproven_faces; },
           "Faces for which max_error is not proven.")
@@ -252,7 +252,7 @@ whole numbers. With a centerline every vertex is bound to the nearest place on i
             for (const StageTime& stage : self.result.stages) seconds[py::str(stage.stage)] = stage.seconds;
             return seconds;
           },
-          "Seconds that growing took, by stage.")
+          "Seconds that growth took, by stage.")
       .def_readonly("fit_report", &SurfaceObject::fit, "What fit() did, or None.")
       .def_property_readonly(
           "area", [](const SurfaceObject& self) { return surface_area(self.mesh()); }, "mm^2.")

@@ -1,4 +1,4 @@
-"""What vmesh raises."""
+"""The exceptions of vmesh."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Cancelled(Error):
 
 
 class DefectiveSurface(Error):
-    """No sound surface was found. `surface` is the one that was, `defects` what is wrong with it."""
+    """No sound surface was found. `surface` is the best that was, `defects` what is wrong with it."""
 
     def __init__(self, surface: Surface) -> None:
         self.surface = surface
@@ -52,9 +52,9 @@ for _error in (Error, InvalidInput, ReadError, WriteError, Unsupported, Cancelle
 def _message(defects: Sequence[Defect], named: int = 8) -> str:
     lines = [f"{defect.kind}: {defect.message}" for defect in defects[:named]]
     if len(defects) > named:
-        lines.append(f"and {len(defects) - named} defects more")
+        lines.append(f"and {len(defects) - named} more defects")
     lines.append(
-        "no sound surface was found: look at the radii and nodes there, try another around or blend, "
+        "no sound surface was found: check the radii and nodes there, try another around or blend, "
         "or take the surface as it is with allow_defects=True"
     )
     return "\n".join(lines)

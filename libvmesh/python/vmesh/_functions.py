@@ -1,4 +1,4 @@
-"""Functions of the package that take more than the compiled module does: arrays, pairs of arrays, numbers."""
+"""Functions of the package with more argument types than the compiled module: arrays, pairs of arrays, numbers."""
 
 from __future__ import annotations
 
@@ -66,32 +66,32 @@ def generate(
 
     centerline      a Centerline, or positions of its nodes, (n, 3), mm
     radii           (n,) mm, and
-    segments        (m, 2) node numbers, where positions are given; numbers of the result are of these
+    segments        (m, 2) node numbers, if positions are given; numbers in the result refer to these
     around          vertices around a vessel, 3 to 200
-    max_error       limit on the distance to the vessels' boundary, both ways, proven: mm as a number, or
+    max_error       proven limit on the distance to the vessels' boundary, both ways: mm as a number, or
                     "0.3mm", "5%" of the local radius
     blend           width of the rounding at branches, in smaller radii, 0 to 2
     placement       "balanced" keeps the volume, "inscribed" has all vertices on the boundary
     growth          "guided", or "paper": a single seed, as published
-    overlap         "separate" narrows vessels that touch, or moves them apart; "keep" does not
-    gap             what is left between them, in smaller radii
+    overlap         "separate" narrows vessels that touch, or moves them apart; "keep" leaves them
+    gap             to be left between them, in smaller radii
     ends            how vessels end: "round", "flat" (capped, numbered for flow solvers), "open"
-    open_ends       nodes at which the surface is left open whatever `ends` says
-    flow_extension  length of straight tubes that go on from ends that are not round, in radii
-    simplification  nodes are left out that change the vessels by at most this share of what edges across
+    open_ends       nodes at which the surface is left open regardless of `ends`
+    flow_extension  length of straight extensions at ends that are not round, in radii
+    simplification  nodes are left out where that changes the vessels by at most this share of what edges across
                     them cut off anyway, 0 to 1
     elongation      along vessels, triangles as long as the error allows, at most so many times their even
                     length, 1 (even) to 16
     deformable      for a centerline that is to move: a ring of vertices at every node
     sweeps          of the final optimisation
-    max_vertices    a centerline that asks for more is refused
-    threads         0: as many as there are; the result does not depend on it
+    max_vertices    a centerline that would need more is refused
+    threads         0: all; the result does not depend on it
     allow_defects   return a surface that is not sound instead of raising
     progress        a function of a stage and a fraction in [0, 1]; returning False cancels
 
-    The same options give the same surface, and the one that the command `vmesh generate` makes.
-    Raises InvalidInput, Unsupported (too large for the memory that is free), DefectiveSurface, Cancelled.
-    What else its user should know is in Surface.warnings, and issued as SurfaceWarning.
+    The same options give the same surface, which is that of the command `vmesh generate`.
+    Raises InvalidInput, Unsupported (not enough free memory), DefectiveSurface, Cancelled.
+    Anything else its user should know is in Surface.warnings, and issued as SurfaceWarning.
     """
     if not isinstance(centerline, Centerline):
         if radii is None or segments is None:
@@ -139,19 +139,19 @@ def fit(
 ) -> Surface:
     """A copy of a surface, moved onto the wall of a segmentation; it stays sound.
 
-    surface        bound to its centerline, as generate() makes it, ends not finished
+    surface        bound to its centerline, as from generate(), ends not finished
     reference      a surface or a pair (vertices, faces); see reference_surface() for images
     rounds         of correspondence, least squares and repair, 1 to 100
     resize         make triangles finer where the error is large, coarser where it is small
-    max_vertices   0: a twentieth more than there are, or what `error` takes
-    error          mm: 95 % of both surfaces are to be nearer to the other, with as few vertices as that
-                   takes; 0: none
-    max_skewness   that no step makes a triangle worse than, 0.1 to 0.9
+    max_vertices   0: a twentieth more than there are, or as many as `error` needs
+    error          mm: 95 % of either surface shall be nearer to the other, with as few vertices as
+                   possible; 0: none
+    max_skewness   beyond which no step may worsen a triangle, 0.1 to 0.9
     samples        points on each surface for mean, RMS and percentiles of the report
-    tolerance      width of the interval that holds a Hausdorff distance, mm
+    tolerance      width of the interval that contains a Hausdorff distance, mm
     threads, allow_defects, progress  as for generate()
 
-    Surface.fit_report says what was reached and what does not correspond. Raises InvalidInput, Unsupported,
+    Surface.fit_report contains the distances reached and the unmatched regions. Raises InvalidInput, Unsupported,
     DefectiveSurface, Cancelled.
     """
     fitted = _core.fit(
@@ -186,8 +186,8 @@ def evaluate(
     reference   another one to compare with, both ways
     centerline  whose volume (a union of round cones) to compare with, both ways
     samples     points on each surface for mean, RMS and percentiles
-    tolerance   width of the interval that holds a Hausdorff distance, mm
-    threads     0: as many as there are; the result does not depend on it
+    tolerance   width of the interval that contains a Hausdorff distance, mm
+    threads     0: all; the result does not depend on it
     progress    as for generate()
 
     Raises InvalidInput for a mesh without faces or with corners that are not finite, Cancelled.
@@ -204,9 +204,9 @@ def evaluate(
 
 
 def hausdorff(a: SurfaceLike, b: SurfaceLike, *, tolerance: float = 1e-4, progress: Progress = None) -> Hausdorff:
-    """The Hausdorff distance of two surfaces, as an interval of at most `tolerance` that holds it, mm.
+    """The Hausdorff distance of two surfaces, as an interval of at most `tolerance` that contains it, mm.
 
-    Each is a surface or a pair (vertices, faces); open ones and soups of triangles will do. Raises
+    Each is a surface or a pair (vertices, faces); open ones and soups of triangles are fine. Raises
     InvalidInput, Cancelled.
     """
     return _core.hausdorff(_as_surface(a), _as_surface(b), tolerance=tolerance, progress=progress)

@@ -1,4 +1,4 @@
-"""Surfaces to and from VTK, which is imported only when it is asked for (Debian: python3-vtk9)."""
+"""Surfaces to and from VTK, which is imported only when needed (Debian: python3-vtk9)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def to_vtk(surface: Surface) -> Any:
 
 
 def from_vtk(poly: Any) -> Surface:
-    """A Surface from the triangles of a vtkPolyData, of PyVista's PolyData likewise; polygons are cut up."""
+    """A Surface from the triangles of a vtkPolyData or of PyVista's PolyData; polygons are triangulated."""
     vtk, convert = _import_vtk()
     triangles = vtk.vtkTriangleFilter()
     triangles.SetInputData(poly)

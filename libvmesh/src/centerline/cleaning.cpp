@@ -26,9 +26,9 @@ std::string number(double value) {
   return text.str();
 }
 
-constexpr double kLargest = 1e30;  // mm; no surface is grown beyond, and squares of squares are finite up to there
+constexpr double kLargest = 1e30;  // mm; larger lengths are refused for growth, and fourth powers are finite up to here
 
-/// What cleaning cannot mend.
+/// Problems that cleaning cannot mend.
 std::vector<std::string> list_problems(const RawCenterline& raw) {
   std::vector<std::string> problems;
   for (Index n = 0; n < raw.nodes.size(); ++n) {
@@ -64,7 +64,7 @@ void check(const RawCenterline& raw) {
   if (raw.unit != LengthUnit::mm || raw.space != Space::lps) {
     throw InvalidInput(prefix + "a centerline must be in mm and LPS before it is cleaned (convert_to_internal)");
   }
-  if (raw.nodes.empty()) throw InvalidInput(prefix + "there is no point in it; give at least one point with a radius");
+  if (raw.nodes.empty()) throw InvalidInput(prefix + "it contains no point; give at least one point with a radius");
   if (raw.nodes.size() >= kNone || raw.segments.size() >= kNone) throw InvalidInput(prefix + "too many nodes");
   const auto problems = list_problems(raw);
   if (problems.empty()) return;
@@ -84,7 +84,7 @@ void remove_self_loops(Workspace& work) {
   }
 }
 
-/// Decimals of the grid that positions and radii are rounded to.
+/// Decimals of the grid to which positions and radii are rounded.
 int grid_decimals(const std::vector<CenterlineNode>& nodes) {
   constexpr double kLeast = 1e-300;  // below, its ten-thousandth would be 0
   double smallest = std::numeric_limits<double>::infinity();
@@ -147,12 +147,12 @@ void Workspace::compact() {
 
 namespace {
 
-/// `x` to that many decimals: the number that its decimal text reads back as.
+/// `x` rounded to that many decimals: the number that the rounded decimal text reads back as.
 double round_decimal(double x, int decimals, double power) {
   const double scaled = x * power;
   if (std::abs(scaled) > 0x1p52) return x;
   const double whole = std::nearbyint(scaled);
-  // Near a tie the product's own rounding could decide; means of decimal numbers are often ties.
+  // Near a tie the rounding of the product could decide; means of decimal numbers are often ties.
   if (std::abs(std::abs(scaled - whole) - 0.5) > std::abs(scaled) * 0x1p-50) return whole / power + 0.0;
   std::array<char, 400> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::fixed, decimals).ptr;

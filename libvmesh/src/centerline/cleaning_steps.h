@@ -38,9 +38,9 @@ struct Workspace {
   /// Distance below which nodes `a` and `b` count as one.
   double tolerance(Index a, Index b) const { return options.tolerance * std::min(nodes[a].radius, nodes[b].radius); }
   double distance(Index a, Index b) const { return (nodes[a].position - nodes[b].position).norm(); }
-  /// Makes the sets of `a` and `b` one; the lower representative's position stays.
+  /// Joins the sets of `a` and `b`; the lower representative's position is kept.
   void merge(Index a, Index b);
-  /// Replaces the ends of all segments by their representatives; drops the segments whose ends became one.
+  /// Replaces the ends of all segments by their representatives; drops segments whose ends coincide.
   void compact();
 };
 

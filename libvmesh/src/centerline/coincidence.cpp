@@ -13,10 +13,10 @@ namespace {
 using Kind = CleaningAction::Kind;
 using Element = CleaningAction::Element;
 
-/// How many branches that leave one node a repeated trunk is compared with; keeps stars linear.
+/// Branches leaving one node with which a repeated trunk is compared, at most; keeps stars linear.
 constexpr int kMaxComparedSiblings = 64;
 
-/// Follows every polyline along those before it for as long as their points coincide.
+/// Follows every polyline along earlier ones as long as their points coincide.
 class TrunkMerger {
  public:
   explicit TrunkMerger(Workspace& work)
@@ -49,7 +49,7 @@ class TrunkMerger {
 
   bool coincide(Index a, Index b) { return work_.distance(a, b) <= work_.tolerance(a, b); }
 
-  /// The node known so far where a polyline that begins at `n` can start to follow; kNone when there is none.
+  /// The known node from which a polyline that begins at `n` can be followed; kNone if there is none.
   Index find_start(Index n) {
     if (home_[n] != kNone) return home_[n];
     const Index found = tree_.nearest(work_.nodes[n].position, kNone - 1,
@@ -99,7 +99,7 @@ class TrunkMerger {
     }
   }
 
-  /// Makes node `n` one with `earlier`, unless it belongs to an earlier polyline already.
+  /// Merges node `n` with `earlier`, unless it already belongs to an earlier polyline.
   bool take(Index n, Index earlier) {
     if (home_[n] != kNone) return false;
     home_[n] = earlier;
@@ -123,8 +123,7 @@ class TrunkMerger {
   }
 
   Workspace& work_;
-  std::vector<Index>
-      home_;  // of nodes of the polylines followed so far: the node that stands for it, in general itself
+  std::vector<Index> home_;  // for nodes of polylines followed so far: the representative, usually itself
   std::vector<Index> first_child_;
   std::vector<Child> children_;
   PointTree tree_;

@@ -8,7 +8,7 @@
 namespace vmesh::cleaning {
 namespace {
 
-/// Joins components at the ends of branches, by added segments, like Kruskal's algorithm: never closes a loop.
+/// Joins components at the ends of branches by added segments, like Kruskal's algorithm: never closes a loop.
 class GapJoiner {
  public:
   explicit GapJoiner(Workspace& work)
@@ -29,12 +29,12 @@ class GapJoiner {
   }
 
   void run() {
-    // A sibling's start, one step short of the same parent as ours, is a worse place than the parent itself.
+    // A sibling's start, one step short of the same parent, is a worse target than the parent itself.
     while (round(true, [&](Index p) { return !is_start_[p]; })) {
     }
     while (round(true, [](Index) { return true; })) {
     }
-    // A piece that still hangs nowhere may have been stored from its far end.
+    // A branch that is still loose may have been stored from its far end.
     while (round(false, [](Index) { return true; })) {
     }
   }
@@ -99,7 +99,7 @@ class GapJoiner {
   Workspace& work_;
   std::vector<Index> degree_;
   DisjointSets joined_;
-  std::vector<Index> starts_component_;  // component before anything was joined
+  std::vector<Index> starts_component_;  // components before anything was joined
   std::vector<char> has_join_;           // by that component
   std::vector<char> is_start_;
   PointTree tree_;

@@ -8,11 +8,11 @@
 namespace vmesh::cleaning {
 namespace {
 
-constexpr double kLeastLength = 2;  // radii that polylines run side by side, or they are left as they are
-constexpr double kStray = 2;        // tolerances that a polyline may be off where it comes back
-constexpr double kSearched = 2;     // of a polyline's step: so far ahead its next point is looked for
+constexpr double kLeastLength = 2;  // radii: shorter overlaps are left as they are
+constexpr double kStray = 2;        // tolerances by which a polyline may deviate if it comes back
+constexpr double kSearched = 2;     // polyline steps: how far ahead the foot of the next point is searched
 constexpr int kMostSearchedSegments = 256;
-constexpr int kMostComparedBranches = 64;  // that leave one node: keeps stars linear
+constexpr int kMostComparedBranches = 64;  // leaving one node, at most: keeps stars linear
 
 double nearest_parameter(const Vec3& a, const Vec3& b, const Vec3& p) {
   const Vec3 along = b - a;
@@ -20,8 +20,8 @@ double nearest_parameter(const Vec3& a, const Vec3& b, const Vec3& p) {
   return length2 > 0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0;
 }
 
-/// Follows polylines along those before them for as long as they stay within a share of the radius. What is kept of
-/// those before is the graph; it changes only where a polyline leaves it between two of its nodes.
+/// Follows polylines along earlier ones as long as they stay within a share of the radius. The earlier ones form the
+/// graph, which changes only where a polyline leaves it between two of its nodes.
 class OverlapMerger {
  public:
   explicit OverlapMerger(Workspace& work)
@@ -39,13 +39,13 @@ class OverlapMerger {
   struct IncidentEdge {
     Index segment, next;
   };
-  // A place on a segment of the graph, in the direction in which it is followed.
+  // A point on a segment of the graph, in the direction in which the segment is followed.
   struct Foot {
     Index segment = kNone, from = kNone, to = kNone;
     double t = 0;         // 0 at `from`, 1 at `to`
-    double distance = 0;  // of the polyline's point
+    double distance = 0;  // of the polyline's point from it
   };
-  // A polyline or what is left of it, from the end that lies on the graph.
+  // A polyline, or the rest of one, starting at the end that lies on the graph.
   struct Path {
     std::vector<Index> nodes, segments;
   };
@@ -73,7 +73,7 @@ class OverlapMerger {
     Path path;
     for (std::size_t s = begin; s < end; ++s) {
       const auto& [a, b] = work_.segments[s];
-      if (home(a) == home(b)) continue;  // repeats an earlier one point by point
+      if (home(a) == home(b)) continue;  // repeats an earlier segment point by point
       if (path.nodes.empty()) path.nodes.push_back(a);
       path.nodes.push_back(b);
       path.segments.push_back(static_cast<Index>(s));
@@ -96,7 +96,7 @@ class OverlapMerger {
     }
   }
 
-  /// Makes the beginning of `path` one with the graph where it runs along it far enough.
+  /// Merges the beginning of `path` with the graph if it runs along it far enough.
   bool follow(const Path& path, std::size_t number) {
     const Index start = find_start(path.nodes.front());
     if (start == kNone) return false;
@@ -119,7 +119,7 @@ class OverlapMerger {
     return true;
   }
 
-  /// Where the points after the first one are on the graph, up to the last one within the tolerance.
+  /// The feet on the graph of the points after the first, up to the last one within the tolerance.
   std::vector<Foot> feet_along(const Path& path, Index start) {
     std::vector<Foot> feet;
     std::size_t good = 0;
@@ -133,14 +133,14 @@ class OverlapMerger {
     return feet;
   }
 
-  /// Whether a polyline's point may count as one with its foot.
+  /// Whether a polyline's point may be merged with its foot.
   bool fits(const Foot& foot, Index n, double tolerances) {
     const double r = radius(n), other = radius_at(foot);
     return foot.distance <= tolerances * tolerance(n, other) &&
            std::abs(r - other) <= tolerances * work_.options.overlap_tolerance * std::max(r, other);
   }
 
-  /// The node of the graph at which a polyline from `n` can begin to follow it: itself, or the end of an earlier one.
+  /// The node of the graph at which a polyline from `n` can start to follow it: itself, or the end of an earlier one.
   Index find_start(Index n) {
     if (placed_[home(n)]) return home(n);
     const Index end = ends_.nearest(position(n), kNone - 1, [&](Index other) {
@@ -156,12 +156,12 @@ class OverlapMerger {
   double radius_at(const Foot& foot) { return (1 - foot.t) * radius(foot.from) + foot.t * radius(foot.to); }
   Vec3 position_at(const Foot& foot) { return (1 - foot.t) * position(foot.from) + foot.t * position(foot.to); }
 
-  /// Where the graph, followed on from `at`, is nearest to `q`, the polyline's point after `p`; without a segment where
-  /// it is nowhere near enough, or is not so between.
+  /// Where the graph, followed onwards from `at`, is nearest to `q`, the polyline's point after `p`; without a segment
+  /// if it is never near enough, or not all the way.
   Foot next_foot(const Foot& at, Index p, Index q) {
     const double reach = kSearched * (position(q) - position(p)).norm() + kStray * tolerance(q, radius(q));
     struct Ahead {
-      Foot from;  // of the segment: not before there
+      Foot from;  // first admissible point of the segment
       double left;
     };
     std::vector<Ahead> stack;
@@ -183,7 +183,7 @@ class OverlapMerger {
     return best;
   }
 
-  /// The segments that go on from the end of one.
+  /// The segments that continue from the end of one.
   template <class Push>
   void push_beyond(const Foot& foot, double left, const Push& push) {
     const Index n = home(foot.to);
@@ -204,7 +204,7 @@ class OverlapMerger {
     return foot;
   }
 
-  /// Whether a node of the graph lies near enough to the polyline's segment.
+  /// Whether a node of the graph is near enough to the polyline's segment.
   bool is_along(Index node, Index p, Index q) {
     const Vec3 &a = position(p), &b = position(q);
     const double t = nearest_parameter(a, b, position(node));
@@ -212,7 +212,8 @@ class OverlapMerger {
            kStray * tolerance(node, (1 - t) * radius(p) + t * radius(q));
   }
 
-  /// The graph's node keeps its place and its segments, whichever of the two stands for both.
+  /// Merges `n` into a node of the graph, which keeps its position and segments whichever of the two becomes the
+  /// representative.
   void absorb(Index n, Index into) {
     const Index kept = home(into);
     if (home(n) == kept) return;
@@ -225,7 +226,7 @@ class OverlapMerger {
     placed_[both] = 1;
   }
 
-  /// The polyline's last point on the graph, from which the rest of it goes on.
+  /// Attaches the polyline's last point on the graph, from which its rest continues.
   void leave(Index n, const Foot& foot, bool ends_here) {
     const double length = (position(foot.to) - position(foot.from)).norm();
     const double short_of = work_.options.overlap_tolerance * radius_at(foot);
@@ -237,7 +238,7 @@ class OverlapMerger {
     }
   }
 
-  /// Puts `n` onto a segment of the graph.
+  /// Divides a segment of the graph at `n`.
   void divide(const Foot& foot, Index n) {
     const Index middle = home(n);
     work_.nodes[middle] = {position_at(foot), radius_at(foot)};

@@ -8,22 +8,22 @@
 
 namespace vmesh {
 
-/// A k-d tree over some of a list of points, for nearest-point queries with conditions. Deterministic.
+/// A k-d tree over a subset of a list of points, for nearest-point queries with conditions. Deterministic.
 class PointTree {
  public:
   struct Point {
     Vec3 position;
-    double reach;  ///< radius around the point within which it may be found
+    double reach;  ///< largest distance at which the point may be found
     Index id;
   };
 
   explicit PointTree(std::vector<Point> points);
 
-  /// Gives every point a label (by id). Subtrees of one label can then be skipped as a whole.
+  /// Gives every point a label (by id), so that subtrees with a single label can be skipped as a whole.
   void set_labels(const std::vector<Index>& label_of_id);
 
-  /// The nearest point that is within its reach of `p`, whose label is not `skip_label` and that
-  /// `accept(id)` agrees to; kNone when there is none. At equal distance, either.
+  /// The nearest point within its reach of `p` whose label is not `skip_label` and that `accept(id)` approves; kNone if
+  /// there is none. At equal distance, either.
   template <class Accept>
   Index nearest(const Vec3& p, Index skip_label, Accept&& accept) const {
     Best best;
@@ -73,7 +73,7 @@ class PointTree {
 
   std::vector<Point> points_;
   std::vector<Box> boxes_;
-  std::vector<Index> labels_;  // by place in points_
+  std::vector<Index> labels_;  // by position in points_
 };
 
 }  // namespace vmesh

@@ -5,8 +5,8 @@
 
 #include "vmesh/core/types.h"
 
-// Numbers that are the same on every platform: the standard library's distributions and elementary functions differ
-// in their last bits between implementations, and one bit grows into another tree. Only operations that IEEE 754
+// Numbers that are the same on every platform: the standard library's distributions and elementary functions differ in
+// their last bits between implementations, and a single bit leads to a different tree. Only operations that IEEE 754
 // defines exactly are used here (+ - * / sqrt, frexp and ldexp).
 namespace vmesh::portable {
 
@@ -41,7 +41,7 @@ inline Vec3 unit(const Vec3& a, const Vec3& fallback) {
   if (!(n > 1e-12)) return fallback;
   return a / n;
 }
-/// A unit vector at right angles to the unit vector `a`.
+/// A unit vector perpendicular to the unit vector `a`.
 inline Vec3 any_perpendicular(const Vec3& a) {
   const Vec3 other = std::abs(a.x()) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
   return unit(other - dot(a, other) * a, Vec3(0, 0, 1));

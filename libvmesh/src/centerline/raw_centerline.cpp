@@ -32,7 +32,7 @@ Value choose(Value in_file, std::optional<Value> override_value, Value fallback,
   if (override_value && *override_value != Value::unknown) {
     if (in_file != Value::unknown && in_file != *override_value) {
       warnings.push_back(prefix + "the file says its " + what + " is " + std::string(to_string(in_file)) +
-                         "; taken as " + std::string(to_string(*override_value)) + " as asked");
+                         "; taken as " + std::string(to_string(*override_value)) + " as requested");
     }
     return *override_value;
   }
@@ -44,7 +44,7 @@ Value choose(Value in_file, std::optional<Value> override_value, Value fallback,
 
 std::string separator(const std::string& source) { return source.empty() ? "" : ": "; }
 
-/// That of the parts which holds element `i`.
+/// The part that contains element `i`.
 const RawCenterline::Part& part_of(const std::vector<RawCenterline::Part>& parts, Index RawCenterline::Part::*first,
                                    Index i) {
   const auto after = std::upper_bound(parts.begin(), parts.end(), i,
@@ -186,7 +186,7 @@ std::optional<std::string> implausible_radii(const RawCenterline& raw) {
   std::ostringstream text;
   text << (raw.source.empty() ? "" : raw.source + ": ") << "half of the radii are "
        << (*middle < kThinnest ? "below " : "above ") << *middle
-       << " mm; if these are no millimetres, give the unit with --unit";
+       << " mm; if these are not millimetres, give the unit with --unit";
   return text.str();
 }
 

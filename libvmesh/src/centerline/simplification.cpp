@@ -10,7 +10,7 @@ namespace {
 
 using Piece = SimplifiedCenterline::Piece;
 
-// One branch after the other, from its first node on.
+// Simplifies one branch at a time, from its first node on.
 class Simplifier {
  public:
   Simplifier(const Centerline& centerline, const std::function<double(Index)>& tolerance)
@@ -62,7 +62,7 @@ class Simplifier {
     for (std::size_t k = 0; k + 1 < keep.size(); ++k) add(branch, keep[k], keep[k + 1]);
   }
 
-  // The farthest node of the branch found, up to `end`, to which one segment may go from node `first`.
+  // The farthest node of the branch, up to `end`, found to be reachable from node `first` by a single segment.
   std::size_t farthest(const Branch& branch, std::size_t first, std::size_t end) {
     std::size_t good = first + 1, step = 1;
     while (good < end && fits(branch, first, std::min(end, good + step))) {
@@ -75,7 +75,8 @@ class Simplifier {
     return good;
   }
 
-  // Where the nodes between two of the branch go on the segment between these, ascending. Whether they may.
+  // Whether a single segment may replace the nodes between two nodes of the branch. Fills places_ with where these go
+  // on it, ascending.
   bool fits(const Branch& branch, std::size_t first, std::size_t last) {
     const CenterlineNode &a = centerline_.node(branch.nodes[first]), &b = centerline_.node(branch.nodes[last]);
     const Vec3 axis = b.position - a.position;
@@ -115,7 +116,7 @@ class Simplifier {
   const Centerline& centerline_;
   const std::function<double(Index)>& tolerance_;
   std::vector<char> kept_;
-  std::set<std::pair<Index, Index>> joined_;  // nodes between which there is a segment already: no pair may have two
+  std::set<std::pair<Index, Index>> joined_;  // pairs of nodes with a segment between them: no pair may have two
   std::vector<CenterlineSegment> segments_;
   std::vector<Index> offsets_;
   std::vector<Piece> pieces_;

@@ -9,9 +9,8 @@
 
 namespace vmesh {
 
-/// Finds items near a point, where every item has its own reach. Items of similar reach share a hash grid, whose
-/// cells are as wide as the items reach: sizes may differ by orders of magnitude. Items leave in the reverse order of
-/// their coming.
+/// Finds items near a point, where every item has its own reach. Items of similar reach share a hash grid with cells of
+/// about that size, so reaches may differ by orders of magnitude. Items are removed in the reverse order of insertion.
 class SphereGrid {
  public:
   /// `largest_reach` > 0: no item reaches farther.
@@ -42,8 +41,8 @@ class SphereGrid {
   }
 
   /// Calls visit(item) for every item whose centre is within its reach plus `reach` of `p`, and for some others,
-  /// provided the item reaches at least as far; smaller items are found too when `all`. Stops when visit returns
-  /// false, and says whether it got to the end.
+  /// provided the item's reach is at least `reach`; with `all`, also for items of smaller reach. Stops when visit
+  /// returns false; returns whether it reached the end.
   template <typename Visit>
   bool visit(const Vec3& p, double reach, bool all, const Visit& visit_item) const {
     const int last = all ? static_cast<int>(level_counts_.size()) - 1

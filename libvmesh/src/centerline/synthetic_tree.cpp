@@ -23,7 +23,7 @@ using growth::Branch;
 using growth::RadiusLaw;
 using portable::norm;
 
-constexpr std::size_t kMaxVertices = 1'000'000;
+constexpr std::size_t kMaxVertices = 10'000'000;
 constexpr double kVerticesPerEnd = 7.8;
 constexpr double kLeafTaper = 0.9;  // end radius of a twig / start radius
 constexpr double kGap = 1.04;       // between capsules' axes, in sums of radii
@@ -34,7 +34,7 @@ double polyline_length(const std::vector<Vec3>& path) {
   return sum;
 }
 
-// `count` equal pieces by arc length; both ends stay.
+// Divides a path into `count` intervals of equal arc length; both ends stay.
 std::vector<Vec3> resample(const std::vector<Vec3>& path, std::size_t count) {
   std::vector<Vec3> out{path.front()};
   const double piece = polyline_length(path) / static_cast<double>(count);
@@ -54,7 +54,8 @@ std::vector<Vec3> resample(const std::vector<Vec3>& path, std::size_t count) {
   return out;
 }
 
-// Deals `budget` pieces to owners with a `size` each, at least `least` to everyone, so that the largest piece is small.
+// Divides `budget` shares among owners of given sizes, at least `least` each, so that the largest size per share is
+// small.
 std::vector<std::size_t> deal(const std::vector<double>& sizes, std::size_t least, std::size_t budget) {
   std::vector<std::size_t> counts(sizes.size(), least);
   std::priority_queue<std::pair<double, std::int64_t>> queue;
@@ -69,7 +70,7 @@ std::vector<std::size_t> deal(const std::vector<double>& sizes, std::size_t leas
   return counts;
 }
 
-// The grown branches with as many points as the tree is to have nodes, and radii by Murray's law.
+// The grown branches, resampled to the requested number of nodes, with radii by Murray's law.
 class Tree {
  public:
   Tree(std::vector<Branch> branches, RadiusLaw law) : branches_(std::move(branches)), law_(law) {}
@@ -105,10 +106,10 @@ class Tree {
 
   std::size_t node_count() const { return nodes_.size(); }
 
-  // Cuts off what comes too close to another vessel. Whether anything had to be cut.
+  // Cuts off what comes too close to another vessel. Returns whether anything was cut.
   bool cut_contacts();
 
-  // Adds nodes on the longest segments.
+  // Adds nodes to the longest segments.
   void refine(std::size_t vertices);
 
   Centerline centerline() && {
@@ -226,13 +227,13 @@ bool Tree::cut_contacts() {
   }
   std::sort(cuts.begin(), cuts.end());
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-  // In tree order: what hangs below a cut goes with it, and its own cuts find nothing.
+  // In tree order: everything below a cut is removed with it, so that its own cuts find nothing.
   for (const Index n : cuts) cut_before(n);
   return !cuts.empty();
 }
 
-// Ends the branch of `node` before it. Where nothing would be left of the branch, its parent ends at the fork: to leave
-// its sibling alone would put a kink there.
+// Ends the branch of `node` before it. If nothing would remain of the branch, its parent ends at the fork: its sibling
+// alone would leave a kink there.
 void Tree::cut_before(Index node) {
   Index b = branch_of_[node];
   const Vec3 position = nodes_[node].position;

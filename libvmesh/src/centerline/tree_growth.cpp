@@ -21,18 +21,19 @@ using portable::unit;
 
 constexpr double kStep = 0.8;         // between samples of a path, in radii
 constexpr double kMaxTurn = 0.15;     // per step, radians: a radius of curvature of at least 5 vessel radii
-constexpr double kWideGap = 1.6;      // between axes, in sums of radii: what branches look for
-constexpr double kNarrowGap = 1.25;   // what they accept
-constexpr double kGapPerPath = 0.55;  // near a fork less is enough: this share of the path between the two points
+constexpr double kWideGap = 1.6;      // between axes, in sums of radii: what branches aim for
+constexpr double kNarrowGap = 1.25;   // the least that they accept
+constexpr double kGapPerPath = 0.55;  // near a fork, a gap of this share of the path between the two points is enough
 constexpr double kPointsPerEnd = 14;  // samples of the region
-constexpr double kTwigReach = 0.75;   // how far into its territory a twig grows, as a share of the way to its centre
+constexpr double kTwigReach =
+    0.75;  // how far into its territory a twig grows, as a share of the distance to its centre
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
 struct Tip {
   Vec3 position, heading;
 };
 
-// The samples of the region a branch is to feed, points_[first, first + count), and by how many ends.
+// The samples of the region that a branch supplies, points_[first, first + count), and the number of its ends.
 struct Territory {
   std::size_t first = 0, count = 0, ends = 1;
 };
@@ -42,7 +43,7 @@ struct Job {
   Territory territory;
 };
 
-Vec3 rotate(const Vec3& v, const Vec3& axis, double angle) {  // axis at right angles to v
+Vec3 rotate(const Vec3& v, const Vec3& axis, double angle) {  // axis perpendicular to v
   return portable::cos(angle) * v + portable::sin(angle) * axis.cross(v);
 }
 
@@ -64,7 +65,7 @@ class Grower {
   }
 
   std::vector<Branch> run() {
-    // Wide vessels first: the thin ones find their way around them.
+    // Wide vessels first: thin ones find their way around them.
     std::priority_queue<std::pair<double, std::int64_t>> queue;
     queue.push({branches_[0].weight, 0});
     while (!queue.empty()) {
@@ -123,7 +124,7 @@ class Grower {
     return sum - 2 * std::min(arc_a, arc_b);
   }
 
-  // Whether a sphere of branch `b` fits at `p`, `arc` from the root along the tree, with a gap to what is there.
+  // Whether a sphere of branch `b` fits at `p`, `arc` from the root along the tree, with a gap to existing vessels.
   bool fits(Index b, const Vec3& p, double arc, double gap) const {
     const double radius = branches_[b].radius;
     if (liver::region(p) > -1.05 * radius) return false;
@@ -138,7 +139,7 @@ class Grower {
     });
   }
 
-  // One step of branch `b` towards `wish`; false when there is no room.
+  // One step of branch `b` towards `wish`; false if there is no room.
   bool step(Index b, Tip& tip, const Vec3& wish) {
     Branch& branch = branches_[b];
     const double h = kStep * branch.radius;
@@ -204,7 +205,7 @@ class Grower {
     return sum / static_cast<double>(t.count);
   }
 
-  // The direction at right angles to `along` in which the territory is widest.
+  // The direction perpendicular to `along` in which the territory is widest.
   Vec3 widest_direction(const Territory& t, const Vec3& centre, const Vec3& along) {
     Vec3 direction = any_perpendicular(along) + 0.3 * random_.in_cube();
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -223,7 +224,7 @@ class Grower {
     return direction;
   }
 
-  // Cuts the territory along the way from `from` to its centre, about `share` of its ends on one side.
+  // Cuts the territory along the line from `from` to its centre, with about `share` of its ends on one side.
   std::array<Territory, 2> split(const Territory& t, const Vec3& from, double share) {
     const Vec3 centre = centroid(t);
     const Vec3 along = unit(centre - from, Vec3(0, 0, 1));
@@ -246,7 +247,7 @@ class Grower {
     return {Territory{t.first, low, ends}, Territory{t.first + low, t.count - low, t.ends - ends}};
   }
 
-  // On the way to the territory's centre, where the halves' centres are seen under a good angle for a fork.
+  // A point on the line to the territory's centre from which the halves' centres appear at a good angle for a fork.
   Vec3 fork_position(Index b, const Tip& tip, const Territory& t, const Vec3& c0, const Vec3& c1) const {
     const Vec3 way = centroid(t) - tip.position;
     const double nearest = std::min(0.8, 2 * branches_[b].radius / std::max(norm(way), 1e-9));
@@ -265,14 +266,14 @@ class Grower {
     const Vec3 forward = unit(tip.heading + 0.6 * mean, tip.heading);
     const Vec3 apart = to0 - to1;
     const Vec3 side = rotate(unit(apart - dot(apart, forward) * forward, any_perpendicular(forward)), forward, roll);
-    // The smaller vessel turns off, the larger one goes on; neither turns back.
+    // The smaller vessel turns off, the larger one continues; neither turns back.
     const double w0 = portable::pow(radii[0], 1.3), w1 = portable::pow(radii[1], 1.3);
     const double most = 60 * kDegree;
     const double angle0 = std::clamp(spread * w1 / (w0 + w1), spread - most, most);
     return {rotate_towards(forward, side, angle0), rotate_towards(forward, -side, spread - angle0)};
   }
 
-  // Starts a child of `parent` with enough room to be told from its sibling; kNone when there is none.
+  // Starts a child of `parent` with enough room to be distinct from its sibling; kNone if there is none.
   Index start_child(Index parent, Tip& tip, double weight) {
     Branch child;
     child.parent = parent;
@@ -373,7 +374,7 @@ double region_scale(std::size_t ends) {
 
 std::vector<Branch> grow(std::size_t ends, std::uint64_t seed, double& total) {
   constexpr int kAttempts = 8;
-  // Large trees lose a few ends everywhere; for them only an early dead end is worth another attempt.
+  // Large trees lose a few ends everywhere; for them only an early dead end warrants another attempt.
   const double enough = ends < 1000 ? 0.97 : 0.85;
   std::vector<Branch> best;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {

@@ -28,7 +28,7 @@ class Grower {
   Grower(const Centerline& centerline, MethodComparison& comparison, const Progress& progress)
       : centerline_(centerline), comparison_(comparison), progress_(progress) {}
 
-  /// A resolution of the paper's; keeps the preset's surface for add_presets() when that was too fine.
+  /// Adds one of the paper's resolutions; keeps the preset's surface for add_presets() if that was too fine.
   void add_resolution(Preset preset) {
     const SurfaceMethod method = resolution_of(preset);
     const double most = most_vertices(method);
@@ -39,7 +39,7 @@ class Grower {
       presets_.push_back(row);
       presets_.back().method = row_of(preset);
     }
-    // The middles of faces are far from the wall at so few: to split them for that would undo the choice.
+    // With so few vertices, the centres of faces are far from the wall: splitting them for that would undo the choice.
     options.max_center_distance = 1;
     while (too_fine(row, most)) {
       --options.around;
@@ -57,7 +57,7 @@ class Grower {
     GenerateOptions options;
     options.around = vertices_around(preset);
     GenerateResult result = generate_surface(centerline_, options, progress_);
-    // What crosses itself cannot be fitted; the row then has the surface as it was grown, and says why.
+    // A surface that crosses itself cannot be fitted; the row then has the surface as grown, and says why.
     std::string refused;
     try {
       fit_surface(result, centerline_, comparison_.rows[0].mesh, {}, progress_);

@@ -18,7 +18,7 @@ namespace vmesh {
 
 namespace fs = std::filesystem;
 
-/// Collects what goes to a file descriptor, which it closes, and remembers the first error.
+/// Buffers output to a file descriptor, which it closes, and remembers the first error.
 class AtomicFile::Buffer : public std::streambuf {
  public:
   Buffer(int descriptor, bool may_wait) : descriptor_(descriptor), may_wait_(may_wait) { clear(); }
@@ -60,21 +60,21 @@ class AtomicFile::Buffer : public std::streambuf {
   void clear() { setp(bytes_.data(), bytes_.data() + bytes_.size()); }
 
   int descriptor_;
-  bool may_wait_;  ///< for who reads; a signal ends that
+  bool may_wait_;  ///< for a reader; a signal ends the wait
   int error_ = 0;
   std::array<char, 1 << 16> bytes_;
 };
 
 namespace {
 
-/// What `path` leads to, through all its links, whether it exists or not.
+/// The target of `path` through all its links, whether it exists or not.
 fs::path behind_links(fs::path path) {
-  constexpr int kMostLinks = 40;  // as the kernel, which has found no circle
+  constexpr int kMostLinks = 40;  // like the kernel, which has found no cycle
   for (int i = 0; i < kMostLinks; ++i) {
     std::error_code no_link;
     const fs::path target = fs::read_symlink(path, no_link);
     if (no_link) break;
-    path = path.parent_path() / target;  // the target, if that is absolute
+    path = path.parent_path() / target;  // just the target if that is absolute
   }
   return path;
 }
@@ -82,7 +82,7 @@ fs::path behind_links(fs::path path) {
 fs::path temporary_name(const fs::path& path) {
   std::array<unsigned char, 16> random;
   if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size()))
-    throw WriteError(path.string() + ": the system gives no random numbers for the name of a temporary file");
+    throw WriteError(path.string() + ": the system provides no random numbers for the name of a temporary file");
   std::string name = ".vmesh-";
   for (const unsigned char byte : random) {
     constexpr const char* kDigits = "0123456789abcdef";
@@ -92,7 +92,7 @@ fs::path temporary_name(const fs::path& path) {
   return fs::path(path).replace_filename(name + ".tmp");
 }
 
-/// So that a crash of the machine does not undo the rename. Some file systems cannot; that is no error.
+/// So that a crash of the machine does not undo the rename. Some file systems do not support it; that is not an error.
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -100,13 +100,14 @@ void sync_folder(const fs::path& folder) {
   ::close(descriptor);
 }
 
-/// The permissions of the file that is replaced; its owner and group as far as they may be given. Bits that would give
-/// another owner's rights away are left out.
+/// Passes on the permissions of the replaced file, and its owner and group as far as allowed. Bits that would give away
+/// another owner's rights are left out.
 void hand_on(const struct stat& replaced, int descriptor) {
   mode_t mode = replaced.st_mode & 07777;
   if (::fchown(descriptor, replaced.st_uid, replaced.st_gid) != 0) {
     mode &= ~static_cast<mode_t>(S_ISUID | S_ISGID);
-    if (::fchown(descriptor, static_cast<uid_t>(-1), replaced.st_gid) != 0)  // the group's rights are for that group
+    if (::fchown(descriptor, static_cast<uid_t>(-1), replaced.st_gid) !=
+        0)  // the group's rights are for that group only
       mode &= ~static_cast<mode_t>(S_IRWXG) | ((mode & S_IRWXO) << 3);
   }
   ::fchmod(descriptor, mode);
@@ -127,7 +128,7 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path), stream_(nullptr) {
     if (descriptor < 0 && errno == EINTR) throw Cancelled();
   } else {
     temporary_ = temporary_name(path_);
-    // Whom the older file is hidden from must not see the new one grow.
+    // Users who cannot read the old file must not be able to read the new one while it is written.
     descriptor = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, exists ? 0600 : 0666);
   }
   if (descriptor < 0) {

@@ -9,25 +9,32 @@ constexpr Index kLeafSize = 4;
 
 }  // namespace
 
-// Twice the middles lie beside the numbers, so that dividing them reads memory in order.
+// Twice the box centres are stored beside the numbers, so that partitioning reads memory in order.
 struct BoxTree::Item {
   Vec3 middle;
   Index number;
 };
 
-BoxTree::BoxTree(const std::vector<Vec3>& low, const std::vector<Vec3>& high) {
-  if (low.empty()) return;
-  const auto count = static_cast<Index>(low.size());
+BoxTree::BoxTree(const std::vector<Vec3>& low, const std::vector<Vec3>& high)
+    : BoxTree(static_cast<Index>(low.size()), [&](Index i) {
+        return Box{low[i], high[i]};
+      }) {}
+
+BoxTree::BoxTree(Index count, const std::function<Box(Index)>& box_of) {
+  if (count == 0) return;
   std::vector<Item> items;
   items.reserve(count);
-  for (Index i = 0; i < count; ++i) items.push_back({low[i] + high[i], i});
-  nodes_.reserve(count);  // a leaf has two items or more, unless it is the only one
+  for (Index i = 0; i < count; ++i) {
+    const Box box = box_of(i);
+    items.push_back({box.low + box.high, i});
+  }
+  nodes_.reserve(count);  // a leaf has at least two items, unless it is the only one
   nodes_.emplace_back();
   divide(0, items, 0, count);
   order_.reserve(count);
   for (const Item& item : items) order_.push_back(item.number);
   // Children come after their parents.
-  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) enclose(*node, low, high);
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) enclose(*node, box_of);
 }
 
 void BoxTree::divide(Index node, std::vector<Item>& items, Index first, Index count) {
@@ -56,18 +63,20 @@ void BoxTree::divide(Index node, std::vector<Item>& items, Index first, Index co
   divide(children + 1, items, first + half, count - half);
 }
 
-void BoxTree::enclose(Node& node, const std::vector<Vec3>& low, const std::vector<Vec3>& high) const {
+void BoxTree::enclose(Node& node, const std::function<Box(Index)>& box_of) const {
   if (node.count == 0) {
     const Node &a = nodes_[node.first], &b = nodes_[node.first + 1];
     node.low = a.low.cwiseMin(b.low);
     node.high = a.high.cwiseMax(b.high);
     return;
   }
-  node.low = low[order_[node.first]];
-  node.high = high[order_[node.first]];
-  for (Index i = node.first; i < node.first + node.count; ++i) {
-    node.low = node.low.cwiseMin(low[order_[i]]);
-    node.high = node.high.cwiseMax(high[order_[i]]);
+  const Box first = box_of(order_[node.first]);
+  node.low = first.low;
+  node.high = first.high;
+  for (Index i = node.first + 1; i < node.first + node.count; ++i) {
+    const Box box = box_of(order_[i]);
+    node.low = node.low.cwiseMin(box.low);
+    node.high = node.high.cwiseMax(box.high);
   }
 }
 

@@ -17,8 +17,8 @@
 namespace vmesh {
 namespace {
 
-/// What comes first in the answer.
-constexpr char kDone = 'd', kInvalid = 'i', kUnsupported = 'u', kNoMemory = 'm';
+/// First byte of the answer.
+constexpr char kDone = 'd', kInvalid = 'i', kUnsupported = 'u', kNoMemory = 'm', kFailed = 'f';
 
 bool write_all(int to, const char* data, std::size_t size) {
   while (size > 0) {
@@ -59,18 +59,18 @@ std::string answer_of(const std::function<std::string()>& work) {
   } catch (const std::bad_alloc&) {
     return std::string(1, kNoMemory);
   } catch (const std::exception& error) {
-    return kInvalid + std::string(error.what());
+    return kFailed + std::string(error.what());
   }
 }
 
 [[noreturn]] void work_in_child(int to, std::size_t file_size, const std::function<std::string()>& work) {
   for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGXCPU}) ::signal(signal, SIG_DFL);
-  // What a library says as it fails, and what this process had not written yet, is not to come out here.
+  // Neither the library's output on failure nor unflushed output of this process may appear.
   const int nowhere = ::open("/dev/null", O_WRONLY);
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, 30 + 2 * (file_size >> 20u));
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // whose own memory would count
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their own memory would count
   if (const auto available = available_memory()) limit(RLIMIT_DATA, static_cast<std::size_t>(*available) / 2);
 #endif
   const std::string answer = answer_of(work);
@@ -102,14 +102,15 @@ std::string in_child_process(const std::string& source, std::size_t file_size,
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-    throw InvalidInput(source + ": reading it takes too long; the file may be damaged");
+    throw InvalidInput(source + ": reading it took too long; the file may be damaged");
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty())
-    throw InvalidInput(source +
-                       ": the library that reads such files crashed on it; the file is damaged, or of another kind");
+    throw InvalidInput(source + ": the library that reads such files crashed; the file is damaged or of another kind");
   const char kind = answer.front();
   answer.erase(0, 1);
-  if (kind == kNoMemory) throw InvalidInput(source + ": reading it takes more than half of the memory that is free");
+  if (kind == kNoMemory) throw InvalidInput(source + ": reading it takes more than half of the free memory");
   if (kind == kInvalid) throw InvalidInput(answer);
+  if (kind == kFailed)
+    throw InvalidInput(source + ": the library that reads such files failed; the file may be damaged: " + answer);
   if (kind == kUnsupported) throw Unsupported(answer);
   return answer;
 }

@@ -7,9 +7,9 @@
 
 namespace vmesh {
 
-/// Runs `work` in a child of this process and returns what it returns. What it throws as InvalidInput or Unsupported is
-/// thrown here; a crash, too much memory or too much time of the processor become InvalidInput that names `source`.
-/// `file_size`, in bytes, sets the limits: half of the memory that is free, and 30 s and 2 s for each megabyte.
+/// Runs `work` in a child process and returns its result. Its InvalidInput and Unsupported exceptions are rethrown
+/// here; a crash, too much memory or too much processor time become an InvalidInput naming `source`. The limits are
+/// half of the free memory, and 30 s plus 2 s per megabyte of `file_size` (bytes).
 std::string in_child_process(const std::string& source, std::size_t file_size,
                              const std::function<std::string()>& work);
 

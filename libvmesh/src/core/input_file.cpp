@@ -23,7 +23,7 @@ InputFile::InputFile(const std::filesystem::path& path) : name_(path.string()) {
   } else if (S_ISDIR(found.st_mode)) {
     what = ": this is a folder; give a file";
   } else if (!S_ISREG(found.st_mode)) {
-    what = ": this is a pipe or a device, and what is read is read twice; save what comes out of it to a file first";
+    what = ": this is a pipe or a device, but files are read twice; save its output to a file first";
   }
   if (what != nullptr) {
     ::close(descriptor_);

@@ -6,6 +6,9 @@
 #include <limits>
 #include <string_view>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -29,10 +32,10 @@ std::optional<std::uint64_t> kilobytes(const char* path, std::string_view key) {
 std::uint64_t number_in(const std::string& path, std::uint64_t otherwise) {
   std::ifstream file(path);
   std::uint64_t value = 0;
-  return file >> value ? value : otherwise;  // "max" is no number
+  return file >> value ? value : otherwise;  // "max" is not a number
 }
 
-/// What every control group above the process leaves it (cgroups(7), version 2).
+/// The least memory that a control group above the process leaves it (cgroups(7), version 2).
 std::uint64_t left_by_groups() {
   std::ifstream file("/proc/self/cgroup");
   std::uint64_t least = kUnlimited;
@@ -52,7 +55,7 @@ std::uint64_t left_by_groups() {
   return least;
 }
 
-/// What the limit `resource` leaves, of which `used` is spent.
+/// What remains of the limit `resource` when `used` is spent.
 std::uint64_t left_by_limit(int resource, std::uint64_t used) {
   rlimit limit = {};
   if (::getrlimit(static_cast<__rlimit_resource>(resource), &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
@@ -82,6 +85,12 @@ void require_memory(double bytes, const std::string& what, const std::string& ad
   if (!available || bytes <= static_cast<double>(*available)) return;
   throw Unsupported(what + " needs about " + gigabytes(bytes) + " of memory and " +
                     gigabytes(static_cast<double>(*available)) + " are free; " + advice);
+}
+
+void release_freed_memory() {
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
 }
 
 }  // namespace vmesh

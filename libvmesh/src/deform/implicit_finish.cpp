@@ -1,4 +1,4 @@
-// ImplicitRods: velocities, the energy's governor and rest, at the end of a step.
+// ImplicitRods: velocities, the energy bound and rest, at the end of a step.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace vmesh {
 namespace {
 
-/// Rounding makes frames that much less orthonormal in so many steps: about 1e-14.
+/// Steps between orthonormalisations of the frames: rounding adds up to about 1e-14 in between.
 constexpr std::size_t kSharpenEvery = 64;
 
 double sum(const Lanes& lanes) {
@@ -35,10 +35,10 @@ void ImplicitRods::finish(RodScene& scene, StepReport& report) {
   report.awake = awake_count_;
 }
 
-/// Scales the velocities of what is free down where there is more energy than there may be: exactly minimised and with
-/// convex springs there never is. Returns the work that was done, uJ. Where the springs hold more than came in by the
-/// forces at the end of the step, as a slot was dragged far in it or the minimum is not reached, that is what it took:
-/// at most the energy of having struck and dragged first with all else standing still.
+/// Scales the velocities of free slots down if there is more energy than there may be; with exact minimisation and
+/// convex springs there never is. Returns the work done, uJ. Where the springs hold more energy than the forces at the
+/// end of the step account for, because a slot was dragged far or the minimum was not reached, the work is that
+/// difference: at most the energy of dragging first with everything else standing still.
 double ImplicitRods::govern(RodScene& scene, const FinishSums& sums) const {
   const double before = start_tie_energy_ + sum(begin_sums_.energy), work = sum(sums.work);
   const double elastic = tie_energy(scene, false) + sum(sums.elastic), free = sum(sums.free), held = sum(sums.held);
@@ -57,7 +57,8 @@ double ImplicitRods::govern(RodScene& scene, const FinishSums& sums) const {
   return std::max(work, elastic + held - before);
 }
 
-/// Counts quiet steps; brings a slot to rest after enough, and leaves it alone after a step more, which has seen it so.
+/// Counts quiet steps; brings a slot to rest after enough of them, and skips it from one step later on, after it has
+/// been processed at rest.
 void ImplicitRods::settle(RodScene& scene, Index place, bool quiet) {
   const double tolerance = scene.options.rest_tolerance;
   const char enough = static_cast<char>(scene.options.rest_steps);

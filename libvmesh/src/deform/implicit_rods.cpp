@@ -6,10 +6,10 @@
 namespace vmesh {
 namespace {
 
-/// Rounding of a sum of the terms of the energy.
+/// Relative rounding of the energy's sum of terms.
 constexpr double kEnergyTolerance = 1e-12;
 constexpr int kMostAttempts = 40;
-/// With more than one in so many slots awake, looking at all of them is faster than sorting.
+/// With more than one in so many slots awake, visiting all of them is faster than sorting.
 constexpr std::size_t kMuchAwake = 8;
 
 double sum(const Lanes& lanes) {
@@ -63,7 +63,7 @@ StepReport ImplicitRods::step(RodScene& scene) noexcept {
   pose_ = 0;
   for (const Index batch : visited_batches_) {
     kernels_->begin(batches_.batches[batch], &visited_[batch * kLanes], scene, begin_sums_);
-    eliminate(batch);  // while it is in the cache
+    eliminate(batch);  // while it is still in the cache
     if (batches_.batches[batch].held) note_pulled(batch);
   }
   eliminated_ = true;
@@ -77,7 +77,7 @@ StepReport ImplicitRods::step(RodScene& scene) noexcept {
   return report;
 }
 
-/// What is awake, its children, and all on the way to the root.
+/// Visits all awake slots, their children, and everything between them and the root.
 void ImplicitRods::choose_visited() {
   if (all_visited_ && awake_count_ == slot_count_) return;
   for (const Index batch : visited_batches_) {
@@ -119,7 +119,7 @@ void ImplicitRods::note_pulled(Index batch) {
     if (visited_[place] && pull(place) != Vec3::Zero()) pulled_places_.push_back(place);
 }
 
-/// What a held slot is to be moved by.
+/// The displacement prescribed for a held slot.
 Vec3 ImplicitRods::pull(Index place) const {
   const RodBatch& b = batches_.batches[place / kLanes];
   const std::size_t i = place % kLanes;
@@ -132,8 +132,8 @@ Vec3 ImplicitRods::position(Index place, std::size_t pose) const {
   return {p.x[place % kLanes], p.y[place % kLanes], p.z[place % kLanes]};
 }
 
-/// What the sum to minimise grows by when dragged slots are put where they go, all else standing still: the springs to
-/// their parents and children are stretched.
+/// Increase of the objective when dragged slots are moved to their targets and everything else stands still: the
+/// springs to their parents and children are stretched.
 double ImplicitRods::drag_energy() const {
   const auto stretch = [this](Index place, const Vec3& by) {
     const RodBatch& b = batches_.batches[place / kLanes];
@@ -154,7 +154,7 @@ double ImplicitRods::drag_energy() const {
   return energy;
 }
 
-/// Of the springs that close loops, uJ; before or after dragging.
+/// Energy of the springs that close loops, uJ, before or after dragging.
 double ImplicitRods::tie_energy(const RodScene& scene, bool pulled) const {
   double energy = 0;
   for (const auto& [slot, node_slot] : scene.tree.ties) {
@@ -177,7 +177,7 @@ double ImplicitRods::iterate(RodScene& scene, bool first, StepReport& report) {
   RodMove by{pose_, pose_ == 1 ? std::size_t{2} : std::size_t{1}};
   move_sums_ = {};
   solve(scene, &by);
-  before += sum(begin_sums_.value);  // of all slots, or of those that the solution took in
+  before += sum(begin_sums_.value);  // of all slots, or of those the solution visited
   if (first) energy_bound_ = before;
   pose_ = by.to;
   for (int attempt = 1; by.part > 0; ++attempt) {

@@ -10,11 +10,11 @@ namespace vmesh {
 
 /// Implicit Euler on the energy of the springs: every step minimises
 ///   sum m / (2 h^2) |p - p_predicted|^2 + elastic energy + damping,
-/// the same with the tips of the x and y axes for the frames, by Gauss-Newton and what tension adds to it. Each
-/// iteration is one exact solution on the tree, O(n), four slots of one height at a time. Iterates that would raise the
-/// sum are halved, so it never exceeds what standing still has; after that velocities are scaled down where kinetic and
-/// elastic energy exceed what was there and the work done. Only slots that move are visited, those next to them and
-/// those towards the root.
+/// the same with the tips of the x and y axes for the frames, by Gauss-Newton plus the geometric stiffness of tension.
+/// Each iteration is one exact solution on the tree, O(n), four slots of one height at a time. Updates that would raise
+/// the sum are halved, so it never exceeds its value for standing still; afterwards, velocities are scaled down where
+/// kinetic and elastic energy exceed the previous energy plus the work done. Only moving slots, those next to them and
+/// those towards the root are visited.
 class ImplicitRods {
  public:
   explicit ImplicitRods(const RodScene& scene, const RodKernels& kernels = best_rod_kernels());
@@ -41,7 +41,7 @@ class ImplicitRods {
   void note_pulled(Index batch);
 
   double iterate(RodScene& scene, bool first, StepReport& report);
-  /// Where to move once the solution is known; null: nowhere.
+  /// `then`: the move to make once the solution is known; null: none.
   void solve(const RodScene& scene, const RodMove* then);
   void eliminate(Index batch);
   void solve_tree(const RodScene& scene, const RodMove* then);
@@ -66,17 +66,17 @@ class ImplicitRods {
   const RodKernels* kernels_;
   RodBatches batches_;
   std::vector<char> visited_, fresh_, awake_, quiet_steps_;  // by place
-  std::vector<char> listed_;                                 // by batch: in one of these
+  std::vector<char> listed_;                                 // by batch: in one of the following
   std::vector<Index> visited_batches_, grown_batches_;       // ascending; a heap
   std::vector<Index> awake_places_, pulled_places_;
   std::size_t awake_count_ = 0, slot_count_ = 0;
   bool all_visited_ = false;
-  bool eliminated_ = false;  // all visited slots, as they are
+  bool eliminated_ = false;  // all visited slots, in their present state
 
-  std::size_t pose_ = 0;  // the current one
+  std::size_t pose_ = 0;  // index of the current pose
   BeginSums begin_sums_;
   MoveSums move_sums_;
-  double energy_bound_ = 0;  // of the step: what standing still has
+  double energy_bound_ = 0;  // of the step: the value for standing still
   double start_tie_energy_ = 0;
   std::size_t steps_ = 0;
 

@@ -7,7 +7,7 @@
 namespace vmesh {
 namespace {
 
-/// Loops are closed to this fraction of how far they would open without their springs.
+/// Loops are closed to this fraction of their opening without springs.
 constexpr double kTieTolerance = 1e-6;
 constexpr int kMostTieIterations = 60;
 
@@ -49,7 +49,7 @@ void ImplicitRods::solve_tree(const RodScene& scene, const RodMove* then) {
     solve_growing(scene, then);
 }
 
-/// From the root on. What moves wakes its children, whose batches come later but may not have been listed.
+/// From the root outwards. Slots that move wake their children, whose batches come later but may not be listed yet.
 void ImplicitRods::solve_growing(const RodScene& scene, const RodMove* then) {
   const std::size_t listed = visited_batches_.size();
   grown_batches_.clear();
@@ -81,7 +81,7 @@ void ImplicitRods::solve_batch(const RodScene& scene, Index batch, const RodMove
   if (then) kernels_->move(batches_.batches.data(), batch, active, *then, move_sums_);
 }
 
-/// Which slots of a batch are at rest, and remain so unless they move by more than the tolerance.
+/// Which slots of a batch are at rest; they remain so unless they move by more than the tolerance.
 ImplicitRods::FourFlags ImplicitRods::resting(const RodScene& scene, Index batch) const {
   FourFlags rests{};
   for (std::size_t i = 0; i < kLanes; ++i) {
@@ -91,7 +91,7 @@ ImplicitRods::FourFlags ImplicitRods::resting(const RodScene& scene, Index batch
   return rests;
 }
 
-/// Of slots that move.
+/// Wakes the children of slots that move.
 void ImplicitRods::wake_children(Index batch) {
   const RodBatch& b = batches_.batches[batch];
   for (std::size_t i = 0; i < kLanes; ++i) {
@@ -110,7 +110,7 @@ void ImplicitRods::wake_children(Index batch) {
   }
 }
 
-/// What x opens the ties by, with `load` pulling on them.
+/// The solution x with `load` pulling on the ties, and how far it opens them.
 void ImplicitRods::solve_loaded(const RodScene& scene, const std::vector<Vec3>& load, std::vector<Vec3>& opening,
                                 const RodMove* then) {
   const auto& ties = scene.tree.ties;
@@ -138,8 +138,8 @@ void ImplicitRods::solve_loaded(const RodScene& scene, const std::vector<Vec3>& 
   }
 }
 
-/// The forces F in the ties follow from F / k = gap + opening(F), by conjugate gradients: opening() is linear in F but
-/// for a constant, and as many equations as there are loops.
+/// The forces F in the ties follow from F / k = gap + opening(F), by conjugate gradients: opening() is affine in F,
+/// with as many equations as there are loops.
 void ImplicitRods::solve_ties(const RodScene& scene, const RodMove* then) {
   const auto& ties = scene.tree.ties;
   for (Vec3& f : tie_load_) f.setZero();

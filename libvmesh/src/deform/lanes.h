@@ -1,5 +1,5 @@
-// Arithmetic on lanes. Included by rod_kernels.h, once for each set of instructions, inside a namespace of its own:
-// what vectors become is decided where the code stands, before it is inlined.
+// Arithmetic on lanes. Included by rod_kernels.h once for each instruction set, inside a namespace of its own, because
+// how vector code is compiled depends on the translation unit, before inlining.
 
 using LaneMask = decltype(Lanes{} < Lanes{});  ///< all bits of a lane, or none
 
@@ -45,7 +45,7 @@ VMESH_INLINE Lanes33 cayley(const Lanes3& v) {
       {d + s.x * w.x, xy + s.z, zx - s.y}, {xy - s.z, d + s.y * w.y, yz + s.x}, {zx + s.y, yz - s.x, d + s.z * w.z}};
 }
 
-/// Takes rounding out of frames that are orthonormal but for that.
+/// Removes rounding errors from nearly orthonormal frames.
 VMESH_INLINE Lanes33 sharpened(const Lanes33& m) {
   const Lanes xx = square(m.x), yy = square(m.y), zz = square(m.z);
   const Lanes xy = dot(m.x, m.y), yz = dot(m.y, m.z), zx = dot(m.z, m.x);
@@ -55,7 +55,7 @@ VMESH_INLINE Lanes33 sharpened(const Lanes33& m) {
   return {more * m.x - half * p.x, more * m.y - half * p.y, more * m.z - half * p.z};
 }
 
-/// Axis times sine of the rotation that turns frame `a` into frame `b`.
+/// Axis times sine of the rotation from frame `a` to frame `b`.
 VMESH_INLINE Lanes3 turned_by(const Lanes33& a, const Lanes33& b) {
   return all(0.5) * (cross(a.x, b.x) + cross(a.y, b.y) + cross(a.z, b.z));
 }

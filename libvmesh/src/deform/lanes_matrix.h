@@ -20,7 +20,7 @@ VMESH_INLINE LanesSpatial operator+(const LanesSpatial& a, const LanesSpatial& b
   return {a.linear + b.linear, a.angular + b.angular};
 }
 
-/// Of the block of angular rows and linear columns, row i; and column j.
+/// Row i, and column j, of the block of angular rows and linear columns.
 VMESH_INLINE Lanes3 mixed_row(const LanesMatrix& m, std::size_t i) {
   return {m.entries[at(3 + i, 0)], m.entries[at(3 + i, 1)], m.entries[at(3 + i, 2)]};
 }
@@ -31,7 +31,7 @@ VMESH_INLINE void set_mixed_column(LanesMatrix& m, std::size_t j, const Lanes3& 
   m.entries[at(3, j)] = v.x, m.entries[at(4, j)] = v.y, m.entries[at(5, j)] = v.z;
 }
 
-/// `linear` against moving; against turning `axial` about z and `transverse` across it.
+/// Adds stiffness: `linear` against translation, `axial` against rotation about z, `transverse` about the other axes.
 VMESH_INLINE void add_diagonal(LanesMatrix& m, Lanes linear, Lanes transverse, Lanes axial, const Lanes3& z) {
   for (std::size_t i = 0; i < 3; ++i) m.entries[at(i, i)] += linear;
   const Lanes3 excess = (axial - transverse) * z;
@@ -43,7 +43,7 @@ VMESH_INLINE void add_diagonal(LanesMatrix& m, Lanes linear, Lanes transverse, L
   m.entries[at(5, 5)] += transverse + excess.z * z.z;
 }
 
-/// An assignment entry by entry: as a whole it would be made by an instruction that is slow to start.
+/// Copies entry by entry: a whole assignment would be compiled to an instruction with a long start-up.
 VMESH_INLINE void copy(const LanesMatrix& from, LanesMatrix& to) {
 #pragma GCC unroll 21
   for (std::size_t k = 0; k < 21; ++k) to.entries[k] = from.entries[k];
@@ -53,7 +53,7 @@ VMESH_INLINE void clear(LanesMatrix& m) {
   for (std::size_t k = 0; k < 21; ++k) m.entries[k] = all(0);
 }
 
-/// (linear, angular + lever x linear), and the matrix whose product does the same on both sides.
+/// (linear, angular + lever x linear), and the corresponding congruence transformation of a matrix.
 VMESH_INLINE LanesSpatial carried(const Lanes3& lever, const LanesSpatial& v) {
   return {v.linear, v.angular + cross(lever, v.linear)};
 }
@@ -74,11 +74,11 @@ VMESH_INLINE void carry(const Lanes3& lever, LanesMatrix& m) {
   m.entries[at(5, 5)] += w.z + z.z;
 }
 
-/// Where a difference that must be positive is all rounding, what stands for it: this times the minuend.
+/// Where a difference that must be positive is lost to rounding, it is replaced by this times the minuend.
 constexpr double kLeastPivot = 1e-15;
 
-/// L D L^T of symmetric positive definite matrices. A pivot that rounding made too small or negative is raised, so that
-/// the inverse becomes smaller: safe for stiffness.
+/// L D L^T of symmetric positive definite matrices. A pivot that rounding made too small or negative is raised, which
+/// makes the inverse smaller: the safe side for a stiffness.
 struct LanesFactors {
   LanesMatrix lower;  ///< L below the diagonal
   Lanes inverse[6];
@@ -114,7 +114,7 @@ struct LanesFactors {
     return v;
   }
 
-  /// To r and g, -b m^-1 b and -b m^-1 f, for a symmetric b.
+  /// Adds -b m^-1 b to r and -b m^-1 f to g, for a symmetric b.
   VMESH_INLINE void subtract_series(const LanesMatrix& b, LanesVector f, LanesMatrix& r, LanesVector& g) const {
     Lanes rows[6][6];  // of L^-1 b
 #pragma GCC unroll 6

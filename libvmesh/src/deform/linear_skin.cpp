@@ -7,7 +7,7 @@
 namespace vmesh {
 namespace {
 
-/// Numbers of a slot's joints.
+/// The numbers of a slot's joints.
 struct SlotJoints {
   Index own = kNone, start = kNone, parent = kNone;
 };

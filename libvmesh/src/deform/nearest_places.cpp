@@ -7,7 +7,7 @@
 namespace vmesh {
 namespace {
 
-/// The segments, then the isolated nodes as segments of no length.
+/// The segments, then the isolated nodes as segments of zero length.
 struct Axes {
   std::vector<Vec3> from, to;
 

@@ -10,13 +10,14 @@ namespace {
 
 using Procedure = PaperProcedure;
 
-/// Of the time in which the fastest oscillation turns by one radian: half of where springs damped as below get
-/// unstable.
+/// Step as a share of the time in which the fastest oscillation advances by one radian: half the limit at which springs
+/// damped as below become unstable.
 constexpr double kSafeStep = 0.5;
-/// Explicit springs bear no more damping than this many times that duration.
+/// Largest damping that explicit springs tolerate, in multiples of that duration.
 constexpr double kMostDamping = 1;
 
-/// The highest rate of oscillation of a node or of a tip between its springs, rad/s, bounded by twice their sum.
+/// Bound on the highest oscillation rate of a node or tip between its springs, rad/s: from twice the sum of their
+/// stiffnesses.
 double fastest_rate(const RodScene& scene) {
   std::vector<double> node(scene.size(), 0), tip(scene.size(), 0);
   for (Index j = 0; j < scene.size(); ++j) {
@@ -114,7 +115,7 @@ void PaperRods::add_spring(const RodScene& scene, Index j) {
   force_[rod.parent] += pull;
 }
 
-/// Springs of no length between the tips of the parent's turned axes and the slot's own (Fig. 3, B and C).
+/// Springs of zero rest length between the tips of the parent's rotated axes and the slot's own (Fig. 3, B and C).
 void PaperRods::add_angular_springs(const RodScene& scene, Index j) {
   const Rod& rod = scene.rods[j];
   const double damping = std::min(rod.damping_s, kMostDamping * dt_s_);

@@ -9,7 +9,7 @@ namespace {
 constexpr double kTau = 6.283185307179586;
 /// A squeeze neither closes a vessel nor widens it beyond this.
 constexpr double kNarrowest = 0.05, kWidest = 4;
-/// Scales closer than this to their goals have arrived.
+/// Scales closer than this to their goals count as equal.
 constexpr double kArrived = 1e-9;
 
 }  // namespace
@@ -44,7 +44,7 @@ void Profile::set_scale(Index slot, double scale, RodScene& scene) {
   set(scale_, slot, scale, scene.tree);
 }
 
-/// At all slots of the node.
+/// Sets the value at all slots of the node.
 void Profile::set(std::vector<double>& values, Index slot, double value, const RodTree& tree) {
   if (values[slot] == value) return;
   values[slot] = value;

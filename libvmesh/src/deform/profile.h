@@ -6,8 +6,8 @@
 
 namespace vmesh {
 
-/// The vessel's cross-section at every slot: scaled by the user and by squeezing. The wall answers a pressure p as a
-/// thin-walled tube does at small strain, by r p / (E t), and ever less the narrower it is: scale 1 / (1 + r p / (E
+/// The vessel's cross-section at every slot, scaled by the user and by squeezing. The wall responds to a pressure p
+/// like a thin-walled tube at small strain, by r p / (E t), and ever less the narrower it is: scale 1 / (1 + r p / (E
 /// t)).
 class Profile {
  public:
@@ -16,7 +16,7 @@ class Profile {
 
   void set_scale(Index slot, double scale, RodScene& scene);
   void set_squeeze(Index slot, double force_N, RodScene& scene);
-  /// Follows the squeezes by one time step. Nothing to do unless something was set.
+  /// Follows the squeezes by one time step. Does nothing unless something was set.
   void step(RodScene& scene) noexcept;
 
  private:
@@ -24,7 +24,7 @@ class Profile {
   void enable(RodScene& scene);
   void set(std::vector<double>& values, Index slot, double value, const RodTree& tree);
 
-  double follow_;  // part of the way to the new scale in one step
+  double follow_;  // fraction of the difference to the new scale covered in one step
   bool settled_ = true;
   std::vector<double> area_mm2_, stiffness_N_mm2_;  // by node
   std::vector<double> scale_, squeezed_, goal_;     // by slot; empty while off

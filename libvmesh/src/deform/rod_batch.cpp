@@ -5,13 +5,13 @@
 namespace vmesh {
 namespace {
 
-/// Slots of one part of the tree are worked on together, so that what they hand on is still in the cache.
+/// Slots per block of the tree; a block is processed as a whole, so that intermediate results are still in the cache.
 constexpr Index kPart = 2048;
 
-/// Parts follow each other as slots do, so children are in the part of their parent or a later one.
+/// Blocks are in the order of slots, so children are in the block of their parent or a later one.
 Index part_of(Index slot) { return slot / kPart; }
 
-/// How many slots of the same part are below on the longest way.
+/// Height of every slot within its block: slots below it on the longest path.
 std::vector<Index> heights_of(const RodScene& scene) {
   std::vector<Index> height(scene.size(), 0);
   for (Index j = static_cast<Index>(scene.size()); j-- > 0;) {
@@ -28,7 +28,7 @@ std::vector<Index> child_counts_of(const RodScene& scene) {
   return count;
 }
 
-/// The last part first, each by height; those with many children together.
+/// The last block first, each by height; slots with many children together.
 std::vector<Index> order_of(const RodScene& scene, const std::vector<Index>& height) {
   const std::vector<Index> children = child_counts_of(scene);
   std::vector<Index> order(scene.size());
@@ -73,7 +73,7 @@ void set_lane(const RodScene& scene, Index j, RodBatch& b, std::size_t lane) {
   b.w_twist[lane] = 2 * rod.tip_xy * damping, b.c_twist[lane] = 1 / b.w_twist[lane];
 }
 
-/// The places of all slots' parents and children.
+/// Fills in the places of all slots' parents and children.
 void link(const RodScene& scene, RodBatches& all) {
   const Index nowhere = static_cast<Index>(all.size() * kLanes);
   for (Index place = 0; place < nowhere; ++place) {

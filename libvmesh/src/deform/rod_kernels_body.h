@@ -1,9 +1,9 @@
-// RodKernels for one set of instructions; included by a source that has chosen it, inside a namespace.
+// RodKernels for one instruction set; included inside a namespace by a source that has selected it.
 
 #include "deform/lanes.h"
 #include "deform/lanes_matrix.h"
 
-/// Strain up to which tension counts in full: beyond, its stiffness would drown that of the springs in rounding.
+/// Strain up to which tension counts in full: beyond, its stiffness would swamp that of the springs in rounding.
 constexpr double kMostTautness = 10;
 
 VMESH_INLINE Lanes3 read(const std::vector<Vec3>& from, const RodBatch& b) {
@@ -23,8 +23,8 @@ VMESH_INLINE LaneMask holds(const RodBatch& b, bool clamped_only) {
   return m;
 }
 
-/// Twice the energy of inertia with respect to what was predicted, and its gradient. A held slot goes where it is told:
-/// its inertia is no part of the sum to minimise.
+/// Twice the inertial energy with respect to the prediction, and its gradient. A held slot follows its target, so its
+/// inertia is not part of the objective.
 VMESH_INLINE Lanes evaluate_inertia(RodBatch& b, const LanesPose& pose, LaneMask m) {
   const Lanes3 off = pose.position - b.predicted_position;
   const Lanes3 &x = pose.frame.x, &y = pose.frame.y;
@@ -66,9 +66,9 @@ void begin(RodBatch& b, const char* active, const RodScene& scene, BeginSums& su
   sums.energy += m ? kinetic + b.elastic : all(0);
 }
 
-/// D and b in series with the spring, seen from the parent: D - D (W + D)^-1 D. Subtracts from D, which is what matters
-/// when it is small beside the spring: a light vessel on stiff springs; D is not inverted, as it may be stiff one way
-/// and next to nothing another.
+/// D and b in series with the spring, as seen from the parent: D - D (W + D)^-1 D. Subtracting from D keeps accuracy
+/// where D is small beside the spring (a light vessel on stiff springs); D is not inverted, as it may be stiff in one
+/// direction and nearly zero in another.
 VMESH_INLINE void reduce_free(const RodBatch& b, const Lanes3& z, LanesMatrix& d, LanesVector& f) {
   const Lanes3 lever = b.length * z;
   carry(lever, d);
@@ -85,14 +85,14 @@ VMESH_INLINE Lanes3 angular_compliance(const RodBatch& b, const Lanes3& z, const
   return b.c_bend * t + (b.c_twist - b.c_bend) * dot(z, t) * z;
 }
 
-/// The torque on a held slot that goes where it is told without turning.
+/// The torque on a held slot that follows its target without rotating.
 VMESH_INLINE Lanes3 torque_on(const Lanes3& prescribed, const LanesMatrix& d, const LanesVector& f) {
   return f.spatial().angular + prescribed.x * mixed_column(d, 0) + prescribed.y * mixed_column(d, 1) +
          prescribed.z * mixed_column(d, 2);
 }
 
-/// The same as reduce_free() with the slot's position given, and its frame too when clamped. The inverse of the
-/// spring's W seen from the slot, J^T W J with J x = y, and what turns a fixed slot are in series.
+/// The same as reduce_free() with the slot's position given, and also its frame if clamped. The inverse of the spring's
+/// W as seen from the slot, J^T W J with J x = y, and the rotational compliance of a fixed slot are in series.
 VMESH_INLINE void reduce_held(const RodBatch& b, const Lanes3& z, const Lanes3& prescribed, LanesMatrix& d,
                               LanesVector& f) {
   const Lanes3 lever = b.length * z;
@@ -132,7 +132,7 @@ VMESH_INLINE void reduce_held(const RodBatch& b, const Lanes3& z, const Lanes3& 
   carry(lever, d);
 }
 
-/// Where the sum is least, for roots.
+/// The minimiser, for roots.
 VMESH_INLINE LanesSpatial minimum(const RodBatch& b, const Lanes3& prescribed, const LanesMatrix& d,
                                   const LanesVector& f) {
   const LanesVector x = LanesFactors(d).solve(f);
@@ -167,7 +167,7 @@ VMESH_INLINE void add_children(const RodBatch* batches, const RodBatch& b, const
   }
 }
 
-/// What hangs on the slots, and their own inertia.
+/// Adds up the slots' children and their own inertia.
 VMESH_INLINE void assemble(const RodBatch* batches, const RodBatch& b, const std::array<Index, kLanes>* children,
                            const Lanes3& z, LanesMatrix& d, LanesVector& f) {
   clear(d);
@@ -175,7 +175,7 @@ VMESH_INLINE void assemble(const RodBatch* batches, const RodBatch& b, const std
   add_children(batches, b, children, d, f);
 }
 
-/// For batches of which some slots are held or roots: what these reduce to instead of `d` and `f`, and x of roots.
+/// For batches with held slots or roots: their reduced `d` and `f`, and x of roots.
 [[gnu::noinline]] void eliminate_special(const RodBatch* batches, RodBatch& b,
                                          const std::array<Index, kLanes>* children, std::size_t pose, LaneMask m,
                                          LanesMatrix& d, LanesVector& f) {
@@ -282,8 +282,8 @@ VMESH_INLINE ParentPose parent_pose(const RodBatch* batches, const RodBatch& b, 
   return r;
 }
 
-/// Twice the energy of the springs, elastic and damping: against stretch and against turning with respect to the parent
-/// since the step's start, not against turning as a whole.
+/// Twice the energy of the springs, elastic and damping: against stretch and against rotation relative to the parent
+/// since the start of the step, not against rotation as a whole.
 VMESH_INLINE Lanes evaluate_springs(RodBatch& b, const LanesPose& pose, const ParentPose& parent, LaneMask m) {
   const Lanes33 wanted = product(parent.frame, b.turn);
   const auto& [x, y, z] = pose.frame;
@@ -324,7 +324,8 @@ void move(RodBatch* batches, Index batch, const char* active, const RodMove& by,
   }
   to.position = from.position + part * b.x.linear;
   if (by.chained) {
-    // Where the solution would have the segment against its axis if turning by an angle did not lengthen it.
+    // The solution's change of the segment relative to its axis, linearised: without the lengthening by finite
+    // rotations.
     const Lanes3 change = b.x.linear + b.length * cross(from.frame.z, b.x.angular) - parent_solution(batches, b).linear;
     const Lanes3 hung = parent.position + b.length * to.frame.z + from.misfit + part * change;
     const LaneMask straight = (square(b.x.linear) == 0) | (b.is_root != 0);
@@ -342,7 +343,7 @@ void move(RodBatch* batches, Index batch, const char* active, const RodMove& by,
   sums.largest = larger(sums.largest, m ? square(b.x.linear) : zero);
 }
 
-/// On a lane that is held, by the hand that drags it, uJ.
+/// Work on a held lane by what drags it, uJ.
 VMESH_INLINE double work_of_hand(const RodBatch* batches, const RodBatch& b, const std::array<Index, kLanes>* children,
                                  std::size_t lane, const Vec3& moved, const Vec3& faster, double step_s) {
   const auto pull = [](const RodBatch& from, std::size_t i) -> Vec3 {

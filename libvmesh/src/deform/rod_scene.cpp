@@ -32,8 +32,8 @@ void check(const SegmentProperties& p, Index segment) {
 
 double length_of(const RodTree& tree, Index j) { return regular_length(tree.length[j], tree.radius[j]); }
 
-/// Compliance against bending between the middles of two segments in a row, or a root's frame and the middle of one.
-/// Twist in the same proportion.
+/// Bending compliance between the midpoints of two consecutive segments, or between a root's frame and the midpoint of
+/// its segment. Twist in the same proportion.
 void set_angular_springs(const RodTree& tree, const std::vector<SegmentProperties>& properties, Index j, Rod& rod) {
   const auto half_segment = [&](Index slot, double SegmentProperties::*stiffness) {
     if (tree.segment[slot] == kNone) return 0.0;
@@ -64,7 +64,7 @@ void set_springs(const RodTree& tree, const std::vector<SegmentProperties>& prop
   }
 }
 
-/// A root's frame stands for half of its first segment; an isolated node is a ball of water.
+/// A root's frame represents half of its first segment; an isolated node is a ball of water.
 void set_root_inertia(RodScene& scene) {
   constexpr double kWater_kg_mm3 = 1e-6;
   for (Index j = 0; j < scene.size(); ++j) {

@@ -22,7 +22,7 @@ struct Rod {
 
 enum class Hold : char { free, fixed, clamped };
 
-/// What both integrators work on. One entry per slot.
+/// The state shared by both integrators, one entry per slot.
 struct RodScene {
   RodTree tree;
   SimulationOptions options;
@@ -34,17 +34,17 @@ struct RodScene {
   std::vector<Vec3> force, torque;   ///< mN, mN mm
   std::vector<Hold> hold;
   std::vector<Vec3> target;  ///< of held slots
-  std::vector<char> moved;   ///< since the user looked
+  std::vector<char> moved;   ///< since the last clear_moved()
 
   std::size_t size() const { return rods.size(); }
   bool is_root(Index j) const { return rods[j].parent == kNone; }
 };
 
-/// At rest, nothing held. Throws InvalidInput for properties out of range.
+/// A scene at rest with nothing held. Throws InvalidInput for properties out of range.
 RodScene make_rod_scene(const Centerline& centerline, const std::vector<SegmentProperties>& properties,
                         const SimulationOptions& options);
 
-/// Stretch of slot j's segment against where its z axis points: zero when straight and of its length.
+/// Deviation of slot j's segment from its z axis times its rest length: zero if straight and of rest length.
 inline Vec3 misfit(const RodScene& scene, Index j) {
   const Rod& rod = scene.rods[j];
   return scene.pose.position[j] - scene.pose.position[rod.parent] - rod.length * scene.pose.frame[j].col(2);
@@ -53,9 +53,9 @@ inline Vec3 misfit(const RodScene& scene, Index j) {
 /// Energies of slot j alone, uJ.
 double elastic_energy(const RodScene& scene, Index j);
 double kinetic_energy(const RodScene& scene, Index j);
-/// Of the springs that close loops, uJ.
+/// Energy of the springs that close loops, uJ.
 double tie_energy(const RodScene& scene);
-/// Of all slots and ties.
+/// Elastic energy of all slots and ties, uJ.
 double elastic_energy(const RodScene& scene);
 double kinetic_energy(const RodScene& scene);
 

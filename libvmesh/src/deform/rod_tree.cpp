@@ -11,7 +11,8 @@ Mat3 frame_along(const Vec3& z) {
   return frame;
 }
 
-/// `parent` turned the short way until its z is `z`, then made orthonormal: turning alone doubles its error a segment.
+/// `parent` rotated the short way until its z is `z`, then orthonormalised: rotation alone doubles the error with every
+/// segment.
 Mat3 transported(const Mat3& parent, const Vec3& z) {
   const Vec3 old_z = parent.col(2);
   Vec3 x = parent.col(0);

@@ -47,14 +47,14 @@ struct CenterlineSimulation::State {
     return scene.tree.slot_of_node[node];
   }
 
-  /// Something about the slot changed: it moves, or may.
+  /// Wakes the node's slots after a change.
   Index stir(Index node) {
     const Index j = slot(node);
     implicit.wake(j);
     return j;
   }
 
-  /// The same value again leaves what is at rest alone.
+  /// Setting the same value again does not wake slots at rest.
   void load(Index node, const Vec3& value, std::vector<Vec3>& loads) {
     const Index j = slot(node);
     if (loads[j] == value) return;

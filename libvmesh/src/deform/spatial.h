@@ -12,8 +12,7 @@ struct Spatial {
   Vec3 angular = Vec3::Zero();
 };
 
-/// a b and a^T b. Spelt out, as Eigen calls a function for each coefficient of a sum of products: it takes half
-/// the time.
+/// a b and a^T b. Written out because Eigen calls a function for each coefficient of a sum of products: half the time.
 [[gnu::always_inline]] inline Mat3 product(const Mat3& a, const Mat3& b) {
   Mat3 r;
   for (int j = 0; j < 3; ++j)
@@ -27,11 +26,11 @@ struct Spatial {
   return r;
 }
 
-/// Where a difference that must be positive is all rounding, what stands for it: this times the minuend.
+/// Where a difference that must be positive is lost to rounding, it is replaced by this times the minuend.
 constexpr double kRounding = 1e-15;
 
 /// Inverse of a symmetric positive definite 3x3 matrix by L D L^T. A pivot that rounding made too small or negative is
-/// raised, which makes the inverse smaller: safe for a matrix of stiffness.
+/// raised, which makes the inverse smaller: the safe side for a stiffness matrix.
 [[gnu::always_inline]] inline Mat3 inverse(const Mat3& m) {
   const double d0 = m(0, 0), i0 = 1 / d0;
   const double l10 = m(0, 1) * i0, l20 = m(0, 2) * i0;
@@ -45,7 +44,7 @@ constexpr double kRounding = 1e-15;
   return r;
 }
 
-/// The columns of `m` crossed by `v` from the left: [v]x m.
+/// The cross products of `v` with the columns of `m`: [v]x m.
 inline Mat3 cross_columns(const Vec3& v, const Mat3& m) {
   Mat3 r;
   for (int i = 0; i < 3; ++i) r.col(i) = v.cross(Vec3(m.col(i)));
@@ -65,10 +64,10 @@ inline Mat3 cayley(const Vec3& v) {
   return r;
 }
 
-/// Takes rounding out of a frame that is orthonormal but for that.
+/// Removes rounding errors from a nearly orthonormal frame.
 inline void sharpen(Mat3& frame) { frame = 1.5 * frame - 0.5 * product(frame, transposed_product(frame, frame)); }
 
-/// Axis times sine of the rotation that turns frame `a` into frame `b`.
+/// Axis times sine of the rotation from frame `a` to frame `b`.
 inline Vec3 turned_by(const Mat3& a, const Mat3& b) {
   return 0.5 * (a.col(0).cross(b.col(0)) + a.col(1).cross(b.col(1)) + a.col(2).cross(b.col(2)));
 }

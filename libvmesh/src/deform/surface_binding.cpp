@@ -10,7 +10,7 @@
 namespace vmesh {
 namespace {
 
-/// A place in terms of the tree: from the slot's parent (t = 0) to the slot (t = 1).
+/// A place in terms of the rod tree: from the slot's parent (t = 0) to the slot (t = 1).
 struct SlotPlace {
   Index slot;
   double t;
@@ -49,7 +49,7 @@ void resize(SurfaceBinding::Rest& rest, std::size_t size) {
 void set_lane(const RodTree& tree, const SlotPlace& place, const Vec3& vertex, const Vec3& normal,
               SurfaceBinding::Rest& rest, Index lane) {
   const Index parent = tree.parent[place.slot] == kNone ? place.slot : tree.parent[place.slot];
-  // The vector is from where single precision puts the parameter.
+  // The vector starts at the point of the parameter rounded to single precision.
   rest.t[lane] = static_cast<float>(place.t);
   const double t = rest.t[lane];
   const Vec3 axis = (1 - t) * tree.position[parent] + t * tree.position[place.slot];
@@ -59,7 +59,7 @@ void set_lane(const RodTree& tree, const SlotPlace& place, const Vec3& vertex, c
   rest.normal_x[lane] = n.x(), rest.normal_y[lane] = n.y(), rest.normal_z[lane] = n.z();
 }
 
-/// Slots that have vertices, in order, but for this: of some in a row those with as many vertices follow each other.
+/// Slots with vertices, in order except that within short runs, slots with equally many vertices are adjacent.
 std::vector<Index> group_order(const std::vector<std::vector<Index>>& of_slot) {
   constexpr std::size_t kWindow = 512;
   std::vector<Index> order;

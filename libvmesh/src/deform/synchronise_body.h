@@ -1,5 +1,5 @@
-// Synchronising for one set of instructions; included by a source that has chosen it, inside a namespace: what vectors
-// become is decided where the code stands, before it is inlined.
+// Synchronising for one instruction set; included inside a namespace by a source that has selected it, because how
+// vector code is compiled depends on the translation unit, before inlining.
 
 #define VMESH_INLINE [[gnu::always_inline]] inline
 
@@ -51,9 +51,9 @@ VMESH_INLINE Columns transposed(const Four (&rows)[kLanes]) {
           __builtin_shufflevector(low[0][3], low[1][3], 0, 1, 2, 3, 4, 5, 6, 7)};
 }
 
-/// Where eight slots are.
+/// Positions and frames of eight slots.
 struct EightPoses {
-  Eight3 position;  // from the origin
+  Eight3 position;  // relative to the origin
   Eight33 frame;
 };
 VMESH_INLINE EightPoses poses(const Pose& pose, const std::array<Index, kLanes>& slots, const Vec3& origin) {
@@ -79,7 +79,7 @@ VMESH_INLINE Eight33 mean_frame(const Eight33& own, const Eight33& parent, const
   return {column(own.x, turn), column(own.y, turn + 3 * kLanes), column(own.z, turn + 6 * kLanes)};
 }
 
-/// What carries the vertices of eight slots.
+/// The data that carry the vertices of eight slots.
 struct Carrier {
   Eight3 p, d;  // the parents' positions, and from there to the slots'
   Eight33 m;
@@ -110,14 +110,14 @@ VMESH_INLINE Eight3 position(const SurfaceBinding::Rest& rest, const Carrier& c,
 
 VMESH_INLINE Eight3 normal(const SurfaceBinding::Rest& rest, const Carrier& c, std::size_t lane) {
   const Eight3 v = product(c.m, {load(&rest.normal_x[lane]), load(&rest.normal_y[lane]), load(&rest.normal_z[lane])});
-  // The mean of two rotations shortens; smallest: a normal of no length stays so.
+  // The mean of two rotations shortens vectors; the small number keeps a zero normal zero.
   const Eight f = 1 / root(v.x * v.x + v.y * v.y + v.z * v.z + 1e-30f);
   return {f * v.x, f * v.y, f * v.z};
 }
 
 using EightFlags = decltype(Eight{} < Eight{});
 
-/// Eight lanes of an array, of those that move.
+/// Writes eight lanes of an array, only those that move.
 VMESH_INLINE void write(Eight v, const EightFlags& moving, bool all_move, float* to) {
   store(all_move ? v : (moving ? v : load(to)), to);
 }

@@ -10,15 +10,15 @@
 namespace vmesh {
 namespace {
 
-// Of a radius: points that lie less deep inside another cone count as on the boundary. Far above rounding, far below
-// what matters.
+// Radii: points less deep inside another cone count as on the boundary. Far above rounding, far below any relevant
+// distance.
 constexpr double kDepth = 1e-9;
 constexpr std::size_t kBatch = 16384, kTogether = 256;  // samples
 constexpr double kPlastic = 1.32471795724474602596;     // see sample_surface()
 
 // The side of a round cone between the circles where it touches its end spheres.
 struct ConeSide {
-  Vec3 first, axis, across, other_across;  // the latter three are unit vectors at right angles
+  Vec3 first, axis, across, other_across;  // the latter three are orthonormal
   double length, r0, r1, sine, cosine;     // of the angle between the side and the axis
 
   ConeSide(const CenterlineNode& a, const CenterlineNode& b)
@@ -92,7 +92,7 @@ class BoundarySampler {
     }
   }
 
-  // Of the candidates.
+  // Keeps the candidates that are on the boundary.
   void keep_boundary() {
     kept_.resize(candidates_.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, candidates_.size(), kTogether), [&](const auto& range) {
@@ -104,7 +104,7 @@ class BoundarySampler {
     candidates_.clear();
   }
 
-  // Most points that are not on the boundary are inside a neighbouring cone.
+  // Tests neighbouring cones first: most points off the boundary are inside one of them.
   bool on_boundary(const BoundarySample& sample, std::array<Index, 2> nodes) const {
     const double deepest = -kDepth * sample.radius;
     for (const Index n : nodes) {

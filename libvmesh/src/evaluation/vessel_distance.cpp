@@ -52,7 +52,7 @@ struct Measured {
   double distance, radius;
 };
 
-// Adds measure(i, near) for all i in order, a batch at a time; `near` is kept from one to the next where that is cheap.
+// Adds measure(i, near) for all i in order, a batch at a time; `near` is passed on from one to the next within a task.
 template <class Measure>
 void measure_in_order(std::size_t count, SideCollector& to, const Measure& measure) {
   std::vector<Measured> batch(std::min(count, kBatch));

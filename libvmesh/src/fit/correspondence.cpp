@@ -8,17 +8,17 @@
 namespace vmesh {
 namespace {
 
-constexpr double kSameWay = 0.2;   // cosine of the angle between normals, at least
+constexpr double kSameWay = 0.2;   // least cosine between normals
 constexpr double kFarthest = 1.5;  // local radii
-// Farther apart than the first, in local radii, two points are counterparts only when neither has one much nearer: with
-// less than the second, in their distance.
+// Points farther apart than kNear local radii are counterparts only if neither has a much nearer one: nearer than
+// kMutual times their distance.
 constexpr double kNear = 0.25, kMutual = 0.2;
 constexpr double kNoDistance = 1e-9;  // of a radius: below it the line between two points has no direction
 constexpr double kOnEdge = 1e-9;      // a corner's weight on the edge opposite to it
-constexpr std::size_t kGrain = 256;   // samples in a row, each of which helps the next
-constexpr Index kFaces = 32;          // the same of faces
+constexpr std::size_t kGrain = 256;   // consecutive samples, each a hint for the next
+constexpr Index kFaces = 32;          // the same for faces
 
-// Centres of the triangles that a face is divided into, as weights of its corners.
+// Centres of the triangles into which a face is divided, as weights of its corners.
 std::vector<Vec3> pattern(int division) {
   std::vector<Vec3> points;
   const double n = 3.0 * division;
@@ -59,7 +59,8 @@ class Matcher {
     return from_surface(f, weights, normals_[f], area, near);
   }
 
-  // Of a point on the side opposite to corner i, whose normal is that of both its faces; `part` of the way along it.
+  // Match of a point on the side opposite to corner i, at the fraction `part` along it, with the mean normal of both
+  // faces.
   Match from_edge(Index f, int i, double part) const {
     const Triangle& face = surface_.faces[f];
     const Index a = face[(i + 1) % 3], b = face[(i + 2) % 3], g = surface_.face_of(b, a);
@@ -102,7 +103,7 @@ class Matcher {
     if (!found) return {};
     near = found->face;
     if (reference_.on_border(found->face, found->point)) return {};
-    if (found->distance > kNear * radius) {  // is that point's own counterpart much nearer, then it is not this one
+    if (found->distance > kNear * radius) {  // not a counterpart if that point has a much nearer one itself
       const Index there = reference_.cone(found->face);
       const double limit = kMutual * found->distance;
       if (on_surface(found->point, reference_.normal(found->face), there, limit, f)) return {};
@@ -208,7 +209,7 @@ void follow(Matches& matches, const std::vector<FitMesh::Vertex>& before, const 
 double matched_distance(const Matches& matches, double share) {
   double result = 0;
   for (const auto* list : {&matches.from_surface, &matches.from_reference}) {
-    std::vector<std::pair<double, double>> distances;  // and the areas they stand for
+    std::vector<std::pair<double, double>> distances;  // with the areas they represent
     double total = 0;
     for (const Match& match : *list) {
       if (match.face == kNone) continue;

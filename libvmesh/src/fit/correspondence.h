@@ -9,20 +9,21 @@
 
 namespace vmesh {
 
-/// A point of the surface and one of the reference that belong together.
+/// A pair of corresponding points of the surface and the reference.
 struct Match {
   Index face = kNone;             ///< of the surface; kNone: the point has no counterpart
   Vec3 weights = Vec3::Zero();    ///< of the face's corners at the surface's point
-  Vec3 direction = Vec3::Zero();  ///< unit, from the reference's point to the surface's, or against it
+  Vec3 direction = Vec3::Zero();  ///< unit, from the reference's point to the surface's, or opposite
   double distance = 0;            ///< along the direction, mm
-  double area = 0;                ///< mm^2 that it stands for
+  double area = 0;                ///< mm^2 that it represents
 };
 
 struct Matches {
   std::vector<Match> from_surface;    ///< `per_face` for every face, in the order of the faces
   std::vector<Match> from_reference;  ///< one for every sample
-  /// Of points on the edges and their ends, where ridges and tips are farthest from what is round; they stand for no
-  /// area. Empty, or kPerEdge for each side of every face; a side that two faces share has its matches in one of them.
+  /// Matches of points on edges and their ends, where ridges and tips are farthest from a round shape; they represent
+  /// no area. Empty, or kPerEdge for each side of every face; a side shared by two faces has its matches in one of
+  /// them.
   std::vector<Match> from_edges;
   int per_face = 0;
 };
@@ -34,13 +35,13 @@ Matches find_matches(const FitMesh& surface, const FitReference& reference, cons
 
 inline constexpr int kPerEdge = 5;
 
-/// The counterparts of points on all edges, ends included, as Matches has them.
+/// The matches of points on all edges, ends included: Matches::from_edges.
 std::vector<Match> match_edges(const FitMesh& surface, const FitReference& reference, const VesselField& field);
 
-/// Changes the distances to those after vertices have moved a little from where they were, along the same directions.
+/// Updates the distances, along the same directions, after vertices have moved a little from `before`.
 void follow(Matches& matches, const std::vector<FitMesh::Vertex>& before, const FitMesh& surface);
 
-/// The distance that a share of the matches' area is nearer than, mm, the larger of both ways; 0 without matches.
+/// The distance below which a share of the matches' area lies, mm, the larger of both ways; 0 without matches.
 double matched_distance(const Matches& matches, double share);
 
 }  // namespace vmesh

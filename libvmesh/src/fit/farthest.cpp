@@ -15,29 +15,29 @@ namespace {
 
 constexpr int kDivision = 3, kRelaxations = 2;
 constexpr std::size_t kEdgePoints = 3 * kPerEdge;  // of a face
-// RMS distances from which on a place, as a ridge that a triangle lies across, gets a vertex of its own. Measured on
-// the aorta and SU201, sixteen starts (growth with nodes left out at 0 to .8, vertices moved by 1e-6 radii): Hausdorff
-// at most .97 and .29 mm with 3 to 4.5, 1.00 and .29 with 5; safe from 3 to 4.5.
+// Multiple of the RMS distance from which on a place, such as a ridge crossed by a triangle, gets a vertex of its own.
+// Measured on the aorta and SU201, sixteen starts (growth with `simplification` 0 to .8, vertices moved by 1e-6 radii):
+// Hausdorff distance at most .97 and .29 mm with 3 to 4.5, 1.00 and .29 with 5; safe 3 to 4.5.
 constexpr double kFar = 4;
-// Edges, the longest mean of a corner's: what is farther is not the surface's to follow. More than what triangles are
-// made finer for (kNotOfSize), as only what helps is kept. Measured on SU201, sixteen starts: at 0.6 and 0.8 Hausdorff
-// is at most .28 mm, at 0.4 once .37.
+// Edge lengths (largest mean at a corner): farther points are not for the surface to follow. More than the limit for
+// refinement (kNotOfSize), as only what helps is kept. Measured on SU201, sixteen starts: at 0.6 and 0.8 the Hausdorff
+// distance is at most .28 mm, at 0.4 once .37.
 constexpr double kNotOfReach = 0.6;
 constexpr int kMostPlaces = 12;
-constexpr double kReach = 2.5;      // edges: what is fitted again around a new vertex. Measured: 1.5 to 3.5 do the same
-constexpr double kAtVertex = 1e-9;  // what is left of the weights, for a vertex
-constexpr std::array<double, 3> kShares = {0.75, 0.5, 0.25};  // of its distance that a vertex is brought nearer by
-constexpr int kRounds = 3;                                    // of it. Measured: 2 to 4 do the same
+constexpr double kReach = 2.5;  // edges: radius of the refit around a new vertex. Measured: 1.5 to 3.5 give the same
+constexpr double kAtVertex = 1e-9;                            // other weights below this: the point is a vertex
+constexpr std::array<double, 3> kShares = {0.75, 0.5, 0.25};  // of its distance, by which a vertex is moved nearer
+constexpr int kRounds = 3;                                    // of the refit. Measured: 2 to 4 give the same
 
 Vec3 point_of(const FitMesh& surface, const Match& match) {
   const auto [a, b, c] = surface.corners(match.face);
   return match.weights[0] * a + match.weights[1] * b + match.weights[2] * c;
 }
 
-// The matches of a part of the surface, and where they belong among all.
+// The matches of a patch of the surface, and their positions among all.
 struct PatchMatches {
   Matches matches;
-  std::vector<Index> samples;  // of the reference, by their numbers among all
+  std::vector<Index> samples;  // of the reference, by number among all
 };
 
 class FarPlaces {
@@ -60,7 +60,7 @@ class FarPlaces {
   }
 
  private:
-  // Returns whether what is around it came nearer by it.
+  // Returns whether that brought its surroundings nearer.
   bool put_vertex_at(const Match& worst) {
     double edge = 0;
     for (const Index v : surface_.faces[worst.face]) edge = std::max(edge, surface_.mean_edge(v));
@@ -84,7 +84,7 @@ class FarPlaces {
       least = left;
       best.emplace(std::move(changed), std::move(after));
     };
-    Match cut = there;  // where a vertex may help
+    Match cut = there;  // where to add a vertex
     if (is_tip(worst)) {
       for (const double share : kShares)
         try_change([&](FitPatch& changed, PatchMatches&) { move_vertex(changed, there, share); });
@@ -106,7 +106,7 @@ class FarPlaces {
     return patch.surface.faces[match.face][static_cast<std::size_t>(corner)];
   }
 
-  // What the faces around a tip cut off, that it makes up for.
+  // The farthest match on the faces around a tip, which they cut off and it compensates for.
   static Match farthest_beside(const FitPatch& patch, const Matches& matches, Index tip) {
     Match farthest;
     for (const auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
@@ -142,7 +142,7 @@ class FarPlaces {
     }
   }
 
-  // change_safely() with what is free of a patch.
+  // change_safely() on the free part of a patch.
   template <class Change>
   static void change(FitPatch& patch, Change&& change_free) {
     change_safely(patch.surface, [&](FitMesh& surface, const std::vector<char>& crossing) {
@@ -158,7 +158,7 @@ class FarPlaces {
     matches.matches = find_matches(patch.surface, setting_.reference, samples, setting_.field, kDivision);
   }
 
-  // As they are among all.
+  // The patch's matches, taken from those of the whole.
   PatchMatches matches_of(const FitPatch& patch) const {
     std::vector<Index> number(surface_.faces.size(), kNone);
     PatchMatches result;

@@ -127,7 +127,7 @@ bool FitMesh::may_collapse(Index a, Index b) const {
   std::set_intersection(near_a.begin(), near_a.end(), near_b.begin(), near_b.end(), std::back_inserter(common));
   if (common.size() != 2) return false;
   return std::all_of(common.begin(), common.end(), [&](Index v) { return around_[v].size() > 3; }) &&
-         near_a.size() + near_b.size() > 6;  // no tetrahedron
+         near_a.size() + near_b.size() > 6;  // not a tetrahedron
 }
 
 void FitMesh::collapse(Index a, Index b) {

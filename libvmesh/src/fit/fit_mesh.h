@@ -7,17 +7,17 @@
 
 namespace vmesh {
 
-/// A manifold surface whose connections change, in plain arrays. Faces and vertices that were removed keep their
-/// numbers until pack().
+/// A manifold surface of changing connectivity, in plain arrays. Removed faces and vertices keep their numbers until
+/// pack().
 class FitMesh {
  public:
-  /// What a vertex carries.
+  /// A vertex and its attributes.
   struct Vertex {
     Vec3 position = Vec3::Zero();
     Index cone = kNone;     ///< of the vessel field, the nearest one
     Index opening = kNone;  ///< on whose ring the vertex lies
     double size = 0;        ///< intended length of the edges, mm
-    double base_size = 0;   ///< of the surface as it was given
+    double base_size = 0;   ///< size on the surface as given
   };
 
   FitMesh(const TriMesh& mesh, std::vector<Vertex> vertices);
@@ -33,7 +33,7 @@ class FitMesh {
   std::array<Vec3, 3> corners(Index f) const {
     return {position(faces[f][0]), position(faces[f][1]), position(faces[f][2])};
   }
-  /// Twice the area long.
+  /// Normal whose length is twice the area.
   Vec3 area_normal(Index f) const;
   Vec3 unit_normal(Index f) const;
   Vec3 vertex_normal(Index v) const;  ///< unit, area-weighted
@@ -51,18 +51,18 @@ class FitMesh {
   /// All edges as (a, b) with a < b, in the order of the faces.
   std::vector<std::array<Index, 2>> edges() const;
 
-  /// Exchanges the edge from a to b for the one between the opposite corners. Both faces exist.
+  /// Flips the edge from a to b. Both faces must exist.
   void flip(Index a, Index b);
   /// Puts a vertex on an edge of two faces; returns its number.
   Index split(Index a, Index b, const Vertex& middle);
-  /// Merges b into a. may_collapse() holds.
+  /// Merges b into a. Requires may_collapse().
   void collapse(Index a, Index b);
-  /// Whether the surface stays manifold, with the same topology.
+  /// Whether collapsing keeps the surface manifold, with the same topology.
   bool may_collapse(Index a, Index b) const;
 
-  /// Renumbers without what was removed; returns the new numbers of the vertices.
+  /// Removes unused numbers; returns the new numbers of the vertices.
   std::vector<Index> pack();
-  /// Of a packed mesh.
+  /// The mesh; must be packed.
   TriMesh tri_mesh() const;
 
  private:
@@ -73,7 +73,7 @@ class FitMesh {
   std::size_t vertex_count_ = 0;
 };
 
-/// Whether a vertex has to stay as it is: one flag each, and those that are newer than the flags are not frozen.
+/// Whether a vertex must stay as it is: one flag each; vertices newer than the flags are not frozen.
 inline bool is_frozen(const std::vector<char>& frozen, Index v) { return v < frozen.size() && frozen[v]; }
 
 }  // namespace vmesh

@@ -47,7 +47,7 @@ FitPatch patch_around(const FitMesh& whole, Index face, double reach) {
   for (const Index v : free) {
     for (const Index f : whole.faces_around(v)) box.extend(box_of(whole, f));
   }
-  const Vec3 room = Vec3::Constant(whole.mean_edge(whole.faces[face][0]));  // to move
+  const Vec3 room = Vec3::Constant(whole.mean_edge(whole.faces[face][0]));  // for vertices to move
   box = Box(box.min() - room, box.max() + room);
   FitPatch patch{FitMesh({}, {}), {}, {}, {}};
   std::vector<Index> number(whole.vertices.size(), kNone);

@@ -15,9 +15,9 @@
 namespace vmesh {
 namespace {
 
-constexpr double kReach = 1;  // local radii from the round cones: as far as bulges go
-constexpr double kRim = 0.7;  // cosine of the angle between the normals on both sides of it, at most
-// Roberts' R2, as sample_surface() does.
+constexpr double kReach = 1;        // local radii from the round cones: as far as bulges go
+constexpr double kSharpEdge = 0.7;  // largest cosine between the normals on both sides of a sharp edge
+// Roberts' R2, as in sample_surface().
 constexpr double kPlastic = 1.32471795724474602596;
 
 struct HalfEdge {
@@ -34,7 +34,7 @@ std::string text_of(const Vec3& p) {
   return text;
 }
 
-// Vertices at one place become one; faces that lose their area by it go.
+// Merges coincident vertices; removes faces that lose their area by that.
 TriMesh welded(const TriMesh& mesh) {
   std::vector<Index> order(mesh.vertices.size()), number(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0);
@@ -92,7 +92,7 @@ void FitReference::connect() {
   };
   for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {
     while (end < edges.size() && same_edge(edges[first], edges[end])) ++end;
-    if (end - first != 2) continue;  // a border, or an edge that many faces share
+    if (end - first != 2) continue;  // a border, or an edge of more than two faces
     const HalfEdge &a = edges[first], &b = edges[first + 1];
     if (a.from == b.from)
       throw InvalidInput("the faces of the reference disagree about the outside, at " +
@@ -102,7 +102,7 @@ void FitReference::connect() {
   }
 }
 
-// A closed reference by the volume it encloses, an open one by the vessels that it goes around.
+// Decides for a closed reference by the volume it encloses, for an open one by the vessels that it surrounds.
 void FitReference::turn_outwards(const VesselField& field) {
   const bool closed = std::all_of(across_.begin(), across_.end(), [](const Triangle& sides) {
     return std::find(sides.begin(), sides.end(), kNone) == sides.end();
@@ -130,8 +130,8 @@ Vec3 FitReference::center(Index f) const {
 
 double FitReference::area(Index f) const { return area_normal(mesh_, f).norm() / 2; }
 
-// The nearest cone is that of the vessel where it faces the same way; elsewhere it may be a neighbour's, and the one
-// that the surroundings lead to counts.
+// Where the nearest cone faces the same way, it is the vessel's; elsewhere it may be a neighbour's, and the cone is
+// found from the surroundings.
 void FitReference::find_cones(const VesselField& field) {
   cones_.resize(mesh_.faces.size());
   std::vector<char> known(mesh_.faces.size());
@@ -202,7 +202,7 @@ std::vector<ReferenceSample> FitReference::rim_samples() const {
   for (Index f = 0; f < mesh_.faces.size(); ++f) {
     for (int i = 0; i < 3; ++i) {
       const Index g = across_[f][i];
-      if (g == kNone || normals_[f].dot(normals_[g]) > kRim) continue;
+      if (g == kNone || normals_[f].dot(normals_[g]) > kSharpEdge) continue;
       const Vec3 &a = mesh_.vertices[mesh_.faces[f][i]], &b = mesh_.vertices[mesh_.faces[f][(i + 1) % 3]];
       samples.push_back({a, f, 0});
       samples.push_back({0.5 * (a + b), f, 0});

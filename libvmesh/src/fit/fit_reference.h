@@ -9,14 +9,14 @@
 
 namespace vmesh {
 
-/// A point of the reference that looks for its counterpart on the surface.
+/// A point of the reference for which a counterpart on the surface is sought.
 struct ReferenceSample {
   Vec3 position = Vec3::Zero();
   Index face = kNone;
-  double area = 0;  ///< mm^2 that it stands for
+  double area = 0;  ///< mm^2 that it represents
 };
 
-/// The surface that another one is fitted to: facing outwards, and every face knows its vessel.
+/// The surface to which another one is fitted: facing outwards, with a vessel assigned to every face.
 class FitReference {
  public:
   /// Throws InvalidInput for a mesh without faces and one whose faces disagree about the outside.
@@ -26,7 +26,7 @@ class FitReference {
   const ClosestPointIndex& index() const { return *index_; }
   const Vec3& normal(Index f) const { return normals_[f]; }
   Index cone(Index f) const { return cones_[f]; }
-  /// Whether a face is so near its vessel that it can be the vessel's wall; if not, it is not chased.
+  /// Whether a face is near enough to its vessel to be the vessel's wall; if not, it is ignored.
   bool is_near(Index f) const { return near_[f]; }
   bool turned() const { return turned_; }
   /// Whether `p`, a point of face `f`, lies on the border of an open reference.
@@ -36,9 +36,9 @@ class FitReference {
   Vec3 center(Index f) const;
   double area(Index f) const;
 
-  /// About `count` points, their density that of 1 / radius^2 of the vessels.
+  /// About `count` points with a density proportional to 1 / radius^2 of the vessels.
   std::vector<ReferenceSample> samples(const VesselField& field, std::size_t count) const;
-  /// Corners and middles of sharp edges, for what their faces' samples miss; they stand for no area.
+  /// Ends and midpoints of sharp edges, which their faces' samples miss; they represent no area.
   std::vector<ReferenceSample> rim_samples() const;
 
  private:
@@ -50,7 +50,7 @@ class FitReference {
   TriMesh mesh_;
   bool turned_ = false;
   std::vector<Triangle> across_;
-  std::optional<ClosestPointIndex> index_;  // once the faces are turned
+  std::optional<ClosestPointIndex> index_;  // once the faces are oriented
   std::vector<Vec3> normals_;
   std::vector<Index> cones_;
   std::vector<char> near_;

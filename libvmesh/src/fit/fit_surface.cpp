@@ -25,19 +25,19 @@ namespace {
 
 constexpr double kSamplesPerFace = 9;              // of the reference
 constexpr int kDivision = 3, kCoarseDivision = 2;  // of the surface's faces: 9 or 4 samples
-constexpr int kFewer = 2;                          // samples of the reference to one, where coarse will do
-constexpr std::size_t kFewerBefore = 4;            // samples of the report's distances, to one after the fit
-constexpr double kLeastMatched = 0.02;             // of the surface's area, for a reference that is somewhere else
+constexpr int kFewer = 2;                // one in so many samples of the reference where a coarse fit is enough
+constexpr std::size_t kFewerBefore = 4;  // one in so many samples of the report before the fit
+constexpr double kLeastMatched = 0.02;   // of the surface's area: with less, the reference is somewhere else
 constexpr int kRelaxations = 2;
-constexpr double kEvenShare = 0.5;  // of the error that 95 % keep to: what it is around most vertices
-constexpr double kAim = 0.92;       // of the error, while resizing: with few samples a little is missed
+constexpr double kEvenShare = 0.5;  // of the error kept by 95 %: the error around most vertices
+constexpr double kAim = 0.92;       // of the error, while resizing: few samples underestimate it
 constexpr int kFirstRounds = 3, kLastRounds = 4;
-constexpr int kMoreRounds = 12;           // at most, to find the size for an error
-constexpr double kOfMostVertices = 0.98;  // to aim at: the count is a matter of luck
+constexpr int kMoreRounds = 12;           // at most, to find the size that gives an error
+constexpr double kOfMostVertices = 0.98;  // target: the exact count cannot be controlled
 constexpr int kCorrections = 5;
 // Memory, measured.
 constexpr double kBytesPerVertex = 12000, kBytesPerReferenceFace = 350;
-constexpr double kCorrection = 0.93;  // of the even error, when 95 % do not keep to theirs
+constexpr double kCorrection = 0.93;  // factor on the even error when the 95 % miss theirs
 
 std::string text_of(const Vec3& p) {
   char text[128];
@@ -48,7 +48,7 @@ std::string text_of(const Vec3& p) {
 void check(const FitOptions& options) {
   if (options.rounds < 1 || options.rounds > 100) throw InvalidInput("rounds of a fit are 1 to 100");
   if (!(options.max_skewness >= 0.1 && options.max_skewness <= 0.9))
-    throw InvalidInput("the skewness that a fit may come to is 0.1 to 0.9");
+    throw InvalidInput("the largest skewness of a fit is 0.1 to 0.9");
   if (!(options.error >= 0 && std::isfinite(options.error)))
     throw InvalidInput("the error of a fit is 0 or more, and finite");
 }
@@ -75,7 +75,7 @@ void check(const VesselSurface& surface, const VesselField& field) {
   }
 }
 
-/// Memory that a fit of so many vertices takes, at most, with the reference.
+/// Checks for the memory that a fit of so many vertices needs at most, with the reference.
 void check_memory(std::size_t vertices, const TriMesh& reference) {
   require_memory(
       kBytesPerVertex * static_cast<double>(vertices) +
@@ -185,12 +185,13 @@ class Fit {
 
   Matches next_matches(bool coarse = false) {
     ++rounds_;
-    const double share = static_cast<double>(rounds_) / (rounds_ + kFirstRounds);  // not known beforehand
+    const double share = static_cast<double>(rounds_) /
+                         (rounds_ + kFirstRounds);  // an estimate: the number of rounds is not known beforehand
     report_progress(*progress_, "fit", share);
     return matches_now(coarse);
   }
 
-  // One step nearer, and what the distances are after it.
+  // Takes a step; returns the matches with the distances after it.
   Matches matches_after_step() {
     Matches matches = next_matches(!to_error_);
     const std::vector<FitMesh::Vertex> before = surface_.vertices;
@@ -204,7 +205,7 @@ class Fit {
     return find_matches(surface_, reference_, samples_, field_, kDivision);
   }
 
-  // The last rounds: shape gives way to nearness.
+  // The last rounds: distance takes precedence over shape.
   void finish() {
     for (int i = 0; i < kLastRounds; ++i) {
       const bool last = i >= kLastRounds - 2;
@@ -222,7 +223,7 @@ class Fit {
 
   void step(const Matches& matches) { step_nearer(surface_, matches, setting_); }
 
-  // `first`: there are rounds left to repair what flips make skew.
+  // `first`: rounds are left to repair triangles that flips make skew.
   void reshape(int power, bool first) {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       if (options_.resize) flip_closer(surface, frozen, first, setting_);
@@ -232,7 +233,7 @@ class Fit {
     });
   }
 
-  // For an error, until the number of vertices has settled.
+  // Resizes triangles; for an error, until the number of vertices has settled.
   void resize() {
     const int rounds = std::max(1, options_.rounds - kFirstRounds - kLastRounds);
     for (int i = 0; i < (to_error_ ? rounds + kMoreRounds : rounds); ++i) {
@@ -271,7 +272,7 @@ class Fit {
     });
     pack();
     if (options_.max_vertices > 0 && surface_.vertices.size() > most_vertices_) to_error_ = false;
-    // What the edges' lengths come to differs a little from what they are meant to be.
+    // Edge lengths differ a little from the intended sizes; corrects for that.
     aim_ = std::clamp(
         aim_ * std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()), 0.7),
         0.8, 1.25);
@@ -282,7 +283,7 @@ class Fit {
     });
   }
 
-  // What the error around vertices should be for 95 % of the distances to be below options.error.
+  // Adapts the error wanted around vertices so that 95 % of the distances are below options.error.
   void aim_at_error(double p95) {
     if (even_error_ == 0) even_error_ = kEvenShare * options_.error;
     if (settled_ && p95 > 0) even_error_ *= std::clamp(std::sqrt(kAim * options_.error / p95), 0.8, 1.25);
@@ -297,18 +298,18 @@ class Fit {
 
   const VesselField& field_;
   const FitOptions& options_;
-  bool to_error_;  // sizes are those for an error; or for a number of vertices, without one or where that is exceeded
+  bool to_error_;  // sizes follow an error; otherwise (no error given, or too many vertices) a number of vertices
   FitReference reference_;
   FitSetting setting_;
   FitMesh surface_;
   std::vector<Opening> openings_;
   std::vector<ReferenceSample> samples_, few_samples_, samples_and_rims_;
   std::size_t most_vertices_ = 0, wanted_vertices_ = 0;
-  double even_error_ = 0;  // mm, to have everywhere
+  double even_error_ = 0;  // mm, wanted everywhere
   bool settled_ = false;   // the number of vertices
   int rounds_ = 0;
   const Progress* progress_ = nullptr;
-  double aim_ = 1;  // vertices to ask for, to get as many as wanted
+  double aim_ = 1;  // correction to the number of vertices asked for
   SizeLimits limits_;
 };
 
@@ -324,7 +325,7 @@ FitDistance distance_between(const TriMesh& surface, const TriMesh& reference, c
 }  // namespace
 
 std::vector<Opening> find_openings(const TriMesh& mesh) {
-  std::vector<Index> next(mesh.vertices.size(), kNone);  // along the border, as a lid would run
+  std::vector<Index> next(mesh.vertices.size(), kNone);  // along the border, in the direction of a lid's faces
   for (const auto& [from, to] : boundary_edges(mesh)) next[to] = from;
   std::vector<Opening> openings;
   for (Index first = 0; first < next.size(); ++first) {
@@ -351,7 +352,8 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
   check(options);
   const VesselField field(centerline);
   check(surface, field);
-  const std::size_t aimed_at = options.error > 0 ? 0 : options.max_vertices;  // else a limit
+  const std::size_t aimed_at =
+      options.error > 0 ? 0 : options.max_vertices;  // with an error, max_vertices is only a limit
   check_memory(std::max(surface.mesh.vertices.size(), aimed_at), reference);
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   return arena.execute([&] {

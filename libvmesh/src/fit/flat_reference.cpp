@@ -7,19 +7,19 @@
 #include <optional>
 
 #include "surface/ends/disc.h"
-#include "surface/ends/opening_tube.h"
+#include "surface/ends/opening_extension.h"
 #include "surface/proof/defects.h"
 
 namespace vmesh {
 namespace {
 
-constexpr double kFarthest = 2.5;                // radii along the vessel from an opening to a cap
-constexpr double kFarthestBack = 0.5;            // the same against the vessel's direction: no more is cut off
-constexpr double kFacing = 0.7;                  // cosine between an opening's normal and a cap's
-constexpr double kFlat = 0.87;                   // cosine between normals of one cap: 30 degrees, as rims are rounded
-constexpr double kSmallest = 0.5, kLargest = 5;  // areas of caps, in those of the opening: a hemisphere has no cap
-constexpr double kShifted = 0.75;                // edges: an opening nearer than that is moved without a tube
-constexpr double kStretch = 0.25;                // of edges
+constexpr double kFarthest = 2.5;      // radii along the vessel from an opening to a cap
+constexpr double kFarthestBack = 0.5;  // the same backwards: at most this much is cut off
+constexpr double kFacing = 0.7;        // cosine between an opening's normal and a cap's
+constexpr double kFlat = 0.87;         // cosine between normals of one cap: 30 degrees, as their edges are rounded
+constexpr double kSmallest = 0.5, kLargest = 5;  // areas of caps, relative to the opening's: a hemisphere has no cap
+constexpr double kShifted = 0.75;                // edges: a nearer opening is moved without an extension
+constexpr double kStretch = 0.25;                // of edges, at most
 
 class CapFinder {
  public:
@@ -39,7 +39,7 @@ class CapFinder {
     }
   }
 
-  /// The largest flat part across the vessel that begins at the opening.
+  /// The largest flat region across the vessel that begins at the opening.
   std::optional<ReferenceCap> find(const Opening& opening, const Vec3& center, double area) {
     const double radius = std::sqrt(area / std::numbers::pi);
     std::optional<ReferenceCap> best;
@@ -71,7 +71,7 @@ class CapFinder {
     return (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]) / 3;
   }
 
-  // Faces of an inward reference face the other way.
+  // Faces of an inward-facing reference have the opposite normal.
   bool is_near(Index f, const Vec3& normal, const Vec3& center, double radius) const {
     if (!(std::abs(normals_[f].dot(normal)) > kFacing)) return false;
     const Vec3 offset = middle(f) - center;
@@ -79,12 +79,12 @@ class CapFinder {
     return along > -kFarthestBack * radius && along < kFarthest * radius && (offset - along * normal).norm() < radius;
   }
 
-  std::vector<Index> flat_part(Index seed, std::vector<char>& seen) const {
-    std::vector<Index> faces = {seed};
-    seen[seed] = 1;
+  std::vector<Index> flat_part(Index start, std::vector<char>& seen) const {
+    std::vector<Index> faces = {start};
+    seen[start] = 1;
     for (std::size_t i = 0; i < faces.size(); ++i) {
       for (const Index next : across_[faces[i]]) {
-        if (next == kNone || seen[next] || !(normals_[next].dot(normals_[seed]) > kFlat)) continue;
+        if (next == kNone || seen[next] || !(normals_[next].dot(normals_[start]) > kFlat)) continue;
         seen[next] = 1;
         faces.push_back(next);
       }
@@ -129,7 +129,7 @@ std::vector<std::vector<Index>> neighbours(const TriMesh& mesh) {
   return around;
 }
 
-// Moves the vertices of a ring along `direction`, and those behind it by less and less, so that no triangle is
+// Moves the vertices of a ring along `direction`, and those behind it progressively less, so that no triangle is
 // stretched by more than kStretch.
 void shift_ring(TriMesh& mesh, const std::vector<Index>& ring, const std::vector<double>& ways, const Vec3& direction,
                 double edge) {
@@ -158,7 +158,8 @@ void shift_ring(TriMesh& mesh, const std::vector<Index>& ring, const std::vector
   for (const auto& [v, way] : moved) mesh.vertices[v] += way * direction;
 }
 
-// Turns the ring across the cap's normal, then goes along that to its plane: by a tube, or a small way without.
+// Rotates the ring perpendicular to the cap's normal, then moves it along that to the cap's plane: by an extension, or
+// for a short distance without.
 void move_to(GenerateResult& result, Opening& opening, const ReferenceCap& cap) {
   const std::vector<Vec3> ring = positions(result, opening);
   const double edge = mean_edge(ring), way = (cap.center - area_centroid(ring)).dot(cap.normal);

@@ -74,7 +74,7 @@ class Step {
     surface_.vertices[v].position = before_[v] + share * steps_[v];
   }
 
-  // Returns the faces that changed by it, and those beside them.
+  // Returns the faces that changed, and those beside them.
   std::vector<Index> shorten(std::vector<Index> vertices) {
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -108,7 +108,7 @@ class Step {
     return true;
   }
 
-  // Pairs of faces that cross, those with a moved vertex among them: other pairs are as they were.
+  // Pairs of crossing faces of which one has a moved vertex: other pairs are unchanged.
   std::vector<std::pair<Index, Index>> crossing_around(const std::vector<Index>& vertices) const {
     std::vector<Vec3> low, high;
     for (const Index v : vertices) {

@@ -9,11 +9,11 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
-constexpr double kHold = 1e-3;      // of a vertex' area: keeps what no match holds
-constexpr double kInPlane = 100;    // of a vertex' area
-constexpr double kFrozen = 1e4;     // of a vertex' area: what is left of its step is dropped
-constexpr double kAccuracy = 1e-5;  // of the residual, each vertex by its own stiffness
-// Large distances count more, up to this many times the RMS distance: what is far off is brought near.
+constexpr double kHold = 1e-3;      // of a vertex's area: keeps vertices without matches in place
+constexpr double kInPlane = 100;    // of a vertex's area
+constexpr double kFrozen = 1e4;     // of a vertex's area: the remaining step is dropped
+constexpr double kAccuracy = 1e-5;  // of the residual, scaled by each vertex's stiffness
+// Large distances count more, up to this many times the RMS distance, so that distant regions are brought near.
 constexpr double kEmphasis = 0.8;
 constexpr double kMostEmphasized = 4;
 constexpr int kMostIterations = 200;
@@ -37,13 +37,13 @@ class Equations {
     }
   }
 
-  // Weight of the step's components: `square` (step - target)^2.
+  // Adds the term `square` (step - target)^2.
   void add(Index v, const Mat3& square, const Vec3& target) {
     diagonal_[v] += square;
     right_[v] += square * target;
   }
 
-  // Weight of the difference of the steps at the ends of the side of face f that is opposite to corner i.
+  // Adds a term for the difference of the steps at the ends of the side of face f opposite to corner i.
   void add_difference(Index f, int i, const Mat3& square) {
     const Triangle& face = surface_.faces[f];
     diagonal_[face[(i + 1) % 3]] += square;
@@ -51,8 +51,8 @@ class Equations {
     faces_[f][i] -= square;
   }
 
-  // Conjugate gradients, preconditioned by the vertices' own blocks. One solution is needed of every matrix, and few
-  // iterations: to put one together would take longer.
+  // Conjugate gradients with a block Jacobi preconditioner, without assembling the matrix: each is solved only once, in
+  // few iterations, so assembly would take longer.
   std::vector<Vec3> solve() const {
     const std::size_t count = diagonal_.size();
     std::vector<Mat3> inverse(count);
@@ -100,7 +100,7 @@ class Equations {
   struct Sides : std::array<Mat3, 3> {
     Sides() { fill(Mat3::Zero()); }
   };
-  std::vector<Sides> faces_;  // of a face's sides, each opposite to a corner
+  std::vector<Sides> faces_;  // blocks of a face's sides, each opposite to a corner
   std::vector<Vec3> right_;
 };
 

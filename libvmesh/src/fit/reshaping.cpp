@@ -15,20 +15,21 @@ namespace {
 
 constexpr int kAttempts = 6;
 constexpr double kLongestStep = 0.3;  // of the shortest edge
-constexpr double kGain = 0.02;        // of skewness, that a flip must bring
-constexpr double kBent = 0.6;         // cosine between the normals before and after a flip, at least
+constexpr double kGain = 0.02;        // in skewness, that a flip must achieve
+constexpr double kBent = 0.6;         // least cosine between the normals before and after a flip
 constexpr double kFlippedSkewness = 0.42;
-constexpr double kCloser = 0.02;  // of the edge: what a flip must bring the middle closer
+constexpr double kCloser = 0.02;  // of the edge: how much closer a flip must bring its midpoint
 constexpr double kCloserSkewness = 0.35;
-// Cosine between the normals before and after, and between both, at least: an edge that cuts off a piece of a
-// right-angled rim is to become one along the rim, where neither is certain to be a right angle or less. Measured on
-// SU201 and portal vein 002, sixteen starts that differ by 1e-6 radii each: Hausdorff at 0 up to .365 and 2.00 mm, at
-// -.4 .384 and 1.85 (mean .303 and 1.89, .285 and 1.85); -.25 to -.5 within 8 % of that.
+// Least cosine between the normals before and after a flip, and between the two new ones: an edge that cuts off a
+// right-angled ridge should become one along the ridge, where neither angle is certain to be at most 90 degrees.
+// Measured on SU201 and portal vein 002, sixteen starts that differ by 1e-6 radii each: Hausdorff distance at 0 up to
+// .365 and 2.00 mm, at -.4 .384 and 1.85 (mean .303 and 1.89, .285 and 1.85); -.25 to -.5 within 8 % of that.
 constexpr double kOverRim = -0.4;
-// An edge across a saddle the wrong way, as between the legs of a bifurcation: exchanged for the other one even where
-// that is skew and turns far. Later it is a fin of several triangles, that nothing of the reference faces, and stays.
+// An edge across a saddle in the wrong direction, as between the legs of a bifurcation, is flipped even if the result
+// is skew and turns far. Otherwise it would become a fin of several triangles without counterpart on the reference, and
+// stay.
 constexpr double kMuchCloser = 0.2, kWrongSkewness = 0.6, kWrongTurn = -0.8;
-constexpr int kLessEven = 6;  // squares of valences' deviations that it may cost
+constexpr int kLessEven = 6;  // increase in squared valence defects that a flip may cost
 
 Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
@@ -58,7 +59,7 @@ Vec3 shape_step(const FitMesh& surface, Index v, int power) {
   return result;
 }
 
-// `skewness`: of all faces, as they are.
+// `skewness`: the present skewness of all faces.
 bool may_place(const FitMesh& surface, Index v, const Vec3& p, const std::vector<double>& skewness,
                const StepGuard& guard) {
   double worst = 0;
@@ -124,7 +125,7 @@ void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const st
     const TriMesh mesh = packed.tri_mesh();
     const auto crossing = self_intersections(mesh);
     if (crossing.empty()) return;
-    // By place, as numbers have changed.
+    // By position, as numbers have changed.
     std::vector<Vec3> places;
     std::vector<double> reach;
     for (const auto& [f, g] : crossing) {

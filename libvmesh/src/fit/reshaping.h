@@ -8,17 +8,17 @@
 
 namespace vmesh {
 
-/// Does `change` to a packed surface so that no faces cross: `change(surface, frozen)` must leave alone what is near a
-/// frozen vertex (one flag each). Where faces cross afterwards, all is undone and done again without that place; in
-/// the end not at all.
+/// Applies `change` to a packed surface so that no faces cross: `change(surface, frozen)` must not touch the
+/// surroundings of a frozen vertex (one flag each). Where faces cross afterwards, everything is undone and repeated
+/// with that place frozen; eventually not at all.
 void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const std::vector<char>&)>& change);
 
-/// Flips edges for even valences and for better triangles. Leaves alone the edges with a frozen end.
+/// Flips edges for even valences and better triangles, except edges with a frozen end.
 void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard);
 
-/// Flips edges where the other diagonal's middle is closer to the reference: `distance(edge's ends, middle)` tells how
-/// far a point is, mm, negative when that is not known. With `harsh` also where triangles become skew and turn far, if
-/// it brings much: they are to be repaired.
+/// Flips edges where the other diagonal's midpoint is closer to the reference: `distance(edge's ends, midpoint)`, mm,
+/// negative if unknown. With `harsh`, also where triangles become skew and turn far, if the gain is large; such
+/// triangles need repair.
 void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh,
                        const std::function<double(Index, Index, const Vec3&)>& distance);
 
@@ -26,8 +26,8 @@ void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen, bool h
 /// ratios), at most 0.3 of the shortest edge.
 std::vector<Vec3> shape_steps(const FitMesh& surface, int power);
 
-/// Moves vertices one after the other by their shape steps, as far as none of their triangles becomes worse than the
-/// worst. Only vertices with a triangle of more than `above` skewness take part. Returns whether one moved.
+/// Moves vertices one at a time by their shape steps, as long as none of their triangles becomes worse than the present
+/// worst. Only vertices with a triangle of skewness above `above` take part. Returns whether any moved.
 bool relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above = 0);
 
 }  // namespace vmesh

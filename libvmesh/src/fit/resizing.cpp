@@ -15,7 +15,7 @@ namespace {
 constexpr double kLong = 4.0 / 3, kShort = 4.0 / 5;  // of the intended length (Botsch, Kobbelt 2004)
 constexpr int kBisections = 16;                      // of an interval of 1000: to 0.01 %
 constexpr double kCollapsedSkewness = 0.45;
-constexpr double kBent = 0.5;  // cosine between a triangle's normals before and after a collapse, at least
+constexpr double kBent = 0.5;  // least cosine between a triangle's normals before and after a collapse
 
 using Neighbours = std::vector<std::vector<Index>>;
 
@@ -25,7 +25,7 @@ Neighbours all_neighbours(const FitMesh& surface) {
   return neighbours;
 }
 
-// With the mean of the neighbours, half and half; negative values do not count.
+// Averages each value with the mean of its neighbours; negative values do not count.
 void smooth(const Neighbours& neighbours, std::vector<double>& values) {
   const std::vector<double> old = values;
   for (Index v = 0; v < values.size(); ++v) {
@@ -94,7 +94,7 @@ bool may_collapse_to(const FitMesh& surface, Index a, Index b, const Vec3& p, co
       const Vec3 after = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
       if (!(after.dot(before) > kBent * after.norm())) return false;
       worst = std::max(worst, equiangle_skewness(corners[0], corners[1], corners[2]));
-      for (int i = 0; i < 3; ++i) {  // no edge that would be split again
+      for (int i = 0; i < 3; ++i) {  // must not create an edge that would be split again
         if (face[i] == end) continue;
         const double h = 0.5 * (surface.vertices[face[i]].size + size_of(surface, a, b));
         if ((p - surface.position(face[i])).norm() > kLong * h) return false;
@@ -110,7 +110,7 @@ FitMesh::Vertex middle_of(const FitMesh::Vertex& a, const FitMesh::Vertex& b) {
 }
 
 struct LengthOfEdge {
-  double ratio;  // to the intended one
+  double ratio;  // of its length to the intended one
   Index a, b;
 
   bool operator<(const LengthOfEdge& other) const {
@@ -160,7 +160,7 @@ double set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_
     for (Index v = 0; v < count; ++v) {
       const double base = surface.vertices[v].base_size;
       double wanted = errors[v] > 0 ? std::sqrt(target / errors[v]) : 1;
-      if (errors[v] > kNotOfSize * now[v]) wanted = std::max(wanted, 1.0);  // finer triangles would not help
+      if (errors[v] > kNotOfSize * now[v]) wanted = std::max(wanted, 1.0);  // refinement would not help
       const double lowest = limits.finest * base, highest = limits.coarsest * base;
       size[v] = std::clamp(now[v] * std::clamp(wanted, 1 / limits.step, limits.step), lowest, highest);
     }
@@ -177,7 +177,7 @@ double set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_
       const double middle = std::sqrt(low * high);
       (sizes_for(middle) > faces ? low : high) = middle;
     }
-    // The sizes are limited: what is left is made up for everywhere.
+    // The sizes are limited: the remaining factor is applied everywhere.
     const double scale = std::sqrt(sizes_for(high) / faces);
     for (double& h : size) h *= scale;
   } else {

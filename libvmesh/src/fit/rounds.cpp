@@ -12,7 +12,7 @@ constexpr double kLongestStep = 0.35;  // of the edges around
 constexpr int kShapePower = 2;
 constexpr int kRepairs = 4, kRepairPower = 8;
 
-// How far a point on an edge is from the reference; negative: not known.
+// How far a point on an edge is from the reference; negative: unknown.
 double distance_at(const FitMesh& surface, Index a, Index b, const Vec3& p, const FitSetting& setting) {
   const Index cone = surface.vertices[a].cone;
   const Vec3 normal = surface.vertex_normal(a) + surface.vertex_normal(b);

@@ -11,7 +11,7 @@
 
 namespace vmesh {
 
-/// What a surface is fitted to, and what it must keep to.
+/// The target of a fit and its constraints.
 struct FitSetting {
   const FitReference& reference;
   const VesselField& field;
@@ -28,7 +28,7 @@ void find_cones(FitMesh& surface, const VesselField& field);
 /// flip_edges_closer() by the distance from the reference.
 void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh, const FitSetting& setting);
 
-/// Relaxes what a split, a collapse or a flip left too skew.
+/// Relaxes triangles that a split, a collapse or a flip left too skew.
 void repair(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard);
 
 }  // namespace vmesh

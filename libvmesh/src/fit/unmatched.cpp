@@ -50,7 +50,7 @@ std::vector<UnmatchedPart> parts_of(const std::vector<FarFace>& faces, Across&& 
   return parts;
 }
 
-// `normal(face)`: of the other surface.
+// `normal(face)`: normal of a face of the other surface.
 template <class Normal>
 FarFace far_face(const Vec3& p, double area, Index cone, const ClosestPointIndex& to, const VesselField& field,
                  Normal&& normal) {

@@ -17,9 +17,9 @@
 namespace vmesh {
 namespace {
 
-constexpr float kLeastShare = 1e-3f;  // of an edge between voxels, from its end to a vertex on it
+constexpr float kLeastShare = 1e-3f;  // of an edge between voxels: least distance of a vertex from its ends
 
-/// The image relative to the isovalue, with a layer of voxels outside around it.
+/// The image minus the isovalue, with a border of outside voxels.
 VoxelImage padded(const VoxelImage& image, double isovalue) {
   VoxelImage result;
   for (int a = 0; a < 3; ++a) result.size[a] = image.size[a] + 2;
@@ -48,7 +48,7 @@ float steepness(const VoxelImage& image, std::size_t at) {
   return most;
 }
 
-/// Moves values off zero, to their own side. Inside is at least 0.
+/// Moves values away from zero without changing their side. Values of at least 0 are inside.
 void keep_off_zero(VoxelImage& image) {
   std::vector<std::pair<std::size_t, float>> moved;
   for (std::size_t n = 0; n < image.values.size(); ++n) {
@@ -59,7 +59,7 @@ void keep_off_zero(VoxelImage& image) {
   for (const auto& [n, value] : moved) image.values[n] = value;
 }
 
-/// The contour at zero in voxel coordinates; VTK does not know the place of voxels in space.
+/// The contour at zero in voxel coordinates; the image's position in space is not passed to VTK.
 vtkSmartPointer<vtkPolyData> flying_edges(VoxelImage& image) {
   vtkNew<vtkImageData> data;
   data->SetDimensions(static_cast<int>(image.size[0]), static_cast<int>(image.size[1]),

@@ -1,4 +1,4 @@
-// Stands in for contour.cpp in a build without VTK.
+// Replaces contour.cpp in a build without VTK.
 #include "vmesh/core/error.h"
 #include "vmesh/image/contour.h"
 

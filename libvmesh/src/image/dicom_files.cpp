@@ -10,7 +10,7 @@
 namespace vmesh::image {
 namespace {
 
-/// The fourth to last of whose bytes are "DICM".
+/// Bytes up to and including the letters "DICM".
 constexpr std::size_t kPreamble = 132;
 
 bool is_dicom_file(const std::filesystem::path& path) {

@@ -1,4 +1,4 @@
-// Which files are DICOM, internal to the module; told without a library.
+// Recognises DICOM files without a library; internal to the module.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +6,10 @@
 
 namespace vmesh::image {
 
-/// A regular file that begins as a DICOM file does, or a folder with one.
+/// A regular file that starts like a DICOM file, or a folder with one.
 bool is_dicom(const std::filesystem::path& path);
 
-/// The DICOM files in a folder, but for its index (DICOMDIR), in the order of their names. Throws ReadError when the
+/// The DICOM files in a folder except its index (DICOMDIR), in the order of their names. Throws ReadError when the
 /// folder cannot be read.
 std::vector<std::filesystem::path> dicom_files_in(const std::filesystem::path& folder);
 

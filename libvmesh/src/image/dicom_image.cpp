@@ -36,17 +36,17 @@ using SeriesByUid = std::map<std::string, std::vector<const DicomFile*>>;
     list += "\n  " + described(files);
   }
   if (series.size() > kMostListed) list += "\n  and " + std::to_string(series.size() - kMostListed) + " more";
-  throw InvalidInput(name + ": this folder holds " + std::to_string(series.size()) +
-                     " DICOM series; name a file of the one you mean instead of the folder:" + list);
+  throw InvalidInput(name + ": this folder contains " + std::to_string(series.size()) +
+                     " DICOM series; instead of the folder, give a file of the one you mean:" + list);
 }
 
-/// The files of the series that a folder holds alone.
+/// The files of the only series in a folder.
 std::vector<DicomFile> only_series_in(const std::filesystem::path& folder) {
   std::vector<DicomFile> images;
   for (const std::filesystem::path& path : dicom_files_in(folder))
     if (std::optional<DicomFile> file = identify(path)) images.push_back(*std::move(file));
   if (images.empty())
-    throw InvalidInput(folder.string() + ": none of its DICOM files holds an image; give the folder of the slices");
+    throw InvalidInput(folder.string() + ": none of its DICOM files contains an image; give the folder of the slices");
   SeriesByUid series;
   for (const DicomFile& file : images) series[file.series].push_back(&file);
   if (series.size() > 1) refuse_several(series, folder.string());
@@ -57,7 +57,8 @@ std::vector<DicomFile> only_series_in(const std::filesystem::path& folder) {
 std::vector<DicomFile> series_of(const std::filesystem::path& path) {
   const std::optional<DicomFile> named = identify(path);
   if (!named)
-    throw InvalidInput(path.string() + ": this DICOM file holds no image; give a slice, or the folder of the slices");
+    throw InvalidInput(path.string() +
+                       ": this DICOM file contains no image; give a slice, or the folder of the slices");
   if (named->many_frames) return {*named};
   std::vector<DicomFile> files;
   for (const std::filesystem::path& beside : dicom_files_in(path.has_parent_path() ? path.parent_path() : "."))
@@ -112,7 +113,7 @@ NumberType number_type(const gdcm::PixelFormat& format, const std::string& name)
 
 [[noreturn]] void fail_to_read(const std::string& name) {
   throw InvalidInput(name +
-                     ": the voxels of this DICOM file cannot be read; it is damaged or cut off, or packed in a "
+                     ": the voxels of this DICOM file cannot be read; it is damaged or cut off, or compressed in a "
                      "way that GDCM does not know; fetch it again");
 }
 
@@ -137,7 +138,7 @@ StoredFrames frames_of(const std::filesystem::path& path, std::size_t voxels) {
   return frames;
 }
 
-/// The same of a segmentation with a bit for each voxel, the lowest first.
+/// The same for a segmentation with one bit per voxel, lowest bit first.
 StoredFrames frames_of_bits(const std::filesystem::path& path, std::size_t voxels) {
   gdcm::Reader reader;
   reader.SetFileName(path.c_str());
@@ -160,7 +161,8 @@ void read_frame(const StoredFrames& frames, const DicomSlice& slice, std::span<f
                {frames.type, big_endian, slice.slope, slice.intercept}, values, slice.path.string());
 }
 
-/// Puts segment numbers where a frame of a segmentation is not 0. Returns how many belonged to another one.
+/// Writes segment numbers where a frame of a segmentation is not 0. Returns how many voxels already belonged to another
+/// segment.
 std::size_t label(std::span<const float> frame, int segment, std::span<float> layer) {
   std::size_t shared = 0;
   for (std::size_t v = 0; v < frame.size(); ++v) {
@@ -214,7 +216,7 @@ Warnings dicom_voxels(const std::filesystem::path& path, std::span<float> values
   }
   if (shared == 0) return {};
   return path.string() + ": " + std::to_string(shared) +
-         " voxels belong to several segments; they count for the one of the highest number\n";
+         " voxels belong to several segments; they are assigned to the one with the highest number\n";
 }
 
 }  // namespace vmesh::image

@@ -9,9 +9,9 @@
 namespace vmesh::image {
 namespace {
 
-/// Of the distance between slices: how far one may be from its place.
+/// Of the distance between slices: how far a slice may be from its regular position.
 constexpr double kTolerance = 0.1;
-/// Slices nearer than this lie in one place (mm).
+/// Slices nearer than this are at the same position (mm).
 constexpr double kSamePlace = 1e-3;
 
 Vec3 normal_of(const DicomSlice& slice) { return slice.steps.col(0).cross(slice.steps.col(1)).normalized(); }
@@ -39,13 +39,13 @@ void check_alike(const std::vector<DicomSlice>& slices, const std::string& name)
   if (other == nullptr) return;
   throw InvalidInput(name + ": " + std::to_string(turned + resized) + " of the " + std::to_string(slices.size()) +
                      " slices of this series " +
-                     (turned > 0 ? "are turned against the first one (localizers, or several stacks in one series)"
+                     (turned > 0 ? "are rotated relative to the first one (localizers, or several stacks in one series)"
                                  : "differ from the first one in size or spacing") +
                      ": compare " + first.path.string() + " with " + other->path.string() +
                      "; put the slices of one stack into a folder of their own");
 }
 
-/// How far along the normal the slices lie, in ascending order as they are.
+/// Positions of the slices along the normal; the slices are in ascending order.
 std::vector<double> heights_of(const std::vector<DicomSlice>& slices, const Vec3& normal) {
   std::vector<double> heights;
   for (const DicomSlice& slice : slices) heights.push_back(slice.position.dot(normal));
@@ -61,7 +61,7 @@ void check_complete(const std::vector<DicomSlice>& slices, const std::vector<dou
   if (shared > 0)
     throw InvalidInput(name + ": " + std::to_string(shared) + " of the " + std::to_string(slices.size()) +
                        " slices of this series lie where another one does (several phases or echoes, or copies); put "
-                       "those of one stack into a folder of their own");
+                       "those of one stack into a separate folder");
   std::vector<double> sorted = gaps;
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
   const double usual = sorted[sorted.size() / 2];
@@ -73,7 +73,7 @@ void check_complete(const std::vector<DicomSlice>& slices, const std::vector<dou
   }
 }
 
-/// Layers of equal distance from the first slice to the last, each slice at its place in them.
+/// Equidistant layers from the first slice to the last, with each slice assigned to its layer.
 void set_layers(DicomStack& stack, const std::string& name) {
   const std::vector<DicomSlice>& slices = stack.slices;
   const auto gaps = static_cast<double>(slices.size() - 1);
@@ -82,7 +82,7 @@ void set_layers(DicomStack& stack, const std::string& name) {
     const double off = (slices[s].position - stack.origin - static_cast<double>(s) * step).norm();
     if (off > kTolerance * step.norm())
       throw InvalidInput(name + ": its slices are not evenly spaced: " + slices[s].path.string() + " is " +
-                         text_of(off) + " mm from where it had to be with " + text_of(step.norm()) +
+                         text_of(off) + " mm from where it should be with " + text_of(step.norm()) +
                          " mm between slices; resample the series, in 3D Slicer say, and store it as .nii.gz");
     stack.layer.push_back(s);
   }
@@ -96,7 +96,7 @@ void set_segmented_layers(DicomStack& stack, const std::vector<double>& heights,
   double step = slice_step > 0 ? slice_step : heights.back() - heights.front();
   for (std::size_t s = 1; slice_step == 0 && s < heights.size(); ++s)
     if (const double gap = heights[s] - heights[s - 1]; gap >= kSamePlace) step = std::min(step, gap);
-  if (!(step >= kSamePlace)) throw InvalidInput(name + ": does not say how far its slices are apart");
+  if (!(step >= kSamePlace)) throw InvalidInput(name + ": does not say how far apart its slices are");
   const Vec3 normal = normal_of(stack.slices.front());
   for (std::size_t s = 0; s < heights.size(); ++s) {
     const double layer = std::round((heights[s] - heights.front()) / step);
@@ -121,7 +121,7 @@ DicomStack stacked(std::vector<DicomSlice> slices, double slice_step, const std:
   });
   const std::vector<double> heights = heights_of(slices, normal);
   if (slices.size() == 1 && !(segmented && slice_step > 0))
-    throw InvalidInput(name + ": holds one slice only, which is no volume; give the folder of the whole series");
+    throw InvalidInput(name + ": contains only one slice, which is not a volume; give the folder of the whole series");
   DicomStack stack;
   stack.slices = std::move(slices);
   stack.origin = stack.slices.front().position;

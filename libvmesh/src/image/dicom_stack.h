@@ -17,11 +17,11 @@ struct DicomStack {
   std::vector<std::size_t> layer;  ///< of every slice, along the third axis
 };
 
-/// Sorts slices by where they lie along their normal. `name` is the series' in messages. Throws InvalidInput when they
-/// are not parallel, differ in size, lie in one place, are not evenly spaced, or some are missing.
+/// Sorts slices by position along their normal. `name` names the series in messages. Throws InvalidInput if they are
+/// not parallel, differ in size, coincide, are not evenly spaced, or some are missing.
 ///
-/// Frames of a segmentation may lie in one place, one for each segment, and be missing where nothing is in them;
-/// `slice_step` is the distance between layers then, or 0: the smallest that there is.
+/// Frames of a segmentation may coincide (one per segment), and may be missing where they are empty; `slice_step` is
+/// then the distance between layers, or 0 for the smallest one found.
 DicomStack stacked(std::vector<DicomSlice> slices, double slice_step, const std::string& name);
 
 }  // namespace vmesh::image

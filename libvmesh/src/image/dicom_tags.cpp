@@ -29,7 +29,7 @@ const Tag kPlanePosition(0x0020, 0x9113), kPlaneOrientation(0x0020, 0x9116), kPi
 const Tag kRescaling(0x0028, 0x9145), kSegmentOfFrame(0x0062, 0x000a);
 const Tag kPixelData(0x7fe0, 0x0010);
 
-/// Printable, without blanks at both ends; empty when there is no such element.
+/// The element's printable text, trimmed; empty if there is no such element.
 std::string text_of(const DataSet& data, const Tag& tag) {
   if (!data.FindDataElement(tag)) return {};
   const gdcm::ByteValue* value = data.GetDataElement(tag).GetByteValue();
@@ -42,7 +42,7 @@ std::string text_of(const DataSet& data, const Tag& tag) {
   return text;
 }
 
-/// Of an element of decimal strings, as many as asked for or none.
+/// The numbers of an element of decimal strings: `count` of them or none.
 std::vector<double> decimals_of(const DataSet& data, const Tag& tag, std::size_t count) {
   std::string text = text_of(data, tag);
   for (char& c : text)
@@ -58,7 +58,7 @@ std::vector<double> decimals_of(const DataSet& data, const Tag& tag, std::size_t
   return {};
 }
 
-/// An unsigned short, or `otherwise`.
+/// The element's unsigned short, or `otherwise`.
 template <std::uint16_t group, std::uint16_t element>
 std::size_t short_of(const DataSet& data, std::size_t otherwise) {
   const Tag tag(group, element);
@@ -80,7 +80,7 @@ std::vector<DataSet> items_of(const DataSet& data, const Tag& tag) {
   return items;
 }
 
-/// All but the voxels. Throws InvalidInput.
+/// Reads everything but the voxels. Throws InvalidInput.
 void read_tags(gdcm::Reader& reader, const std::filesystem::path& path) {
   reader.SetFileName(path.c_str());
   if (!reader.ReadUpToTag(kPixelData, {kPixelData}))
@@ -88,7 +88,7 @@ void read_tags(gdcm::Reader& reader, const std::filesystem::path& path) {
                        ": this DICOM file is damaged or cut off; fetch it again, or take it out of the folder");
 }
 
-/// Whether items of packed voxels go on until their end is marked.
+/// Whether the items of compressed voxels are complete up to their end marker.
 bool fragments_end(const std::filesystem::path& path, std::uint64_t begin) {
   constexpr std::uint32_t kItem = 0xe000fffe, kEnd = 0xe0ddfffe;  // as they are stored, the group first
   std::ifstream file(path, std::ios::binary);
@@ -109,13 +109,13 @@ std::size_t frames_of(const DataSet& data) {
   return frames.empty() || !(frames[0] >= 1 && frames[0] <= 1e7) ? 1 : static_cast<std::size_t>(frames[0]);
 }
 
-/// The groups of attributes that hold for a frame: what is in them, or in the file itself, which single slices have.
+/// The groups of attributes of a frame; single slices have the attributes in the file itself.
 class FrameGroups {
  public:
   FrameGroups(const DataSet& data, const DataSet& shared, const DataSet& own)
       : data_(data), shared_(shared), own_(own) {}
 
-  /// The data set where `group` holds, the file's own when it is not there.
+  /// The data set of `group`, or the file's own if there is none.
   DataSet in(const Tag& group) const {
     for (const DataSet* place : {&own_, &shared_}) {
       std::vector<DataSet> items = items_of(*place, group);
@@ -140,7 +140,7 @@ DicomSlice slice_of(const DicomFile& file, const FrameGroups& groups, std::size_
   constexpr double kRounding = 1e-2;
   if (std::abs(row.norm() - 1) > kRounding || std::abs(column.norm() - 1) > kRounding ||
       std::abs(row.dot(column)) > kRounding || !(spacing[0] > 0) || !(spacing[1] > 0))
-    throw InvalidInput(file.path.string() + ": its axes are not at right angles, or the spacing is not above 0");
+    throw InvalidInput(file.path.string() + ": its axes are not perpendicular, or the spacing is not above 0");
   DicomSlice slice{file.path, frame, Vec3(position.data()), {}, file.columns, file.rows};
   slice.steps.col(0) = spacing[1] * row.normalized();  // the spacing of rows comes first
   slice.steps.col(1) = spacing[0] * column.normalized();
@@ -164,8 +164,8 @@ void check_supported(const DataSet& data, const DicomFile& file) {
   const std::string name = file.path.string();
   if (const std::size_t samples = short_of<0x0028, 0x0002>(data, 1); samples != 1)
     throw Unsupported(name + ": has " + std::to_string(samples) +
-                      " numbers per voxel, as pictures in colours do; give "
-                      "an image of one");
+                      " numbers per voxel, like colour pictures; give "
+                      "an image with one");
   if (text_of(data, kSegmentationType) == "FRACTIONAL")
     throw Unsupported(name + ": a segmentation by fractions is not supported; store it as binary, or as .nii.gz");
 }

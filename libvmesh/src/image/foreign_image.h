@@ -1,5 +1,5 @@
-// What the readers through ITK and GDCM hand over, internal to the module. They run in a child process: first for the
-// header, then, once the memory is there, for the voxels. Without Eigen: ITK brings another one.
+// What the ITK and GDCM readers return, internal to the module. They run in a child process: first for the header,
+// then, once memory has been checked, for the voxels. Without Eigen, as ITK brings its own.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ struct ForeignHeader {
   std::array<double, 3> origin = {0, 0, 0};      ///< LPS, mm
   std::array<std::array<double, 3>, 3> steps{};  ///< steps[a]: from one voxel to the next along axis a
   std::uint64_t bytes = 1;                       ///< of a voxel, as it is stored
-  bool integer = false;                          ///< all values are whole numbers
+  bool integer = false;                          ///< all values are integers
 };
 
-/// A reader's answer: lines that warn, each with its end.
+/// A reader's warnings, each a line with its end.
 using Warnings = std::string;
 
 /// MetaImage, NRRD, NIfTI and Analyze with voxels in another file.

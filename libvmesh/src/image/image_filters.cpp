@@ -26,7 +26,7 @@ void for_each_voxel(const VoxelImage& image, Visit visit) {
       for (std::size_t i = 0; i < image.size[0]; ++i) visit(std::array<std::size_t, 3>{i, j, k});
 }
 
-/// Where a new sample lies between two old ones along an axis.
+/// Position of a new sample between two old ones along an axis.
 struct Between {
   std::size_t low, high;
   float weight;  // of high
@@ -42,7 +42,7 @@ std::vector<Between> places_along(std::size_t old_count, std::size_t new_count, 
   return places;
 }
 
-/// The image with axis `axis` sampled anew: new voxel n at old coordinate first + step * n.
+/// The image resampled along `axis`: new voxel n is at the old coordinate first + step * n.
 VoxelImage resampled_along(const VoxelImage& image, int axis, std::size_t count, double first, double step) {
   VoxelImage result = like(image);
   result.size[axis] = count;
@@ -62,7 +62,7 @@ VoxelImage resampled_along(const VoxelImage& image, int axis, std::size_t count,
   return result;
 }
 
-/// Half of a Gaussian's weights, from its centre on; the whole adds up to 1.
+/// Half of a Gaussian's weights, from its centre outwards; all together add up to 1.
 std::vector<float> gaussian_weights(double sigma_voxels) {
   const auto reach = static_cast<std::size_t>(std::ceil(3 * sigma_voxels));
   std::vector<double> weights(reach + 1);
@@ -77,7 +77,7 @@ std::vector<float> gaussian_weights(double sigma_voxels) {
   return normalized;
 }
 
-/// Convolves the line of `count` values that starts at `first` and goes on every `stride`.
+/// Convolves the line of `count` values that starts at `first` with step `stride`.
 void convolve_line(float* first, std::size_t count, std::size_t stride, const std::vector<float>& weights,
                    std::vector<float>& line) {
   const std::size_t reach = weights.size() - 1;
@@ -161,7 +161,7 @@ std::array<std::size_t, 3> resampled_size(const VoxelImage& image, double spacin
   }
   if (voxels > static_cast<double>(kMostVoxels))
     throw InvalidInput("a spacing of " + std::to_string(spacing) +
-                       " mm asks for more than 2^31 voxels; choose a larger one");
+                       " mm needs more than 2^31 voxels; choose a larger one");
   return counts;
 }
 
@@ -182,7 +182,7 @@ VoxelImage smoothed(const VoxelImage& image, double sigma) {
   VoxelImage result = image;
   const Vec3 spacing = image.spacing();
   for (int a = 0; a < 3; ++a) {
-    // A wider one would not change anything but the time it takes.
+    // A wider one would only take longer.
     const double sigma_voxels = std::min(sigma / spacing[a], static_cast<double>(10 * image.size[a]));
     convolve_along(result, a, gaussian_weights(sigma_voxels));
   }

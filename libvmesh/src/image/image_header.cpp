@@ -25,7 +25,7 @@ void set_size(ImageHeader& header, const std::vector<double>& sizes, const std::
 }
 
 void check_place(const ImageHeader& header, const std::string& name) {
-  // An image whose axes lie in a plane has no volume; 1e-9: far from what rounding does to axes that do not.
+  // An image whose axes lie in a plane has no volume; 1e-9 is far above the effect of rounding.
   const double box = header.steps.colwise().norm().prod();
   const double volume = std::abs(header.steps.determinant());
   if (!header.origin.allFinite() || !header.steps.allFinite() || !std::isnormal(volume) || !(volume > 1e-9 * box))

@@ -23,25 +23,26 @@ ImageHeader parse_header(std::string_view content, const std::string& file_name,
   if (file_name.ends_with(".mha")) return image::parse_meta_header(content, name);
   const bool packed = content.starts_with("\x1f\x8b");
   if (packed != file_name.ends_with(".gz"))
-    throw InvalidInput(name + (packed ? ": is packed with gzip; name it .nii.gz" : ": is not packed with gzip"));
+    throw InvalidInput(name +
+                       (packed ? ": is compressed with gzip; name it .nii.gz" : ": is not compressed with gzip"));
   constexpr std::uint64_t kLongestHeader = 540;
   return image::parse_nifti_header(packed ? image::unpacked(content, kLongestHeader) : content, name);
 }
 
-/// Throws when voxels that are packed in `packed` cannot be there, or the memory does not hold them, as stored and as
+/// Throws if `packed` is too short to contain the voxels, or if there is not enough memory for them, as stored and as
 /// float.
 void check_size(std::string_view packed, const ImageHeader& header, const std::string& name) {
-  constexpr double kMostUnpacked = 1032;  // from a byte, by deflate
+  constexpr double kMostUnpacked = 1032;  // bytes from one, by deflate
   const auto voxels = static_cast<double>(header.voxels()), bytes = static_cast<double>(bytes_of(header.type));
   if (voxels * bytes > kMostUnpacked * static_cast<double>(packed.size()))
     throw InvalidInput(name + ": the header claims " + std::to_string(header.voxels()) +
-                       " voxels, more than the file can hold packed; it is broken or incomplete");
+                       " voxels, more than the compressed file can contain; it is broken or incomplete");
   require_memory(voxels * (bytes + sizeof(float)),
                  name + ": an image of " + std::to_string(header.voxels()) + " voxels",
                  "crop it to the vessels, or store larger voxels");
 }
 
-/// The bytes of all voxels: part of `content`, or unpacked into `store`. Throws InvalidInput when there are fewer.
+/// The bytes of all voxels: part of `content`, or uncompressed into `store`. Throws InvalidInput if there are fewer.
 std::string_view voxel_bytes(std::string_view content, const ImageHeader& header, bool all_packed, std::string& store,
                              const std::string& name) {
   const std::uint64_t needed = header.voxels() * bytes_of(header.type);
@@ -62,7 +63,7 @@ std::vector<float> values_of(std::string_view bytes, const ImageHeader& header, 
   return values;
 }
 
-/// With a parser here; the others are read through ITK.
+/// Whether there is a parser here; other formats are read through ITK.
 bool has_own_format(const std::filesystem::path& path) {
   const std::string name = image::folded(path.filename().string());
   for (const char* ending : {".nii", ".nii.gz", ".nrrd", ".mha"})

@@ -24,7 +24,7 @@ std::string lower_extension(const std::filesystem::path& path) {
   return extension;
 }
 
-/// What an exception of ITK says, without the object that says it, on one line.
+/// The message of an ITK exception on one line, without the object that reports it.
 std::string reason(const itk::ExceptionObject& error) {
   std::string text = error.GetDescription();
   if (const std::size_t end = text.find("): "); text.starts_with("ITK ERROR") && end != std::string::npos)
@@ -74,7 +74,7 @@ bool is_pair(const std::filesystem::path& path) {
   return extension == ".hdr" || extension == ".img";
 }
 
-/// The other file of a NIfTI or Analyze pair, or itself: `lower` and `upper` are the extension asked for.
+/// One file of a NIfTI or Analyze pair: `lower` and `upper` are its extension in lower and upper case.
 std::filesystem::path part_of_pair(std::filesystem::path path, const char* lower, const char* upper) {
   if (lower_extension(path) == lower) return path;
   const bool shouts = path.extension() == ".IMG" || path.extension() == ".HDR";
@@ -89,22 +89,22 @@ std::string beginning_of_header(const std::filesystem::path& path) {
   return header;
 }
 
-/// Analyze has no field for the frame: what left and right are is a custom.
+/// Analyze has no field for the frame: left and right are a matter of convention.
 bool is_analyze(const std::filesystem::path& path) {
   constexpr std::size_t kMagic = 344;
   return is_pair(path) && beginning_of_header(path).compare(kMagic, 2, "ni") != 0;
 }
 
-/// ITK fills what is missing in the second file of a pair with 0 and says nothing.
+/// ITK silently fills what is missing in the second file of a pair with 0.
 void check_pair_is_complete(const std::filesystem::path& path, std::size_t voxels) {
   const std::filesystem::path data = part_of_pair(path, ".img", ".IMG");
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(data, error);
-  if (error) throw InvalidInput(path.string() + ": " + data.string() + " is needed, unpacked, and cannot be read");
+  if (error) throw InvalidInput(path.string() + ": " + data.string() + " is needed, uncompressed, and cannot be read");
   const std::string header = beginning_of_header(path);
   const auto byte = [&](std::size_t at) { return static_cast<std::size_t>(static_cast<unsigned char>(header[at])); };
   constexpr std::size_t kBits = 72;
-  const bool big_endian = byte(0) == 0;  // of 348, which is what a header begins with
+  const bool big_endian = byte(0) == 0;  // of 348, the first number of a header
   const std::size_t bits = big_endian ? byte(kBits) << 8u | byte(kBits + 1) : byte(kBits) | byte(kBits + 1) << 8u;
   if (size >= voxels * (bits / 8)) return;
   throw InvalidInput(data.string() + ": is cut off: " + std::to_string(voxels * (bits / 8)) + " bytes are claimed, " +
@@ -120,7 +120,7 @@ void check_one_data_file(const std::filesystem::path& path) {
   }
 }
 
-/// With its header read.
+/// The ITK reader of a file, with the header read.
 itk::ImageIOBase::Pointer opened(const std::filesystem::path& path) {
   const std::string name = path.string(), extension = lower_extension(path);
   itk::ImageIOBase::Pointer io;
@@ -149,8 +149,8 @@ itk::ImageIOBase::Pointer opened(const std::filesystem::path& path) {
   return io;
 }
 
-/// Reads all voxels. MetaIO leaves the rest as it was when its file ends too early, and says nothing: so what was
-/// there before must not be there afterwards, whatever it was.
+/// Reads all voxels. If the file ends too early, MetaIO silently leaves the rest of the buffer unchanged; that is
+/// detected by checking that earlier contents were overwritten.
 void read_whole(itk::ImageIOBase& io, std::span<char> stored, std::size_t of_voxel, const std::string& name) {
   constexpr char kMark = '\x5a', kOtherMark = '\x69';
   const std::span<char> last = stored.last(of_voxel);
@@ -164,7 +164,7 @@ void read_whole(itk::ImageIOBase& io, std::span<char> stored, std::size_t of_vox
     throw InvalidInput(name + ": the file with its voxels is cut off");
 }
 
-/// Runs `work`, with what ITK throws as InvalidInput.
+/// Runs `work`, turning ITK's exceptions into InvalidInput.
 template <class Work>
 auto with_itk(const std::filesystem::path& path, Work work) {
   try {
@@ -190,7 +190,7 @@ ForeignHeader itk_header(const std::filesystem::path& path, Warnings& warnings) 
     header.integer = is_integer(type);
     if (is_analyze(path))
       warnings += path.string() +
-                  ": Analyze files do not say what is left and right, and where they lie; as ITK takes it is assumed\n";
+                  ": Analyze files do not say which side is left and where they lie; ITK's convention is assumed\n";
     return header;
   });
 }

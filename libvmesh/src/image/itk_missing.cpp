@@ -1,4 +1,4 @@
-// Stands in for read_by_itk.cpp in a build without ITK.
+// Replaces read_by_itk.cpp in a build without ITK.
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 

@@ -21,7 +21,7 @@ NumberType number_type(const std::string& word, const std::string& name) {
   return found->second;
 }
 
-/// Lines up to ElementDataFile, which is the last; keys and values in lower case.
+/// The lines up to ElementDataFile, the last one; keys and values in lower case.
 Entries entries_of(std::string_view bytes, const std::string& name, std::uint64_t& data_begin) {
   Entries entries;
   std::string_view rest = bytes, line;
@@ -34,7 +34,7 @@ Entries entries_of(std::string_view bytes, const std::string& name, std::uint64_
     data_begin = bytes.size() - rest.size();
     return entries;
   }
-  throw InvalidInput(name + ": this is no MetaImage file: its header does not end with a line ElementDataFile");
+  throw InvalidInput(name + ": this is not a MetaImage file: its header does not end with a line ElementDataFile");
 }
 
 /// The value of the first key that occurs.

@@ -1,5 +1,5 @@
-// NIfTI-1 and NIfTI-2 (nifti1.h and nifti2.h of the NIfTI project say what the fields mean), header and voxels in one
-// file. Their frame is RAS.
+// NIfTI-1 and NIfTI-2 (fields as in the NIfTI project's nifti1.h and nifti2.h), header and voxels in one file. Their
+// frame is RAS.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,7 +13,7 @@
 namespace vmesh::image {
 namespace {
 
-/// Where the fields are that the two versions have in common.
+/// Offsets of the fields that the two versions have in common.
 struct Layout {
   bool wide;  // version 2: sizes and offsets of 8 bytes, numbers double
   std::size_t dim, datatype, pixdim, vox_offset, slope, intercept, qform, sform, quaternion, offset, rows, units, magic;
@@ -131,18 +131,19 @@ Place qform_of(const Fields& fields) {
 
 bool is_skewed(const Place& place) {
   const Eigen::Matrix3d unit = place.steps.colwise().normalized();
-  // ITK and so 3D Slicer look for skew with about this tolerance; float rounding stays far below.
+  // ITK, and hence 3D Slicer, test for skew with about this tolerance; float rounding is far below.
   return !((unit.transpose() * unit).isIdentity(1e-3));
 }
 
-/// As 3D Slicer: the sform, unless it is skewed and there is a qform.
+/// As in 3D Slicer: the sform, unless it is skewed and there is a qform.
 Place place_of(const Fields& fields, ImageHeader& header, const std::string& name) {
   const bool has_qform = fields.code(fields.layout.qform) > 0, has_sform = fields.code(fields.layout.sform) > 0;
   if (has_sform && !(has_qform && is_skewed(sform_of(fields)))) return sform_of(fields);
   if (has_qform) return qform_of(fields);
-  header.warnings.push_back(name +
-                            ": gives no place in space (neither qform nor sform); its axes are taken to run to the "
-                            "left, back and top, as ITK takes them");
+  header.warnings.push_back(
+      name +
+      ": gives no position in space (neither qform nor sform); its axes are assumed to run to the "
+      "left, back and top, as in ITK");
   const Vec3 spacing = spacing_of(fields);
   return {Vec3(-spacing.x(), -spacing.y(), spacing.z()).asDiagonal(), Vec3::Zero()};
 }
@@ -156,7 +157,7 @@ Fields fields_of(std::string_view bytes, const std::string& name, bool& big_endi
       if (size == kHeader2 && bytes.size() >= kHeader2) return {bytes, kNifti2, big};
     }
   }
-  throw InvalidInput(name + ": this is no NIfTI file, or only the beginning of one");
+  throw InvalidInput(name + ": this is not a NIfTI file, or only the beginning of one");
 }
 
 }  // namespace
@@ -167,7 +168,7 @@ ImageHeader parse_nifti_header(std::string_view bytes, const std::string& name) 
   const std::string_view magic = fields.magic();
   if (magic == "ni1" || magic == "ni2")
     throw Unsupported(name + ": its voxels are in another file (.img); store header and voxels in one");
-  if (magic != "n+1" && magic != "n+2") throw InvalidInput(name + ": this is no NIfTI file: it has no magic number");
+  if (magic != "n+1" && magic != "n+2") throw InvalidInput(name + ": this is not a NIfTI file: it has no magic number");
 
   const double dimensions = fields.size(0);
   if (!(dimensions >= 1 && dimensions <= 7)) throw InvalidInput(name + ": the header gives no number of dimensions");

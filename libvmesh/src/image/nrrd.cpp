@@ -61,7 +61,7 @@ Entries entries_of(std::string_view bytes, const std::string& name, std::uint64_
   Entries entries;
   std::string_view rest = bytes, line;
   if (!bytes.starts_with("NRRD000") || !take_line(rest, line))
-    throw InvalidInput(name + ": this is no NRRD file: it does not begin with a line such as NRRD0004");
+    throw InvalidInput(name + ": this is not an NRRD file: it does not begin with a line such as NRRD0004");
   while (take_line(rest, line)) {
     if (line.empty()) {
       data_begin = bytes.size() - rest.size();
@@ -108,7 +108,7 @@ Eigen::DiagonalMatrix<double, 3> frame_of(ImageHeader& header, const std::string
   if (space == "left-anterior-superior" || space == "las") return {1, -1, 1};
   if (!space.empty() && space != "3")
     throw Unsupported(name + ": the space " + cited(space) + " is not supported; use LPS");
-  header.warnings.push_back(name + ": names no patient frame (\"space\"); LPS is taken");
+  header.warnings.push_back(name + ": names no patient frame (\"space\"); LPS is assumed");
   return {1, 1, 1};
 }
 
@@ -130,10 +130,11 @@ void set_place(ImageHeader& header, const Entries& entries, const std::string& n
              spacings.size() >= 3) {
     header.steps = to_lps * Eigen::Matrix3d(Vec3(spacings[0], spacings[1], spacings[2]).asDiagonal());
   } else {
-    header.warnings.push_back(name + ": gives no size of voxels (\"space directions\"); 1 mm is taken");
+    header.warnings.push_back(name + ": gives no size of voxels (\"space directions\"); 1 mm is assumed");
   }
   const std::vector<double> origin = numbers_in(optional(entries, "space origin"), name, "space origin");
-  if (!origin.empty() && origin.size() != 3) throw InvalidInput(name + ": the header's \"space origin\" is no point");
+  if (!origin.empty() && origin.size() != 3)
+    throw InvalidInput(name + ": the header's \"space origin\" is not a point");
   if (!origin.empty()) header.origin = to_lps * Vec3(origin[0], origin[1], origin[2]);
 }
 

@@ -21,11 +21,11 @@ T number_at(const char* bytes, bool big_endian) {
   return std::bit_cast<T>(buffer);
 }
 
-/// Labels that become another number in float would be mixed up.
+/// Labels that change in float would be confused.
 void check_exact(double stored, float number, const std::string& name) {
   if (static_cast<double>(number) != stored)
-    throw Unsupported(name + ": holds the whole number " + std::to_string(stored) +
-                      "; those above 16777216 are not told apart. Renumber the labels");
+    throw Unsupported(name + ": contains the integer " + std::to_string(stored) +
+                      "; those above 16777216 cannot be told apart. Renumber the labels");
 }
 
 template <class T>

@@ -1,4 +1,4 @@
-// How voxels are stored, internal to the module. Without Eigen: ITK brings another one.
+// How voxels are stored, internal to the module. Without Eigen, as ITK brings its own.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,15 @@ enum class NumberType { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
 std::size_t bytes_of(NumberType type);
 bool is_integer(NumberType type);
 
-/// Of a voxel, value = slope * stored + intercept.
+/// How a voxel is stored: value = slope * stored + intercept.
 struct StoredNumbers {
   NumberType type = NumberType::u8;
   bool big_endian = false;
   double slope = 1, intercept = 0;
 };
 
-/// Reads values.size() numbers from `bytes`, which holds as many. Throws InvalidInput for one that is not finite,
-/// Unsupported for a whole number that float cannot hold; `name` is the file's.
+/// Reads values.size() numbers from `bytes`, which must contain as many. Throws InvalidInput for numbers that are not
+/// finite, Unsupported for integers that float cannot represent; `name` is the file's.
 void read_numbers(std::string_view bytes, const StoredNumbers& stored, std::span<float> values,
                   const std::string& name);
 

@@ -18,7 +18,7 @@
 namespace vmesh::image {
 namespace {
 
-/// Voxels that a child of this process writes and this process reads.
+/// Memory shared with a child process, which writes the voxels.
 class SharedVoxels {
  public:
   explicit SharedVoxels(std::uint64_t count) : count_(count) {
@@ -49,7 +49,7 @@ std::vector<std::filesystem::path> files_behind(const std::filesystem::path& pat
   return files;
 }
 
-/// Bounds the time that reading them may take.
+/// Total size of the files, which bounds the time that reading them may take.
 std::size_t size_of(const std::vector<std::filesystem::path>& files) {
   std::size_t size = 0;
   for (const std::filesystem::path& file : files) {
@@ -84,7 +84,7 @@ LoadedImage read_by_itk(const std::filesystem::path& path) {
   const std::string name = path.string();
   const bool dicom = is_dicom(path);
   if (!dicom && folded(path.extension().string()) == ".dcm")
-    throw InvalidInput(name + ": this is no DICOM file: it does not begin as one");
+    throw InvalidInput(name + ": this is not a DICOM file: it does not start like one");
   const std::size_t file_size = size_of(files_behind(path, dicom));
   const std::string answer = in_child_process(name, file_size, [&] {
     Warnings warnings;
@@ -98,7 +98,7 @@ LoadedImage read_by_itk(const std::filesystem::path& path) {
   loaded.integer = foreign.integer;
   add_lines(std::string_view(answer).substr(sizeof foreign), loaded.warnings);
 
-  // What the library holds, then what is handed over, beside the values.
+  // Per voxel besides the values: what the library needs, then what is returned.
   const std::uint64_t more = std::max<std::uint64_t>(foreign.bytes, sizeof(float));
   require_memory(static_cast<double>(header.voxels()) * static_cast<double>(sizeof(float) + more),
                  name + ": an image of " + std::to_string(header.voxels()) + " voxels",

@@ -1,4 +1,4 @@
-// Images that ITK and its GDCM read, internal to the module.
+// Images read through ITK and its GDCM, internal to the module.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace vmesh::image {
 
-/// As read_image() has it. Throws Unsupported in a build without ITK.
+/// See read_image(). Throws Unsupported in a build without ITK.
 LoadedImage read_by_itk(const std::filesystem::path& path);
 
 }  // namespace vmesh::image

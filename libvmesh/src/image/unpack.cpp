@@ -11,7 +11,7 @@ namespace vmesh::image {
 
 std::string unpacked(std::string_view packed, std::uint64_t at_most) {
   z_stream stream{};
-  if (inflateInit2(&stream, 15 + 32) != Z_OK) throw std::bad_alloc();  // 32: zlib or gzip, as the data says
+  if (inflateInit2(&stream, 15 + 32) != Z_OK) throw std::bad_alloc();  // 32: detects zlib or gzip
   std::string result;
   std::array<char, 1 << 16> buffer;
   int state = Z_OK;
@@ -24,7 +24,7 @@ std::string unpacked(std::string_view packed, std::uint64_t at_most) {
     }
     stream.next_out = reinterpret_cast<Bytef*>(buffer.data());
     stream.avail_out = static_cast<uInt>(buffer.size());
-    state = inflate(&stream, Z_NO_FLUSH);  // Z_BUF_ERROR when the input has ended
+    state = inflate(&stream, Z_NO_FLUSH);  // Z_BUF_ERROR at the end of the input
     const std::uint64_t count = buffer.size() - stream.avail_out;
     result.append(buffer.data(), static_cast<std::size_t>(std::min(count, at_most - result.size())));
   }

@@ -7,8 +7,8 @@
 
 namespace vmesh::image {
 
-/// The first `at_most` bytes that `packed` holds, or all when it holds less; what is broken ends them. Memory is
-/// bounded by what comes out, whatever was promised.
+/// The first `at_most` uncompressed bytes of `packed`, or fewer if it ends or is damaged earlier. Memory is bounded by
+/// the actual output, whatever a header claims.
 std::string unpacked(std::string_view packed, std::uint64_t at_most);
 
 }  // namespace vmesh::image

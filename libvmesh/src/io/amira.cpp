@@ -1,4 +1,4 @@
-// Spatial graphs of Amira and Avizo (their "AmiraMesh" format): a header of declarations, then blocks of numbers.
+// Spatial graphs of Amira and Avizo ("AmiraMesh" format): a header of declarations, then blocks of numbers.
 #include <algorithm>
 #include <map>
 #include <unordered_map>
@@ -13,7 +13,7 @@
 namespace vmesh::io {
 namespace {
 
-constexpr std::uint64_t kBestRatio = 1032;  // of zlib's format: what a byte can unpack to
+constexpr std::uint64_t kBestRatio = 1032;  // zlib's largest compression ratio
 
 /// `POINT { float thickness } @5(HxZip,123)`
 struct Declaration {
@@ -54,7 +54,7 @@ class AmiraReader {
     if (!lines_.next(line_)) fail("the file is empty");
     const std::string first = lower(line_);
     if (!first.starts_with("# amiramesh") && !first.starts_with("# avizo"))
-      fail("this is no file of Amira: it does not begin with \"# AmiraMesh\" or \"# Avizo\"");
+      fail("this is not an Amira file: it does not begin with \"# AmiraMesh\" or \"# Avizo\"");
     ascii_ = first.find("ascii") != std::string::npos;
     if (!ascii_ && first.find("binary") == std::string::npos) fail("the first line says neither ASCII nor BINARY");
     big_endian_ = first.find("little-endian") == std::string::npos;
@@ -65,7 +65,7 @@ class AmiraReader {
     fail("the file ends before its data; it is cut off, get the whole file");
   }
 
-  /// The next line, trimmed, that is not blank.
+  /// Reads the next line that is not blank, trimmed.
   bool next_line() {
     do {
       if (!lines_.next(line_)) return false;
@@ -107,7 +107,7 @@ class AmiraReader {
     read_type(fields_[0], made);
     const std::size_t bracket = where.find('(');
     const auto number = parse_integer(trim(where.substr(1, bracket == std::string_view::npos ? bracket : bracket - 1)));
-    if (!number) fail(cite(where) + " is no place in the file; @ and a number should be here");
+    if (!number) fail(cite(where) + " is not a place in the file; @ and a number should be here");
     if (bracket != std::string_view::npos) read_packing(where.substr(bracket + 1), made);
     if (!declarations_.try_emplace(*number, std::move(made)).second)
       fail("the place @" + std::to_string(*number) + " was used before");
@@ -135,14 +135,14 @@ class AmiraReader {
   void read_packing(std::string_view text, Declaration& made) const {
     const std::size_t comma = text.find(','), end = text.find(')');
     if (comma == std::string_view::npos || end == std::string_view::npos || end < comma)
-      fail("the packing " + cite(text) + " is not known");
+      fail("the compression " + cite(text) + " is not known");
     const auto size = parse_integer(trim(text.substr(comma + 1, end - comma - 1)));
-    if (!size || *size < 0) fail("the packed size in " + cite(text) + " is no count");
+    if (!size || *size < 0) fail("the compressed size in " + cite(text) + " is not a count");
     made.packing = lower(trim(text.substr(0, comma)));
     made.packed_size = static_cast<std::size_t>(*size);
     if (made.packing != "hxzip" && made.packing != "hxbyterle") {
-      throw Unsupported(raw_.source + ": line " + std::to_string(lines_.number()) + ": the packing " +
-                        cite(made.packing) + " is not supported; save the graph without");
+      throw Unsupported(raw_.source + ": line " + std::to_string(lines_.number()) + ": the compression " +
+                        cite(made.packing) + " is not supported; save the graph uncompressed");
     }
   }
 
@@ -156,7 +156,7 @@ class AmiraReader {
   Declaration& need(std::string_view location, const std::string& name, std::size_t components) {
     Declaration* found = find(location, name);
     if (found == nullptr || found->components != components)
-      fail("this is no spatial graph: the header declares no " + name + " with " + std::to_string(components) +
+      fail("this is not a spatial graph: the header declares no " + name + " with " + std::to_string(components) +
            " numbers each");
     return *found;
   }
@@ -197,15 +197,15 @@ class AmiraReader {
   void read_block() {
     const auto number = parse_integer(line_.substr(1));
     const auto found = number ? declarations_.find(*number) : declarations_.end();
-    if (found == declarations_.end()) fail(cite(line_) + " is no place that the header declares");
+    if (found == declarations_.end()) fail(cite(line_) + " is not a place that the header declares");
     Declaration& block = found->second;
-    if (block.is_there) fail("the block " + cite(line_) + " was there before");
+    if (block.is_there) fail("the block " + cite(line_) + " occurs twice");
     block.is_there = true;
     const auto count = counts_.find(block.location);
     if (count == counts_.end()) fail("the header does not \"define\" how many " + cite(block.location) + " there are");
     const bool needed =
         &block == vertices_ || &block == edges_ || &block == sizes_ || &block == points_ || &block == radii_;
-    // Neither the count nor a number takes less than a byte, packed or not.
+    // A number takes at least a byte, before compression.
     const std::uint64_t most = (lines_.rest().size() + 1) * (block.packing.empty() ? 1 : kBestRatio);
     if (count->second > most || count->second * block.components > most)
       fail("the count " + std::to_string(count->second) + " is more than the file can hold");
@@ -221,7 +221,7 @@ class AmiraReader {
       if (fields_.size() > count - read) fail("there are more numbers than the header announces");
       for (const std::string_view field : fields_) {
         const auto value = parse_double(field);
-        if (!value) fail(cite(field) + " is no number");
+        if (!value) fail(cite(field) + " is not a number");
         if (needed) block.values.push_back(*value);
         ++read;
       }
@@ -245,7 +245,7 @@ class AmiraReader {
   }
 
   std::string inflated(std::string_view packed, std::size_t size) const {
-    if (size / kBestRatio > packed.size()) fail("the packed block is too small for what it should hold");
+    if (size / kBestRatio > packed.size()) fail("the compressed block is too small for its contents");
     std::string bytes(size, '\0');
     uLongf written = size;
     const int result = uncompress(reinterpret_cast<Bytef*>(bytes.data()), &written,
@@ -254,7 +254,8 @@ class AmiraReader {
     return bytes;
   }
 
-  /// A byte up to 127: so often the next one; one above: the low 7 bits say how many stand as they are.
+  /// Decodes run lengths: a byte up to 127 repeats the next one so many times; the low 7 bits of a larger one count
+  /// literal bytes.
   std::string run_lengths_undone(std::string_view packed, std::size_t size) const {
     std::string bytes;
     for (std::size_t i = 0; i < packed.size() && bytes.size() < size;) {
@@ -288,12 +289,12 @@ class AmiraReader {
       add_edge(e, first, static_cast<std::size_t>(size), per_edge);
       first += static_cast<std::size_t>(size);
     }
-    if (raw_.segments.empty()) fail("there is no edge in it");
+    if (raw_.segments.empty()) fail("it contains no edge");
     const auto unused = std::count(vertex_node_.begin(), vertex_node_.end(), kNone);
     if (unused > 0)
       raw_.warnings.push_back(raw_.source + ": " + std::to_string(unused) + " vertices belong to no edge; left out");
     if (radii_ != nullptr && lower(radii_->name) == "thickness")
-      raw_.warnings.push_back(raw_.source + ": " + one_line(radii_->name) + " is taken as the radius, as Amira has it");
+      raw_.warnings.push_back(raw_.source + ": " + one_line(radii_->name) + " is taken as the radius, as in Amira");
     if (per_edge) set_radii_of_segments(raw_, segment_radii_);
   }
 
@@ -305,7 +306,7 @@ class AmiraReader {
     return radii_ != nullptr && radii_->location == "point" ? scale_ * radii_->values[point] : 0;
   }
 
-  /// The node of vertex number `end` of the edge; its radius is the largest of those that edges give it.
+  /// The node of vertex number `end` of the edge; its radius is the largest that an edge gives it.
   Index vertex(std::size_t edge, std::size_t end, std::size_t point, bool has_point) {
     const double id = edges_->values[2 * edge + end];
     if (!(id >= 0 && id < static_cast<double>(vertex_node_.size())))
@@ -321,7 +322,7 @@ class AmiraReader {
   }
 
   bool lies_at(std::size_t point, Index node) const {
-    constexpr double kSame = 1e-5;  // a hundred times what single precision tells apart
+    constexpr double kSame = 1e-5;  // a hundred times the resolution of single precision
     const Vec3 p = position(*points_, point), q = raw_.nodes[node].position;
     return (p - q).norm() <= kSame * std::max(p.norm(), q.norm());
   }
@@ -357,7 +358,7 @@ class AmiraReader {
   std::map<std::string, std::size_t> counts_;  ///< by lower-case name
   std::map<std::int64_t, Declaration> declarations_;
   Declaration *vertices_ = nullptr, *edges_ = nullptr, *sizes_ = nullptr, *points_ = nullptr, *radii_ = nullptr;
-  double scale_ = 1;  ///< from what is in radii_ to radii
+  double scale_ = 1;  ///< factor from radii_ to radii
   std::vector<Index> vertex_node_;
   std::vector<double> segment_radii_;
 };

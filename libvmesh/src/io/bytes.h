@@ -10,7 +10,7 @@
 
 namespace vmesh::io {
 
-/// The number of type T that `bytes` hold in little-endian (or big-endian) order.
+/// The number of type T at `bytes` in little-endian (or big-endian) order.
 template <class T>
 T load(const char* bytes, bool big_endian = false) {
   std::array<char, sizeof(T)> buffer;
@@ -33,7 +33,7 @@ inline void write_out(std::ostream& out, std::string& bytes) {
   bytes.clear();
 }
 
-/// The same once they are a block: no large file is in memory as a whole.
+/// The same once a block is full, so that no large file is in memory as a whole.
 inline void write_blocks(std::ostream& out, std::string& bytes) {
   constexpr std::size_t kBlock = std::size_t{1} << 20;
   if (bytes.size() >= kBlock) write_out(out, bytes);

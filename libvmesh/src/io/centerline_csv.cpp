@@ -23,7 +23,7 @@ class CsvTable {
     const std::string wanted = "the header must name the columns " + join(names);
     std::string_view line;
     do {
-      if (!lines_.next(line)) throw InvalidInput(source_ + ": there is no table in it; " + wanted);
+      if (!lines_.next(line)) throw InvalidInput(source_ + ": it contains no table; " + wanted);
       if (trim(line).starts_with('#')) read_tags(line, unit, space);
     } while (is_skipped(line));
     split_comma(line, fields_);
@@ -48,18 +48,18 @@ class CsvTable {
     return true;
   }
 
-  /// Of the wanted columns, in the order asked for.
+  /// The field of the i-th wanted column.
   std::string_view field(std::size_t i) const { return fields_[columns_[i]]; }
 
   std::int64_t integer(std::size_t i) const {
     const auto value = parse_integer(field(i));
-    if (!value) fail(cite(field(i)) + " is no whole number");
+    if (!value) fail(cite(field(i)) + " is not an integer");
     return *value;
   }
 
   double real(std::size_t i) const {
     const auto value = parse_double(field(i));
-    if (!value) fail(cite(field(i)) + " is no number");
+    if (!value) fail(cite(field(i)) + " is not a number");
     return *value;
   }
 

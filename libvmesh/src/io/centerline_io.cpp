@@ -123,9 +123,10 @@ RawCenterline read_centerline(const std::vector<std::filesystem::path>& paths, c
 }
 
 RawCenterline names_of(RawCenterline raw) {
-  raw.nodes = {};
-  raw.segments = {};
-  raw.path_starts = {};
+  // {} would empty them and keep their memory.
+  raw.nodes = std::vector<CenterlineNode>();
+  raw.segments = std::vector<CenterlineSegment>();
+  raw.path_starts = std::vector<Index>();
   return raw;
 }
 

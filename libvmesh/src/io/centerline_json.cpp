@@ -43,7 +43,7 @@ class JsonReader {
     return found != document_.end() && found->is_string() ? found->get<std::string>() : std::string();
   }
 
-  /// Lists within lists would take as much stack to write as there are.
+  /// Does not print nested lists, which would need stack in proportion to their depth.
   static std::string shown(const Json& value) {
     return value.is_structured() ? std::string("a value in brackets") : cite(value.dump());
   }
@@ -84,7 +84,8 @@ class JsonReader {
       const bool known = value.is_number_unsigned() && value.get<std::uint64_t>() < raw_.nodes.size();
       if (!known) {
         fail("segments entry " + std::to_string(raw_.segments.size()) + ": " + shown(value) +
-             " is no node; the nodes are 0 to " + std::to_string(static_cast<std::ptrdiff_t>(raw_.nodes.size()) - 1));
+             " is not a node; the nodes are 0 to " +
+             std::to_string(static_cast<std::ptrdiff_t>(raw_.nodes.size()) - 1));
       }
       return static_cast<Index>(value.get<std::uint64_t>());
     };
@@ -115,9 +116,9 @@ RawCenterline parse_centerline_json(std::string_view content, const std::string&
   try {
     document = Json::parse(content);
   } catch (const Json::exception& error) {
-    constexpr std::size_t kMostShown = 300;  // it cites what it read last, which may be all of the file
+    constexpr std::size_t kMostShown = 300;  // the message cites what was read last, which may be the whole file
     throw InvalidInput(source +
-                       ": this is no valid JSON: " + one_line(std::string_view(error.what()).substr(0, kMostShown)));
+                       ": this is not valid JSON: " + one_line(std::string_view(error.what()).substr(0, kMostShown)));
   }
   if (document.is_object() && document.contains("markups")) return read_markups(document, source, options);
   return JsonReader(document, source).run();

@@ -9,8 +9,8 @@
 
 namespace vmesh::io {
 
-/// Frame and unit of what is written, then generator, options and input as far as known: each on a line of its own,
-/// behind `prefix`.
+/// Frame and unit of the numbers, then generator, options and input as far as known: each on a line of its own, after
+/// `prefix`.
 template <class Metadata>
 std::string comments(const Metadata& metadata, std::string_view prefix) {
   std::string text;

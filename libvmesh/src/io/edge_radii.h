@@ -1,4 +1,4 @@
-// Files that give a radius per vessel, not per point; internal to the module.
+// For files that give a radius per vessel, not per point; internal to the module.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace vmesh::io {
 
-/// Gives the nodes of `raw` radii, where every segment has one of its own. A node has that of the second thickest of
-/// its segments, which is the thinner one of the two that go through; an end that of its only one. Where a node is
-/// thicker or thinner than a segment at it, the segment gets a node more, one radius of that node away or in its
-/// middle, from which on it has its own radius: the change lies within the vessel that it branches from.
+/// Sets the radii of the nodes of `raw` from those of the segments. A node gets that of its second thickest segment,
+/// the thinner of the two that run through it; an end that of its only one. Where that differs from a segment's radius,
+/// the segment gets an additional node, one radius of that node away or at its midpoint, from which on it has its own
+/// radius: so the change lies within the vessel that it branches from.
 void set_radii_of_segments(RawCenterline& raw, const std::vector<double>& radius);
 
 }  // namespace vmesh::io

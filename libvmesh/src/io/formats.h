@@ -41,7 +41,8 @@ LoadedSurface parse_stl(std::string_view content, const std::string& source);
 LoadedSurface parse_ply(std::string_view content, const std::string& source);
 LoadedSurface parse_surface_vtp(std::string_view content, const std::string& source);
 LoadedSurface parse_surface_vtk(std::string_view content, const std::string& source);
-/// By the file, as some name others: GLB, glTF, 3MF, COLLADA, X3D, FBX. Throws Unsupported in a build without assimp.
+/// From a file, as some refer to others: GLB, glTF, 3MF, COLLADA, X3D, FBX. Throws Unsupported in a build without
+/// assimp.
 LoadedSurface read_scene(const std::filesystem::path& path);
 
 void write_off(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);

@@ -34,7 +34,7 @@ const MeshAttribute* find(const std::vector<MeshAttribute>& attributes, std::str
 
 bool is_color(const std::string& name) { return name == "red" || name == "green" || name == "blue" || name == "alpha"; }
 
-/// "volume distance" -> "_VOLUME_DISTANCE", as the specification wants names of one's own.
+/// "volume distance" -> "_VOLUME_DISTANCE", as the specification requires for custom names.
 std::string custom_name(const std::string& name) {
   std::string result = "_";
   for (const char c : name) {
@@ -91,7 +91,7 @@ class GlbWriter {
     return json_["bufferViews"].size() - 1;
   }
 
-  /// Of all bytes since the last view(); returns its number.
+  /// Adds an accessor for all bytes since the last view(); returns its number.
   std::size_t accessor(std::size_t view, ComponentType type, const char* kind, std::size_t count) {
     Json& described = json_["bufferViews"][view];
     described["byteLength"] = bytes_.size() - described["byteOffset"].get<std::size_t>();
@@ -167,11 +167,12 @@ class GlbWriter {
     attributes["WEIGHTS_0"] = accessor(weights, kFloat, "VEC4", mesh_.vertices.size());
   }
 
-  /// The mesh at the root of the scene; its bones flat under one node, each with the axes of the scene at rest.
+  /// Adds the mesh at the root of the scene, and its bones side by side under one node, each with the axes of the scene
+  /// at rest.
   void add_nodes() {
     const Vec3 origin = metres(origin_);
     const Json translation = Json::array({origin.x(), origin.y(), origin.z()});
-    // Programs that do not know of bones take the surface to where it is at rest by its own node.
+    // Programs that do not support bones place the surface at rest by its own node.
     json_["nodes"].push_back({{"name", "surface"}, {"mesh", 0}, {"translation", translation}});
     if (!skin_) {
       json_["scenes"].push_back({{"nodes", Json::array({0})}});
@@ -223,7 +224,7 @@ class GlbWriter {
   const TriMesh& mesh_;
   const MeshAttributes& attributes_;
   const SurfaceSkin* skin_;
-  Vec3 origin_ = Vec3::Zero();  ///< in the middle, for the digits
+  Vec3 origin_ = Vec3::Zero();  ///< at the centre, for precision
   Json json_;
   std::string bytes_;
 };

@@ -20,13 +20,13 @@ class GxlReader {
 
   RawCenterline run() {
     const pugi::xml_node graph = file_.document.child("gxl").child("graph");
-    if (!graph) fail("this is no GXL file: there is no <gxl> with a <graph> in it");
+    if (!graph) fail("this is not a GXL file: it contains no <gxl> with a <graph>");
     if (!options_.voxel_size)
       fail("positions in GXL files of VascuSynth are in voxels: give the sides of one with --voxel-size");
     if (!((options_.voxel_size->array() > 0).all())) fail("the sides of a voxel must be above 0");
     for (const pugi::xml_node node : graph.children("node")) read_node(node);
     for (const pugi::xml_node edge : graph.children("edge")) read_edge(edge);
-    if (raw_.segments.empty()) fail("there is no <edge> in it");
+    if (raw_.segments.empty()) fail("it contains no <edge>");
     set_radii_of_segments(raw_, radii_);
     return std::move(raw_);
   }
@@ -34,7 +34,7 @@ class GxlReader {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw InvalidInput(raw_.source + ": " + what); }
 
-  /// The element <attr> of that name, blanks around it aside.
+  /// The element <attr> of that name, ignoring blanks around it.
   static pugi::xml_node attribute(pugi::xml_node owner, std::string_view name) {
     for (const pugi::xml_node attr : owner.children("attr")) {
       if (trim(attr.attribute("name").value()) == name) return attr;
@@ -45,7 +45,7 @@ class GxlReader {
   double number(pugi::xml_node element, const std::string& place, const char* what) const {
     const std::string_view text = trim(element.text().get());
     const auto value = parse_double(text);
-    if (!value) fail(place + ": its " + what + " " + cite(text) + " is no number");
+    if (!value) fail(place + ": its " + what + " " + cite(text) + " is not a number");
     return *value;
   }
 
@@ -53,7 +53,7 @@ class GxlReader {
     const std::string place = "node entry " + std::to_string(raw_.nodes.size());
     const std::string id(trim(node.attribute("id").value()));
     if (!node_of_.try_emplace(id, static_cast<Index>(raw_.nodes.size())).second)
-      fail(place + ": the id " + cite(id) + " was there before");
+      fail(place + ": the id " + cite(id) + " occurs twice");
     Vec3 position = Vec3::Zero();
     Eigen::Index axis = 0;
     for (const pugi::xml_node value : attribute(node, "position").child("tup").children("float")) {

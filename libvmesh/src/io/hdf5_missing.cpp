@@ -1,4 +1,4 @@
-// Stands in for hdf5_reader.cpp in a build without HDF5.
+// Replaces hdf5_reader.cpp in a build without HDF5.
 #include "vmesh/core/error.h"
 
 #include "formats.h"

@@ -17,7 +17,7 @@
 namespace vmesh::io {
 namespace {
 
-constexpr double kBestRatio = 1032;  // of zlib's format, with which HDF5 packs: what a byte can unpack to
+constexpr double kBestRatio = 1032;  // largest compression ratio of zlib, which HDF5 uses
 
 struct Table {
   std::size_t rows = 0, columns = 0;
@@ -26,7 +26,7 @@ struct Table {
   double at(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
 };
 
-/// Closes what it holds.
+/// Owns an HDF5 handle and closes it.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -44,14 +44,14 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// In the child, where HDF5 may crash.
+/// Used in a child process, as HDF5 may crash.
 class Hdf5File {
  public:
   explicit Hdf5File(const std::filesystem::path& path)
       : source_(path.string()),
         bytes_(std::filesystem::file_size(path)),
         file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {
-    if (!file_.good()) throw InvalidInput(source_ + ": this is no HDF5 file, or a damaged one");
+    if (!file_.good()) throw InvalidInput(source_ + ": this is not an HDF5 file, or a damaged one");
   }
 
   bool has(const char* name) const { return H5Lexists(file_, name, H5P_DEFAULT) > 0; }
@@ -68,7 +68,7 @@ class Hdf5File {
     hsize_t size[2] = {0, 0};
     if (!space.good() || H5Sget_simple_extent_ndims(space) != 2 ||
         H5Sget_simple_extent_dims(space, size, nullptr) != 2 || size[1] < columns)
-      fail("is no table of " + std::to_string(columns) + " columns");
+      fail("is not a table of " + std::to_string(columns) + " columns");
     const double most = kBestRatio * static_cast<double>(bytes_);
     if (static_cast<double>(size[0]) * static_cast<double>(size[1]) > most)
       fail("is larger than the file can hold; the file is damaged, get it again");
@@ -92,7 +92,7 @@ void store(std::string& bytes, const Table& table) {
 }
 
 std::string tables_in(const std::filesystem::path& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it says nothing by itself
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // no messages of its own
   const Hdf5File file(path);
   std::string bytes;
   store(bytes, file.table("points", 4));
@@ -167,7 +167,7 @@ class Network {
 
   Vec3 position(std::size_t i) const { return {points_.at(i, 0), points_.at(i, 1), points_.at(i, 2)}; }
 
-  /// The second section begins at the point where the first one ends; where that is not so in the file, by a step.
+  /// Connects the end of the first section to the beginning of the second: the same point, or a segment between two.
   void connect(std::size_t c, DisjointSets& same, std::vector<std::vector<Index>>& lines) const {
     const std::string what = "section of connection " + std::to_string(c);
     const std::size_t first = index(connectivity_.at(c, 0), structure_.rows, "the first " + what);

@@ -7,10 +7,10 @@ namespace vmesh::io {
 
 enum class NumberType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
-/// In bytes.
+/// Size in bytes.
 std::size_t size_of(NumberType type);
 
-/// The number that `bytes` hold; integers beyond 2^53 are rounded.
+/// The number at `bytes`; integers beyond 2^53 are rounded.
 double number_at(const char* bytes, NumberType type, bool big_endian);
 
 }  // namespace vmesh::io

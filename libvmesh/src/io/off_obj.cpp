@@ -63,7 +63,7 @@ class OffReader {
 
   std::size_t count(std::string_view field) const {
     const auto value = parse_integer(field);
-    if (!value || *value < 0) fail(cite(field) + " is no count");
+    if (!value || *value < 0) fail(cite(field) + " is not a count");
     // Every vertex and face takes at least two characters.
     if (static_cast<std::uint64_t>(*value) > lines_.rest().size() / 2 + 1) {
       fail("the count " + std::to_string(*value) + " is more than the file can hold");
@@ -77,7 +77,7 @@ class OffReader {
     Vec3 p;
     for (int i = 0; i < 3; ++i) {
       const auto value = parse_double(fields_[static_cast<std::size_t>(i)]);
-      if (!value) fail(cite(fields_[static_cast<std::size_t>(i)]) + " is no number");
+      if (!value) fail(cite(fields_[static_cast<std::size_t>(i)]) + " is not a number");
       p[i] = *value;
     }
     surface_.mesh.vertices.push_back(p);
@@ -92,7 +92,7 @@ class OffReader {
     corners_.clear();
     for (std::size_t i = 1; i <= static_cast<std::size_t>(*corner_count); ++i) {
       const auto corner = parse_integer(fields_[i]);
-      if (!corner) fail(cite(fields_[i]) + " is no vertex index");
+      if (!corner) fail(cite(fields_[i]) + " is not a vertex index");
       corners_.push_back(*corner);
     }
     faces.add(corners_, "line " + std::to_string(lines_.number()));
@@ -159,7 +159,7 @@ class ObjReader {
     Vec3 p;
     for (int i = 0; i < 3; ++i) {
       const auto value = parse_double(fields_[static_cast<std::size_t>(i) + 1]);
-      if (!value) fail(cite(fields_[static_cast<std::size_t>(i) + 1]) + " is no number");
+      if (!value) fail(cite(fields_[static_cast<std::size_t>(i) + 1]) + " is not a number");
       p[i] = *value;
     }
     surface_.mesh.vertices.push_back(p);
@@ -169,7 +169,8 @@ class ObjReader {
     const auto begin = static_cast<std::ptrdiff_t>(corners_.size());
     for (std::size_t i = 1; i < fields_.size(); ++i) {
       const auto corner = parse_integer(fields_[i].substr(0, fields_[i].find('/')));
-      if (!corner || *corner == 0) fail(cite(fields_[i]) + " is no vertex index; they count from 1, or back from -1");
+      if (!corner || *corner == 0)
+        fail(cite(fields_[i]) + " is not a vertex index; they count from 1, or back from -1");
       corners_.push_back(*corner > 0 ? *corner - 1
                                      : static_cast<std::int64_t>(surface_.mesh.vertices.size()) + *corner);
     }
@@ -206,7 +207,7 @@ void write_off(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& me
   for (const auto& [a, b, c] : mesh.faces) {
     out << "3 " + std::to_string(a) + ' ' + std::to_string(b) + ' ' + std::to_string(c) + '\n';
   }
-  out << comments(metadata, "# ");  // where readers that take no comments do not look any more
+  out << comments(metadata, "# ");  // at the end, where readers that do not accept comments no longer read
 }
 
 void write_obj(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata) {

@@ -86,7 +86,7 @@ class PlyValues {
     const auto value = parse_double(body_.substr(begin, end - begin));
     if (!value) {
       throw InvalidInput(source_ + ": " + one_line(element.substr(0, 40)) + " " + std::to_string(index) + ": " +
-                         cite(body_.substr(begin, end - begin)) + " is no number");
+                         cite(body_.substr(begin, end - begin)) + " is not a number");
     }
     return *value;
   }
@@ -123,7 +123,7 @@ class PlyReader {
 
   void read_header() {
     std::string_view line;
-    if (!lines_.next(line) || trim(line) != "ply") fail("this is no PLY file: its first line must be \"ply\"");
+    if (!lines_.next(line) || trim(line) != "ply") fail("this is not a PLY file: its first line must be \"ply\"");
     bool has_format = false;
     while (true) {
       if (!lines_.next(line)) fail("the header has no end (end_header)");
@@ -163,7 +163,7 @@ class PlyReader {
   void read_element_line() {
     const auto count = fields_.size() == 3 ? parse_integer(fields_[2]) : std::nullopt;
     if (!count || *count < 0) fail("an element has a name and a count");
-    if (!element_names_.emplace(fields_[1]).second) fail("the element " + cite(fields_[1]) + " was there before");
+    if (!element_names_.emplace(fields_[1]).second) fail("the element " + cite(fields_[1]) + " occurs twice");
     elements_.push_back({std::string(fields_[1]), static_cast<std::uint64_t>(*count), {}});
   }
 

@@ -30,7 +30,7 @@ class Converter {
       for (const Index point : cell) node(point);
     }
     if (raw_.nodes.empty()) {
-      throw InvalidInput(raw_.source + ": there is no line in it; a centerline is made of lines or polylines");
+      throw InvalidInput(raw_.source + ": it contains no line; a centerline is made of lines or polylines");
     }
     warn(empty, "lines have fewer than two points");
     warn(data_.points.size() - raw_.nodes.size(), "points belong to no line or vertex");
@@ -96,7 +96,7 @@ void name_arrays(const ScalarArrays& arrays, std::string& names) {
 /// Diameters are halved.
 double scale_of(const std::string& name) { return lower(name).find("diam") != std::string::npos ? 0.5 : 1; }
 
-/// The array that holds the radius and its name; null when there is none.
+/// The radius array with its name; null if there is none.
 const std::pair<const std::string, std::vector<double>>* find_radius(const ScalarArrays& arrays,
                                                                      const std::string& wanted, std::size_t count,
                                                                      const std::string& source, const char* element) {
@@ -110,7 +110,7 @@ const std::pair<const std::string, std::vector<double>>* find_radius(const Scala
   return nullptr;
 }
 
-/// Radii of segments from those of the lines that they are of.
+/// Radii of segments from those of their lines.
 std::vector<double> radii_of_segments(const RawCenterline& raw, const std::vector<double>& of_cells, double scale) {
   std::vector<double> radii;
   for (const std::uint64_t cell : raw.segment_numbers) radii.push_back(scale * of_cells[cell]);

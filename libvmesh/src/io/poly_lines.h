@@ -16,18 +16,18 @@ struct PolyLines {
   std::vector<std::vector<Index>> lines, vertices;
 };
 
-/// Arrays by name: one number per element, or empty where an array has another number of them.
+/// Arrays by name: one number per element, or empty if an array has another length.
 using ScalarArrays = std::map<std::string, std::vector<double>>;
 
-/// Those of points, and those of cells: of vertices first, then of lines, then of what else there is.
+/// Arrays of points, and of cells: of vertices first, then of lines, then of the rest.
 struct Attributes {
   const ScalarArrays& point;
   const ScalarArrays& cell;
 };
 
-/// Leaves out points without a cell and lines of fewer than two points, and says so. Radii are those of points, or else
-/// those of cells, under the name in `options` or a usual one; 0 where the options give one for all instead.
-/// Throws InvalidInput when nothing remains, and when there is no radius: with the names that are there.
+/// Leaves out points without a cell and lines of fewer than two points, with a warning. Radii are those of points, or
+/// else of cells, under the name in `options` or a usual one; 0 if the options give one for all instead. Throws
+/// InvalidInput if nothing remains, or if there is no radius, listing the available names.
 RawCenterline to_raw_centerline(PolyLines data, const std::string& source, const Attributes& attributes,
                                 const CenterlineReadOptions& options);
 

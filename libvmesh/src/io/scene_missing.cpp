@@ -1,4 +1,4 @@
-// Stands in for scene_reader.cpp in a build without assimp.
+// Replaces scene_reader.cpp in a build without assimp.
 #include "vmesh/core/error.h"
 
 #include "formats.h"

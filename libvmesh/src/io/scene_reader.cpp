@@ -1,4 +1,4 @@
-// What other programs exchange scenes in, through assimp: GLB, glTF, 3MF, COLLADA, X3D and FBX.
+// Scene formats, read through assimp: GLB, glTF, 3MF, COLLADA, X3D and FBX.
 #include <array>
 #include <map>
 
@@ -20,9 +20,12 @@
 namespace vmesh::io {
 namespace {
 
-/// The faces of a scene, its nodes' transformations applied; corners at one place are one vertex.
+/// The faces of a scene with its nodes' transformations applied; coincident corners become one vertex.
 class SceneFaces {
  public:
+  /// `source`: for messages.
+  explicit SceneFaces(const std::string& source) : source_(source) {}
+
   void add(const aiScene& scene) { add_node(scene, *scene.mRootNode, aiMatrix4x4()); }
 
   /// Counts of vertices, faces and corners; vertices; for every face its number of corners and these.
@@ -59,18 +62,25 @@ class SceneFaces {
       if (face.mNumIndices < 3) continue;
       ++faces_;
       corners_.push_back(face.mNumIndices);
-      for (unsigned i = 0; i < face.mNumIndices; ++i)
-        corners_.push_back(number.at(face.mIndices[mirrored ? face.mNumIndices - 1 - i : i]));
+      for (unsigned i = 0; i < face.mNumIndices; ++i) {
+        const unsigned v = face.mIndices[mirrored ? face.mNumIndices - 1 - i : i];
+        if (v >= number.size()) {  // assimp checks some formats only
+          throw InvalidInput(source_ + ": a face refers to vertex " + std::to_string(v) + " of a mesh with " +
+                             std::to_string(number.size()));
+        }
+        corners_.push_back(number[v]);
+      }
     }
   }
 
+  const std::string& source_;
   std::map<std::array<float, 3>, std::uint32_t> number_;
   std::vector<std::array<float, 3>> vertices_;
   std::vector<std::uint32_t> corners_;
   std::size_t faces_ = 0;
 };
 
-/// How a format's numbers are meant.
+/// Frame and unit of a format's numbers.
 struct SceneFrame {
   bool y_up = false;
   LengthUnit unit = LengthUnit::unknown;
@@ -79,7 +89,7 @@ struct SceneFrame {
 
 /// The beginning of the model in a 3MF file, which is a ZIP archive; empty when there is none.
 std::string beginning_of_model(const std::filesystem::path& path) {
-  constexpr std::size_t kEnough = 1 << 16;  // for what comes before the first vertex
+  constexpr std::size_t kEnough = 1 << 16;  // for everything before the first vertex
   constexpr int kAnyCase = 2;
   const unzFile archive = unzOpen64(path.c_str());
   if (archive == nullptr) return {};
@@ -94,11 +104,11 @@ std::string beginning_of_model(const std::filesystem::path& path) {
   return text;
 }
 
-/// Of which assimp does not tell: millimetres where the model does not say (3MF Core Specification 1.2, 3.4).
+/// The unit, which assimp does not report; millimetres by default (3MF Core Specification 1.2, 3.4).
 SceneFrame frame_of_3mf(const std::filesystem::path& path) {
   const std::string text = beginning_of_model(path);
   pugi::xml_document document;
-  document.load_buffer(text.data(), text.size());  // as far as it goes
+  document.load_buffer(text.data(), text.size());  // parses as far as possible
   const std::string unit = document.document_element().attribute("unit").as_string("millimeter");
   if (unit == "micron") return {false, LengthUnit::um, 1};
   if (unit == "millimeter") return {false, LengthUnit::mm, 1};
@@ -129,13 +139,13 @@ std::string imported(const std::filesystem::path& path, const std::string& conte
   const std::string source = path.string();
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  // A .gltf names other files beside it.
+  // A .gltf refers to other files beside it.
   const aiScene* scene = extension == ".gltf"
                              ? importer.ReadFile(path.string(), 0)
                              : importer.ReadFileFromMemory(content.data(), content.size(), 0, extension.c_str() + 1);
   if (!scene || !scene->mRootNode)
     throw InvalidInput(source + ": " + one_line(std::string_view(importer.GetErrorString()).substr(0, 300)));
-  SceneFaces faces;
+  SceneFaces faces(source);
   faces.add(*scene);
   const SceneFrame frame = frame_of(path, extension, *scene);
   std::string answer;
@@ -145,7 +155,7 @@ std::string imported(const std::filesystem::path& path, const std::string& conte
   return answer + faces.bytes();
 }
 
-/// Takes numbers from the answer of the child.
+/// Reads numbers from the child process's answer.
 class Answer {
  public:
   explicit Answer(const std::string& bytes) : bytes_(bytes) {}

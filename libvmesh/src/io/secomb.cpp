@@ -1,4 +1,4 @@
-// Networks of the Secomb group's programs (network.dat): blocks of rows behind their counts.
+// Networks of the Secomb group's programs (network.dat): blocks of rows after their counts.
 #include <unordered_map>
 
 #include "edge_radii.h"
@@ -46,12 +46,12 @@ class NetworkReader {
     std::string_view line;
     do {
       if (!lines_.next(line))
-        fail("the file ends where " + wanted + " should be; this is no network.dat, or it is cut off");
+        fail("the file ends where " + wanted + " should be; this is not a network.dat, or it is cut off");
       split_blank(line, fields_);
     } while (fields_.empty());
   }
 
-  /// A line that begins with `count` numbers, and what they mean behind them.
+  /// Reads a line that begins with `count` numbers, followed by their meaning.
   void read_numbers(std::size_t count, const std::string& wanted) {
     next_line(wanted);
     for (std::size_t i = 0; i < count; ++i) real(i, wanted);
@@ -64,7 +64,7 @@ class NetworkReader {
     return static_cast<std::size_t>(value);
   }
 
-  /// A count, a head, and as many rows with at least `columns` fields; each is handed to `keep`.
+  /// Reads a count, a header line, and as many rows of at least `columns` fields; each is passed to `keep`.
   template <typename Keep>
   void read_rows(const std::string& plural, const std::string& row, std::size_t columns, Keep keep) {
     const std::size_t count = read_count("the number of " + plural);
@@ -86,7 +86,7 @@ class NetworkReader {
     read_rows("nodes", "name, x, y, z", 4, [&] {
       const std::int64_t name = integer(0, "the name");
       if (!node_of_.try_emplace(name, static_cast<Index>(raw_.nodes.size())).second)
-        fail("the node " + std::to_string(name) + " was there before");
+        fail("the node " + std::to_string(name) + " occurs twice");
       raw_.nodes.push_back({{real(1, "x"), real(2, "y"), real(3, "z")}, 0});
       raw_.node_numbers.push_back(lines_.number());
     });
@@ -100,7 +100,7 @@ class NetworkReader {
       raw_.segment_numbers.push_back(segment.line);
       radii.push_back(segment.diameter / 2);
     }
-    if (raw_.segments.empty()) fail("there is no segment in it");
+    if (raw_.segments.empty()) fail("it contains no segment");
     set_radii_of_segments(raw_, radii);
   }
 
@@ -113,14 +113,14 @@ class NetworkReader {
   double real(std::size_t column, const std::string& what) const {
     const std::string_view field = column < fields_.size() ? fields_[column] : std::string_view();
     const auto value = parse_double(field);
-    if (!value) fail(cite(field) + " is no number; " + what + " should be here");
+    if (!value) fail(cite(field) + " is not a number; " + what + " should be here");
     return *value;
   }
 
   std::int64_t integer(std::size_t column, const std::string& what) const {
     const std::string_view field = column < fields_.size() ? fields_[column] : std::string_view();
     const auto value = parse_integer(field);
-    if (!value) fail(cite(field) + " is no whole number; " + what + " should be here");
+    if (!value) fail(cite(field) + " is not an integer; " + what + " should be here");
     return *value;
   }
 

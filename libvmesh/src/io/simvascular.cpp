@@ -14,7 +14,7 @@ namespace {
 double coordinate(pugi::xml_node node, const char* axis, const std::string& source, const std::string& place) {
   const std::string_view text = node.attribute(axis).value();
   const auto value = parse_double(text);
-  if (!value) fail(source, place + ": its " + axis + "=" + cite(text) + " is no number");
+  if (!value) fail(source, place + ": its " + axis + "=" + cite(text) + " is not a number");
   return *value;
 }
 
@@ -26,13 +26,13 @@ Vec3 position(pugi::xml_node node, const std::string& source, const std::string&
 /// The first time step of the path or contour group; warns when there are more.
 pugi::xml_node first_step(pugi::xml_node owner, RawCenterline& raw) {
   const pugi::xml_node step = owner.child("timestep");
-  if (!step) fail(raw.source, "there is no <timestep> in it");
+  if (!step) fail(raw.source, "it contains no <timestep>");
   if (step.next_sibling("timestep"))
-    raw.warnings.push_back(raw.source + ": there is more than one time step; the first is taken");
+    raw.warnings.push_back(raw.source + ": there is more than one time step; the first is used");
   return step;
 }
 
-/// A vessel of what was added last.
+/// Joins the added nodes in a row, as one vessel.
 void join_in_a_row(RawCenterline& raw, const std::string& what) {
   if (raw.nodes.size() < 2) fail(raw.source, "there are fewer than two " + what + " in it");
   raw.path_starts.push_back(0);
@@ -88,7 +88,7 @@ RawCenterline of_kind(const std::string& source, const char* node_word) {
 RawCenterline parse_contours(std::string_view content, const std::string& source) {
   const XmlFile file = parse_xml(content, source);
   const pugi::xml_node group = file.document.child("contourgroup");
-  if (!group) fail(source, "this is no contour group of SimVascular: there is no <contourgroup> in it");
+  if (!group) fail(source, "this is not a contour group of SimVascular: it contains no <contourgroup>");
   RawCenterline raw = of_kind(source, "contour");
   std::size_t number = 0;
   for (const pugi::xml_node contour : first_step(group, raw).children("contour")) add_contour(contour, number++, raw);
@@ -99,7 +99,7 @@ RawCenterline parse_contours(std::string_view content, const std::string& source
 RawCenterline parse_path(std::string_view content, const std::string& source, const CenterlineReadOptions& options) {
   const XmlFile file = parse_xml(content, source);
   const pugi::xml_node path = file.document.child("path");
-  if (!path) fail(source, "this is no path of SimVascular: there is no <path> in it");
+  if (!path) fail(source, "this is not a path of SimVascular: it contains no <path>");
   if (!options.radius) {
     fail(source,
          "a path holds no radii: give the contour group of the same name (.ctgr), or one radius for all with --radius");

@@ -36,8 +36,8 @@ class MarkupsReader {
         ++others;
       }
     }
-    if (raw_.segments.empty()) fail("there is no curve of two control points or more in it; vessels are curves");
-    if (others > 0) warn(std::to_string(others) + " markups are no curves; left out");
+    if (raw_.segments.empty()) fail("it contains no curve of two control points or more; vessels are curves");
+    if (others > 0) warn(std::to_string(others) + " markups are not curves; left out");
     return std::move(raw_);
   }
 
@@ -127,7 +127,7 @@ class MarkupsReader {
   }
 
   double radius(const Json& value, const std::string& place) const {
-    if (!value.is_number()) fail(place + ": its radius is no number");
+    if (!value.is_number()) fail(place + ": its radius is not a number");
     return value.get<double>();
   }
 

@@ -40,7 +40,7 @@ class VertexJoiner {
 };
 
 void check_finite(const Vec3& p, const std::string& place) {
-  // Here, because NaN never equals itself and would defeat the joining.
+  // Checked here, because NaN never equals itself and would defeat the joining.
   if (!p.allFinite()) throw InvalidInput(place + ": a corner is not finite (NaN or infinity)");
 }
 
@@ -112,7 +112,7 @@ LoadedSurface parse_stl(std::string_view content, const std::string& source) {
   } else if (says_solid) {
     parse_text(content, source, surface, faces);
   } else {
-    throw InvalidInput(source + ": this is no STL file: it neither begins with \"solid\" nor has a binary header");
+    throw InvalidInput(source + ": this is not an STL file: it neither begins with \"solid\" nor has a binary header");
   }
   faces.finish();
   return surface;

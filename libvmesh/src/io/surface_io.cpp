@@ -54,7 +54,7 @@ bool is_length(const std::string& attribute) {
          attribute == "volume_distance";
 }
 
-// Between LPS and another space, which is the same there and back.
+// Between LPS and another space; the same in both directions.
 void convert(TriMesh& mesh, MeshAttributes& attributes, double scale, Space space) {
   const Vec3 axes = space == Space::ras ? Vec3(-scale, -scale, scale) : Vec3(scale, scale, scale);
   for (Vec3& p : mesh.vertices) p = p.cwiseProduct(axes);

@@ -21,8 +21,7 @@ class SwcReader {
     std::string_view line;
     while (lines_.next(line)) read_line(line);
     if (raw_.nodes.empty()) {
-      throw InvalidInput(raw_.source +
-                         ": there is no sample in it; an SWC file has rows `id type x y z radius parent`");
+      throw InvalidInput(raw_.source + ": it contains no sample; an SWC file has rows `id type x y z radius parent`");
     }
     connect();
     check_acyclic();
@@ -70,13 +69,13 @@ class SwcReader {
 
   std::int64_t integer(std::size_t column, const char* name) const {
     const auto value = parse_integer(fields_[column]);
-    if (!value) fail(lines_.number(), std::string("the ") + name + " " + cite(fields_[column]) + " is no whole number");
+    if (!value) fail(lines_.number(), std::string("the ") + name + " " + cite(fields_[column]) + " is not an integer");
     return *value;
   }
 
   double real(std::size_t column, const char* name) const {
     const auto value = parse_double(fields_[column]);
-    if (!value) fail(lines_.number(), std::string("the ") + name + " " + cite(fields_[column]) + " is no number");
+    if (!value) fail(lines_.number(), std::string("the ") + name + " " + cite(fields_[column]) + " is not a number");
     return *value;
   }
 
@@ -96,7 +95,7 @@ class SwcReader {
   }
 
   void check_acyclic() const {
-    std::vector<Index> visit(parent_.size(), kNone);  // from which sample the walk to the root came by
+    std::vector<Index> visit(parent_.size(), kNone);  // the sample from which a walk to the root passed
     for (Index n = 0; n < parent_.size(); ++n) {
       Index m = n;
       while (m != kNone && visit[m] == kNone) {

@@ -19,7 +19,7 @@ class LineReader {
   bool next(std::string_view& line);
   std::uint64_t number() const { return number_; }  ///< of the last line, from 1
   std::string_view rest() const { return text_; }
-  /// The next `count` bytes, of which there must be as many, whatever they are.
+  /// The next `count` bytes, whatever they are; there must be that many.
   std::string_view take(std::size_t count);
 
  private:
@@ -34,11 +34,11 @@ void split_blank(std::string_view line, std::vector<std::string_view>& fields);
 /// Trimmed fields between commas.
 void split_comma(std::string_view line, std::vector<std::string_view>& fields);
 
-/// The whole of `text` as a number ("nan" and "inf" too, a leading + allowed). A number too large for a double is
-/// infinite, one too small is zero.
+/// The whole of `text` as a number (also "nan" and "inf"; a leading + is allowed). Overflow gives infinity, underflow
+/// zero.
 std::optional<double> parse_double(std::string_view text);
 
-/// A whole number of at most 2^53, also when written like 12.0 or 1.2e1.
+/// An integer of at most 2^53, also if written like 12.0 or 1.2e1.
 std::optional<std::int64_t> parse_integer(std::string_view text);
 
 /// Appends the shortest text that reads back as `value`.
@@ -54,7 +54,7 @@ void read_tags(std::string_view comment, LengthUnit& unit, Space& space);
 /// `text` on one line: control characters become blanks.
 std::string one_line(std::string_view text);
 
-/// "12.3abc" cut to a length fit for a message.
+/// `text` in quotes, on one line and shortened for a message.
 std::string cite(std::string_view text);
 
 }  // namespace vmesh::io

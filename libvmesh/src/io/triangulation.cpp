@@ -11,7 +11,7 @@ void FaceCollector::add(const std::vector<std::int64_t>& corners, const std::str
   const auto count = static_cast<std::int64_t>(surface_.mesh.vertices.size());
   for (const std::int64_t c : corners) {
     if (c >= 0 && c < count) continue;
-    throw InvalidInput(source_ + ": " + place + ": its corner " + std::to_string(c) + " is no vertex; there are " +
+    throw InvalidInput(source_ + ": " + place + ": its corner " + std::to_string(c) + " is not a vertex; there are " +
                        std::to_string(count));
   }
   const auto face = static_cast<Index>(faces_++);
@@ -43,7 +43,7 @@ void FaceCollector::finish() {
     throw InvalidInput(source_ + ": vertex " + std::to_string(v) + ": the position is not finite (NaN or infinity)");
   }
   if (surface_.mesh.faces.empty()) {
-    throw InvalidInput(source_ + ": there is no triangle in it (" + std::to_string(vertices.size()) + " vertices, " +
+    throw InvalidInput(source_ + ": it contains no triangle (" + std::to_string(vertices.size()) + " vertices, " +
                        std::to_string(faces_) + " faces); a surface is needed");
   }
   if (polygons_ > 0) {

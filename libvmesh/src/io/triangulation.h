@@ -1,4 +1,4 @@
-// What the surface readers share, internal to the module.
+// Shared by the surface readers, internal to the module.
 #pragma once
 
 #include <string>
@@ -14,11 +14,11 @@ class FaceCollector {
  public:
   FaceCollector(LoadedSurface& surface, std::string source) : surface_(surface), source_(std::move(source)) {}
 
-  /// The next polygon of the file. Throws InvalidInput for a corner that is no vertex; `place` ("line 12", "face 7")
-  /// names the polygon in messages.
+  /// Adds the next polygon of the file. Throws InvalidInput for a corner that is not a vertex; `place` ("line 12",
+  /// "face 7") names the polygon in messages.
   void add(const std::vector<std::int64_t>& corners, const std::string& place);
 
-  /// VTK's polygons and strips of triangles; the cell of every face added, of those that begin with `first_cell`.
+  /// Adds VTK's polygons and triangle strips; returns the cell of every face added, counting from `first_cell`.
   template <class Cells>
   std::vector<std::size_t> add_cells(const Cells& polygons, const Cells& strips, std::size_t first_cell) {
     std::vector<std::size_t> cell_of_face;
@@ -37,7 +37,7 @@ class FaceCollector {
     return cell_of_face;
   }
 
-  /// Throws InvalidInput when there is no triangle, or a position is not finite. Adds the warnings.
+  /// Throws InvalidInput if there is no triangle or a position is not finite. Adds the warnings.
   void finish();
 
   const std::vector<Index>& face_of_triangle() const { return face_of_triangle_; }

@@ -78,7 +78,7 @@ class VmvReader {
            std::to_string(open_->line) + "; that section is cut off or its $..._END is missing");
     }
     const auto [place, is_new] = line_of_section_.try_emplace(name, lines_.number());
-    if (!is_new) fail("this section was there before, in line " + std::to_string(place->second) + "; remove one");
+    if (!is_new) fail("this section occurs twice, first in line " + std::to_string(place->second) + "; remove one");
     open_ = {name, lines_.number()};
     if (name != kParameters && name != kVertices && name != kStrands) {
       raw_.warnings.push_back(raw_.source + ": line " + std::to_string(lines_.number()) + ": the section " +
@@ -118,7 +118,7 @@ class VmvReader {
   }
 
   void read_strand() {
-    integer(fields_[0], "strand id");  // names nothing that is needed
+    integer(fields_[0], "strand id");  // checked but not needed
     const std::size_t begin = strand_vertices_.size();
     for (std::size_t i = 1; i < fields_.size(); ++i) strand_vertices_.push_back(integer(fields_[i], "vertex id"));
     strands_.push_back({begin, strand_vertices_.size(), lines_.number()});
@@ -126,13 +126,13 @@ class VmvReader {
 
   std::int64_t integer(std::string_view field, const char* name) const {
     const auto value = parse_integer(field);
-    if (!value) fail(std::string("the ") + name + " " + cite(field) + " is no whole number");
+    if (!value) fail(std::string("the ") + name + " " + cite(field) + " is not an integer");
     return *value;
   }
 
   double real(std::size_t column, const char* name) const {
     const auto value = parse_double(fields_[column]);
-    if (!value) fail(std::string("the ") + name + " " + cite(fields_[column]) + " is no number");
+    if (!value) fail(std::string("the ") + name + " " + cite(fields_[column]) + " is not a number");
     return *value;
   }
 

@@ -21,23 +21,23 @@ struct LegacyVtkData {
   std::vector<Vec3> points;
   Cells vertices, lines, polygons, strips;
   ScalarArrays point_arrays, cell_arrays;
-  std::set<std::string> whole_numbers;  ///< the names of arrays that hold such
+  std::set<std::string> whole_numbers;  ///< the names of integer arrays
   LengthUnit unit = LengthUnit::unknown;
   Space space = Space::unknown;
 };
 
-/// Reads the format (VTK File Formats, "Simple Legacy Formats") up to version 5.1. After four lines of header it is a
-/// stream of words; in the binary variant, numbers and texts of arrays are bytes, the most significant first.
+/// Reads the format (VTK File Formats, "Simple Legacy Formats") up to version 5.1. After four header lines it is a
+/// stream of words; in the binary variant, numbers and texts of arrays are big-endian bytes.
 class LegacyVtkReader {
  public:
-  /// `wanted`: what the file should hold, for messages.
+  /// `wanted`: what the file should contain, for messages.
   LegacyVtkReader(std::string_view content, const std::string& source, const char* wanted)
       : lines_(content), source_(source), wanted_(wanted) {}
 
   LegacyVtkData run() {
     read_header();
     for (std::string keyword; next_word(keyword);) read_block(keyword);
-    if (data_.points.empty()) fail("there is no point in it");
+    if (data_.points.empty()) fail("it contains no point");
     return std::move(data_);
   }
 
@@ -54,7 +54,7 @@ class LegacyVtkReader {
 
   void read_header() {
     if (!header_line("the header").starts_with("# vtk DataFile Version")) {
-      fail("this is no legacy VTK file: it does not begin with \"# vtk DataFile Version\"");
+      fail("this is not a legacy VTK file: it does not begin with \"# vtk DataFile Version\"");
     }
     read_tags(header_line("the title"), data_.unit, data_.space);  // 3D Slicer puts SPACE=... there
     const std::string format = lower(header_line("the word ASCII or BINARY"));
@@ -92,7 +92,7 @@ class LegacyVtkReader {
 
   bool next_is(std::string_view keyword) { return skip_to_word() && lower(fields_[field_]) == keyword; }
 
-  /// The same where the bytes of an array may follow at once.
+  /// The same where the bytes of an array may follow immediately.
   bool next_is_or_bytes(std::string_view keyword) {
     if (!binary_ || field_ != fields_.size()) return next_is(keyword);
     return lower(lines_.rest().substr(0, keyword.size())) == keyword;
@@ -101,18 +101,18 @@ class LegacyVtkReader {
   double number() {
     const std::string_view text = word();
     const auto value = parse_double(text);
-    if (!value) fail(cite(text) + " is no number");
+    if (!value) fail(cite(text) + " is not a number");
     return *value;
   }
 
-  /// The numbers of an array, behind the line that announces them.
+  /// The numbers of an array, after the line that announces them.
   std::vector<double> numbers(std::size_t count, const std::string& type) {
     std::vector<double> values;
     if (!binary_) {
       for (std::size_t i = 0; i < count; ++i) values.push_back(number());
       return values;
     }
-    if (type == "bit") {  // eight in a byte; nothing that is read is of this type
+    if (type == "bit") {  // eight in a byte; skipped, as no array in use has this type
       bytes((count + 7) / 8);
       return values;
     }
@@ -155,11 +155,11 @@ class LegacyVtkReader {
   std::int64_t integer() {
     const std::string_view text = word();
     const auto value = parse_integer(text);
-    if (!value) fail(cite(text) + " is no whole number");
+    if (!value) fail(cite(text) + " is not an integer");
     return *value;
   }
 
-  /// How many of something that takes at least a character and a blank each, or a bit, are to come.
+  /// Reads how many items follow that take at least a character and a blank each, or a bit.
   std::size_t count(std::size_t numbers_each = 1) {
     const std::int64_t value = integer();
     if (value < 0) fail("the count " + std::to_string(value) + " is negative");
@@ -184,19 +184,19 @@ class LegacyVtkReader {
   }
 
   void read_points() {
-    if (!data_.points.empty()) fail("the points were there before");
+    if (!data_.points.empty()) fail("the points occur twice");
     const std::size_t size = count(3);
     const std::vector<double> x = numbers(3 * size, type_word());
     for (std::size_t i = 0; i + 2 < x.size(); i += 3) data_.points.emplace_back(x[i], x[i + 1], x[i + 2]);
   }
 
   void read_cells(Cells& cells) {
-    if (!cells.empty()) fail("cells of this kind were there before");
+    if (!cells.empty()) fail("cells of this kind occur twice");
     const std::size_t rows = count(), size = count();
     next_is_or_bytes("offsets") ? read_offset_cells(cells, rows, size) : read_counted_cells(cells, rows, size);
   }
 
-  /// Up to version 4: every cell is its number of points and the points; `size` counts all these numbers.
+  /// Up to version 4: a cell is its number of points followed by the points; `size` counts all these numbers.
   void read_counted_cells(Cells& cells, std::size_t rows, std::size_t size) {
     if (binary_) return read_counted_cells(cells, rows, numbers(size, "int"));
     std::size_t read = 0;
@@ -225,7 +225,7 @@ class LegacyVtkReader {
     fail("the cells do not have the " + std::to_string(size) + " numbers that are announced");
   }
 
-  /// From version 5: where every cell begins, and the end, in a list of points.
+  /// From version 5: offsets of all cells and the end in a list of points.
   void read_offset_cells(Cells& cells, std::size_t rows, std::size_t size) {
     std::vector<std::size_t> offsets;
     for (const double offset : numbers(rows, array_head("offsets"))) {
@@ -245,7 +245,7 @@ class LegacyVtkReader {
     }
   }
 
-  /// Reads the head of an array of that name; its type.
+  /// Reads the header of an array of that name; returns its type.
   std::string array_head(std::string_view name) {
     if (!next_is(name)) fail("the word " + std::string(name) + " should follow");
     word();
@@ -308,7 +308,7 @@ class LegacyVtkReader {
     field_ = 0;
   }
 
-  /// Binary: the length of every text stands before it, in 1, 2, 4 or 8 bytes; the first two bits tell how many.
+  /// Binary: every text is preceded by its length in 1, 2, 4 or 8 bytes; the first two bits tell how many.
   void read_stored_texts(const std::string& name, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       if (lines_.rest().empty()) bytes(1);  // fails
@@ -369,14 +369,14 @@ class LegacyVtkReader {
       word();
       skip_numbers(4, count(4), "unsigned_char");
     } else {
-      fail(cite(keyword) + " is no keyword of a legacy VTK file, or more numbers are there than announced");
+      fail(cite(keyword) + " is not a keyword of a legacy VTK file, or more numbers are there than announced");
     }
   }
 
-  /// Of every element of the attribute at hand.
+  /// Reads the number of components per element of the current attribute.
   std::size_t component_count() { return count(std::max<std::size_t>(tuples_, 1)); }
 
-  /// Metadata end at an empty line.
+  /// Skips metadata, which end at an empty line.
   void skip_metadata() {
     std::string_view line;
     while (lines_.next(line) && !trim(line).empty()) {
@@ -389,15 +389,15 @@ class LegacyVtkReader {
   const std::string& source_;
   const std::string wanted_;
   bool binary_ = false;
-  std::vector<std::string_view> fields_;  ///< of the line at hand
-  std::size_t field_ = 0;                 ///< the next of them
+  std::vector<std::string_view> fields_;  ///< of the current line
+  std::size_t field_ = 0;                 ///< the next field
   LegacyVtkData data_;
   enum class Of { nothing, points, cells };
-  Of of_ = Of::nothing;     ///< what the attributes at hand belong to
-  std::size_t tuples_ = 0;  ///< how many of that there are
+  Of of_ = Of::nothing;     ///< what the current attributes belong to
+  std::size_t tuples_ = 0;  ///< number of elements they belong to
 };
 
-/// Of the arrays with as many numbers as there are elements, those of the elements `kept`.
+/// The numbers of the elements `kept` from every array with one number per element.
 template <class Names>
 std::vector<MeshAttribute> attributes_of(const ScalarArrays& arrays, const LegacyVtkData& data, const Names& names,
                                          std::size_t count, const std::vector<std::size_t>& kept) {

@@ -24,12 +24,12 @@ struct VtpArrayList {
   std::vector<VtpArray> arrays;
   std::unordered_map<std::string, std::size_t> index;  ///< by name
 
-  /// That of this name, or null.
+  /// The array of this name, or null.
   const VtpArray* find(const std::string& name) const {
     const auto place = index.find(name);
     return place == index.end() ? nullptr : &arrays[place->second];
   }
-  /// That of this name; added when it is new.
+  /// The array of this name; added if it is new.
   VtpArray& get(const std::string& name, bool integer) {
     const auto [place, is_new] = index.try_emplace(name, arrays.size());
     if (is_new) arrays.push_back({name, integer, {}});
@@ -72,13 +72,13 @@ class VtpReader {
   VtpData run() {
     const pugi::xml_node root = file_.document.child("VTKFile");
     if (root.attribute("type").value() != std::string_view("PolyData")) {
-      throw InvalidInput(source_ + ": this is no VTP file: it is not a <VTKFile type=\"PolyData\">");
+      throw InvalidInput(source_ + ": this is not a VTP file: it is not a <VTKFile type=\"PolyData\">");
     }
     const pugi::xml_node data = root.child("PolyData");
-    if (!data) throw InvalidInput(source_ + ": there is no <PolyData> in it");
+    if (!data) throw InvalidInput(source_ + ": it contains no <PolyData>");
     read_tags(data.child("FieldData"));
     for (const pugi::xml_node piece : data.children("Piece")) read_piece(piece);
-    if (data_.points.empty()) throw InvalidInput(source_ + ": there is no point in it");
+    if (data_.points.empty()) throw InvalidInput(source_ + ": it contains no point");
     return std::move(data_);
   }
 
@@ -103,7 +103,7 @@ class VtpReader {
     read_cells(piece, "Polys", count_of(piece, "NumberOfPolys"), first_point, data_.polygons);
     read_cells(piece, "Strips", count_of(piece, "NumberOfStrips"), first_point, data_.strips);
     read_arrays(piece, "PointData", first_point, data_.points.size() - first_point, data_.point_arrays);
-    // Of several pieces, cells of one kind do not lie side by side in the file: their data are left out.
+    // With several pieces, cells of one kind are not contiguous in the file: their data are left out.
     if (first_point == 0) read_arrays(piece, "CellData", 0, data_.cell_count(), data_.cell_arrays);
   }
 
@@ -112,7 +112,7 @@ class VtpReader {
     if (text.empty()) return 0;
     const auto count = parse_integer(text);
     if (count && *count >= 0) return static_cast<std::uint64_t>(*count);
-    throw InvalidInput(source_ + ": " + key + "=" + cite(text) + " is no count");
+    throw InvalidInput(source_ + ": " + key + "=" + cite(text) + " is not a count");
   }
 
   void read_points(pugi::xml_node piece, std::uint64_t count) {
@@ -162,8 +162,8 @@ class VtpReader {
                        std::to_string(static_cast<std::ptrdiff_t>(count) - 1));
   }
 
-  /// Adds the piece's numbers, `count` each, to those of the points or cells `before` it. Where a piece before did not
-  /// have the array, it stays too short.
+  /// Appends the piece's numbers, `count` each, to those of the points or cells `before` it. If an earlier piece lacked
+  /// the array, it stays too short.
   void read_arrays(pugi::xml_node piece, const char* kind, std::size_t before, std::size_t count,
                    VtpArrayList& arrays) {
     for (const pugi::xml_node array : piece.child(kind).children("DataArray")) {
@@ -192,7 +192,7 @@ ScalarArrays scalars(VtpArrayList& list, std::size_t count) {
   return arrays;
 }
 
-/// Of arrays of one number per element, those of the elements `kept`.
+/// The numbers of the elements `kept` from arrays of one number per element.
 template <class Names>
 std::vector<MeshAttribute> attributes_of(const VtpArrayList& list, const Names& names, std::size_t count,
                                          const std::vector<std::size_t>& kept) {

@@ -13,7 +13,7 @@ namespace vmesh::io {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\n\v\f";
-constexpr std::uint64_t kBestRatio = 1032;  // of zlib's format: what a byte can unpack to
+constexpr std::uint64_t kBestRatio = 1032;  // zlib's largest compression ratio
 
 std::optional<NumberType> type_of(std::string_view name) {
   static constexpr std::array<std::string_view, 10> kNames = {"Int8",   "UInt8", "Int16",  "UInt16",  "Int32",
@@ -31,8 +31,8 @@ int base64_digit(char c) {
   return c == '/' ? 63 : -1;
 }
 
-/// Takes up to `count` bytes off the front of `stored`; encoded, whole groups of four digits go, and a padded group is
-/// the last. Fewer when there are no more.
+/// Takes up to `count` bytes off the front of `stored`, fewer at its end; in base64, whole groups of four digits, of
+/// which a padded one is the last.
 std::string take(std::string_view& stored, bool base64, std::uint64_t count) {
   if (!base64) {
     const std::string_view taken =
@@ -73,7 +73,7 @@ VtpArrays::VtpArrays(const XmlFile& file, const std::string& source)
   const std::string_view compressor = root.attribute("compressor").value();
   packed_ = !compressor.empty();
   if (packed_ && compressor != "vtkZLibDataCompressor") {
-    throw Unsupported(source + ": packed by " + cite(compressor) + "; save it with zlib, or not packed");
+    throw Unsupported(source + ": compressed by " + cite(compressor) + "; save it with zlib, or uncompressed");
   }
 }
 
@@ -98,8 +98,8 @@ std::string_view VtpArrays::appended(pugi::xml_node array) const {
   return all.substr(static_cast<std::size_t>(*offset));
 }
 
-/// Up to `most` of the bytes that a binary or appended array holds; fewer when the file has no more. Appended data
-/// shared by arrays would let a small file grow without bound: all arrays together have what is there.
+/// Up to `most` bytes of a binary or appended array; fewer if the file ends. Arrays must not share appended data, or a
+/// small file could grow without bound.
 std::string VtpArrays::bytes(pugi::xml_node array, std::uint64_t most) {
   const bool is_appended = array.attribute("format").value() == std::string_view("appended");
   const bool base64 = !is_appended || !raw_appended_;
@@ -116,17 +116,17 @@ std::string VtpArrays::bytes(pugi::xml_node array, std::uint64_t most) {
 
 /// The number of bytes, then the bytes.
 std::string VtpArrays::plain(pugi::xml_node array, std::string_view& stored, bool base64, std::uint64_t most) const {
-  std::string_view peeked = stored;  // both are encoded in one go
+  std::string_view peeked = stored;  // size and data are encoded together
   const std::string header = take(peeked, base64, word_size_);
   if (header.size() < word_size_) return {};
   const std::uint64_t size = header_word(header, 0);
-  if (size > stored.size()) fail(array, "it should hold " + std::to_string(size) + " bytes, which are not there");
+  if (size > stored.size()) fail(array, "it should have " + std::to_string(size) + " bytes, which are not there");
   std::string all = take(stored, base64, word_size_ + std::min(size, most));
   return all.erase(0, word_size_);
 }
 
-/// Before packed data: the number of blocks, their size, the size of the last one if it is less, and their packed
-/// sizes.
+/// Compressed data start with the number of blocks, their size, the size of the last one if it is less, and their
+/// compressed sizes.
 std::string VtpArrays::unpacked(pugi::xml_node array, std::string_view& stored, bool base64, std::uint64_t most) const {
   std::string_view peeked = stored;
   const std::string first = take(peeked, base64, word_size_);
@@ -139,20 +139,20 @@ std::string VtpArrays::unpacked(pugi::xml_node array, std::string_view& stored, 
   std::uint64_t packed_size = 0;
   for (std::size_t b = 0; b < blocks; ++b)
     packed_size += std::min<std::uint64_t>(header_word(header, 3 + b), stored.size() + 1);
-  if (packed_size > stored.size()) fail(array, "its packed data are longer than the file");
+  if (packed_size > stored.size()) fail(array, "its compressed data are longer than the file");
   const std::string packed = take(stored, base64, packed_size);
   std::string result;
   std::size_t at = 0;
   for (std::size_t b = 0; b < blocks && result.size() < most; ++b) {
     const std::uint64_t size = header_word(header, 3 + b);
     const std::uint64_t unpacked_size = b + 1 == blocks && last_size > 0 ? last_size : block_size;
-    if (size > packed.size() - at || unpacked_size > size * kBestRatio) fail(array, "a packed block is too short");
+    if (size > packed.size() - at || unpacked_size > size * kBestRatio) fail(array, "a compressed block is too short");
     const std::size_t begin = result.size();
     result.resize(begin + static_cast<std::size_t>(unpacked_size));
     uLongf length = static_cast<uLongf>(unpacked_size);
     const int state = uncompress(reinterpret_cast<Bytef*>(result.data() + begin), &length,
                                  reinterpret_cast<const Bytef*>(packed.data() + at), static_cast<uLong>(size));
-    if (state != Z_OK || length != unpacked_size) fail(array, "a packed block is damaged");
+    if (state != Z_OK || length != unpacked_size) fail(array, "a compressed block is damaged");
     at += static_cast<std::size_t>(size);
   }
   return result;
@@ -166,7 +166,7 @@ std::vector<double> VtpArrays::words(pugi::xml_node array, std::uint64_t count) 
     if (begin == std::string_view::npos) break;
     const std::size_t end = std::min(text.find_first_of(kBlank, begin), text.size());
     const auto value = parse_double(text.substr(begin, end - begin));
-    if (!value) fail(array, cite(text.substr(begin, end - begin)) + " is no number");
+    if (!value) fail(array, cite(text.substr(begin, end - begin)) + " is not a number");
     values.push_back(*value);
     text.remove_prefix(end);
   }

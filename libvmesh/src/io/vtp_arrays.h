@@ -12,11 +12,11 @@ namespace vmesh::io {
 
 class VtpArrays {
  public:
-  /// Throws Unsupported for packings other than zlib's. Both arguments must outlive it.
+  /// Throws Unsupported for compression other than zlib's. Both arguments must outlive it.
   VtpArrays(const XmlFile& file, const std::string& source);
 
-  /// The first `count` numbers of a <DataArray>; kAll: all there are. Throws InvalidInput when there are fewer: nothing
-  /// is allocated for numbers that are not there.
+  /// The first `count` numbers of a <DataArray>; kAll: all of them. Throws InvalidInput if there are fewer; allocates
+  /// nothing for missing numbers.
   static constexpr std::uint64_t kAll = ~std::uint64_t{0};
   std::vector<double> numbers(pugi::xml_node array, std::uint64_t count);
 

@@ -1,4 +1,4 @@
-// Stands in for vtp_writer.cpp in a build without VTK.
+// Replaces vtp_writer.cpp in a build without VTK.
 #include "vmesh/core/error.h"
 
 #include "formats.h"

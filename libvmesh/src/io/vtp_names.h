@@ -1,4 +1,4 @@
-// Names that arrays have in VTK's files, beside ours. Internal to the module.
+// Names of arrays in VTK's files and ours. Internal to the module.
 #pragma once
 
 #include <array>

@@ -24,7 +24,7 @@
 namespace vmesh::io {
 namespace {
 
-/// Collects what VTK's objects say about errors and warnings.
+/// Collects VTK's error and warning messages.
 class MessageWindow : public vtkOutputWindow {
  public:
   static MessageWindow* New() { return new MessageWindow; }
@@ -39,8 +39,8 @@ class MessageWindow : public vtkOutputWindow {
   std::thread::id owner_ = std::this_thread::get_id();
 };
 
-/// While it lives, VTK's messages go to text() instead of the terminal. VTK's output window and log level belong to the
-/// process, so one at a time; both are put back at the end.
+/// During its lifetime, VTK's messages go to text() instead of the terminal. VTK's output window and log level are
+/// process-wide, so only one may exist at a time; both are restored at the end.
 class VtkMessages {
  public:
   VtkMessages()
@@ -175,7 +175,7 @@ void write_surface_vtp(std::ostream& out, const TriMesh& mesh, const MeshAttribu
   }
   for (const auto& a : attributes.face)
     add_numbers(*data->GetCellData(), to_vtk(kCellNames, a.name), a.values, a.integer);
-  // What a viewer colours by at first.
+  // The attribute by which a viewer colours initially.
   if (!attributes.vertex.empty())
     data->GetPointData()->SetActiveScalars(to_vtk(kPointNames, attributes.vertex.front().name).c_str());
   if (!attributes.face.empty())

@@ -5,7 +5,7 @@
 namespace vmesh::io {
 namespace {
 
-/// Between the tags of <AppendedData>; empty and at the end when there is none.
+/// The content between the tags of <AppendedData>; empty and at the end if there is none.
 std::string_view find_appended(std::string_view content, const std::string& source) {
   const std::size_t tag = content.find("<AppendedData");
   const std::size_t begin = tag == std::string_view::npos ? tag : content.find('>', tag);
@@ -30,7 +30,7 @@ XmlFile parse_xml(std::string_view content, const std::string& source) {
   if (!result) {
     auto place = static_cast<std::size_t>(result.offset);
     if (place > before) place += file.appended.size();
-    throw InvalidInput(source + ": byte " + std::to_string(place) + ": this is no valid XML: " + result.description() +
+    throw InvalidInput(source + ": byte " + std::to_string(place) + ": this is not valid XML: " + result.description() +
                        "; if the file is cut off, get the whole file");
   }
   return file;

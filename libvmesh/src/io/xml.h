@@ -10,7 +10,7 @@ namespace vmesh::io {
 
 struct XmlFile {
   pugi::xml_document document;
-  /// What follows the tag <AppendedData ...> up to its end tag: it need not be XML, and the document is without it.
+  /// The content of <AppendedData ...>, which need not be XML and is not part of the document.
   std::string_view appended;
 };
 

@@ -4,7 +4,7 @@
 
 namespace vmesh {
 
-/// Throws InvalidInput where a face names a vertex that is not there.
+/// Throws InvalidInput if a face names a vertex that does not exist.
 void check_indices(const TriMesh& mesh);
 
 }  // namespace vmesh

@@ -93,7 +93,7 @@ void CloseFaces::build(const TriMesh& mesh) {
   }
 }
 
-// Along the Z curve, by the faces' middles.
+// Sorts along the Z curve by the faces' centres.
 void CloseFaces::sort(const TriMesh& mesh, std::size_t begin, std::size_t end) {
   if (begin == end) return;
   const std::span<Index> faces(faces_.data() + begin, end - begin);

@@ -9,22 +9,22 @@
 
 namespace vmesh {
 
-/// Which faces of a mesh come close: those whose boxes meet. Faces are put in the order of a space-filling curve, eight
-/// to a block; over the blocks lies a binary tree. Boxes are in single precision, rounded outwards.
+/// Finds faces of a mesh that come close: those whose boxes overlap. Faces are ordered along a space-filling curve,
+/// eight to a block, with a binary tree over the blocks. Boxes are in single precision, rounded outwards.
 class CloseFaces {
  public:
-  /// `faces`: the numbers of those that take part. O(n log n).
+  /// `faces`: the numbers of the faces that take part. O(n log n).
   CloseFaces(const TriMesh& mesh, std::vector<Index> faces);
-  /// The same, for faces of different parts only. `parts`: that of every face in `faces`, ascending.
+  /// The same for pairs of faces of different parts only. `parts`: the part of every face in `faces`, ascending.
   CloseFaces(const TriMesh& mesh, std::vector<Index> faces, std::vector<Index> parts);
 
-  /// Calls visit(face, face) once for every two faces whose boxes meet, and for some whose boxes nearly do.
+  /// Calls visit(face, face) once for every two faces whose boxes overlap, and for some whose boxes nearly do.
   template <class Visit>
   void visit_pairs(Visit&& visit) const {
     for (std::size_t block = 0; block < blocks_; ++block) visit_pairs_of(block, visit);
   }
 
-  /// The same in parts, one a block, in any order.
+  /// The same for one block at a time, in any order.
   std::size_t block_count() const { return blocks_; }
   template <class Visit>
   void visit_pairs_of(std::size_t block, Visit&& visit) const {
@@ -38,7 +38,7 @@ class CloseFaces {
     std::array<float, 3> low, high;
 
     bool meets(const Box& other) const {
-      // All six at once: a branch each costs more.
+      // All six comparisons at once: a branch for each costs more.
       return (low[0] <= other.high[0]) & (other.low[0] <= high[0]) & (low[1] <= other.high[1]) &
              (other.low[1] <= high[1]) & (low[2] <= other.high[2]) & (other.low[2] <= high[2]);
     }
@@ -46,7 +46,7 @@ class CloseFaces {
   };
 
   static Box box_of(const TriMesh& mesh, Index face);
-  // Those from number `begin` to `end`.
+  // Sorts the faces from number `begin` to `end`.
   void sort(const TriMesh& mesh, std::size_t begin, std::size_t end);
   void build(const TriMesh& mesh);
   void note_parts();
@@ -87,13 +87,13 @@ class CloseFaces {
   }
 
   std::vector<Index> faces_;             // along the curve
-  std::vector<Box> boxes_;               // theirs
+  std::vector<Box> boxes_;               // of faces_
   std::size_t blocks_ = 0, leaves_ = 1;  // a power of two
-  // Node 1 is the root, those below node n are 2 n and 2 n + 1; from leaves_ on they are blocks.
+  // Node 1 is the root, the children of node n are 2 n and 2 n + 1; from leaves_ on, nodes are blocks.
   std::vector<Box> nodes_;
   std::vector<Index> last_block_;  // below a node, counted from one; 0: none
-  std::vector<Index> part_;        // of every face; empty: all count
-  std::vector<Index> part_below_;  // a node, if it is one
+  std::vector<Index> part_;        // of every face; empty: all pairs count
+  std::vector<Index> part_below_;  // the part of all faces below a node, if it is a single one
 };
 
 }  // namespace vmesh

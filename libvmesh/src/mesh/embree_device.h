@@ -8,8 +8,8 @@
 
 namespace vmesh {
 
-/// One thread and one instruction set: the tree of boxes, and with it which of two faces at the same distance is found,
-/// is the same every time and on every machine.
+/// One thread and one instruction set, so that the tree of boxes, and with it the choice between faces at the same
+/// distance, is the same every time and on every machine.
 #if defined(__x86_64__)
 constexpr const char* kEmbreeConfig = "threads=1,set_affinity=0,isa=sse4.2";
 #else

@@ -11,7 +11,8 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 
-constexpr double kMargin = 1e-9;  // of edges and distance: below it exact predicates decide; rounding is 1e-15 of them
+constexpr double kMargin =
+    1e-9;  // relative to edges and distance: below, exact predicates decide; rounding is about 1e-15
 
 // Corners are numbered 0 to 2 within their faces.
 Point point(const PlacedFace& f, int i) { return {f.points[i].x(), f.points[i].y(), f.points[i].z()}; }
@@ -19,8 +20,8 @@ Kernel::Triangle_3 triangle(const PlacedFace& f) { return {point(f, 0), point(f,
 
 bool has(const PlacedFace& f, Index v) { return f.vertices[0] == v || f.vertices[1] == v || f.vertices[2] == v; }
 
-// Whether the corners of `other` that are not common lie beyond doubt on one side of the plane of `face`: the two then
-// meet in common corners at most. The margin is far above the rounding of the determinant.
+// Whether the corners of `other` that are not common are certainly on one side of the plane of `face`: the two then
+// meet at most in common corners. The margin is far above the rounding of the determinant.
 bool on_one_side(const PlacedFace& face, const PlacedFace& other) {
   const Vec3& base = face.points[0];
   const Vec3 first = face.points[1] - base, second = face.points[2] - base;

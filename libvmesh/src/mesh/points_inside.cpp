@@ -19,7 +19,7 @@ void check_closed(const TriMesh& mesh) {
       for (std::size_t i = 0; i < 3; ++i) visit(face[i], face[(i + 1) % 3]);
     }
   };
-  std::vector<std::size_t> end(mesh.vertices.size() + 1, 0);  // of the ends of a vertex's ways
+  std::vector<std::size_t> end(mesh.vertices.size() + 1, 0);  // where the list of every vertex ends
   visit_ways([&](Index from, Index) { ++end[from + 1]; });
   for (std::size_t v = 0; v + 1 < end.size(); ++v) end[v + 1] += end[v];
   std::vector<Index> to(end.back());
@@ -39,7 +39,7 @@ void check_closed(const TriMesh& mesh) {
   if (!closed) throw InvalidInput("inside is not defined: the mesh is open");
 }
 
-// Points in the cells of a grid across x. There are few, and many faces.
+// Points in the cells of a grid perpendicular to x: there are few points and many faces.
 class PointGrid {
  public:
   explicit PointGrid(const std::vector<Vec3>& points)
@@ -58,14 +58,14 @@ class PointGrid {
     for (Index i = 0; i < points.size(); ++i) points_[next[cell_of(row(points[i], 1), row(points[i], 2))]++] = i;
   }
 
-  /// Calls visit(point) for those whose lines along x may meet the box.
+  /// Calls visit(point) for points whose lines along x may meet the box.
   template <class Visit>
   void visit(const Vec3& low, const Vec3& high, Visit&& visit) const {
     if (points_.empty() || (low.tail<2>().array() > high_.tail<2>().array()).any() ||
         (high.tail<2>().array() < low_.tail<2>().array()).any())
       return;
     for (int y = row(low, 1); y <= row(high, 1); ++y) {
-      const std::size_t end = first_[cell_of(y, row(high, 2)) + 1];  // the cells of a row follow each other
+      const std::size_t end = first_[cell_of(y, row(high, 2)) + 1];  // the cells of a row are contiguous
       for (std::size_t i = first_[cell_of(y, row(low, 2))]; i < end; ++i) visit(points_[i]);
     }
   }
@@ -121,7 +121,7 @@ class RayTest {
     return {p.x(), p.y(), p.z()};
   }
 
-  // Whether the line through the point meets the face: it is within an odd number of its edges' way along y.
+  // Whether the line through the point meets the face: it passes an odd number of the face's edges in y.
   bool is_across(const Triangle& face, const Vec3& p) const {
     bool across = false;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -135,7 +135,7 @@ class RayTest {
     return across;
   }
 
-  // Whether a face that the line through the point meets is on the side of larger x.
+  // Whether a face met by the line through the point is on the side of larger x.
   bool is_before(const Triangle& face, const Vec3& p) const {
     const double a = mesh_.vertices[face[0]].x(), b = mesh_.vertices[face[1]].x(), c = mesh_.vertices[face[2]].x();
     if (p.x() < std::min({a, b, c})) return true;
@@ -146,7 +146,7 @@ class RayTest {
   }
 
   const TriMesh& mesh_;
-  double beyond_;  // of all faces, along x
+  double beyond_;  // an x beyond all faces
 };
 
 }  // namespace

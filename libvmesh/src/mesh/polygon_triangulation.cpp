@@ -28,7 +28,7 @@ std::vector<Triangle> fan(std::size_t count) {
   return faces;
 }
 
-/// Seen against the polygon's normal, so that it runs counter-clockwise. Empty without one.
+/// The projection along the polygon's normal, counter-clockwise. Empty if there is no normal.
 std::vector<Point> projection(std::span<const Vec3> corners) {
   Vec3 normal = Vec3::Zero();
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
@@ -41,7 +41,7 @@ std::vector<Point> projection(std::span<const Vec3> corners) {
   return points;
 }
 
-/// The faces on the inner side of the polygon's edges. Empty when there are not as many as there should be.
+/// The faces on the inner side of the polygon's edges. Empty if their number is not the expected one.
 std::vector<Triangle> inner_faces(Triangulation& triangulation, std::size_t count) {
   for (const Face face : triangulation.all_face_handles()) face->info() = false;
   std::vector<Face> front;

@@ -46,7 +46,7 @@ struct Bounds {
   }
 };
 
-// Boxes around the parts of a mesh: a face that lies in none but its own part's meets no other part.
+// Boxes around the parts of a mesh: a face outside the boxes of all other parts meets none of them.
 class PartBoxes {
  public:
   PartBoxes(const TriMesh& mesh, std::span<const Index> first_face) {
@@ -82,7 +82,7 @@ std::vector<std::pair<Index, Index>> intersecting(const TriMesh& mesh, const Clo
     const auto& [a, b, c] = mesh.faces[f];
     return PlacedFace{mesh.faces[f], {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}};
   };
-  // Pieces of a surface that grow are tested one a thread; only what is larger is divided.
+  // Pieces of a growing surface are tested on one thread each; only larger meshes are divided.
   const std::size_t part = std::max(kLeastPart, (close.block_count() + kMostParts - 1) / kMostParts);
   std::vector<std::vector<std::pair<Index, Index>>> found((close.block_count() + part - 1) / part);
   const auto test = [&](std::size_t p) {
@@ -92,7 +92,7 @@ std::vector<std::pair<Index, Index>> intersecting(const TriMesh& mesh, const Clo
       });
     }
   };
-  // Isolated: who waits for this must not begin with another piece.
+  // Isolated: a thread that waits for this must not start on another piece.
   tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, found.size(), test); });
   std::vector<std::pair<Index, Index>> pairs;
   for (const auto& some : found) pairs.insert(pairs.end(), some.begin(), some.end());

@@ -20,7 +20,7 @@ struct Side {
   auto key() const { return std::pair(low, high); }
 };
 
-// Those of an edge one after the other.
+// All sides, those of an edge adjacent.
 std::vector<Side> sorted_sides(const TriMesh& mesh) {
   const auto visit_sides = [&](auto&& visit) {
     for (Index f = 0; f < mesh.faces.size(); ++f) {
@@ -60,7 +60,7 @@ bool one_fan_each(const TriMesh& mesh, const std::vector<Side>& sides) {
   return true;
 }
 
-// Edges of one side, as its face runs along them.
+// Edges with a single side, in the direction of its face.
 std::vector<std::array<Index, 2>> boundary_of(const std::vector<Side>& sides) {
   std::vector<std::array<Index, 2>> boundary;
   for (std::size_t i = 0, next; i < sides.size(); i = next) {
@@ -72,7 +72,7 @@ std::vector<std::array<Index, 2>> boundary_of(const std::vector<Side>& sides) {
   return boundary;
 }
 
-// Of a graph, isolated vertices not counted.
+// Number of components of a graph, not counting isolated vertices.
 std::size_t count_pieces(const std::vector<std::array<Index, 2>>& edges, std::size_t vertices) {
   DisjointSets sets(edges.empty() ? 0 : vertices);
   for (const auto& [from, to] : edges) sets.join(from, to);
@@ -125,7 +125,7 @@ Topology measure_topology(const TriMesh& mesh) {
     }
     std::vector<double> volume(mesh.vertices.size(), 0);
     for (const auto& [a, b, c] : mesh.faces) {
-      // Relative to a vertex of the component, so that a far origin costs no digits.
+      // Relative to a vertex of the component, so that a far origin costs no precision.
       const Vec3& origin = mesh.vertices[sets.find(a)];
       volume[sets.find(a)] +=
           (mesh.vertices[a] - origin).dot((mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin));

@@ -9,14 +9,14 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-// What is the same in all corners, or needs the corners ranked by the edges opposite to them.
+// Quantities common to all corners, or that need the corners ranked by their opposite edges.
 struct TriangleShape {
   TriangleShape(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 edges[3] = {c - b, a - c, b - a};  // opposite to a, b, c
     for (int i = 0; i < 3; ++i) squared[i] = edges[i].squaredNorm();
     longest = squared[0] >= squared[1] ? (squared[0] >= squared[2] ? 0 : 2) : (squared[1] >= squared[2] ? 1 : 2);
     shortest = squared[0] < squared[1] ? (squared[0] < squared[2] ? 0 : 2) : (squared[1] < squared[2] ? 1 : 2);
-    // The cross product of the two shorter edges loses the fewest digits.
+    // The cross product of the two shorter edges is the most accurate.
     twice_area = edges[kNext[longest]].cross(edges[kNext[longest + 1]]).norm();
     dot_at_max = -edges[kNext[longest]].dot(edges[kNext[longest + 1]]);
     dot_at_min = -edges[kNext[shortest]].dot(edges[kNext[shortest + 1]]);

@@ -20,7 +20,7 @@ constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 30;
 
 std::size_t aligned(std::size_t size) { return (size + kAligned - 1) / kAligned * kAligned; }
 
-// Continues the check sum. For no bytes zlib may begin a new one.
+// Continues the checksum. For zero bytes zlib may start a new one.
 std::uint32_t sum(std::uint32_t crc, std::span<const std::byte> bytes) {
   if (bytes.empty()) return crc;
   return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -43,7 +43,7 @@ void ArrayWriter::add(const std::string& name, const char* type, std::span<const
 }
 
 void ArrayWriter::write(const std::filesystem::path& path) {
-  // Offsets count from the first array's beginning: they do not depend on the header's length.
+  // Offsets are relative to the first array, so they do not depend on the header's length.
   std::size_t offset = 0;
   for (std::size_t i = 0; i < arrays_.size(); ++i) {
     list_[i]["offset"] = offset;
@@ -78,9 +78,9 @@ ArrayFile::ArrayFile(const std::filesystem::path& path, const std::string& schem
   if (!file_ || error) throw ReadError(name_ + ": cannot be read; is it a file that vmesh split or generate wrote?");
   std::string magic(kMagic.size(), '\0');
   std::uint64_t length = 0;
-  if (size_ < kMagic.size() + 8) refuse("is no part of a surface: it is too short");
+  if (size_ < kMagic.size() + 8) refuse("is not part of a surface: it is too short");
   read_bytes(0, std::as_writable_bytes(std::span(magic)));
-  if (magic != kMagic) refuse("is no part of a surface; vmesh split writes those");
+  if (magic != kMagic) refuse("is not part of a surface; vmesh split writes those");
   read_bytes(kMagic.size(), std::as_writable_bytes(std::span(&length, 1)));
   const std::uint64_t first = kMagic.size() + 8;
   first_ = first + length;

@@ -13,9 +13,9 @@
 
 namespace vmesh {
 
-/// A file of named arrays of numbers behind a JSON header: "vmesh arrays 1\n", the header's size in eight bytes, the
-/// header, the arrays, little-endian. The header lists name, type, count and offset (from its own end) of each, and has
-/// a check sum (CRC-32) of all, itself included.
+/// A file of named arrays of numbers after a JSON header: "vmesh arrays 1\n", the header's size in eight bytes, the
+/// header, the arrays, little-endian. The header lists name, type, count and offset (from its own end) of each array,
+/// and contains a checksum (CRC-32) of everything, itself included.
 class ArrayWriter {
  public:
   explicit ArrayWriter(nlohmann::json header) : header_(std::move(header)) {}
@@ -24,7 +24,7 @@ class ArrayWriter {
   void add(const std::string& name, std::span<const double> numbers) { add(name, "f8", std::as_bytes(numbers), 8); }
   void add(const std::string& name, std::span<const Index> numbers) { add(name, "u4", std::as_bytes(numbers), 4); }
   void add(const std::string& name, std::span<const char> numbers) { add(name, "u1", std::as_bytes(numbers), 1); }
-  /// Three numbers for each.
+  /// Three numbers per point.
   void add(const std::string& name, const std::vector<Vec3>& points) {
     add(name, std::span(points.empty() ? nullptr : points.front().data(), 3 * points.size()));
   }
@@ -40,7 +40,7 @@ class ArrayWriter {
   std::vector<std::span<const std::byte>> arrays_;
 };
 
-/// Reads such files. Throws ReadError (missing, unreadable) and InvalidInput, which name the file.
+/// Reads such files. Throws ReadError (missing, unreadable) and InvalidInput, naming the file.
 class ArrayFile {
  public:
   /// `schema`: what the header must say of itself.
@@ -54,7 +54,7 @@ class ArrayFile {
   void read(const std::string& array, std::vector<Index>& numbers) { read_all(array, "u4", numbers); }
   void read(const std::string& array, std::vector<char>& numbers) { read_all(array, "u1", numbers); }
   void read(const std::string& array, std::vector<Vec3>& points);
-  /// Reads all of it once. Throws InvalidInput if the check sum is not that of what was written.
+  /// Reads the whole file once. Throws InvalidInput if the checksum does not match.
   void verify();
 
   /// Throws InvalidInput, "NAME: WHAT".

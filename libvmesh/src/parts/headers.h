@@ -9,13 +9,13 @@
 
 namespace vmesh {
 
-/// What headers of parts' files and their list have in common. Reading throws nlohmann's exceptions for what is missing
-/// or of another kind, and InvalidInput for what is out of range.
+/// JSON common to the headers of part files and the manifest. Reading throws nlohmann's exceptions for missing values
+/// and wrong types, and InvalidInput for values out of range.
 nlohmann::json to_json(const GrowthSimplification& note);
 GrowthSimplification note_of(const nlohmann::json& json);
 Index around_of(const nlohmann::json& json);
 
-/// Calls read(header). What is wrong with it is said with the file's name.
+/// Calls read(header) and reports errors with the file's name.
 template <class Read>
 void read_header(const ArrayFile& file, Read&& read) {
   try {

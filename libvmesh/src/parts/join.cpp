@@ -17,7 +17,7 @@ namespace {
 
 Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
-// Vertices in columns, as a sink takes them.
+// Vertices in columns, as passed to a sink.
 struct Columns {
   std::vector<Vec3> position, normal;
   std::vector<double> radius;
@@ -44,11 +44,11 @@ struct Columns {
   }
 };
 
-// A part as it is in the whole, walls parted.
+// A part as it is in the whole surface, after parting walls.
 struct LoadedPart {
   Columns vertices;             // of its seams, then its own
   std::vector<Index> number;    // in the whole
-  std::vector<Triangle> faces;  // by places in `vertices`, and behind them in the added ones
+  std::vector<Triangle> faces;  // indices into `vertices`, then into the added ones
   std::size_t seam_vertices = 0;
 };
 
@@ -148,7 +148,8 @@ class Joiner {
     }
   }
 
-  // Seam vertices, and what faces give to their normals and those of added vertices: part by part, then added faces.
+  // Collects seam vertices, and what faces contribute to their normals and those of added vertices: part by part, then
+  // added faces.
   void collect_seams() {
     seams_.resize(index_.manifest.seams * index_.manifest.around);
     for (std::size_t p = 0; p < index_.parts.size(); ++p) {
@@ -186,7 +187,7 @@ class Joiner {
     return v < part.seam_vertices ? seams_.normal[part.number[v]] : added_.normal[v - part.vertices.size()];
   }
 
-  // Where the corners of added faces are, and their branches.
+  // Remembers the corners of added faces and their branches.
   void remember_corners(const LoadedPart& part) {
     corners_.resize(walls_.added_faces.size());
     labels_.resize(walls_.added_faces.size());
@@ -248,7 +249,7 @@ class Joiner {
   double sum_ = 0;
 };
 
-// Of pairs that still cross.
+// Adds defects for pairs of faces that still cross.
 void add_crossings_left(const PartIndex& index, const PartedWalls& walls, std::vector<JoinDefect>& defects) {
   for (const auto& [f, g] : walls.left) {
     const PieceBox& box = index.boxes[index.piece_of_face(f)];

@@ -47,7 +47,7 @@ void write_manifest(const std::filesystem::path& path, const PartsManifest& m) {
 PartsManifest read_manifest(const std::filesystem::path& path) {
   const json j = json::parse(read_file(path), nullptr, false);
   if (!j.is_object() || j.value("schema", std::string()) != kSchema)
-    throw InvalidInput(path.string() + ": is no list of parts; vmesh split writes it");
+    throw InvalidInput(path.string() + ": is not a list of parts; vmesh split writes it");
   try {
     PartsManifest m;
     m.id = j.at("id").get<std::string>();

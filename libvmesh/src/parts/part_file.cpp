@@ -11,7 +11,7 @@ using nlohmann::json;
 
 constexpr const char* kSchema = "vmesh.part/1";
 
-// A list of lists as one, and where each begins.
+// A list of lists as a flat one, and where each begins.
 struct Lists {
   std::vector<Index> offsets = {0}, all;
 
@@ -30,7 +30,7 @@ void require_offsets(const ArrayFile& file, const std::string& name, const std::
                      std::size_t count) {
   file.require(!offsets.empty() && offsets.front() == 0 && offsets.back() == count &&
                    std::is_sorted(offsets.begin(), offsets.end()),
-               "is damaged: the lists of " + name + " do not fit together");
+               "is damaged: the lists of " + name + " are inconsistent");
 }
 
 std::vector<std::vector<Index>> read_lists(ArrayFile& file, const std::string& name) {
@@ -45,9 +45,14 @@ std::vector<std::vector<Index>> read_lists(ArrayFile& file, const std::string& n
 }
 
 json to_json(const GenerateOptions& o) {
-  return {{"beta", o.beta},     {"blend", o.blend},
-          {"around", o.around}, {"max_center_distance", o.max_center_distance},
-          {"sweeps", o.sweeps}, {"placement", to_string(o.placement)}};
+  return {{"beta", o.beta},
+          {"blend", o.blend},
+          {"around", o.around},
+          {"max_center_distance", o.max_center_distance},
+          {"sweeps", o.sweeps},
+          {"placement", to_string(o.placement)},
+          {"elongation", o.elongation},
+          {"deformable", o.deformable}};
 }
 
 GenerateOptions options_of(const json& j) {
@@ -58,12 +63,15 @@ GenerateOptions options_of(const json& j) {
   o.max_center_distance = j.at("max_center_distance").get<double>();
   o.sweeps = j.at("sweeps").get<int>();
   o.placement = parse_placement(j.at("placement").get<std::string>());
+  o.elongation = j.at("elongation").get<double>();
+  o.deformable = j.at("deformable").get<bool>();
   o.simplification = 0;
+  if (!(o.elongation >= 1 && o.elongation <= kMostElongation)) throw InvalidInput("its options are out of range");
   if (!(o.around >= 3 && o.around <= 200 && o.sweeps >= 0)) throw InvalidInput("its options are out of range");
   return o;
 }
 
-// What of an excerpt is not in columns yet.
+// The members of an excerpt that are not columns yet.
 struct FieldColumns {
   explicit FieldColumns(const FieldExcerpt& f) : field(f) {
     for (const CenterlineNode& n : f.nodes)
@@ -117,7 +125,7 @@ FieldExcerpt read_field(ArrayFile& file) {
   return field;
 }
 
-// The pieces' nodes and stretches, five numbers for each of these.
+// The pieces' nodes and stretches, five numbers per stretch.
 struct PlanLists {
   Lists nodes, stretches;
 };
@@ -137,7 +145,7 @@ PlanLists lists_of(const std::vector<PiecePlan>& pieces) {
 std::vector<PiecePlan> read_plans(ArrayFile& file) {
   std::vector<std::vector<Index>> nodes = read_lists(file, "pieces.nodes");
   const std::vector<std::vector<Index>> stretches = read_lists(file, "pieces.stretches");
-  file.require(nodes.size() == stretches.size(), "is damaged: the pieces do not fit together");
+  file.require(nodes.size() == stretches.size(), "is damaged: the pieces are inconsistent");
   std::vector<PiecePlan> pieces;
   for (std::size_t p = 0; p < nodes.size(); ++p) {
     PiecePlan plan{std::move(nodes[p]), {}};
@@ -164,7 +172,7 @@ std::vector<ConeOrigins::Stretch> read_stretches(ArrayFile& file, const std::str
   return stretches;
 }
 
-// The same of what its cones stand for.
+// The same for the cones' origins.
 struct OriginColumns {
   explicit OriginColumns(const ConeOrigins& o)
       : origins(o), stretch(numbers_of(o.stretch)), within(numbers_of(o.within)) {
@@ -211,7 +219,7 @@ ConeOrigins read_origins(ArrayFile& file, std::size_t cones, std::size_t nodes) 
                    origins.within.size() == count && origins.stretch.size() == cones &&
                    origins.branch.size() == cones && origins.offsets.size() == cones + 1 &&
                    origins.node.size() == nodes,
-               "is damaged: what its cones stand for does not fit together");
+               "is damaged: what its cones stand for is inconsistent");
   require_offsets(file, "origins", origins.offsets, count);
   file.require(std::adjacent_find(origins.offsets.begin(), origins.offsets.end()) == origins.offsets.end(),
                "is damaged: a cone stands for nothing");
@@ -260,7 +268,7 @@ StoredPart read_part(const std::filesystem::path& path) {
   part.field.blend = part.options.blend;
   std::vector<std::vector<Index>> nodes = read_lists(file, "branches.nodes");
   std::vector<std::vector<Index>> segments = read_lists(file, "branches.segments");
-  file.require(nodes.size() == segments.size(), "is damaged: the branches do not fit together");
+  file.require(nodes.size() == segments.size(), "is damaged: the branches are inconsistent");
   for (std::size_t b = 0; b < nodes.size(); ++b) part.branches.push_back({std::move(nodes[b]), std::move(segments[b])});
   part.pieces = read_plans(file);
   std::vector<Index> seams;

@@ -91,7 +91,7 @@ class Indexer {
   void finish_growth() {
     GrowthSummary& growth = index_.growth;
     growth.pieces = index_.boxes.size();
-    growth.tubes -= index_.manifest.seams;  // a tube on either side is one
+    growth.tubes -= index_.manifest.seams;  // the tubes on both sides of a seam count as one
     growth.components = index_.manifest.components;
     growth.cycle_rank = index_.manifest.cycle_rank - filled_;
     const std::vector<GrowthSimplification>& left_out = index_.manifest.simplifications;
@@ -105,7 +105,7 @@ class Indexer {
   std::vector<char> seen_;  // of seams: pieces that have them
 };
 
-// Some pieces of two parts with the numbers of their faces in the whole.
+// Some pieces of two parts, with the numbers of their faces in the whole.
 class PiecesOfTwo {
  public:
   explicit PiecesOfTwo(const PartIndex& index) : index_(index) {}

@@ -23,8 +23,8 @@ struct PieceBox {
   }
 };
 
-/// What is known of all parts without having them in memory: where their vertices and faces are in the whole, and where
-/// their pieces are in space.
+/// What is kept of all parts without their surfaces in memory: the numbers of their vertices and faces in the whole,
+/// and the boxes of their pieces.
 struct PartIndex {
   struct Entry {
     std::filesystem::path part, surface;
@@ -50,7 +50,7 @@ struct PartIndex {
   }
 };
 
-/// Reads every part once and sees to it that they belong together.
+/// Reads every part once and checks that they belong together.
 PartIndex index_parts(const std::filesystem::path& folder, const Progress& progress);
 
 /// The pairs of faces of different parts that cross each other, as numbers of the whole.
@@ -68,7 +68,7 @@ struct PartedWalls {
   };
 
   std::vector<Vertex> moved;                        ///< ascending
-  std::vector<Vertex> added;                        ///< behind all vertices of the whole
+  std::vector<Vertex> added;                        ///< numbered after all vertices of the whole
   std::vector<std::pair<Index, Triangle>> changed;  ///< faces, ascending
   std::vector<Triangle> added_faces;
   std::vector<std::pair<Index, Index>> left;  ///< that still cross

@@ -11,7 +11,7 @@ using nlohmann::json;
 
 constexpr const char* kSchema = "vmesh.part-surface/1";
 
-// Places in columns.
+// Places on the centerline in columns.
 struct PlaceColumns {
   std::vector<Index> segment;
   std::vector<double> t;
@@ -71,7 +71,7 @@ StoredPartSurface read_part_surface(const std::filesystem::path& path, bool veri
   std::vector<double> worst;
   file.read("pieces", pieces);
   file.read("pieces.worst_skewness", worst);
-  file.require(pieces.size() == 6 * worst.size(), "is damaged: its pieces do not fit together");
+  file.require(pieces.size() == 6 * worst.size(), "is damaged: its pieces are inconsistent");
   for (std::size_t p = 0; p < worst.size(); ++p) {
     const Index* n = pieces.data() + 6 * p;
     file.require(n[5] < kRungs, "is damaged: a piece was found on a rung that there is not");
@@ -111,7 +111,7 @@ StoredPartSurface read_part_surface(const std::filesystem::path& path, bool veri
                    place.t.size() == count && stored.branch.size() == count &&
                    std::all_of(faces.begin(), faces.end(), is_vertex) &&
                    std::all_of(surface.crossings.begin(), surface.crossings.end(), is_face),
-               "is damaged: vertices, faces and pieces do not fit together");
+               "is damaged: vertices, faces and pieces are inconsistent");
   for (std::size_t v = 0; v < count; ++v) {
     surface.binding.push_back({binding.segment[v], binding.t[v]});
     stored.place.push_back({place.segment[v], place.t[v]});

@@ -1,4 +1,4 @@
-// Parting walls of pieces that cross each other, with the parts around alone.
+// Parting walls of pieces that cross each other, with only the parts nearby in memory.
 #include <algorithm>
 #include <unordered_map>
 
@@ -29,7 +29,8 @@ class WallParting {
   }
 
  private:
-  // All that may have faces near a pair: one step does not reach beyond the pieces of its faces and those next to them.
+  // All parts that may have faces near a pair: one step does not reach beyond the pieces of its faces and those next to
+  // them.
   std::vector<std::size_t> parts_near() const {
     std::vector<PieceBox> hulls;
     for (const auto& [f, g] : crossings_) {
@@ -87,7 +88,7 @@ class WallParting {
     throw InvalidInput("parts of a surface do not belong together");
   }
 
-  // As positions and bindings are changed together, the former tell.
+  // Positions and bindings change together, so comparing positions is enough.
   void compare(const SurfaceAround& after) {
     const auto whole = static_cast<Index>(index_.vertices);
     for (Index v = 0; v < after.mesh.vertices.size(); ++v) {

@@ -12,8 +12,8 @@ struct DistanceTable {
   int faces = 0;
 };
 
-// Every point of a triangle is within this distance of a corner: half the longest edge unless all angles are acute, and
-// then the radius of the circle around it, which is largest for an equilateral triangle.
+// Every point of a triangle is within this distance of a corner: half the longest edge, or the circumradius if all
+// angles are acute, relatively largest for an equilateral triangle.
 double covering_radius(double a2, double b2, double c2) {
   const double longest2 = std::max({a2, b2, c2});
   return a2 + b2 + c2 <= 2 * longest2 ? std::sqrt(longest2 / 4) : std::sqrt(longest2 / 3);
@@ -66,7 +66,7 @@ double mean_bound(const DistanceTable& table, int s, int t, double weight) {
   return (weight * table.d.col(s) + (1 - weight) * table.d.col(t)).maxCoeff();
 }
 
-// The least over all weights of two faces: where two corners' means are equal, unless one face alone does better.
+// The minimum over all weights of two faces: where two corners' means are equal, unless one face alone does better.
 double two_face_bound(const DistanceTable& table, int s, int t, double best) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
@@ -77,7 +77,7 @@ double two_face_bound(const DistanceTable& table, int s, int t, double best) {
   return best;
 }
 
-// With the weights that make the mean the same at all corners, if there are any.
+// The bound with the weights that make the mean equal at all corners, if there are any.
 double three_face_bound(const DistanceTable& table, double worse) {
   const Eigen::Matrix3d& d = table.d;
   Vec3 weights = d.row(1).cross(d.row(2)) + d.row(2).cross(d.row(0)) + d.row(0).cross(d.row(1));

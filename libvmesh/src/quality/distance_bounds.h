@@ -12,10 +12,10 @@ struct MeasuredPoint {
   NearestFace nearest;
 };
 
-/// A triangle of the measured mesh, or a part of one.
+/// A triangle of the measured mesh, or a subtriangle of one.
 using Piece = std::array<MeasuredPoint, 3>;
 
-/// An upper bound of the distance of any point of `piece` from the other mesh. Bounds are tried from cheap to dear
+/// An upper bound of the distance of any point of `piece` from the other mesh. Bounds are tried from cheap to expensive
 /// until one is at most `good_enough`.
 double upper_bound(const Piece& piece, const TriangleTree& other, double good_enough);
 

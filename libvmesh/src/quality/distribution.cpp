@@ -6,7 +6,7 @@
 namespace vmesh {
 namespace {
 
-// Percentiles asked for in ascending order: each leaves the smaller values behind.
+// Percentiles requested in ascending order: each search continues after the smaller values.
 class Percentiles {
  public:
   explicit Percentiles(std::vector<double>& values) : values_(values), from_(values.begin()) {}

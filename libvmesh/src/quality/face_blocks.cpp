@@ -21,7 +21,7 @@ struct KeyedFace {
   Index face;
 };
 
-// Place along a Morton curve.
+// Sort keys along a Morton curve.
 std::vector<KeyedFace> key_faces(const TriMesh& mesh, const Extent& extent) {
   constexpr double kCells = 1 << kBitsPerAxis;
   const double longest = (extent.high - extent.low).maxCoeff();

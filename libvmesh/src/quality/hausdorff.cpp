@@ -15,7 +15,7 @@
 namespace vmesh {
 namespace {
 
-// Room for the roundings behind a distance, relative to coordinates and extents: a few dozen of 2^-53 each.
+// Margin for the rounding of a distance, relative to coordinates and extents: a few dozen roundings of 2^-53 each.
 constexpr double kRounding = 0x1p-46;
 constexpr double kFinestTolerance = 0x1p-40;
 
@@ -27,7 +27,8 @@ void check_tolerance(double tolerance, double size) {
   if (!(tolerance > 0)) throw InvalidInput("the tolerance of a Hausdorff distance must be larger than 0");
   if (tolerance < kFinestTolerance * size) {
     std::ostringstream text;
-    text << "a tolerance of " << tolerance << " mm is finer than double precision can tell for meshes of this size and "
+    text << "a tolerance of " << tolerance
+         << " mm is finer than double precision can resolve for meshes of this size and "
          << "distance from the origin; ask for " << kFinestTolerance * size << " mm or more";
     throw InvalidInput(text.str());
   }

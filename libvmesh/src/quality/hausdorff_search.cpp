@@ -9,11 +9,11 @@ namespace {
 constexpr Index kFacesPerBlock = 32;
 constexpr std::size_t kPromisingBlocks = 16;
 constexpr std::size_t kPromisingFaces = 64;
-// Pieces are halved at first, which is cheaper where meshes are apart; then cut at the edges of the other mesh, without
-// which two meshes that coincide would never part; at last halved, which is sure to come to an end.
+// Pieces are first halved, which is cheaper where meshes are apart; then cut at the edges of the other mesh, without
+// which coinciding meshes would never be settled; finally halved, which is certain to terminate.
 constexpr int kFirstCutAtEdge = 5;
 constexpr int kLastCutAtEdge = 24;
-constexpr double kLeastDepth = 0.25;        // of a part that is cut off at an edge, in tolerances
+constexpr double kLeastDepth = 0.25;        // of a part cut off at an edge, in tolerances
 constexpr std::size_t kReportEvery = 4096;  // points
 
 PieceCut halve_longest_edge(const Piece& piece) {
@@ -22,8 +22,8 @@ PieceCut halve_longest_edge(const Piece& piece) {
   return {static_cast<int>(std::max_element(length, length + 3) - length), 0.5, 1};
 }
 
-// Along the edge of `face` that divides the piece best: parts that lie above one face alone have their largest distance
-// from it at a corner. Nothing when no part would be deeper than `least`.
+// Cuts along the edge of `face` that divides the piece best: parts above a single face have their largest distance from
+// it at a corner. nullopt if no part would be deeper than `least`.
 std::optional<PieceCut> cut_at_edge(const Piece& piece, const TriangleFrame& face, double least) {
   std::array<double, 3> inside[3];
   for (int i = 0; i < 3; ++i) inside[i] = face.distances_from_edges(piece[i].position);
@@ -75,7 +75,7 @@ HausdorffSearch::HausdorffSearch(const TriMesh& from, const TriangleTree& tree, 
 
 void HausdorffSearch::run() {
   look_at_blocks();
-  // The most promising faces raise the lower bound; the others then go by in the order of the curve, so that neighbours
+  // The most promising faces raise the lower bound; the others follow in the order of the curve, so that neighbours
   // find the same boxes in the cache.
   bring_forward(unsettled_, kPromisingFaces);
   for (std::size_t i = 0; i < unsettled_.size() && !done(); ++i) {
@@ -84,7 +84,7 @@ void HausdorffSearch::run() {
   }
 }
 
-// Whether a piece with this upper bound needs no further look.
+// Whether a piece with this upper bound needs no further search.
 bool HausdorffSearch::settle(double bound) {
   if (bound > good_enough()) return false;
   upper_ = std::max(upper_, bound);
@@ -117,7 +117,7 @@ Piece HausdorffSearch::whole_face(Index face) const {
   return piece;
 }
 
-// Settles the blocks that cannot hold a larger distance, and the faces of the others as far as their corners do.
+// Settles the blocks that cannot contain a larger distance, and those faces of the others that their corners settle.
 void HausdorffSearch::look_at_blocks() {
   blocks_ = cut_into_blocks(from_, measure_extent(from_), kFacesPerBlock);
   std::vector<Ranked> ranked;
@@ -162,7 +162,7 @@ void HausdorffSearch::divide(Index face) {
   }
 }
 
-// Appends the two or three triangles that a cut makes, the one with the largest distance last.
+// Appends the two or three triangles that result from a cut, the one with the largest distance last.
 void HausdorffSearch::push_parts(const Piece& piece, const PieceCut& cut, int cuts, Index face,
                                  std::vector<OpenPiece>& open) {
   const MeasuredPoint &a = piece[cut.apex], &b = piece[(cut.apex + 1) % 3], &c = piece[(cut.apex + 2) % 3];

@@ -10,8 +10,8 @@
 
 namespace vmesh {
 
-/// How a piece is cut in two: its corner `apex` on one side, the others on the other; the places where the edges to the
-/// next two corners are cut, 1 at a corner.
+/// How a piece is cut in two: its corner `apex` on one side, the others on the other; the parameters at which the edges
+/// to the next two corners are cut, 1 at a corner.
 struct PieceCut {
   int apex = 0;
   double next = 1, after_next = 1;
@@ -22,19 +22,19 @@ class HausdorffSearch {
  public:
   struct Goal {
     double tolerance = 0;           ///< mm
-    double start = -1;              ///< distances up to this do not matter; below 0 some point is found in any case
+    double start = -1;              ///< distances up to this are ignored; if negative, some point is always found
     bool stop_above_start = false;  ///< the first larger distance ends the search
   };
 
-  /// Keeps references. `to` holds the faces of the other mesh.
+  /// Keeps references. `to` contains the faces of the other mesh.
   HausdorffSearch(const TriMesh& from, const TriangleTree& to, const Goal& goal, const Progress& progress);
 
   void run();
 
-  /// Bounds of the search, without room for rounding. `lower` is the start when nothing larger was found.
+  /// Bounds of the search, without a margin for rounding. `lower` is the start if nothing larger was found.
   double lower() const { return lower_; }
   double upper() const { return std::max(upper_, lower_); }
-  /// A point at the distance `lower`; nothing when nothing larger than the start was found.
+  /// A point at the distance `lower`; nullopt if nothing larger than the start was found.
   const std::optional<MeasuredPoint>& farthest() const { return farthest_; }
   Index farthest_face() const { return farthest_face_; }
 
@@ -46,7 +46,7 @@ class HausdorffSearch {
 
   struct OpenPiece {
     Piece piece;
-    int cuts;  // that led to it
+    int cuts;  // number of cuts that led to it
   };
 
   bool done() const { return goal_.stop_above_start && farthest_; }

@@ -15,7 +15,7 @@
 namespace vmesh {
 namespace {
 
-// The plastic number: what the golden ratio is in two dimensions.
+// The plastic number, the analogue of the golden ratio in two dimensions.
 constexpr double kPlastic = 1.32471795724474602596;
 constexpr std::size_t kReportEvery = 16384, kTogether = 256;  // samples
 

@@ -9,7 +9,7 @@
 namespace vmesh {
 
 /// A triangle in a frame of its own: corners at (0, 0), (base, 0) and (apex, height), its longest edge the base. In
-/// this form the closest point comes out to within a few roundings of the coordinates however thin the triangle is; a
+/// this form the closest point is accurate to within a few roundings of the coordinates however thin the triangle is; a
 /// face without area is a segment or a point.
 class TriangleFrame {
  public:
@@ -38,7 +38,7 @@ class TriangleFrame {
     return (r - x * along_ - y * up_).squaredNorm();
   }
 
-  /// How far the foot of `p` on the triangle's plane is from its edges, positive on the inner side.
+  /// Distances of the foot of `p` on the triangle's plane from the edges, positive on the inner side.
   std::array<double, 3> distances_from_edges(const Vec3& p) const {
     const Vec3 r = p - origin_;
     const double x = r.dot(along_), y = r.dot(up_), rest = base_ - apex_;
@@ -48,7 +48,7 @@ class TriangleFrame {
   }
 
  private:
-  static constexpr double kNothing = 1e-100;  // mm; squares of less vanish
+  static constexpr double kNothing = 1e-100;  // mm; squares of smaller numbers underflow
 
   void set(const Vec3& first, const Vec3& last, const Vec3& top) {
     origin_ = first;
@@ -56,13 +56,13 @@ class TriangleFrame {
     along_ = base_ > 0 ? Vec3((last - first) / base_) : Vec3(Vec3::Zero());
     apex_ = std::clamp((top - first).dot(along_), 0.0, base_);
     Vec3 rise = top - first;
-    for (int i = 0; i < 2; ++i) rise -= rise.dot(along_) * along_;  // once is not square enough for a thin triangle
+    for (int i = 0; i < 2; ++i) rise -= rise.dot(along_) * along_;  // once is not accurate enough for a thin triangle
     height_ = rise.norm();
     if (height_ < kNothing) height_ = 0;
     up_ = height_ > 0 ? Vec3(rise / height_) : Vec3(Vec3::Zero());
   }
 
-  // Moves a point of the plane to the closest one of the triangle. The angles at the base are acute.
+  // Moves a point of the plane to the closest point of the triangle. The angles at the base are acute.
   void clamp(double& x, double& y) const {
     if (!(y > 0)) {
       x = std::clamp(x, 0.0, base_);

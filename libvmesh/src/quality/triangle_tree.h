@@ -16,13 +16,13 @@ struct NearestFace {
   double distance = 0;
 };
 
-/// Whether `p` is finite and so near that its squared distances stay within float.
+/// Whether `p` is finite and near enough for squared distances to be in the range of float.
 inline bool within_reach(const Vec3& p) {
   constexpr double kFarthest = 1e15;  // mm
   return (p.array().abs() <= kFarthest).all();
 }
 
-/// The smallest box around all corners of a mesh's faces. Throws InvalidInput as ClosestPointIndex does.
+/// The smallest box around all corners of a mesh's faces. Throws InvalidInput like ClosestPointIndex.
 struct Extent {
   Vec3 low, high;
   double diagonal() const { return (high - low).norm(); }
@@ -41,7 +41,8 @@ class TriangleTree {
 
   /// The face closest to `p`. `near`: a face that bounds the search.
   NearestFace nearest(const Vec3& p, Index near = kNone) const;
-  /// The face closest to `p` of those that `accepts` takes and that are nearer than `limit`; kNone: there is none.
+  /// The face closest to `p` among those that `accepts` approves and that are nearer than `limit`; kNone if there is
+  /// none.
   NearestFace nearest_among(const Vec3& p, double limit, const std::function<bool(Index)>& accepts,
                             Index near = kNone) const;
 
@@ -50,7 +51,7 @@ class TriangleTree {
   const Extent& extent() const { return extent_; }
 
  private:
-  // What the float walk may be off at `p`, mm.
+  // Error bound of the float traversal at `p`, mm.
   double float_slack(const Vec3& local) const;
 
   struct Embree;

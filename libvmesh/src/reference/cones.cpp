@@ -10,7 +10,7 @@
 namespace vmesh {
 namespace {
 
-/// Two unit vectors that make a right-handed frame with `direction`, which is a unit vector.
+/// Two unit vectors that form a right-handed frame with the unit vector `direction`.
 std::pair<Vec3, Vec3> across(const Vec3& direction) {
   Eigen::Index least = 0;
   direction.cwiseAbs().minCoeff(&least);
@@ -43,7 +43,7 @@ void add_faces(TriMesh& mesh, Index first, Index sides) {
 TruncatedCones truncated_cones(const Centerline& centerline, int sides) {
   if (sides < 3 || sides > 1000)
     throw InvalidInput("truncated cones have 3 to 1000 sides, not " + std::to_string(sides));
-  if (centerline.segments().empty()) throw InvalidInput("the centerline has no segment to make a truncated cone of");
+  if (centerline.segments().empty()) throw InvalidInput("the centerline has no segment to make a truncated cone from");
   TruncatedCones cones;
   for (Index s = 0; s < centerline.segments().size(); ++s) {
     const CenterlineNode &a = centerline.node(centerline.segment(s).a), &b = centerline.node(centerline.segment(s).b);

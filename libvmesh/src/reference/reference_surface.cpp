@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kListedLabels = 20;
 
-/// What is contoured, and at which value.
+/// The image to be contoured, and the isovalue.
 struct Scene {
   VoxelImage image;
   double isovalue = 0;
@@ -59,14 +59,14 @@ double count_of(const std::array<std::size_t, 3>& size) {
   return static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
 }
 
-/// A mask, and what is cropped out of it.
+/// For a mask, and the crop of it.
 void check_memory_for_mask(const VoxelImage& image) {
   const double voxels = count_of(image.size);
   require_memory(2 * sizeof(float) * voxels, "a mask of " + std::to_string(image.values.size()) + " voxels",
                  "crop the image to the vessels");
 }
 
-/// The image that is resampled or smoothed, and the contour of it.
+/// For the resampled or smoothed image, and its contour.
 void check_memory_for_contour(const VoxelImage& image, const ReferenceOptions& options) {
   const double voxels = options.spacing > 0 ? count_of(resampled_size(image, options.spacing)) : count_of(image.size);
   std::ostringstream what;
@@ -104,7 +104,7 @@ Scene scene_of(const LoadedImage& loaded, const ReferenceOptions& options) {
   return mask_scene(image, label, label);
 }
 
-/// How far around the inside voxels values can matter (mm).
+/// How far from inside voxels values can matter (mm).
 double margin_of(const VoxelImage& image, const ReferenceOptions& options) {
   return 2 * image.spacing().maxCoeff() + 2 * options.spacing + 4 * options.smooth;
 }

@@ -76,7 +76,7 @@ void Camera::fit(const TriMesh& mesh, const RenderOptions& options) {
   } else if (!perspective) {
     mm_per_pixel_ = std::max((high.x() - low.x()) / room_x, (high.y() - low.y()) / room_y);
   } else {
-    double distance = 0;  // so that every vertex of a face is seen
+    double distance = 0;  // so that every vertex of a face is visible
     for (const auto& face : mesh.faces) {
       for (const Index v : face) {
         const Vec3 d = mesh.vertices[v] - center_;

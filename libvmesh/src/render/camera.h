@@ -19,15 +19,15 @@ class Camera {
  public:
   Camera(const TriMesh& mesh, const RenderOptions& options, int reserved_columns);
 
-  /// Through the point (x, y) of the picture in pixels from its top left corner.
+  /// The ray through the point (x, y) of the picture, in pixels from its top left corner.
   Ray ray(double x, double y) const;
   /// Where `p` appears, in pixels.
   Vec2 project(const Vec3& p) const;
-  /// Whether `p` can be projected: it is not behind the eye nor next to it.
+  /// Whether `p` can be projected: it is neither behind the eye nor next to it.
   bool is_in_front(const Vec3& p) const {
     return distance_ == 0 || distance_ - (p - center_).dot(towards_) > kNearest * distance_;
   }
-  /// Distance of `p` in front of the foremost point of the mesh, as a share of the mesh's depth.
+  /// Distance of `p` behind the foremost point of the mesh, as a share of the mesh's depth.
   double depth_share(const Vec3& p) const { return (front_ - (p - center_).dot(towards_)) / depth_; }
 
   const Vec3& right() const { return right_; }

@@ -9,7 +9,7 @@
 
 namespace vmesh {
 
-/// A picture in the making, in linear light.
+/// A picture being drawn, in linear light.
 class Canvas {
  public:
   Canvas(int width, int height, const Vec3& background);
@@ -18,11 +18,11 @@ class Canvas {
   int height() const { return height_; }
   Vec3& at(int x, int y) { return light_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)]; }
 
-  /// Lays `light` over a pixel with the given opacity; outside the picture nothing happens.
+  /// Blends `light` over a pixel with the given opacity; does nothing outside the picture.
   void blend(int x, int y, const Vec3& light, double opacity);
   /// Fills the axis-parallel rectangle between two corners, its borders anti-aliased.
   void fill(const Vec2& low, const Vec2& high, const Vec3& light, double opacity = 1);
-  /// A line with round ends, anti-aliased.
+  /// Draws a line with round ends, anti-aliased.
   void stroke(const Vec2& from, const Vec2& to, double thickness, const Vec3& light);
 
   Image image() const;

@@ -30,7 +30,7 @@ Vec3 linear_from_srgb(const Color& color) {
 }
 
 Color srgb_from_linear(const Vec3& light) {
-  // Finer than the steps of the result everywhere, as sRGB is steepest, 12.92, at black.
+  // Finer than the result's steps everywhere: sRGB is steepest at black, with 12.92.
   constexpr int kSteps = 1 << 14;
   static const std::vector<std::uint8_t> table = [] {
     std::vector<std::uint8_t> t(kSteps + 1);
@@ -60,7 +60,7 @@ Vec3 color_scale(double t) {
 }
 
 Vec3 category_color(double label) {
-  // The golden angle keeps the hues of near numbers apart, turning lightness those of numbers with near hues.
+  // The golden angle separates the hues of nearby numbers; alternating lightness separates numbers with similar hues.
   constexpr std::array<double, 3> kLightness{0.72, 0.56, 0.84};
   constexpr double kChroma = 0.14;
   const double number = std::round(label), turns = number * (3 - std::sqrt(5.0)) / 2;

@@ -13,11 +13,11 @@ Color srgb_from_linear(const Vec3& light);
 /// OKLab), so that equal steps look equal, also in grey.
 Vec3 color_scale(double t);
 
-/// A colour for a label (rounded to a whole number), neither dark nor pale. Labels that differ by less than ten have
-/// colours that are easy to tell apart.
+/// A colour for a label (rounded to an integer), neither dark nor pale. Labels that differ by less than ten have
+/// clearly distinct colours.
 Vec3 category_color(double label);
 
-/// What has no value.
+/// The colour of elements without a value.
 inline const Vec3 kNoValue(0.32, 0.32, 0.32);
 
 }  // namespace vmesh

@@ -116,7 +116,7 @@ void draw_legend(Canvas& canvas, const Legend& legend, const Vec3& background) {
   const Layout at = layout_of(legend, canvas.width(), canvas.height());
   const Vec3 ink = background.sum() > 0.6 ? Vec3::Constant(0.02) : Vec3::Constant(0.85);
   const double x = at.left, label_x = x + at.bar_width + at.text;
-  // What is drawn below the legend fades out towards it.
+  // The picture under the legend fades out towards it.
   for (int column = static_cast<int>(x - at.margin); column < canvas.width(); ++column) {
     const double opacity = 0.9 * std::min(1.0, (column + 0.5 - (x - at.margin)) / at.margin);
     canvas.fill({column, 0}, {column + 1, canvas.height()}, background, opacity);

@@ -7,7 +7,7 @@
 
 namespace vmesh {
 
-/// What a legend tells: the attribute's name, the values at both ends of the colour scale or else the labels, and
+/// The contents of a legend: the attribute's name, the values at both ends of the colour scale or the labels, and
 /// whether some elements have no value.
 struct Legend {
   std::string name;
@@ -20,13 +20,13 @@ struct Legend {
 /// Round numbers in [low, high], about `wanted` of them; the value itself when low equals high.
 std::vector<double> legend_ticks(double low, double high, bool integer, int wanted);
 
-/// `value` with as many decimals as ticks a `step` apart need.
+/// `value` with as many decimals as ticks at intervals of `step` need.
 std::string tick_label(double value, double step);
 
-/// Columns at the right side of a picture of this size that the legend takes.
+/// Columns that the legend occupies at the right side of a picture of this size.
 int legend_width(const Legend& legend, int width, int height);
 
-/// Draws the scale with its ticks, or the first categories, as many as there is room for.
+/// Draws the scale with its ticks, or as many of the first categories as fit.
 void draw_legend(Canvas& canvas, const Legend& legend, const Vec3& background);
 
 }  // namespace vmesh

@@ -16,7 +16,7 @@ struct RayHit {
   double u = 0, v = 0;  ///< weights of the face's second and third corner
 };
 
-/// A mesh ready for casting rays.
+/// A mesh prepared for ray casting.
 class RayScene {
  public:
   explicit RayScene(const TriMesh& mesh);

@@ -15,9 +15,9 @@
 #include "render/camera.h"
 #include "render/canvas.h"
 #include "render/color.h"
-#include "render/shown_tiles.h"
 #include "render/legend.h"
 #include "render/ray_scene.h"
+#include "render/shown_tiles.h"
 #include "render/surface_shader.h"
 
 namespace vmesh {
@@ -57,7 +57,7 @@ void check_mesh(const TriMesh& mesh) {
   }
 }
 
-// The attribute as legend and shader need it.
+// The attribute as needed by legend and shader.
 struct Coloring {
   Legend legend;
   AttributeColors colors;
@@ -86,7 +86,7 @@ Coloring color_by_scale(const MeshAttribute& attribute, const RenderOptions& opt
   require(low <= high, "attribute \"" + attribute.name + "\" has no finite value");
   Coloring coloring;
   for (const double value : attribute.values) {
-    // Halves: the difference of two finite doubles may be infinite.
+    // Halved, as the difference of two finite doubles may overflow.
     const double t = high > low ? (value / 2 - low / 2) / (high / 2 - low / 2) : 0.5;
     coloring.colors.values.push_back(std::isnan(value) ? value : std::clamp(t, 0.0, 1.0));
   }
@@ -120,7 +120,7 @@ Coloring make_coloring(const TriMesh& mesh, const MeshAttribute& attribute, Attr
   return coloring;
 }
 
-// Sixteen places in a pixel, four packets of four; each packet has one place in every quarter of the pixel.
+// Sixteen sample positions in a pixel, four packets of four; each packet has one in every quarter of the pixel.
 struct Place {
   double x, y;
 };
@@ -136,7 +136,7 @@ class PixelSampler {
   PixelSampler(const Camera& camera, const RayScene& scene, const SurfaceShader& shader, const Vec3& background)
       : camera_(camera), scene_(scene), shader_(shader), background_(background) {}
 
-  /// Four rays, and twelve more when these do not agree.
+  /// Casts four rays, and twelve more if these disagree.
   Vec3 sample(int x, int y) const {
     constexpr double kTolerance = 0.02;
     std::array<Vec3, 4> lights;
@@ -165,7 +165,7 @@ class PixelSampler {
     }
     const auto hits = scene_.cast(rays, std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < 4; ++i) {
-      // Bright spots are cut before averaging, else outlines next to them stay jagged.
+      // Bright spots are clamped before averaging, or outlines next to them would stay jagged.
       lights[i] = hits[i].face == kNone ? background_ : shader_.shade(hits[i], rays[i], pixels[i]).cwiseMin(1);
     }
   }

@@ -8,7 +8,7 @@
 
 namespace vmesh {
 
-/// Which parts of a picture may show the mesh: rays through the others need not be cast.
+/// The tiles of a picture that may show the mesh; rays through the others need not be cast.
 class ShownTiles {
  public:
   ShownTiles(const TriMesh& mesh, const Camera& camera, int width, int height);

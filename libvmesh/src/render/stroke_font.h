@@ -6,10 +6,10 @@
 
 namespace vmesh {
 
-// A font of lines, 150 of code. VTK's text renderer would need nine more shared libraries (9.6 MB, loaded whenever the
-// command starts: 20 ms by themselves), does without OpenGL only by choosing its parts by hand, rasterises as the
-// FreeType that is installed does, so that pictures would no longer be the same bytes everywhere, and builds without VTK
-// would need this font all the same.
+// A stroke font in 150 lines of code. VTK's text renderer would need nine more shared libraries (9.6 MB, which alone
+// take 20 ms whenever the command starts), avoids OpenGL only with hand-picked components, and rasterises with the
+// installed FreeType, so that pictures would not be the same bytes everywhere; builds without VTK would still need this
+// font.
 
 /// Width of a line of text whose capitals are `height` pixels high.
 double text_width(std::string_view text, double height);

@@ -16,9 +16,9 @@ namespace {
 const Vec3 kBackFace(0.80, 0.02, 0.62);  // magenta
 const Vec3 kEdge(0.015, 0.015, 0.02);
 constexpr double kEdgeOpacity = 0.75;
-constexpr double kHaze = 0.14;            // share of background in the farthest part, where no attribute is shown
+constexpr double kHaze = 0.14;            // share of background at the far end if no attribute is shown
 constexpr double kOcclusionReach = 0.10;  // of the mesh's diagonal
-constexpr double kOcclusionRays = 1.5e6;  // over the whole sphere, dealt evenly to the vertices
+constexpr double kOcclusionRays = 1.5e6;  // over the whole sphere, divided evenly among the vertices
 
 // Evenly spread unit vectors (Fibonacci spiral).
 std::vector<Vec3> sphere_directions(int count) {
@@ -59,7 +59,7 @@ SurfaceShader::SurfaceShader(const TriMesh& mesh, const RenderOptions& options, 
   }
 }
 
-// How much of a cosine-weighted hemisphere is open at every vertex; near obstacles count more than far ones.
+// Measures how much of a cosine-weighted hemisphere is open at every vertex; near obstacles count more than far ones.
 void SurfaceShader::measure_occlusion(const RayScene& scene) {
   const double reach = kOcclusionReach * diagonal_of(mesh_), offset = 1e-3 * reach;
   const auto directions = sphere_directions(
@@ -81,7 +81,7 @@ void SurfaceShader::measure_occlusion(const RayScene& scene) {
     };
     for (const Vec3& d : directions) {
       const double cosine = normal.dot(d);
-      if (cosine <= 0.08) continue;  // along the surface it hits its own facets
+      if (cosine <= 0.08) continue;  // a ray along the surface would hit adjacent facets
       total += cosine;
       weights[filled] = cosine;
       packet[filled++] = {mesh_.vertices[v] + offset * normal, d};
@@ -110,7 +110,7 @@ Vec3 SurfaceShader::base_color(const RayHit& hit, const Vec3& weights) const {
   return categories ? category_color(value) : color_scale(value);
 }
 
-// Edges are as wide everywhere in the picture; where triangles are hardly wider than the lines, the lines fade.
+// Edges have the same width all over the picture; where triangles are hardly wider than the lines, the lines fade.
 double SurfaceShader::edge_opacity(Index face, const Vec2& pixel) const {
   const auto& [a, b, c] = mesh_.faces[face];
   const Vec2 &p = projected_[a], &q = projected_[b], &r = projected_[c];
@@ -139,7 +139,7 @@ Vec3 SurfaceShader::shade(const RayHit& hit, const Ray& ray, const Vec2& pixel) 
   if (back) normal = -normal;
   normal.normalize();
   const Vec3 eye = -ray.direction;
-  // Interpolated normals may turn away at the outline; there they are seen from the side.
+  // Interpolated normals may point away from the viewer at the outline; there they are made perpendicular to the view.
   if (const double away = normal.dot(eye); away < 0) normal = (normal - away * eye).normalized();
 
   const bool marked = back && options_.highlight_back_faces;
@@ -152,7 +152,7 @@ Vec3 SurfaceShader::shade(const RayHit& hit, const Ray& ray, const Vec2& pixel) 
     open = 1 - options_.occlusion * (1 - open);
   }
 
-  // Lights hang on the camera: a large one above left, a weak one from the right, and the surroundings.
+  // Lights move with the camera: a large one at the upper left, a weak one at the right, and ambient light.
   const Vec3 key = (-0.45 * camera_.right() + 0.65 * camera_.up() + 0.75 * camera_.towards()).normalized();
   const Vec3 fill = (0.80 * camera_.right() + 0.10 * camera_.up() + 0.60 * camera_.towards()).normalized();
   const double wrapped = std::max(0.0, (normal.dot(key) + 0.25) / 1.25);

@@ -7,23 +7,23 @@
 
 namespace vmesh {
 
-/// What an attribute says about colours.
+/// The colours given by an attribute.
 struct AttributeColors {
-  /// For every vertex or face where its value lies on the colour scale, in [0, 1], or its label; NaN: no value. Empty
-  /// without attribute.
+  /// For every vertex or face, its value's position on the colour scale, in [0, 1], or its label; NaN: no value. Empty
+  /// without an attribute.
   std::vector<double> values;
   bool per_face = false;
   bool categories = false;  ///< the values are labels
 };
 
-/// Gives points of the surface their light.
+/// Computes the light of points of the surface.
 class SurfaceShader {
  public:
-  /// What is kept by reference must outlive the shader.
+  /// Arguments are kept by reference and must outlive the shader.
   SurfaceShader(const TriMesh& mesh, const RenderOptions& options, const Camera& camera, const RayScene& scene,
                 AttributeColors attribute);
 
-  /// The light of the surface at `hit` towards the camera; `pixel` is where the ray went through the picture.
+  /// The light from the surface at `hit` towards the camera; `pixel` is where the ray crosses the picture.
   Vec3 shade(const RayHit& hit, const Ray& ray, const Vec2& pixel) const;
 
  private:
@@ -37,7 +37,7 @@ class SurfaceShader {
   AttributeColors attribute_;
   Vec3 material_, background_;
   std::vector<Vec3> normals_;     // of vertices, for smooth shading and occlusion
-  std::vector<double> openness_;  // of vertices: share of the light of the surroundings that arrives
+  std::vector<double> openness_;  // of vertices: share of the ambient light that arrives
   std::vector<Vec2> projected_;   // vertices in the picture, for edges
 };
 

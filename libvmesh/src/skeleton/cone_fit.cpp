@@ -17,15 +17,15 @@ namespace {
 using Vector4 = Eigen::Vector4d;  // displacement and change of radius of a node
 using Matrix4 = Eigen::Matrix4d;
 
-// Shares of a node's own weight, that is the area of the samples it is responsible for.
+// Relative to a node's own weight, which is the area of its samples.
 constexpr double kSmoothPosition = 0.03;
 constexpr double kSmoothRadius = 0.1;
 constexpr double kDamping = 0.02;
-// Sliding along the vessel changes next to nothing but how evenly nodes are spread.
+// Sliding along the vessel changes hardly anything except the spacing of nodes.
 constexpr double kDampingAlong = 1;
-constexpr double kDampingOfFixed = 1e6;  // next to nothing is left to move
-constexpr int kAround = 2;               // edges from a merged node to those that it moves
-// Samples farther off than this count as if they were that far, in local radii.
+constexpr double kDampingOfFixed = 1e6;  // makes nodes practically immovable
+constexpr int kAround = 2;               // edges from a merged node to the nodes that are refitted with it
+// Distance, in local radii, at which samples farther off are counted.
 constexpr double kNear = 0.5;
 constexpr double kRadiusFactor = 2;
 
@@ -68,7 +68,7 @@ class Equations {
   Eigen::VectorXd side_;
 };
 
-/// What the samples of one cone say: its two nodes' blocks (2 x 2 of them) and right-hand sides.
+/// Sums over the samples of one cone: the blocks (2 x 2) and right-hand sides of its two nodes.
 struct ConeSums {
   std::array<Matrix4, 3> blocks = {Matrix4::Zero(), Matrix4::Zero(), Matrix4::Zero()};  // aa, ab, bb
   std::array<Vector4, 2> sides = {Vector4::Zero(), Vector4::Zero()};
@@ -81,8 +81,8 @@ void add_samples(Equations& equations, const VesselField& field, const SurfaceSa
     const FieldSample s = field.sample_global(samples.points[i]);
     const double near = kNear * field.radius_at(s.cone, s.t);
     const double weight = samples.areas[i] * std::min(1.0, near / std::max(std::abs(s.distance), 1e-12));
-    // The sphere that touches the boundary is where the distance is least: moving along does not change it, so the
-    // derivatives are those of the sphere.
+    // The distance is stationary in the touching sphere's position along the axis, so the derivatives are those of that
+    // sphere.
     Vector4 derivative;
     derivative << s.gradient, 1;
     const Matrix4 block = weight * derivative * derivative.transpose();
@@ -139,8 +139,8 @@ void add_priors(Equations& equations, const Graph& graph, const std::vector<char
   }
 }
 
-/// Applies a step, cut to half a radius; radii keep within a factor of what they were at first, so that nodes without
-/// samples of their own cannot vanish. Returns the largest change in relation to the radius.
+/// Applies a step, cut to half a radius; radii stay within a factor of their first values, so that nodes without
+/// samples of their own cannot vanish. Returns the largest change relative to the radius.
 double apply(Graph& graph, const std::vector<Node>& first, const std::vector<char>& fixed,
              const Eigen::VectorXd& step) {
   double most = 0;

@@ -25,12 +25,12 @@ namespace {
 
 using skeleton::Graph;
 
-// A component with less than this share of the largest one's volume is dirt.
+// A component with less than this share of the largest one's volume is debris.
 constexpr double kLeastVolume = 1e-5;
 constexpr int kFitRounds = 20;
-constexpr int kRefinements = 2;  // a second one of what the first made straight
-constexpr int kMerges = 3;       // each may bring others together; the portal and hepatic veins need two or three
-// Memory that a vertex of the surface takes, measured.
+constexpr int kRefinements = 2;  // the second works on the result of the first
+constexpr int kMerges = 3;       // each may enable further ones; the portal and hepatic veins need two or three
+// Memory per vertex of the surface, measured.
 constexpr double kBytesPerVertex = 4000;
 
 /// A component of the surface on its way to a centerline.
@@ -60,7 +60,7 @@ void turn(TriMesh& mesh) {
   for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
 }
 
-/// The components that enclose something, the largest first.
+/// The components that enclose a volume, largest first.
 std::vector<Part> parts_of(TriMesh surface) {
   if (enclosed_volume(surface) < 0) turn(surface);
   std::vector<Part> parts;
@@ -75,7 +75,7 @@ std::vector<Part> parts_of(TriMesh surface) {
   return parts;
 }
 
-/// Removes what closes too many loops and what is too short.
+/// Removes excess loops and branches that are too short.
 void tidy(Graph& graph, std::size_t loops, ExtractionReport& report) {
   report.loops_broken += skeleton::break_loops(graph, loops);
   report.spurs += skeleton::prune_spurs(graph);
@@ -104,11 +104,11 @@ void extract(Part& part, const ExtractOptions& options, ExtractionReport& report
   }
 }
 
-/// Where two parts come closest, node to node.
+/// The closest approach of two parts, node to node.
 struct Gap {
   std::size_t first, second;  // parts
   Index a, b;                 // nodes of them
-  double relative;            // free space between their spheres, in smaller radii
+  double relative;            // gap between their spheres, in smaller radii
 };
 
 Gap gap_between(const std::vector<Part>& parts, std::size_t first, std::size_t second) {

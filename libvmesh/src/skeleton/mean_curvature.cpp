@@ -23,11 +23,11 @@ using Kernel = CGAL::Simple_cartesian<double>;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Flow = CGAL::Mean_curvature_flow_skeletonization<Surface>;
 
-// Coarse meshes are divided until edges are shorter than this times the mean radius, as long as they are small.
+// Coarse meshes are subdivided until edges are shorter than this times the mean radius, unless they become too large.
 constexpr double kFine = 0.5;
 constexpr std::size_t kEnoughVertices = 20'000;
 constexpr int kMostDivisions = 2;
-// Twice what the whole process was seen to take per vertex of contours and of grown surfaces.
+// Twice what the whole process was measured to need per vertex of contours and of grown surfaces.
 constexpr std::size_t kBytesPerVertex = 8'192;
 
 TriMesh divided(const TriMesh& mesh) {
@@ -64,7 +64,7 @@ double mean_edge_length(const TriMesh& mesh) {
   return sum / static_cast<double>(3 * mesh.faces.size());
 }
 
-/// The radius of a long tube of that volume and area.
+/// The radius of a long cylinder of the same volume and area.
 double mean_radius(const TriMesh& mesh) {
   double area = 0;
   for (Index f = 0; f < mesh.faces.size(); ++f) area += 0.5 * area_normal(mesh, f).norm();
@@ -78,7 +78,7 @@ TriMesh fine_enough(TriMesh mesh) {
   return mesh;
 }
 
-/// Gives radii to nodes in which no vertex ended, outwards from those in which one did.
+/// Gives radii to nodes at which no vertex ended up, outwards from those with some.
 void fill_radii(Graph& graph) {
   const auto edges_at = incidence(graph);
   for (bool changed = true; changed;) {
@@ -106,12 +106,12 @@ double area_of(const Flow& flow) {
       mesh, CGAL::parameters::vertex_point_map(get(CGAL::vertex_point, mesh)).geom_traits(Kernel()));
 }
 
-/// Flow::contract_until_convergence(), step by step.
+/// Flow::contract_until_convergence() step by step, for progress.
 void contract(Flow& flow, const Progress& progress) {
   const double original = area_of(flow);
   double last = 0;
   for (std::size_t i = 0; i < flow.max_iterations(); ++i) {
-    report_progress(progress, "skeleton", 0);  // how many more it takes is not known
+    report_progress(progress, "skeleton", 0);  // the number of steps is unknown
     flow.contract();
     const double area = area_of(flow);
     if (std::abs(last - area) / original < flow.area_variation_factor()) break;
@@ -126,7 +126,7 @@ Graph mean_curvature_skeleton(const TriMesh& coarse, const Progress& progress) {
   Surface surface = to_surface(mesh);
   const OrderedMemory memory(kBytesPerVertex * (mesh.vertices.size() + 1000));
   Flow flow(surface);
-  // CGAL's default depends on the extent of the whole, which says nothing of its thin vessels.
+  // CGAL's default depends on the overall extent, which is unrelated to the thinnest vessels.
   flow.set_min_edge_length(std::min(flow.min_edge_length(), 0.5 * mean_edge_length(mesh)));
   contract(flow, progress);
   Flow::Skeleton skeleton;
@@ -145,7 +145,7 @@ Graph mean_curvature_skeleton(const TriMesh& coarse, const Progress& progress) {
   if (graph.nodes.empty()) throw InvalidInput("the flow left no skeleton; the surface is too small or too coarse");
   fill_radii(graph);
   for (Node& node : graph.nodes)
-    if (!(node.radius > 0)) node.radius = mean_radius(mesh);  // all that ended there was there before
+    if (!(node.radius > 0)) node.radius = mean_radius(mesh);  // all its vertices had been there from the start
   return graph;
 }
 

@@ -10,11 +10,11 @@
 
 namespace vmesh::skeleton {
 
-/// A block that hands out pieces of itself; pieces given back are used again, last in first out. While it lives, it is
-/// where OrderedAllocator of this thread takes its memory from.
+/// An arena whose chunks are reused after being given back, last in first out. During its lifetime, OrderedAllocator on
+/// this thread allocates from it.
 class OrderedMemory {
  public:
-  /// Nothing of `bytes` is touched before it is used, so that systems do not count it.
+  /// The `bytes` are not touched before they are used, so that the system does not count them.
   explicit OrderedMemory(std::size_t bytes)
       : bytes_(bytes), block_(static_cast<std::byte*>(::operator new(bytes))), before_(current()) {
     current() = this;
@@ -58,7 +58,7 @@ class OrderedMemory {
   std::map<std::size_t, std::vector<void*>> free_;
 };
 
-/// An allocator on the OrderedMemory of the thread, which has to live as long as what it allocates.
+/// An allocator on the thread's OrderedMemory, which must outlive everything allocated.
 template <class T>
 struct OrderedAllocator {
   using value_type = T;

@@ -33,7 +33,7 @@ Node node_at(const Curve& curve, double at) {
   return {(1 - t) * a.position + t * b.position, (1 - t) * a.radius + t * b.radius};
 }
 
-/// The mean over half a radius to both sides, less near the ends, which stay.
+/// The mean over half a radius to both sides, less near the ends, which stay fixed.
 Node smoothed_at(const Curve& curve, double at, double radius) {
   constexpr int kSamples = 4;
   const double reach = std::min({0.5 * radius, at, curve.at.back() - at});
@@ -46,7 +46,7 @@ Node smoothed_at(const Curve& curve, double at, double radius) {
   return {sum.position / (2 * kSamples + 1), sum.radius / (2 * kSamples + 1)};
 }
 
-/// Distances from the start that lie equally many radii apart, both ends included.
+/// Distances from the start, spaced evenly in radii, both ends included.
 std::vector<double> divisions(const Curve& curve, double spacing, std::size_t least) {
   std::vector<double> radii(curve.at.size(), 0);  // length in radii up to every node
   for (std::size_t i = 1; i < curve.at.size(); ++i)
@@ -81,7 +81,7 @@ Graph resampled(const Graph& graph, double spacing) {
   for (const Chain& chain : chains) {
     const Curve curve = curve_of(graph, chain);
     const bool closed = chain.nodes.front() == chain.nodes.back();
-    // A second edge between the same nodes would be the same edge: every chain gets a node of its own, where it can.
+    // Two edges between the same nodes would coincide, so every chain gets a node of its own if possible.
     const std::vector<double> places = divisions(curve, spacing, closed ? 3 : chain.edges.size() > 1 ? 2 : 1);
     Index before = kept(chain.nodes.front());
     for (std::size_t n = 1; n + 1 < places.size(); ++n) {

@@ -11,31 +11,31 @@
 namespace vmesh::skeleton {
 namespace {
 
-// Spheres that overlap by more than this share of their radii's sum already have no wall between them.
+// Spheres closer than this share of the sum of their radii already have no wall between them.
 constexpr double kOverlapping = 0.9;
-// Free space between the spheres, in smaller radii, beyond which the lumen would have to be a vessel of its own.
+// Gap between the spheres, in smaller radii, beyond which the lumen would have to be a vessel of its own.
 constexpr double kFarthest = 1;
-// The way along the graph in relation to the distance: neighbours in one vessel, and across a bend, have less; what is
-// farther is another vessel that touches.
+// Path length along the graph relative to the distance: neighbours in one vessel and across a bend have less than the
+// first; beyond the second, it is another vessel that touches.
 constexpr double kLongerWay = 1.5, kLongestWay = 20;
-// How wide the lumen is at its narrowest between the two, in smaller radii. Two round vessels that cross each other's
-// walls as little as kOverlapping have 0.44. Measured on two portal and two hepatic veins, fitted, at .65 to .8:
-// Hausdorff 1.85 to 2.17, .56 to .97, 1.2 to 4.0 and 1.7 to 5.0 mm, of 2.06, .62, 3.2 and 4.7 without merging; what is
-// left is a single crevice each time, here or there.
+// Width of the lumen at its narrowest between the two, in smaller radii. For two round vessels that overlap as little
+// as kOverlapping it is 0.44. Measured on two portal and two hepatic veins, fitted, at .65 to .8: Hausdorff distances
+// of 1.85 to 2.17, .56 to .97, 1.2 to 4.0 and 1.7 to 5.0 mm, against 2.06, .62, 3.2 and 4.7 without merging; each is
+// due to a single remaining crevice.
 constexpr double kNeck = 0.7;
-// Between nodes of both legs on the way to where they meet, in the sum of their radii: with more they go around
+// Largest distance between nodes of both legs up to where they meet, in sums of their radii: with more, they go around
 // something.
 constexpr double kAsunder = 1.5;
 
 struct Pair {
-  double gap;  // between the spheres, in smaller radii
+  double gap;  // between the two spheres, in smaller radii
   Index a, b;
-  std::vector<Index> way;  // along the graph, both included
+  std::vector<Index> way;  // path along the graph, both included
 
   bool operator<(const Pair& other) const { return std::tie(gap, a, b) < std::tie(other.gap, other.a, other.b); }
 };
 
-/// Lengths of the shortest ways from `from`, as far as `limit`; infinite beyond.
+/// Lengths of the shortest paths from `from` up to `limit`; infinite beyond.
 class Ways {
  public:
   explicit Ways(const Graph& graph)
@@ -86,7 +86,7 @@ double distance_between(const Graph& graph, Index a, Index b) {
   return (graph.nodes[a].position - graph.nodes[b].position).norm();
 }
 
-/// Whether the nodes that are equally many steps from both ends of a way are near each other.
+/// Whether the nodes equally many steps from both ends of a path are near each other.
 bool stays_together(const Graph& graph, const std::vector<Index>& way) {
   for (std::size_t i = 1; 2 * i + 1 < way.size(); ++i) {
     const Index a = way[i], b = way[way.size() - 1 - i];
@@ -136,13 +136,13 @@ bool in_one_lumen(const Node& a, const Node& b, const SurfaceSamples& samples) {
   for (std::size_t i = 0; i < samples.points.size(); ++i) {
     const Vec3 p = samples.points[i] - a.position;
     const double t = std::clamp(p.dot(along) / length2, 0.0, 1.0);
-    const double around = std::sqrt(samples.areas[i] / std::numbers::pi);  // a sample stands for a disc
+    const double around = std::sqrt(samples.areas[i] / std::numbers::pi);  // a sample represents a disc
     if ((p - t * along).norm() < neck + around) return false;
   }
   return true;
 }
 
-/// Both in one place, the wide one's weight by its volume.
+/// The mean of both, weighted by volume.
 Node merged(const Node& a, const Node& b) {
   const double wa = a.radius * a.radius * a.radius, wb = b.radius * b.radius * b.radius;
   return {(wa * a.position + wb * b.position) / (wa + wb), std::max(a.radius, b.radius), true};
@@ -168,7 +168,7 @@ std::size_t merge_in_one_lumen(Graph& graph, const SurfaceSamples& samples) {
   std::erase_if(shared,
                 [&](const Pair& pair) { return !in_one_lumen(graph.nodes[pair.a], graph.nodes[pair.b], samples); });
   std::sort(shared.begin(), shared.end());
-  std::vector<Index> number(graph.nodes.size(), kNone);  // the node that another one went into; of both
+  std::vector<Index> number(graph.nodes.size(), kNone);  // the node that resulted from a merge; for both merged nodes
   std::size_t count = 0;
   for (const Pair& pair : shared) {
     const std::vector<Index>& way = pair.way;

@@ -32,7 +32,7 @@ std::vector<Index> by_length(const Graph& graph) {
   return order;
 }
 
-/// Length of the shortest way from `from` to `to` that avoids edge `avoided`.
+/// Length of the shortest path from `from` to `to` that avoids edge `avoided`.
 double way_around(const Graph& graph, const std::vector<std::vector<Index>>& edges_at, Index avoided) {
   const auto [from, to] = graph.edges[avoided];
   std::vector<double> distance(graph.nodes.size(), std::numeric_limits<double>::infinity());
@@ -143,7 +143,7 @@ std::size_t prune_spurs(Graph& graph) {
     double least = 1;
     for (const Chain& chain : chains) {
       const std::size_t first = edges_at[chain.nodes.front()].size(), last = edges_at[chain.nodes.back()].size();
-      if ((first == 1) == (last == 1)) continue;  // no end, or nothing else
+      if ((first == 1) == (last == 1)) continue;  // no free end, or two
       const Index root = first == 1 ? chain.nodes.back() : chain.nodes.front();
       const double relative = length_of(graph, chain) / graph.nodes[root].radius;
       if (relative < least) least = relative, worst = &chain;

@@ -14,7 +14,7 @@ struct Node {
   bool merged = false;  ///< of several that shared a lumen
 };
 
-/// A graph without multiple edges. After removals nodes may be left without an edge.
+/// A graph without multiple edges. Removals may leave nodes without an edge.
 struct Graph {
   std::vector<Node> nodes;
   std::vector<std::array<Index, 2>> edges;
@@ -30,7 +30,7 @@ inline Index other_end(const Graph& graph, Index e, Index n) {
   return graph.edges[e][0] == n ? graph.edges[e][1] : graph.edges[e][0];
 }
 
-/// A stretch between nodes that branch or end. A closed one without such a node begins and ends at the same one.
+/// A stretch between nodes that branch or end. A closed one without such a node begins and ends at the same node.
 struct Chain {
   std::vector<Index> nodes;
   std::vector<Index> edges;  ///< edges[i] joins nodes[i] and nodes[i + 1]
@@ -40,19 +40,19 @@ std::vector<Chain> chains_of(const Graph& graph);
 /// Joins components by the shortest edge between them, one by one. A surface of one component has a skeleton of one.
 void connect(Graph& graph);
 
-/// Removes edges until the graph has at most `loops` independent loops: those that close the shortest loops go. What
-/// closes a loop is the longest of its edges. Returns how many went.
+/// Removes edges until the graph has at most `loops` independent loops, starting with the shortest loop; the longest
+/// edge of a loop is removed. Returns the number of edges removed.
 std::size_t break_loops(Graph& graph, std::size_t loops);
 
-/// Removes chains that end and are shorter than the radius at the node where they branch off, the shortest in relation
-/// first, until there is none. Returns how many went.
+/// Removes end chains shorter than the radius at the node where they branch off, relatively shortest first, until there
+/// are none. Returns the number removed.
 std::size_t prune_spurs(Graph& graph);
 
-/// Drops nodes without an edge; keeps one when there is no edge at all.
+/// Drops nodes without an edge; keeps one if there is no edge at all.
 void compact(Graph& graph);
 
-/// The graph with every chain divided anew: points about `spacing` radii apart, the curve and its radii smoothed over
-/// about a radius before.
+/// The graph with every chain resampled at about `spacing` radii, after smoothing the curve and its radii over about a
+/// radius.
 Graph resampled(const Graph& graph, double spacing);
 
 }  // namespace vmesh::skeleton

@@ -48,7 +48,8 @@ void warn(GenerateResult& result, WarningKind kind, std::size_t count, const std
 void add_warnings(const PaperGrowthReport& growth, GenerateResult& result) {
   warn(result, WarningKind::refused_faces, growth.refused,
        "growth: " + std::to_string(growth.refused) +
-           " faces were crossed by the centerline behind its front, or too often, and left alone; branch nodes crowd "
+           " faces were crossed by the centerline behind its front, or too often, and left as they are; branching "
+           "nodes crowd "
            "there, expect overlapping faces");
   warn(result, WarningKind::unclosed_loop, growth.unclosed,
        "growth: " + std::to_string(growth.unclosed) +
@@ -63,7 +64,7 @@ void add_warnings(const OptimizeReport& optimized, GenerateResult& result) {
        "optimize: around " + std::to_string(optimized.tangles) +
            " vertices faces of neighbouring vessels intersect each other; more vertices around may help");
   warn(result, WarningKind::stopped_refining, optimized.limited,
-       "optimize: refinement stopped early, the surface has far more vertices already than its length and radii ask "
+       "optimize: refinement stopped early, the surface already has far more vertices than its length and radii ask "
        "for; expect folds");
 }
 
@@ -74,7 +75,7 @@ void optimize_grown(BoundSurface& surface, const GenerateOptions& options, const
   add_warnings(report, result);
 }
 
-// Proofs of a limit on the error need more than single precision.
+// Proofs of an error limit need more than single precision.
 VesselField& make_field(std::optional<VesselField>& field, const Centerline& centerline,
                         const GenerateOptions& options) {
   field.emplace(centerline, options.blend);
@@ -155,7 +156,7 @@ void renumber(const GrowthCenterline& growth, const Centerline& full, GenerateRe
     for (Index& s : note.segments) s = growth.segment[s];
     for (Index& n : note.nodes) n = growth.node[n];
   }
-  for (GrowthSimplification& note : notes_of_buried(growth, full))
+  for (GrowthSimplification& note : notes_of_buried(growth.buried, full))
     result.growth.simplifications.push_back(std::move(note));
 }
 
@@ -174,7 +175,7 @@ std::vector<std::pair<Index, Index>> grow_guided(const Centerline& centerline, c
   return crossings;
 }
 
-// Around the simplified centerline, if it is simpler.
+// Grows the surface around the simplified centerline, if it is simpler.
 GenerateResult generate_simplified(const Centerline& centerline, const GenerateOptions& options,
                                    const Progress& progress) {
   GenerateResult result;
@@ -195,8 +196,8 @@ GenerateResult generate_simplified(const Centerline& centerline, const GenerateO
   return result;
 }
 
-// What is not sound around the simplified centerline, as where a node that was left out is outside, is grown around all
-// of it.
+// If the surface around the simplified centerline is not sound (a node that was left out may lie outside, say), it is
+// grown around the full one.
 GenerateResult generate_guided(const Centerline& centerline, const GenerateOptions& options, const Progress& progress) {
   GenerateResult result = generate_simplified(centerline, options, progress);
   if (result.is_sound() || result.simplification.nodes_left_out == 0) return result;

@@ -89,14 +89,14 @@ ErrorLimit parse_error_limit(std::string_view text) {
     const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), value);
     const std::string_view unit = item.substr(static_cast<std::size_t>(end - item.data()));
     if (error != std::errc() || !(value > 0) || !std::isfinite(value) || (unit != "mm" && unit != "%"))
-      throw InvalidInput("error limit \"" + std::string(item) + "\": must be such as 0.3mm or 10%");
+      throw InvalidInput("error limit \"" + std::string(item) + "\": must be a value such as 0.3mm or 10%");
     if (unit == "mm") {
       limit.mm = value;
     } else {
       limit.relative = value / 100;
     }
   }
-  if (!limit.is_set()) throw InvalidInput("the error limit is empty: must be such as 0.3mm or 10%");
+  if (!limit.is_set()) throw InvalidInput("the error limit is empty: must be a value such as 0.3mm or 10%");
   return limit;
 }
 

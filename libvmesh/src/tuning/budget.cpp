@@ -11,18 +11,18 @@
 namespace vmesh {
 namespace {
 
-constexpr int kCoarsest = 3, kFinest = 200;  // vertices around that generate_surface() takes
+constexpr int kCoarsest = 3, kFinest = 200;  // vertices around that generate_surface() accepts
 constexpr int kMaxTrials = 12;               // the secant needs four or five; time is noisy
-constexpr double kRefused = 0.8;             // of max_vertices: what is expected beyond that may be refused
-constexpr int kMostFiner = 3;                // steps of the ladder while the error is not proven
+constexpr double kRefused = 0.8;             // of max_vertices: if more are expected, the run may be refused
+constexpr int kMostFiner = 3;                // refinement steps while the error is not proven
 constexpr int kErrorLadder[] = {4, 5, 6, 8, 10, 12, 16, 20, 24};
 
 InvalidInput unknown_budget(std::string_view text) {
   return InvalidInput("budget \"" + std::string(text) +
-                      "\": must be like vertices=5000, time=50ms, time=2s, error=0.2mm or error=5%");
+                      "\": must be such as vertices=5000, time=50ms, time=2s, error=0.2mm or error=5%");
 }
 
-// A positive number, and the unit behind it.
+// A positive number and the unit after it.
 std::pair<double, std::string_view> parse_quantity(std::string_view text, std::string_view whole) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -53,7 +53,7 @@ class BudgetSearch {
     std::size_t unproven = 0;
   };
 
-  // What a trial costs and may cost, of what the budget is about.
+  // The cost of a trial in terms of the budget, and the most that it may cost.
   double cost(const OperatingPoint& point) const {
     return budget_.kind == Budget::Kind::time ? point.seconds : static_cast<double>(point.vertices);
   }
@@ -61,8 +61,8 @@ class BudgetSearch {
     return budget_.kind == Budget::Kind::time ? budget_.seconds : static_cast<double>(budget_.vertices);
   }
 
-  // Costs grow about as the square of the vertices around: the secant of that law, within what is still open and what
-  // would not be refused.
+  // Costs grow about as the square of the vertices around: a secant method on that law, within the interval still open
+  // and without trials that would be refused.
   void find_finest() {
     int fits = kCoarsest - 1, too_fine = kFinest + 1;
     int around = std::clamp(options_.around, kCoarsest, kFinest);
@@ -77,7 +77,7 @@ class BudgetSearch {
     if (fits > kCoarsest) attempt(fits - 1);
   }
 
-  // From the given resolution up until the limit is proven, then to where vertices are fewest.
+  // Goes up from the given resolution until the limit is proven, then to the fewest vertices.
   void find_fewest_vertices() {
     const int* const last = std::end(kErrorLadder) - 1;
     const int least = least_around(centerline_, options_.max_error);

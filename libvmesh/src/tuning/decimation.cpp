@@ -38,7 +38,7 @@ TriMesh from_cgal(Mesh& mesh) {
 TriMesh decimated(const TriMesh& mesh, std::size_t vertices) {
   namespace simplification = CGAL::Surface_mesh_simplification;
   Mesh work = to_cgal(mesh);
-  const std::size_t edges = 3 * vertices;  // of a closed triangle mesh, but for a few
+  const std::size_t edges = 3 * vertices;  // of a closed triangle mesh, approximately
   simplification::edge_collapse(work, simplification::Count_stop_predicate<Mesh>(edges));
   return from_cgal(work);
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr double kWidth = 460, kHeight = 400;  // of one plot, with its margins
 constexpr double kLeft = 70, kRight = 30, kTop = 40, kBottom = 50;
 constexpr double kLegendLine = 18, kLegendColumn = 230, kMargin = 0.04;  // of an axis
-// Told apart by people with colour blindness as well (Okabe and Ito 2008).
+// Distinguishable with colour blindness as well (Okabe and Ito 2008).
 constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
                                    "#56b4e9", "#000000", "#999999", "#8b5e3c", "#6a3d9a"};
 
@@ -60,7 +60,7 @@ struct Axis {
     high += pad;
   }
   double operator()(double value) const { return begin + (end - begin) * (std::log10(value) - low) / (high - low); }
-  // 1, 2 and 5 of every decade, or the decades alone where there are many.
+  // 1, 2 and 5 of every decade, or only the decades if there are many.
   std::vector<double> ticks() const {
     std::vector<double> ticks;
     for (int decade = static_cast<int>(std::floor(low)); decade <= std::ceil(high); ++decade) {

@@ -34,7 +34,7 @@ std::string text_of(double value) {
   return text;
 }
 
-// The mean of the radius along the centerline.
+// The mean radius along the centerline.
 double mean_radius(const Centerline& centerline) {
   double sum = 0, length = 0;
   for (Index s = 0; s < centerline.segments().size(); ++s) {
@@ -44,7 +44,7 @@ double mean_radius(const Centerline& centerline) {
   return length > 0 ? sum / length : centerline.node(0).radius;
 }
 
-// Of up to five runs, as long as they are short: the first one may be slow for reasons of its own.
+// Median time of up to five runs, as long as they are short: the first one may be slow.
 template <class Work>
 double median_seconds(Work&& work) {
   std::vector<double> seconds;
@@ -107,7 +107,7 @@ class Sweep {
   }
 
  private:
-  // Makes a surface, and a point of it. A case that is refused has no point.
+  // Makes a surface and adds its point; a refused case has no point.
   template <class Make>
   std::optional<TriMesh> add(const std::string& curve, const std::string& setting, Make&& make) {
     report_progress(progress_, "sweep", std::min(1.0, static_cast<double>(points_.size()) / 50));
@@ -169,7 +169,7 @@ class Sweep {
   std::vector<TradeoffPoint> points_;
 };
 
-// `y` at `x` on the curve through the points ascending in x, by lines in logarithms. NaN beyond its ends.
+// `y` at `x` on the curve through the points ascending in x, interpolated in logarithms. NaN beyond its ends.
 double read_curve(std::vector<std::pair<double, double>> points, double x) {
   std::sort(points.begin(), points.end());
   for (std::size_t i = 1; i < points.size(); ++i) {

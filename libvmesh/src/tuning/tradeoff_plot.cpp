@@ -4,7 +4,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kNoSurface = 0.5;  // mean error in radii beyond which nothing is left to plot
+constexpr double kNoSurface = 0.5;  // mean error in radii beyond which a point is not plotted
 
 template <class Cost>
 LogPlot plot_of(const std::vector<TradeoffPoint>& points, const std::string& title, const std::string& label,

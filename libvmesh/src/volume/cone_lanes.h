@@ -5,8 +5,8 @@
 
 namespace vmesh {
 
-/// Round cones side by side in single precision, as VesselField::Cone; lengths are in units of the surroundings that
-/// they belong to.
+/// Round cones in SIMD lanes, single precision, with the members of VesselField::Cone; lengths are in units of their
+/// Surroundings.
 struct ConeLanes {
   static constexpr std::size_t kCount = 8;
   using Numbers = std::array<float, kCount>;
@@ -15,14 +15,14 @@ struct ConeLanes {
   Numbers r0, taper;                 ///< r1 - r0
   Numbers rounding, rounding_taper;  ///< shares of the blend
   Numbers inv_length2, lag, t_low, t_high;
-  Numbers reach;  ///< beyond the nearest cone, up to which it may be blended in
-  /// Farther from there than this radius plus the distance of the nearest cone none of them is near or blended in.
+  Numbers reach;  ///< how much farther than the nearest cone it may be and still be blended
+  /// Bounding sphere of the lanes: farther from it than the distance of the nearest cone, none of them matters.
   float center_x, center_y, center_z, radius;
 };
 
-inline constexpr std::size_t kMostConeLanes = 16;  ///< that a query looks at
+inline constexpr std::size_t kMostConeLanes = 16;  ///< per query
 
-/// A point, and where to look first.
+/// A query point, and the cone to try first.
 struct LaneQuery {
   float x, y, z;
   float blend;
@@ -37,11 +37,11 @@ struct LaneSample {
   std::size_t nearest = 0;  ///< its number
 };
 
-/// VesselField's blended distance from `count` lanes. All do the same operations in the same order, so the results are
-/// the same to the bit.
+/// VesselField's blended distance from `count` lanes. All samplers do the same operations in the same order, so their
+/// results are the same to the bit.
 using LaneSampler = LaneSample (*)(const ConeLanes* lanes, std::size_t count, const LaneQuery& query);
 LaneSampler plain_lane_sampler();
-/// Null where the machine, or the compiler, cannot.
+/// Null where the machine or the compiler does not support AVX2.
 LaneSampler avx2_lane_sampler();
 LaneSampler best_lane_sampler();
 

@@ -1,10 +1,10 @@
-// The blended distance for one set of instructions; included by a source that has chosen it, inside a namespace: what
-// vectors become is decided where the code stands, before it is inlined.
+// The blended distance for one instruction set; included inside a namespace by a source that has selected it, because
+// how vector code is compiled depends on the translation unit, before inlining.
 
 #define VMESH_INLINE [[gnu::always_inline]] inline
 
 constexpr std::size_t kLanes = ConeLanes::kCount;
-constexpr float kNever = 1e30f;  // a distance that nothing has
+constexpr float kNever = 1e30f;  // larger than any distance
 using Eight = float __attribute__((vector_size(kLanes * sizeof(float))));
 using EightAnywhere = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(alignof(float)), may_alias));
 using EightMask = decltype(Eight{} < Eight{});
@@ -33,7 +33,7 @@ VMESH_INLINE unsigned bits_of(EightMask m) {
 #endif
 }
 
-/// Of all cones looked at, by number.
+/// Of all cones of the query, by number.
 struct Distances {
   alignas(32) float value[kMostConeLanes * kLanes], t[kMostConeLanes * kLanes];
   alignas(32) float x[kMostConeLanes * kLanes], y[kMostConeLanes * kLanes], z[kMostConeLanes * kLanes];  // gradients

@@ -6,6 +6,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "vmesh/core/box_tree.h"
 #include "vmesh/core/disjoint_sets.h"
 
 #include "volume/local_pairs.h"
@@ -14,19 +15,19 @@ namespace vmesh {
 namespace {
 
 constexpr int kSectionSteps = 48;  // derived: 0.618^48 = 1e-10 of the axis
-// Vessels that part have walls of their own from a gap of half a smaller radius on (kOneVolume): never more than this
-// is asked of them there.
+// Vessels that part have walls of their own from a gap of half a smaller radius on (kOneVolume); no larger gap than
+// this is required there.
 constexpr double kForkGap = 0.4;       // idle 0.28 to 0.56
 constexpr double kMostRounding = 0.2;  // sums of radii; safe 0.14 to 0.28
-// Largest radius of a cone against the one at which a gap of so many mm is turned into one of so many radii. A waist of
-// 1e-6 mm would ask for a gap of 260 radii. Idle 5.6 to 11.
+// Largest ratio of a cone's greatest radius to the one by which a gap in mm is expressed in radii. Without it, a waist
+// of 1e-6 mm would require a gap of 260 radii; idle 5.6 to 11.
 constexpr double kThinnest = 8;
-constexpr Touch kFork{0.5, 0.25};  // what then still counts as a place where vessels part
-// Derived: of lengths, more than what rounding at any angle does to an axis distance.
+constexpr Touch kFork{0.5, 0.25};  // at a fork, vessels are still parting up to this gap
+// Derived: relative to lengths, more than the rounding of an axis distance at any angle.
 constexpr double kNearlyParallel = 1e-6;
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
-// The sphere of a cone that is closest to a point, for radii that count `weight` times.
+// The sphere of a cone that is closest to a point, with its radii multiplied by `weight`.
 class NearestSphere {
  public:
   NearestSphere(const AxisStretch& cone, double weight) : cone_(cone) {
@@ -51,7 +52,7 @@ class NearestSphere {
   double inv_length2_ = 0, lag_ = 0, low_ = 0, high_ = 1;
 };
 
-// The excess is convex on the two axes together: a norm of a linear map, less linear radii, less the gap times a
+// The excess is jointly convex on the two axes: the norm of a linear map, minus linear radii, minus the gap times a
 // minimum of linear functions. So its minimum over the second axis is convex on the first.
 class Approach {
  public:
@@ -104,7 +105,7 @@ class Approach {
   NearestSphere plain_, widened_;
 };
 
-// The distance between the two axes; by a little too much at most where they are nearly parallel.
+// The distance between the two axes; slightly too large at most where they are nearly parallel.
 double axis_distance(const AxisStretch& first, const AxisStretch& second) {
   const Vec3 between = first.origin - second.origin;
   const double a = first.axis.squaredNorm(), b = first.axis.dot(second.axis), e = second.axis.squaredNorm();
@@ -115,15 +116,11 @@ double axis_distance(const AxisStretch& first, const AxisStretch& second) {
   return (between + s * first.axis - t * second.axis).norm();
 }
 
-struct Box {
-  Vec3 low, high;
-};
-
-// Of the cone and what is within `margin` larger radii around it.
-Box box_of(const AxisStretch& cone, double margin) {
+// Box of the cone grown by `margin` times its larger radius.
+BoxTree::Box box_of(const AxisStretch& cone, double margin) {
   const Vec3 end = cone.origin + cone.axis;
-  Box box{(cone.origin.array() - cone.r0).min(end.array() - cone.r1),
-          (cone.origin.array() + cone.r0).max(end.array() + cone.r1)};
+  BoxTree::Box box{(cone.origin.array() - cone.r0).min(end.array() - cone.r1),
+                   (cone.origin.array() + cone.r0).max(end.array() + cone.r1)};
   const double size = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
   const double around = margin * std::max(cone.r0, cone.r1) + kRounding * size;
   box.low.array() -= around;
@@ -131,25 +128,18 @@ Box box_of(const AxisStretch& cone, double margin) {
   return box;
 }
 
-// Besides the gap, vessels must leave room for what the blend adds to either: at most half of it in radii of the
-// vessel.
+// Besides the gap, vessels must leave room for what the blend adds to each: at most half the blend, in its radii.
 class PairFinder {
  public:
-  PairFinder(const VesselField& field, double gap)
-      : field_(field), gap_(gap), most_rounding_(std::min(field.blend() / 2, kMostRounding)) {
-    for (Index c = 0; c < field.cone_count(); ++c) cones_.push_back(stretch_of(field, c));
-    std::vector<Vec3> low, high;
-    for (const AxisStretch& cone : cones_) {
-      const Box box = box_of(cone, most_rounding_);
-      low.push_back(box.low);
-      high.push_back(box.high);
-    }
-    tree_ = BoxTree(low, high);
+  PairFinder(const ConeRelations& cones, double gap)
+      : cones_(cones), gap_(gap), most_rounding_(std::min(cones.blend() / 2, kMostRounding)) {
+    tree_ = BoxTree(static_cast<Index>(cones.cone_count()),
+                    [&](Index c) { return box_of(stretch_of(cones, c), most_rounding_); });
   }
 
   std::vector<ContactPair> run() {
-    for (Index i = 0; i < cones_.size(); ++i) {
-      const Box box = box_of(cones_[i], gap_ + most_rounding_);
+    for (Index i = 0; i < cones_.cone_count(); ++i) {
+      const BoxTree::Box box = box_of(stretch_of(cones_, i), gap_ + most_rounding_);
       near_.clear();
       tree_.visit_overlapping(box.low, box.high, [&](Index j) {
         if (j > i) near_.push_back(j);
@@ -161,15 +151,14 @@ class PairFinder {
   }
 
  private:
-  // Close along the graph in a wider sense: at a fork that a gap wider than what a fork has would find still open.
+  // Whether the pair is at a fork: close along the graph in the wider sense of kFork.
   bool are_parting(Index i, Index j) {
     if (gap_ <= kForkGap) return false;
-    if (!parting_) parting_ = local_pairs(field_.centerline(), {std::max(kFork.smaller, gap_ / 0.8), kFork.larger});
+    if (!parting_) parting_ = local_pairs(cones_.centerline(), {std::max(kFork.smaller, gap_ / 0.8), kFork.larger});
     return parting_->contains(i, j);
   }
 
-  bool out_of_reach(Index i, Index j) const {
-    const AxisStretch &a = cones_[i], &b = cones_[j];
+  bool out_of_reach(const AxisStretch& a, const AxisStretch& b) const {
     const double ra = std::max(a.r0, a.r1), rb = std::max(b.r0, b.r1);
     const double reach =
         (a.axis.norm() + b.axis.norm()) / 2 + (1 + most_rounding_) * (ra + rb) + gap_ * std::min(ra, rb);
@@ -177,39 +166,38 @@ class PairFinder {
   }
 
   void examine(Index i, Index j) {
-    if (out_of_reach(i, j) || are_apart(cones_[i], cones_[j], gap_, most_rounding_) || field_.are_one_volume(i, j))
+    const AxisStretch first = stretch_of(cones_, i), second = stretch_of(cones_, j);
+    if (out_of_reach(first, second) || are_apart(first, second, gap_, most_rounding_) || cones_.are_one_volume(i, j))
       return;
     const double gap = are_parting(i, j) ? kForkGap : gap_;
-    ContactPair pair{i, j, gap, closest_approach(cones_[i], cones_[j], gap), kNone};
+    ContactPair pair{i, j, gap, closest_approach(first, second, gap), kNone};
     if (pair.closest.excess >= 0) {
-      const double r = cones_[i].radius(pair.closest.s), q = cones_[j].radius(pair.closest.t);
+      const double r = first.radius(pair.closest.s), q = second.radius(pair.closest.t);
       if (pair.closest.excess >= most_rounding_ * (r + q)) return;
-      // The gap is asked for all along, also where radii are much larger.
-      const double smaller = std::max(std::min(r, q), std::min(largest(i), largest(j)) / kThinnest);
+      // The gap is required all along the cones, also where radii are much larger.
+      const double smaller = std::max(std::min(r, q), std::min(cones_.max_radius(i), cones_.max_radius(j)) / kThinnest);
       const double most = std::max(gap, are_parting(i, j) ? kForkGap : kMostRounding * (r + q) / smaller);
       pair.gap = std::min(gap + rounding(pair) / smaller, most);
-      pair.closest = closest_approach(cones_[i], cones_[j], pair.gap);
+      pair.closest = closest_approach(first, second, pair.gap);
     }
     if (pair.closest.excess < 0) pairs_.push_back(pair);
   }
 
-  double largest(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
-
-  // How far the walls come out towards each other because vessels branch there, mm. Seen from the axes: no wall comes
-  // closer to the other than its blended distance from the other's axis tells.
+  // How far rounding at branches moves the walls towards each other, mm. Measured at the axes: the blended distance at
+  // the other's axis bounds how close a wall comes.
   double rounding(const ContactPair& pair) const {
-    return rounding_at(cones_[pair.j].point(pair.closest.t), pair.i, pair.j) +
-           rounding_at(cones_[pair.i].point(pair.closest.s), pair.j, pair.i);
+    return rounding_at(cones_.axis_point(pair.j, pair.closest.t), pair.i, pair.j) +
+           rounding_at(cones_.axis_point(pair.i, pair.closest.s), pair.j, pair.i);
   }
 
-  // By how much the blend of cone `c` with others that are apart from `other` lowers the distance at `p`.
+  // How much the blend of cone `c` with cones other than `other` lowers the distance at `p`.
   double rounding_at(const Vec3& p, Index c, Index other) const {
-    const FieldSample own = field_.sample_cone(p, c);
+    const FieldSample own = cones_.sample_cone(p, c);
     const double reach = reach_at(c, own.t);
     double most = 0;
-    for (const Index k : field_.local_cones(c)) {
-      if (k == c || field_.are_one_volume(k, other)) continue;
-      const FieldSample next = field_.sample_cone(p, k);
+    for (const Index k : cones_.local_cones(c)) {
+      if (k == c || cones_.are_one_volume(k, other)) continue;
+      const FieldSample next = cones_.sample_cone(p, k);
       const double thinner = std::min(reach, reach_at(k, next.t));
       const double width = thinner * (1 - own.gradient.dot(next.gradient));
       const double apart = std::abs(next.distance - own.distance);
@@ -222,26 +210,25 @@ class PairFinder {
 
   // Of the blend, mm.
   double reach_at(Index c, double t) const {
-    return field_.blend() * field_.radius_at(c, t) * field_.rounding_at(c, t);
+    return cones_.blend() * cones_.radius_at(c, t) * cones_.rounding_at(c, t);
   }
 
-  const VesselField& field_;
+  const ConeRelations& cones_;
   double gap_;            // smaller radii
   double most_rounding_;  // of either vessel, in its radii
   std::optional<PairSet> parting_;
-  std::vector<AxisStretch> cones_;
   BoxTree tree_;
   std::vector<Index> near_;
   std::vector<ContactPair> pairs_;
 };
 
 // Pairs whose cones share a node on either side belong to one region.
-void number_regions(const VesselField& field, std::vector<ContactPair>& pairs) {
+void number_regions(const ConeRelations& cones, std::vector<ContactPair>& pairs) {
   DisjointSets joined(pairs.size());
   std::unordered_map<std::uint64_t, std::size_t> first_with;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
-    for (const Index a : {field.first_node(pairs[n].i), field.last_node(pairs[n].i)}) {
-      for (const Index b : {field.first_node(pairs[n].j), field.last_node(pairs[n].j)}) {
+    for (const Index a : {cones.first_node(pairs[n].i), cones.last_node(pairs[n].i)}) {
+      for (const Index b : {cones.first_node(pairs[n].j), cones.last_node(pairs[n].j)}) {
         const auto [low, high] = std::minmax(a, b);
         const auto [known, is_new] = first_with.try_emplace(std::uint64_t{low} << 32 | high, n);
         if (is_new) continue;
@@ -258,9 +245,9 @@ void number_regions(const VesselField& field, std::vector<ContactPair>& pairs) {
 
 }  // namespace
 
-AxisStretch stretch_of(const VesselField& field, Index cone, double first, double last) {
-  const Vec3 origin = field.axis_point(cone, first);
-  return {origin, field.axis_point(cone, last) - origin, field.radius_at(cone, first), field.radius_at(cone, last)};
+AxisStretch stretch_of(const ConeRelations& cones, Index cone, double first, double last) {
+  const Vec3 origin = cones.axis_point(cone, first);
+  return {origin, cones.axis_point(cone, last) - origin, cones.radius_at(cone, first), cones.radius_at(cone, last)};
 }
 
 bool are_apart(const AxisStretch& first, const AxisStretch& second, double gap, double margin) {
@@ -274,9 +261,9 @@ ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& se
   return Approach(first, second, gap).closest();
 }
 
-std::vector<ContactPair> find_contact_pairs(const VesselField& field, double gap) {
-  std::vector<ContactPair> pairs = PairFinder(field, gap).run();
-  number_regions(field, pairs);
+std::vector<ContactPair> find_contact_pairs(const ConeRelations& cones, double gap) {
+  std::vector<ContactPair> pairs = PairFinder(cones, gap).run();
+  number_regions(cones, pairs);
   return pairs;
 }
 

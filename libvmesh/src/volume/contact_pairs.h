@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "vmesh/volume/vessel_field.h"
+#include "vmesh/volume/cone_relations.h"
 
 namespace vmesh {
 
@@ -16,17 +16,17 @@ struct AxisStretch {
 };
 
 /// The stretch of `cone` between parameters `first` and `last`.
-AxisStretch stretch_of(const VesselField& field, Index cone, double first = 0, double last = 1);
+AxisStretch stretch_of(const ConeRelations& cones, Index cone, double first = 0, double last = 1);
 
-/// Where two cones come closest, by the wall distance less `gap` times the smaller of the radii there.
+/// Where two cones come closest, in terms of the wall distance minus `gap` times the smaller local radius.
 struct ClosestApproach {
-  double excess = 0;    ///< wall distance less the gap asked for, mm; negative in a contact
+  double excess = 0;    ///< wall distance minus the required gap, mm; negative in a contact
   double s = 0, t = 0;  ///< parameters on the first and the second axis
   double distance = 0;  ///< of the axes there, mm
 };
 
-/// Whether vessels are so far apart that the excess of their closest approach is `margin` sums of the radii there at
-/// least. Says no where only a closer look can tell.
+/// Whether the excess of the closest approach is certainly at least `margin` times the sum of the radii there. A quick
+/// test: false does not mean the contrary.
 bool are_apart(const AxisStretch& first, const AxisStretch& second, double gap, double margin);
 
 ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& second, double gap);
@@ -34,12 +34,12 @@ ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& se
 /// Two cones that are not local to each other and closer than the gap.
 struct ContactPair {
   Index i = kNone, j = kNone;  ///< i < j
-  double gap = 0;              ///< asked for between them, in smaller radii
+  double gap = 0;              ///< required between them, in smaller radii
   ClosestApproach closest;
   Index region = kNone;  ///< regions are numbered in the order of their first pairs
 };
 
 /// All such pairs, ordered by (i, j).
-std::vector<ContactPair> find_contact_pairs(const VesselField& field, double gap);
+std::vector<ContactPair> find_contact_pairs(const ConeRelations& cones, double gap);
 
 }  // namespace vmesh

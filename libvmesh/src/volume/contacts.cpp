@@ -13,18 +13,18 @@
 namespace vmesh {
 namespace {
 
-std::vector<Index> branch_of_cones(const VesselField& field) {
-  std::vector<Index> branch_of(field.cone_count(), kNone);
-  const std::vector<Branch> branches = find_branches(field.centerline());
+std::vector<Index> branch_of_cones(const ConeRelations& cones) {
+  std::vector<Index> branch_of(cones.cone_count(), kNone);
+  const std::vector<Branch> branches = find_branches(cones.centerline());
   for (Index b = 0; b < branches.size(); ++b) {
     for (const Index s : branches[b].segments) branch_of[s] = b;
   }
   return branch_of;
 }
 
-Contact contact_at(const VesselField& field, const ContactPair& pair) {
-  const double r = field.radius_at(pair.i, pair.closest.s), q = field.radius_at(pair.j, pair.closest.t);
-  const Vec3 from = field.axis_point(pair.i, pair.closest.s), to = field.axis_point(pair.j, pair.closest.t);
+Contact contact_at(const ConeRelations& cones, const ContactPair& pair) {
+  const double r = cones.radius_at(pair.i, pair.closest.s), q = cones.radius_at(pair.j, pair.closest.t);
+  const Vec3 from = cones.axis_point(pair.i, pair.closest.s), to = cones.axis_point(pair.j, pair.closest.t);
   const double distance = pair.closest.distance;
   Contact contact;
   contact.depth = r + q - distance;
@@ -36,11 +36,11 @@ Contact contact_at(const VesselField& field, const ContactPair& pair) {
 
 }  // namespace
 
-std::vector<Contact> find_contacts(const VesselField& field, double gap) {
+std::vector<Contact> find_contacts(const ConeRelations& cones, double gap) {
   if (!(gap >= 0 && gap <= 1)) throw InvalidInput("gap must be in [0, 1]");
   std::vector<Contact> contacts;
-  for (const ContactPair& pair : find_contact_pairs(field, gap)) {
-    Contact contact = contact_at(field, pair);
+  for (const ContactPair& pair : find_contact_pairs(cones, gap)) {
+    Contact contact = contact_at(cones, pair);
     if (pair.region == contacts.size()) {
       contacts.push_back(contact);
     } else if (contact.depth > contacts[pair.region].depth) {
@@ -49,7 +49,8 @@ std::vector<Contact> find_contacts(const VesselField& field, double gap) {
     }
     ++contacts[pair.region].cone_pairs;
   }
-  const std::vector<Index> branch_of = branch_of_cones(field);
+  if (contacts.empty()) return contacts;
+  const std::vector<Index> branch_of = branch_of_cones(cones);
   for (Contact& contact : contacts) {
     for (ContactSide& side : contact.sides) side.branch = branch_of[side.segment];
   }

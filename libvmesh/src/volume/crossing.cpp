@@ -14,9 +14,9 @@ using Point = Kernel::Point_3;
 Point to_point(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 // Ties are broken as if the whole polyline were moved by (e, e^2, e^3), e > 0 infinitely small. The moved polyline
-// meets no edge and no vertex, so that it crosses a closed mesh as often outwards and inwards as its ends tell.
-// Where a determinant vanishes, the sign of its change under the move decides: that of a vector's first component
-// that is not zero.
+// meets no edge and no vertex, so its outward and inward crossings of a closed mesh agree with which of its ends are
+// inside. Where a determinant vanishes, the sign of its change under the move decides: that of the first non-zero
+// component of a vector.
 
 bool in_front(const Point triangle[3], const Point& p) {
   const Point &a = triangle[0], &b = triangle[1], &c = triangle[2];

@@ -8,7 +8,7 @@ namespace vmesh {
 namespace {
 
 constexpr double kLeaf = 0.5;  // smaller radii; safe 0.35 to 0.7
-// Larger radius against the smaller, beyond which leaves need not become shorter; safe 5.6 to 11.
+// Ratio of the larger radius to the smaller beyond which leaves do not become shorter; safe 5.6 to 11.
 constexpr double kSteepest = 8;
 constexpr Index kMostLeaves = 4096;  // per segment; idle 2867 to 5734
 

@@ -1,20 +1,21 @@
-// Taking a part out of a VesselField, and making a field of it.
+// Taking an excerpt of a field without making that field, and making a field of the excerpt.
 #include "vmesh/volume/field_excerpt.h"
 
 #include <algorithm>
 #include <functional>
-#include <stdexcept>
+#include <limits>
 #include <tuple>
 
 #include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
-#include "vmesh/volume/vessel_field.h"
 
 namespace vmesh {
 namespace {
 
+constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates: in a box
+
 void require(bool holds, const char* what) {
-  if (!holds) throw InvalidInput(std::string("an excerpt of a field does not fit together: ") + what);
+  if (!holds) throw InvalidInput(std::string("an excerpt of a field is inconsistent: ") + what);
 }
 
 void check(const FieldExcerpt& e) {
@@ -43,66 +44,74 @@ void check(const FieldExcerpt& e) {
 
 }  // namespace
 
-void VesselField::throw_incomplete(Index cone) {
-  throw std::logic_error("an excerpt of a field was asked beyond its reach, at cone " + std::to_string(cone));
+// The box of a cone holds all points at which it may be blended in, as in VesselField.
+FieldExcerpts::FieldExcerpts(const ConeRelations& relations) : relations_(relations) {
+  tree_ = BoxTree(static_cast<Index>(relations.cone_count()), [&](Index c) {
+    const double around = (1 + 2 * relations.blend()) * relations.max_radius(c);
+    const Vec3 begin = relations.axis_point(c, 0), end = relations.axis_point(c, 1);
+    const double size = begin.cwiseAbs().cwiseMax(end.cwiseAbs()).maxCoeff() + around;
+    const double margin = around + kRounding * size;
+    return BoxTree::Box{begin.cwiseMin(end).array() - margin, begin.cwiseMax(end).array() + margin};
+  });
 }
 
-std::vector<Index> VesselField::near_boxes(std::span<const Index> cones, double reach) const {
+std::vector<Index> FieldExcerpts::near_boxes(std::span<const Index> cones, double reach) const {
   std::vector<Index> near;
   for (const Index c : cones) {
-    const Cone& cone = cones_[c];
-    const double around = (1 + reach) * max_radius(c);
-    const Vec3 end = cone.origin + cone.axis;
-    tree_.visit_overlapping(cone.origin.cwiseMin(end).array() - around, cone.origin.cwiseMax(end).array() + around,
-                            [&](Index item) { near.push_back(cone_of_item_[item]); });
+    const double around = (1 + reach) * relations_.max_radius(c);
+    const Vec3 begin = relations_.axis_point(c, 0), end = relations_.axis_point(c, 1);
+    tree_.visit_overlapping(begin.cwiseMin(end).array() - around, begin.cwiseMax(end).array() + around,
+                            [&](Index near_cone) { near.push_back(near_cone); });
   }
   sort_unique(near);
   return near;
 }
 
-FieldExcerpt VesselField::excerpt(std::span<const Index> cones, double reach) const {
+FieldExcerpt FieldExcerpts::take(std::span<const Index> cones, double reach) const {
   std::vector<Index> hints;
   for (const Index c : cones) {
-    const auto local = local_cones(c);
+    const auto local = relations_.local_cones(c);
     hints.insert(hints.end(), local.begin(), local.end());
   }
   sort_unique(hints);
 
   FieldExcerpt result;
-  result.blend = blend_;
+  result.blend = relations_.blend();
   result.cone = near_boxes(cones, reach);
   for (const Index c : hints) {
-    const auto local = local_cones(c);
+    const auto local = relations_.local_cones(c);
     result.cone.insert(result.cone.end(), local.begin(), local.end());
   }
   sort_unique(result.cone);
   for (const Index c : result.cone) {
-    result.node.push_back(cones_[c].a);
-    result.node.push_back(cones_[c].b);
+    result.node.push_back(relations_.first_node(c));
+    result.node.push_back(relations_.last_node(c));
   }
   sort_unique(result.node);
 
-  for (const Index n : result.node) result.nodes.push_back(centerline_->node(n));
+  const Centerline& centerline = relations_.centerline();
+  for (const Index n : result.node) result.nodes.push_back(centerline.node(n));
   result.local_offsets.push_back(0);
   for (const Index c : result.cone) {
-    const Cone& cone = cones_[c];
-    if (c < centerline_->segments().size())
-      result.segments.push_back({place_in(result.node, cone.a), place_in(result.node, cone.b)});
-    result.run.push_back(runs_[c].number);
-    result.travel.push_back(runs_[c].travel);
-    result.rounding.push_back({cone.rounding0, cone.rounding1});
+    const Index a = relations_.first_node(c), b = relations_.last_node(c);
+    if (c < centerline.segments().size())
+      result.segments.push_back({place_in(result.node, a), place_in(result.node, b)});
+    result.run.push_back(relations_.run(c).number);
+    result.travel.push_back(relations_.run(c).travel);
+    result.rounding.push_back({relations_.rounding_of(a), relations_.rounding_of(b)});
     result.complete.push_back(std::binary_search(hints.begin(), hints.end(), c));
-    for (Index k = local_offsets_[c]; result.complete.back() && k < local_offsets_[c + 1]; ++k) {
-      result.local.push_back(place_in(result.cone, local_[k]));
-      result.parting.push_back(is_parting_[k]);
+    if (result.complete.back()) {
+      for (const Index local : relations_.local_cones(c)) result.local.push_back(place_in(result.cone, local));
+      const auto parting = relations_.parting(c);
+      result.parting.insert(result.parting.end(), parting.begin(), parting.end());
     }
     result.local_offsets.push_back(static_cast<Index>(result.local.size()));
   }
-  for (const Index c : result.cone) {
-    if (!cones_[c].is_apart) continue;
-    const Index i = place_in(result.cone, c);
-    for (auto it = std::lower_bound(apart_.begin(), apart_.end(), std::pair(c, Index{0}));
-         it != apart_.end() && it->first == c; ++it) {
+  const auto& apart = relations_.apart();
+  for (Index i = 0; i < result.cone.size(); ++i) {
+    const Index c = result.cone[i];
+    for (auto it = std::lower_bound(apart.begin(), apart.end(), std::pair(c, Index{0}));
+         it != apart.end() && it->first == c; ++it) {
       const Index j = place_in(result.cone, it->second);
       if (j != kNone) result.apart.emplace_back(i, j);
     }
@@ -110,25 +119,23 @@ FieldExcerpt VesselField::excerpt(std::span<const Index> cones, double reach) co
   return result;
 }
 
-VesselField::VesselField(const Centerline& centerline, const FieldExcerpt& excerpt)
+ConeRelations::ConeRelations(const Centerline& centerline, const FieldExcerpt& excerpt)
     : centerline_(&centerline), blend_(excerpt.blend) {
   check(excerpt);
-  make_cones();
-  require(cones_.size() == excerpt.cone.size(), "its isolated nodes");
-  for (Index c = 0; c < cones_.size(); ++c) {
+  find_isolated();
+  const std::size_t count = centerline.segments().size() + isolated_.size();
+  require(count == excerpt.cone.size(), "its isolated nodes");
+  rounding_.assign(centerline.nodes().size(), 1);
+  for (Index c = 0; c < count; ++c) {
     runs_.push_back({excerpt.run[c], excerpt.travel[c]});
-    cones_[c].rounding0 = excerpt.rounding[c][0];
-    cones_[c].rounding1 = excerpt.rounding[c][1];
+    rounding_[first_node(c)] = excerpt.rounding[c][0];
+    rounding_[last_node(c)] = excerpt.rounding[c][1];
   }
-  measure_spheres();
   local_offsets_ = excerpt.local_offsets;
   local_ = excerpt.local;
   is_parting_ = excerpt.parting;
   complete_ = excerpt.complete;
   apart_ = excerpt.apart;
-  for (const auto& [i, j] : apart_) cones_[i].is_apart = cones_[j].is_apart = true;
-  build_tree();
-  lonely_.assign(cones_.size(), not_asked);
 }
 
 FieldExcerpt merged(std::span<const FieldExcerpt> excerpts) {

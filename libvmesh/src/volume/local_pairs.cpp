@@ -5,7 +5,7 @@
 namespace vmesh {
 namespace {
 
-// At a node: from there on it pays to note what it was joined to; idle 6 to 11.
+// Segments at a node from which on it pays to cache what the node was joined to; idle 6 to 11.
 constexpr std::size_t kManySegments = 8;
 
 }  // namespace

@@ -10,10 +10,10 @@
 
 namespace vmesh {
 
-/// The gap between two spheres of the vessel volume up to which they touch: so many radii of the smaller one, and where
-/// these are very different, kSlack radii of the smaller and so many of the larger one.
+/// The gap between two spheres of the vessel volume up to which they touch: a multiple of the smaller radius, or, where
+/// the radii are very different, kSlack smaller radii plus a multiple of the larger one.
 struct Touch {
-  // Derived: what is asked of vessels that part, at most (contact_pairs.cpp); safe 0.28 to 0.48, above slower.
+  // Derived: the largest gap required of vessels that part (contact_pairs.cpp); safe 0.28 to 0.48, above slower.
   static constexpr double kSlack = 0.4;
 
   double smaller, larger;
@@ -24,20 +24,19 @@ struct Touch {
   }
 };
 
-/// Up to this gap vessels that part count as one volume: the default rounding at branches fills what is between them
-/// (VesselField: opposite walls meet where the gap is `blend` smaller radii). Spheres half a radius apart stand for
-/// them, between which the larger's wall recedes by 1 - sqrt(1 - 0.25^2) = 0.032 radii: a little more than that is let
-/// pass where one vessel is less than two fifths of the other. For others it would hide a gap that stays open: the
-/// volume would have a tunnel there that the graph lacks.
+/// Up to this gap vessels that part count as one volume: the default rounding at branches fills the space between them
+/// (VesselField: opposite walls meet where the gap is `blend` smaller radii). Vessels are represented by spheres half a
+/// radius apart, between which the larger one's wall recedes by 1 - sqrt(1 - 0.25^2) = 0.032 radii; a little more than
+/// that is allowed where one vessel is less than two fifths of the other. Elsewhere this would hide a gap that stays
+/// open: the volume would have a tunnel that the graph lacks.
 inline constexpr Touch kOneVolume{0.5, 0.04};
 
-/// A growing symmetric relation between indices. Rows rather than one hash table: indices that are used one after the
-/// other are near each other in memory. Short rows are sorted; long ones, as around a node of many branches, are hash
-/// tables of their own.
+/// A growing symmetric relation between indices. Rows rather than one hash table, so that indices used in turn are near
+/// each other in memory. Short rows are sorted; long ones, as around a node of many branches, are hash tables.
 class PairSet {
  public:
   PairSet() = default;
-  /// Of so many indices.
+  /// For indices below `count`.
   explicit PairSet(std::size_t count) { above_.reserve(count); }
 
   bool insert(Index i, Index j) {
@@ -70,7 +69,7 @@ class PairSet {
     }
 
    private:
-    // As measured on tree1560: sorting more costs; safe 64 to 90, below that slower.
+    // Measured on tree1560: sorting longer rows costs more; safe 64 to 90, below slower.
     static constexpr Index kLongestSorted = 64;
 
     bool is_table() const { return count_ > kLongestSorted; }
@@ -81,14 +80,14 @@ class PairSet {
       if (2 * ++count_ > slots_.size()) rehash(2 * slots_.size());
       return true;
     }
-    // Where `i` is, or else a free place for it.
+    // The slot that holds `i`, or a free one for it.
     std::size_t slot_of(Index i) const {
       const std::size_t mask = slots_.size() - 1;
       std::size_t slot = (i * std::uint64_t{0x9E3779B97F4A7C15} >> 32) & mask;
       while (slots_[slot] != i && slots_[slot] != kNone) slot = (slot + 1) & mask;
       return slot;
     }
-    // Into a table of that size, a power of two.
+    // Moves into a table of this size, a power of two.
     void rehash(std::size_t size) {
       std::vector<Index> old(size, kNone);
       std::swap(old, slots_);
@@ -101,13 +100,13 @@ class PairSet {
     Index count_ = 0;
   };
 
-  std::vector<Row> above_;                     // of every index its greater partners
-  std::deque<std::pair<Index, Index>> pairs_;  // many, and they grow: no copies
+  std::vector<Row> above_;                     // for every index, its greater partners
+  std::deque<std::pair<Index, Index>> pairs_;  // a deque, as they are many: growing must not copy them
 };
 
-/// The pairs of segments that are local to each other: a pair of spheres, one on each, can be reached from a pair of
-/// one and the same by moving either along the centerline without losing touch. Spheres half a mean radius apart stand
-/// for a segment.
+/// The pairs of segments that are local to each other: starting from two copies of one sphere and moving either along
+/// the centerline without losing touch, a pair of spheres with one on each segment can be reached. A segment is
+/// represented by spheres half a mean radius apart.
 PairSet local_pairs(const Centerline& centerline, const Touch& touch);
 
 }  // namespace vmesh

@@ -8,19 +8,19 @@
 namespace vmesh {
 namespace {
 
-// A shift fades out over at least so many radii, however short it is.
+// A shift fades out over at least so many radii, however small it is.
 constexpr double kShortestFading = 2;  // safe 1.4 to 2.8
 
-// Of all shifts together, per length: less than 1, so that an axis does not fold. Measured on three random walks
-// of 500 to 2,000 nodes that go through themselves at every seventh: 8 contacts are left at 0.8 with 8 extensions and
-// 16 rounds of moves, 1 at 0.95 with 24 and 40. Of eleven such walks, 2 contacts are left.
+// Largest change of the total displacement per length: less than 1, so that an axis does not fold. Measured on three
+// random walks of 500 to 2,000 nodes that cross themselves at every seventh node: 8 contacts are left at 0.8 with 8
+// extensions and 16 rounds of moves, 1 at 0.95 with 24 and 40; on eleven such walks, 2 contacts.
 constexpr double kSteepest = 0.95;  // idle 0.66 to 1.3
 
-// Of a shift's distance: less is not worth another look; idle 0.007 to 0.014.
+// Of a shift's distance: a smaller increase is not worth another round; idle 0.007 to 0.014.
 constexpr double kLeastMore = 0.01;
 constexpr int kMostExtensions = 24;  // of one shift; idle 17 to 34
 
-// From 1 at x = 0 to 0 at x = 1, level at both ends; its slope is at most 1.5.
+// Falls from 1 at x = 0 to 0 at x = 1, with zero slope at both ends and slopes of at most 1.5.
 double faded(double x) { return x >= 1 ? 0 : 1 - x * x * (3 - 2 * x); }
 constexpr double kSteepestFading = 1.5;  // safe 1 to 2.1
 
@@ -86,7 +86,7 @@ Index Moving::place_of(Index segment, Index leaf_end) const {
   return offsets_[segment] + leaf_end - 1;
 }
 
-// The ends of all leaves that the stretch covers a part of.
+// The ends of all leaves that overlap the stretch.
 std::vector<Index> Moving::places_of(const MovedStretch& stretch) const {
   if (stretch.segment == kNone) return {stretch.node};
   const double count = leaf_counts_[stretch.segment];
@@ -125,7 +125,7 @@ double Moving::fading_length(const Shift& shift) const {
   return std::max(kSteepestFading * shift.distance / slope_, kShortestFading * radius);
 }
 
-// Dijkstra's algorithm from all places that are moved the whole way.
+// Dijkstra's algorithm from all places that are moved by the full distance.
 void Moving::fade(Index shift) {
   const double length = fading_length(shifts_[shift]);
   std::map<Index, double> away;
@@ -187,7 +187,7 @@ double Moving::steepest() const {
   return most;
 }
 
-// The leaf ends that become nodes, ascending, by segments: those that are displaced and those next to them.
+// The leaf ends that become nodes, by segment, ascending: those that are displaced and those next to them.
 std::map<Index, std::vector<Index>> Moving::divisions(const std::map<Index, Vec3>& displaced) const {
   std::map<Index, std::vector<Index>> ends;
   const auto divide_at = [&](Index place) {

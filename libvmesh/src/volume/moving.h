@@ -7,41 +7,41 @@
 
 namespace vmesh {
 
-/// A part of a segment of the original centerline that is to be moved; of an isolated node, with segment kNone.
+/// A stretch of a segment of the original centerline that is to be moved, or an isolated node (segment kNone).
 struct MovedStretch {
   Index segment = kNone;
   double t_first = 0, t_last = 1;
   Index node = kNone;
 };
 
-/// Moves stretches of a centerline aside. Each shift moves some stretches by the same vector; along the graph, across
-/// branching nodes too, it fades out smoothly over a length that bounds its slope. A shift turns nothing and its slope
-/// is below 1, so that it folds nothing either. Shifts add up.
+/// Moves stretches of a centerline aside. Each shift moves some stretches by the same vector; along the graph, also
+/// across branching nodes, it fades out smoothly over a length that bounds its slope. A shift does not rotate anything,
+/// and its slope is below 1, so nothing folds. Shifts add up.
 class Moving {
  public:
   struct Shift {
     Vec3 direction = Vec3::Zero();  // unit
     double distance = 0;            // mm
     std::vector<MovedStretch> stretches;
-    ContactSide moved, other;  // where it was first asked for, on the original
+    ContactSide moved, other;  // where it was first needed, on the original
     int extensions = 0;
   };
 
-  /// `slope`: the most that the distance of a shift changes per length of the original.
+  /// `slope`: largest change of a shift's distance per length of the original.
   Moving(const Centerline& original, double slope);
 
   const std::vector<Shift>& shifts() const { return shifts_; }
-  /// Adds a shift, and returns its number. Where the axis would go aside too steeply, all shifts together, nothing is
-  /// changed and kNone returned.
+  /// Adds a shift and returns its number. If all shifts together would displace the axis too steeply, changes nothing
+  /// and returns kNone.
   Index add(Shift shift);
-  /// Moves further, or more: the shift's distance becomes at least `distance`. Returns false and changes nothing where
-  /// that is too steep, hardly any more, or has been done too often.
+  /// Extends a shift: its distance becomes at least `distance`, and it moves `more` stretches. Returns false and
+  /// changes nothing if that is too steep, hardly an increase, or has been done too often.
   bool extend(Index shift, double distance, const std::vector<MovedStretch>& more);
   void remove(Index shift);
 
-  /// By how much of its distance a shift moves a place of the original, in [0, 1].
+  /// The share of its distance by which a shift moves a place of the original, in [0, 1].
   double part_at(Index shift, const MovedStretch& place) const;
-  /// The most that the displacement, of all shifts together, changes per length of the original.
+  /// Largest change of the total displacement per length of the original.
   double steepest() const;
   DividedCenterline apply() const;
 

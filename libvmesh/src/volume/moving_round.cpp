@@ -9,31 +9,34 @@
 
 #include <Eigen/Geometry>
 
+#include "vmesh/volume/vessel_field.h"
+
 #include "volume/contact_pairs.h"
 
 namespace vmesh {
 namespace {
 
-// Of the share that may be taken, so that rounds of moving end; safe 0.035 to 0.07.
+// Of the share that may be taken: aims for a little less, so that rounds of moving end; safe 0.035 to 0.07.
 constexpr double kSpare = 0.05;
-// Of the distance wanted: axes further apart than that tell the direction; safe 0.17 to 0.35.
+// Of the wanted distance: axes farther apart than that determine the direction; safe 0.17 to 0.35.
 constexpr double kFarApart = 0.25;
 // Sine of the angle between axes from which on they cross; idle 0.14 to 0.28.
 constexpr double kCrossing = 0.2;
-// Radii: axes closer than that tell no direction; idle 0.0007 to 0.0014.
+// Radii: axes closer than that determine no direction; idle 0.0007 to 0.0014.
 constexpr double kNearlyTouching = 1e-3;
-// Cosine: more aslant to its axis, a vessel is not moved; safe 0.35 to 0.7.
+// Cosine between the move and its axis above which a vessel is not moved; safe 0.35 to 0.7.
 constexpr double kSideways = 0.5;
 constexpr double kSameDirection = 0.7;  // cosine; safe 0.49 to 0.98
-constexpr double kSamePart = 0.3;       // of a shift: where it moves less, another is added; idle 0.21 to 0.42
-constexpr double kFarthest = 2.2;       // sums of radii that a vessel is moved; idle 1.5 to 3.1
-constexpr double kAlong = 12;           // sums of radii along the graph that one shift answers for; idle 8.4 to 17
+constexpr double kSamePart =
+    0.3;  // of a shift: where it moves a leaf by less, another shift is added; idle 0.21 to 0.42
+constexpr double kFarthest = 2.2;  // sums of radii: the most that a vessel is moved; idle 1.5 to 3.1
+constexpr double kAlong = 12;      // sums of radii along the graph over which one shift acts; idle 8.4 to 17
 
 // A leaf of one vessel that is too close to another.
 struct CloseLeaf {
   Index cone = kNone, other = kNone;
   MovedStretch stretch;
-  Vec3 from_other = Vec3::Zero();  // to the axis from that of the other, mm
+  Vec3 from_other = Vec3::Zero();  // from the other's axis to this one, mm
   double wanted = 0;               // distance of the axes
   double share = 1;                // of its radius that would remain
   ContactSide side, other_side;    // on the original
@@ -69,10 +72,10 @@ class MovingRound {
  private:
   using Region = std::vector<CloseLeaf>;
 
-  // The leaves that would lose too much, by regions that have some.
+  // The leaves that would lose too much, by region.
   std::map<Index, Region> close_regions() const {
     std::map<Index, Region> regions;
-    for (const ContactPair& pair : find_contact_pairs(field_, task_.gap)) {
+    for (const ContactPair& pair : find_contact_pairs(field_.relations(), task_.gap)) {
       for (const auto& [cone, other] : {std::pair{pair.i, pair.j}, std::pair{pair.j, pair.i}}) {
         for (CloseLeaf& leaf : close_leaves(cone, other, pair.gap)) regions[pair.region].push_back(std::move(leaf));
       }
@@ -82,11 +85,11 @@ class MovingRound {
 
   Region close_leaves(Index cone, Index other, double gap) const {
     Region leaves;
-    const AxisStretch across = stretch_of(field_, other);
+    const AxisStretch across = stretch_of(field_.relations(), other);
     const Index count = cone < task_.narrowed.pieces.size() ? leaf_count_of(task_.narrowed.centerline, cone) : 1;
     for (Index n = 0; n < count; ++n) {
       const double first = static_cast<double>(n) / count, last = static_cast<double>(n + 1) / count;
-      const AxisStretch part = stretch_of(field_, cone, first, last);
+      const AxisStretch part = stretch_of(field_.relations(), cone, first, last);
       if (are_apart(part, across, gap, 0)) continue;
       const ClosestApproach closest = closest_approach(part, across, gap);
       if (closest.excess >= 0) continue;
@@ -106,7 +109,7 @@ class MovingRound {
     return leaves;
   }
 
-  // Of the original radius, when both radii give up the same share of what they are now.
+  // Share of the original radius that remains when both radii give up the same share of their present values.
   static double share_left(double radius, double other, double distance, double gap, double original_radius) {
     return radius * distance / (radius + other + gap * std::min(radius, other)) / original_radius;
   }
@@ -128,7 +131,7 @@ class MovingRound {
     return {piece.segment, piece.original_t(first), piece.original_t(last), kNone};
   }
 
-  // The leaf of the vessel to move, at the closest place of a region.
+  // The leaf, on the vessel to be moved, at the closest approach of a region.
   const CloseLeaf& anchor_of(const Region& region) const {
     const auto is_less = [](const CloseLeaf& a, const CloseLeaf& b) { return a.share < b.share; };
     const CloseLeaf& worst = *std::min_element(region.begin(), region.end(), is_less);

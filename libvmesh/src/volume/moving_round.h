@@ -4,13 +4,13 @@
 
 namespace vmesh {
 
-/// How vessels part where nothing else decides: what was in vain is tried the other way round.
+/// Choices in parting vessels where nothing else decides; if a move was in vain, the other choice is tried.
 struct MovingChoice {
-  bool thicker = false;   ///< of the two vessels moves
-  bool opposite = false;  ///< of crossing axes, the way to the side with less room
+  bool thicker = false;   ///< the thicker of the two vessels moves
+  bool opposite = false;  ///< crossing axes move to the side with less room
 };
 
-/// What one look at moved and narrowed vessels needs to know. `narrowed` divides the original.
+/// What a round of moving needs to know about the moved and narrowed vessels. `narrowed` divides the original.
 struct MovingTask {
   const Centerline& original;
   const DividedCenterline& narrowed;
@@ -20,8 +20,8 @@ struct MovingTask {
 };
 
 /// Adds or extends a shift for every contact that would take more than `most_narrowed` of a radius: the thinner vessel
-/// (or as `choice` says) is to move away from the other, so far that a little less would be taken. Contacts near a
-/// shift that has just changed wait for the next look. Returns the number of shifts added or extended.
+/// (or as `choice` says) moves away from the other, until a little less would be taken. Contacts near a shift that has
+/// just changed wait for the next round. Returns the number of shifts added or extended.
 int move_apart(const MovingTask& task, Moving& moving);
 
 }  // namespace vmesh

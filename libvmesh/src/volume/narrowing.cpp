@@ -7,7 +7,7 @@
 namespace vmesh {
 namespace {
 
-// Radii: a node is not added closer than this to another; safe 0.07 to 0.14.
+// Radii: no node is added closer than this to another; safe 0.07 to 0.14.
 constexpr double kShortest = 0.1;
 
 // A stretch between two places where shares are known, with the original radii and the shares at its ends.
@@ -15,9 +15,10 @@ struct Stretch {
   double length, radius[2], share[2];
 };
 
-// Where the radius bends between the ends: the share has returned to 1, or comes down again. Fractions of the length.
+// Where the radius bends between the ends: where the share has returned to 1 or starts to fall again. Fractions of the
+// length.
 std::vector<std::pair<double, double>> bends_of(const Stretch& s, double taper) {
-  // From an end that lost `lost` of its radius the radius gains `taper` per length on the original.
+  // From an end that lost `lost` of its radius, the radius regains `taper` per length relative to the original.
   const double lost[2] = {(1 - s.share[0]) * s.radius[0], (1 - s.share[1]) * s.radius[1]};
   double up = lost[0] / taper / s.length, down = 1 - lost[1] / taper / s.length;
   const auto original = [&s](double t) { return (1 - t) * s.radius[0] + t * s.radius[1]; };
@@ -76,7 +77,7 @@ Narrowing::Posts Narrowing::plant_posts() const {
   return posts;
 }
 
-// Dijkstra's algorithm from all places where a share is held, the least first.
+// Dijkstra's algorithm from all places where a share is held, lowest share first.
 void Narrowing::let_shares_return(Posts& posts) const {
   struct Step {
     Index to;

@@ -9,9 +9,9 @@
 
 namespace vmesh {
 
-/// Which share of its radius a vessel keeps: 1, or less at places where it was held. From there the share returns to 1
-/// along the graph by `taper` per radius of length. Every segment is divided evenly into leaves of at most half its
-/// smaller radius; shares are held at their ends.
+/// The share of its radius that a vessel keeps: 1, or less where it is held. From there the share returns to 1 along
+/// the graph by `taper` per radius of length. Every segment is divided evenly into leaves of at most half its smaller
+/// radius; shares are held at their ends.
 class Narrowing {
  public:
   Narrowing(const Centerline& original, double taper);
@@ -27,7 +27,7 @@ class Narrowing {
   /// A place where the share is held: the end of a leaf inside a segment, or a node.
   struct Post {
     double t = 0;
-    Index place = kNone;  // of shares and neighbours
+    Index place = kNone;  // index into shares and neighbours
   };
   struct Posts {
     std::vector<std::vector<Post>> on_segment;  // along every segment, its nodes at the ends

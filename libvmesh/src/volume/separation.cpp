@@ -13,10 +13,10 @@
 namespace vmesh {
 namespace {
 
-// More than the gap is aimed for, so that rounds of narrowing end.
+// Aims for a little more than the gap, so that rounds of narrowing end.
 constexpr double kSpare = 0.02;  // safe 0.014 to 0.028
-constexpr double kMoved = 1e-9;  // derived: radii, more than rounding moves
-// At moving where moves were in vain.
+constexpr double kMoved = 1e-9;  // derived: radii, more than rounding can move a node
+// Tried in turn where moves were in vain.
 constexpr MovingChoice kAttempts[] = {{}, {false, true}, {true, false}, {true, true}};
 
 void check(const SeparationOptions& options) {
@@ -29,13 +29,13 @@ void check(const SeparationOptions& options) {
   if (options.max_moves < 0) throw InvalidInput("max_moves must not be negative");
 }
 
-// What one vessel has to give up at a contact.
+// To what share of its radius one vessel must narrow at a contact.
 struct Hold {
   Index segment, leaf;  // of the original; or an isolated node and kNone
   double share;
 };
 
-// One look at the narrowed vessels: which shares must be held so that they come apart.
+// One round: finds the shares that must be held for the narrowed vessels to come apart.
 class Round {
  public:
   Round(const Centerline& original, const Narrowing& narrowing, const DividedCenterline& narrowed,
@@ -45,15 +45,15 @@ class Round {
         narrowed_(narrowed),
         options_(options),
         most_taken_(most_taken),
-        field_(narrowed.centerline, options.blend) {
+        cones_(narrowed.centerline, options.blend) {
     for (Index n = 0; n < original.nodes().size(); ++n) {
       if (original.degree(n) == 0) isolated_.push_back(n);
     }
   }
 
-  /// The holds for every contact that can be separated.
+  /// Those for every contact that can be separated.
   std::vector<Hold> holds() {
-    const std::vector<ContactPair> pairs = find_contact_pairs(field_, options_.gap);
+    const std::vector<ContactPair> pairs = find_contact_pairs(cones_, options_.gap);
     Index regions = 0;
     for (const ContactPair& pair : pairs) regions = std::max(regions, pair.region + 1);
     std::vector<std::vector<Hold>> per_region(regions);
@@ -73,11 +73,11 @@ class Round {
 
  private:
   void hold_cone(Index cone, Index other, double gap, std::vector<Hold>& holds) const {
-    const AxisStretch across = stretch_of(field_, other);
+    const AxisStretch across = stretch_of(cones_, other);
     if (cone >= narrowed_.pieces.size()) {
       const Index node = isolated_[cone - narrowed_.pieces.size()];
-      const double kept = kept_share(stretch_of(field_, cone), across, gap);
-      holds.push_back({node, kNone, kept * field_.radius_at(cone, 0) / original_.node(node).radius});
+      const double kept = kept_share(stretch_of(cones_, cone), across, gap);
+      holds.push_back({node, kNone, kept * cones_.radius_at(cone, 0) / original_.node(node).radius});
       return;
     }
     const SegmentPiece& piece = narrowed_.pieces[cone];
@@ -86,17 +86,17 @@ class Round {
       const double first = std::max(0.0, (leaf / count - piece.t_first) / width);
       const double last = std::min(1.0, ((leaf + 1) / count - piece.t_first) / width);
       if (!(first < last)) continue;
-      const AxisStretch part = stretch_of(field_, cone, first, last);
+      const AxisStretch part = stretch_of(cones_, cone, first, last);
       if (are_apart(part, across, gap, 0)) continue;
       const ClosestApproach closest = closest_approach(part, across, gap);
       if (closest.excess >= 0) continue;
       const double t = first + closest.s * (last - first);
-      const double share = field_.radius_at(cone, t) / original_.radius_at(piece.segment, piece.original_t(t));
+      const double share = cones_.radius_at(cone, t) / original_.radius_at(piece.segment, piece.original_t(t));
       holds.push_back({piece.segment, leaf, share * kept(closest, part, across, gap)});
     }
   }
 
-  // The share of both radii at which the gap is left.
+  // The share of both radii that leaves the gap.
   static double kept(const ClosestApproach& closest, const AxisStretch& a, const AxisStretch& b, double gap) {
     const double r = a.radius(closest.s), q = b.radius(closest.t);
     return closest.distance / (r + q + gap * std::min(r, q));
@@ -110,7 +110,7 @@ class Round {
   const DividedCenterline& narrowed_;
   const SeparationOptions& options_;
   double most_taken_;
-  VesselField field_;
+  ConeRelations cones_;
   std::vector<Index> isolated_;
 };
 
@@ -137,7 +137,7 @@ std::vector<Index> branch_of_segments(const Centerline& centerline) {
 std::vector<Contact> contacts_left(const Centerline& original, const DividedCenterline& narrowed,
                                    const SeparationOptions& options) {
   const std::vector<Index> branch_of = branch_of_segments(original);
-  std::vector<Contact> contacts = find_contacts(VesselField(narrowed.centerline, options.blend), options.gap);
+  std::vector<Contact> contacts = find_contacts(ConeRelations(narrowed.centerline, options.blend), options.gap);
   for (Contact& contact : contacts) {
     for (ContactSide& side : contact.sides) {
       if (side.segment >= narrowed.pieces.size()) {
@@ -233,7 +233,7 @@ class Narrower {
         narrowing_(vessels, options.taper),
         narrowed_(undivided(vessels)) {}
 
-  /// At contacts that need at most this share.
+  /// Narrows at contacts that need at most this share.
   void narrow(double most_taken) {
     for (; rounds_ < options_.max_rounds; ++rounds_) {
       report_progress(progress_, "separate", static_cast<double>(rounds_) / options_.max_rounds);
@@ -289,7 +289,7 @@ void move_vessels(const Centerline& original, const SeparationOptions& options, 
   }
 }
 
-// Moves of vessels that still touch where they were moved. Returns whether there were any.
+// Undoes the moves of vessels that still touch where they were moved. Returns whether there were any.
 bool take_back_moves_in_vain(const Centerline& original, Moving& moving, const std::vector<Contact>& left) {
   const std::size_t count = moving.shifts().size();
   for (const Contact& contact : left) {
@@ -304,7 +304,7 @@ bool take_back_moves_in_vain(const Centerline& original, Moving& moving, const s
   return moving.shifts().size() < count;
 }
 
-// Where moves were in vain they are taken back, and tried anew beside those that were not.
+// Undoes moves that were in vain and tries other choices for them, keeping those that helped.
 SeparatedCenterline moved_and_narrowed(const Centerline& original, const SeparationOptions& options,
                                        const Progress& progress) {
   Moving moving(original, options.slope);
@@ -329,7 +329,7 @@ SeparatedCenterline moved_and_narrowed(const Centerline& original, const Separat
 SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options,
                                       const Progress& progress) {
   check(options);
-  std::vector<Contact> before = find_contacts(VesselField(centerline, options.blend), options.gap);
+  std::vector<Contact> before = find_contacts(ConeRelations(centerline, options.blend), options.gap);
   if (before.empty()) {
     DividedCenterline whole = undivided(centerline);
     return {std::move(whole.centerline), std::move(whole.pieces), {}};

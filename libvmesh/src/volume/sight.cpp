@@ -16,19 +16,21 @@ namespace {
 
 // Opposite walls are rounded over a gap of 2 * blend smaller radii, and meet at half of it.
 constexpr double kReach = 2;  // safe 1.4 to 2.8
-// Vessels have parted that are farther from each other than what counts as one volume, and come near again where they
-// are nearer than this. In between they still see each other, but the blend must not join them. (contact_pairs.cpp asks
-// no more of a fork.) On vessel_portal, whose hairpin comes to 0.42, the mean error is 3 % larger with 0.5.
+// Vessels have parted once they are farther from each other than kOneVolume, and come near again where they are nearer
+// than this. In between they are still local to each other, but the blend must not join them. (contact_pairs.cpp
+// requires no more at a fork.) On vessel_portal, whose hairpin has a gap of 0.42, the mean error is 3 % larger with
+// 0.5.
 constexpr Touch kNearAgain{0.4, kOneVolume.larger};
-// Above, walls that part and come near again would be joined though they part; safe 0.35 to 0.7.
+// With a larger blend, walls that part and come near again would be joined; safe 0.35 to 0.7.
 constexpr double kMostBlend = 0.5;
-// Of a gap: spheres half a radius apart lack something of a cone (kOneVolume); safe 0.63 to 1.3.
+// Of a gap: margin because spheres half a radius apart do not fill a cone (kOneVolume); safe 0.63 to 1.3.
 constexpr double kSpare = 0.9;
-// By which the share of the blend grows, per mean radius along the graph. With 1, creases by turns are harder to prove.
+// Growth of the blend's share per mean radius along the graph. With 1, errors at creases next to turns are harder to
+// prove.
 constexpr double kReturn = 0.25;  // safe 0.17 to 0.35
 
-// Pairs of spheres that face each other over a gap, around those that have come near again. Between these and where the
-// vessels part there is a widest place: up to there they belong to the one or the other.
+// Pairs of spheres that face each other across a gap, around those that have come near again. Between these and the
+// place where the vessels part, the gap has a maximum, which divides the pairs between the two.
 class Meetings {
  public:
   Meetings(const Centerline& centerline, const SphereChain& chain, const PairSet& touching, const PairSet& local,
@@ -47,7 +49,7 @@ class Meetings {
     divide();
   }
 
-  /// Calls visit(p, q) for the pairs that are apart, and those next to them that face each other askew.
+  /// Calls visit(p, q) for the pairs that are apart, and for adjacent ones that face each other obliquely.
   template <class Visit>
   void visit_apart(Visit&& visit) const {
     for (const Pair& pair : facing_) {
@@ -60,7 +62,7 @@ class Meetings {
     }
   }
 
-  /// Calls visit(p, q) for the pairs on either side of where vessels that part turn into vessels apart.
+  /// Calls visit(p, q) for the pairs on either side of the border between parting and apart.
   template <class Visit>
   void visit_border(Visit&& visit) const {
     for (const Pair& pair : facing_) {
@@ -101,7 +103,7 @@ class Meetings {
     return chain_.center(p) + (chain_.radius(p) + chain_.gap(p, q) / 2) * across;
   }
 
-  // Of the vessels that are one volume with those of a sphere.
+  // Whether x is outside all vessels that are one volume with those of sphere p.
   bool is_outside(const Vec3& x, Index p) const {
     const auto is_outside_of = [&](Index segment) {
       bool outside = true;
@@ -116,7 +118,7 @@ class Meetings {
     });
   }
 
-  // A flood that rises over the gap, from where vessels part and from where they are near again.
+  // Watershed by gap width, flooded from where vessels part and from where they are near again.
   void divide() {
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
@@ -151,18 +153,18 @@ class Meetings {
   const Touch& wide_;
   std::vector<std::vector<Index>> local_of_;
   std::vector<Pair> facing_;
-  std::unordered_map<std::uint64_t, Index> number_;  // in facing_, or kNone, of the pairs that were looked at
+  std::unordered_map<std::uint64_t, Index> number_;  // index into facing_, or kNone, of every visited pair
 };
 
-// The share of the blend that is left to nodes next to gaps.
+// The share of the blend left to nodes next to gaps.
 class Rounding {
  public:
   Rounding(const Centerline& centerline, const SphereChain& chain, double blend)
       : centerline_(centerline), chain_(chain), blend_(blend), share_(centerline.nodes().size(), 1.0) {}
 
-  /// Leaves two spheres no more than does not reach over the gap.
+  /// Limits the blend of two spheres so that it does not reach across their gap.
   void end_before_gap(Index p, Index q) { narrow(p, q, kReach); }
-  /// Leaves two spheres no more than does not join them.
+  /// Limits the blend of two spheres so that it does not join them.
   void keep_gap_open(Index p, Index q) { narrow(p, q, 1); }
   std::vector<double> take() { return std::move(share_); }
 
@@ -184,8 +186,8 @@ class Rounding {
   std::vector<double> share_;
 };
 
-// Pairs of spheres that are reached from touching ones over those that are in touch in the wider sense only; and where
-// these are too near again.
+// Pairs of spheres reached from touching ones through pairs in touch only in the wider sense, and those of them that
+// are near again.
 class Beyond {
  public:
   Beyond(const SphereChain& chain, const Touch& wide) : chain_(chain), wide_(wide) {}
@@ -212,8 +214,7 @@ class Beyond {
   PairSet parting_, met_again_;
 };
 
-// Calls visit(i, j) for the pairs of segments in whose boxes, grown by half the widest gap of `wide`, there is a place
-// in common.
+// Calls visit(i, j) for the pairs of segments whose boxes, grown by half the widest gap of `wide`, overlap.
 template <class Visit>
 void visit_near(const Centerline& centerline, const Touch& wide, Visit&& visit) {
   std::vector<Vec3> low, high;
@@ -235,8 +236,9 @@ bool are_near(const SphereChain& chain, Index i, Index j, const Touch& wide) {
   return near;
 }
 
-// Segments that do not see each other, but a third one sees both, as where two thick ones come close along a thin one
-// between them: seen from there they must not be blended either, or the boundary would have a step where sight ends.
+// Segments that are not local to each other but both local to a third, as where two thick ones come close along a thin
+// one between them: in the third's queries they must not be blended either, or the boundary would have a step where
+// locality ends.
 void keep_strangers_apart(const Centerline& centerline, const SphereChain& chain, const Touch& wide, Sight& sight) {
   std::vector<std::pair<Index, Index>> strangers;
   visit_near(centerline, wide, [&](Index i, Index j) {

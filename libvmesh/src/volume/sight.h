@@ -8,27 +8,26 @@
 
 namespace vmesh {
 
-/// Which segments take part in each other's local queries, and how much of the blend is left to them, so that the
-/// boundary has no step where sight ends.
+/// Which segments are local to each other, and how much of the blend is left to them, so that the boundary has no step
+/// where locality ends.
 struct Sight {
-  PairSet local;  ///< count as one volume
-  /// One volume no longer, but the blend still reaches over what is between their walls.
+  PairSet local;  ///< pairs that count as one volume
+  /// Pairs that are no longer one volume, but whose blend still spans the space between their walls.
   PairSet parting;
-  /// Have parted and come near again, or are near though they never touched along the graph. They must not be joined,
-  /// or the volume would have a tunnel that the graph lacks: they do not see each other, and are not blended where
-  /// others see both.
+  /// Pairs that have parted and come near again, or are near without touching along the graph. They must not be joined,
+  /// or the volume would have a tunnel that the graph lacks: they are not local to each other, and are not blended in
+  /// queries of cones to which both are local.
   PairSet apart;
-  /// Of every node, the share of the blend that is left to it; empty where it is 1 for all. It is less where vessels
-  /// that part turn into vessels apart: so little that the blend does not reach over the gap. From there it grows along
-  /// the graph.
+  /// The share of the blend left to every node; empty if it is 1 for all. At the border between parting and apart it is
+  /// so small that the blend does not reach across the gap; from there it grows along the graph.
   std::vector<double> rounding;
 };
 
 Sight sight_between_segments(const Centerline& centerline, double blend);
 
-/// The same, with the shares of nodes right at gaps alone: from there they have not grown yet.
+/// The same with the shares right at gaps only, before they grow back along the graph.
 Sight sight_before_return(const Centerline& centerline, double blend);
-/// Shares of nodes, growing along the graph from where they are less than 1; empty where they are 1 everywhere.
+/// Shares of nodes, grown along the graph from where they are less than 1; empty if they are 1 everywhere.
 std::vector<double> returning(const Centerline& centerline, std::vector<double> share);
 
 }  // namespace vmesh

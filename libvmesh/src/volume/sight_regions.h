@@ -7,7 +7,7 @@
 
 namespace vmesh {
 
-/// What Sight holds, in lists: for centerlines too large for tables.
+/// The contents of Sight as lists, for centerlines too large for tables.
 struct SightPairs {
   using Pairs = std::vector<std::pair<Index, Index>>;
 
@@ -15,10 +15,10 @@ struct SightPairs {
   std::vector<double> rounding;  ///< of every node; empty where it is 1 for all
 };
 
-/// As sight_between_segments(), region by region on all threads. A centerline falls into cells at nodes along vessels
-/// whose spheres face none but those of their own vessel: pairs of spheres are followed from one to the next, so that
-/// what is related lies in one cell, or right at the node. A region consists of whole cells, one after the other along
-/// the graph. `region_size`: segments of a region, at least.
+/// Like sight_between_segments(), region by region on all threads. A centerline is divided into cells at nodes along
+/// vessels whose spheres face only those of their own vessel: pairs of spheres are followed from one to the next, so
+/// related segments lie in one cell, or right at the node. A region consists of consecutive cells along the graph.
+/// `region_size`: least number of segments in a region.
 SightPairs sight_by_regions(const Centerline& centerline, double blend, std::size_t region_size = 25'000);
 
 }  // namespace vmesh

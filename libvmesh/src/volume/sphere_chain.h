@@ -13,7 +13,7 @@
 namespace vmesh {
 
 /// Spheres at all nodes and along all segments, half a mean radius apart: first those of the nodes, then those within
-/// segments in turn.
+/// segments, in order.
 class SphereChain {
  public:
   explicit SphereChain(const Centerline& centerline) : centerline_(centerline) {
@@ -40,12 +40,12 @@ class SphereChain {
   Index nodes() const { return static_cast<Index>(centerline_.nodes().size()); }
   const Vec3& center(Index p) const { return spheres_[p].center; }
   double radius(Index p) const { return spheres_[p].radius; }
-  /// Between the two spheres, mm.
+  /// The gap between two spheres, mm.
   double gap(Index p, Index q) const {
     return (spheres_[p].center - spheres_[q].center).norm() - spheres_[p].radius - spheres_[q].radius;
   }
 
-  /// The segments of which sphere `p` is part: several at a node.
+  /// The segments to which sphere `p` belongs: several at a node.
   std::span<const Index> segments(Index p) const {
     return p < nodes() ? centerline_.incident_segments(p) : std::span(&segments_[p - nodes()], 1);
   }
@@ -82,7 +82,7 @@ class SphereChain {
   }
 
  private:
-  // Mean radii between two spheres that stand for a cone; safe 0.35 to 0.7.
+  // Mean radii between two spheres that represent a cone; safe 0.35 to 0.7.
   static constexpr double kSampling = 0.5;
   static constexpr int kMaxSamples = 200;  // per cone; safe 140 to 280
 
@@ -96,7 +96,7 @@ class SphereChain {
     return static_cast<int>(std::clamp(steps, 1.0, double{kMaxSamples}));
   }
 
-  // Along segment `s`, whose first node has place 0.
+  // The sphere at position `place` along segment `s`, whose first node is position 0.
   Index sphere_at(Index s, Index place) const {
     const auto& [a, b] = centerline_.segment(s);
     const Index within = first_[s] + place - 1;
@@ -109,12 +109,13 @@ class SphereChain {
   std::vector<Index> segments_;  // of spheres within segments
 };
 
-/// All pairs of different spheres in touch that can be reached from pairs of one and the same by moving either along
-/// the centerline without losing touch. Calls visit_next(p, q) for those one step further, not in touch, once or more.
+/// All pairs of different spheres in touch that can be reached from two copies of one sphere by moving either along the
+/// centerline without losing touch. Calls visit_next(p, q), at least once, for the pairs one step further that are not
+/// in touch.
 PairSet pairs_in_touch(const SphereChain& chain, const Touch& touch,
                        const std::function<void(Index, Index)>& visit_next = {});
 
-/// Joins the segments of pairs of spheres.
+/// Collects the pairs of segments of given pairs of spheres.
 class SegmentPairs {
  public:
   explicit SegmentPairs(const SphereChain& chain) : chain_(chain) {}
@@ -129,10 +130,10 @@ class SegmentPairs {
 
   const SphereChain& chain_;
   PairSet pairs_;
-  PairSet joined_;  // nodes of many branches and the segments that were joined to all of these
+  PairSet joined_;  // nodes of many branches, and the segments joined to all of their branches
 };
 
-/// The segments of every sphere and of all these pairs.
+/// The pairs of segments that share a sphere or belong to one of these pairs.
 PairSet local_segments(const SphereChain& chain, const PairSet& touching);
 
 }  // namespace vmesh

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vmesh/core/error.h"
+#include "vmesh/volume/field_excerpt.h"
 
 namespace vmesh {
 namespace {
@@ -14,33 +14,31 @@ constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-VesselField::VesselField(const Centerline& centerline, double blend) : centerline_(&centerline), blend_(blend) {
-  if (!(blend >= 0 && blend <= 2)) throw InvalidInput("blend must be in [0, 2]");
+VesselField::VesselField(const Centerline& centerline, double blend) : relations_(centerline, blend), blend_(blend) {
+  finish();
+}
+
+VesselField::VesselField(const Centerline& centerline, const FieldExcerpt& excerpt)
+    : relations_(centerline, excerpt), blend_(excerpt.blend) {
+  finish();
+}
+
+void VesselField::finish() {
   make_cones();
-  measure_runs();
   measure_spheres();
-  find_local_cones();
   build_tree();
   lonely_.assign(cones_.size(), not_asked);
 }
 
 void VesselField::make_cones() {
-  cones_.reserve(centerline_->segments().size());
-  for (const auto& s : centerline_->segments()) cones_.push_back(make_cone(*centerline_, s.a, s.b));
-  for (Index n = 0; n < centerline_->nodes().size(); ++n) {
-    if (centerline_->degree(n) == 0) cones_.push_back(make_cone(*centerline_, n, n));
+  cones_.reserve(relations_.cone_count());
+  for (Index c = 0; c < relations_.cone_count(); ++c) {
+    Cone cone = make_cone(centerline(), relations_.first_node(c), relations_.last_node(c));
+    cone.rounding0 = relations_.rounding_of(cone.a);
+    cone.rounding1 = relations_.rounding_of(cone.b);
+    cones_.push_back(cone);
   }
-}
-
-void VesselField::measure_runs() {
-  runs_.resize(cones_.size());
-  for (Index c = 0; c < cones_.size(); ++c) {
-    const Cone& cone = cones_[c];
-    const bool continues = c > 0 && cones_[c - 1].b == cone.a && cone.a != cone.b;
-    const double travel = cone.axis.norm() + (1 + 2 * blend_) * std::abs(cone.r1 - cone.r0);
-    runs_[c].travel = (continues ? runs_[c - 1].travel : 0) + travel;
-    runs_[c].number = c == 0 ? 0 : runs_[c - 1].number + !continues;
-  }
+  for (const auto& [i, j] : relations_.apart()) cones_[i].is_apart = cones_[j].is_apart = true;
 }
 
 void VesselField::measure_spheres() {
@@ -75,8 +73,8 @@ VesselField::Cone VesselField::make_cone(const Centerline& centerline, Index a, 
   return cone;
 }
 
-// The closest of the spheres that sweep the cone: the touching sphere's centre lies where the axis is met by the
-// normal of the lateral surface through p, clamped to the axis.
+// The closest of the spheres that sweep the cone: its centre is where the normal of the lateral surface through p meets
+// the axis, clamped to the axis.
 VesselField::Distance VesselField::distance_to(const Cone& cone, const Vec3& p) {
   const Vec3 q = p - cone.origin;
   const double foot = q.dot(cone.axis) * cone.inv_length2;
@@ -91,9 +89,15 @@ Vec3 VesselField::gradient_of(const Cone& cone, const Vec3& p, double t) {
   return norm > 0 ? Vec3(away / norm) : Vec3(Vec3::Zero());
 }
 
-FieldSample VesselField::sample_cone(const Vec3& p, Index cone) const {
-  const Distance d = distance_to(cones_[cone], p);
-  return {d.value, gradient_of(cones_[cone], p, d.t), cone, d.t};
+FieldSample VesselField::sample_of(const Cone& cone, const Vec3& p, Index number) {
+  const Distance d = distance_to(cone, p);
+  return {d.value, gradient_of(cone, p, d.t), number, d.t};
+}
+
+FieldSample VesselField::sample_cone(const Vec3& p, Index cone) const { return sample_of(cones_[cone], p, cone); }
+
+FieldSample ConeRelations::sample_cone(const Vec3& p, Index cone) const {
+  return VesselField::sample_of(VesselField::make_cone(*centerline_, first_node(cone), last_node(cone)), p, cone);
 }
 
 FieldSample VesselField::sample(const Vec3& p, Index hint) const {
@@ -106,23 +110,24 @@ FieldSample VesselField::sample(const Vec3& p, Index hint) const {
 }
 
 FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, Index first) const {
-  // Kept from call to call, so that a query allocates nothing.
+  // Kept between calls, so that a query allocates nothing.
   thread_local std::vector<Candidate> candidates;
   candidates.clear();
   const Distance nearby = distance_to(cones_[first], p);
   candidates.push_back({nearby.value, nearby.t, first});
   double least = nearby.value;
-  // One pass keeps the cones within the widest possible blend of the best so far. After a cone out of reach it passes
-  // over those of its run that cannot be within reach; what is far by its bounding sphere is not looked at closely.
-  Run out_of_reach;
+  // One pass keeps the cones within the widest possible blend of the best so far. After a cone out of reach it skips
+  // those of its run that cannot be within reach, and cones whose bounding spheres are far.
+  ConeRelations::Run out_of_reach;
   for (const Index c : cones) {
-    if (c == first || (runs_[c].number == out_of_reach.number && runs_[c].travel < out_of_reach.travel)) continue;
+    const ConeRelations::Run& run = relations_.run(c);
+    if (c == first || (run.number == out_of_reach.number && run.travel < out_of_reach.travel)) continue;
     const double reach = least + spheres_[c].reach;
     if (reach <= 0 || (p - spheres_[c].center).squaredNorm() >= reach * reach) continue;
     const Distance d = distance_to(cones_[c], p);
     const double excess = d.value - least - 2 * blend_ * max_radius(c);
     if (excess >= 0 && d.value > least) {  // of equally near cones the lowest number counts: they are all kept
-      out_of_reach = {runs_[c].number, runs_[c].travel + excess};
+      out_of_reach = {run.number, run.travel + excess};
       continue;
     }
     least = std::min(least, d.value);
@@ -140,9 +145,9 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, In
   return sample;
 }
 
-// Cones that begin with one and the same sphere are alike to the bit where that is what is near. At a thick node of
-// many branches nearly all are. One that blends with every other speaks for them. Looks back at a few, which is enough
-// there.
+// Cones that start at the same sphere have equal distances to the bit where that sphere is nearest; at a thick node of
+// many branches that is nearly all of them. One of them represents the rest. Compares with a few predecessors, which is
+// enough there.
 std::span<VesselField::Candidate> VesselField::at_different_places(std::span<Candidate> candidates) const {
   constexpr std::size_t kLookBack = 8;
   std::size_t kept = 0;
@@ -158,7 +163,7 @@ std::span<VesselField::Candidate> VesselField::at_different_places(std::span<Can
 }
 
 // The least of the pairwise smooth minima: continuous, and the plain minimum where gradients agree. Few of the many
-// pairs blend: whether they do is found out for several at a time.
+// pairs blend; several are tested at a time.
 void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidates, FieldSample& sample) const {
   constexpr std::size_t kBatch = 32;
   struct Batch {

@@ -1,25 +1,21 @@
-// How a VesselField finds the cones that matter at a point: along the graph, and in space.
+// How a VesselField finds the cones that matter at a point, along the graph and in space.
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "vmesh/core/ascending.h"
 #include "vmesh/volume/vessel_field.h"
-
-#include "volume/sight_regions.h"
 
 namespace vmesh {
 namespace {
 
 // Relative to coordinates: covers the rounding in a distance and in a box.
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
-// Lengths of a piece of a cone, in the widths from its axis that count as near; idle 1.4 to 2.8.
+// Length of an interval of a cone, relative to the distance from its axis that counts as near; idle 1.4 to 2.8.
 constexpr double kLongPiece = 2;
-constexpr int kMostPieces = 16;  // of a cone; idle 11 to 22
-constexpr std::size_t kFewCones =
-    100;  // up to here going through all is as fast; measured on stars: 60 to 512 are near
+constexpr int kMostPieces = 16;         // of a cone; idle 11 to 22
+constexpr std::size_t kFewCones = 100;  // up to here a linear scan is as fast; measured on stars: 60 to 512 are near
 
-// Of the cones those in the ascending list.
+// Keeps those of `cones` that are in the ascending list.
 void keep_listed(std::span<const Index> list, std::vector<Index>& cones) {
   sort_unique(cones);
   std::erase_if(cones, [&](Index c) { return !std::binary_search(list.begin(), list.end(), c); });
@@ -27,65 +23,15 @@ void keep_listed(std::span<const Index> list, std::vector<Index>& cones) {
 
 }  // namespace
 
-void VesselField::find_local_cones() {
-  const auto [local, parting, apart, rounding] = sight_by_regions(*centerline_, blend_);
-
-  local_offsets_.assign(cones_.size() + 1, 0);
-  for (std::size_t c = 0; c < cones_.size(); ++c) ++local_offsets_[c + 1];
-  for (const SightPairs::Pairs* pairs : {&local, &parting}) {
-    for (const auto& [i, j] : *pairs) {
-      ++local_offsets_[i + 1];
-      ++local_offsets_[j + 1];
-    }
-  }
-  std::partial_sum(local_offsets_.begin(), local_offsets_.end(), local_offsets_.begin());
-  std::vector<Index> next(local_offsets_.begin(), local_offsets_.end() - 1);
-  const auto fill = [&](const SightPairs::Pairs& pairs, std::vector<Index>& lists) {
-    for (const auto& [i, j] : pairs) {
-      lists[next[i]++] = j;
-      lists[next[j]++] = i;
-    }
-  };
-  local_.resize(local_offsets_.back());
-  for (Index c = 0; c < cones_.size(); ++c) local_[next[c]++] = c;
-  fill(local, local_);
-  const std::vector<Index> first_parting = next;
-  fill(parting, local_);
-  is_parting_.assign(local_.size(), 0);
-  std::vector<Index> partners;
-  for (Index c = 0; c < cones_.size(); ++c) {
-    const auto end = local_.begin() + local_offsets_[c + 1];
-    partners.assign(local_.begin() + first_parting[c], end);
-    std::sort(partners.begin(), partners.end());
-    std::sort(local_.begin() + local_offsets_[c], end);
-    for (Index k = local_offsets_[c]; !partners.empty() && k < local_offsets_[c + 1]; ++k)
-      is_parting_[k] = std::binary_search(partners.begin(), partners.end(), local_[k]);
-  }
-  apart_ = apart;
-  std::sort(apart_.begin(), apart_.end());
-  for (const auto& [i, j] : apart_) cones_[i].is_apart = cones_[j].is_apart = true;
-  for (Cone& cone : cones_) {
-    if (rounding.empty()) break;
-    cone.rounding0 = rounding[cone.a];
-    cone.rounding1 = rounding[cone.b];
-  }
-}
-
-bool VesselField::are_one_volume(Index i, Index j) const {
-  const auto local = local_cones(i);
-  const auto place = std::lower_bound(local.begin(), local.end(), j);
-  return place != local.end() && *place == j && !is_parting_[local_offsets_[i] + (place - local.begin())];
-}
-
 bool VesselField::are_blended(Index i, Index j) const {
   if (!cones_[i].is_apart || !cones_[j].is_apart) return true;
   const std::pair<Index, Index> pair = std::minmax(i, j);
-  return !std::binary_search(apart_.begin(), apart_.end(), pair);
+  return !std::binary_search(relations_.apart().begin(), relations_.apart().end(), pair);
 }
 
-// The box of a piece of a cone holds all points at which it may be blended in: those closer to it than the widest
-// blend. Cones that are long for their width are taken in pieces: across the axes, their boxes would be as wide as
-// long.
+// The box of an interval of a cone holds all points at which it may be blended: those closer to it than the widest
+// blend. Cones that are long for their width are divided into intervals; oblique to the coordinate axes, their boxes
+// would be as wide as long.
 void VesselField::build_tree() {
   std::vector<Vec3> low, high;
   for (Index c = 0; c < cones_.size(); ++c) {
@@ -120,7 +66,7 @@ void VesselField::local_cones_near(const Vec3& p, Index cone, double limit, std:
   keep_listed(local, near);
 }
 
-// As blended(p, local_cones(hint), hint).
+// Same as blended(p, local_cones(hint), hint).
 FieldSample VesselField::blended_local(const Vec3& p, Index hint) const {
   const std::span<const Index> local = local_cones(hint);
   if (local.size() <= kFewCones) return blended(p, local, hint);

@@ -11,30 +11,30 @@
 namespace vmesh {
 namespace {
 
-// Radii from the hint up to which single precision will do: there it is good to a few 1e-5 of them.
+// Radii from the hint up to which single precision is enough: there it is accurate to a few 1e-5 radii.
 constexpr double kFar = 128;       // idle 90 to 179
-constexpr double kLargest = 1e30;  // derived: squares of it stay in the range of double, and its own in that of float
-// From hint to hint; then double precision decides, as between two as near; idle 45 to 90.
+constexpr double kLargest = 1e30;  // derived: its square is in the range of double, itself in that of float
+// From hint to hint; after that, double precision decides between two that are equally near; idle 45 to 90.
 constexpr int kMostSteps = 64;
-// Radii around an axis in which it is noted if there are no other cones; idle 1.8 to 3.5.
+// Radii around an axis within which it is recorded whether there are other cones; idle 1.8 to 3.5.
 constexpr double kLonely = 2.5;
-constexpr float kNowhere = -1e30f;  // derived: the radius of a cone that is near nothing, in the range of float
+constexpr float kNowhere = -1e30f;  // derived: radius of a cone that is never near, in the range of float
 
 // Relative: covers the rounding in a distance and in the bound by which lanes are skipped.
 constexpr float kMargin = 1e-5f;  // idle 7e-6 to 1.4e-5
 
 }  // namespace
 
-// The local cones of a hint, relative to its middle, in a power of two near its size.
+// The local cones of a hint, relative to its midpoint, in units of a power of two near its size.
 struct VesselField::Surroundings {
   std::uint64_t field = 0;
   Index hint = kNone;
   Vec3 center = Vec3::Zero();
   double unit = 1, per_unit = 1;  // mm
-  double range = 0;               // units from the center; 0: only double precision will do
+  double range = 0;               // units from the centre; 0: double precision only
   std::size_t first = 0;          // the hint's number
   std::vector<ConeLanes> lanes;
-  Vec3 lonely_low = Vec3::Zero(), lonely_high = Vec3::Zero();  // a box in which there are no other cones; or empty
+  Vec3 lonely_low = Vec3::Zero(), lonely_high = Vec3::Zero();  // a box without other cones, or empty
 };
 
 std::uint64_t VesselField::new_number() {
@@ -42,7 +42,7 @@ std::uint64_t VesselField::new_number() {
   return ++last;
 }
 
-// Every thread keeps those it has asked for last: of many queries in a row nearly all are near each other.
+// Every thread caches the ones it used last: successive queries are nearly always near each other.
 const VesselField::Surroundings& VesselField::surroundings(Index hint) const {
   constexpr std::size_t kKept = 256;
   thread_local std::vector<Surroundings> kept(kKept);
@@ -93,7 +93,7 @@ bool VesselField::all_are_blended(std::span<const Index> cones) const {
   return true;
 }
 
-// Found once: around a node of very many branches the surroundings of one cone are soon forgotten for another's.
+// Determined once and kept: around a node of very many branches, cached surroundings are soon replaced.
 bool VesselField::is_lonely(Index cone, const Vec3& low, const Vec3& high) const {
   const std::atomic_ref<char> known(lonely_[cone]);
   if (known.load(std::memory_order_relaxed) == not_asked) {
@@ -173,7 +173,7 @@ FieldSample VesselField::sample_fast(const Vec3& p, Index hint) const {
     const Index nearest = local_cones(hint)[found.nearest];
     if (nearest == hint)
       return {s.unit * found.distance, Vec3(found.gradient_x, found.gradient_y, found.gradient_z), nearest, found.t};
-    // Distances are rounded differently around every hint: of two as near each may see the other.
+    // Distances are rounded differently around every hint: of two equally near cones, each may find the other nearer.
     if (nearest == before) break;
     before = hint;
     hint = nearest;

@@ -1,4 +1,4 @@
-// What a stranger's program does with the library: a Y-shaped vessel, a query, and a surface where that is linked.
+// An external program that uses the library: a Y-shaped vessel, a query, and a surface if that is linked.
 #include <cmath>
 #include <cstdio>
 

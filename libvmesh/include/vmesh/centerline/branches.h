@@ -6,7 +6,8 @@
 
 namespace vmesh {
 
-/// A maximal chain of segments whose inner nodes have exactly two: between nodes that branch or end, or around a loop.
+/// A maximal chain of segments whose inner nodes have exactly two segments: between nodes that branch or end, or around
+/// a loop.
 struct Branch {
   std::vector<Index> nodes;     ///< in order; the first and the last are equal when the branch is a loop
   std::vector<Index> segments;  ///< segments[i] joins nodes[i] and nodes[i + 1]

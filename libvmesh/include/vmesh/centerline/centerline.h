@@ -13,8 +13,8 @@ struct CenterlineNode {
   double radius = 0;
 };
 
-/// A straight piece of a centerline between nodes `a` and `b`. The vessel around it is the round cone of
-/// the two node spheres (their convex hull).
+/// A straight line of a centerline between nodes `a` and `b`. The vessel around it is the round cone of the two node
+/// spheres (their convex hull).
 struct CenterlineSegment {
   Index a = kNone;
   Index b = kNone;
@@ -24,10 +24,10 @@ struct CenterlineSegment {
 /// Always valid once built:
 ///   - at least one node; positions finite; radii finite and > 0;
 ///   - segments join two different existing nodes at different positions, no pair twice.
-/// A node without a segment is allowed and means a sphere.
+/// A node without segments is allowed and stands for a sphere.
 class Centerline {
  public:
-  /// Throws InvalidInput that lists every problem with its element (see validate() in validation.h).
+  /// Throws InvalidInput listing every problem with its element (see validate() in validation.h).
   Centerline(std::vector<CenterlineNode> nodes, std::vector<CenterlineSegment> segments);
 
   const std::vector<CenterlineNode>& nodes() const { return nodes_; }
@@ -63,7 +63,7 @@ class Centerline {
   /// Independent cycles: segments - nodes + components. 0 for a forest.
   std::size_t cycle_rank() const { return segments_.size() + component_count_ - nodes_.size(); }
 
-  /// Sum over the segments of length / mean radius: the size of the meshing job, independent of scale.
+  /// Sum of length / mean radius over the segments: the size of the meshing task, independent of scale.
   double length_in_radii() const;
 
  private:

@@ -19,14 +19,14 @@ enum class Space { unknown, lps, ras };
 std::string_view to_string(LengthUnit unit);
 std::string_view to_string(Space space);
 
-/// The reverse, upper or lower case ("micrometer", "micron", "millimeter" ... too); nothing when not understood.
+/// The reverse, in any case, also of names ("micrometer", "micron", "millimeter" ...); nullopt when not understood.
 std::optional<LengthUnit> parse_length_unit(std::string_view text);
 std::optional<Space> parse_space(std::string_view text);
 
 /// Millimetres in one unit. Throws InvalidInput for LengthUnit::unknown.
 double millimetres_per(LengthUnit unit);
 
-/// A centerline as a file tells it, before it is checked or cleaned. Anything may be wrong with its content.
+/// A centerline as read from a file, before it is checked or cleaned. Its content may be invalid in any way.
 struct RawCenterline {
   std::vector<CenterlineNode> nodes;  ///< in `unit` and `space`; radius 0 where unknown
   std::vector<CenterlineSegment> segments;
@@ -36,9 +36,9 @@ struct RawCenterline {
   /// First segments of polylines, ascending, when the file has polylines: the segments up to the next entry run head to
   /// tail. Empty when the file gives segments one by one.
   std::vector<Index> path_starts;
-  /// The format knows trees only: points at one place are no sign that a loop is closed there.
+  /// The format only knows trees: points at the same position do not mean that a loop closes there.
   bool tree_only = false;
-  /// Branches of this kind of file may stop short of their parent (see CleaningOptions::join_gaps).
+  /// Branches in this kind of file may stop short of their parent (see CleaningOptions::join_gaps).
   bool loose_branches = false;
 
   std::string source;                          ///< file name for messages
@@ -48,7 +48,7 @@ struct RawCenterline {
   std::vector<std::uint64_t> segment_numbers;  ///< the same for segments
   std::vector<std::string> warnings;           ///< what the reader left out or assumed
 
-  /// Of a centerline that several files make, what each of them holds, ascending; see merge(). Empty for one file.
+  /// Where several files were merged, what each of them contributed, ascending; see merge(). Empty for a single file.
   struct Part {
     Index first_node, first_segment;
     std::string source, node_word, segment_word;
@@ -63,17 +63,17 @@ struct RawCenterline {
   std::string place_of_segment(Index s) const;
 };
 
-/// Converts to millimetres and LPS. An override wins over what the file says. Where neither knows, millimetres or LPS
-/// are taken and a line in `warnings` says so; it also says so when an override contradicts the file.
+/// Converts to millimetres and LPS. An override takes precedence over the file. If neither is known, millimetres or LPS
+/// are assumed with a line in `warnings`; there is one as well when an override contradicts the file.
 RawCenterline convert_to_internal(RawCenterline raw, std::optional<LengthUnit> unit_override,
                                   std::optional<Space> space_override, std::vector<std::string>& warnings);
 
-/// Several files, one vessel each, say, as one centerline: side by side, and for clean() to join where ends of branches
-/// come close. Throws InvalidInput when there is none or when they disagree on unit or frame.
+/// Merges several files (one vessel each, say) into one centerline: side by side, for clean() to join where ends of
+/// branches come close. Throws InvalidInput when there is none or when they disagree on unit or frame.
 RawCenterline merge(std::vector<RawCenterline> files);
 
-/// A hint when radii (mm) are not those of vessels that a surface is wanted of: half of them below .05 or above 40 mm.
-/// Nothing when they are plausible.
+/// A hint if the radii (mm) are implausible for vessels: half of them below .05 or above 40 mm. nullopt if they are
+/// plausible.
 std::optional<std::string> implausible_radii(const RawCenterline& raw);
 
 }  // namespace vmesh

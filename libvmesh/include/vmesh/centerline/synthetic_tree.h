@@ -8,8 +8,8 @@ namespace vmesh {
 
 /// Which synthetic tree to make.
 struct SyntheticTreeOptions {
-  std::size_t vertices = 1560;  ///< nodes of the centerline, exactly; 2 to 1,000,000
-  std::uint64_t seed = 1;       ///< any number; each gives another tree
+  std::size_t vertices = 1560;  ///< nodes of the centerline, exactly; 2 to 10,000,000
+  std::uint64_t seed = 1;       ///< of the random numbers; each gives a different tree
 };
 
 /// A tree like a liver's portal vein: it enters a liver-shaped region at the hilum and branches until it fills it.
@@ -20,7 +20,7 @@ struct SyntheticTreeOptions {
 ///     cubes of the radii of the two nodes that follow (Murray's law); in between vessels taper gently.
 ///   - Vessels keep apart: the capsules of two segments, with the larger end radius of each, touch only when the
 ///     segments are near along the tree (path length at most twice the sum of their radii).
-/// Deterministic: options give the same bytes wherever double is IEEE 754. Throws InvalidInput for a number of
+/// Deterministic: the same options give the same bytes wherever double is IEEE 754. Throws InvalidInput for a number of
 /// vertices out of range.
 Centerline synthetic_tree(const SyntheticTreeOptions& options = {});
 

@@ -34,19 +34,19 @@ enum class SurfaceMethod {
 /// "low, fitted", "high, fitted", "growth as published".
 std::string_view to_string(SurfaceMethod method);
 
-/// A surface against the reference, both ways.
+/// The distance between a surface and the reference, both ways.
 struct ReferenceDistance {
   Hausdorff hausdorff;  ///< forward: from the surface to the reference
   SampledDistance from_surface, from_reference;
 };
 
-/// Whether a surface is one.
+/// Whether a surface is sound.
 struct SurfaceSoundness {
   Topology topology;
   std::size_t self_intersections = 0;  ///< pairs of faces
 };
 
-/// What one method made and how good it is.
+/// The surface of one method and its quality.
 struct MethodRow {
   SurfaceMethod method = SurfaceMethod::marching_cubes;
   int around = 0;  ///< vertices around a vessel; 0 for what vmesh did not grow
@@ -58,9 +58,9 @@ struct MethodRow {
 };
 
 struct MethodComparison {
-  std::vector<MethodRow> rows;  ///< in the order of SurfaceMethod: the first four, then those that are needed
+  std::vector<MethodRow> rows;  ///< in the order of SurfaceMethod: the first four, then those requested
 
-  /// One of the first four.
+  /// The row of one of the first four methods.
   const MethodRow& row(SurfaceMethod method) const { return rows.at(static_cast<std::size_t>(method)); }
 };
 
@@ -72,12 +72,12 @@ struct MethodOptions {
   bool paper_growth = false;      ///< the preset low once more, grown as published
 };
 
-/// Puts truncated cones and vmesh's surfaces around `centerline` and measures all of them against `reference`, which
-/// becomes the first row. The low resolution is the preset low, unless its vertices were a larger share of those of
-/// marching cubes or of the cones than the paper's low resolution has; then the finest that is not, or 3 vertices
-/// around a vessel. Likewise the high one. The presets themselves then follow as rows of their own. The reference need
-/// not be closed. Deterministic. Throws InvalidInput for what truncated_cones(), generate_surface() and hausdorff()
-/// refuse; Cancelled.
+/// Makes truncated cones and vmesh's surfaces around `centerline` and measures all of them against `reference`, which
+/// becomes the first row. The low resolution is the preset low, unless that has a larger share of the vertices of
+/// marching cubes or of the cones than the paper's low resolution; then it is the finest that does not, or 3 vertices
+/// around a vessel. Likewise for the high one; the presets themselves then follow as rows of their own. The reference
+/// need not be closed. Deterministic. Throws InvalidInput for what truncated_cones(), generate_surface() and
+/// hausdorff() refuse; Cancelled.
 MethodComparison compare_methods(TriMesh reference, const Centerline& centerline, const MethodOptions& options = {},
                                  const Progress& progress = {});
 

@@ -8,34 +8,35 @@
 
 namespace vmesh {
 
-/// A row of Table 2 as the paper prints it. The paper's liver was not published: its millimetres are of other vessels.
+/// A row of Table 2 as printed in the paper. The paper's liver was not published: its millimetres are those of other
+/// vessels.
 struct PaperRow {
   std::size_t vertices = 0, faces = 0;
   double skewness_mean = 0, skewness_max = 0;
   std::optional<double> hausdorff_mm;  ///< none for marching cubes, its reference
 };
-/// Of one of the first four methods; the presets are not in the paper.
+/// The row of one of the first four methods; the presets are not in the paper.
 const PaperRow& paper_row(SurfaceMethod method);
 
-/// A number of ours beside the paper's. Of all of them, less is better.
+/// One of our figures beside the paper's. For all of them, less is better.
 struct PaperFigure {
   SurfaceMethod method = SurfaceMethod::marching_cubes;
   std::string_view what;
-  double ours = 0;   ///< of a Hausdorff distance the upper bound
-  double paper = 0;  ///< as printed; of a share, from the printed counts
+  double ours = 0;   ///< for a Hausdorff distance, the upper bound
+  double paper = 0;  ///< as printed; for a share, from the printed counts
   bool worse() const { return ours > paper; }
 };
 
-/// For every row that the paper has: the mean and maximum skewness and the Hausdorff distance; of vmesh's surfaces the
-/// number of vertices as a share of those of marching cubes and of truncated cones, too.
+/// For every row in the paper: mean and maximum skewness and Hausdorff distance; for vmesh's surfaces also the number
+/// of vertices as a share of those of marching cubes and of truncated cones.
 std::vector<PaperFigure> compare_with_paper(const MethodComparison& comparison);
 
-/// Something demanded of the low-resolution surface.
+/// A requirement for the low-resolution surface.
 struct TableDemand {
   std::string_view what;
   double found = 0;
   double limit = 0;
-  bool below = false;  ///< found must be less than the limit; else it may equal it
+  bool below = false;  ///< `found` must be less than the limit; otherwise it may equal it
   bool met() const { return below ? found < limit : found <= limit; }
 };
 

@@ -7,14 +7,14 @@
 
 namespace vmesh {
 
-/// Sorts a list and leaves out what is in it more than once.
+/// Sorts a list and removes duplicates.
 template <class T>
 void sort_unique(std::vector<T>& list) {
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-/// Where `number` is in an ascending list; kNone if it is not there.
+/// Position of `number` in an ascending list; kNone if it is not there.
 inline Index place_in(const std::vector<Index>& list, Index number) {
   const auto it = std::lower_bound(list.begin(), list.end(), number);
   return it != list.end() && *it == number ? static_cast<Index>(it - list.begin()) : kNone;

@@ -7,15 +7,16 @@
 
 namespace vmesh {
 
-/// A file that appears under its name complete or not at all: written under a temporary name that nobody can guess or
-/// plant, in the same folder; synced to the disk and renamed by commit(). Without commit() the temporary is removed and
-/// an older file of that name stays as it was; one that is replaced hands its permissions on. A link stays a link, what
-/// it leads to is replaced. What is no regular file (/dev/stdout, a pipe) is written directly.
+/// A file that appears under its name either complete or not at all: written in the same folder under a temporary name
+/// that cannot be guessed or planted, then synced to disk and renamed by commit(). Without commit() the temporary file
+/// is removed and an existing file of that name stays as it was; a replaced file passes on its permissions. A symbolic
+/// link stays a link, and its target is replaced. Anything but a regular file (/dev/stdout, a pipe) is written
+/// directly.
 class AtomicFile {
  public:
   /// Throws WriteError when the folder does not exist or cannot be written, and when `path` is a folder, is too long or
-  /// leads in a circle. Waits for the reader of a pipe; a signal whose handler does not restart calls ends that, and
-  /// every later wait for it, with Cancelled.
+  /// is a cycle of links. Waits for the reader of a pipe; a signal whose handler does not restart system calls ends
+  /// this wait, and every later one, with Cancelled.
   explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -38,7 +39,7 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Throws the WriteError that AtomicFile would; leaves nothing behind, and does not open what is no regular file.
+/// Throws the WriteError that AtomicFile would; leaves nothing behind, and opens regular files only.
 void check_can_be_written(const std::filesystem::path& path);
 
 }  // namespace vmesh

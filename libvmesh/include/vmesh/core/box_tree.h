@@ -1,33 +1,40 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "vmesh/core/types.h"
 
 namespace vmesh {
 
-/// A balanced tree of axis-aligned boxes over items that each lie in a box of their own.
+/// A balanced tree of axis-aligned boxes over items with a bounding box each.
 class BoxTree {
  public:
   BoxTree() = default;
   /// `low`, `high`: the items' boxes (mm). O(n log n), deterministic.
   BoxTree(const std::vector<Vec3>& low, const std::vector<Vec3>& high);
 
-  /// Calls visit(item) for every item whose signed distance at `p` may be at most `limit`, near boxes first.
-  /// The visitor may lower `limit` as it goes: this is how a minimum is found.
+  struct Box {
+    Vec3 low, high;
+  };
+  /// The same for items 0 to `count` - 1 whose boxes are computed when they are needed, twice each: takes less memory.
+  BoxTree(Index count, const std::function<Box(Index)>& box_of);
+
+  /// Calls visit(item) for every item whose signed distance at `p` may be at most `limit`, near boxes first. The
+  /// visitor may lower `limit` as it goes, which finds a minimum.
   template <class Visit>
   void visit(const Vec3& p, const double& limit, Visit&& visit_item) const {
     if (!nodes_.empty()) visit_node(0, p, limit, visit_item);
   }
 
-  /// Calls visit(item) for every item whose box meets the box [low, high].
+  /// Calls visit(item) for every item whose box overlaps the box [low, high].
   template <class Visit>
   void visit_overlapping(const Vec3& low, const Vec3& high, Visit&& visit_item) const {
     if (!nodes_.empty()) visit_overlapping_node(0, low, high, visit_item);
   }
 
-  /// Calls visit(item, item) once for every two items whose boxes meet, and for a few whose boxes do not.
+  /// Calls visit(item, item) once for every two items whose boxes overlap, and for a few whose boxes do not.
   template <class Visit>
   void visit_pairs(Visit&& visit_pair) const {
     if (!nodes_.empty()) visit_pairs_within(0, visit_pair);
@@ -49,7 +56,7 @@ class BoxTree {
 
   struct Item;
   void divide(Index node, std::vector<Item>& items, Index first, Index count);
-  void enclose(Node& node, const std::vector<Vec3>& low, const std::vector<Vec3>& high) const;
+  void enclose(Node& node, const std::function<Box(Index)>& box_of) const;
 
   template <class Visit>
   void visit_node(Index n, const Vec3& p, const double& limit, Visit&& visit_item) const {

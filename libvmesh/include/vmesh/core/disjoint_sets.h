@@ -8,13 +8,13 @@
 
 namespace vmesh {
 
-/// Sets of the numbers 0 to count - 1 that can be joined; each starts alone. The lowest number of a set stands for it,
-/// whatever the order in which sets were joined.
+/// Union-find over the numbers 0 to count - 1; each starts in a set of its own. A set is represented by its lowest
+/// number, whatever the order in which sets were joined.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
 
-  /// The lowest number of the set that `i` is in.
+  /// The lowest number of the set that contains `i`.
   Index find(Index i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;

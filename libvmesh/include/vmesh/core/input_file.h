@@ -7,7 +7,7 @@
 
 namespace vmesh {
 
-/// A regular file, open for reading. Pipes and devices are refused and never waited for: what is read is read twice,
+/// A regular file, open for reading. Pipes and devices are refused without waiting for them: every input is read twice,
 /// once for its content and once for its SHA-256.
 class InputFile {
  public:
@@ -17,9 +17,11 @@ class InputFile {
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
-  std::uint64_t size() const { return size_; }  ///< when it was opened; 0 for what the system makes up as it is read
+  std::uint64_t size() const {
+    return size_;
+  }  ///< when it was opened; 0 for files the system generates as they are read
 
-  /// The next bytes, as many as there is room for or left; 0 at the end. Throws ReadError.
+  /// Reads the next bytes, as many as fit or remain; returns their number, 0 at the end. Throws ReadError.
   std::size_t read(std::span<char> bytes);
 
  private:
@@ -28,8 +30,8 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
-/// The whole file. Throws as InputFile does, InvalidInput when it is empty, and Unsupported when it is larger than the
-/// memory that is free.
+/// The whole file. Throws like InputFile, InvalidInput when it is empty, and Unsupported when it is larger than the
+/// free memory.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace vmesh

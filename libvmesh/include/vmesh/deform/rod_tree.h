@@ -8,10 +8,10 @@ namespace vmesh {
 
 using Mat3 = Eigen::Matrix3d;
 
-/// A centerline as a forest of rods, at rest. One slot per node, parents before children, every subtree in one piece;
-/// a segment that closes a loop ends in a slot of its own that is tied to the node's. The frame of a slot belongs to
-/// the segment from its parent (C_j of the paper, section 3): orthonormal columns x, y, z, with z along the segment.
-/// A root has a frame of its own.
+/// A centerline as a forest of rods, at rest. One slot per node, parents before children, every subtree contiguous; a
+/// segment that closes a loop ends in a slot of its own that is tied to the node's. The frame of a slot belongs to the
+/// segment from its parent (C_j of the paper, section 3): orthonormal columns x, y, z, with z along the segment. A root
+/// has a frame of its own.
 struct RodTree {
   /// Two slots at one node.
   struct Tie {
@@ -35,7 +35,7 @@ struct RodTree {
 /// Cuts `centerline` into trees, rooted at the lowest node of every component. O(n), deterministic.
 RodTree make_rod_tree(const Centerline& centerline);
 
-/// Where everything is: one entry per slot of a RodTree.
+/// The state of a rod tree: one entry per slot of a RodTree.
 struct Pose {
   std::vector<Vec3> position;        ///< mm
   std::vector<Mat3> frame;           ///< orthonormal

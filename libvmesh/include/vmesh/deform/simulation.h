@@ -8,50 +8,50 @@
 
 namespace vmesh {
 
-/// implicit: implicit Euler on the energy of the paper's springs, stable at any stiffness and step. paper: the
-/// procedure of the paper's section 3, Eqs. 3 to 8, explicit, in as many equal substeps as its springs need.
+/// implicit: implicit Euler on the energy of the paper's springs, stable at any stiffness and step. paper: the explicit
+/// procedure of the paper's section 3, Eqs. 3 to 8, in as many equal substeps as its springs need.
 enum class Integrator { implicit, paper };
 
 /// Variants of the paper's procedure. Its defaults are the paper as printed.
 struct PaperProcedure {
-  /// printed: Eqs. 4, 5 and 8: z becomes the mean of itself and the segment's direction, and the node is put where z
-  /// points. spring: both as a stiff spring, which acts on the segment's other end too.
+  /// printed: Eqs. 4, 5 and 8: z becomes the mean of itself and the segment's direction, and the node is moved to where
+  /// z points. spring: both as a stiff spring, which also acts on the segment's other end.
   enum class Coupling { printed, spring };
-  /// printed: Eqs. 6 and 7, which keep z. polar: the rotation nearest to the three axes.
+  /// printed: Eqs. 6 and 7, which keep z. polar: the rotation nearest to the three axes together.
   enum class Axes { printed, polar };
 
   Coupling coupling = Coupling::printed;
   Axes axes = Axes::printed;
-  /// Substeps of a step; 0: what the stiffest spring and the lightest node allow.
+  /// Substeps per step; 0: as many as the stiffest spring and the lightest node require.
   int substeps = 0;
 };
 
 struct SimulationOptions {
   Integrator integrator = Integrator::implicit;
   double step_s = 0.02;  ///< > 0
-  int iterations = 2;    ///< implicit: Gauss-Newton iterations a step, at least 1
+  int iterations = 2;    ///< implicit: Gauss-Newton iterations per step, at least 1
   Vec3 gravity_mm_s2 = Vec3::Zero();
-  double drag_per_s = 0;             ///< velocities fade at this rate; >= 0
-  double squeeze_response_s = 0.02;  ///< in which a profile follows a squeeze; >= 0
-  /// implicit: what moves by less than this (in local radii) and turns by less (in radians) in each of rest_steps steps
-  /// is at rest, until something moves it farther. 0: nothing ever rests.
+  double drag_per_s = 0;             ///< decay rate of velocities; >= 0
+  double squeeze_response_s = 0.02;  ///< time constant with which a profile follows a squeeze; >= 0
+  /// implicit: a slot that moves by less than this (in local radii) and rotates by less (in radians) in each of
+  /// rest_steps steps is at rest until something moves it farther. 0: nothing ever rests.
   double rest_tolerance = 1e-7;
   int rest_steps = 10;  ///< 1 to 100
   PaperProcedure paper{};
 };
 
-/// What a step did.
+/// What happened in a step.
 struct StepReport {
   int iterations = 0;      ///< Gauss-Newton iterations, or substeps
-  int rejections = 0;      ///< Gauss-Newton steps, or parts of them, that would have raised the energy
+  int rejections = 0;      ///< Gauss-Newton updates, or parts of them, rejected for raising the energy
   double work_J = 0;       ///< by forces, gravity and, implicit, dragged nodes
-  double movement_mm = 0;  ///< of the last iteration, the largest of all nodes: how far from converged
+  double movement_mm = 0;  ///< largest movement of a node in the last iteration: a measure of convergence
   std::size_t awake = 0;   ///< slots that are not at rest
 };
 
 /// A centerline that moves under forces: masses at nodes, springs along segments, damped angular springs between
-/// neighbouring segments (section 3), on trees; loops are closed by springs, which hold their ends together but let
-/// them turn. Lengths in mm, time in s, forces in N. A force, torque or squeeze stays until it is set again.
+/// neighbouring segments (section 3), on trees; loops are closed by springs that hold their ends together but let them
+/// rotate. Lengths in mm, time in s, forces in N. A force, torque or squeeze stays until it is set again.
 /// Deterministic; runs on one thread.
 class CenterlineSimulation {
  public:
@@ -62,32 +62,33 @@ class CenterlineSimulation {
   CenterlineSimulation(CenterlineSimulation&&) noexcept;
   CenterlineSimulation& operator=(CenterlineSimulation&&) noexcept;
 
-  /// What follows throws InvalidInput for a node that does not exist and for numbers that are not finite.
-  void fix(Index node);      ///< holds its position; it may turn
+  /// The following functions throw InvalidInput for a node that does not exist and for numbers that are not finite.
+  void fix(Index node);      ///< holds its position; it may rotate
   void clamp(Index node);    ///< holds position and frame
   void release(Index node);  ///< undoes fix(), clamp() and drag()
   /// The next step moves the node there; then it is fixed (a clamped one stays clamped).
   void drag(Index node, const Vec3& position_mm);
   void set_force(Index node, const Vec3& force_N);
   void set_torque(Index node, const Vec3& torque_N_mm);
-  /// Scale of the profile at a node, > 0, before squeezing.
+  /// Sets the scale of the profile at a node, > 0, before squeezing.
   void set_radial_scale(Index node, double scale);
-  /// Presses on the wall around a node, evenly; negative widens. Spread over the nearer halves of the node's segments.
+  /// Presses evenly on the wall around a node; negative forces widen it. Spread over the nearer halves of the node's
+  /// segments.
   void set_squeeze(Index node, double force_N);
   void set_velocity(Index node, const Vec3& velocity_mm_s);
   void set_gravity(const Vec3& gravity_mm_s2);
 
-  /// Advances by SimulationOptions::step_s. Allocates nothing. When everything is at rest it returns at once.
+  /// Advances by SimulationOptions::step_s. Allocates nothing. Returns at once when everything is at rest.
   StepReport step() noexcept;
 
   const RodTree& tree() const;
   const Pose& pose() const;
   Vec3 position(Index node) const;
-  /// Kinetic and elastic energy, computed anew.
+  /// Kinetic and elastic energy, computed on each call.
   double kinetic_energy_J() const;
   double elastic_energy_J() const;
 
-  /// Slots that moved since the last clear_moved(), 1 or 0 each: what SurfaceBinding::apply() has to look at.
+  /// Slots that moved since the last clear_moved(), 1 or 0 each: what SurfaceBinding::apply() must update.
   const std::vector<char>& moved() const;
   void clear_moved();
 

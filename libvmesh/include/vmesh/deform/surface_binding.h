@@ -15,12 +15,12 @@ struct SurfacePlace {
   double t = 0;
 };
 
-/// The nearest point of the centerline for every point, by a hierarchy of boxes over the segments; O(n log n).
+/// The nearest point of the centerline to every point, by a box hierarchy over the segments; O(n log n).
 std::vector<SurfacePlace> nearest_places(const Centerline& centerline, std::span<const Vec3> points);
 
-/// A surface as it moves: arrays by lane, not by vertex (SurfaceBinding::lane_of_vertex()). Positions in mm, relative
-/// to `origin`, so that single precision is that of the vessel's size wherever it lies; normals of unit length, or
-/// none. Lanes without a vertex hold numbers of no meaning.
+/// A moving surface: arrays by lane, not by vertex (SurfaceBinding::lane_of_vertex()). Positions in mm, relative to
+/// `origin`, so that single precision is relative to the vessel's size wherever it lies; normals of unit length, or
+/// none. Lanes without a vertex hold arbitrary numbers.
 struct DeformedSurface {
   Vec3 origin = Vec3::Zero();
   std::vector<float> x, y, z;
@@ -30,10 +30,10 @@ struct DeformedSurface {
   Vec3 normal(Index lane) const { return {normal_x[lane], normal_y[lane], normal_z[lane]}; }
 };
 
-/// Keeps a surface attached to a centerline that moves (Eqs. 1, 2, 9 and 10). A vertex is the point at its parameter of
-/// its segment plus a vector that is carried by two frames, that of the segment and that of the parent's segment, and
-/// is the mean of both: as the vector's rest coordinates in the two differ by Eq. 3's rotation, one matrix per segment
-/// does it. Segments with like numbers of vertices are worked on eight at once, in blocks of eight lanes: a vertex of
+/// Keeps a surface attached to a moving centerline (Eqs. 1, 2, 9 and 10). A vertex is the point at its parameter on its
+/// segment plus a vector: the mean of the vectors carried by two frames, that of the segment and that of the parent's
+/// segment. As the vector's rest coordinates in the two differ by Eq. 3's rotation, one matrix per segment suffices.
+/// Segments with similar numbers of vertices are processed eight at a time, in blocks of eight lanes with a vertex of
 /// each.
 class SurfaceBinding {
  public:
@@ -53,18 +53,18 @@ class SurfaceBinding {
   /// Arrays of the right length, filled with the surface at rest. The origin is the middle of the tree at rest.
   DeformedSurface make_surface(Normals normals = Normals::without) const;
 
-  /// Writes the surface around `pose`, with normals if it has any. In single precision: within 1e-6 times the
-  /// connecting vector of Eq. 10 and 2e-7 times the largest coordinate from the origin; the bytes do not depend on the
-  /// processor's vectors.
+  /// Writes the surface around `pose`, with normals if it has any. Single precision: accurate to 1e-6 times the
+  /// connecting vector of Eq. 10 plus 2e-7 times the largest coordinate relative to the origin; the bytes do not depend
+  /// on the processor's vector width.
   void apply(const Pose& pose, DeformedSurface& surface) const noexcept;
   /// The same where `moved` (one per slot, CenterlineSimulation::moved()) says that something changed.
   void apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface) const noexcept;
-  /// The same by a set of instructions; for tests.
+  /// The same with a given instruction set; for tests.
   using Synchroniser = void (*)(const struct Attachment&, DeformedSurface&) noexcept;
   void apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface,
              Synchroniser synchroniser) const noexcept;
 
-  /// What is fixed, by lane.
+  /// Constants of every lane.
   struct Rest {
     std::vector<float> t;                             ///< from the parent's position to the slot's
     std::vector<float> x, y, z;                       ///< connecting vector in the slot's frame

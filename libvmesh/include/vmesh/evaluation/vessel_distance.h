@@ -21,11 +21,11 @@ struct BoundarySamples {
 };
 
 /// Points spread evenly over the boundary of the plain union of the field's round cones: on the side of every cone and
-/// on the sphere of every node, those inside another cone left out. Deterministic, low-discrepancy. About `count`
-/// points, fewer where cones overlap: `count` by the area of all sides, or of the spheres where there are no sides.
+/// on the sphere of every node, except those inside another cone. Deterministic, low-discrepancy. About `count` points,
+/// fewer where cones overlap: `count` by the area of all sides, or of the spheres where there are no sides.
 BoundarySamples sample_boundary(const VesselField& field, std::size_t count);
 
-/// Distances of samples from one surface to the other: area-weighted, their maximum a lower bound of the true one.
+/// Distances of samples on one surface from the other: area-weighted; their maximum is a lower bound of the true one.
 struct VesselDistanceSide {
   Distribution mm;
   Distribution relative;  ///< in units of the local radius of the vessel
@@ -34,12 +34,12 @@ struct VesselDistanceSide {
   double samples_per_mm2 = 0;
 };
 
-/// A surface against the exact vessel volume, both ways.
+/// The distance between a surface and the exact vessel volume, both ways.
 struct VesselDistance {
   /// |signed distance| on the surface. Inside the volume, where cones overlap, a lower bound of the distance from the
   /// boundary (see VesselField).
   VesselDistanceSide from_mesh;
-  /// Distance of the volume's boundary from the surface.
+  /// Distance from the volume's boundary to the surface.
   VesselDistanceSide from_volume;
 };
 

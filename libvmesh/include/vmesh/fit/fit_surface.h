@@ -19,22 +19,24 @@ struct VesselSurface {
   std::vector<Opening> openings;
 };
 
-/// How a surface is fitted to another one.
+/// How to fit a surface to another one.
 struct FitOptions {
-  /// Rounds of correspondence, least squares and repair, 1 to 100; in the first half the size of triangles changes too.
+  /// Rounds of correspondence, least squares and repair, 1 to 100; in the first half, the size of triangles changes as
+  /// well.
   int rounds = 16;
-  /// Triangles become finer where the error is large and coarser where it is small. Otherwise every triangle stays.
+  /// Refine triangles where the error is large and coarsen them where it is small. Otherwise the triangles stay the
+  /// same.
   bool resize = true;
-  /// Most vertices; 0: a twentieth more than the surface has, or as many as `error` takes.
+  /// Maximum number of vertices; 0: a twentieth more than the surface has, or as many as `error` needs.
   std::size_t max_vertices = 0;
-  /// Error to reach with as few vertices as it takes, mm: 95 % of both surfaces are nearer to the other than this. 0:
-  /// none; then the number of vertices is kept.
+  /// Error to reach with as few vertices as possible, mm: 95 % of either surface is nearer to the other than this. 0:
+  /// none; the number of vertices is then kept.
   double error = 0;
-  /// Equiangle skewness that no step makes a triangle worse than; 0.1 to 0.9.
+  /// Equiangle skewness beyond which no step may worsen a triangle; 0.1 to 0.9.
   double max_skewness = 0.4;
   /// Points on each surface for mean, RMS and percentiles of the report; a quarter of them before the fit.
   std::size_t samples = 100'000;
-  /// Width of the interval that holds a Hausdorff distance, mm.
+  /// Width of the interval that contains a Hausdorff distance, mm.
   double tolerance = 1e-3;
   /// Threads to work on; 0: as many as the machine has. The result does not depend on it.
   int threads = 0;
@@ -50,7 +52,7 @@ struct FitDistance {
   double p95() const { return std::max(from_surface.distance.p95, from_reference.distance.p95); }
 };
 
-/// A part of one surface that nothing of the other answers to: faces joined by edges.
+/// A region of one surface without a counterpart on the other: faces joined by edges.
 struct UnmatchedPart {
   Vec3 position = Vec3::Zero();  ///< of its point farthest from the other surface, mm
   double distance = 0;           ///< of that point, mm
@@ -61,17 +63,18 @@ struct UnmatchedPart {
 
 struct FitReport {
   std::size_t vertices_before = 0;
-  FitDistance before, after;  ///< parts of the reference that lie apart left out
-  /// Components of the reference most of which belongs to no vessel, and their area, mm^2.
+  FitDistance before, after;  ///< without components of the reference that belong to no vessel
+  /// Components of the reference that mostly belong to no vessel, and their area, mm^2.
   std::size_t parts_apart = 0;
   double area_apart = 0;
-  /// Of the reference, what no vessel covers: missing twigs, neighbours. Not chased. Largest first.
+  /// Regions of the reference that no vessel covers: missing twigs, neighbouring organs. The fit ignores them. Largest
+  /// first.
   std::vector<UnmatchedPart> uncovered;
-  /// Of the surface, what the reference does not have: vessels beyond its end; inside of it, walls between the legs of
-  /// a hairpin in one wide lumen.
+  /// Regions of the surface that the reference lacks: vessels beyond its end; inside it, walls between the legs of a
+  /// hairpin in one wide lumen.
   std::vector<UnmatchedPart> unsupported;
-  std::vector<Defect> nodes_outside;  ///< of the centerline, outside of the fitted surface; of a GenerateResult only
-  bool turned = false;                ///< the reference faced inwards, and was turned
+  std::vector<Defect> nodes_outside;  ///< of the centerline, outside the fitted surface; for a GenerateResult only
+  bool turned = false;                ///< the reference faced inwards and was turned over
   int rounds = 0;                     ///< of correspondence
 };
 
@@ -81,29 +84,29 @@ struct FitResult {
   FitReport report;
 };
 
-/// The openings of a surface with borders, by their lowest vertices; Opening::node and radius are not known (kNone, 0).
-/// The mesh is manifold and oriented.
+/// The holes of an open surface as openings, ordered by their lowest vertices; Opening::node and radius are unknown
+/// (kNone, 0). The mesh is manifold and oriented.
 std::vector<Opening> find_openings(const TriMesh& mesh);
 
-/// Moves `surface` onto `reference` by least squares: vertices and, with options.resize, the size of the triangles.
-/// The surface stays sound: what it has of components, holes and openings, and no faces that cross.
+/// Moves `surface` onto `reference` by least squares: vertices and, with options.resize, the size of the triangles. The
+/// surface stays sound: it keeps its components, handles and openings, and no faces cross.
 ///
-/// Points of both surfaces go to the closest point of the other that faces the same way and belongs to the same vessel,
-/// along the graph, within 1.5 local radii; squared distances along the line between the two are minimised over all
-/// vertices at once (tangent distances; Pottmann, Huang, Yang, Hu, "Geometry and convergence analysis of algorithms for
-/// registration of 3D shapes", 2006), with tangential springs and smooth increments. A step is taken as far as
-/// triangles keep their shape and no faces cross.
+/// Points of both surfaces are paired with the closest point of the other that faces the same way and belongs to the
+/// same vessel along the graph, within 1.5 local radii; squared distances along the line between the two are minimised
+/// over all vertices at once (tangent distances; Pottmann, Huang, Yang, Hu, "Geometry and convergence analysis of
+/// algorithms for registration of 3D shapes", 2006), with tangential springs and smooth increments. Steps are limited
+/// so that triangles keep their shape and no faces cross.
 ///
 /// `surface` is bound to `centerline`. `reference` faces outwards or inwards as a whole; it may be open and may have
 /// parts that belong to no vessel. Deterministic. Throws InvalidInput for a reference without faces, one whose faces
 /// disagree about the outside, one that is nowhere near the surface, a surface that is not manifold and oriented, that
-/// has faces that cross or whose binding does not fit, and options out of range; Unsupported when the memory that is
-/// free does not hold what it takes, also in the middle, before an error asks for more vertices; Cancelled.
+/// has faces that cross or whose binding does not fit, and options out of range; Unsupported if there is not enough
+/// free memory, also midway before `error` adds vertices; Cancelled.
 FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline, const TriMesh& reference,
                       const FitOptions& options = {}, const Progress& progress = {});
 
 /// The same for a generated surface: mesh, binding, radii, openings, check and defects become those of the fitted one.
-/// A node of the centerline that is outside of it is no defect, but reported.
+/// A node of the centerline outside the fitted surface is not a defect, but is reported.
 FitReport fit_surface(GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
                       const FitOptions& options = {}, const Progress& progress = {});
 

@@ -9,36 +9,36 @@
 
 namespace vmesh {
 
-/// Whether the name ends as an image's: .nii, .nii.gz, .nrrd or .mha, or, for ITK to read, .mhd, .nhdr, .hdr, .img or
+/// Whether the name has an image's extension: .nii, .nii.gz, .nrrd or .mha, or, read by ITK, .mhd, .nhdr, .hdr, .img or
 /// .dcm; upper or lower case.
 bool is_image_path(const std::filesystem::path& path);
 
-/// The same, or a DICOM file of whatever name, or a folder with such files in it. Pipes are not waited for.
+/// The same, or a DICOM file of any name, or a folder with such files. Does not wait for pipes.
 bool is_image(const std::filesystem::path& path);
 
 struct LoadedImage {
   VoxelImage image;
   bool integer = false;               ///< the file stores whole numbers: labels, a mask or CT numbers
-  std::vector<std::string> warnings;  ///< what the file does not say and was assumed
+  std::vector<std::string> warnings;  ///< what was assumed because the file does not say
 };
 
-/// Reads a scalar image of three dimensions (more, when they have one sample), lying in space where 3D Slicer shows it:
-/// NIfTI-1 and -2, NRRD, MetaImage, with header and voxels in one file, packed or not. In NIfTI, the sform wins over
-/// the qform unless it is skewed. It takes at most 16 times as much memory as the voxels in the
-/// file, unpacked (and 128 times as much as a file that is not packed), and a megabyte, whatever the header says.
+/// Reads a scalar image of three dimensions (more if the others have one sample), placed in space as in 3D Slicer:
+/// NIfTI-1 and -2, NRRD, MetaImage, with header and voxels in one file, compressed or not. In NIfTI, the sform takes
+/// precedence over the qform unless it is skewed. Needs at most 16 times the memory of the file's uncompressed voxels
+/// (and 128 times that of an uncompressed file) plus a megabyte, whatever the header says.
 ///
-/// In a build with ITK, also, in a child of this process and after asking for the memory: MetaImage, NRRD and NIfTI (or
-/// Analyze) with the voxels in another file; a DICOM series of slices, whose files make up a folder or lie in one with
-/// others, when `path` is one of them; DICOM files of many frames, and segmentations, whose value is the number of the
-/// segment. Slices are sorted by where they lie, rescaled as they say, and refused (InvalidInput) unless they fill a
-/// regular grid.
+/// A build with ITK also reads, in a child process and after checking for memory: MetaImage, NRRD and NIfTI (or
+/// Analyze) with the voxels in a separate file; a DICOM series of slices, given by its folder or by one of its files;
+/// multi-frame DICOM files, and segmentations, whose values are segment numbers. Slices are sorted by position,
+/// rescaled as their headers say, and refused (InvalidInput) unless they fill a regular grid.
 ///
 /// Throws ReadError (missing, a directory, unreadable), InvalidInput (content: not such a file, fewer voxels in the
 /// file than its header claims, values that are not finite, axes that span no volume), Unsupported (extension, voxels
-/// in another file, what needs ITK in a build without it, several numbers per voxel, whole numbers that float cannot hold).
+/// in another file, formats that need ITK in a build without it, several numbers per voxel, integers that float cannot
+/// represent).
 LoadedImage read_image(const std::filesystem::path& path);
 
-/// The same from memory; `source` names the content in messages and tells its format by its ending.
+/// The same from memory; `source` names the content in messages, and its extension gives the format.
 LoadedImage parse_image(std::string_view content, const std::string& source);
 
 }  // namespace vmesh

@@ -8,7 +8,7 @@
 
 namespace vmesh {
 
-/// A scalar image on a regular grid, placed in the internal frame (LPS, mm). Values belong to the centres of voxels.
+/// A scalar image on a regular grid, placed in the internal frame (LPS, mm). Values are those at the centres of voxels.
 struct VoxelImage {
   std::array<std::size_t, 3> size = {0, 0, 0};
   std::vector<float> values;  ///< size[0] * size[1] * size[2] of them, the first axis fastest
@@ -19,7 +19,7 @@ struct VoxelImage {
   std::size_t offset(std::size_t i, std::size_t j, std::size_t k) const { return (k * size[1] + j) * size[0] + i; }
   float at(std::size_t i, std::size_t j, std::size_t k) const { return values[offset(i, j, k)]; }
 
-  /// Of voxel coordinates, which need not be whole.
+  /// Position of voxel coordinates, which need not be integers.
   Vec3 position(const Vec3& voxel) const { return origin + steps * voxel; }
   /// Distance between neighbouring voxels along every axis (mm).
   Vec3 spacing() const { return steps.colwise().norm(); }

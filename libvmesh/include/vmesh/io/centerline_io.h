@@ -19,7 +19,7 @@ enum class CenterlineFormat {
   csv,      ///< .csv; a pair of files, see csv_segments_path()
   vmv,      ///< .vmv; VessMorphoVis: vertices `id x y z radius`, strands `id vertex vertex ...`; read only
   vtk,      ///< .vtk; legacy VTK, text or binary: POLYDATA with lines and a radius per point or line; read only
-  ctgr,     ///< .ctgr; SimVascular's contours along a path, as wide as their area; read only
+  ctgr,     ///< .ctgr; SimVascular's contours along a path, radii from their areas; read only
   pth,      ///< .pth; SimVascular's path, without radii; read only
   gxl,      ///< .gxl, .xml; VascuSynth: nodes in voxels, a radius per edge; read only
   amira,    ///< .am; Amira's spatial graph, text or binary; read only
@@ -27,13 +27,13 @@ enum class CenterlineFormat {
   hdf5,     ///< .h5; network of MorphIO and VessMorphoVis: sections with diameters, in um; read only, from files
 };
 
-/// By the file's extension, upper or lower case; none if centerlines are never in such files.
+/// The format by the file's extension, upper or lower case; nullopt if it is not a centerline's.
 std::optional<CenterlineFormat> find_centerline_format(const std::filesystem::path& path);
 
-/// The same; throws Unsupported, with the extensions that are.
+/// The same; otherwise throws Unsupported, listing the supported extensions.
 CenterlineFormat centerline_format(const std::filesystem::path& path);
 
-/// The same for a file to be written; also throws Unsupported for formats that are read only.
+/// The same for a file to be written; also throws Unsupported for read-only formats.
 CenterlineFormat centerline_output_format(const std::filesystem::path& path);
 
 /// The second file of a CSV pair: tree.csv or tree.nodes.csv (header `id,x,y,z,radius`) goes with
@@ -41,26 +41,26 @@ CenterlineFormat centerline_output_format(const std::filesystem::path& path);
 std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path);
 
 struct CenterlineReadOptions {
-  /// VTP, VTK, Amira: name of the array of points, or of lines, that holds the radius, or the diameter if "diam" is in
-  /// the name. Empty: MaximumInscribedSphereRadius, Radius or radius; of Amira's also thickness.
+  /// VTP, VTK, Amira: name of the point or line array with the radius, or with the diameter if the name contains
+  /// "diam". Empty: MaximumInscribedSphereRadius, Radius or radius; for Amira also thickness.
   std::string radius_array;
-  /// Radius (mm, above 0) of all nodes where the file holds none. Files without one are refused otherwise.
+  /// Radius (mm, > 0) of all nodes if the file has none. Files without radii are refused otherwise.
   std::optional<double> radius;
-  /// GXL: sides of a voxel, in the unit of the radii. Such files are refused without it.
+  /// GXL: sides of a voxel, in the unit of the radii. GXL files are refused without it.
   std::optional<Vec3> voxel_size;
 };
 
-/// Reads a centerline as it is in the file; see clean() for the way to a Centerline. It takes at most 128 times
-/// as much memory as the file is large (packed VTP: as its data are unpacked) and a megabyte, whatever the file says.
-/// Throws ReadError (missing, a directory, unreadable), InvalidInput (content; names the line or element), Unsupported
-/// (format, or VTP packed by other than zlib).
+/// Reads a centerline as it is in the file; clean() makes it a Centerline. Needs at most 128 times the size of the file
+/// (compressed VTP: of its uncompressed data) plus a megabyte of memory, whatever the file says. Throws ReadError
+/// (missing, a directory, unreadable), InvalidInput (content; names the line or element), Unsupported (format, or VTP
+/// compressed by anything but zlib).
 RawCenterline read_centerline(const std::filesystem::path& path, const CenterlineReadOptions& options = {});
 
-/// Several files that make one centerline, a vessel each, say: see merge(). One file is read as it is.
+/// Reads several files that make up one centerline (one vessel each, say): see merge(). A single file is read as it is.
 RawCenterline read_centerline(const std::vector<std::filesystem::path>& paths,
                               const CenterlineReadOptions& options = {});
 
-/// The same from memory; `source` names it in messages. A CSV pair has its second part in `csv_segments`.
+/// The same from memory; `source` names it in messages. `csv_segments` is the second file of a CSV pair.
 RawCenterline parse_centerline(std::string_view content, CenterlineFormat format, const std::string& source,
                                const CenterlineReadOptions& options = {}, std::string_view csv_segments = {});
 
@@ -68,25 +68,25 @@ RawCenterline parse_centerline(std::string_view content, CenterlineFormat format
 RawCenterline read_centerline(std::istream& in, CenterlineFormat format, const std::string& source,
                               const CenterlineReadOptions& options = {});
 
-/// convert_to_internal() of what was read; nodes without a radius get the one in `options` if it has one. Warns where
-/// radii are implausible for the unit that was assumed or read.
+/// convert_to_internal() after reading; nodes without a radius get the one in `options`, if any. Warns if radii are
+/// implausible for the unit that was assumed or read.
 RawCenterline convert_read(RawCenterline raw, const CenterlineReadOptions& options, std::optional<LengthUnit> unit,
                            std::optional<Space> space, std::vector<std::string>& warnings);
 
-/// What names nodes and segments in messages, without them.
+/// A copy without nodes and segments that still names them in messages.
 RawCenterline names_of(RawCenterline raw);
 
 /// From file to valid centerline in one call: read_centerline, convert_read, clean.
 struct CenterlineLoadOptions {
   CenterlineReadOptions read;
-  std::optional<LengthUnit> unit;  ///< wins over the file's
-  std::optional<Space> space;      ///< wins over the file's
+  std::optional<LengthUnit> unit;  ///< overrides the file's
+  std::optional<Space> space;      ///< overrides the file's
   CleaningOptions cleaning;
 };
 struct LoadedCenterline {
   CleanedCenterline cleaned;
   std::vector<std::string> warnings;  ///< of reader and conversion; what cleaning did is in cleaned.report
-  RawCenterline file;                 ///< names what `cleaned` stems from (place_of_node); without nodes and segments
+  RawCenterline file;                 ///< names the origins of `cleaned` (place_of_node); without nodes and segments
 };
 LoadedCenterline load_centerline(const std::filesystem::path& path, const CenterlineLoadOptions& options = {});
 LoadedCenterline load_centerline(const std::vector<std::filesystem::path>& paths,
@@ -95,16 +95,16 @@ LoadedCenterline load_centerline(const std::vector<std::filesystem::path>& paths
 struct CenterlineMetadata {
   std::string generator;             ///< program and version
   std::string options;               ///< how it was made, free text
-  std::string input_name;            ///< what it was made from
+  std::string input_name;            ///< name of the input
   std::string input_sha256;          ///< see sha256_of_file()
-  LengthUnit unit = LengthUnit::mm;  ///< that it is written in
+  LengthUnit unit = LengthUnit::mm;  ///< of the written numbers
   Space space = Space::lps;          ///< likewise
 };
 
-/// Writes a centerline given in mm and LPS, by extension, in the unit and frame of `metadata` and saying so: JSON, SWC,
-/// VTP, CSV pair. Numbers round-trip exactly, the bytes depend on the arguments alone, and the file appears complete or
-/// not at all. Node order is kept. Throws Unsupported for a centerline with loops in SWC (a tree format), see
-/// centerline_output_format(), and for VTP without VTK; WriteError when the file cannot be written.
+/// Writes a centerline (given in mm and LPS) in the format of the extension, in the unit and frame of `metadata`, which
+/// are recorded: JSON, SWC, VTP, CSV pair. Numbers round-trip exactly, the bytes depend on the arguments alone, and the
+/// file appears complete or not at all. Node order is kept. Throws Unsupported for a centerline with loops in SWC (a
+/// tree format), see centerline_output_format(), and for VTP without VTK; WriteError when the file cannot be written.
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
                       const CenterlineMetadata& metadata = {});
 

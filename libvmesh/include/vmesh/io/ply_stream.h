@@ -15,16 +15,16 @@ class AtomicFile;
 /// memory. All vertices come before the faces. The file appears when it is committed.
 class PlyStream {
  public:
-  /// `declared`: names and kinds of the attributes; values are not looked at. Throws WriteError, and InvalidInput for
-  /// more vertices or faces than the format can number.
+  /// `declared`: names and kinds of the attributes; values are ignored. Throws WriteError, and InvalidInput for more
+  /// vertices or faces than the format can number.
   PlyStream(const std::filesystem::path& path, std::size_t vertices, std::size_t faces, const MeshAttributes& declared,
             const SurfaceMetadata& metadata);
   ~PlyStream();
   PlyStream(const PlyStream&) = delete;
   PlyStream& operator=(const PlyStream&) = delete;
 
-  /// The next vertices; mm. `attributes`: those declared, a value per vertex each. Throws InvalidInput when they are
-  /// not, or are more than was declared.
+  /// Writes the next vertices, mm. `attributes`: those declared, with a value per vertex each. Throws InvalidInput when
+  /// they differ from what was declared.
   void add_vertices(std::span<const Vec3> positions, std::span<const Vec3> normals,
                     const std::vector<MeshAttribute>& attributes);
   void add_faces(std::span<const Triangle> faces, const std::vector<MeshAttribute>& attributes);

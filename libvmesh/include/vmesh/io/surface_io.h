@@ -13,11 +13,11 @@ namespace vmesh {
 
 enum class SurfaceFormat { off, obj, stl, ply, vtp, vtk, glb, scene };
 
-/// scene: glTF, 3MF, COLLADA, X3D or FBX, see read_surface(). By the file's extension, upper or lower case. Throws
-/// Unsupported, with the extensions that are.
+/// The format by the file's extension, upper or lower case; scene: glTF, 3MF, COLLADA, X3D or FBX, see read_surface().
+/// Throws Unsupported, listing the supported extensions.
 SurfaceFormat surface_format(const std::filesystem::path& path);
 
-/// The same for a file to be written; legacy VTK files (.vtk) and scenes other than GLB are read only.
+/// The same for a file to be written; legacy VTK files (.vtk) and scenes other than GLB are read-only.
 SurfaceFormat surface_output_format(const std::filesystem::path& path);
 
 /// Where a surface comes from; written as comments or field data where the format has room (all but STL; STL has 80
@@ -25,15 +25,15 @@ SurfaceFormat surface_output_format(const std::filesystem::path& path);
 struct SurfaceMetadata {
   std::string generator;             ///< program and version
   std::string options;               ///< how it was made, free text
-  std::string input_name;            ///< what it was made from
+  std::string input_name;            ///< name of the input
   std::string input_sha256;          ///< see sha256_of_file()
-  LengthUnit unit = LengthUnit::mm;  ///< that positions and lengths are written in
+  LengthUnit unit = LengthUnit::mm;  ///< of the written positions and lengths
   Space space = Space::lps;          ///< likewise; neither applies to GLB, which is in metres with y up
 };
 
-/// Writes a surface given in mm and LPS, by extension, in the unit and frame of `metadata` and saying so (SPACE=LPS,
-/// UNIT=mm). Attributes named radius, distance, displacement and volume_distance are lengths. The bytes depend on the
-/// arguments alone, and the file appears complete or not at all.
+/// Writes a surface (given in mm and LPS) in the format of the extension, in the unit and frame of `metadata`, which
+/// are recorded (SPACE=LPS, UNIT=mm). Attributes named radius, distance, displacement and volume_distance are lengths.
+/// The bytes depend on the arguments alone, and the file appears complete or not at all.
 ///   PLY  binary little-endian; positions and normals in double, so that they come back to the bit; every attribute;
 ///        the face attribute EquiangleSkewness is named "quality", which MeshLab shows; attributes named red, green and
 ///        blue are bytes, which all programs take for a colour
@@ -59,21 +59,20 @@ struct LoadedSurface {
 };
 
 /// Reads a surface by extension. Polygons are triangulated (triangulate_polygon()), lines and loose points are left
-/// out, equal corners of an STL file become one vertex. It takes at most 128 times as much memory as the file is large
-/// (packed VTP: as its data are unpacked) and a megabyte, whatever the file says.
-/// GLB and scenes are read by assimp, in a child of this process, as assimp may crash on damaged files, and without
-/// that bound: all meshes of a scene, their nodes' transformations applied, as one surface without attributes, whose
-/// vertices are those at different places. What has y up is turned, so that z is.
-/// Throws ReadError (missing, a directory, unreadable), InvalidInput (content; also when there is no face at all),
-/// Unsupported (a scene in a build without assimp).
+/// out, equal corners of an STL file become one vertex. Needs at most 128 times the size of the file (compressed VTP:
+/// of its uncompressed data) plus a megabyte of memory, whatever the file says. GLB and scenes are read by assimp in a
+/// child process, as assimp may crash on damaged files, and without that bound: all meshes of a scene, with their
+/// nodes' transformations applied, become one surface without attributes, in which coincident vertices are merged.
+/// Scenes with y up are rotated to have z up. Throws ReadError (missing, a directory, unreadable), InvalidInput
+/// (content; also when there is no face at all), Unsupported (a scene in a build without assimp).
 LoadedSurface read_surface(const std::filesystem::path& path);
 
-/// Converts it to millimetres and LPS, attributes that are lengths included. What is given here wins over what the file
-/// says; where neither knows, millimetres or LPS are taken, with a warning. `source` names the file in it.
+/// Converts to millimetres and LPS, including attributes that are lengths. Arguments take precedence over the file; if
+/// neither is known, millimetres or LPS are assumed with a warning. `source` names the file in it.
 void convert_to_internal(LoadedSurface& surface, const std::string& source, std::optional<LengthUnit> unit,
                          std::optional<Space> space);
 
-/// The same from memory, but no scenes; `source` names it in messages.
+/// read_surface() from memory, without scenes; `source` names it in messages.
 LoadedSurface parse_surface(std::string_view content, SurfaceFormat format, const std::string& source);
 
 }  // namespace vmesh

@@ -11,7 +11,7 @@ namespace vmesh {
 /// that does not exist.
 std::vector<TriMesh> split_components(const TriMesh& mesh);
 
-/// All of them in one, one after the other.
+/// Concatenates meshes into one.
 TriMesh joined(const std::vector<TriMesh>& meshes);
 
 }  // namespace vmesh

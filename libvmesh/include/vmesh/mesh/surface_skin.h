@@ -8,7 +8,7 @@
 
 namespace vmesh {
 
-/// Bones of a surface, for linear blend skinning: a vertex at x goes to the sum of weight * (R (x - p0) + p) over its
+/// Bones of a surface, for linear blend skinning: a vertex at x moves to the sum of weight * (R (x - p0) + p) over its
 /// four joints, where p0 is the joint's position at rest and R and p are its rotation and position now.
 struct SurfaceSkin {
   struct Joint {
@@ -17,7 +17,7 @@ struct SurfaceSkin {
   };
 
   std::vector<Joint> joints;
-  std::vector<std::array<Index, 4>> joint_of_vertex;  ///< a different one each, or 0 with the weight 0
+  std::vector<std::array<Index, 4>> joint_of_vertex;  ///< distinct, or 0 with weight 0
   std::vector<std::array<float, 4>> weight;           ///< of these, in [0, 1]; their sum is 1
 };
 

@@ -18,7 +18,7 @@ struct Topology {
   bool outward = false;                   ///< closed, oriented, and every component encloses a positive volume
   std::size_t components = 0;             ///< of faces, joined by common vertices
   std::size_t boundary_edges = 0;         ///< edges with one face
-  std::size_t boundary_loops = 0;         ///< connected pieces of the boundary; loops that touch count as one
+  std::size_t boundary_loops = 0;         ///< connected components of the boundary; loops that touch count as one
   std::size_t crowded_edges = 0;          ///< edges with three faces or more
   std::int64_t euler_characteristic = 0;  ///< vertices - edges + faces; vertices without a face do not count
   std::int64_t genus = 0;                 ///< sum over components; defined when closed, manifold and oriented, else 0
@@ -34,18 +34,18 @@ double enclosed_volume(const TriMesh& mesh);
 /// list sorted. Degenerate faces are not tested. Exact predicates (CGAL).
 std::vector<std::pair<Index, Index>> self_intersections(const TriMesh& mesh);
 
-/// Those of them whose faces belong to different parts. Part k ends where part k + 1 begins, at face `first_face[k +
+/// Those of them whose faces belong to different groups. Group k ends where group k + 1 begins, at face `first_face[k +
 /// 1]`; `first_face` is ascending and begins with 0.
 std::vector<std::pair<Index, Index>> intersections_between(const TriMesh& mesh, std::span<const Index> first_face);
 
-/// Faces without area, ascending: corners in common, at one place or on one line. Exact predicates. Throws InvalidInput
-/// when a face names a vertex that does not exist, as does the next.
+/// Faces without area, ascending: with equal, coincident or collinear corners. Exact predicates. Throws InvalidInput
+/// when a face names a vertex that does not exist, like duplicate_faces().
 std::vector<Index> degenerate_faces(const TriMesh& mesh);
 
 /// Faces with the same three vertices as an earlier face, in whatever order, ascending.
 std::vector<Index> duplicate_faces(const TriMesh& mesh);
 
-/// Edges with one face, as it runs along them: from, to; ascending by the lower vertex, then the higher. Throws
+/// Edges with one face, in the face's direction (from, to); ascending by the lower vertex, then the higher. Throws
 /// InvalidInput when a face names a vertex that does not exist.
 std::vector<std::array<Index, 2>> boundary_edges(const TriMesh& mesh);
 

@@ -20,10 +20,10 @@ struct TriMesh {
 struct MeshAttribute {
   std::string name;
   std::vector<double> values;
-  bool integer = false;  ///< the values are whole numbers (labels, indices) and are stored as such
+  bool integer = false;  ///< the values are integers (labels, indices) and are stored as such
 };
 
-/// What travels with a mesh into and out of files: attributes, in file order.
+/// The attributes of a mesh in files, in file order.
 struct MeshAttributes {
   std::vector<MeshAttribute> vertex;  ///< each as long as TriMesh::vertices
   std::vector<MeshAttribute> face;    ///< each as long as TriMesh::faces

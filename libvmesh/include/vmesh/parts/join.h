@@ -9,7 +9,7 @@
 
 namespace vmesh {
 
-/// Where a joined surface goes, block by block: all vertices, then all faces.
+/// Receives a joined surface block by block: all vertices, then all faces.
 class SurfaceSink {
  public:
   struct Vertices {
@@ -30,7 +30,7 @@ class SurfaceSink {
   virtual void add(const Faces& faces) = 0;
 };
 
-/// Why parts do not make a sound surface, at one place.
+/// A defect that keeps parts from making a sound surface.
 struct JoinDefect {
   DefectKind kind;
   Vec3 position = Vec3::Zero();  ///< mm
@@ -49,10 +49,10 @@ struct JoinSummary {
   bool is_sound() const { return defects.empty(); }
 };
 
-/// Joins the surfaces of all parts in a folder that vmesh split wrote: vertices and faces as generate_surface() has
-/// them, to the bit. One part after the other is in memory, and what meets at seams. Walls of different pieces that
-/// cross each other are parted in place, for which the parts around are read.
-/// Throws ReadError and InvalidInput for parts that are missing or do not belong together, Cancelled.
+/// Joins the surfaces of all parts in a folder that vmesh split wrote: vertices and faces as generate_surface() gives
+/// them, to the bit. One part at a time is in memory, together with what meets at seams. Walls of different pieces that
+/// cross each other are parted in place, for which the parts around are read again. Throws ReadError and InvalidInput
+/// for parts that are missing or do not belong together, Cancelled.
 JoinSummary join_parts(const std::filesystem::path& folder, SurfaceSink& sink, int threads,
                        const Progress& progress = {});
 

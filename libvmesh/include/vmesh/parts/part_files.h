@@ -9,8 +9,8 @@
 
 namespace vmesh {
 
-/// What the cones of a part stand for in the centerline that was read, before nodes were left out of it and vessels
-/// separated: parameter t of a cone is one of a stretch; a piece of that holds a stretch of an original segment.
+/// What the cones of a part correspond to in the centerline that was read, before simplification and separation:
+/// parameter t of a cone is one of a stretch; a piece of that covers a stretch of an original segment.
 struct ConeOrigins {
   struct Stretch {
     double t_first = 0, t_last = 1;
@@ -26,20 +26,20 @@ struct ConeOrigins {
   std::vector<Index> node;                          ///< of nodes; kNone for those that separating added
 
   SimplifiedCenterline::Place original(Index cone, double t) const;
-  /// Nodes and segments of the note become those of the centerline that was read. They are places in the part.
+  /// Converts nodes and segments of the note from the part's numbers to those of the centerline that was read.
   void refer_to_original(GrowthSimplification& note) const;
 };
 
-/// What surfaces in parts are made from, as SurfaceMetadata has it.
+/// The input of surfaces in parts, as in SurfaceMetadata.
 struct PartsSource {
   std::string generator, options, input_name, input_sha256;
 
   bool operator==(const PartsSource&) const = default;
 };
 
-/// What is the same for all parts of a surface, in parts.json beside them.
+/// What all parts of a surface have in common; stored in parts.json beside them.
 struct PartsManifest {
-  std::string id;  ///< of this splitting: parts of others do not fit to it
+  std::string id;  ///< of this splitting: parts with another id do not belong to it
   PartsSource source;
   std::size_t parts = 0, pieces = 0, seams = 0;
   Index around = 0;
@@ -54,7 +54,7 @@ inline constexpr const char* kPartExtension = ".vpart";
 inline constexpr const char* kPartSurfaceExtension = ".vsurf";
 inline constexpr const char* kManifestName = "parts.json";
 
-/// Files appear complete or not at all; the same contents, the same bytes. Throw WriteError.
+/// Files appear complete or not at all; the same contents give the same bytes. These functions throw WriteError.
 void write_manifest(const std::filesystem::path& path, const PartsManifest& manifest);
 
 struct StoredPart {
@@ -64,7 +64,7 @@ struct StoredPart {
 };
 void write_part(const std::filesystem::path& path, const StoredPart& part);
 
-/// A part's surface that is sound, and what its vertices belong to in the centerline that was read.
+/// A part's sound surface, and where its vertices belong on the centerline that was read.
 struct StoredPartSurface {
   std::string id;
   PartSurface surface;
@@ -73,12 +73,13 @@ struct StoredPartSurface {
 };
 void write_part_surface(const std::filesystem::path& path, const StoredPartSurface& surface);
 
-/// Throw ReadError and InvalidInput, which name the file; a check sum tells what is damaged. `verify` it, or not again.
+/// These functions throw ReadError and InvalidInput naming the file; a checksum detects damage. `verify`: whether to
+/// check it.
 PartsManifest read_manifest(const std::filesystem::path& path);
 StoredPart read_part(const std::filesystem::path& path);
 StoredPartSurface read_part_surface(const std::filesystem::path& path, bool verify = true);
 
-/// The surface with bindings as in the centerline that was read.
+/// The surface with bindings to the centerline that was read.
 StoredPartSurface refer_to_read(const StoredPart& part, PartSurface surface);
 
 }  // namespace vmesh

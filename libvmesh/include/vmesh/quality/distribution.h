@@ -5,20 +5,20 @@
 
 namespace vmesh {
 
-/// What many numbers look like together. All zeros when there are none.
+/// Summary statistics of a set of numbers; all zero if it is empty.
 struct Distribution {
   std::size_t count = 0;
   double min = 0, max = 0;
   double mean = 0;
   double rms = 0;  ///< root of the mean square, about zero
-  /// Percentiles: the share of the numbers below; between two of them, interpolated linearly.
+  /// Percentiles, interpolated linearly between neighbouring values.
   double p5 = 0, p25 = 0, median = 0, p75 = 0, p95 = 0, p99 = 0;
 };
 
-/// Takes its copy of the values. O(n). Values must not be NaN.
+/// Takes the values by copy. O(n). Values must not be NaN.
 Distribution summarize(std::vector<double> values);
 
-/// Counts in bins of equal width from `low` to `high`; what lies outside counts in the first or last bin. NaN does not
+/// Counts in bins of equal width from `low` to `high`; values outside count in the first or last bin, NaN does not
 /// count.
 struct Histogram {
   double low = 0, high = 0;

@@ -8,7 +8,7 @@
 
 namespace vmesh {
 
-/// A pair of points that proves a distance: `to` is the closest point of the other mesh.
+/// A pair of points that attests a distance: `to` is the closest point of the other mesh.
 struct DistanceWitness {
   Vec3 from = Vec3::Zero();
   Index from_face = kNone;
@@ -16,8 +16,8 @@ struct DistanceWitness {
   Index to_face = kNone;
 };
 
-/// The one-sided Hausdorff distance, the largest distance of a point of one mesh from the other, as an interval that
-/// holds the true value, mm. Both ends leave room for the rounding of doubles.
+/// The one-sided Hausdorff distance (the largest distance of a point of one mesh from the other) as an interval that
+/// contains the true value, mm. Both ends allow for the rounding of doubles.
 struct OneSidedHausdorff {
   double lower = 0;
   double upper = 0;
@@ -41,12 +41,12 @@ struct HausdorffOptions {
   Progress progress;
 };
 
-/// All functions below: the meshes are the sets of points of their faces, which may be open, a soup of triangles, with
-/// coincident points and faces without area; loose vertices do not count. Deterministic. hausdorff() takes its
-/// directions on two threads of the caller's arena (oneTBB), the others one. Throw InvalidInput for a mesh without
-/// faces, a face that names a vertex that does not exist, a corner that is not finite or farther than 1e15 mm from the
-/// origin, and a tolerance that is not positive or finer than doubles can tell at the size of the meshes (2^-40 of
-/// their coordinates and extents); Cancelled when the progress asks to stop.
+/// For all functions below: a mesh is the set of points of its faces; it may be open or a soup of triangles, with
+/// coincident points and faces without area; loose vertices do not count. Deterministic. hausdorff() runs its
+/// directions on two threads of the caller's arena (oneTBB), the others use one. They throw InvalidInput for a mesh
+/// without faces, a face that names a vertex that does not exist, a corner that is not finite or farther than 1e15 mm
+/// from the origin, and a tolerance that is not positive or finer than doubles can resolve at the size of the meshes
+/// (2^-40 of their coordinates and extents); Cancelled when the progress asks to stop.
 ///
 /// Branch and bound over the faces of `from`: distances at corners bound a triangle's from both sides; what remains is
 /// bisected. After Tang, Lee, Kim, "Interactive Hausdorff distance computation for general polygonal models", 2009; the
@@ -56,7 +56,7 @@ OneSidedHausdorff one_sided_hausdorff(const TriMesh& from, const TriMesh& to, co
 /// Both directions, each to the tolerance.
 Hausdorff hausdorff(const TriMesh& a, const TriMesh& b, const HausdorffOptions& options = {});
 
-/// The larger of both directions only: the second direction does not look at distances that the first one exceeds.
+/// Only the larger of both directions: the second search ignores distances below the result of the first.
 /// `witness.from` is on `b` when `from_second` is set.
 struct SymmetricHausdorff {
   double lower = 0;
@@ -66,9 +66,9 @@ struct SymmetricHausdorff {
 };
 SymmetricHausdorff symmetric_hausdorff(const TriMesh& a, const TriMesh& b, const HausdorffOptions& options = {});
 
-/// Whether the one-sided distance is larger than `limit` (mm): a witness farther than that when there is one, nothing
-/// when the distance is at most `limit` + tolerance. In between, either. Throws InvalidInput too unless `limit` is
-/// finite and not negative.
+/// Whether the one-sided distance is larger than `limit` (mm): returns a witness of a larger distance if there is one,
+/// and nullopt if the distance is at most `limit`; up to `limit` + tolerance it may return either. Also throws
+/// InvalidInput unless `limit` is finite and not negative.
 std::optional<DistanceWitness> hausdorff_exceeds(const TriMesh& from, const TriMesh& to, double limit,
                                                  const HausdorffOptions& options = {});
 

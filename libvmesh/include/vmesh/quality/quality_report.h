@@ -31,18 +31,19 @@ void for_each_face_measure(Measures& measures, Visitor visit) {
   visit("area_mm2", measures.area_mm2, 0.0, 0.0);
 }
 
-/// Two faces that intersect, and about where: midway between their centres.
+/// Two faces that intersect, and approximately where: midway between their centres.
 struct IntersectingFaces {
   Index first = kNone, second = kNone;
   Vec3 position = Vec3::Zero();
 };
 
-/// What can be told of the faces and their connections.
+/// Defects of the faces and their connectivity.
 struct DefectReport {
   Topology topology;
   std::vector<Index> degenerate_faces, duplicate_faces;
   std::vector<IntersectingFaces> self_intersections;
-  std::map<Index, std::size_t> vertices_of_valence;  ///< number of vertices for every number of edges; unused left out
+  std::map<Index, std::size_t>
+      vertices_of_valence;  ///< number of vertices by valence; vertices without a face left out
 };
 
 /// Throws InvalidInput as measure_faces() does.

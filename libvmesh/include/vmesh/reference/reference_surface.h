@@ -9,10 +9,11 @@
 
 namespace vmesh {
 
-/// How an image becomes a surface. Steps in this order: what is inside, resampling, smoothing, contouring, components.
+/// How to make a surface from an image. Steps in this order: inside or outside, resampling, smoothing, contouring,
+/// components.
 struct ReferenceOptions {
-  /// Voxels of this value are inside. Without label and threshold: those that are not 0, provided that the image holds
-  /// no second value besides 0.
+  /// Voxels of this value are inside. Without label and threshold: non-zero voxels, provided that the image has only
+  /// one value besides 0.
   std::optional<double> label;
   /// Voxels of at least this value are inside; the image's own values are contoured. Not together with `label`.
   std::optional<double> threshold;
@@ -20,7 +21,7 @@ struct ReferenceOptions {
   double spacing = 0;
   /// Standard deviation of a Gaussian to smooth with (mm); 0: none.
   double smooth = 0;
-  /// Contour inside and outside alone instead of values: a staircase of better triangles.
+  /// Contour only inside and outside instead of values: a staircase, with better triangles.
   bool binary = false;
   /// Keep all components, cavities included, instead of the one that encloses the largest volume.
   bool all_components = false;
@@ -30,13 +31,12 @@ struct ReferenceOptions {
 struct ReferenceSurface {
   TriMesh mesh;
   bool binary = false;          ///< contour of inside and outside; else of grey values
-  std::size_t components = 0;   ///< that the contour had
+  std::size_t components = 0;   ///< of the contour, before any were removed
   Vec3 spacing = Vec3::Zero();  ///< of the voxels contoured (mm)
 };
 
-/// Throws InvalidInput for options out of range, an image with several labels and no choice, and when nothing is inside
-/// (it lists what labels there are); Unsupported without VTK, and when the memory that is free does not hold the image
-/// that is contoured.
+/// Throws InvalidInput for options out of range, an image with several labels and no choice, and if nothing is inside
+/// (listing the labels); Unsupported without VTK, and if there is not enough free memory for the image to be contoured.
 ReferenceSurface reference_surface(const LoadedImage& image, const ReferenceOptions& options = {});
 
 /// The vessel volume of a centerline (plain union of round cones), sampled on voxels of `voxel` mm and contoured the

@@ -22,7 +22,7 @@ struct Image {
 };
 
 /// Writes a PNG file, under a temporary name first: `path` is complete or as it was before. Throws WriteError when it
-/// cannot be written, InvalidInput for an image without pixels or with another number of them than its size says.
+/// cannot be written, InvalidInput for an image without pixels or whose number of pixels does not match its size.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace vmesh

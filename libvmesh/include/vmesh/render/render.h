@@ -20,15 +20,15 @@ struct ViewDirection {
 /// Throws InvalidInput for anything else.
 ViewDirection view_direction(std::string_view name);
 
-/// What a picture shows and how.
+/// Contents and style of a picture.
 struct RenderOptions {
   int width = 1600;   ///< pixels, 16 to 16384
   int height = 1200;  ///< pixels, 16 to 16384
 
   ViewDirection view;
-  /// The point in the middle of the picture; without it the middle of the mesh.
+  /// The point at the centre of the picture; by default the centre of the mesh.
   std::optional<Vec3> look_at;
-  /// Height of the scene the picture shows at look_at, mm; 0: what holds the whole mesh with a margin.
+  /// Height of the scene shown at look_at, mm; 0: enough for the whole mesh with a margin.
   double view_height_mm = 0;
   /// Magnification on top of that, > 0.
   double zoom = 1;
@@ -38,20 +38,20 @@ struct RenderOptions {
   bool edges = false;                ///< draw the triangles' edges
   double edge_width_px = 1.4;        ///< > 0
   bool smooth = true;                ///< shade with interpolated normals, else facet by facet
-  bool highlight_back_faces = true;  ///< the inside of the surface in magenta: turned faces and holes show
-  double occlusion = 0.7;            ///< darkening where little light gets in, 0 to 1
+  bool highlight_back_faces = true;  ///< the inside of the surface in magenta, so that inverted faces and holes show
+  double occlusion = 0.7;            ///< darkening where little ambient light arrives, 0 to 1
   bool legend = true;                ///< draw the legend of an attribute
-  Color material = {204, 44, 36};    ///< where no attribute says otherwise
+  Color material = {204, 44, 36};    ///< colour without an attribute
   Color background = {246, 247, 249};
 
-  /// Attribute values at the ends of the colour scale; without it the smallest and the largest value.
+  /// Attribute values at the ends of the colour scale; by default the smallest and the largest value.
   std::optional<std::pair<double, double>> range;
-  /// The values are labels without an order: each has a colour of its own, far from those of the next numbers. Labels
-  /// of vertices are not interpolated, and `range` does not matter. Colours come again after many labels.
+  /// The values are labels without an order: each has a colour of its own, distinct from those of neighbouring numbers.
+  /// Labels of vertices are not interpolated, and `range` is ignored. Colours repeat after many labels.
   bool categories = false;
 };
 
-/// The colour of a label (rounded to a whole number) in a picture of categories.
+/// The colour of a label (rounded to an integer) in a picture of categories.
 Color label_color(double label);
 
 /// Draws a mesh without a display, by casting rays. The same input gives the same picture.
@@ -59,7 +59,7 @@ Color label_color(double label);
 /// that are not finite, and for options out of range.
 Image render(const TriMesh& mesh, const RenderOptions& options = {});
 
-/// What an attribute has one value for.
+/// Whether an attribute has one value per vertex or per face.
 enum class AttributeDomain { vertex, face };
 
 /// The same, coloured by an attribute, from dark blue (low) to yellow (high) or by category, with a legend. NaN is

@@ -21,23 +21,23 @@ struct ExtractOptions {
   bool tree = false;
 };
 
-/// How far a surface, or a part of it, is from the boundary of the vessel volume, over its area.
+/// How far a surface, or a region of it, is from the boundary of the vessel volume, over its area.
 struct Coverage {
   double area = 0;                              ///< mm^2
   double mean = 0, percentile_95 = 0, max = 0;  ///< mm
   Vec3 max_at = Vec3::Zero();                   ///< on the surface, mm
 };
 
-/// What extraction did, and how well the result stands for the surface.
+/// What extraction did, and how well the result represents the surface.
 struct ExtractionReport {
   std::size_t parts = 0;         ///< components of the surface that a skeleton was extracted from
   std::size_t joined = 0;        ///< joints between them
-  std::size_t left_out = 0;      ///< of the parts, because they remained apart
+  std::size_t left_out = 0;      ///< components left out because they remained apart
   std::size_t spurs = 0;         ///< short branches that were removed
   std::size_t loops_broken = 0;  ///< by removing a segment
-  std::size_t merged = 0;        ///< nodes that shared a lumen with one of another stretch of vessel
-  Coverage coverage;             ///< of the surface, as far as it was not left out
-  /// Of the parts of the surface to which one branch is nearest, in the order of find_branches().
+  std::size_t merged = 0;        ///< nodes that shared a lumen with a node of another stretch of vessel
+  Coverage coverage;             ///< of the surface without the components left out
+  /// Of the regions of the surface nearest to each branch, in the order of find_branches().
   std::vector<Coverage> branches;
 };
 
@@ -48,11 +48,11 @@ struct ExtractedCenterline {
 
 /// The centerline of a closed surface: curve skeletons by mean curvature flow, spurs shorter than the local radius
 /// removed, resampled; then positions and radii are fitted so that the boundary of the union of round cones follows the
-/// surface, ends included. Stretches that share one lumen, as the legs of a hairpin in a wide vessel, become one.
-/// Components that enclose a negative volume (cavities) or next to none are left out; a surface that faces inwards as a
-/// whole is turned. A component of genus g has g loops, unless `tree`. Deterministic. Throws InvalidInput for a surface
-/// that is not closed, manifold and oriented, and for options out of range; Unsupported when the memory that is free
-/// does not hold what it takes; Cancelled.
+/// surface, ends included. Stretches that share one lumen, such as the legs of a hairpin in a wide vessel, are merged.
+/// Components that enclose a negative volume (cavities) or almost none are left out; a surface that faces inwards as a
+/// whole is turned over. A component of genus g has g loops, unless `tree`. Deterministic. Throws InvalidInput for a
+/// surface that is not closed, manifold and oriented, and for options out of range; Unsupported if there is not enough
+/// free memory; Cancelled.
 ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOptions& options = {},
                                        const Progress& progress = {});
 

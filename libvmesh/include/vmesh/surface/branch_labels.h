@@ -8,18 +8,18 @@
 
 namespace vmesh {
 
-/// Which branch of a centerline the parts of its surface belong to. A label is an index into find_branches(); isolated
-/// node i of the centerline (a sphere, which is no branch) has the label find_branches().size() + its rank among
-/// isolated nodes, as CenterlineBinding counts segments.
+/// Which branch of a centerline each vertex and face of its surface belongs to. A label is an index into
+/// find_branches(); isolated node i of the centerline (a sphere, which is not a branch) has the label
+/// find_branches().size() + its rank among isolated nodes, as CenterlineBinding counts segments.
 struct BranchLabels {
   std::vector<Index> vertex;  ///< one per vertex: the branch of the segment it is bound to
-  std::vector<Index> face;    ///< one per face: the label that most of its corners have
+  std::vector<Index> face;    ///< one per face: the label of most of its corners
 };
 
 /// The label of every segment, then of every isolated node.
 std::vector<Index> branch_label_of_cones(const Centerline& centerline);
 
-/// The label of a face with these at its corners.
+/// The label of a face whose corners have these labels.
 Index label_of_face(Index a, Index b, Index c);
 
 /// Labels a surface that was grown around `centerline`; `binding` has one entry per vertex of `mesh`. A face whose

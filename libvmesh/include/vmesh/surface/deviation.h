@@ -20,9 +20,9 @@ struct Deviation {
   Vec3 max_at = Vec3::Zero();  ///< where max_relative was found
 };
 
-/// Measures `mesh` against `field`, locally: each face is compared with the vessels its `binding` (one per vertex)
-/// says it belongs to. Four sample points a face: its centre and one towards each corner. `threads`: 0 for as many as
-/// there are; the result is the same.
+/// Measures `mesh` against `field`, locally: each face is compared with the vessels its `binding` (one per vertex) says
+/// it belongs to. There are four sample points per face: its centre and one towards each corner. `threads`: 0 for as
+/// many as the machine has; the result does not depend on it.
 Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
                             const VesselField& field, int threads = 0);
 

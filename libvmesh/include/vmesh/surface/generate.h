@@ -16,8 +16,8 @@ namespace vmesh {
 
 struct SeparatedCenterline;
 
-/// guided: a tube per stretch of vessel with a cross-section of its own, a seed per junction between them; the
-/// surface's topology is that of the centerline. paper: a single seed per component, as published.
+/// guided: a tube per stretch of vessel with a cross-section of its own and a seed per junction between them; the
+/// surface has the topology of the centerline. paper: a single seed per component, as published.
 enum class GrowthMethod { guided, paper };
 
 std::string_view to_string(GrowthMethod method);
@@ -29,8 +29,8 @@ enum class Preset { low, high };
 /// GenerateOptions::around of a preset: 6 or 12.
 constexpr int vertices_around(Preset preset) { return preset == Preset::high ? 12 : 6; }
 
-/// Where vertices lie. inscribed: on the boundary, so that the faces cut off what bulges between them. balanced: lifted
-/// off it so that the signed distance to the boundary averages to zero around every vertex; volume is kept.
+/// Where vertices lie. inscribed: on the boundary, so that faces cut off some of the volume. balanced: lifted off it so
+/// that the signed distance to the boundary averages to zero around every vertex, which keeps the volume.
 enum class Placement { inscribed, balanced };
 
 std::string_view to_string(Placement placement);
@@ -49,7 +49,7 @@ struct ErrorLimit {
 
 /// "0.3mm", "10%" or "0.3mm,10%"; empty without a limit.
 std::string to_string(const ErrorLimit& limit);
-/// Throws InvalidInput unless `text` is one of these.
+/// The reverse. Throws InvalidInput for any other text.
 ErrorLimit parse_error_limit(std::string_view text);
 
 /// Ends of a centerline (nodes with one segment) at which the surface is left open.
@@ -72,7 +72,7 @@ struct GenerateOptions {
   /// A grown face is split edge-centrically when its centre is farther than this from the boundary.
   double max_center_distance = 0.35;
   Placement placement = Placement::balanced;
-  /// Where the surface would be farther off, it is refined until it is not. May raise `around`: see least_around().
+  /// The surface is refined wherever it would be farther from the boundary. May raise `around`: see least_around().
   ErrorLimit max_error;
   /// Along vessels, triangles are as long as the error allows, at most so many times what they are evenly, in
   /// [1, kMostElongation]; around junctions and ends they stay even. The error: what edges across the vessel cut off,
@@ -83,27 +83,27 @@ struct GenerateOptions {
   bool deformable = false;
   /// Sweeps of the final optimisation; 0 leaves the surface as it was grown.
   int sweeps = 30;
-  /// Nodes of the centerline are left out where the vessels change by at most this share of the distance that the
-  /// surface keeps from them anyway, in [0, 1]; see simplify_for_growth(). 0: none. Guided growth only.
-  /// Measured on 16 trees that are not oversampled and six that are: up to .35 the mean error of each stays the same to
-  /// 2 %, up to 1 to 4 %.
+  /// Nodes of the centerline are left out where that changes the vessels by at most this share of the distance that the
+  /// surface keeps from them anyway, in [0, 1]; see simplify_for_growth(). 0: none. Guided growth only. Measured on 16
+  /// trees that are not oversampled and six that are: the mean error of each changes by at most 2 % up to .35, and by
+  /// at most 4 % up to 1.
   double simplification = 0.35;
-  /// A centerline whose length and radii ask for more vertices than this is refused.
+  /// A centerline whose length and radii would need more vertices than this is refused.
   int max_vertices = 20'000'000;
   GrowthMethod growth = GrowthMethod::guided;
-  /// The surface ends flat there instead of in a hemisphere. Guided growth only.
+  /// Where the surface ends flat and open instead of in a hemisphere. Guided growth only.
   OpenEnds open_ends;
   /// Threads to work on; 0: as many as the machine has. The result does not depend on it.
   int threads = 0;
 };
 
-/// A centerline without the nodes that growth does not need: the cost of a surface is that of what comes out, not of
-/// what goes in. Nowhere does the boundary move by more than options.simplification times what edges across a vessel
-/// cut off it, or than a tenth of options.max_error.
+/// The centerline without the nodes that growth does not need, so that the cost depends on the surface, not on the
+/// sampling of the input. The boundary moves nowhere by more than options.simplification times what edges across a
+/// vessel cut off it, nor by more than a tenth of options.max_error.
 SimplifiedCenterline simplify_for_growth(const Centerline& centerline, const GenerateOptions& options);
 
-/// The options for a surface around simplify_for_growth(): simplified no further, and with a limit on the error that
-/// leaves room for what that changed, if it did.
+/// The options for a surface around the result of simplify_for_growth(): without further simplification, and with an
+/// error limit that allows for what was changed, if anything.
 GenerateOptions after_simplification(const GenerateOptions& options, const SimplifiedCenterline& simplified);
 
 /// Where on the centerline a surface vertex belongs: segment and parameter in [0, 1] from its node a to its node b.
@@ -119,10 +119,10 @@ struct StageTime {
   double seconds = 0;
 };
 
-/// Something that guided growth did to the graph that steers it. The volume keeps the centerline as it is.
+/// Something that guided growth changed in the graph that steers it. The volume itself is unchanged.
 struct GrowthSimplification {
   enum class Kind {
-    merged_nodes,   ///< branching nodes whose surroundings overlap grew as one junction
+    merged_nodes,   ///< branching nodes with overlapping surroundings grew as one junction
     buried_branch,  ///< a branch that never leaves the volume of the others was left out
     filled_loop     ///< a loop too short to have a hole was filled
   };
@@ -144,11 +144,11 @@ struct GrowthSummary {
   std::size_t components = 0;
   std::size_t cycle_rank = 0;  ///< the genus of the surface
   std::vector<GrowthSimplification> simplifications;
-  std::size_t pieces = 0;          ///< in which the surface was made
-  std::vector<std::size_t> rungs;  ///< pieces by the rung of the ladder on which they were found sound, or gave up
+  std::size_t pieces = 0;          ///< number of pieces in which the surface was made
+  std::vector<std::size_t> rungs;  ///< number of pieces by the rung of the ladder on which they were sound or given up
 };
 
-/// A hole in the surface at an end of a vessel: a ring in the plane across the vessel through the end's node.
+/// A requested hole in the surface at an end of a vessel: a ring in the plane across the vessel through the end's node.
 struct Opening {
   Index node = kNone;          ///< of the centerline
   Vec3 center = Vec3::Zero();  ///< position of the node, mm
@@ -157,22 +157,21 @@ struct Opening {
   std::vector<Index> ring;     ///< vertices, counter-clockwise about `normal`
 };
 
-/// Faces next to each other for which the limit on the error is not proven.
+/// Connected faces for which the error limit is not proven.
 struct UnprovenPlace {
   Vec3 position = Vec3::Zero();  ///< of one of them, mm
   std::size_t faces = 0;
 };
 
-/// A place where the gap between two walls ends in a notch too narrow for triangles across it, and was closed up to
-/// some height above its end.
+/// A notch, too narrow for triangles across it, that was closed up to some height above its end.
 struct ClosedNotch {
   Vec3 position = Vec3::Zero();  ///< of the vertex farthest above the end, mm
-  double depth = 0;              ///< how far that is, mm; the limit counts what is closed
-  std::size_t vertices = 0;      ///< that close it
+  double depth = 0;              ///< how far above, mm; the error limit accounts for it
+  std::size_t vertices = 0;      ///< number of vertices that close it
 };
 
-/// What is known of the distance between a surface and the boundary, both ways (see ErrorProof), when there is a limit.
-/// Where the surface was left open there is no boundary to compare with.
+/// What is known of the distance between a surface and the boundary, both ways (see ErrorProof), if there is a limit.
+/// At openings there is no boundary to compare with.
 struct ErrorSummary {
   std::size_t unproven_faces = 0;              ///< 0: the limit holds everywhere
   std::vector<UnprovenPlace> unproven_places;  ///< largest first
@@ -182,7 +181,8 @@ struct ErrorSummary {
 /// What simplify_for_growth() changed.
 struct SimplificationSummary {
   std::size_t nodes_left_out = 0;
-  double max_deviation = 0, max_deviation_relative = 0;  ///< of a boundary from the other, mm and radii there
+  double max_deviation = 0,
+         max_deviation_relative = 0;  ///< of either boundary from the other, in mm and in local radii
 };
 
 /// Something about a surface that its user should know.
@@ -190,7 +190,7 @@ struct GrowthWarning {
   enum class Kind {
     filled_loop,       ///< loops of the centerline are too short to have a hole
     closed_end,        ///< an end that was to be left open could not be
-    refused_faces,     ///< paper growth: faces were crossed by the centerline too often and left alone
+    refused_faces,     ///< paper growth: faces crossed by the centerline too often were left as they are
     unclosed_loop,     ///< paper growth: a loop that a single seed cannot close
     forced_vertices,   ///< paper growth: vertices that did not reach the boundary by themselves
     crossing_faces,    ///< paper growth: faces of neighbouring vessels intersect each other
@@ -198,14 +198,14 @@ struct GrowthWarning {
   };
 
   Kind kind = Kind::filled_loop;
-  std::size_t count = 0;  ///< of what the kind says
+  std::size_t count = 0;  ///< number of occurrences
   std::string message;
 };
 
 /// "filled_loop", "closed_end", ...
 std::string_view to_string(GrowthWarning::Kind kind);
 
-/// A generated surface. What went wrong is data, never hidden: see `defects` and `warnings`.
+/// A generated surface. Whatever went wrong is reported in `defects` and `warnings`.
 struct GenerateResult {
   TriMesh mesh;
   std::vector<CenterlineBinding> binding;  ///< one per vertex
@@ -218,32 +218,31 @@ struct GenerateResult {
   SimplificationSummary simplification;
   GrowthSummary growth;         ///< of guided growth; empty after paper growth
   std::vector<Defect> defects;  ///< none: the surface is sound
-  SurfaceCheck check;           ///< what `defects` follows from
+  SurfaceCheck check;           ///< the measurements behind `defects`
   std::vector<StageTime> stages;
   std::vector<GrowthWarning> warnings;
 
   bool is_sound() const { return defects.empty(); }
 };
 
-/// The surface with its openings closed by flat fans around their centres: as many vertices more. It bounds a volume.
+/// The surface with its openings closed by flat fans around their centres, one added vertex each. It bounds a volume.
 TriMesh with_lids(const GenerateResult& result);
 
-/// What a limit raises GenerateOptions::around to: at least 4, as a triangle is no cross-section to refine; what a
-/// limit in local radii needs along a vessel; and where one in mm needs the most, edges of at most 1.8 times the length
-/// that will be there: refined farther, faces fold.
+/// The value to which an error limit raises GenerateOptions::around: at least 4, as a triangular cross-section cannot
+/// be refined; what a limit in local radii needs along a vessel; and enough that nowhere edges must be refined to less
+/// than 1 / 1.8 of their length for a limit in mm: refined farther, faces fold.
 int least_around(const Centerline& centerline, const ErrorLimit& limit);
 
-/// From numbers of a simplified centerline to those of the original, and a note of what was left out: for a surface
-/// around the simplified one. What lies on nodes that are not the original's (kNone) stays so.
+/// Converts a surface around a simplified centerline to the original's numbers and notes what was left out. Nodes that
+/// are not the original's (kNone) stay kNone.
 void refer_to_original(const SimplifiedCenterline& simplified, GenerateResult& result);
 
-/// The same for a surface around what separate_contacts() made of `original`: nodes that were added are left out, or
-/// are kNone.
+/// The same for a surface around the result of separate_contacts(): added nodes are left out, or become kNone.
 void refer_to_original(const SeparatedCenterline& separated, const Centerline& original, GenerateResult& result);
 
-/// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic.
-/// Throws InvalidInput for options out of range and for a centerline too long for its radii, Unsupported when the
-/// surface would need more memory than is free (see available_memory()), Cancelled when `progress` asks to stop.
+/// Grows a surface around `centerline` (paper, section 4) and optimises it. Deterministic. Throws InvalidInput for
+/// options out of range and for a centerline too long for its radii, Unsupported if the surface would need more memory
+/// than is free (see available_memory()), Cancelled when `progress` asks to stop.
 GenerateResult generate_surface(const Centerline& centerline, const GenerateOptions& options = {},
                                 const Progress& progress = {});
 

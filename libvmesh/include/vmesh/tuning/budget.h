@@ -10,7 +10,7 @@
 
 namespace vmesh {
 
-/// What a surface may cost, or how exact it must be; one of the three.
+/// What a surface may cost, or how accurate it must be: one of the three.
 struct Budget {
   enum class Kind { vertices, time, error };
   Kind kind = Kind::vertices;
@@ -23,7 +23,7 @@ struct Budget {
 Budget parse_budget(std::string_view text);
 std::string to_string(const Budget& budget);
 
-/// A choice of options and what came of it.
+/// A choice of options and the resulting surface's figures.
 struct OperatingPoint {
   GenerateOptions options;
   std::size_t vertices = 0;
@@ -36,16 +36,16 @@ struct OperatingPoint {
 struct BudgetedSurface {
   GenerateResult result;
   std::vector<OperatingPoint> tried;  ///< ascending in GenerateOptions::around
-  std::size_t chosen = 0;             ///< of those; `result` is its surface, or the same again
+  std::size_t chosen = 0;             ///< index into `tried`; `result` is its surface
   const OperatingPoint& choice() const { return tried[chosen]; }
   bool met() const { return choice().within_budget; }
 };
 
-/// The operating point that makes the most of a budget: of vertices or time the finest surface within it, of error the
-/// surface with the fewest vertices within it. What varies is GenerateOptions::around; an error budget sets max_error
-/// as well; the rest is as in `options`. Its neighbours are tried, too. If nothing is within the budget, the choice is
-/// what comes closest. Repeating the choice's options gives the same surface; a time budget may choose otherwise each
-/// time. Throws what generate_surface() throws.
+/// The best operating point within a budget: for vertices or time the finest surface within it, for an error the
+/// surface with the fewest vertices. GenerateOptions::around varies, an error budget also sets max_error; the rest is
+/// as in `options`. Neighbours of the choice are tried, too. If nothing is within the budget, the closest is chosen.
+/// Repeating the chosen options gives the same surface; a time budget may choose differently each time. Throws what
+/// generate_surface() throws.
 BudgetedSurface generate_within(const Budget& budget, const Centerline& centerline, GenerateOptions options = {},
                                 const Progress& progress = {});
 

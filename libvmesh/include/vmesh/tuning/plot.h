@@ -5,11 +5,11 @@
 
 namespace vmesh {
 
-/// Curves over logarithmic axes.
+/// Curves on logarithmic axes.
 struct LogPlot {
   struct Curve {
     std::string name;
-    std::vector<std::pair<double, double>> points;  ///< joined in this order; what is not positive is left out
+    std::vector<std::pair<double, double>> points;  ///< joined in this order; points that are not positive are left out
     bool joined = true;
   };
   std::string title, x_label, y_label;

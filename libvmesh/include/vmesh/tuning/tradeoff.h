@@ -10,7 +10,7 @@
 
 namespace vmesh {
 
-/// A surface of a trade of time and vertices for accuracy. Errors are distances from the plain union of the
+/// A surface in a trade-off of time and vertices against accuracy. Errors are distances from the plain union of the
 /// centerline's round cones, both ways: means over both surfaces, the larger maximum. All errors are sampled.
 struct TradeoffPoint {
   std::string curve;    ///< what made it and what varies: "around", "marching cubes", ...
@@ -26,31 +26,31 @@ struct TradeoffPoint {
 };
 
 struct TradeoffOptions {
-  GenerateOptions generate;  ///< of what does not vary on a curve
+  GenerateOptions generate;  ///< options that do not vary on a curve
   bool beta = true, resolution = true, max_error = true, blend = true, effort = true;  ///< curves of vmesh
-  bool marching_cubes = true;     ///< at several voxel sizes, and decimated; needs VTK, left out without
+  bool marching_cubes = true;     ///< at several voxel sizes, and decimated; left out without VTK
   bool cones = true;              ///< truncated cones
   std::size_t samples = 100'000;  ///< on each surface
 };
 
-/// Makes the surfaces of every curve and measures them. Times are of this machine as it is now.
-/// Throws what generate_surface() throws.
+/// Makes the surfaces of every curve and measures them. Times depend on the machine and its load. Throws what
+/// generate_surface() throws.
 std::vector<TradeoffPoint> sweep_tradeoff(const Centerline& centerline, const TradeoffOptions& options = {},
                                           const Progress& progress = {});
 
-/// Fills in what is measured of a surface made by somebody else. `sound` is measured as well.
+/// Fills in the measurements, `sound` included, of a surface from another source.
 void measure_tradeoff_point(TradeoffPoint& point, const TriMesh& mesh, const Centerline& centerline,
                             std::size_t samples = 100'000);
 
-/// Marks the points that no other one is better than.
+/// Marks the points on the Pareto fronts (best_for_time, best_for_vertices).
 void mark_best(std::vector<TradeoffPoint>& points);
 
-/// Mean error against time and against vertices, as an SVG image. Points that are no surface of the vessels, farther
-/// than half a radius in the mean, are left out.
+/// Mean error against time and against vertices, as an SVG image. Points with a mean error of more than half a radius,
+/// which do not represent the vessels, are left out.
 std::string plot_tradeoff(const std::vector<TradeoffPoint>& points);
 
-/// A point of one curve against the other curve where that has as many vertices, or the same maximum error: read
-/// between its points, on logarithmic scales. NaN beyond its ends.
+/// A point of one curve compared with the other curve at the same number of vertices or the same maximum error,
+/// interpolated between its points on logarithmic scales. NaN beyond its ends.
 struct CurveComparison {
   TradeoffPoint theirs;
   double our_error_mean_mm = 0;  ///< at as many vertices

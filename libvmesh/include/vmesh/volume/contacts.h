@@ -6,7 +6,7 @@
 
 #include "vmesh/centerline/centerline.h"
 #include "vmesh/core/progress.h"
-#include "vmesh/volume/vessel_field.h"
+#include "vmesh/volume/cone_relations.h"
 
 namespace vmesh {
 
@@ -18,90 +18,90 @@ struct ContactSide {
   double radius = 0;      ///< of the vessel there, mm
 };
 
-/// A place where two vessels come close in space that are not neighbours along the graph: their cones are not local to
-/// each other (VesselField::local_cones), so that each gets a wall of its own and the walls meet.
+/// A region where two vessels come close in space without being neighbours along the graph: their cones are not local
+/// to each other (ConeRelations::local_cones), so each gets a wall of its own and the walls meet.
 struct Contact {
-  Vec3 position = Vec3::Zero();  ///< halfway between the two walls where they come closest in smaller radii, mm
-  double depth = 0;              ///< sum of the radii less the distance of the axes, mm; negative where there is a gap
+  Vec3 position =
+      Vec3::Zero();  ///< midway between the two walls where they are closest relative to the smaller radius, mm
+  double depth = 0;  ///< sum of the radii minus the distance of the axes, mm; negative where there is a gap
   std::array<ContactSide, 2> sides;
   std::size_t cone_pairs = 0;  ///< pairs of cones in this region, each sharing a node with the next on either side
 };
 
 /// All regions where vessels that are not neighbours come closer than `gap` times the smaller of their radii. Each is
-/// described at the pair of cones that is deepest. Deepest first, ties by segments. Time near linear in the cones, and
-/// linear in the pairs of cones whose boxes meet.
-/// The walls of a fork part by a quarter of the sum of the radii before they count as two vessels; where they part, no
-/// more than a gap of 0.4 is asked of them. Rounding at branches (the field's blend) counts where it narrows the gap,
-/// up to a fifth of the sum of the radii. Throws InvalidInput unless `gap` is in [0, 1].
-std::vector<Contact> find_contacts(const VesselField& field, double gap);
+/// described at its deepest pair of cones. Deepest first, ties by segments. Time is near linear in the cones and linear
+/// in the pairs of cones whose boxes overlap. At a fork, the walls count as two vessels once they have parted by a
+/// quarter of the sum of the radii; there a gap of at most 0.4 is required of them. Rounding at branches (the blend)
+/// counts where it narrows the gap, up to a fifth of the sum of the radii. Throws InvalidInput unless `gap` is in
+/// [0, 1].
+std::vector<Contact> find_contacts(const ConeRelations& cones, double gap);
 
 struct SeparationOptions {
-  double gap = 0.1;         ///< free space to be left between two vessels, in smaller (narrowed) radii; in (0, 1]
-  double blend = 0.5;       ///< rounding at branches of the field that the surface will be grown in
+  double gap = 0.1;         ///< gap to be left between two vessels, in smaller (narrowed) radii; in (0, 1]
+  double blend = 0.5;       ///< blend of the field that the surface will be grown in
   double taper = 0.25;      ///< how fast the radius may return: narrowed share of the radius lost per radius of length
   double most_taken = 0.9;  ///< a contact that needs a larger share of a radius is left as it is; in (0, 1)
-  int max_rounds = 40;      ///< of looking for contacts and narrowing at them
-  /// A contact that would take a larger share of a radius is moved apart first, until no more than this is taken; in
-  /// (0, 1]. From most_taken on, or with max_moves 0, no vessel is moved.
+  int max_rounds = 40;      ///< rounds of finding contacts and narrowing at them
+  /// Where a contact would take a larger share of a radius, the vessels are first moved apart until no more than this
+  /// is taken; in (0, 1]. From most_taken on, or with max_moves 0, no vessel is moved.
   double move_beyond = 0.5;
-  double slope = 0.5;  ///< how fast an axis may go aside, per length of it; in (0, 0.5]
-  int max_moves = 40;  ///< rounds of looking for contacts and moving vessels
+  double slope = 0.5;  ///< largest sideways displacement of an axis per length of it; in (0, 0.5]
+  int max_moves = 40;  ///< rounds of finding contacts and moving vessels
 };
 
 /// One vessel that was moved away from another at a contact.
 struct VesselMove {
   Vec3 position = Vec3::Zero();      ///< on the axis of the original vessel
-  Vec3 displacement = Vec3::Zero();  ///< the most that this move displaces the axis, mm
+  Vec3 displacement = Vec3::Zero();  ///< the largest displacement of the axis by this move, mm
   ContactSide moved, other;          ///< of the original centerline
 };
 
-/// The part of an original segment that a segment of the narrowed centerline covers.
+/// The interval of an original segment that a segment of the narrowed centerline covers.
 struct SegmentPiece {
   Index segment = kNone;
-  double t_first = 0, t_last = 1;  ///< parameters on it of the piece's nodes a and b
+  double t_first = 0, t_last = 1;  ///< parameters on it of the narrowed segment's nodes a and b
 
   double original_t(double t) const { return t_first + t * (t_last - t_first); }
 };
 
-/// What separating vessels took. Segments are those of the original centerline.
+/// What separating vessels changed. Segments are those of the original centerline.
 struct SeparationReport {
   std::vector<Contact> before;  ///< contacts of the original centerline
-  /// Contacts that are left: the axes are so close that no radius, or too little of it, would remain, and could not be
+  /// Remaining contacts: the axes are so close that no radius, or too little of it, would remain, and they could not be
   /// moved apart, or the rounds ran out.
   std::vector<Contact> left;
-  double max_taken = 0;                                    ///< the most that a node's radius lost, mm
+  double max_taken = 0;                                    ///< the largest loss of a node's radius, mm
   double max_taken_relative = 0, mean_taken_relative = 0;  ///< of the original radius; the mean is over changed nodes
   Vec3 max_taken_at = Vec3::Zero();                        ///< where max_taken_relative was taken
-  std::size_t nodes_narrowed = 0;  ///< nodes of the result that are narrower than the original vessel there
+  std::size_t nodes_narrowed = 0;  ///< nodes of the result narrower than the original vessel there
   std::vector<VesselMove> moves;   ///< farthest first, in radii; a vessel may be moved more than once
-  /// The farthest that an axis was displaced, by all moves together, mm and in original radii there.
+  /// The largest displacement of an axis by all moves together, in mm and in original local radii.
   double max_moved = 0, max_moved_relative = 0;
   Vec3 max_moved_at = Vec3::Zero();  ///< where max_moved_relative was reached, on the original axis
-  double steepest_move = 0;          ///< the most that the displacement changes per length of an axis
-  std::size_t nodes_moved = 0;       ///< nodes of the result that are beside the original axis
+  double steepest_move = 0;          ///< the largest change of the displacement per length of an axis
+  std::size_t nodes_moved = 0;       ///< nodes of the result that are off the original axis
   std::size_t nodes_added = 0;
   int rounds = 0;
 };
 
 struct SeparatedCenterline {
-  /// The original nodes in their order, then those added on segments. Those that were not moved are at their places.
+  /// The original nodes in their order, then those added on segments.
   Centerline centerline;
   std::vector<SegmentPiece> pieces;  ///< one per segment of `centerline`
   SeparationReport report;
 };
 
 /// Narrows the vessels of `centerline` where they touch without being neighbours, both by the same share, until
-/// `options.gap` is free between them. From there the radius returns along the graph, across branching nodes too, with
+/// `options.gap` is free between them. From there the radius returns along the graph, also across branching nodes, with
 /// a bounded slope: over a stretch of length l it grows by at most taper * l more than it did before. Nodes are added
-/// so that this stays local.
-/// Where that would take more than options.move_beyond of a radius, the thinner vessel is moved aside before: away from
-/// the other's axis, or square to both where they cross, by as much as then needs no more than this share, at most 2.2
-/// times the sum of the radii. Along the graph, across branching nodes too, a move fades out with at most
-/// options.slope; where several moves meet, the axis goes aside by at most 0.8 of a length for a length. Moves are kept
-/// only if they leave fewer contacts, or none; where they were in vain, the other vessel is moved, or the other way.
-/// The result has no contacts at that gap but those reported as left: axes that cross close to a common node or
-/// coincide over a long way may stay. Deterministic. Throws InvalidInput for options out of range, Cancelled when
-/// `progress` asks to stop.
+/// so that this stays local. Where that would take more than options.move_beyond of a radius, the thinner vessel is
+/// first moved aside: away from the other's axis, or perpendicular to both where they cross, far enough that no more
+/// than this share is needed, at most 2.2 times the sum of the radii. Along the graph, also across branching nodes, a
+/// move fades out with a slope of at most options.slope; where several moves meet, the slope of the axis is at most
+/// 0.95. Moves are kept only if they leave fewer contacts, or none; where they were in vain, the other vessel or the
+/// opposite direction is tried. The result has no contacts at that gap except those reported as left: axes that cross
+/// close to a common node or coincide over a long distance may stay. Deterministic. Throws InvalidInput for options out
+/// of range, Cancelled when `progress` asks to stop.
 SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options = {},
                                       const Progress& progress = {});
 

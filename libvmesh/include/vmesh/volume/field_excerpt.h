@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "vmesh/centerline/centerline.h"
+#include "vmesh/core/box_tree.h"
+#include "vmesh/volume/cone_relations.h"
 
 namespace vmesh {
 
@@ -17,12 +18,13 @@ struct FieldExcerpt {
   std::vector<CenterlineNode> nodes;
   std::vector<CenterlineSegment> segments;
   std::vector<Index> node, cone;  ///< their numbers in the whole, ascending both
-  /// Of cones: the run that they belong to, and how far along it they end (mm).
+  /// For every cone: the run that it belongs to, and how far along it the cone ends (mm).
   std::vector<Index> run;
   std::vector<double> travel;
-  /// Of cones: whether all that are local to them are here. Only these may be hints.
+  /// For every cone: whether all cones local to it are in the excerpt. Only such cones may be hints.
   std::vector<char> complete;
-  /// Local to cone c, ascending: local[local_offsets[c]] to before local[local_offsets[c + 1]]; whether they part.
+  /// The cones local to cone c, ascending: local[local_offsets[c]] to before local[local_offsets[c + 1]], and whether
+  /// they part.
   std::vector<Index> local_offsets, local;
   std::vector<char> parting;
   std::vector<std::pair<Index, Index>> apart;   ///< cones that are not blended, ascending
@@ -31,7 +33,26 @@ struct FieldExcerpt {
   Centerline centerline() const { return {nodes, segments}; }
 };
 
-/// What several excerpts of one field know together. Throws InvalidInput for one that does not fit together.
+/// Takes excerpts of the VesselField of a centerline without making that field: for centerlines too large for one.
+class FieldExcerpts {
+ public:
+  /// `relations` must outlive it.
+  explicit FieldExcerpts(const ConeRelations& relations);
+
+  const ConeRelations& relations() const { return relations_; }
+
+  /// What is needed to answer queries whose hints are among `cones` and the cones local to them: everything local to
+  /// these, and all cones within `reach` radii of the walls of `cones`.
+  FieldExcerpt take(std::span<const Index> cones, double reach) const;
+
+ private:
+  std::vector<Index> near_boxes(std::span<const Index> cones, double reach) const;
+
+  const ConeRelations& relations_;
+  BoxTree tree_;  // of cones
+};
+
+/// The union of several excerpts of one field. Throws InvalidInput for an inconsistent one.
 FieldExcerpt merged(std::span<const FieldExcerpt> excerpts);
 
 }  // namespace vmesh

@@ -6,90 +6,74 @@
 #include <utility>
 #include <vector>
 
-#include "vmesh/centerline/centerline.h"
 #include "vmesh/core/box_tree.h"
-#include "vmesh/volume/field_excerpt.h"
+#include "vmesh/volume/cone_relations.h"
 
 namespace vmesh {
 
 struct ConeLanes;
 
-/// What a VesselField knows about a point.
-struct FieldSample {
-  double distance = 0;           ///< signed, mm; negative inside the vessel
-  Vec3 gradient = Vec3::Zero();  ///< of the distance; unit for the plain union, zero on a vessel's axis
-  Index cone = kNone;            ///< the closest round cone
-  double t = 0;                  ///< parameter on its axis of the sphere that touches the boundary there, in [0, 1]
-};
-
 /// The vessel volume of a centerline: the union of its round cones (convex hulls of two spheres), as a signed
 /// distance. Cone i < segments().size() belongs to segment i; then follow the isolated nodes as spheres.
 ///
-/// The distance to one cone is exact. The union's is exact outside and on the boundary; inside it is a lower bound of
-/// the depth, so that a step of |distance| never leaves the volume. With `blend` > 0 branches are rounded: where
-/// two cones of radii r1, r2 meet under gradients g1, g2 the minimum is smooth over a width of
-/// blend * min(r1, r2) * (1 - g1.g2); along a straight chain the gradients agree and, up to blend 1, nothing bulges.
-/// Where vessels part and come near again, as around a tight turn, less is rounded, so that their walls stay apart.
+/// The distance to one cone is exact. The distance to the union is exact outside and on the boundary; inside it is a
+/// lower bound of the depth, so that a step of |distance| never leaves the volume. With `blend` > 0 branches are
+/// rounded: where two cones of radii r1, r2 meet under gradients g1, g2 the minimum is smooth over a width of blend *
+/// min(r1, r2) * (1 - g1.g2); along a straight chain the gradients agree and, up to blend 1, nothing bulges. Where
+/// vessels part and come near again, as around a tight turn, there is less rounding, so that their walls stay apart.
 ///
-/// Local queries carry a cone they were last closest to; only cones near it along the graph take part: those whose
-/// spheres it touches without a break from a common place on, and on to where the rounding between vessels that part
-/// ends: up to the default blend, the boundary has no step there. Vessels that part and meet again closely, or come
-/// close in space but not along the graph, do not see each other. Global queries see every cone, for evaluation.
+/// Local queries carry a hint, the cone they were last closest to; only cones local to it take part: those whose
+/// spheres it touches without a break from a common point on, and beyond that up to where the rounding between parting
+/// vessels ends; up to the default blend, the boundary has no step there. Vessels that part and come near again, or
+/// come close in space but not along the graph, are not local to each other. Global queries take every cone into
+/// account, for evaluation.
 class VesselField {
  public:
   /// `blend` in [0, 2]. Keeps a reference to `centerline`, which must outlive the field.
   explicit VesselField(const Centerline& centerline, double blend = 0);
 
-  /// The part of another field that `excerpt` was taken of; `centerline` is the excerpt's. Local queries whose hints
-  /// are complete in it, and distance_to_others() within the reach it was taken with, answer as the other field does,
-  /// to the bit. A query that leads to another hint throws std::logic_error. Global queries see what is in the excerpt
-  /// alone.
+  /// The part of another field from which `excerpt` was taken; `centerline` is the excerpt's. Local queries whose hints
+  /// are complete in it, and distance_to_others() within its reach, answer as the other field does, to the bit. A query
+  /// that leads to another hint throws std::logic_error. Global queries cover the excerpt only.
   VesselField(const Centerline& centerline, const FieldExcerpt& excerpt);
 
-  /// What is needed to answer queries whose hints are among `cones` and those local to them: everything local to these,
-  /// and all cones within `reach` radii of the walls of `cones`.
-  FieldExcerpt excerpt(std::span<const Index> cones, double reach) const;
-
-  const Centerline& centerline() const { return *centerline_; }
+  const ConeRelations& relations() const { return relations_; }
+  const Centerline& centerline() const { return relations_.centerline(); }
   double blend() const { return blend_; }
   std::size_t cone_count() const { return cones_.size(); }
 
-  /// Signed distance at `p` from the cones near `hint` along the graph. The closest cone found becomes the next
-  /// hint until it no longer changes.
+  /// Signed distance at `p` from the cones local to `hint`. The closest cone becomes the next hint until it no longer
+  /// changes.
   FieldSample sample(const Vec3& p, Index hint) const;
 
-  /// The same in single precision, good to a few 1e-5 of the radius there, and several cones at a time: for steps that
-  /// are tested by other means. In double precision where vessels are very long or thin beside their neighbours. Same
-  /// bits on every machine of one architecture.
+  /// The same in single precision, several cones at a time and accurate to a few 1e-5 of the local radius: for steps
+  /// that are verified by other means. Uses double precision where vessels are very long or thin beside their
+  /// neighbours. Same bits on every machine of one architecture.
   FieldSample sample_fast(const Vec3& p, Index hint) const;
-  /// From here on sample_fast() answers in double precision too: for surfaces whose error is to be proven.
+  /// Makes sample_fast() use double precision, too: for surfaces whose error is to be proven.
   void use_double_precision() { only_double_ = true; }
 
   /// Signed distance of the union of all cones at `p`.
   FieldSample sample_global(const Vec3& p) const;
 
-  /// Signed distance at `p` to the nearest cone that a local query with hint `cone` does not see, if that is less than
-  /// `limit`, else `limit`.
+  /// Signed distance at `p` to the nearest cone that is not local to `cone`, if that is less than `limit`, else
+  /// `limit`.
   double distance_to_others(const Vec3& p, Index cone, double limit) const;
 
   /// Exact signed distance to one cone.
   FieldSample sample_cone(const Vec3& p, Index cone) const;
 
   /// The cones that take part in a local query with hint `cone`, `cone` included, ascending.
-  std::span<const Index> local_cones(Index cone) const {
-    if (!complete_.empty() && !complete_[cone]) throw_incomplete(cone);
-    return {local_.data() + local_offsets_[cone], local_.data() + local_offsets_[cone + 1]};
-  }
+  std::span<const Index> local_cones(Index cone) const { return relations_.local_cones(cone); }
 
-  /// Whether two cones count as one volume: each takes part in local queries with the other as hint, and not just
-  /// because, where their vessels part, the rounding between them reaches farther than they touch.
-  bool are_one_volume(Index i, Index j) const;
+  /// See ConeRelations.
+  bool are_one_volume(Index i, Index j) const { return relations_.are_one_volume(i, j); }
 
   /// Whether two cones are blended where both are near: not if their vessels have parted and come near again.
   bool are_blended(Index i, Index j) const;
 
-  /// Of local_cones(cone) those whose distance at `p` (mm), less the widest blend, is at most `limit` (mm), and perhaps
-  /// others; ascending. They are found in space where there are many, as around a node of many branches.
+  /// A superset of those local_cones(cone) whose distance at `p` (mm), less the widest blend, is at most `limit` (mm);
+  /// ascending. Uses a search in space where there are many, as around a node of many branches.
   void local_cones_near(const Vec3& p, Index cone, double limit, std::vector<Index>& near) const;
 
   /// The node a cone starts and ends at (equal for an isolated node).
@@ -106,6 +90,8 @@ class VesselField {
   Vec3 axis_point(Index cone, double t) const { return cones_[cone].origin + t * cones_[cone].axis; }
 
  private:
+  friend class ConeRelations;
+
   struct Cone {
     Vec3 origin, axis;  // axis = last - first, mm
     double r0 = 0, r1 = 0;
@@ -114,19 +100,13 @@ class VesselField {
     double lag = 0;                       // tan(half angle) / |axis|: how far the touching sphere lags the foot point
     double t_low = 0, t_high = 1;         // equal where one end sphere contains the other
     Index a = kNone, b = kNone;
-    bool is_apart = false;  // from some other: in apart_
-  };
-  // Cones that follow each other along the graph form a run. From sphere to sphere along it, neither a distance nor
-  // that less the widest blend changes by more than `travel` does.
-  struct Run {
-    Index number = kNone;
-    double travel = 0;  // from the run's begin to the cone's end, mm
+    bool is_apart = false;  // apart from some other: listed in relations_
   };
   struct Distance {
     double value;
     double t;
   };
-  // Farther from `center` than `reach` plus the distance of the nearest cone, a cone can neither be nearest nor
+  // At points farther from `center` than `reach` plus the distance of the nearest cone, the cone is neither nearest nor
   // blended.
   struct Sphere {
     Vec3 center = Vec3::Zero();
@@ -140,6 +120,7 @@ class VesselField {
   };
 
   static Cone make_cone(const Centerline& centerline, Index a, Index b);
+  static FieldSample sample_of(const Cone& cone, const Vec3& p, Index number);
   static Distance distance_to(const Cone& cone, const Vec3& p);
   static Vec3 gradient_of(const Cone& cone, const Vec3& p, double t);
   double max_radius(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
@@ -159,28 +140,20 @@ class VesselField {
   bool is_lonely(Index cone, const Vec3& low, const Vec3& high) const;
   void fill_lanes(std::span<const Index> cones, const Vec3& center, double per_unit, ConeLanes& lanes) const;
   static std::uint64_t new_number();
-  [[noreturn]] static void throw_incomplete(Index cone);
+  void finish();
   void make_cones();
-  std::vector<Index> near_boxes(std::span<const Index> cones, double reach) const;
-  void measure_runs();
   void measure_spheres();
-  void find_local_cones();
   void build_tree();
 
-  const Centerline* centerline_;
+  ConeRelations relations_;
   double blend_;
   bool only_double_ = false;
-  std::uint64_t number_ = new_number();  // of this field and its copies, which are alike
+  std::uint64_t number_ = new_number();  // of this field and its copies, which are equal
   std::vector<Cone> cones_;
-  std::vector<Run> runs_;
   std::vector<Sphere> spheres_;
-  std::vector<Index> local_offsets_, local_;
-  std::vector<char> complete_;                  // of cones; empty: all are
-  std::vector<char> is_parting_;                // of local_
-  std::vector<std::pair<Index, Index>> apart_;  // ascending
-  BoxTree tree_;                                // of pieces of cones
-  std::vector<Index> cone_of_item_;             // in the tree
-  // Of cones: whether no others are near but their local ones, once somebody has asked.
+  BoxTree tree_;                     // of pieces of cones
+  std::vector<Index> cone_of_item_;  // in the tree
+  // For every cone: whether only local ones are near, once that has been determined.
   enum Lonely : char { not_asked, lonely, in_company };
   mutable std::vector<char> lonely_;
 };

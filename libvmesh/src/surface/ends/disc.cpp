@@ -14,9 +14,9 @@ namespace vmesh {
 namespace {
 
 constexpr int kRounds = 4, kSmoothingRounds = 10;
-constexpr double kHalfTurn = std::numbers::pi * (1 + 1e-9);  // what is less than that more is equal
+constexpr double kHalfTurn = std::numbers::pi * (1 + 1e-9);  // pi with a tolerance for rounding
 
-/// Points of the ring, drawn in towards the centre, at even steps of its own parameter.
+/// Points of the ring at even steps of its parameter, scaled towards the centre.
 std::vector<Vec3> inner_ring(const std::vector<Vec3>& ring, const Vec3& center, double scale, std::size_t count) {
   std::vector<Vec3> inner;
   for (std::size_t i = 0; i < count; ++i) {
@@ -40,7 +40,7 @@ class DiscBuilder {
     for (Index j = 0; j < outer.size(); ++j) outer[j] = j;
     for (std::size_t k = 1; k < std::max<std::size_t>(bands, 1); ++k) {
       const double scale = static_cast<double>(bands - k) / static_cast<double>(bands);
-      const std::size_t count = 6 * (bands - k);  // as in a lattice of equal triangles
+      const std::size_t count = 6 * (bands - k);  // as in a lattice of equilateral triangles
       outer = add_band(outer, inner_ring(ring_, center, scale, count));
     }
     const auto middle = static_cast<Index>(all_.size());
@@ -80,7 +80,7 @@ class DiscBuilder {
     return std::all_of(faces_.begin(), faces_.end(), [&](const Triangle& f) { return face_up(f); });
   }
 
-  // Every further vertex goes to the mean of its neighbours unless that turns a face over.
+  // Moves every added vertex to the mean of its neighbours unless that turns a face over.
   void smooth() {
     std::vector<std::vector<Index>> around(all_.size());
     for (Index f = 0; f < faces_.size(); ++f) {
@@ -93,7 +93,7 @@ class DiscBuilder {
           for (const Index w : faces_[f]) sum += all_[w] - all_[v];
         }
         const Vec3 before = all_[v];
-        all_[v] += sum / static_cast<double>(2 * around[v].size());  // a neighbour has two faces in common with v
+        all_[v] += sum / static_cast<double>(2 * around[v].size());  // every neighbour shares two faces with v
         const bool good = std::all_of(around[v].begin(), around[v].end(), [&](Index f) { return face_up(faces_[f]); });
         if (!good) all_[v] = before;
       }
@@ -105,9 +105,9 @@ class DiscBuilder {
     return std::atan2(u.cross(v).norm(), u.dot(v));
   }
 
-  // Edges whose opposite angles are more than a half turn together (Delaunay).
+  // Flips edges whose opposite angles add up to more than pi (Delaunay).
   void flip() {
-    std::map<std::array<Index, 2>, Index> face_of;  // by the edge as it runs in the face
+    std::map<std::array<Index, 2>, Index> face_of;  // keyed by the edge in the face's direction
     const auto enter = [&](Index f) {
       for (std::size_t i = 0; i < 3; ++i) face_of[{faces_[f][i], faces_[f][(i + 1) % 3]}] = f;
     };

@@ -6,9 +6,9 @@
 
 namespace vmesh {
 
-/// What fills a flat ring. Faces name the ring's vertices by their places in it, further ones from ring.size() on.
+/// A triangulation that fills a flat ring. Faces index the ring's vertices, then, from ring.size() on, the added ones.
 struct Disc {
-  std::vector<Vec3> vertices;  ///< further ones
+  std::vector<Vec3> vertices;  ///< added inside the ring
   std::vector<Triangle> faces;
 };
 
@@ -16,9 +16,8 @@ struct Disc {
 Vec3 area_vector(const std::vector<Vec3>& ring);
 Vec3 area_centroid(const std::vector<Vec3>& ring);
 
-/// Triangles about as large as the ring's edges, counter-clockwise about `normal` as the ring is: rings within rings,
-/// of fewer and fewer vertices. A ring that is not seen as a whole from its centroid is triangulated without further
-/// vertices.
+/// Triangles about as large as the ring's edges, counter-clockwise about `normal` like the ring: concentric rings with
+/// ever fewer vertices. A ring that is not wholly visible from its centroid is triangulated without added vertices.
 Disc fill_ring(const std::vector<Vec3>& ring, const Vec3& normal);
 
 }  // namespace vmesh

@@ -7,7 +7,7 @@
 #include "vmesh/core/error.h"
 
 #include "surface/ends/disc.h"
-#include "surface/ends/opening_tube.h"
+#include "surface/ends/opening_extension.h"
 #include "surface/proof/defects.h"
 
 namespace vmesh {

@@ -9,19 +9,22 @@
 namespace vmesh {
 namespace {
 
-// Radii: length of the pieces that have to lie in one cone each; idle 0.35 to 0.7.
+// Radii: length of the intervals, each of which must lie in a single cone; idle 0.35 to 0.7.
 constexpr double kPiece = 0.5;
-constexpr double kSlack = 0.1;  // radii that a piece may stand out; idle 0.07 to 0.14
-// Of a sphere's radius: thinner spheres may stand out of it ... (safe 0.35 to 0.7).
+constexpr double kSlack = 0.1;  // radii by which an interval may protrude; idle 0.07 to 0.14
+// Of the radius of a node's sphere: vessels thinner than that are needles; safe 0.35 to 0.7.
 constexpr double kNeedle = 0.5;
-constexpr double kNeedleSlack = 0.25;  // ... by this part of it where a branch ends; safe 0.17 to 0.35
-constexpr int kMaxPieces = 2000;       // derived: per segment; a hair that long is not buried, or not worth finding out
+constexpr double kNeedleSlack =
+    0.25;  // of that radius: how far a needle may protrude where a branch ends; safe 0.17 to 0.35
+constexpr int kMaxPieces = 2000;  // derived: per segment; a hair that long is not buried, or not worth testing
 
+// In a VesselField, or in the relations of its cones alone.
+template <class Cones>
 class Burial {
  public:
-  explicit Burial(const VesselField& field)
-      : field_(field),
-        centerline_(field.centerline()),
+  explicit Burial(const Cones& cones)
+      : cones_(cones),
+        centerline_(cones.centerline()),
         left_(centerline_.segments().size(), 1),
         in_branch_(left_.size(), 0) {}
 
@@ -34,10 +37,9 @@ class Burial {
     }
     return std::move(buried_);
   }
-  bool is_left(Index segment) const { return left_[segment]; }
 
  private:
-  // From an end on, what lies within the sphere of one node of the branch: the radius falls there faster than the
+  // Trims from an end what lies within the sphere of one node of the branch: there the radius falls faster than the
   // length grows.
   void trim(Index tip) {
     std::vector<Index> nodes = {tip}, segments;
@@ -51,7 +53,7 @@ class Burial {
       along += centerline_.length(s);
       const bool holds_all =
           std::all_of(nodes.rbegin() + 1, nodes.rend(), [&](Index n) { return sphere_within(n, nodes.back()); });
-      const bool goes_on = degree_left(nodes.back()) > 1;  // something has to be left of the vessel
+      const bool goes_on = degree_left(nodes.back()) > 1;  // some of the vessel must remain
       if (holds_all && goes_on) trimmed = segments.size();
     }
     if (trimmed == 0) return;
@@ -73,13 +75,13 @@ class Burial {
     return kNone;
   }
 
-  // Goes through the branches of what is left. What is a branch changes where one goes: then it has to be done again.
+  // One pass over the remaining branches. Removing one changes the branches around it, so passes are repeated.
   bool bury_some() {
     bool left_out = false;
     for (const Branch& branch : branches_left()) {
       if (!is_covered(branch)) continue;
       const bool has_tip = degree_left(branch.nodes.front()) == 1 || degree_left(branch.nodes.back()) == 1;
-      if (!has_tip) continue;  // what closes a loop joins vessels that overlap there, and has to stay
+      if (!has_tip) continue;  // a branch that closes a loop joins vessels that overlap there, and must stay
       for (const Index s : branch.segments) left_[s] = 0;
       buried_.push_back({branch.segments});
       left_out = true;
@@ -87,8 +89,16 @@ class Burial {
     return left_out;
   }
 
-  // With the numbers of the full centerline, thinnest first.
+  // The remaining branches in the numbers of the full centerline, thinnest first.
   std::vector<Branch> branches_left() const {
+    std::vector<Branch> branches = find_branches_left();
+    std::stable_sort(branches.begin(), branches.end(),
+                     [&](const Branch& a, const Branch& b) { return mean_radius(a) < mean_radius(b); });
+    return branches;
+  }
+
+  std::vector<Branch> find_branches_left() const {
+    if (std::all_of(left_.begin(), left_.end(), [](char left) { return left != 0; })) return find_branches(centerline_);
     std::vector<CenterlineSegment> segments;
     std::vector<Index> number;
     for (Index s = 0; s < left_.size(); ++s) {
@@ -100,8 +110,6 @@ class Burial {
     for (Branch& branch : branches) {
       for (Index& s : branch.segments) s = number[s];
     }
-    std::stable_sort(branches.begin(), branches.end(),
-                     [&](const Branch& a, const Branch& b) { return mean_radius(a) < mean_radius(b); });
     return branches;
   }
 
@@ -133,7 +141,7 @@ class Burial {
     if (pieces > kMaxPieces) return false;
     for (int k = 0; k < pieces; ++k) {
       const double begin = k / pieces, end = (k + 1) / pieces;
-      field_.local_cones_near(centerline_.point_at(s, begin), s, depth_in_others(s, begin), near_);
+      cones_.local_cones_near(centerline_.point_at(s, begin), s, depth_in_others(s, begin), near_);
       const bool covered = std::any_of(near_.begin(), near_.end(), [&](Index cone) {
         return is_other(cone) && holds(cone, s, begin) && holds(cone, s, end);
       });
@@ -144,14 +152,14 @@ class Burial {
 
   bool is_other(Index cone) const { return left_[cone] && !in_branch_[cone]; }
 
-  // The distance from another cone that holds the vessel at that place.
+  // The signed distance from another cone at which it contains the vessel there.
   double depth_in_others(Index s, double t) const { return (kSlack - 1) * centerline_.radius_at(s, t); }
 
   bool holds(Index cone, Index s, double t) const {
-    return field_.sample_cone(centerline_.point_at(s, t), cone).distance <= depth_in_others(s, t);
+    return cones_.sample_cone(centerline_.point_at(s, t), cone).distance <= depth_in_others(s, t);
   }
 
-  const VesselField& field_;
+  const Cones& cones_;
   const Centerline& centerline_;
   double widest_ = 0;
   std::vector<char> left_, in_branch_;
@@ -161,40 +169,46 @@ class Burial {
 
 }  // namespace
 
-GrowthCenterline without_buried_branches(const VesselField& field) {
-  const Centerline& full = field.centerline();
-  Burial burial(field);
-  std::vector<BuriedBranch> buried = burial.run();
+std::vector<BuriedBranch> find_buried_branches(const VesselField& field) { return Burial(field).run(); }
+
+std::vector<BuriedBranch> find_buried_branches(const ConeRelations& cones) { return Burial(cones).run(); }
+
+GrowthCenterline without_buried_branches(const Centerline& full, std::vector<BuriedBranch> buried) {
+  std::vector<char> left(full.segments().size(), 1);
+  for (const BuriedBranch& branch : buried) {
+    for (const Index s : branch.segments) left[s] = 0;
+  }
   std::vector<Index> number(full.nodes().size(), kNone), kept_nodes, kept_segments, kept_cones;
   std::vector<CenterlineNode> nodes;
   std::vector<CenterlineSegment> segments;
-  const auto number_of = [&](Index n) {
-    if (number[n] == kNone) {
-      number[n] = static_cast<Index>(nodes.size());
-      nodes.push_back(full.node(n));
-      kept_nodes.push_back(n);
-    }
-    return number[n];
-  };
+  std::size_t isolated = 0;
   for (Index n = 0; n < full.nodes().size(); ++n) {
     const auto incident = full.incident_segments(n);
-    if (incident.empty() || std::any_of(incident.begin(), incident.end(), [&](Index s) { return burial.is_left(s); }))
-      number_of(n);
+    isolated += incident.empty();
+    if (!incident.empty() && std::none_of(incident.begin(), incident.end(), [&](Index s) { return left[s] != 0; }))
+      continue;
+    number[n] = static_cast<Index>(nodes.size());
+    nodes.push_back(full.node(n));
+    kept_nodes.push_back(n);
   }
   for (Index s = 0; s < full.segments().size(); ++s) {
-    if (!burial.is_left(s)) continue;
+    if (!left[s]) continue;
     segments.push_back({number[full.segment(s).a], number[full.segment(s).b]});
     kept_segments.push_back(s);
   }
   kept_cones = kept_segments;
-  for (Index c = static_cast<Index>(full.segments().size()); c < field.cone_count(); ++c) kept_cones.push_back(c);
+  for (std::size_t i = 0; i < isolated; ++i) kept_cones.push_back(static_cast<Index>(full.segments().size() + i));
   return {Centerline(std::move(nodes), std::move(segments)), std::move(kept_nodes), std::move(kept_segments),
           std::move(kept_cones), std::move(buried)};
 }
 
-std::vector<GrowthSimplification> notes_of_buried(const GrowthCenterline& growth, const Centerline& full) {
+GrowthCenterline without_buried_branches(const VesselField& field) {
+  return without_buried_branches(field.centerline(), find_buried_branches(field));
+}
+
+std::vector<GrowthSimplification> notes_of_buried(const std::vector<BuriedBranch>& all_buried, const Centerline& full) {
   std::vector<GrowthSimplification> notes;
-  for (const BuriedBranch& buried : growth.buried) {
+  for (const BuriedBranch& buried : all_buried) {
     const Index middle = buried.segments[buried.segments.size() / 2];
     GrowthSimplification note{
         GrowthSimplification::Kind::buried_branch, full.point_at(middle, 0.5), {}, buried.segments, {}};

@@ -21,14 +21,20 @@ struct GrowthCenterline {
   std::vector<BuriedBranch> buried;
 };
 
-/// Leaves out branches with an end that the others cover, thinnest first. Such a branch is covered if every piece of it
-/// lies in a single round cone of what is left, apart from a tenth of its radius: round cones are convex, so two
-/// spheres within one have all that is between them within it. Of an end, what lies within the sphere of one node of
-/// its branch goes as well; needles there, thinner than half of that sphere, may stand out of it by a quarter of its
-/// radius. The volume is the same up to these; components never change.
+/// Finds end branches that the other vessels cover, thinnest first. A branch is covered if every interval of it lies in
+/// a single round cone of the rest, to within a tenth of its radius: a round cone is convex, so it contains everything
+/// between two spheres that it contains. Ends are also trimmed of what lies within the sphere of one node of their
+/// branch; needles there, thinner than half of that sphere, may protrude by a quarter of its radius. Without them the
+/// volume is the same up to these tolerances; components never change.
+std::vector<BuriedBranch> find_buried_branches(const VesselField& field);
+/// The same in less memory, but slower around nodes of hundreds of branches.
+std::vector<BuriedBranch> find_buried_branches(const ConeRelations& cones);
+
+/// Leaves them out.
+GrowthCenterline without_buried_branches(const Centerline& full, std::vector<BuriedBranch> buried);
 GrowthCenterline without_buried_branches(const VesselField& field);
 
-/// What was left out, in words. `full`: the centerline that it was left out of.
-std::vector<GrowthSimplification> notes_of_buried(const GrowthCenterline& growth, const Centerline& full);
+/// Describes what was left out. `full`: the complete centerline.
+std::vector<GrowthSimplification> notes_of_buried(const std::vector<BuriedBranch>& buried, const Centerline& full);
 
 }  // namespace vmesh

@@ -8,9 +8,9 @@
 namespace vmesh {
 namespace {
 
-// Ninth powers of lengths and of their inverses stay in the range of double; nothing here takes higher ones.
+// Ninth powers of lengths and of their inverses stay in the range of double; no higher powers are taken.
 constexpr double kLongest = 1e30, kShortest = 1e-30;  // kShortest: idle 7e-31 to 1.4e-30
-// Where positions are rounded to more than a thousandth of the radius, a cross-section is no circle any more.
+// Where positions are rounded to more than a thousandth of the radius, a cross-section is no longer a circle.
 constexpr double kRoundingsPerRadius = 1000;
 
 [[noreturn]] void fail(const Centerline& centerline, Index n, const std::string& what) {
@@ -31,7 +31,7 @@ void check_scale(const Centerline& centerline) {
     }
     if (radius < kRoundingsPerRadius * std::numeric_limits<double>::epsilon() * farthest) {
       fail(centerline, n,
-           "so far from the origin, numbers of 16 digits do not resolve so thin a vessel; move the centerline to the "
+           "so far from the origin, numbers of 16 digits cannot resolve so thin a vessel; move the centerline to the "
            "origin, or check the radius");
     }
   }

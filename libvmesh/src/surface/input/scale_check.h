@@ -4,8 +4,8 @@
 
 namespace vmesh {
 
-/// Refuses lengths whose powers a double does not hold, and radii that its digits do not resolve beside the
-/// coordinates. Throws InvalidInput that names the node.
+/// Refuses lengths whose powers overflow a double, and radii too small to resolve beside the coordinates. Throws
+/// InvalidInput that names the node.
 void check_scale(const Centerline& centerline);
 
 }  // namespace vmesh

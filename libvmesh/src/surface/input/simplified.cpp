@@ -9,15 +9,15 @@
 namespace vmesh {
 namespace {
 
-constexpr double kMostOfLimit = 0.1;  // idle 0.07 to 0.14
-// Vertices around a vessel that count at least: the surface of three comes near the axis, and what is left out of that
-// should not matter there.
+constexpr double kMostOfLimit = 0.1;  // share of the error limit that simplification may use; idle 0.07 to 0.14
+// Least number of vertices around that the tolerance assumes: a surface with three comes so near the axis that its own
+// cut-off would be no measure.
 constexpr int kLeastAround = 6;  // safe 4 to 8
-// Of the limit, for the surface around the simplified vessels. Derived: a limit in radii is taken of theirs, which are
-// larger by a hundredth at most.
+// Share of the limit left for the surface around the simplified vessels. Derived: 1 - kMostOfLimit, less a margin
+// because a limit in radii refers to theirs, which are at most a hundredth larger.
 constexpr double kLeftOfLimit = 0.88;  // idle 0.62 to 1.2
 
-// An end of the original, by its number there.
+// The number of an end of the original in the simplified centerline.
 Index end_in(const SimplifiedCenterline& simplified, Index node) {
   const auto it = std::lower_bound(simplified.node.begin(), simplified.node.end(), node);
   const auto number = static_cast<Index>(it - simplified.node.begin());
@@ -26,8 +26,8 @@ Index end_in(const SimplifiedCenterline& simplified, Index node) {
   return number;
 }
 
-// At cones where the blend is smaller than elsewhere. By how much, spheres along the segments decide: others would do
-// if nodes were left out, and the boundary would change by more than the tolerance.
+// Marks nodes of cones whose blend is reduced. By how much is determined from spheres along the segments; leaving out
+// nodes would change the spheres, and the boundary by more than the tolerance.
 std::vector<char> nodes_less_rounded(const Centerline& centerline, double blend) {
   std::vector<char> result(centerline.nodes().size(), 0);
   const VesselField field(centerline, blend);

@@ -27,10 +27,10 @@ void check_options(const GenerateOptions& o) {
   if (o.threads < 0) throw InvalidInput("threads must be >= 0");
 }
 
-// Peak memory of a run per vertex that is expected: measured on surfaces of 4,000 to 600,000 vertices.
+// Peak memory of a run per expected vertex: measured on surfaces of 4,000 to 600,000 vertices.
 constexpr double kBytesPerVertex = 600;
 
-// The vessel thinnest for its length, in words.
+// Describes the vessel that is thinnest for its length.
 std::string thinnest_vessel(const Centerline& centerline) {
   Index longest = kNone;
   double most = 0;
@@ -49,7 +49,7 @@ std::string thinnest_vessel(const Centerline& centerline) {
   return text.str();
 }
 
-// What is asked for, and what would be less.
+// What the surface would need, and how to need less.
 struct Demand {
   std::string count, fewer;
 };

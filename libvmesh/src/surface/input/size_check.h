@@ -4,9 +4,9 @@
 
 namespace vmesh {
 
-/// The options as they are used around `centerline`: with as many vertices around as a limit on the error asks for.
-/// Throws InvalidInput for options out of range, a centerline of a scale that cannot be computed with (check_scale()),
-/// and one that asks for more vertices than are allowed.
+/// The options as used for `centerline`: with as many vertices around as an error limit needs. Throws InvalidInput for
+/// options out of range, a centerline whose scale cannot be handled (check_scale()), and one that needs more vertices
+/// than allowed.
 GenerateOptions settled(const GenerateOptions& given, const Centerline& centerline);
 
 /// Throws Unsupported where a surface would need more memory than is free.

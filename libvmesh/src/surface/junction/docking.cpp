@@ -10,7 +10,7 @@ namespace vmesh {
 namespace {
 
 constexpr std::size_t kShortestRim = 5;  // vertices; safe 4 to 7
-constexpr double kNearestCut = 0.1;      // of an edge: cuts keep that far from its ends; safe 0.07 to 0.14
+constexpr double kNearestCut = 0.1;      // of an edge: least distance of a cut from its ends; safe 0.07 to 0.14
 
 }  // namespace
 
@@ -43,7 +43,7 @@ Index DiscCutter::farthest(const Vec3& normal, const std::vector<Index>& own) co
 }
 
 std::vector<Index> DiscCutter::region_above(Index apex, const Height& height, const std::vector<Index>& own) const {
-  std::vector<char> open(vertices_.size(), 0);  // may join and has not yet
+  std::vector<char> open(vertices_.size(), 0);  // allowed to join, and has not joined yet
   for (const Index v : own) open[v] = !removed_vertex_[v] && height(vertices_[v]) > 0;
   std::vector<Index> region = {apex};
   open[apex] = 0;
@@ -72,7 +72,7 @@ std::vector<Index> DiscCutter::faces_around(const std::vector<Index>& region) co
   return faces;
 }
 
-// A connected region away from all rims: it is a disc if its Euler characteristic is 1.
+// A connected region that touches no rim is a disc if its Euler characteristic is 1.
 bool DiscCutter::is_disc(const std::vector<Index>& region) const {
   const std::set<Index> inside(region.begin(), region.end());
   std::size_t half_edges = 0, faces = 0;
@@ -87,7 +87,7 @@ bool DiscCutter::is_disc(const std::vector<Index>& region) const {
 
 std::vector<Index> DiscCutter::cut_off(const std::vector<Index>& region, const Height& height) {
   const std::set<Index> inside(region.begin(), region.end());
-  std::map<std::pair<Index, Index>, Index> cuts;  // by the edge's end inside and its end outside
+  std::map<std::pair<Index, Index>, Index> cuts;  // keyed by the edge's inner and outer end
   const auto cut = [&](Index in, Index out) {
     const auto [it, is_new] = cuts.try_emplace({in, out}, kNone);
     if (is_new) {
@@ -111,7 +111,7 @@ std::vector<Index> DiscCutter::cut_off(const std::vector<Index>& region, const H
       const Index p = cut(a, b), q = cut(a, c);
       next[p] = q;
       add_quad(p, b, c, q);
-    } else {  // b and c are
+    } else {  // b and c are inside
       const Index p = cut(c, a), q = cut(b, a);
       next[p] = q;
       add_face({a, q, p});
@@ -135,7 +135,7 @@ void DiscCutter::collapse_short_edges(std::vector<Index>& rim, double shortest) 
   }
 }
 
-// The one face at the border edge has the only common neighbour, and neither vertex loses its last face.
+// The face at the border edge provides the only common neighbour, and each vertex keeps at least one face.
 bool DiscCutter::collapsible(Index v, Index into) const {
   const auto a = neighbours(v), b = neighbours(into);
   std::vector<Index> common;
@@ -183,7 +183,7 @@ void DiscCutter::add_face(const Triangle& face) {
   removed_face_.push_back(0);
 }
 
-// Along its shorter diagonal.
+// Splits the quad along its shorter diagonal.
 void DiscCutter::add_quad(Index a, Index b, Index c, Index d) {
   if ((vertices_[a] - vertices_[c]).squaredNorm() < (vertices_[b] - vertices_[d]).squaredNorm()) {
     add_face({a, b, c});

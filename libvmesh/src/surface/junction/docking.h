@@ -8,28 +8,28 @@
 
 namespace vmesh {
 
-/// A closed piece of surface from which discs are cut.
+/// A closed surface from which discs are cut.
 class DiscCutter {
  public:
   DiscCutter(std::vector<Vec3> vertices, std::vector<Triangle> faces);
 
-  /// Cuts off the tip of a vessel: what lies around the vertex of `own` farthest along `normal`, beyond the plane
-  /// through `center`. Only vertices of `own` go; faces are cut where they cross the plane. Where that is no disc, the
-  /// farthest vertex goes alone; without one, a window is opened in the face nearest to the tip. Returns the rim,
-  /// counter-clockwise about `normal`; no two rims touch. Edges of the rim shorter than `shortest` are collapsed where
-  /// that keeps the surface's topology.
+  /// Cuts off the tip of a vessel: the region beyond the plane through `center` that is connected to the vertex of
+  /// `own` farthest along `normal`. Only vertices of `own` are removed; faces that cross the plane are cut. If the
+  /// region is not a disc, only the farthest vertex is removed; if there is none, a hole is cut in the face nearest to
+  /// the tip. Returns the rim, counter-clockwise about `normal`; no two rims touch. Rim edges shorter than `shortest`
+  /// are collapsed where that keeps the topology.
   std::vector<Index> cut(const Vec3& center, const Vec3& normal, const std::vector<Index>& own, double shortest);
 
   void move(Index v, const Vec3& position) { vertices_[v] = position; }
 
   const std::vector<Vec3>& vertices() const { return vertices_; }
-  /// The vertex of the piece that vertex `v` is, or that it was made next to.
+  /// The original vertex that `v` is a copy of or was created next to.
   Index source(Index v) const { return source_[v]; }
-  /// Faces that are left.
+  /// The remaining faces.
   std::vector<Triangle> rest() const;
 
  private:
-  using Height = std::function<double(const Vec3&)>;  // over the surface at which is cut
+  using Height = std::function<double(const Vec3&)>;  // above the cutting surface
 
   Index farthest(const Vec3& normal, const std::vector<Index>& own) const;
   std::vector<Index> region_above(Index apex, const Height& height, const std::vector<Index>& own) const;

@@ -8,16 +8,16 @@
 namespace vmesh {
 namespace {
 
-constexpr double kMargin = 2;          // units around a ball in which there are tetrahedra: a spacing
+constexpr double kMargin = 2;          // units: how far tetrahedra extend beyond a ball, one spacing
 constexpr double kLongest = 2;         // units: the longest edge of an unbisected tetrahedron
-constexpr int kTetrahedraAround = 24;  // a point, unbisected
+constexpr int kTetrahedraAround = 24;  // around a point, before any bisection
 
 using Tetrahedron = GradedLattice::Tetrahedron;
 
 std::uint64_t key_of_pair(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
-// Numbers of points with whole coordinates, in blocks: who looks up one looks up its neighbours next. The blocks are in
-// a grid of their own, unless that were very large.
+// Numbers of points with integer coordinates, stored in blocks because neighbouring points are looked up together. The
+// blocks themselves are in a grid, unless that would be very large.
 class PlaceNumbers {
  public:
   // For places from `low` to `high`.
@@ -31,7 +31,7 @@ class PlaceNumbers {
     if (count <= kMostInGrid) grid_.assign(static_cast<std::size_t>(count), kNone);
   }
 
-  // kNone where there is none yet.
+  // kNone where no number has been assigned yet.
   Index& at(const Vec3& place) {
     std::array<std::int32_t, 3> c;
     for (int i = 0; i < 3; ++i) c[i] = static_cast<std::int32_t>(place[i]);
@@ -89,7 +89,7 @@ class GradedLattice::Maker {
       low = low.cwiseMin((ball.center.array() - ball.radius).matrix());
       high = high.cwiseMax((ball.center.array() + ball.radius).matrix());
     }
-    const double beyond = kMargin + kLongest;  // of what is asked for
+    const double beyond = kMargin + kLongest;  // of the balls
     root_number_.cover((low.array() - beyond).matrix(), (high.array() + beyond).matrix());
     add_root(Vec3::Zero());
     for (const LatticeBall& ball : balls_) for_points_near(ball, kMargin, [&](const Vec3& at) { add_root(at); });
@@ -112,10 +112,9 @@ class GradedLattice::Maker {
   struct Node {
     Tetrahedron corners;
     Edge longest;
-    double coarsest2;     // no squared edge of what it was bisected into is longer
-    Index child = kNone;  // the first of two; kNone: not bisected
-    std::array<Index, 4>
-        next;  // in the list of the tetrahedra around each corner: four times its number, and the corner
+    double coarsest2;           // bound on the squared edges of all its descendants
+    Index child = kNone;        // the first of its two children; kNone: not bisected
+    std::array<Index, 4> next;  // in the list of tetrahedra around each corner: 4 * number + corner
   };
 
   static bool is_odd(double whole) { return (static_cast<std::int64_t>(whole) & 1) != 0; }
@@ -148,7 +147,8 @@ class GradedLattice::Maker {
 
   Index root(const Vec3& at) { return root_number_.at(at); }
 
-  // Every tetrahedron has two opposite long edges, along different axes; it is met at the one along the lower axis.
+  // Every tetrahedron has two opposite long edges along different axes; it is created from the one along the lower
+  // axis.
   void make_roots() {
     const auto count = static_cast<Index>(at_.size());
     first_around_.assign(count, kNone);
@@ -159,7 +159,7 @@ class GradedLattice::Maker {
         if (q != kNone) make_around(p, q, d, around);
       }
     }
-    for (const int n : around) lattice_.at_rim_.push_back(n < kTetrahedraAround);
+    for (const int n : around) lattice_.at_border_.push_back(n < kTetrahedraAround);
   }
 
   void make_around(Index p, Index q, int d, std::vector<int>& around) {
@@ -191,7 +191,7 @@ class GradedLattice::Maker {
     return number;
   }
 
-  // The first in order where two are as long: the odd points' of an unbisected one.
+  // The first in order where two are equally long: in an unbisected tetrahedron, the one between odd points.
   Edge longest_edge(const Tetrahedron& corners) const {
     Edge longest{0, 1, 0};
     for (int a = 0; a < 4; ++a) {
@@ -203,7 +203,7 @@ class GradedLattice::Maker {
     return longest;
   }
 
-  // The unbisected tetrahedra around every root point, while that is all there is.
+  // Links the tetrahedra around every root point, before any is bisected.
   void note_roots() {
     roots_around_.resize(at_.size());
     for (Index t = 0; t < nodes_.size(); ++t) {
@@ -229,7 +229,7 @@ class GradedLattice::Maker {
     if (nodes_[t].coarsest2 <= ball.longest * ball.longest) return;
     const Edge longest = nodes_[t].longest;
     const Vec3 middle = 0.5 * (at_[nodes_[t].corners[longest.a]] + at_[nodes_[t].corners[longest.b]]);
-    // All of it lies within a longest edge's length of the middle of that edge.
+    // The tetrahedron lies within the longest edge's length of that edge's midpoint.
     const double reach = ball.radius + std::sqrt(longest.length2);
     if ((middle - ball.center).squaredNorm() > reach * reach) return;
     if (nodes_[t].child == kNone) bisect(t);
@@ -239,7 +239,7 @@ class GradedLattice::Maker {
     nodes_[t].coarsest2 = std::max(nodes_[child].coarsest2, nodes_[child + 1].coarsest2);
   }
 
-  // With all others around its longest edge, after those among them that have a longer one.
+  // Bisects it together with all others around its longest edge; those with a longer edge are bisected first.
   void bisect(Index t) {
     const Edge edge = nodes_[t].longest;
     const Index a = nodes_[t].corners[edge.a], b = nodes_[t].corners[edge.b];
@@ -260,7 +260,7 @@ class GradedLattice::Maker {
     const std::span<const Index> around(around_.begin() + begin, around_.end());
     const auto middle = static_cast<Index>(at_.size());
     at_.push_back(0.5 * (at_[a] + at_[b]));
-    lattice_.at_rim_.push_back(lattice_.at_rim_[a] && lattice_.at_rim_[b] && !closes_around(a, b, around));
+    lattice_.at_border_.push_back(lattice_.at_border_[a] && lattice_.at_border_[b] && !closes_around(a, b, around));
     first_around_.push_back(kNone);
     for (const Index u : around) {
       for (const Index end : {b, a}) {
@@ -273,7 +273,7 @@ class GradedLattice::Maker {
     around_.resize(begin);
   }
 
-  // Whether these tetrahedra around an edge form a ring: two at each of the triangles at it.
+  // Whether these tetrahedra close up around the edge: each triangle at the edge has two of them.
   bool closes_around(Index a, Index b, std::span<const Index> around) const {
     const auto count = [&](Index corner) {
       return std::count_if(around.begin(), around.end(), [&](Index t) {
@@ -287,7 +287,7 @@ class GradedLattice::Maker {
     });
   }
 
-  // Adds the unbisected ones to around_, ascending. Those that no longer are leave the list on the way.
+  // Appends the unbisected ones to around_, ascending, and drops bisected ones from the list on the way.
   void find_around_edge(Index a, Index b) {
     const std::size_t begin = around_.size();
     Index* link = &first_around_[a];
@@ -328,10 +328,10 @@ class GradedLattice::Maker {
   std::vector<LatticeBall> balls_;  // in units, along the frame
   PlaceNumbers root_number_;
   std::vector<Node> nodes_;
-  std::vector<Index> first_around_;  // of every point: as Node::next
+  std::vector<Index> first_around_;  // of every point, encoded as Node::next
   std::vector<std::vector<Index>> roots_around_;
-  std::vector<Index> last_ball_;  // that has refined a root
-  std::vector<Index> around_;     // edges that are being bisected, one after the other
+  std::vector<Index> last_ball_;  // of every root: the last ball that refined it
+  std::vector<Index> around_;     // of the edges being bisected, back to back
 };
 
 GradedLattice::GradedLattice(const Vec3& origin, const Eigen::Matrix3d& frame, double spacing,

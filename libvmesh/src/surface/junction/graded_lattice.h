@@ -15,19 +15,19 @@ struct LatticeBall {
   double longest;
 };
 
-/// The tetrahedra of a body-centred cubic lattice, bisected where they are asked to be small: finer by any factor in
-/// one place than in another, they fit together face to face. Points are numbered; number 0 is the origin.
+/// A body-centred cubic lattice of tetrahedra, bisected wherever smaller ones are needed. Resolution may vary by any
+/// factor; the tetrahedra always meet face to face. Points are numbered; point 0 is the origin.
 ///
-/// Bisection is at the longest edge, together with all tetrahedra around it, which are bisected first where they have a
-/// longer one (Rivara). The two opposite long edges of an unbisected tetrahedron join points of one of the two cubic
-/// grids each, and that of the second goes first; below, the longest edge is unique, every tetrahedron is of one of
-/// three shapes (Maubach 1995), and edges halve with every third bisection.
+/// A tetrahedron is bisected at its longest edge, together with all others around that edge; those with a longer edge
+/// are bisected at that first (Rivara). Of the two opposite long edges of an unbisected tetrahedron, one joins points
+/// of the first cubic grid and one of the second; the latter is bisected first. From then on the longest edge is
+/// unique, every tetrahedron has one of three shapes (Maubach 1995), and edges halve with every third bisection.
 class GradedLattice {
  public:
   using Tetrahedron = std::array<Index, 4>;  ///< its corners, in positive order
 
-  /// `spacing` is the edge of the lattice's cubes, `frame` its directions. Unbisected tetrahedra are there for two
-  /// spacings around every ball. `origin` must lie in one of them.
+  /// `spacing` is the edge of the lattice's cubes, `frame` its directions. Unbisected tetrahedra extend two spacings
+  /// beyond every ball. `origin` must lie in one of them.
   GradedLattice(const Vec3& origin, const Eigen::Matrix3d& frame, double spacing, std::span<const LatticeBall> balls);
 
   std::size_t size() const { return at_.size(); }
@@ -35,7 +35,7 @@ class GradedLattice {
   /// Longest edge of the tetrahedra around a point, mm.
   double spacing(Index point) const { return unit_ * longest_[point]; }
   /// Whether tetrahedra around the point are missing.
-  bool at_rim(Index point) const { return at_rim_[point] != 0; }
+  bool at_border(Index point) const { return at_border_[point] != 0; }
 
   const std::vector<Tetrahedron>& tetrahedra() const { return tetrahedra_; }
   /// The numbers of the tetrahedra around a point, ascending.
@@ -50,7 +50,7 @@ class GradedLattice {
   Eigen::Matrix3d frame_;
   double unit_;           // mm; half the edge of a cube
   std::vector<Vec3> at_;  // in units and along the frame; exact, multiples of a power of two
-  std::vector<char> at_rim_;
+  std::vector<char> at_border_;
   std::vector<double> longest_;  // in units
   std::vector<Tetrahedron> tetrahedra_;
   std::vector<Index> around_, around_offsets_;

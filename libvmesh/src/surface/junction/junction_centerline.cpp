@@ -9,12 +9,11 @@
 namespace vmesh {
 namespace {
 
-// Nodes of a junction's centerline closer than that, radii, are left out where the vessel without them is the same up
-// to kAlike radii.
-// kShortestPiece: safe 0.21 to 0.42; kAlike: safe 0.14 to 0.28.
+// Nodes of a junction's centerline closer together than kShortestPiece radii are left out where that changes the vessel
+// by at most kAlike radii. kShortestPiece: safe 0.21 to 0.42; kAlike: safe 0.14 to 0.28.
 constexpr double kShortestPiece = 0.3, kAlike = 0.2;
 
-// Whether the vessel at `place` is another than it would be without a node between `before` and `after`.
+// Whether the vessel at `place` differs from the one without nodes between `before` and `after`.
 bool sticks_out(const BranchAxis& axis, double before, double place, double after) {
   const BranchAxis::Point a = axis.at(before), p = axis.at(place), b = axis.at(after);
   const double t = (place - before) / (after - before);
@@ -53,7 +52,7 @@ class JunctionCenterlineMaker {
     return add_node(point.position, point.radius);
   }
 
-  // Their places along the branch, ascending.
+  // Places of the nodes within the bare stretch, ascending.
   static std::vector<double> nodes_within(const BranchAxis& axis, const BareStretch& bare) {
     std::vector<double> places;
     for (double lap = 0; lap <= (axis.periodic() ? axis.length() : 0); lap += axis.length()) {
@@ -66,8 +65,8 @@ class JunctionCenterlineMaker {
     return places;
   }
 
-  // A loop that is short against its radius needs nodes even so: a centerline has no two segments between the same
-  // nodes, and none from a node to itself.
+  // A loop that is short relative to its radius still needs nodes: a centerline has no two segments between the same
+  // nodes and no segment from a node to itself.
   void keep_apart(Index first, Index last, std::vector<double>& places) {
     const std::size_t inner = places.size() - 2, needed = first == last ? 2 : 1;
     const bool is_new = joined_.insert(std::minmax(first, last)).second;

@@ -4,7 +4,7 @@
 
 namespace vmesh {
 
-/// The part of a centerline that belongs to a junction, cut at its docks. Segments know the place they come from.
+/// The part of a centerline that belongs to a junction, cut at its docks. `origins` says where each segment comes from.
 struct JunctionCenterline {
   struct Origin {
     Index bare;
@@ -15,7 +15,7 @@ struct JunctionCenterline {
   std::vector<CenterlineSegment> segments;
   std::vector<Origin> origins;  // of the segments
 
-  /// The segment at that end of a bare stretch.
+  /// The segment at one end of a bare stretch.
   Index end_segment(Index bare, bool at_end) const;
 };
 

@@ -10,20 +10,20 @@
 namespace vmesh {
 namespace {
 
-// Of the lattice, in radii of the junction's thinnest vessel; but no finer than kFiner in radii of the vessel there.
-// Measured on 14 liver and synthetic trees: at 0.5 to 1 for kFiner vertices, skewness and mean error are the same to
-// 2 %; kSpacing 1.3 is unsafe.
-// kSpacing: safe 0.85 to 1.4, below that slower; kFiner: safe 0.51 to 0.84, below that slower.
+// Lattice spacing, in radii of the junction's thinnest vessel, but no finer than kFiner radii of the local vessel.
+// Measured on 14 liver and synthetic trees: at 0.5 to 1 for kFiner vertices, skewness and mean error are the same to 2
+// %; kSpacing 1.3 is unsafe. kSpacing: safe 0.85 to 1.4, below slower; kFiner: safe 0.51 to 0.84, below
+// slower.
 constexpr double kSpacing = 1, kFiner = 0.7;
-// Balls in which it is that fine, radii along the axis, and their radius. Derived: 1.25 around the axis between two of
-// them, for the boundary with what the default rounding adds.
+// Balls in which the lattice is that fine: their distance along the axis and their radius, in vessel radii. Derived:
+// between two balls they reach 1.25 radii from the axis, enough for the boundary with the default rounding.
 constexpr double kBallStep = 1, kReach = 1.35;  // kBallStep: safe 0.7 to 1.4; kReach: safe 0.94 to 1.9
-// Radii below a thicker vessel's wall from which on there are none. Without rounding, an axis lies exactly as deep
-// below its own vessel's wall: to the last bits, which differ between machines.
+// Radii below a thicker vessel's wall from which on no balls are laid. Not 0: without rounding, an axis lies exactly at
+// its own vessel's depth, up to the last bits, which differ between machines.
 constexpr double kBeneath = 0.1;          // safe 0.07 to 0.14
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field; safe 4 to 7
-constexpr double kShortestRimEdge = 0.4;  // intended edges of the surface; safe 0.28 to 0.56
-constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move onto the boundary; safe 0.21 to 0.42
+constexpr double kShortestRimEdge = 0.4;  // of the target edge length; safe 0.28 to 0.56
+constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move to reach the boundary; safe 0.21 to 0.42
 constexpr double kOwnReach = 1.5;         // radii along the branch from which a tip's vertices come; safe 1 to 2.1
 
 Index widest_node(const Centerline& centerline) {
@@ -34,14 +34,14 @@ Index widest_node(const Centerline& centerline) {
   return widest;
 }
 
-// How far below the walls of thicker vessels the axis runs, beyond the depth from which neither the vessel nor its
-// blend reaches them.
+// How far the axis runs below the depth under the walls of thicker vessels at which neither the vessel nor its blend
+// reaches them.
 double depth_at(const VesselField& field, const Vec3& p, Index cone, double radius) {
   return -field.sample_fast(p, cone).distance - (1 + kBeneath + 2 * field.blend()) * radius;
 }
 
-// Balls along the vessels, in which the lattice is as fine as their radius asks for; but where its cubes are that fine
-// everywhere, and where the vessel runs deep within thicker ones.
+// Balls along the vessels in which the lattice must be finer than its cubes, except where a vessel runs deep within
+// thicker ones.
 std::vector<LatticeBall> balls_along(const VesselField& field, double cube, double thinnest) {
   std::vector<LatticeBall> balls;
   for (Index cone = 0; cone < field.cone_count(); ++cone) {
@@ -50,7 +50,7 @@ std::vector<LatticeBall> balls_along(const VesselField& field, double cube, doub
       const double radius = field.radius_at(cone, t), finest = std::max(kSpacing * thinnest, kFiner * radius);
       const Vec3 p = field.axis_point(cone, t);
       const double depth = finest < cube ? depth_at(field, p, cone, radius) : 0;
-      const bool known = t == 0 && !balls.empty() && balls.back().center == p;  // the end of the cone before
+      const bool known = t == 0 && !balls.empty() && balls.back().center == p;  // the end of the previous cone
       if (depth <= 0 && !known) balls.push_back({p, kReach * radius, finest});
       if (t == 1) break;
       t = length > 0 ? std::min(1.0, t + std::max(kBallStep * radius, 0.5 * depth) / length) : 1;
@@ -59,7 +59,7 @@ std::vector<LatticeBall> balls_along(const VesselField& field, double cube, doub
   return balls;
 }
 
-// The cubes as large as the widest vessel allows: the thinnest one's, doubled.
+// Cubes as large as the widest vessel allows: the thinnest vessel's cubes, doubled repeatedly.
 GradedLattice lattice_around(const VesselField& field, Index start) {
   const Centerline& centerline = field.centerline();
   double thinnest = std::numeric_limits<double>::infinity(), widest = 0;
@@ -103,25 +103,25 @@ JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<Branc
       lattice_(grow_lattice(local_field_)) {}
 
 JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarded) const {
-  const GenerateResult piece = onto_boundary(finer, guarded);
+  const GenerateResult closed = onto_boundary(finer, guarded);
   JunctionSurface result;
-  DiscCutter cutter(piece.mesh.vertices, piece.mesh.faces);
+  DiscCutter cutter(closed.mesh.vertices, closed.mesh.faces);
   for (Index g = 0; g < junction_.bare_stretches.size(); ++g) {
     for (const bool at_end : {false, true}) {
       if (junction_.bare_stretches[g].docks[at_end].tube != kNone)
-        result.rims.push_back(cut_at_dock(cutter, piece, g, at_end, smooth_rims));
+        result.rims.push_back(cut_at_dock(cutter, closed, g, at_end, smooth_rims));
     }
   }
   result.patch.faces = cutter.rest();
   for (Index v = 0; v < cutter.vertices().size(); ++v) {
-    result.patch.vertices.push_back({cutter.vertices()[v], original_cone(piece.binding[cutter.source(v)].segment)});
+    result.patch.vertices.push_back({cutter.vertices()[v], original_cone(closed.binding[cutter.source(v)].segment)});
   }
   return result;
 }
 
 GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   BoundSurface surface(local_field_);
-  // What is thinned comes to rest sooner, but need no longer be free of self-intersections.
+  // A thinned surface converges sooner, but may intersect itself.
   fill(surface, guarded || finer > 1 ? lattice_ : thinned(lattice_));
   if (guarded) surface.guard_crossings();
   GenerateOptions options = options_;
@@ -131,9 +131,9 @@ GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   const double expected = expected_vertices(centerline_, options.around);
   const double around = std::min<double>(finer * kGrownAround, options.around);
   optimize(surface, options, {around, expected, GrownMesh::Stage::piece, options_.max_error.is_set()}, {});
-  GenerateResult piece;
-  surface.export_to(piece);
-  return piece;
+  GenerateResult closed;
+  surface.export_to(closed);
+  return closed;
 }
 
 // The cross-section at which the junction ends, half a step before its tube.
@@ -144,22 +144,22 @@ CrossSection JunctionGrowth::way_out(const TubeEnd& dock) const {
   return section;
 }
 
-// Returns the rim; moved onto the boundary and rid of short edges, or as it was cut.
-std::vector<Index> JunctionGrowth::cut_at_dock(DiscCutter& cutter, const GenerateResult& piece, Index bare, bool at_end,
-                                               bool smooth) const {
+// Returns the rim: moved onto the boundary and without short edges, or as it was cut.
+std::vector<Index> JunctionGrowth::cut_at_dock(DiscCutter& cutter, const GenerateResult& closed, Index bare,
+                                               bool at_end, bool smooth) const {
   const auto [place, center, normal, radius] = way_out(junction_.bare_stretches[bare].docks[at_end]);
   const double shortest = smooth ? kShortestRimEdge * edge_length_per_radius(options_.around) * radius : 0;
   std::vector<Index> rim =
-      cutter.cut(center, normal, vertices_near_end(piece, bare, at_end, kOwnReach * radius), shortest);
-  if (smooth) move_onto_boundary(cutter, rim, piece, kRimStep * radius);
+      cutter.cut(center, normal, vertices_near_end(closed, bare, at_end, kOwnReach * radius), shortest);
+  if (smooth) move_onto_boundary(cutter, rim, closed, kRimStep * radius);
   return rim;
 }
 
-void JunctionGrowth::move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& piece,
+void JunctionGrowth::move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& closed,
                                         double longest) const {
   for (const Index v : rim) {
     const Vec3 p = cutter.vertices()[v];
-    const Vec3 target = project_to_boundary(local_field_, p, piece.binding[cutter.source(v)].segment).position;
+    const Vec3 target = project_to_boundary(local_field_, p, closed.binding[cutter.source(v)].segment).position;
     if ((target - p).norm() < longest) cutter.move(v, target);
   }
 }
@@ -173,16 +173,16 @@ Index JunctionGrowth::original_cone(Index cone) const {
   }
   const auto& origin = local_.origins[cone];
   const BranchAxis& axis = axes_[junction_.bare_stretches[origin.bare].branch];
-  return axis.branch().segments[axis.at(0.5 * (origin.begin + origin.end)).piece];
+  return axis.branch().segments[axis.at(0.5 * (origin.begin + origin.end)).nth];
 }
 
-// The vertices bound to a bare stretch, near one of its ends and nearer than to the other.
-std::vector<Index> JunctionGrowth::vertices_near_end(const GenerateResult& piece, Index bare, bool at_end,
+// The vertices bound to a bare stretch that are near one of its ends, and nearer to it than to the other.
+std::vector<Index> JunctionGrowth::vertices_near_end(const GenerateResult& closed, Index bare, bool at_end,
                                                      double reach) const {
   const double begin = junction_.bare_stretches[bare].begin, end = junction_.bare_stretches[bare].end;
   std::vector<Index> near;
-  for (Index v = 0; v < piece.binding.size(); ++v) {
-    const auto& [segment, t] = piece.binding[v];
+  for (Index v = 0; v < closed.binding.size(); ++v) {
+    const auto& [segment, t] = closed.binding[v];
     const auto& origin = local_.origins[segment];
     const double place = origin.begin + t * (origin.end - origin.begin);
     const double away = at_end ? end - place : place - begin;

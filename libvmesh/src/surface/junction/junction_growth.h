@@ -6,10 +6,10 @@
 
 namespace vmesh {
 
-/// A vertex's lift where it stays at the distance from the boundary at which it is.
+/// Lift of a vertex that keeps its present distance from the boundary.
 inline constexpr double kAsLaid = std::numeric_limits<double>::infinity();
 
-/// A vertex with the cone it is bound to, the hint of its next query.
+/// A vertex with the cone it is bound to, which is the hint for its next query.
 struct SurfacePoint {
   Vec3 position;
   Index cone;
@@ -18,7 +18,7 @@ struct SurfacePoint {
   double elongation_share = 1;  ///< see BoundSurface
 };
 
-/// A piece of surface.
+/// Vertices and faces of a surface, whole or in part.
 struct SurfacePatch {
   std::vector<SurfacePoint> vertices;
   std::vector<Triangle> faces;
@@ -30,15 +30,16 @@ struct JunctionSurface {
   std::vector<std::vector<Index>> rims;  ///< counter-clockwise about the direction away from the junction
 };
 
-/// Grows the surface of a junction from its widest place, in a lattice as fine as the vessel at every place
-/// (grow_in_lattice), brings it onto the boundary and to a size field, and cuts it at its docks.
+/// Grows the surface of a junction from its widest place in a lattice graded to the local radius (grow_in_lattice),
+/// moves it onto the boundary, remeshes it to a size field, and cuts it at its docks.
 class JunctionGrowth {
  public:
   JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes, const GrowthSkeleton& skeleton,
                  const Junction& junction, const GenerateOptions& options);
 
-  /// The surface, made at `finer` times the resolution asked for; with rims moved onto the boundary and rid of short
-  /// edges, or as they were cut. Guarded: faces never cross on the way from the lattice to the boundary.
+  /// The surface at `finer` times the requested resolution. `smooth_rims`: rims are moved onto the boundary and lose
+  /// their short edges; otherwise they stay as cut. `guarded`: faces never cross on the way from the lattice to the
+  /// boundary.
   JunctionSurface make(double finer, bool smooth_rims, bool guarded) const;
 
   /// The surface as it comes out of the lattice, closed: before it is brought onto the boundary and cut.
@@ -51,11 +52,11 @@ class JunctionGrowth {
  private:
   GenerateResult onto_boundary(double finer, bool guarded) const;
   CrossSection way_out(const TubeEnd& dock) const;
-  std::vector<Index> cut_at_dock(DiscCutter& cutter, const GenerateResult& piece, Index bare, bool at_end,
+  std::vector<Index> cut_at_dock(DiscCutter& cutter, const GenerateResult& closed, Index bare, bool at_end,
                                  bool smooth) const;
   Index original_cone(Index cone) const;
-  std::vector<Index> vertices_near_end(const GenerateResult& piece, Index bare, bool at_end, double reach) const;
-  void move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& piece,
+  std::vector<Index> vertices_near_end(const GenerateResult& closed, Index bare, bool at_end, double reach) const;
+  void move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& closed,
                           double longest) const;
 
   const VesselField& field_;

@@ -6,14 +6,14 @@
 namespace vmesh {
 namespace {
 
-// Of an edge: a surface vertex keeps that far from lattice points; safe 0.17 to 0.35.
+// Of an edge: least distance of a surface vertex from lattice points; safe 0.17 to 0.35.
 constexpr double kNearestToPoint = 0.25;
 // Spacings below the boundary from which on a point counts as inside; safe 0.035 to 0.07.
 constexpr double kInside = 0.05;
 // Spacings below the boundary from which on depths need not be exact; safe 1 to 2.1.
 constexpr double kFarInside = 1.5;
-constexpr double kDepthStep = 1e-6;  // radii below which depths count as equal; idle 7e-7 to 1.4e-6
-// Spacings below the boundary at which a blocked point asks for a handle; idle 0.28 to 0.56.
+constexpr double kDepthStep = 1e-6;  // radii: depths that differ by less count as equal; idle 7e-7 to 1.4e-6
+// Spacings below the boundary from which on a blocked point may become a handle; idle 0.28 to 0.56.
 constexpr double kBlockedDepth = 0.4;
 
 class LatticeGrowth {
@@ -46,13 +46,13 @@ class LatticeGrowth {
   // The surface vertex between a point of the set and one outside it.
   struct Cut {
     Index outside, vertex;
-    Index next;  // of the same point of the set
+    Index next;  // cut of the same point of the set
   };
   struct Parts {
     int inside, outside;
   };
 
-  // Far inside, an upper bound of the distance will do, which a step from a neighbour gives.
+  // Far inside, an upper bound of the distance is enough; it follows from the neighbour's distance.
   void learn(Index q, Index from) {
     Point& point = points_[q];
     if (point.known) return;
@@ -72,7 +72,7 @@ class LatticeGrowth {
   }
 
   bool is_inside(Index p) const {
-    return points_[p].known && !lattice_.at_rim(p) && points_[p].distance < -kInside * lattice_.spacing(p);
+    return points_[p].known && !lattice_.at_border(p) && points_[p].distance < -kInside * lattice_.spacing(p);
   }
 
   void add(Index p) {
@@ -87,11 +87,11 @@ class LatticeGrowth {
     }
   }
 
-  // In radii, so that vessels grow along their axes before walls that touch elsewhere are reached; in steps, so that
+  // In radii, so that vessels grow along their axes before they reach walls that touch elsewhere; quantised, so that
   // rounding does not decide between points of equal depth.
   double depth(Index p) const { return std::round(-points_[p].distance / (kDepthStep * points_[p].radius)); }
 
-  // Into how many parts the link of a point, a triangulated sphere, falls: of neighbours in the set, and of others.
+  // Number of components of the link of a point (a triangulated sphere) inside the set, and outside it.
   Parts parts_around(Index p) {
     link_.clear();
     int parts[2] = {0, 0};
@@ -122,12 +122,12 @@ class LatticeGrowth {
     return {parts[1], parts[0]};
   }
 
-  // Whether it may join the set: its link falls into one disc inside and one outside.
+  // Whether it may join the set: its link consists of one disc inside and one outside.
   bool is_simple(Index p) {
     const auto [inside, outside] = parts_around(p);
     return inside == 1 && outside == 1;
   }
-  // Whether it joins two parts of the set and nothing else: one handle more.
+  // Whether it joins two components of its link and changes nothing else: this adds one handle.
   bool is_bridge(Index p) {
     const auto [inside, outside] = parts_around(p);
     return inside == 2 && outside == 1;
@@ -215,8 +215,8 @@ class LatticeGrowth {
   std::vector<Point> points_;
   std::vector<std::uint8_t> in_;                         // the set
   std::priority_queue<std::pair<double, Index>> queue_;  // depth, point
-  std::vector<Index> seen_by_;                           // the point last added that has looked at this one
-  std::vector<Index> part_, link_;                       // of parts_around()
+  std::vector<Index> seen_by_;                           // the last added point from which this one was visited
+  std::vector<Index> part_, link_;                       // scratch of parts_around()
   std::vector<Index> first_cut_;                         // of every point of the set
   std::vector<Cut> cuts_;
   LatticeSurface surface_;

@@ -3,10 +3,10 @@
 namespace vmesh {
 namespace {
 
-constexpr double kStraight = 1e-6;  // derived: sine of an angle that rounding of a direction stays far below
+constexpr double kStraight = 1e-6;  // derived: sine of an angle far above the rounding of a direction
 
-// The normal of the plane through `along` at `node` and the node of the centerline farthest off it; some normal if the
-// centerline is straight.
+// The normal of the plane spanned by the line through `node` in direction `along` and the node of the centerline
+// farthest from that line; any normal of `along` if the centerline is straight.
 Vec3 farthest_off(const Centerline& centerline, Index node, const Vec3& along) {
   Vec3 across = Vec3::Zero();
   double size = 0;

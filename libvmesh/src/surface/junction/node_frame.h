@@ -4,9 +4,9 @@
 
 namespace vmesh {
 
-/// A frame that turns with the centerline: along the node's first segment, and as far as possible from its others; then
-/// turned to where no segment runs through a vertex or a mirror plane of what is laid out in it, so that nothing hangs
-/// on rounding.
+/// A frame that rotates with the centerline: aligned with the node's first segment and as far as possible from its
+/// others, then rotated so that no segment runs through a vertex or mirror plane of a lattice or sphere laid out in it;
+/// otherwise rounding would decide.
 Eigen::Matrix3d frame_at(const Centerline& centerline, Index node);
 
 }  // namespace vmesh

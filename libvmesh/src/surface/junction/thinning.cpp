@@ -5,7 +5,7 @@
 namespace vmesh {
 namespace {
 
-// Cosine between a face around a merged vertex and the mean of those that were there.
+// Least cosine between the normal of a face around a merged vertex and the mean normal of the faces it replaces.
 constexpr double kLeastAgreement = 0.2;
 
 class Thinning {
@@ -53,7 +53,7 @@ class Thinning {
   }
 
   void merge(std::span<const Index> group) {
-    rim_.clear();
+    outline_.clear();
     if (is_disc(group)) {
       Vec3 middle = Vec3::Zero();
       for (const Index v : group) middle += surface_.vertices[v] / static_cast<double>(group.size());
@@ -62,11 +62,11 @@ class Thinning {
         positions_[group.front()] = middle;
       }
     }
-    for (const auto& [from, to] : rim_) next_[from] = kNone;
+    for (const auto& [from, to] : outline_) next_[from] = kNone;
   }
 
-  // Whether the faces around form a disc: their rim is one cycle that meets no vertex twice, and their Euler
-  // characteristic is 1.
+  // Whether the faces around the group form a disc: their outline is one cycle that meets no vertex twice, and their
+  // Euler characteristic is 1.
   bool is_disc(std::span<const Index> group) {
     std::size_t faces = 0;
     normal_.setZero();
@@ -86,22 +86,22 @@ class Thinning {
           if (!in_group(t[(k + 2) % 3]) || in_group(a) || in_group(b)) continue;
           if (next_[a] != kNone) return false;
           next_[a] = b;
-          rim_.emplace_back(a, b);
+          outline_.emplace_back(a, b);
         }
       }
     }
-    if (rim_.size() < 3 || 2 * group.size() + rim_.size() != faces + 2) return false;
+    if (outline_.size() < 3 || 2 * group.size() + outline_.size() != faces + 2) return false;
     std::size_t length = 0;
-    Index v = rim_.front().first;
+    Index v = outline_.front().first;
     do {
       v = next_[v];
       ++length;
-    } while (v != kNone && v != rim_.front().first && length <= rim_.size());
-    return v == rim_.front().first && length == rim_.size();
+    } while (v != kNone && v != outline_.front().first && length <= outline_.size());
+    return v == outline_.front().first && length == outline_.size();
   }
 
   bool stays_upright(const Vec3& middle) const {
-    return std::ranges::all_of(rim_, [&](const auto& edge) {
+    return std::ranges::all_of(outline_, [&](const auto& edge) {
       const Vec3 normal = (positions_[edge.first] - middle).cross(positions_[edge.second] - middle);
       return normal.dot(normal_) > kLeastAgreement * normal.norm() * normal_.norm();
     });
@@ -128,10 +128,10 @@ class Thinning {
   const LatticeSurface& surface_;
   std::vector<Index> merged_into_;
   std::vector<Vec3> positions_;
-  std::vector<Index> offsets_, around_;       // the faces around every vertex
-  std::vector<Index> next_;                   // of a vertex along the rim
-  std::vector<std::pair<Index, Index>> rim_;  // of what is looked at
-  std::vector<Index> seen_by_;                // of every face, the point last looked at
+  std::vector<Index> offsets_, around_;           // the faces around every vertex
+  std::vector<Index> next_;                       // vertex along the outline
+  std::vector<std::pair<Index, Index>> outline_;  // of the faces under consideration
+  std::vector<Index> seen_by_;                    // for every face, the point that last visited it
   Vec3 normal_ = Vec3::Zero();
 };
 

@@ -4,8 +4,8 @@
 
 namespace vmesh {
 
-/// Merges the vertices that are cut off the same point of the lattice into one in their middle, wherever the surface
-/// stays closed, 2-manifold and of its genus, and none of its faces turns over: those around them form a disc.
+/// Merges the vertices that were cut next to the same lattice point into one at their mean, wherever the surface stays
+/// closed, 2-manifold and of the same genus (the faces around them form a disc) and no face turns over.
 LatticeSurface thinned(const LatticeSurface& surface);
 
 }  // namespace vmesh

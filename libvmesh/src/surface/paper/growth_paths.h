@@ -6,9 +6,9 @@
 
 namespace vmesh {
 
-/// The way growth takes through the centerline: a breadth-first tree from a seed node. Says for every crossing
-/// whether it lies at the front of its segment or behind it, which is what ends double covering: where branch
-/// nodes crowd together several fronts may span the same cross-section, and each would grow every daughter.
+/// The path growth takes through the centerline: a breadth-first tree from a seed node. Tells for every crossing
+/// whether it lies at the front of its segment or behind it, which prevents covering vessels twice: where branching
+/// nodes crowd together, several fronts may span the same cross-section, and each would grow every daughter.
 class GrowthPaths {
  public:
   explicit GrowthPaths(const Centerline& centerline);
@@ -25,7 +25,7 @@ class GrowthPaths {
   /// How far, as a depth, growth has come on `segment`.
   double reached(Index segment) const { return reached_[segment]; }
 
-  /// Growth crosses `segment` at `depth`.
+  /// Notes that growth crosses `segment` at `depth`.
   void advance(Index segment, double depth);
 
   /// How often growth has crossed `segment`.

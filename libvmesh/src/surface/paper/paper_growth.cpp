@@ -17,8 +17,8 @@ constexpr double kMaxStep = 0.5;            // step in vessel radii
 constexpr int kMaxSteps = 100;              // of one vertex, before it is projected
 constexpr double kMaxFlight = 2;            // vessel radii a vertex may travel before only the boundary attracts it
 constexpr double kBehind = 0.1;             // vessel radii a crossing may lie behind its segment's front
-constexpr double kMaxSplits = 20;           // crossings of a segment per vessel radius, some twenty times what is usual
-constexpr double kSmallestFace = 0.02;      // longest edge, in radii of the crossing segment, that is still split
+constexpr double kMaxSplits = 20;       // crossings of a segment per vessel radius, about twenty times the usual number
+constexpr double kSmallestFace = 0.02;  // longest edge, in radii of the crossing segment, that is still split
 
 class Growth {
  public:
@@ -103,7 +103,7 @@ class Growth {
     return norm > 0 ? Vec3(f / norm) : here.gradient;
   }
 
-  // Faces next to a vertex that just settled are looked at: all three corners settled and crossed means split.
+  // Faces at a vertex that has just settled are split if all three corners are settled and the centerline crosses them.
   void split_crossed_faces() {
     for (const Vertex v : settled_) {
       faces_.assign(mesh_.faces_around_target(mesh_.halfedge(v)).begin(),
@@ -121,8 +121,8 @@ class Growth {
     return true;
   }
 
-  // Whether a segment leaves the surface through `f` ahead of what has grown along it already. Only crossings
-  // in the direction of growth count: the others belong to a front that met covered ground.
+  // Whether a segment leaves the surface through `f` ahead of what has grown along it already. Only crossings in the
+  // direction of growth count; the others belong to a front that met covered vessel.
   bool crossed(Face f) {
     const Halfedge h = mesh_.halfedge(f);
     TriangleCorners triangle;

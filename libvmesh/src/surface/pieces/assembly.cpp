@@ -7,7 +7,7 @@
 namespace vmesh {
 namespace {
 
-constexpr int kFewestOnCap = 4;  // vertices of a cap's ring: three would be a face; safe 3 to 6
+constexpr int kFewestOnCap = 4;  // vertices of a cap's ring: three would be a single face; safe 3 to 6
 
 std::vector<Index> reversed(std::vector<Index> loop) {
   std::reverse(loop.begin(), loop.end());
@@ -22,7 +22,7 @@ Assembly::Assembly(const VesselTubes& tubes, const PiecePlan& plan, const Growth
   for (Index t = 0; t < skeleton.tubes.size(); ++t) add_tube(t);
 }
 
-// The rings of a tube that no junction's piece replaces.
+// Adds the rings of a tube that no junction replaces.
 void Assembly::add_tube(Index number) {
   const Tube& tube = skeleton_.tubes[number];
   const std::size_t count = tube.rings.size(), given = rings_given_away(tube);
@@ -42,7 +42,7 @@ void Assembly::add_tube(Index number) {
   if (tube.ends_at_seam) loops_.push_back({kNone, seam_at(tube, true), ring_vertices(number, count - 1), false});
 }
 
-// The ring at the stretch's end that the tube's end is.
+// The ring of the stretch's end at which the tube ends.
 RingPlace Assembly::seam_at(const Tube& tube, bool at_last) const {
   for (std::size_t i = 0; i < plan_.stretches.size(); ++i) {
     const std::vector<Ring>& rings = skeleton_.rings[i];
@@ -52,13 +52,13 @@ RingPlace Assembly::seam_at(const Tube& tube, bool at_last) const {
     const auto count = static_cast<Index>(tubes_.rings(s.branch).size());
     return {s.branch, at_last ? (s.first + s.count - 1) % count : s.first};
   }
-  throw std::logic_error("a seam is no ring of its piece");
+  throw std::logic_error("a seam is not a ring of its piece");
 }
 
-void Assembly::add_junction(const Junction& junction, const JunctionPiece& piece) {
+void Assembly::add_junction(const Junction& junction, const DockedJunction& docked) {
   const std::vector<TubeEnd> docks = docks_of(junction);
   std::vector<Index> number;
-  for (const PieceVertex& v : piece.vertices) {
+  for (const DockedVertex& v : docked.vertices) {
     if (v.dock == kNone) {
       number.push_back(size());
       vertices_.push_back({v.position, v.cone, v.fineness, v.lift, v.elongation_share});
@@ -67,7 +67,7 @@ void Assembly::add_junction(const Junction& junction, const JunctionPiece& piece
       number.push_back(first_[tube][kept_ring(skeleton_.tubes[tube], at_end)] + v.number);
     }
   }
-  for (const auto& [a, b, c] : piece.faces) faces_.push_back({number[a], number[b], number[c]});
+  for (const auto& [a, b, c] : docked.faces) faces_.push_back({number[a], number[b], number[c]});
 }
 
 std::vector<PieceLoop> Assembly::build(BoundSurface& surface) const {
@@ -85,7 +85,7 @@ std::vector<PieceLoop> Assembly::build(BoundSurface& surface) const {
   }
   for (const auto& [a, b, c] : faces_) {
     if (surface.mesh.add_face(vertex[a], vertex[b], vertex[c]) == SurfaceMesh::null_face())
-      throw std::logic_error("pieces of the surface do not fit together");
+      throw std::logic_error("pieces of the surface are inconsistent");
   }
   surface.update_elongation();
   std::vector<PieceLoop> loops;
@@ -101,7 +101,7 @@ std::vector<PieceLoop> Assembly::build(BoundSurface& surface) const {
   return loops;
 }
 
-// With a cap, or open.
+// Closes the tube's end with a cap, or leaves it open.
 void Assembly::end_at_tip(const Tube& tube, std::size_t k, double side, std::vector<Index> loop) {
   const auto& nodes = tubes_.axes()[tube.branch].branch().nodes;
   const Index node = side < 0 ? nodes.front() : nodes.back();
@@ -130,7 +130,7 @@ void Assembly::band(const std::vector<Index>& bottom, const std::vector<Index>& 
     faces_.push_back({vertex(a), vertex(b), vertex(c)});
 }
 
-// Closes the loop of a tip's ring with a hemisphere: rings of fewer and fewer vertices, and a pole.
+// Closes a tip's loop with a hemisphere: rings with ever fewer vertices, then a pole.
 void Assembly::cap(const Ring& ring, double side, std::vector<Index> loop) {
   const double quarter = std::numbers::pi / 2;
   const auto around = static_cast<double>(loop.size());

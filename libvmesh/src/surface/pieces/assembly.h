@@ -1,7 +1,7 @@
 #pragma once
 
+#include "surface/junction/docked_junction.h"
 #include "surface/junction/junction_growth.h"
-#include "surface/junction/junction_piece.h"
 #include "surface/tubes/growth_skeleton.h"
 
 namespace vmesh {
@@ -14,16 +14,16 @@ struct PieceLoop {
                                  ///< the ring at a seam
 };
 
-/// Joins tubes and the junctions between them to a piece of surface in a halfedge mesh.
+/// Joins tubes and the junctions between them into one halfedge mesh.
 class Assembly {
  public:
   /// `plan` is the one `skeleton` was made of; `open` says for every node whether the surface is to be open there.
   Assembly(const VesselTubes& tubes, const PiecePlan& plan, const GrowthSkeleton& skeleton,
            const std::vector<char>& open);
 
-  void add_junction(const Junction& junction, const JunctionPiece& piece);
+  void add_junction(const Junction& junction, const DockedJunction& docked);
 
-  /// Fills in the surface. Lids close what is open; returns the loops around them.
+  /// Builds the surface. Holes are closed by lids; returns the loops around them.
   std::vector<PieceLoop> build(BoundSurface& surface) const;
 
  private:
@@ -31,7 +31,7 @@ class Assembly {
     Index node;
     RingPlace seam;
     std::vector<Index> vertices;  // counter-clockwise about the direction out of the piece
-    bool reversed;                // against the order of the ring
+    bool reversed;                // runs against the order of the ring
   };
 
   void add_tube(Index number);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <ranges>
 
 #include <tbb/parallel_for.h>
 
@@ -17,8 +16,8 @@ namespace {
 
 // Rings between two seams: a piece of some 600 vertices at 6 around; safe 67 to 134.
 constexpr std::size_t kLongest = 96;
-// Rings of a tube that stay with a junction, where the tube is longer than kShort: what is tried for the junction again
-// and again is not tried for all of its vessels.
+// Rings of a tube that stay with a junction where the tube is longer than kShort, so that remaking the junction does
+// not remake whole vessels.
 constexpr std::size_t kBeside = 12, kShort = 40;  // kBeside: safe 8 to 17; kShort: safe 28 to 56
 // Rings before and after the middle that may become the seam instead of it; safe 2 to 4.
 constexpr std::size_t kWindow = 3;
@@ -75,8 +74,8 @@ class SeamSearch {
     std::size_t first, end;
   };
 
-  // A run of rings, between junctions or not: in equal parts no longer than kLongest, between two junctions in two at
-  // least; if it is long, without what stays with these.
+  // Divides a run of rings into equal stretches no longer than kLongest, at least two between two junctions; in a long
+  // run, the rings that stay with the junctions are not divided.
   void divide(const Run& run, bool from_junction, bool to_junction) {
     const std::size_t count = run.end - run.first;
     std::size_t begin = run.first, last = run.end - 1;
@@ -96,7 +95,7 @@ class SeamSearch {
     add_best(middle, low, high);
   }
 
-  // Of the rings [low, high) the first that is even, the nearest to the middle before others; none if none is.
+  // Adds the even ring of [low, high) nearest to the middle, if there is one.
   void add_best(std::size_t middle, std::size_t low, std::size_t high) {
     std::vector<std::pair<std::size_t, std::size_t>> order;
     for (std::size_t k = low; k < high; ++k) order.emplace_back(k > middle ? k - middle : middle - k, k);
@@ -113,7 +112,7 @@ class SeamSearch {
            !near_others(rings_[k]);
   }
 
-  // Whether the faces are as good as they will become, and as close to the boundary as is asked for.
+  // Whether the faces are already as good as optimisation would make them, and as close to the boundary as requested.
   bool is_even(const Band& band) const {
     return std::all_of(band.faces.begin(), band.faces.end(), [&](const Triangle& f) {
       const std::array<Vec3, 3> p = {band.points[f[0]], band.points[f[1]], band.points[f[2]]};
@@ -136,7 +135,7 @@ class SeamSearch {
     return shares.inner > 0 && shares.outer > 0;
   }
 
-  // Where another wall is near, how far vertices may be lifted is not known yet.
+  // Near another wall it is not known yet how far vertices may be lifted.
   bool near_others(const Ring& ring) const {
     const double reach = kClear * ring.radius;
     return std::any_of(ring.points.begin(), ring.points.end(), [&](const BoundaryPoint& p) {
@@ -144,13 +143,13 @@ class SeamSearch {
     });
   }
 
-  // Measured on sixteen trees (ten portal veins, tree1560 among them): against 1.05 the mean skewness grows by 0.3 %,
-  // the largest stays, and the largest piece of tree1560 has half as many nodes.
+  // Measured on sixteen trees (ten portal veins, tree1560 among them): compared with 1.05, mean skewness grows by 0.3
+  // %, the maximum stays the same, and the largest piece of tree1560 has half as many nodes.
   static constexpr double kSeamEnergy = 1.5;  // safe 1.05 to 1.5
-  // Radii: more than the highest lift, a third of a radius, and edges between; safe 0.35 to 0.7.
+  // Radii: more than the highest lift, a third of a radius, plus room for the edges; safe 0.35 to 0.7.
   static constexpr double kClear = 0.5;
 
-  // Of the error limit: neighbours with lower shells take some of it; idle 0.56 to 1.1.
+  // Of the error limit: neighbouring faces with lower shells use up some of it; idle 0.56 to 1.1.
   static constexpr double kSeamLimit = 0.8;
 
   const VesselField& field_;
@@ -166,7 +165,7 @@ class SeamSearch {
 void add_stretches(const RingCounts& rings, Index branch, std::span<const RingPlace> seams,
                    std::vector<Stretch>& stretches) {
   const auto count = rings.along(branch);
-  const bool periodic = rings.axes()[branch].periodic();
+  const bool periodic = is_loop(rings.centerline(), rings.branches()[branch]);
   if (seams.empty()) {
     stretches.push_back({branch, 0, count});
     return;
@@ -184,7 +183,8 @@ void add_stretches(const RingCounts& rings, Index branch, std::span<const RingPl
 
 std::vector<Stretch> stretches_between(const RingCounts& rings, const std::vector<RingPlace>& seams) {
   std::vector<Stretch> stretches;
-  for (auto first = seams.begin(); const auto b : std::views::iota(Index{0}, static_cast<Index>(rings.axes().size()))) {
+  auto first = seams.begin();
+  for (Index b = 0; b < rings.branches().size(); ++b) {
     const auto last = std::find_if(first, seams.end(), [&](const RingPlace& seam) { return seam.branch != b; });
     add_stretches(rings, b, std::span(first, last), stretches);
     first = last;
@@ -192,7 +192,7 @@ std::vector<Stretch> stretches_between(const RingCounts& rings, const std::vecto
   return stretches;
 }
 
-// Stretches, then nodes, that hang together.
+// Collects connected stretches and nodes into plans.
 class PlanMaker {
  public:
   PlanMaker(const RingCounts& rings, std::vector<Stretch> stretches)
@@ -201,7 +201,7 @@ class PlanMaker {
         node_count_(static_cast<Index>(rings.centerline().nodes().size())),
         parts_(stretches_.size() + node_count_) {
     for (Index i = 0; i < stretches_.size(); ++i) {
-      const auto& branch = rings.axes()[stretches_[i].branch].branch();
+      const auto& branch = rings.branches()[stretches_[i].branch];
       if (!stretches_[i].seam_at_first) parts_.join(i, part_of(branch.nodes.front()));
       if (!stretches_[i].seam_at_last) parts_.join(i, part_of(branch.nodes.back()));
     }
@@ -246,7 +246,7 @@ class PlanMaker {
   DisjointSets parts_;
 };
 
-// Seams with one piece on both sides: it would touch itself there. Ascending.
+// Seams with the same piece on both sides, where it would touch itself. Ascending.
 std::vector<RingPlace> within_one_piece(const RingCounts& rings, const std::vector<PiecePlan>& plans) {
   std::map<RingPlace, Index> first;
   std::vector<RingPlace> within;
@@ -295,7 +295,7 @@ Anchor anchor_of(const PiecePlan& plan) {
   return {{plan.stretches.front().branch, plan.stretches.front().first}, kNone};
 }
 
-RingCounts::RingCounts(const VesselTubes& tubes) : axes_(tubes) {
+RingCounts::RingCounts(const VesselTubes& tubes) : centerline_(tubes.centerline()), branches_(tubes.branches()) {
   for (Index b = 0; b < tubes.axes().size(); ++b) counts_.push_back(static_cast<Index>(tubes.rings(b).size()));
 }
 

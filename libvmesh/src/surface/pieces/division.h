@@ -6,7 +6,7 @@
 
 namespace vmesh {
 
-/// A place in a division: a ring, or a node that is in no stretch.
+/// A position in a division: a ring, or a node that is in no stretch.
 struct Anchor {
   RingPlace ring;
   Index node = kNone;
@@ -15,16 +15,18 @@ struct Anchor {
 /// How many rings lie along each branch.
 class RingCounts {
  public:
-  /// `axes` must outlive it.
-  RingCounts(const VesselAxes& axes, std::vector<Index> counts) : axes_(axes), counts_(std::move(counts)) {}
+  /// `centerline` and `branches` must outlive it.
+  RingCounts(const Centerline& centerline, const std::vector<Branch>& branches, std::vector<Index> counts)
+      : centerline_(centerline), branches_(branches), counts_(std::move(counts)) {}
   explicit RingCounts(const VesselTubes& tubes);
 
-  const std::vector<BranchAxis>& axes() const { return axes_.axes(); }
-  const Centerline& centerline() const { return axes_.centerline(); }
+  const Centerline& centerline() const { return centerline_; }
+  const std::vector<Branch>& branches() const { return branches_; }
   Index along(Index branch) const { return counts_[branch]; }
 
  private:
-  const VesselAxes& axes_;
+  const Centerline& centerline_;
+  const std::vector<Branch>& branches_;
   std::vector<Index> counts_;
 };
 
@@ -37,21 +39,21 @@ Anchor anchor_of(const PiecePlan& plan);
 struct Division {
   std::vector<RingPlace> seams;                   ///< ascending
   std::vector<PiecePlan> plans;                   ///< by their first stretches; those of isolated nodes last
-  std::vector<std::pair<Anchor, Anchor>> joined;  ///< places that are in one piece, although no vessel leads there
+  std::vector<std::pair<Anchor, Anchor>> joined;  ///< anchors kept in one piece although no vessel joins them
 };
 
-/// Where a branch's rings may be seams, ascending: where the tube around is as even as the rest will become, so that
-/// nothing is lost when they stay as they are. About halfway between two junctions, and more along far ways. What the
-/// options would have refined there is no seam.
+/// The rings of a branch that may be seams, ascending: those where the tube is already as even as optimisation would
+/// make it, so that keeping them as they are costs nothing. They lie about halfway between two junctions, with more of
+/// them along long runs. A ring at which the options ask for refinement is not a seam.
 std::vector<RingPlace> find_seams(const VesselAxes& axes, const GenerateOptions& options, Index branch,
                                   const std::vector<Ring>& rings);
 
 /// Divides a surface at these seams.
 Division divide(const RingCounts& rings, std::vector<RingPlace> seams);
-/// At all that can be found.
+/// Divides a surface at all seams that can be found.
 Division divide(const VesselTubes& tubes, const GenerateOptions& options);
 
-/// The division without some seams, with the pieces at both of these anchors as one.
+/// The division without `dissolved` seams and with the pieces at each pair of anchors merged.
 Division regrouped(const RingCounts& rings, const Division& division, const std::vector<RingPlace>& dissolved,
                    const std::vector<std::pair<Anchor, Anchor>>& joined);
 

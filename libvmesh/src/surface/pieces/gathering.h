@@ -10,7 +10,7 @@ struct GatheredSurface {
   std::vector<CenterlineBinding> binding;
   std::vector<double> radius;
   std::vector<Opening> openings;  ///< node, centre, radius and ring
-  std::vector<Index> first_face;  ///< of every piece, and one more for the end
+  std::vector<Index> first_face;  ///< of every piece, then the total
 
   Index piece_of(Index face) const;
 };

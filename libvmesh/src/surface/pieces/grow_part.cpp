@@ -18,7 +18,7 @@ namespace vmesh {
 namespace {
 
 void require(bool holds, const char* what) {
-  if (!holds) throw InvalidInput(std::string("a part of a surface does not fit together: ") + what);
+  if (!holds) throw InvalidInput(std::string("a part of a surface is inconsistent: ") + what);
 }
 
 void check_branches(const SurfacePart& part) {
@@ -152,7 +152,7 @@ std::vector<std::pair<Index, Index>> part_walls(SurfaceAround& surface, const Fi
   const VesselField field(centerline, excerpt);
   const auto place_of = [&](Index cone) {
     const Index place = place_in(excerpt.cone, cone);
-    if (place == kNone) throw InvalidInput("a surface and its parts do not fit together");
+    if (place == kNone) throw InvalidInput("the parts do not belong to this surface");
     return place;
   };
   GatheredSurface gathered{std::move(surface.mesh), std::move(surface.binding), std::move(surface.radius), {}, {}};

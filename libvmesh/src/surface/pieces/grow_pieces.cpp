@@ -11,13 +11,15 @@
 #include "surface/pieces/gathering.h"
 #include "surface/pieces/parting.h"
 #include "surface/pieces/whole_tasks.h"
+#include "surface/proof/coarsening.h"
+#include "surface/proof/error_limit.h"
 #include "surface/proof/notches.h"
 
 namespace vmesh {
 namespace {
 
-constexpr int kRounds = 3;  // of making pieces again as one; idle 2 to 4
-// Radii: what is wrong so near to a seam may be because of it; idle 2.8 to 5.6.
+constexpr int kRounds = 3;  // of remaking pieces as one; idle 2 to 4
+// Radii: a fault this near to a seam may be caused by it; idle 2.8 to 5.6.
 constexpr double kNearSeam = 4.0;
 
 class PieceGrower {
@@ -43,12 +45,13 @@ class PieceGrower {
       if (round == kRounds || !regroup()) break;
     }
     if (!unproven_.empty()) close_notches_left(result.error);
+    if (may_be_coarser()) coarsen_proven(result.error);
     tell(result);
     return std::move(crossings_);
   }
 
  private:
-  // Makes those that are not in `known` yet.
+  // Makes the pieces that are not in `known`.
   void make_pieces(std::map<PiecePlan, PieceSurface> known) {
     pieces_.clear();
     pieces_.resize(division_.plans.size());
@@ -70,7 +73,7 @@ class PieceGrower {
     });
   }
 
-  // Pieces were looked at on their own.
+  // Crossings within a piece are its own faults; only those between pieces are looked for here.
   std::vector<std::pair<Index, Index>> find_crossings() const {
     const bool all_right = std::all_of(pieces_.begin(), pieces_.end(), [](const PieceSurface& piece) {
       return std::none_of(piece.faults.begin(), piece.faults.end(),
@@ -79,7 +82,7 @@ class PieceGrower {
     return all_right ? intersections_between(gathered_.mesh, gathered_.first_face) : self_intersections(gathered_.mesh);
   }
 
-  // Joins pieces at what is wrong between them. Returns whether there was something that this may mend.
+  // Merges pieces where there are faults between them. Returns whether there were any that this may mend.
   bool regroup() {
     std::vector<RingPlace> dissolved;
     std::vector<std::pair<Anchor, Anchor>> joined;
@@ -122,6 +125,34 @@ class PieceGrower {
     crossings_ = self_intersections(gathered_.mesh);
   }
 
+  // Not with a ring at every node.
+  bool may_be_coarser() const {
+    return options_.max_error.is_set() && options_.elongation > 1 && !options_.deformable && crossings_.empty();
+  }
+
+  void coarsen_proven(ErrorSummary& summary) {
+    FinishedSurface surface{gathered_.mesh, gathered_.binding, gathered_.radius, gathered_.openings};
+    coarsen(surface, tubes_.field(), options_.max_error,
+            [&](const CenterlineBinding& at) { return tubes_.longest_at(at.segment, at.t, options_.elongation); });
+    // Faces that were proven by bending their shells are at corners that stay; neighbours may lower their shells.
+    const std::vector<Index> unproven =
+        unproven_faces(surface.mesh, surface.binding, tubes_.field(), options_.max_error);
+    if (unproven.size() > summary.unproven_faces) return;
+    summary.unproven_faces = unproven.size();
+    summary.unproven_places = places_of(surface.mesh, unproven);
+    gathered_.mesh = std::move(surface.mesh);
+    gathered_.binding = std::move(surface.binding);
+    gathered_.radius = std::move(surface.radius);
+    gathered_.openings = std::move(surface.openings);
+    crossings_ = self_intersections(gathered_.mesh);
+    coarsened_ = true;
+  }
+
+  Elongation elongation_at(const CenterlineBinding& at) const {
+    return coarsened_ ? tubes_.longest_at(at.segment, at.t, options_.elongation)
+                      : tubes_.elongation_at(at.segment, at.t);
+  }
+
   bool vessels_overlap(Index f, Index g) const {
     for (const Index face : {f, g}) {
       for (const Index v : gathered_.mesh.faces[face]) {
@@ -150,7 +181,7 @@ class PieceGrower {
     });
   }
 
-  // All seams have as many vertices as there are around a vessel, and come first.
+  // The seams' vertices come first, `around` for each.
   std::optional<RingPlace> seam_of_vertex(Index v) const {
     const std::size_t seam = v / static_cast<std::size_t>(options_.around);
     if (seam >= division_.seams.size()) return std::nullopt;
@@ -170,7 +201,7 @@ class PieceGrower {
       ++growth.rungs[static_cast<std::size_t>(piece.rung)];
       for (GrowthSimplification& note : piece.simplifications) growth.simplifications.push_back(std::move(note));
     }
-    growth.tubes -= division_.seams.size();  // a tube on either side is one
+    growth.tubes -= division_.seams.size();  // the tubes on both sides of a seam count as one
     growth.components = centerline.component_count();
     growth.cycle_rank = centerline.cycle_rank() - filled;
     if (filled > 0)
@@ -181,8 +212,8 @@ class PieceGrower {
     result.mesh = std::move(gathered_.mesh);
     result.binding = std::move(gathered_.binding);
     if (tubes_.elongation_field()) {
-      for (const auto& [cone, t] : result.binding) {
-        const Elongation allowed = tubes_.elongation_at(cone, t);
+      for (const CenterlineBinding& at : result.binding) {
+        const Elongation allowed = elongation_at(at);
         result.elongation.push_back(allowed.times > 1 ? Vec3(allowed.times * allowed.direction) : Vec3(Vec3::Zero()));
       }
     }
@@ -196,7 +227,7 @@ class PieceGrower {
   const Progress& progress_;
   std::mutex reporting_;
   std::size_t done_ = 0;
-  // Every sweep of a piece asks whether to go on; what it tells is how many pieces are done.
+  // Every sweep of a piece polls for cancellation; the progress reported is the share of finished pieces.
   const Progress ask_ = [this](std::string_view, double) {
     const std::lock_guard lock(reporting_);
     const double fraction = static_cast<double>(done_) / static_cast<double>(std::max<std::size_t>(1, pieces_.size()));
@@ -208,6 +239,7 @@ class PieceGrower {
   GatheredSurface gathered_;
   std::vector<std::pair<Index, Index>> crossings_;
   std::vector<Index> unproven_;
+  bool coarsened_ = false;
 };
 
 }  // namespace

@@ -11,11 +11,11 @@ namespace {
 
 using FacePair = std::pair<Index, Index>;
 
-// Equiangle skewness that a step may leave: what mending takes out of pieces; safe 0.35 to 0.7.
+// Equiangle skewness that a step may leave: pieces are mended above it; safe 0.35 to 0.7.
 constexpr double kWorstLeft = 0.5;
-// Cosine between a face's normal and the boundary's there that a step may leave; idle 0.21 to 0.42.
+// Least cosine between the normals of a face and of the boundary that a step may leave; idle 0.21 to 0.42.
 constexpr double kUpright = 0.3;
-// Of an edge: where it may be halved, from its middle; idle 0.1 and 0.21 to 0.21 and 0.42.
+// Where an edge may be split, from its midpoint, in edge lengths; idle 0.1 and 0.21 to 0.21 and 0.42.
 constexpr double kSlides[] = {0, 0.15, -0.15, 0.3, -0.3};
 
 struct Box {
@@ -33,22 +33,22 @@ PlacedFace placed(const TriMesh& mesh, Index f) {
   return {face, {mesh.vertices[face[0]], mesh.vertices[face[1]], mesh.vertices[face[2]]}};
 }
 
-// What lies around crossing faces, as a surface of its own, with the numbers in the whole.
-struct Part {
+// The neighbourhood of crossing faces as a surface of its own, with its numbers in the whole surface.
+struct Neighbourhood {
   FinishedSurface surface;
   std::vector<Index> vertex, face;
-  std::vector<Box> box;  // of what one step at a pair of crossing faces may change
+  std::vector<Box> box;  // bounds what one step at a pair of crossing faces may change
 };
 
-class PartMaker {
+class NeighbourhoodMaker {
  public:
-  PartMaker(const GatheredSurface& whole, const std::vector<FacePair>& crossings)
+  NeighbourhoodMaker(const GatheredSurface& whole, const std::vector<FacePair>& crossings)
       : whole_(whole), crossings_(crossings) {}
 
-  Part run() {
+  Neighbourhood run() {
     find_boxes();
     std::vector<Vec3> low, high;
-    for (const Box& box : part_.box) {
+    for (const Box& box : around_.box) {
       low.push_back(box.low);
       high.push_back(box.high);
     }
@@ -61,11 +61,11 @@ class PartMaker {
       tree.visit_overlapping(box.low, box.high, [&](Index) { near = true; });
       if (near) add(f, number);
     }
-    return std::move(part_);
+    return std::move(around_);
   }
 
  private:
-  // Around the faces that have a vertex of a pair.
+  // Boxes around the faces that touch each crossing pair.
   void find_boxes() {
     std::vector<std::pair<Index, Index>> pair_at;  // by vertex
     for (Index i = 0; i < crossings_.size(); ++i) {
@@ -74,12 +74,12 @@ class PartMaker {
       }
     }
     std::sort(pair_at.begin(), pair_at.end());
-    part_.box.resize(crossings_.size());
+    around_.box.resize(crossings_.size());
     for (const Triangle& face : whole_.mesh.faces) {
       for (const Index v : face) {
         const auto first = std::lower_bound(pair_at.begin(), pair_at.end(), std::pair(v, Index{0}));
         for (auto it = first; it != pair_at.end() && it->first == v; ++it) {
-          for (const Index w : face) part_.box[it->second].add(whole_.mesh.vertices[w]);
+          for (const Index w : face) around_.box[it->second].add(whole_.mesh.vertices[w]);
         }
       }
     }
@@ -89,28 +89,29 @@ class PartMaker {
     Triangle face = whole_.mesh.faces[f];
     for (Index& v : face) {
       if (number[v] == kNone) {
-        number[v] = static_cast<Index>(part_.vertex.size());
-        part_.vertex.push_back(v);
-        part_.surface.mesh.vertices.push_back(whole_.mesh.vertices[v]);
-        part_.surface.binding.push_back(whole_.binding[v]);
-        part_.surface.radius.push_back(whole_.radius[v]);
+        number[v] = static_cast<Index>(around_.vertex.size());
+        around_.vertex.push_back(v);
+        around_.surface.mesh.vertices.push_back(whole_.mesh.vertices[v]);
+        around_.surface.binding.push_back(whole_.binding[v]);
+        around_.surface.radius.push_back(whole_.radius[v]);
       }
       v = number[v];
     }
-    part_.face.push_back(f);
-    part_.surface.mesh.faces.push_back(face);
+    around_.face.push_back(f);
+    around_.surface.mesh.faces.push_back(face);
   }
 
   const GatheredSurface& whole_;
   const std::vector<FacePair>& crossings_;
-  Part part_;
+  Neighbourhood around_;
 };
 
 class Parting {
  public:
-  Parting(Part& part, const VesselField& field) : surface_(part.surface), field_(field), patch_(surface_, field) {}
+  Parting(Neighbourhood& around, const VesselField& field)
+      : surface_(around.surface), field_(field), patch_(surface_, field) {}
 
-  // Takes the best step at a face that crosses another, if there is one.
+  // Takes the best step at a face that crosses another, if any helps.
   bool part(Index f, const Box& box) {
     std::vector<Patch::Step> steps;
     const Triangle face = surface_.mesh.faces[f];
@@ -160,9 +161,9 @@ class Parting {
   Patch patch_;
 };
 
-void put_back(const Part& part, GatheredSurface& whole) {
-  const FinishedSurface& surface = part.surface;
-  std::vector<Index> number = part.vertex;
+void put_back(const Neighbourhood& around, GatheredSurface& whole) {
+  const FinishedSurface& surface = around.surface;
+  std::vector<Index> number = around.vertex;
   for (Index v = 0; v < surface.mesh.vertices.size(); ++v) {
     if (v == number.size()) {
       number.push_back(static_cast<Index>(whole.mesh.vertices.size()));
@@ -177,8 +178,8 @@ void put_back(const Part& part, GatheredSurface& whole) {
   for (Index f = 0; f < surface.mesh.faces.size(); ++f) {
     const auto [a, b, c] = surface.mesh.faces[f];
     const Triangle face = {number[a], number[b], number[c]};
-    if (f < part.face.size()) {
-      whole.mesh.faces[part.face[f]] = face;
+    if (f < around.face.size()) {
+      whole.mesh.faces[around.face[f]] = face;
     } else {
       whole.mesh.faces.push_back(face);
     }
@@ -190,23 +191,23 @@ void put_back(const Part& part, GatheredSurface& whole) {
 std::vector<FacePair> part_walls(GatheredSurface& surface, const VesselField& field,
                                  const std::vector<FacePair>& crossings) {
   if (crossings.empty()) return {};
-  Part part = PartMaker(surface, crossings).run();
+  Neighbourhood around = NeighbourhoodMaker(surface, crossings).run();
   const auto local = [&](Index f) {
-    return static_cast<Index>(std::lower_bound(part.face.begin(), part.face.end(), f) - part.face.begin());
+    return static_cast<Index>(std::lower_bound(around.face.begin(), around.face.end(), f) - around.face.begin());
   };
-  Parting parting(part, field);
+  Parting parting(around, field);
   std::vector<FacePair> left;
   for (Index i = 0; i < crossings.size(); ++i) {
     const Index f = local(crossings[i].first), g = local(crossings[i].second);
-    const TriMesh& mesh = part.surface.mesh;
+    const TriMesh& mesh = around.surface.mesh;
     if (!intersect(placed(mesh, f), placed(mesh, g))) continue;
-    if (!parting.part(f, part.box[i]) && !parting.part(g, part.box[i])) left.push_back(crossings[i]);
+    if (!parting.part(f, around.box[i]) && !parting.part(g, around.box[i])) left.push_back(crossings[i]);
   }
-  // A step at a later pair may have parted an earlier one.
+  // A step at a later pair may also have parted an earlier one.
   std::erase_if(left, [&](const FacePair& pair) {
-    return !intersect(placed(part.surface.mesh, local(pair.first)), placed(part.surface.mesh, local(pair.second)));
+    return !intersect(placed(around.surface.mesh, local(pair.first)), placed(around.surface.mesh, local(pair.second)));
   });
-  put_back(part, surface);
+  put_back(around, surface);
   return left;
 }
 

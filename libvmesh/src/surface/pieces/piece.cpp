@@ -5,7 +5,7 @@
 #include <optional>
 #include <sstream>
 
-#include "surface/junction/junction_piece.h"
+#include "surface/junction/docked_junction.h"
 #include "surface/pieces/assembly.h"
 #include "surface/pieces/piece_check.h"
 #include "surface/pieces/whole_tasks.h"
@@ -15,23 +15,23 @@
 namespace vmesh {
 namespace {
 
-// What is done about the faults of the rung before.
+// What a rung does about the faults of the previous one.
 struct Rung {
-  double reach;  // rings so near to a fault, in their radii, are left to a junction; 0: none
-  double finer;  // radius of fine spots at faults, in those of the thinnest vessel there; 0: none
+  double reach;  // rings within so many radii of a fault are left to a junction; 0: none
+  double finer;  // radius of fine spots at faults, relative to that of the thinnest vessel there; 0: none
   bool guarded;  // no step is taken after which faces cross
 };
-// Skewness above which triangles are mended at any price but soundness; safe 0.35 to 0.5, above not sound.
+// Skewness above which triangles are mended at any cost except soundness; safe 0.35 to 0.5, above not sound.
 constexpr double kMended = 0.5;
-// Skewness above which triangles are eased. Measured on seven trees: the largest skewness follows it (0.25: 0.253 in
-// the mean, 0.235: 0.238; without 0.314), the mean grows by 1 %; all take 8 to 15 % longer.
-constexpr double kEased = 0.24;
-// Where there are faults, nothing is refined for the limit on the error any more once the guard is there, radii around
-// them. The boundary may have a step there, at which finer triangles prove nothing and stand on edge.
+// Skewness above which triangles are improved. Measured on seven trees: the maximum skewness follows it (0.25 gives
+// 0.253 on average, 0.235 gives 0.238, without it 0.314), the mean grows by 1 %, and all take 8 to 15 % longer.
+constexpr double kImproveAbove = 0.24;
+// Radii around faults within which guarded rungs do not refine for the error limit: the boundary may have a step there,
+// at which finer triangles prove nothing and stand on edge.
 constexpr double kCalm = 2;       // idle 1.4 to 2.8
 constexpr int kFirstGuarded = 4;  // of the rungs below: where a hub starts; idle 3 to 6
-// Free rings at a hub that are left to it. Measured on stars of 500 and 1,000: rims cross without, with 2 and 4 none
-// do.
+// Free rings next to a hub that are left to it. Measured on stars of 500 and 1,000 branches: with 0, rims cross; with 2
+// or 4, none do.
 constexpr int kRoomAtHub = 2;  // idle 1 to 3
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 constexpr Rung kLadder[kRungs] = {{0, 0, false}, {2, 0, false}, {3, 0, false},  {3, 1, false},
@@ -43,7 +43,7 @@ std::string at(const Vec3& p) {
   return text.str();
 }
 
-// What growing this junction as one piece leaves out of the centerline's graph.
+// Notes the parts of the centerline's graph that growing this junction as a whole leaves out.
 void note_simplifications(const VesselTubes& tubes, const Junction& junction, std::size_t filled_loops,
                           std::vector<GrowthSimplification>& notes) {
   const Centerline& centerline = tubes.centerline();
@@ -81,7 +81,7 @@ void note_simplifications(const VesselTubes& tubes, const Junction& junction, st
   }
 }
 
-// Faults, then the worst triangle where that is bad.
+// Number of faults, then the worst skewness if it is bad.
 using Badness = std::pair<std::size_t, double>;
 constexpr Badness kNoBadness{0, 0};
 
@@ -117,17 +117,17 @@ class PieceMaker {
   }
 
  private:
-  // Skewness above which something is done about it. What is mended leaves the boundary a little: not beyond a limit,
-  // unless it must.
+  // Skewness above which triangles are mended. Mending moves vertices off the boundary a little, so with an error limit
+  // only the unsound ones are.
   double mended() const { return context_.options.max_error.is_set() ? kWorstSkewness : kMended; }
 
-  // Where very many vessels meet in a node there are always walls that nearly touch.
+  // Where very many vessels meet at a node, some walls always nearly touch.
   bool is_hub() const {
     return std::any_of(plan_.nodes.begin(), plan_.nodes.end(),
                        [&](Index n) { return tubes_.centerline().degree(n) >= kHub; });
   }
 
-  // Where very many vessels part, the rounding between them ends in webs right where the first rings are free.
+  // Where very many vessels part, the rounding between them ends in webs just where the first rings are free.
   void leave_room_at_hubs() {
     for (const Stretch& stretch : plan_.stretches) {
       const std::vector<Ring>& rings = tubes_.rings(stretch.branch);
@@ -147,7 +147,7 @@ class PieceMaker {
     std::sort(covered_.begin(), covered_.end());
   }
 
-  // Whether that changes anything against what was made last.
+  // Applies a rung; returns whether it changes anything about how the piece was made last.
   bool climb(const Rung& rung, const std::vector<PieceFault>& faults) {
     const std::size_t before = covered_.size() + fine_spots_.size() + calm_spots_.size();
     const bool newly_guarded = rung.guarded && !guarded_;
@@ -181,10 +181,10 @@ class PieceMaker {
     piece.junctions = skeleton.junctions.size();
     piece.tubes = skeleton.tubes.size();
     Assembly assembly(tubes_, plan_, skeleton, context_.open);
-    const auto pieces = junction_pieces(skeleton, rung.guarded);
+    const auto docked = docked_junctions(skeleton, rung.guarded);
     for (std::size_t j = 0; j < skeleton.junctions.size(); ++j) {
       const Junction& junction = skeleton.junctions[j];
-      const JunctionPiece& grown = **pieces[j];
+      const DockedJunction& grown = **docked[j];
       assembly.add_junction(junction, grown);
       piece.filled_loops += grown.filled_loops;
       note_simplifications(tubes_, junction, grown.filled_loops, piece.simplifications);
@@ -195,14 +195,14 @@ class PieceMaker {
     if (rung.guarded) surface.guard_crossings();
     if (rung.finer > 0) surface.fine_spots = fine_spots_;
     surface.calm_spots = calm_spots_;
-    bool tested = false;  // and no faces cross
+    bool tested = false;  // and found that no faces cross
     if (context_.options.sweeps > 0) {
       const GrownMesh grown{double(context_.options.around),
                             expected_vertices(length_in_radii(), context_.options.around), GrownMesh::Stage::assembled};
       const bool crosses = optimize(surface, context_.options, grown, context_.progress).crosses;
       tested = !mend_worst_faces(surface, mended()) && !crosses;
-      // Guarded: what does not cross does not cross afterwards. Under a limit, finer triangles have been proven.
-      if (!crosses && !context_.options.max_error.is_set()) ease_worst_faces(surface, kEased);
+      // Guarded: improving adds no crossings. Not with an error limit: faces that are already proven would move.
+      if (!crosses && !context_.options.max_error.is_set()) improve_worst_faces(surface, kImproveAbove);
     }
     const PieceFindings findings = check_piece(surface, nodes_of(skeleton), context_.options, !tested);
     piece.faults = findings.faults;
@@ -211,26 +211,26 @@ class PieceMaker {
     return piece;
   }
 
-  // Junctions that a rung does not touch are grown once.
-  std::vector<const std::optional<JunctionPiece>*> junction_pieces(const GrowthSkeleton& skeleton, bool guarded) {
-    std::vector<const std::optional<JunctionPiece>*> pieces;
+  // Junctions that a rung leaves unchanged are not grown again.
+  std::vector<const std::optional<DockedJunction>*> docked_junctions(const GrowthSkeleton& skeleton, bool guarded) {
+    std::vector<const std::optional<DockedJunction>*> docked;
     std::vector<std::pair<const Junction*, GrownJunction*>> missing;
     for (const Junction& junction : skeleton.junctions) {
       GrownJunction& known = grown_[key_of(skeleton, junction)];
-      const bool will_do = known.piece && (known.guarded || !guarded || known.piece->tangles == 0);
+      const bool will_do = known.docked && (known.guarded || !guarded || known.docked->tangles == 0);
       if (!will_do) missing.emplace_back(&junction, &known);
-      pieces.push_back(&known.piece);
+      docked.push_back(&known.docked);
     }
     for_whole_tasks(missing.size(), [&](std::size_t i) {
       const auto& [junction, known] = missing[i];
-      known->piece = make_junction_piece(tubes_, skeleton, *junction, context_.options, guarded, context_.progress);
+      known->docked = make_docked_junction(tubes_, skeleton, *junction, context_.options, guarded, context_.progress);
       known->guarded = guarded;
     });
-    return pieces;
+    return docked;
   }
 
-  // What a junction's piece depends on: its nodes, its bare stretches, and how many rings it replaces at each end of a
-  // bare stretch.
+  // Everything a junction's surface depends on: its nodes, its bare stretches, and how many rings it replaces at each
+  // of their ends.
   static std::vector<double> key_of(const GrowthSkeleton& skeleton, const Junction& junction) {
     std::vector<double> key(junction.nodes.begin(), junction.nodes.end());
     for (const BareStretch& bare : junction.bare_stretches) {
@@ -250,7 +250,7 @@ class PieceMaker {
     return (rings + 2 * static_cast<double>(plan_.nodes.size())) * ring_pitch(context_.options.around);
   }
 
-  // Nodes that must lie inside: those not right at a seam.
+  // Nodes that must lie inside: all except those right at a seam.
   std::vector<Index> nodes_of(const GrowthSkeleton& skeleton) const {
     std::vector<Index> nodes = plan_.nodes;
     for (std::size_t i = 0; i < plan_.stretches.size(); ++i) {
@@ -280,7 +280,7 @@ class PieceMaker {
       for (Index j = 0; loop.node == kNone && j < loop.vertices.size(); ++j)
         at_seam.emplace(loop.vertices[j], SeamVertex{loop.seam, j});
     }
-    // All pieces are in memory at once.
+    // Exact sizes: all pieces are in memory at once.
     piece.vertices.reserve(mesh.number_of_vertices());
     piece.binding.reserve(mesh.number_of_vertices());
     piece.radius.reserve(mesh.number_of_vertices());
@@ -317,7 +317,7 @@ class PieceMaker {
   std::vector<BoundSurface::Spot> fine_spots_, calm_spots_;
   bool guarded_ = false;  // on the last rung
   struct GrownJunction {
-    std::optional<JunctionPiece> piece;
+    std::optional<DockedJunction> docked;
     bool guarded = false;
   };
   std::map<std::vector<double>, GrownJunction> grown_;

@@ -7,7 +7,7 @@
 
 namespace vmesh {
 
-/// Whether a vessel that `cone` does not see covers `p`.
+/// Whether `p` is inside a vessel that is not local to `cone`.
 bool is_covered(const VesselField& field, const Vec3& p, Index cone);
 
 /// A vertex of a seam: number `number` of its ring.
@@ -16,11 +16,11 @@ struct SeamVertex {
   Index number = 0;
 };
 
-/// A piece of surface, finished: grown, docked, optimised and checked. Faces refer to its own vertices and, from
-/// vertices.size() on, to those of its seams.
+/// A finished piece: grown, docked, optimised and checked. Faces refer to its own vertices and, from vertices.size()
+/// on, to those of its seams.
 struct PieceSurface {
   std::vector<Vec3> vertices;
-  std::vector<CenterlineBinding> binding;  ///< one per own vertex, as is the next
+  std::vector<CenterlineBinding> binding;  ///< one per own vertex, like `radius`
   std::vector<double> radius;
   std::vector<SeamVertex> seam_vertices;
   std::vector<Triangle> faces;
@@ -34,9 +34,9 @@ struct PieceSurface {
   std::vector<GrowthSimplification> simplifications;
   std::size_t filled_loops = 0;  ///< loops of the centerline too short to have a hole
   double worst_skewness = 0;     ///< equiangle, of its triangles
-  int rung = 0;                  ///< of the ladder at which it was found
+  int rung = 0;                  ///< of the ladder on which it was made
   std::vector<PieceFault> faults;
-  bool cannot_be_sound = false;  ///< on some rung it was found that vessels overlap in it: it cannot be sound
+  bool cannot_be_sound = false;  ///< some rung found overlapping vessels in it: it cannot be sound
 };
 
 /// What all pieces of a surface have in common.
@@ -47,10 +47,10 @@ struct PieceContext {
   const Progress& progress;
 };
 
-/// kRungs rungs of a ladder, cheapest first: the piece as planned; rings around its faults left to junctions, farther
-/// and farther; finer triangles around them; the same with a guard against crossings; all from one lattice. Makes a
-/// piece on the first rung on which it is sound and without bad triangles, or the one with the fewest faults. Once it
-/// is found that vessels overlap that do not belong together no further rung would help.
+/// Makes a piece on a ladder of kRungs rungs, cheapest first: the piece as planned; rings around its faults left to
+/// junctions, over a growing distance; finer triangles around the faults; the same with guarded steps; everything from
+/// one lattice. Returns the piece of the first rung on which it is sound and without bad triangles, else the one with
+/// the fewest faults. Stops climbing once vessels are found to overlap that are not local to each other.
 PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan);
 
 }  // namespace vmesh

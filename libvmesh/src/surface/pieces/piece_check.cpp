@@ -8,8 +8,9 @@
 namespace vmesh {
 namespace {
 
-// Radii below another vessel's wall from which on no surface could be sound. Less may be the rounding of a third one,
-// which the guard keeps away: at 0.2 noisy tree 315 is refused with a blend of 2, at 0.4 it is sound.
+// Depth below another vessel's wall, in radii, from which on no surface can be sound. Less may come from the rounding
+// of a third vessel, which guarded steps avoid: at 0.2, noisy tree 315 with a blend of 2 is refused; at 0.4 it is
+// sound.
 constexpr double kCovered = 0.4;  // idle 0.28 to 0.56
 
 Vec3 center_of(const TriMesh& mesh, Index f) {

@@ -5,15 +5,14 @@
 
 namespace vmesh {
 
-/// What keeps a piece of surface from being sound, and what keeps it from being good.
+/// What keeps a piece from being sound, and how good it is.
 struct PieceFindings {
   std::vector<PieceFault> faults;
   double worst_skewness = 0;  ///< equiangle
 };
 
-/// Faults are faces that cross each other, faces that are degenerate nearly, and nodes among `nodes` that are not
-/// inside. Open ends and seams count as closed by their lids for the last. Without `may_cross` it is known that no
-/// faces cross.
+/// Faults are faces that cross each other, nearly degenerate faces, and nodes of `nodes` that are not inside; for the
+/// last, lids close open ends and seams. `may_cross`: false if it is known that no faces cross.
 PieceFindings check_piece(BoundSurface& surface, const std::vector<Index>& nodes, const GenerateOptions& options,
                           bool may_cross);
 

@@ -1,12 +1,15 @@
-// Splitting a surface that is still to be grown into parts.
+// Splitting a surface into parts before it is grown.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <optional>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/surface/part.h"
 #include "vmesh/volume/vessel_field.h"
 
@@ -24,44 +27,122 @@ constexpr double kReach = 3;
 
 void check_parts_suffice(const GenerateOptions& options) {
   const auto refuse = [](const char* what) {
-    throw Unsupported(std::string(what) + ": generate the surface in one go, it cannot be made in parts");
+    throw Unsupported(std::string(what) + "; this surface cannot be made in parts, generate it in one go");
   };
   if (options.growth == GrowthMethod::paper) refuse("paper growth starts from a single seed");
-  if (options.max_error.is_set()) refuse("a limit on the error is proven of the whole");
-  if (options.elongation > 1) refuse("elongated triangles are told from bad ones on the whole");
-  if (options.open_ends.all || !options.open_ends.nodes.empty()) refuse("open ends are finished on the whole");
+  if (options.max_error.is_set()) refuse("a limit on the error is proven on the whole surface");
+  if (options.open_ends.all || !options.open_ends.nodes.empty()) refuse("open ends are finished on the whole surface");
 }
 
-// Rings are laid for one branch after the other, and forgotten.
-Division divide_scanning(const VesselAxes& axes, const GenerateOptions& options, std::vector<Index>& counts,
-                         const Progress& progress) {
-  counts.resize(axes.axes().size());
-  std::vector<std::vector<RingPlace>> found(counts.size());
-  tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t i) {
-    report_progress(progress, "divide", 0);
-    const auto b = static_cast<Index>(i);
-    const Rings laid = axes.layer().lay(b);
-    counts[b] = static_cast<Index>(laid.rings.size());
-    found[b] = find_seams(axes, options, b, laid.rings);
-  });
+// Segments of a chunk: a field is made around so many at a time. More take more memory, fewer more time at their
+// borders.
+constexpr std::size_t kChunk = 25'000;
+
+// The branches of the whole centerline.
+class WholeBranches {
+ public:
+  explicit WholeBranches(const FieldExcerpts& excerpts)
+      : excerpts_(excerpts), branches_(find_branches(excerpts.relations().centerline())) {}
+
+  const Centerline& centerline() const { return excerpts_.relations().centerline(); }
+  const std::vector<Branch>& all() const { return branches_; }
+
+  // The cones along a branch and those that begin where it ends: the field at a vessel's end depends on them.
+  void add_cones(Index branch, std::vector<Index>& cones) const {
+    const auto& [nodes, segments] = branches_[branch];
+    cones.insert(cones.end(), segments.begin(), segments.end());
+    for (const Index n : {nodes.front(), nodes.back()}) {
+      const auto incident = centerline().incident_segments(n);
+      cones.insert(cones.end(), incident.begin(), incident.end());
+    }
+  }
+
+  // What queries with these cones as hints need.
+  FieldExcerpt around(std::vector<Index> cones) const {
+    sort_unique(cones);
+    return excerpts_.take(cones, kReach);
+  }
+
+  Branch as_in(const FieldExcerpt& field, Index branch) const {
+    Branch result;
+    for (const Index n : branches_[branch].nodes) result.nodes.push_back(place_in(field.node, n));
+    for (const Index s : branches_[branch].segments) result.segments.push_back(place_in(field.cone, s));
+    return result;
+  }
+
+  // The first branches of chunks of about kChunk segments, and the end.
+  std::vector<Index> chunks() const {
+    std::vector<Index> first = {0};
+    std::size_t segments = 0;
+    for (Index b = 0; b < branches_.size(); ++b) {
+      segments += branches_[b].segments.size();
+      if (segments < kChunk && b + 1 < branches_.size()) continue;
+      first.push_back(b + 1);
+      segments = 0;
+    }
+    return first;
+  }
+
+ private:
+  const FieldExcerpts& excerpts_;
+  std::vector<Branch> branches_;
+};
+
+// Lays the rings of the branches [first, end) and chooses their seams. Only counts and seams are kept, to save memory.
+std::vector<RingPlace> scan(const WholeBranches& whole, const GenerateOptions& options, Index first, Index end,
+                            std::vector<Index>& counts) {
+  std::vector<Index> cones;
+  for (Index b = first; b < end; ++b) whole.add_cones(b, cones);
+  const FieldExcerpt excerpt = whole.around(std::move(cones));
+  const Centerline centerline = excerpt.centerline();
+  const VesselField field(centerline, excerpt);
+  std::vector<Branch> branches;
+  for (Index b = first; b < end; ++b) branches.push_back(whole.as_in(excerpt, b));
+  const VesselAxes axes(field, RingOptions::of(options), std::move(branches));
   std::vector<RingPlace> seams;
-  for (const auto& of_branch : found) seams.insert(seams.end(), of_branch.begin(), of_branch.end());
-  return divide(RingCounts(axes, counts), std::move(seams));
+  for (Index b = first; b < end; ++b) {
+    const Rings laid = axes.layer().lay(b - first);
+    counts[b] = static_cast<Index>(laid.rings.size());
+    for (const RingPlace& seam : find_seams(axes, options, b - first, laid.rings)) seams.push_back({b, seam.ring});
+  }
+  return seams;
+}
+
+// The seams of all branches, chunk by chunk. Fills in how many rings lie along each.
+std::vector<RingPlace> scan_all(const WholeBranches& whole, const GenerateOptions& options, std::vector<Index>& counts,
+                                const Progress& progress) {
+  counts.resize(whole.all().size());
+  if (counts.empty()) return {};
+  const std::vector<Index> first = whole.chunks();
+  std::vector<std::vector<RingPlace>> found(first.size() - 1);
+  std::atomic<std::size_t> done{0};
+  tbb::parallel_for(
+      std::size_t{0}, found.size(),
+      [&](std::size_t i) {
+        report_progress(progress, "divide", static_cast<double>(done) / static_cast<double>(found.size()));
+        found[i] = scan(whole, options, first[i], first[i + 1], counts);
+        ++done;
+      },
+      tbb::simple_partitioner());
+  std::vector<RingPlace> seams;
+  for (const auto& of_chunk : found) seams.insert(seams.end(), of_chunk.begin(), of_chunk.end());
+  return seams;
 }
 
 class PartMaker {
  public:
-  PartMaker(const VesselAxes& axes, const RingCounts& rings, const Division& division, const GenerateOptions& options)
-      : axes_(axes), rings_(rings), division_(division), options_(options) {
-    const Centerline& centerline = axes.centerline();
+  PartMaker(const WholeBranches& whole, const RingCounts& rings, const Division& division,
+            const GenerateOptions& options)
+      : whole_(whole), rings_(rings), division_(division), options_(options) {
+    const Centerline& centerline = whole.centerline();
     for (Index n = 0; n < centerline.nodes().size(); ++n) {
       if (centerline.degree(n) == 0) isolated_.push_back(n);
     }
   }
 
-  // Numbers of pieces that begin parts, and the end: parts of about as many rings each.
+  // The first piece of every part, then the total: parts have about equally many rings.
   std::vector<Index> beginnings(std::size_t parts) const {
-    std::vector<double> size = {0};  // up to every piece
+    std::vector<double> size = {0};  // cumulative, by piece
     for (const PiecePlan& plan : division_.plans) {
       double rings = static_cast<double>(plan.nodes.size());
       for (const Stretch& stretch : plan.stretches) rings += stretch.count;
@@ -82,8 +163,8 @@ class PartMaker {
     part.options = options_;
     part.first_piece = first;
     const std::vector<Index> branches = branches_of(first, end);
-    part.field = axes_.field().excerpt(cones_of(branches, first, end), kReach);
-    for (const Index b : branches) part.branches.push_back(as_in(part.field, axes_.axes()[b].branch()));
+    part.field = whole_.around(cones_of(branches, first, end));
+    for (const Index b : branches) part.branches.push_back(whole_.as_in(part.field, b));
     for (Index p = first; p < end; ++p) {
       PiecePlan plan = division_.plans[p];
       for (const RingPlace& seam : seams_of(rings_, plan))
@@ -111,43 +192,27 @@ class PartMaker {
     return branches;
   }
 
-  // All along the branches, and what begins where they end: how a vessel is seen at its end depends on what is there.
   std::vector<Index> cones_of(const std::vector<Index>& branches, Index first, Index end) const {
-    const Centerline& centerline = axes_.centerline();
+    const Centerline& centerline = whole_.centerline();
     std::vector<Index> cones;
-    for (const Index b : branches) {
-      const Branch& branch = axes_.axes()[b].branch();
-      cones.insert(cones.end(), branch.segments.begin(), branch.segments.end());
-      for (const Index n : {branch.nodes.front(), branch.nodes.back()}) {
-        const auto incident = centerline.incident_segments(n);
-        cones.insert(cones.end(), incident.begin(), incident.end());
-      }
-    }
+    for (const Index b : branches) whole_.add_cones(b, cones);
     for (Index p = first; p < end; ++p) {
       for (const Index n : division_.plans[p].nodes) {
         if (centerline.degree(n) == 0)
           cones.push_back(static_cast<Index>(centerline.segments().size() + place_in(isolated_, n)));
       }
     }
-    sort_unique(cones);
     return cones;
   }
 
-  static Branch as_in(const FieldExcerpt& field, const Branch& branch) {
-    Branch result;
-    for (const Index n : branch.nodes) result.nodes.push_back(place_in(field.node, n));
-    for (const Index s : branch.segments) result.segments.push_back(place_in(field.cone, s));
-    return result;
-  }
-
-  // A seam between two of the part's pieces was added for both.
+  // Merges duplicates: a seam between two pieces of the part was added by both.
   static void merge(std::vector<SurfacePart::Seam>& seams) {
     std::sort(seams.begin(), seams.end(), [](const auto& a, const auto& b) { return a.place < b.place; });
     const auto same = [](const auto& a, const auto& b) { return a.place == b.place; };
     seams.erase(std::unique(seams.begin(), seams.end(), same), seams.end());
   }
 
-  const VesselAxes& axes_;
+  const WholeBranches& whole_;
   const RingCounts& rings_;
   const Division& division_;
   const GenerateOptions& options_;
@@ -156,37 +221,44 @@ class PartMaker {
 
 // From numbers of the growth centerline to those of the one that was split.
 void renumber(const GrowthCenterline& growth, SurfacePart& part) {
-  if (growth.buried.empty()) return;
   for (Index& n : part.field.node) n = growth.node[n];
   for (Index& c : part.field.cone) c = growth.cone[c];
 }
 
+// Nothing is kept longer than it is needed: for ten million segments, every array counts.
 SplitSummary split(const Centerline& centerline, const GenerateOptions& options, double vertices,
                    const std::function<void(SurfacePart)>& take, const Progress& progress) {
-  std::optional<VesselField> field(std::in_place, centerline, options.blend);
-  const GrowthCenterline growth = without_buried_branches(*field);
-  if (!growth.buried.empty()) field.emplace(growth.centerline, options.blend);
   SplitSummary summary;
   summary.options = options;
-  summary.components = field->centerline().component_count();
-  summary.cycle_rank = field->centerline().cycle_rank();
   summary.expected_vertices = expected_vertices(centerline, options.around);
-  summary.simplifications = notes_of_buried(growth, centerline);
+  std::optional<ConeRelations> relations(std::in_place, centerline, options.blend);
+  std::optional<GrowthCenterline> growth;
+  if (std::vector<BuriedBranch> buried = find_buried_branches(*relations); !buried.empty()) {
+    summary.simplifications = notes_of_buried(buried, centerline);
+    relations.reset();
+    growth.emplace(without_buried_branches(centerline, std::move(buried)));
+    relations.emplace(growth->centerline, options.blend);
+  }
+  release_freed_memory();
+  summary.components = relations->centerline().component_count();
+  summary.cycle_rank = relations->centerline().cycle_rank();
 
-  const VesselAxes axes(*field, RingOptions::of(options));
+  const FieldExcerpts excerpts(*relations);
+  const WholeBranches whole(excerpts);
   std::vector<Index> counts;
-  const Division division = divide_scanning(axes, options, counts, progress);
-  const RingCounts rings(axes, std::move(counts));
+  std::vector<RingPlace> seams = scan_all(whole, options, counts, progress);
+  const RingCounts rings(whole.centerline(), whole.all(), std::move(counts));
+  const Division division = divide(rings, std::move(seams));
   summary.pieces = division.plans.size();
   summary.seams = division.seams.size();
-  const PartMaker maker(axes, rings, division, options);
+  const PartMaker maker(whole, rings, division, options);
   const double parts = std::clamp(std::round(summary.expected_vertices / vertices), 1.0, double(summary.pieces));
   const std::vector<Index> first = maker.beginnings(static_cast<std::size_t>(parts));
   summary.parts = first.size() - 1;
   for (std::size_t p = 0; p < summary.parts; ++p) {
     report_progress(progress, "split", static_cast<double>(p) / static_cast<double>(summary.parts));
     SurfacePart part = maker.make(first[p], first[p + 1]);
-    renumber(growth, part);
+    if (growth) renumber(*growth, part);
     take(std::move(part));
   }
   return summary;

@@ -8,9 +8,9 @@
 
 namespace vmesh {
 
-/// tbb::parallel_for over 0 to count - 1 for bodies that have parallel loops of their own. When one throws, no others
-/// are begun, those that were are left to end, and then what was thrown first is thrown. By itself, TBB would cancel
-/// the loops within the others, too, which would then go on with half of what these were to fill in.
+/// tbb::parallel_for over 0 to count - 1 for bodies that contain parallel loops. When a body throws, no more are
+/// started, the running ones finish, and the first exception is rethrown. TBB alone would also cancel the loops nested
+/// in the other bodies, which would then continue with incomplete results.
 template <class Body>
 void for_whole_tasks(std::size_t count, const Body& body) {
   std::atomic<bool> thrown = false;

@@ -115,7 +115,7 @@ class DefectSearch {
     return (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]) / 3;
   }
 
-  // Pairs that have vertices in common, directly or through others, are one defect.
+  // Pairs connected by common vertices are one defect.
   void faces_that_cross(const std::vector<std::pair<Index, Index>>& crossings) {
     check.crossing_pairs = crossings.size();
     if (crossings.empty()) return;
@@ -156,7 +156,7 @@ class DefectSearch {
     add(DefectKind::bad_triangle, center(worst), count, text.str());
   }
 
-  // Of branches that are listed as left out: their ends may stand out of the others a little.
+  // Segments of branches that were left out: their ends may protrude from the other vessels a little.
   std::vector<char> segments_left_out() const {
     std::vector<char> left_out(centerline_.segments().size(), 0);
     for (const GrowthSimplification& note : result_.growth.simplifications) {

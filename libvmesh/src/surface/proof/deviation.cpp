@@ -14,7 +14,7 @@ namespace {
 constexpr double kSampleWeights[4][3] = {
     {1.0 / 3, 1.0 / 3, 1.0 / 3}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}};
 
-constexpr std::size_t kBatch = 1 << 14;  // faces that are looked at before they are summed up
+constexpr std::size_t kBatch = 1 << 14;  // faces sampled before they are summed up
 
 struct Sample {
   Vec3 point;
@@ -50,8 +50,8 @@ void add(Deviation& deviation, double area, const FaceSamples& samples) {
   }
 }
 
-// Gathers the absolute value of what distance_at(point, hint) says at the sample points. Sums go in the order of the
-// faces, whoever looks at them.
+// Gathers |distance_at(point, hint)| at the sample points. Sums are taken in the order of the faces, whichever thread
+// samples them.
 template <class DistanceAt>
 Deviation gather(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding, const VesselField& field,
                  int threads, const DistanceAt& distance_at) {

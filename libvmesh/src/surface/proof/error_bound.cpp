@@ -8,20 +8,21 @@
 namespace vmesh {
 namespace {
 
-// Along an edge of a face: the shell follows the normals that much closer; safe 2 to 3, below that not sound,
+// Subdivisions of a face's edges in its shell: more follow the normals more closely; safe 2 to 3, below not sound,
 // vertices +5 %.
 constexpr int kPieces = 2;
 constexpr int kMaxDepth = 5;  // of further subdivision, into four each; safe 4 to 7
-// Of the limit; kLowerShell: idle 0.42 to 0.84; kLowestShell: idle 0.028 to 0.056.
+// Heights of a corner that are tried, in limits: each is kLowerShell times the last, down to kLowestShell; kLowerShell:
+// idle 0.42 to 0.84; kLowestShell: idle 0.028 to 0.056.
 constexpr double kLowerShell = 0.6, kLowestShell = 0.04;
-// Each bends the corners of faces that the last left open; one or two as a rule; idle 3 to 6.
+// Each bends the corners of faces that the last left unproven; one or two usually suffice; idle 3 to 6.
 constexpr int kBendRounds = 4;
 
 using Points = std::array<Vec3, 3>;
 
 Vec3 centroid(const Points& q) { return (q[0] + q[1] + q[2]) / 3; }
 
-// How far the corners are from `center`, at most.
+// Largest distance of a corner from `center`.
 double reach(const Points& q, const Vec3& center) {
   double farthest = 0;
   for (const Vec3& p : q) farthest = std::max(farthest, (p - center).norm());
@@ -33,18 +34,18 @@ std::array<Points, 4> quarters(const Points& q) {
   return {Points{q[0], c, b}, Points{c, q[1], a}, Points{b, a, q[2]}, Points{a, b, c}};
 }
 
-// What is known of a cone over a triangle.
+// Bounds on a cone's field over a triangle.
 struct ConeBounds {
   Index cone = kNone;
   double low = 0, high = 0;                  // of the signed distance
   double at_center = 0;                      // the signed distance at the centroid
   double least_radius = 0, most_radius = 0;  // of the sphere that touches the boundary
   double least_reach = 0, most_reach = 0;    // of the blend
-  double turn = 0;                           // how far the gradient can be from that at the centroid, at most 2
-  Vec3 gradient = Vec3::Zero();              // at the centroid
+  double turn = 0;               // bound on the difference of the gradient from that at the centroid, at most 2
+  Vec3 gradient = Vec3::Zero();  // at the centroid
 };
 
-// How much the radius of the touching sphere changes with the way, at most: the tangent of the cone's half angle.
+// Bound on how much the radius of the touching sphere changes per distance moved: the tangent of the cone's half angle.
 double radius_slope(double first, double last, double length) {
   const double change = std::abs(last - first);
   if (change >= length) return std::numeric_limits<double>::infinity();
@@ -72,7 +73,8 @@ class TriangleTest {
   }
 
  private:
-  // The bounds for a triangle and all it is part of lie on a stack; a part looks at the cones that its whole kept.
+  // The bounds for a triangle and all triangles that contain it lie on a stack; a subtriangle considers only the cones
+  // kept for the containing one.
   struct Range {
     std::size_t begin, end;
   };
@@ -110,14 +112,14 @@ class TriangleTest {
     return result;
   }
 
-  // Convex: highest at a corner.
+  // The distance is convex, so it is largest at a corner.
   double highest(const Points& q, Index cone) const {
     double high = field_.sample_cone(q[0], cone).distance;
     for (int k = 1; k < 3; ++k) high = std::max(high, field_.sample_cone(q[k], cone).distance);
     return high;
   }
 
-  // Bounds for the cones of `whole` that can matter on the triangle, on the stack.
+  // Pushes bounds for those cones of `whole` that can matter on the triangle.
   Range measure(const Points& q, Range whole) {
     const Vec3 center = centroid(q);
     reach_ = reach(q, center);
@@ -150,14 +152,14 @@ class TriangleTest {
     const auto [least_share, most_share] = shares_of(cone, s.t, length, radius_slope(first, last, length));
     b.least_reach = field_.blend() * b.least_radius * least_share;
     b.most_reach = field_.blend() * b.most_radius * most_share;
-    // The gradient turns by the way divided by the distance from the touching sphere's centre.
+    // The gradient turns by the distance moved divided by the distance from the touching sphere's centre.
     const double from_center = radius + s.distance - reach_ - change;
     b.turn = from_center > 0.5 * reach_ ? reach_ / from_center : 2;
     return b;
   }
 
-  // Of the blend that is left to a cone on the triangle: the least and the most. The touching sphere moves along the
-  // axis by the way divided by the cosine of the cone's half angle.
+  // Least and greatest share of the blend left to a cone on the triangle. The touching sphere moves along the axis by
+  // the distance moved divided by the cosine of the cone's half angle.
   std::pair<double, double> shares_of(Index cone, double t, double length, double slope) const {
     const auto [least, most] = std::minmax({field_.rounding_at(cone, 0), field_.rounding_at(cone, 1)});
     if (least == most) return {least, most};
@@ -172,7 +174,7 @@ class TriangleTest {
     return reach * d * d / 2;
   }
 
-  // Calls visit for every cone and combine for every pair that may be blended; returns the least of what they return.
+  // Calls visit for every cone and combine for every pair that may be blended; returns the least value.
   template <class Visit, class Combine>
   double least(Range range, Visit&& visit, Combine&& combine) const {
     double result = std::numeric_limits<double>::infinity();
@@ -211,7 +213,7 @@ class TriangleTest {
         });
   }
 
-  // About the field at the centroid: where it has the wrong sign already, parts need not be looked at.
+  // Approximate field at the centroid: if its sign is wrong already, subtriangles need not be considered.
   double value_at_center(Range range) const {
     return least(
         range, [](const ConeBounds& b) { return b.at_center; },
@@ -226,7 +228,7 @@ class TriangleTest {
   double reach_ = 0;
 };
 
-// The cones that can be nearest, or be blended with the nearest, within `radius` of `center`.
+// The cones that can be nearest or blended with the nearest within `radius` of `center`.
 void find_cones(const VesselField& field, const Vec3& center, double radius, Index hint, std::vector<Index>& cones) {
   const Index nearest = field.sample(center, hint).cone;
   const double least = field.sample_cone(center, nearest).distance;
@@ -237,7 +239,7 @@ void find_cones(const VesselField& field, const Vec3& center, double radius, Ind
   });
 }
 
-// One side of a face's shell, on a grid of kPieces along each edge. What lies on an edge follows from its ends alone.
+// One side of a face's shell, on a grid of kPieces along each edge. Points on an edge depend on its ends alone.
 std::vector<Points> shell(const ErrorProof::Face& face, const std::array<double, 3>& heights, double side) {
   const auto point = [&](int i, int j) {
     const double w[3] = {1 - double(i + j) / kPieces, double(i) / kPieces, double(j) / kPieces};
@@ -274,7 +276,7 @@ ErrorProof::Face face_of(const std::vector<ErrorProof::Corner>& vertices, const 
 
 double sign_of(ErrorProof::Side side) { return side == ErrorProof::Side::inner ? -1 : 1; }
 
-// One side of the shell of a whole surface. Where it does not hold along the normals, it is bent.
+// One side of the shell of a whole surface. Where the proof fails along the normals, the shell is bent.
 class BentCopy {
  public:
   BentCopy(const ErrorProof& proof, const VesselField& field, ErrorProof::Side side,
@@ -299,7 +301,7 @@ class BentCopy {
     keep_open(lowered);
   }
 
-  // Faces for which no shell is found.
+  // Bends the shell; returns the faces that remain unproven.
   std::vector<Index> open() {
     for (int round = 0; round < kBendRounds && !open_.empty(); ++round) {
       bool any = false;
@@ -323,7 +325,7 @@ class BentCopy {
     return {heights_[faces_[f][0]], heights_[faces_[f][1]], heights_[faces_[f][2]]};
   }
 
-  // Adds those of `faces` that do not hold to the open ones.
+  // Adds those of `faces` that are not proven to the open ones.
   void keep_open(const std::vector<Index>& faces) {
     std::vector<char> holds(faces.size());
     tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
@@ -334,7 +336,7 @@ class BentCopy {
     }
   }
 
-  // Lets the corner go where it gets farthest from the boundary. Returns whether that is new.
+  // Moves the corner to where it gets farthest from the boundary. Returns false if it was bent before.
   bool bend(Index v) {
     if (bent_[v]) return false;
     bent_[v] = 1;
@@ -355,7 +357,7 @@ class BentCopy {
     return true;
   }
 
-  // Away from the cones that are near, and between any two of them.
+  // Directions away from each cone nearby, and between any two of these.
   std::vector<Vec3> directions(const Vec3& p, const Vec3& normal, double limit, Index hint) const {
     std::vector<Vec3> gradients;
     const FieldSample sample = field_.sample(p, hint);

@@ -10,7 +10,7 @@ namespace vmesh {
 
 namespace {
 
-// Radii: no use in looking at the other side of the vessel; idle 0.35 to 0.7.
+// Radii: beyond, the shell would reach the other side of the vessel; idle 0.35 to 0.7.
 constexpr double kHighestShell = 0.5;
 
 }  // namespace

@@ -13,9 +13,8 @@ class ErrorLimitCheck {
  public:
   explicit ErrorLimitCheck(const ErrorLimit& limit) : limit_(limit) {}
 
-  /// Faces for which the limit is not proven (see ErrorProof), ascending. What was proven before and has not changed is
-  /// not proven again. Faces at held vertices are passed over: they are proven when the surface is whole, or end where
-  /// it is left open.
+  /// Faces for which the limit is not proven (see ErrorProof), ascending. What was proven and has not changed is not
+  /// proven again. Faces at held vertices are skipped: they are proven on the whole surface, or lie at an opening.
   std::vector<Face> unproven_faces(const SweepState& state);
 
  private:

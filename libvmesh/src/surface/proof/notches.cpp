@@ -14,27 +14,28 @@
 namespace vmesh {
 namespace {
 
-// Of the limit: leaves room for what is between vertices. 0.1 to 0.5 do as well; idle 0.17 to 0.35.
+// Height of a vertex above the gap's end, in limits: leaves room for the surface between vertices. 0.1 to 0.5 work as
+// well; idle 0.17 to 0.35.
 constexpr double kFilled = 0.25;
-constexpr int kSteps = 12;  // of Newton's method; three or four as a rule; idle 8 to 17
+constexpr int kSteps = 12;  // of Newton's method; three or four usually suffice; idle 8 to 17
 // Length of the sum of two walls' normals below which they are parallel; idle 0.014 to 0.028.
 constexpr double kSharp = 0.02;
-// Cosine between the walls at an edge's ends above which it lies along one wall; idle 0.35 to 0.7.
+// Cosine between the wall normals at an edge's ends above which it lies along a single wall; idle 0.35 to 0.7.
 constexpr double kFacing = 0.5;
-// An edge's middle in the gap is not so much nearer to one wall than to the other; idle 0.17 to 0.35.
+// Difference between an edge midpoint's distances from the two walls up to which it is in the gap; idle 0.17 to 0.35.
 constexpr double kInGap = 0.25;
-// Limits: an edge so high above the gap's end does not end in a notch; idle 7 to 14.
+// In limits: an edge higher than that above the gap's end is not at a notch; idle 7 to 14.
 constexpr double kFarthest = 10;
 constexpr double kBadForNow = 0.995;                       // skewness that flips may mend; idle 0.7 to 1.4
 constexpr double kSlides[] = {0, 0.15, -0.15, 0.3, -0.3};  // of the edge, along the notch
-// In a row without fewer unproven faces; the trees below have one at most; idle 1 to 3.
+// Rounds in a row without fewer unproven faces; the trees below need one at most; idle 1 to 3.
 constexpr int kRounds = 2;
 
-// Ways to go about it, each from the first surface, until all is proven. The first is enough on vessel_portal and
-// tree119 at 10 % and 5 % and on tree1560 at 10 %; the second is for one of 45 notches of tree1560 at 5 %, the third
-// for daughters that part at 20 degrees.
+// Strategies, each starting from the original surface, until everything is proven. The first is enough on vessel_portal
+// and tree119 at 10 % and 5 % and on tree1560 at 10 %; the second is needed for one of 45 notches of tree1560 at 5 %,
+// the third for daughters that part at 20 degrees.
 struct Way {
-  std::vector<double> filled;  // heights above the end of a gap that are tried, of the limit
+  std::vector<double> filled;  // heights above the end of a gap to try, in limits
   double least_move;           // of a vertex into the notch, in limits
 };
 const Way kWays[] = {{{kFilled}, 0.25}, {{kFilled, 2 * kFilled, 3 * kFilled}, 0.1}, {{0.4}, 0.1}};
@@ -64,7 +65,7 @@ class Gaps {
     return walls;
   }
 
-  // From p down the middle of the gap, to the height `filled` above its end.
+  // The point reached from p down the middle of the gap, at the height `filled` above its end.
   std::optional<BoundaryPoint> end_from(Vec3 p, const Vec3& across, Index hint, double filled, double tolerance) const {
     FieldSample s = field_.sample(p, hint);
     for (int step = 0; step < kSteps; ++step) {
@@ -85,7 +86,7 @@ class Gaps {
   const VesselField& field_;
 };
 
-// Closes notches of one surface in one way.
+// Closes the notches of a surface with one strategy.
 class Closing {
  public:
   Closing(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit, const Way& way)
@@ -107,7 +108,7 @@ class Closing {
     return any;
   }
 
-  // Notches with vertices next to each other are one.
+  // Notches with adjacent vertices are merged.
   std::vector<ClosedNotch> closed() const {
     std::vector<ClosedNotch> notches;
     DisjointSets joined(surface_.mesh.vertices.size());
@@ -184,7 +185,7 @@ class Closing {
     return gaps_.end_from(p, crossing.across, crossing.hint, filled * crossing.limit, 0.1 * filled * crossing.limit);
   }
 
-  // Whether the gap's end is too far below p to be left so.
+  // Whether the gap's end is too far below p.
   bool is_above(const Vec3& p, const std::optional<BoundaryPoint>& end, const Crossing& crossing) const {
     return end && (p - end->position).dot(crossing.up) >= kFilled * crossing.limit &&
            (p - end->position).norm() < kFarthest * crossing.limit;
@@ -228,7 +229,7 @@ class Closing {
     return steps;
   }
 
-  // Edges along a wall that are longer than the limit.
+  // Splits an edge along a wall if it is longer than the limit.
   bool halve(const MeshEdge& e) {
     if (!patch_->is_inner(e) || length(e) < limit_at(e)) return false;
     std::vector<Patch::Step> steps;
@@ -258,7 +259,7 @@ class Closing {
   const ErrorLimit& limit_;
   const Way& way_;
   std::optional<Patch> patch_;
-  std::map<Index, Vec3> across_;  // vertices at the ends of gaps, with the way across
+  std::map<Index, Vec3> across_;  // vertices at the ends of gaps, with the direction across
 };
 
 std::size_t count_bad(const TriMesh& mesh) {

@@ -61,7 +61,7 @@ std::vector<Index> Patch::faces_of(const MeshEdge& e) const {
   return both;
 }
 
-// The vertex and its neighbours, ascending.
+// The vertex together with its neighbours, ascending.
 std::vector<Index> Patch::around(Index v) const {
   std::vector<Index> vertices;
   for (const Index f : faces_at_[v])
@@ -111,13 +111,13 @@ Patch::Step Patch::flipping(const MeshEdge& e) const {
   for (const auto& [f, near, far] : {std::tuple(step.gone[0], c, d), std::tuple(step.gone[1], d, c)}) {
     Triangle face = surface_.mesh.faces[f];
     const auto at = static_cast<std::size_t>(std::find(face.begin(), face.end(), near) - face.begin());
-    face[(at + 2) % 3] = far;  // one face gives up one end, the other the other
+    face[(at + 2) % 3] = far;  // each of the two faces gives up one end
     step.faces.push_back(face);
   }
   return step;
 }
 
-// Its ends have no neighbours in common but the opposite corners of its faces, and neither lies at an opening.
+// Whether its ends share no neighbours but the opposite corners of its faces, and neither lies at an opening.
 bool Patch::may_collapse(const MeshEdge& e) const {
   if (!is_inner(e.a) || !is_inner(e.b)) return false;
   const std::vector<Index> at_a = around(e.a), at_b = around(e.b);

@@ -31,38 +31,38 @@ class Patch {
   /// Keeps references.
   Patch(FinishedSurface& surface, const VesselField& field);
 
-  /// What becomes of the faces around a vertex.
+  /// A replacement for some faces of the surface.
   struct Step {
-    Index vertex = kNone;  ///< that is new or goes elsewhere; kNone: none does
-    BoundaryPoint at;      ///< its place
+    Index vertex = kNone;  ///< the vertex that is added or moved; kNone: none
+    BoundaryPoint at;      ///< its new position
     std::vector<Index> gone;
     std::vector<Triangle> faces;  ///< that replace them
   };
 
   Step splitting(const MeshEdge& e, const BoundaryPoint& at) const;
   Step moving(Index v, const BoundaryPoint& at) const;
-  /// The edge becomes its end b. Asks for may_collapse().
+  /// Collapses the edge to its end b. Requires may_collapse().
   Step collapsing(const MeshEdge& e, const BoundaryPoint& at) const;
-  /// The edge is exchanged for the other diagonal of its faces. Asks for may_flip().
+  /// Flips the edge. Requires may_flip().
   Step flipping(const MeshEdge& e) const;
 
   bool may_collapse(const MeshEdge& e) const;
   bool may_flip(const MeshEdge& e) const;
-  /// Whether the edge is there and has a face on either side.
+  /// Whether the edge exists and has a face on either side.
   bool is_inner(const MeshEdge& e) const { return faces_of(e).size() == 2; }
   /// Whether there are faces all around the vertex.
   bool is_inner(Index v) const { return around(v).size() == faces_at_[v].size() + 1; }
   /// The corners of an inner edge's faces that are not its ends.
   std::array<Index, 2> opposite(const MeshEdge& e) const;
 
-  /// Takes the step that leaves the best triangles, if any is allowed and leaves none of a skewness above `worst`.
-  /// Returns the vertex that it placed, or any corner of what it changed; kNone: no step was taken.
+  /// Takes the allowed step that leaves the best triangles, if it leaves none of a skewness above `worst`. Returns the
+  /// vertex that it placed, or any corner of what it changed; kNone: no step was taken.
   Index take_best(const std::vector<Step>& steps, double worst);
 
-  /// Flips and collapses triangles that the steps left of a skewness above `worst`, where that leaves none.
+  /// Flips and collapses triangles of a skewness above `worst` that the steps left, where that leaves none.
   void mend(double worst);
 
-  /// Numbers vertices and faces anew, in their order, without those that are gone. The old numbers' new ones.
+  /// Renumbers vertices and faces in their order, without the removed ones. Returns the new number of every old vertex.
   std::vector<Index> remove_dead();
 
  private:
@@ -81,8 +81,8 @@ class Patch {
   const VesselField& field_;
   std::vector<std::vector<Index>> faces_at_;
   BoxTree tree_;
-  std::vector<char> changed_;  // faces that are not where the tree has them ...
-  std::vector<Index> latest_;  // ... but for the dead
+  std::vector<char> changed_;  // faces whose entries in the tree are outdated ...
+  std::vector<Index> latest_;  // ... except removed ones
 };
 
 }  // namespace vmesh

@@ -5,11 +5,11 @@
 namespace vmesh {
 namespace {
 
-// In target lengths; a sphere with six vertices around asks for 0.13; safe 0.1 to 0.21.
+// In target lengths; a sphere with six vertices around needs 0.13; safe 0.1 to 0.21.
 constexpr double kMostLift = 0.15;
-// Mean signed distance in radii, around a vertex, that may stay; safe 0.0021 to 0.0042.
+// Mean signed distance around a vertex, in radii, that may remain; safe 0.0021 to 0.0042.
 constexpr double kBalanced = 0.003;
-// Of the free space before another vessel that a vertex may be lifted into; safe 0.24 to 0.49.
+// Share of the gap to another vessel into which a vertex may be lifted; safe 0.24 to 0.49.
 constexpr double kShareOfGap = 0.35;
 
 // Area of every face and signed distance at its centroid.
@@ -32,7 +32,7 @@ FaceErrors face_errors(const SweepState& state) {
   return errors;
 }
 
-// Walls that come close are not to meet.
+// Walls that come close must not meet.
 double most_outwards(const SweepState& state, Vertex v, double most) {
   const BoundSurface& surface = state.surface;
   const Vec3 on_boundary = state.point(v) - surface.distance[v] * surface.gradient[v];
@@ -79,16 +79,16 @@ void balance(SweepState& state, const ErrorLimit& limit) {
   }
 }
 
-void sink(SweepState& state, const std::vector<Vertex>& vertices) {
-  const auto sink_one = [&state](Vertex v) {
+void drop_lifts(SweepState& state, const std::vector<Vertex>& vertices) {
+  const auto drop_lift = [&state](Vertex v) {
     if (state.surface.held(v) || state.surface.lift[v] <= 0) return;
     state.surface.lift[v] = 0;
     const BoundaryPoint target = state.project(v);
     if (may_move(state, v, target)) state.surface.place(v, target.position, target.sample);
   };
   for (const Vertex v : vertices) {
-    sink_one(v);
-    for (const Halfedge h : state.mesh.halfedges_around_target(state.mesh.halfedge(v))) sink_one(state.mesh.source(h));
+    drop_lift(v);
+    for (const Halfedge h : state.mesh.halfedges_around_target(state.mesh.halfedge(v))) drop_lift(state.mesh.source(h));
   }
 }
 

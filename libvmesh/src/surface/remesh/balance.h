@@ -5,14 +5,14 @@
 namespace vmesh {
 
 /// Lifts vertices off the boundary so that the signed distance to it averages to zero: a mesh whose vertices lie on a
-/// convex wall cuts off what bulges between them. The average is taken around every vertex with the weight of its hat
-/// function (1 there, 0 at its neighbours, linear between): the sum over all vertices is the volume, and the surface
-/// that has it zero is the best fit by least squares. Adds to the lifts that there are what the faces miss now, then
-/// moves vertices to where they belong unless a face would turn over or the way is long. No vertex is lifted beyond
-/// `limit`, nor into a vessel nearby. Held vertices stay. Each call comes closer.
+/// convex wall cuts off what bulges between them. The average around a vertex is weighted by its hat function (1 there,
+/// 0 at its neighbours, linear between): the sum over all vertices is the volume error, and the surface with zero
+/// averages is the best fit by least squares. Adds the present averages to the lifts, then moves vertices to where they
+/// belong unless a face would turn over or the move is long. No vertex is lifted beyond `limit`, nor into a vessel
+/// nearby. Held vertices stay. Each call comes closer.
 void balance(SweepState& state, const ErrorLimit& limit);
 
-/// Takes the lifts of these vertices and those around them back and moves them onto the boundary again.
-void sink(SweepState& state, const std::vector<Vertex>& vertices);
+/// Sets the lifts of these vertices and their neighbours to 0 and moves them back onto the boundary.
+void drop_lifts(SweepState& state, const std::vector<Vertex>& vertices);
 
 }  // namespace vmesh

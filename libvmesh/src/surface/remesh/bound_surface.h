@@ -29,16 +29,16 @@ class BoundSurface {
 
   const VesselField& field;
   SurfaceMesh mesh;
-  SurfaceMesh::Property_map<Vertex, Index> cone;     ///< closest round cone, the hint of the next query
+  SurfaceMesh::Property_map<Vertex, Index> cone;     ///< closest round cone; the hint for the next query
   SurfaceMesh::Property_map<Vertex, double> t;       ///< parameter on its axis
-  SurfaceMesh::Property_map<Vertex, Vec3> gradient;  ///< outward normal of the boundary there
+  SurfaceMesh::Property_map<Vertex, Vec3> gradient;  ///< outward normal of the boundary
 
   SurfaceMesh::Property_map<Vertex, double> distance;  ///< signed distance to the boundary, mm
 
-  /// Where the vertex belongs: at this signed distance to the boundary, mm. 0 but for balanced placement.
+  /// Signed distance to the boundary at which the vertex belongs, mm. 0 except in balanced placement.
   SurfaceMesh::Property_map<Vertex, double> lift;
 
-  /// Factor on the target edge length, 1 as a rule: less where narrow places do not bear the triangles asked for.
+  /// Factor on the target edge length: 1, or less in narrow places where full-size triangles do not fit.
   SurfaceMesh::Property_map<Vertex, double> fineness;
 
   /// Where triangles may be longer than wide. Without (nullptr) they are not. To be set before vertices are placed.
@@ -60,42 +60,42 @@ class BoundSurface {
     Vec3 position;
     double radius;
   };
-  /// Places that a vessel of that radius is to leave from: the target edge length grows with the distance from them.
+  /// Spots around which edges are as short as on a vessel of that radius; the target length grows with the distance.
   std::vector<Spot> fine_spots;
-  /// Balls in which nothing is refined for the limit on the error.
+  /// Balls in which nothing is refined for the error limit.
   std::vector<Spot> calm_spots;
 
-  /// What may happen to a vertex. Edges between two held ones stay as they are as well. A lid is the middle of the
-  /// faces that close an open end as long as the surface is worked on; it is never exported.
+  /// What may happen to a vertex. Edges between two held vertices are kept as well. A lid is the centre of the faces
+  /// that close a hole while the surface is worked on; it is never exported.
   enum class Role : char { free, held, lid };
   SurfaceMesh::Property_map<Vertex, Role> role;
   bool held(Vertex v) const { return role[v] != Role::free; }
   bool is_lid(Face f) const;
 
-  /// Closes the loop of vertices, counter-clockwise about the direction out of the surface, with a lid at `center`, and
-  /// holds them.
+  /// Closes the loop of vertices (counter-clockwise about the outward direction) with a lid at `center`, and holds
+  /// them.
   void close_with_lid(const std::vector<Vertex>& loop, const Vec3& center);
 
-  /// From now on no step of remeshing is taken after which faces cross each other, or the axis of a vessel.
+  /// From now on only guarded steps are taken (CrossingGuard).
   void guard_crossings();
   /// Whether the steps are allowed: always, unless guarded.
   bool may_place(Vertex v, const Vec3& p) const { return !guard_ || guard_->may_move(v, p); }
   bool may_collapse(Vertex a, Vertex b, const Vec3& p) const { return !guard_ || guard_->may_collapse(a, b, p); }
   bool may_flip(Halfedge h) const { return !guard_ || guard_->may_flip(h); }
-  /// The faces around `v` are new: they take part in what is guarded.
+  /// Tells the guard that the faces around `v` are new.
   void touch_faces(Vertex v) {
     if (guard_) guard_->touch(v);
   }
 
   const Vec3& position(Vertex v) const { return mesh.point(v); }
-  /// What is known since it was placed. The gradient is a unit vector.
+  /// The field at the vertex, as of its last placement. The gradient is a unit vector.
   FieldSample sample(Vertex v) const { return {distance[v], gradient[v], cone[v], t[v]}; }
   double radius(Vertex v) const { return field.radius_at(cone[v], t[v]); }
 
-  /// Places `v` at `p` and binds it to what `sample` says.
+  /// Places `v` at `p`, bound as `sample` says.
   void place(Vertex v, const Vec3& p, const FieldSample& sample);
 
-  /// Places `v` at its lift from the boundary, where that follows from `p` (project_to_boundary).
+  /// Places `v` at its lift from the boundary, starting from `p` (project_to_boundary).
   void place_on_boundary(Vertex v, const Vec3& p, Index hint);
 
   Vec3 face_area_normal(Face f) const;
@@ -105,11 +105,12 @@ class BoundSurface {
   /// The three new vertices are bound like one of their edge's ends and stay at the edges' midpoints.
   std::array<Vertex, 3> split_edge_centric(Face f);
 
-  /// Halves an edge and both its faces. The new vertex lies at the midpoint, bound like an end of the edge.
+  /// Splits an edge at its midpoint, and both its faces. The new vertex lies at the midpoint, bound like an end of the
+  /// edge.
   Vertex split_edge(Edge e);
 
-  /// The finished mesh with its binding, without lids. Vertices and faces in the order of the halfedge mesh.
-  /// Returns the number of every vertex there, by its index here; kNone for those that are gone.
+  /// The finished mesh with its binding, without lids. Vertices and faces in the order of the halfedge mesh. Returns
+  /// the new number of every vertex by its old index; kNone for removed ones.
   std::vector<Index> export_to(GenerateResult& result) const;
 
  private:
@@ -124,12 +125,12 @@ struct BoundaryPoint {
   FieldSample sample;
 };
 
-/// Follows the field from `p` (Newton steps along the gradient) to where the distance is `lift`, until it differs by at
-/// most `tolerance` local radii, or no longer comes closer.
+/// Follows the gradient from `p` by Newton steps to the signed distance `lift`, until it is within `tolerance` local
+/// radii or no longer comes closer.
 BoundaryPoint project_to_boundary(const VesselField& field, const Vec3& p, Index hint, double tolerance = 1e-6,
                                   double lift = 0);
 
-/// The same from a point about which something is known already.
+/// The same from a point at which the field is already known.
 BoundaryPoint project_to_boundary(const VesselField& field, BoundaryPoint start, double tolerance, double lift);
 
 }  // namespace vmesh

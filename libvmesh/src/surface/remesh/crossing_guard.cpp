@@ -5,12 +5,12 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kMostLatest = 32;  // faces that are looked at one by one; idle 22 to 45
-// Each in a box of its own: that of an aslant axis is mostly empty; idle 6 to 11.
+constexpr std::size_t kMostLatest = 32;  // faces outside any layer, tested one by one; idle 22 to 45
+// Each part has its own box: the box of a whole oblique axis would be mostly empty; idle 6 to 11.
 constexpr int kPartsOfLine = 8;
-// Derived: of coordinates, in a point between two others, a few units in the last place.
+// Derived: relative rounding of an interpolated point, a few units in the last place.
 constexpr double kRounding = 1e-15;
-// Around a face in its box, in the diagonal of what it needs; idle 0.17 to 0.35.
+// Margin around a face in its box, relative to the diagonal of the face's own bounds; idle 0.17 to 0.35.
 constexpr double kRoom = 0.25;
 
 std::pair<Vec3, Vec3> box_of(const PlacedFace& f) {
@@ -40,7 +40,7 @@ CrossingGuard::CrossingGuard(const Mesh& mesh, std::function<bool(Vertex)> is_li
   for (const Face f : mesh.faces()) insert(f);
 }
 
-// Its box still holds it.
+// Whether the entry is still the face's box.
 bool CrossingGuard::is_current(const Entry& entry) const {
   return box_[entry.face.idx()].number == entry.number && entry.face.idx() < mesh_.num_faces() &&
          !mesh_.is_removed(entry.face);

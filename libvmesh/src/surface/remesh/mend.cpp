@@ -10,16 +10,17 @@ namespace vmesh {
 namespace {
 
 constexpr int kRounds = 20;          // through all bad faces; idle 14 to 28
-constexpr double kPaysOff = 0.998;   // worst skewness around against that before; safe 0.7 to 1.4
-constexpr double kTolerance = 1e-3;  // vessel radii, of what is eased from where it belongs: as in all sweeps
+constexpr double kPaysOff = 0.998;   // ratio of the worst skewness around after a step to that before; safe 0.7 to 1.4
+constexpr double kTolerance = 1e-3;  // vessel radii: distance of an improved vertex from its lift, as in all sweeps
 
-// Cosine between faces up to which easing may fold an edge further; idle 0.5 to 0.85 on ten synthetic trees.
+// Cosine between two faces down to which improving may fold their edge further; idle 0.5 to 0.85 on ten synthetic
+// trees.
 constexpr double kFlat = 0.85;
-// Mean distance of the faces around a vertex from the boundary that a move of easing may lead to: against that before,
-// and in vessel radii, about that of an even tube. Measured on fourteen trees: without this the mean distance of one of
-// them grows by 1.4 %, with less room the largest skewness by up to 9 %.
+// Mean distance from the boundary of the faces around a vertex that an improving move may lead to: relative to that
+// before, and in vessel radii (about that of an even tube). Measured on fourteen trees: without this bound the mean
+// distance of one tree grows by 1.4 %; with a tighter one the maximum skewness grows by up to 9 %.
 constexpr double kFarther = 1.03, kNear = 0.05;
-constexpr double kMostOffBoundary = 0.15;  // edge lengths that one step may lead from it; safe 0.1 to 0.21
+constexpr double kMostOffBoundary = 0.15;  // edge lengths by which one step may leave the boundary; safe 0.1 to 0.21
 constexpr double kDiagonal = 0.70710678118654752;
 constexpr std::array<std::array<double, 2>, 8> kDirections = {{{1, 0},
                                                                {kDiagonal, kDiagonal},
@@ -30,13 +31,13 @@ constexpr std::array<std::array<double, 2>, 8> kDirections = {{{1, 0},
                                                                {0, -1},
                                                                {kDiagonal, -kDiagonal}}};
 
-// Steps at a face that easing looks at: where the best are refused, most are. Measured on fourteen trees: without this
-// the mean of the largest skewness is 0.3 % less.
+// Steps per face that improving tries: where the best are refused, most are. Measured on fourteen trees: without this
+// bound the average maximum skewness is 0.3 % less.
 constexpr std::size_t kTries = 8;
 
 enum class Keeps { nothing, to_boundary };
 
-// Applies to one face after the other the step that helps most.
+// Applies the most helpful step at one face after another.
 class Mender {
  public:
   Mender(BoundSurface& surface, double limit, Keeps keeps)
@@ -65,7 +66,7 @@ class Mender {
     Halfedge edge;  // of a flip, collapse or split
     Vertex vertex;  // of a move
     Vec3 place;
-    double before, worst;  // skewness around, before and afterwards
+    double before, worst;  // worst skewness around, before and afterwards
   };
 
   // Worst first.
@@ -113,7 +114,7 @@ class Mender {
                        [&](Vertex v) { return surface_.role[v] == BoundSurface::Role::lid; });
   }
 
-  // A step is offered if it lowers the worst skewness of the faces it changes.
+  // Offers a step if it lowers the worst skewness of the faces it changes.
   void offer(const Step& step, std::vector<Step>& steps) const {
     if (step.worst < kPaysOff * step.before) steps.push_back(step);
   }
@@ -142,7 +143,7 @@ class Mender {
     }
   }
 
-  // In the middle; faces stay where they are.
+  // A split at the midpoint, which does not move the surface.
   void add_split(Halfedge h, std::vector<Step>& steps) const {
     const Halfedge o = mesh_.opposite(h);
     const Vertex a = mesh_.source(h), b = mesh_.target(h);
@@ -159,7 +160,7 @@ class Mender {
     offer({Kind::split, h, {}, middle, before, worst}, steps);
   }
 
-  // To the neighbours' centre and around where it is, nearer and nearer.
+  // Moves to the neighbours' centroid and to points around the vertex, at ever smaller distances.
   void add_moves(Vertex v, std::vector<Step>& steps) const {
     if (surface_.held(v)) return;
     Vec3 center = Vec3::Zero();
@@ -187,7 +188,7 @@ class Mender {
     }
   }
 
-  // Along the surface, so that what is done moves with the centerline.
+  // A tangential direction that rotates with the centerline.
   Vec3 towards_neighbour(Vertex v, const Vec3& normal) const {
     const Vec3 edge = mesh_.point(mesh_.source(mesh_.halfedge(v))) - mesh_.point(v);
     const Vec3 along = edge - normal.dot(edge) * normal;
@@ -196,7 +197,7 @@ class Mender {
 
   double worst_around(Vertex v) const { return worst_with(v, v, mesh_.point(v), 1); }
 
-  // Of the faces of `v` but those at `other`, once it is at `place`; any value from `enough` on if it is as much.
+  // Worst skewness of the faces of `v` not at `other`, with `v` at `place`; may stop at any value of at least `enough`.
   double worst_with(Vertex v, Vertex other, const Vec3& place, double enough) const {
     double worst = 0;
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
@@ -208,12 +209,12 @@ class Mender {
     return worst;
   }
 
-  // The same for an edge that becomes a vertex.
+  // The same after the edge ab has collapsed to a vertex.
   double worst_with_both(Vertex a, Vertex b, const Vec3& place) const {
     return std::max(worst_with(a, b, place, 1), worst_with(b, a, place, 1));
   }
 
-  // Whether the faces beside cd instead of ab form no sharper edge than those beside ab, or hardly any.
+  // Whether flipping ab to cd gives no sharper an edge, or hardly any edge at all.
   bool stays_flat(Vertex a, Vertex b, Vertex c, Vertex d) const {
     const auto normal = [&](Vertex x, Vertex y, Vertex z) {
       return Vec3((mesh_.point(y) - mesh_.point(x)).cross(mesh_.point(z) - mesh_.point(x)).normalized());
@@ -222,7 +223,7 @@ class Mender {
     return after >= std::min(before, kFlat);
   }
 
-  // Mean distance of the faces around `v` from the boundary, at their centres, once it is at `place`.
+  // Mean distance from the boundary, at their centres, of the faces around `v` with `v` at `place`.
   double error_around(Vertex v, const Vec3& place) const {
     double area = 0, sum = 0;
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
@@ -234,13 +235,13 @@ class Mender {
     return sum / area;
   }
 
-  // Whether the faces around `v` are hardly farther from the boundary once it is at `place`, or near it.
+  // Whether the faces around `v`, with `v` at `place`, are near the boundary or hardly farther from it than now.
   bool stays_near(Vertex v, const Vec3& place) const {
     const double most = std::max(kFarther * error_around(v, mesh_.point(v)), kNear * surface_.radius(v));
     return error_around(v, place) <= most;
   }
 
-  // Where a vertex goes that is to go to `place`.
+  // Where a vertex with this lift ends up when moved towards `place`.
   BoundaryPoint belongs(const Vec3& place, Index hint, double lift) const {
     if (keeps_ == Keeps::nothing) return {place, surface_.field.sample(place, hint)};
     return project_to_boundary(surface_.field, place, hint, kTolerance, lift);
@@ -252,14 +253,14 @@ class Mender {
     note_changed(v);
   }
 
-  // For the faces whose corners have `v` as a neighbour there may be other steps now.
+  // Faces with a corner next to `v` may have different steps now.
   void note_changed(Vertex v) {
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       for (const Face f : mesh_.faces_around_target(mesh_.opposite(h))) changed_.push_back(f);
     }
   }
 
-  // Unless faces would cross.
+  // Takes the step unless faces would cross.
   bool take(const Step& step) {
     switch (step.kind) {
       case Kind::flip:
@@ -306,6 +307,6 @@ class Mender {
 
 bool mend_worst_faces(BoundSurface& surface, double limit) { return Mender(surface, limit, Keeps::nothing).run(); }
 
-void ease_worst_faces(BoundSurface& surface, double limit) { Mender(surface, limit, Keeps::to_boundary).run(); }
+void improve_worst_faces(BoundSurface& surface, double limit) { Mender(surface, limit, Keeps::to_boundary).run(); }
 
 }  // namespace vmesh

@@ -4,14 +4,14 @@
 
 namespace vmesh {
 
-/// Takes the worst triangles, of equiangle skewness above `limit`, out of a surface where keeping to the boundary or to
-/// the size field does not let them become better: flips, collapses and moves that lower the worst skewness around,
-/// wherever that leads, but never to faces that cross each other. Guards the surface from then on.
-/// Returns whether there were any such triangles.
+/// Mends triangles of equiangle skewness above `limit` that cannot improve while vertices keep to the boundary and the
+/// size field: takes flips, collapses and moves that lower the worst skewness around, whether or not they leave the
+/// boundary, but never makes faces cross. Guards the surface from then on. Returns whether there were any such
+/// triangles.
 bool mend_worst_faces(BoundSurface& surface, double limit);
 
-/// The same for triangles that are not bad but could be better: vertices stay at their lifts from the boundary, none are
-/// added, and those that move leave the faces around hardly farther from it.
-void ease_worst_faces(BoundSurface& surface, double limit);
+/// Improves triangles that are not bad but could be better: like mending, but vertices stay at their lifts from the
+/// boundary, none are added, and moves leave the faces around hardly farther from it.
+void improve_worst_faces(BoundSurface& surface, double limit);
 
 }  // namespace vmesh

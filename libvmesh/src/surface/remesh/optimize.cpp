@@ -10,34 +10,34 @@
 namespace vmesh {
 namespace {
 
-// Of the sweeps that work towards the size field; the rest for shape alone; safe 0.49 to 0.98.
+// Share of the sweeps that work towards the size field; the rest work on shape alone; safe 0.49 to 0.98.
 constexpr double kSizingShare = 0.7;
-// Of the sweeps that flip towards valence 6 as well; safe 0.56 to 1.1.
+// Share of the sweeps that also flip towards valence 6; safe 0.56 to 1.1.
 constexpr double kRegularityShare = 0.8;
-constexpr double kVerticesPerRadius = 7;  // and unit of length, at kGrownAround; idle 4.9 to 9.8
-// Vertices against those grown plus those expected; well-grown trees reach 0.6; safe 1 to 2.1.
+constexpr double kVerticesPerRadius = 7;  // per length of one radius, at kGrownAround; idle 4.9 to 9.8
+// Most vertices, relative to those grown plus those expected; well-grown trees reach 0.6; safe 1 to 2.1.
 constexpr double kMaxExcess = 1.5;
 constexpr int kStrayInterval = 4;  // safe 3 to 6
-// Share of the vertices in tangles: growth covered vessels twice; safe 0.014 to 0.028.
+// Share of vertices in tangles above which growth must have covered vessels twice; safe 0.014 to 0.028.
 constexpr double kMostTangled = 0.02;
-// Of the tangles: if more are left after a round of untangling, there is no other.
+// Share of the tangles: if more are left after a round of untangling, it is the last.
 constexpr double kStillTangled = 0.9;
-// A second round changes mean skewness and mean error by less than 1 % (ten liver trees, tree1560); what is proven with
-// the second is now and then not proven with the first alone.
-// kBalanceRounds: safe 0 to 2; kBalanceRoundsWithLimit: safe 1 to 3; kBalanceSweeps: safe 4 to 8.
+// A second round changes mean skewness and mean error by less than 1 % (ten liver trees, tree1560), but some error
+// limits are proven only with it. kBalanceRounds: safe 0 to 2; kBalanceRoundsWithLimit: safe 1 to 3; kBalanceSweeps:
+// safe 4 to 8.
 constexpr int kBalanceRounds = 1, kBalanceRoundsWithLimit = 2, kBalanceSweeps = 6;
-// Energies of faces that polishing leaves alone, skewness about 0.32 and 0.25. The first takes 0.69 times as long and
-// leaves a better mean. Proofs need the second.
-// kGoodEnergy: safe there alone, below that skewer, slower, above skewer; kGoodEnergyWithLimit: safe 0.77 to 1.5.
+// Energies below which polishing leaves faces alone: skewness about 0.32 and 0.25. The first takes 0.69 times as long
+// and leaves a better mean; proofs need the second. kGoodEnergy: safe only at this value, below skewer, slower, above
+// skewer; kGoodEnergyWithLimit: safe 0.77 to 1.5.
 constexpr double kGoodEnergy = 1.2, kGoodEnergyWithLimit = 1.1;
-constexpr int kMostSinkRounds = 4;  // idle 3 to 6
-// Without fewer faces over the limit: a last one may need its edges to be a seventh; idle 10 to 20.
+constexpr int kMostLiftDropRounds = 4;  // idle 3 to 6
+// Patience: rounds without another face proven; the last one may need edges a seventh as long; idle 10 to 20.
 constexpr int kErrorRounds = 14;
 constexpr int kErrorSweeps = 4;       // safe 3 to 6
-constexpr int kSpotRounds = 10;       // each halves edges at most; idle 7 to 14
-constexpr int kLeastWithLimit = 4;    // vertices around; idle 3 to 6
-constexpr double kMostRefined = 1.8;  // lengths of edges before against after; idle 1.3 to 2.5
-// Of the target edge length, where the error is too large; kFiner: safe 0.74 to 0.87, below that vertices +9 %, above
+constexpr int kSpotRounds = 10;       // each at most halves the edges; idle 7 to 14
+constexpr int kLeastWithLimit = 4;    // fewest vertices around with an error limit; idle 3 to 6
+constexpr double kMostRefined = 1.8;  // edge length before refinement relative to that after; idle 1.3 to 2.5
+// Factors on the target edge length where the error is too large; kFiner: safe 0.74 to 0.87, below vertices +9 %, above
 // not sound, vertices +7 %, skewer, unproven, slower; kFinest: idle 0.07 to 0.14.
 constexpr double kFiner = 0.87, kFinest = 0.1;
 
@@ -89,7 +89,7 @@ class Optimizer {
   void finish() {
     settle();
     polish(state_, remesher_, good_energy());
-    crosses_ = sink_crossing_walls();
+    crosses_ = drop_crossing_lifts();
     if (options_.max_error.is_set()) {
       meet_error_limit(true);
       crosses_ = !find_crossing_walls(state_).empty();
@@ -97,14 +97,14 @@ class Optimizer {
     tangles_ = crosses_ ? find_tangles(state_).size() : 0;
   }
 
-  // The rest of the surface is not there yet: only what can fail here for good is looked at.
+  // The rest of the surface does not exist yet: only what cannot be mended later is checked.
   void finish_piece() {
     settle();
     meet_error_limit(false);
     tangles_ = find_tangles(state_).size();
   }
 
-  // Brings vertices to where the placement asks for, and what was joined to rest.
+  // Moves vertices to where the placement wants them and lets assembled pieces converge.
   void settle() {
     const int rounds = options_.max_error.is_set() ? kBalanceRoundsWithLimit : kBalanceRounds;
     for (int round = 0; round < rounds; ++round) {
@@ -122,13 +122,13 @@ class Optimizer {
 
   bool balanced() const { return options_.placement == Placement::balanced; }
 
-  // What crosses because of its lifts goes back onto the boundary; what still crosses its own neighbours is loosened.
-  // Whether anything crosses in the end.
-  bool sink_crossing_walls() {
+  // Vertices of crossing faces are moved back onto the boundary; those that still cross their own neighbours are
+  // loosened. Returns whether any faces cross in the end.
+  bool drop_crossing_lifts() {
     std::vector<Vertex> crossing = find_crossing_walls(state_);
     for (const bool last : {false, true}) {
-      for (int round = 0; balanced() && round < kMostSinkRounds && !crossing.empty(); ++round) {
-        sink(state_, crossing);
+      for (int round = 0; balanced() && round < kMostLiftDropRounds && !crossing.empty(); ++round) {
+        drop_lifts(state_, crossing);
         crossing = find_crossing_walls(state_);
       }
       if (crossing.empty() || last || !balanced()) break;
@@ -138,17 +138,17 @@ class Optimizer {
     return !crossing.empty();
   }
 
-  // Refines where the limit is not proven, until it is or triangles get too small. What polishing breaks is mended once
-  // more, and if that fails from a surface come to rest; then it is left so.
+  // Refines where the limit is not proven, until it is or triangles get too small. Polishing may break proofs: then
+  // refines again, and if that fails, once more after settling.
   void meet_error_limit(bool polished) {
     refine_unproven();
     if (!polished || !unproven_.empty()) return;
     polish(state_, remesher_, good_energy());
-    sink_crossing_walls();
+    drop_crossing_lifts();
     refine_unproven();
     if (unproven_.empty()) return;
     settle();
-    sink_crossing_walls();
+    drop_crossing_lifts();
     refine_unproven();
   }
 
@@ -162,7 +162,7 @@ class Optimizer {
         fewest = unproven_.size();
         best = round;
       }
-      // Finer folds of a folded surface prove nothing.
+      // Refining a folded surface proves nothing.
       if (too_tangled(find_tangles(state_))) break;
       if (!make_finer(unproven_)) break;
       refine();
@@ -236,8 +236,8 @@ class Optimizer {
     tangles_ = tangles.size();
   }
 
-  // Everything where a limit on the error is to be proven: of eight sharp forks of 30 degrees seven were not at 5 %
-  // without.
+  // Stirs everything if an error limit is to be proven: otherwise, of eight sharp forks of 30 degrees, seven were not
+  // proven at 5 %.
   void stir_loosened(const std::vector<Vertex>& loosened) {
     if (to_be_proven_) return state_.stir_all();
     for (const Vertex v : loosened) {
@@ -249,8 +249,8 @@ class Optimizer {
     return static_cast<double>(tangles.size()) > kMostTangled * state_.mesh.number_of_vertices();
   }
 
-  // Sweeps from number `first` on: towards the size field, then for shape alone. Each until nothing changes any more.
-  // What had come to rest is looked at again where the rules change: `stir_again` says what.
+  // Sweeps from number `first` on: towards the size field, then for shape alone, each until nothing changes. When the
+  // rules change, `stir_again` reactivates vertices that had converged.
   template <class StirAgain>
   void sweep_from(int first, const StirAgain& stir_again) {
     const int shape_begin = static_cast<int>(kSizingShare * options_.sweeps);
@@ -328,7 +328,7 @@ double expected_vertices(const Centerline& centerline, double around, const Erro
     vertices += expected(centerline.length(s), centerline.radius_at(s, 0.5));
   }
   for (Index n = 0; n < centerline.nodes().size(); ++n) {
-    // A sphere has the area of a tube as long as its diameter.
+    // A sphere has the area of a cylinder as long as its diameter.
     const double radius = centerline.node(n).radius;
     if (centerline.degree(n) == 0) vertices += expected(2 * radius, radius);
   }

@@ -8,13 +8,13 @@ namespace vmesh {
 namespace {
 
 constexpr int kRounds = 2, kSweeps = 20;  // kRounds: safe 1 to 3; kSweeps: safe 14 to 28
-constexpr int kPower = 32;                // of the energies: close to their maximum; safe 22 to 45
-constexpr int kEaseSweeps = 6;            // that give back to all what the worst do not need; safe 4 to 8
-// In target lengths, for the neighbours to be looked at again; safe 0.0035 to 0.007.
+constexpr int kPower = 32;                // of the energies in a sum that approximates their maximum; safe 22 to 45
+constexpr int kRelaxSweeps = 6;           // that improve all faces without making the worst worse; safe 4 to 8
+// Move, in target lengths, from which on the neighbours are revisited; safe 0.0035 to 0.007.
 constexpr double kNoticeableMove = 0.005;
-constexpr int kPatience = 10;  // faces tried in a row without a flip that helps, then the worst stays; safe 7 to 14
-// A flip is worth a look if the worst face near it is not much worse at once, and kept if it is better in the end.
-// Worst energy against that before; kNearlyAsGood: safe 1.4 to 2.8; kPaysOff: safe 0.7 to 1.4.
+constexpr int kPatience = 10;  // patience limit: faces in a row without a helpful flip; safe 7 to 14
+// Ratios of the worst energy nearby to that before: a flip is pursued if it is below kNearlyAsGood at once, and kept if
+// it is below kPaysOff in the end. kNearlyAsGood: safe 1.4 to 2.8; kPaysOff: safe 0.7 to 1.4.
 constexpr double kNearlyAsGood = 2, kPaysOff = 0.997;
 constexpr int kFlipSweeps = 8;  // safe 6 to 11
 
@@ -28,7 +28,7 @@ class Polisher {
       improve_shape();
       flip_with_foresight();
     }
-    ease();
+    relax();
   }
 
  private:
@@ -38,7 +38,7 @@ class Polisher {
     FieldSample sample;
   };
 
-  // Every sweep looks at what the one before has stirred.
+  // Every sweep visits what the previous one has stirred.
   void improve_shape() {
     state_.stir_all();
     std::vector<Face> bad = bad_faces({mesh_.faces().begin(), mesh_.faces().end()});
@@ -53,10 +53,10 @@ class Polisher {
     }
   }
 
-  void ease() {
+  void relax() {
     sort_unique(moved_);
     state_.stir_all();
-    for (int sweep = 0; sweep < kEaseSweeps && state_.next_sweep() > 0; ++sweep)
+    for (int sweep = 0; sweep < kRelaxSweeps && state_.next_sweep() > 0; ++sweep)
       relocate_vertices(state_, active(moved_), {.highest = good_energy_, .noticeable = kNoticeableMove});
   }
 
@@ -65,14 +65,14 @@ class Polisher {
     return vertices;
   }
 
-  // Flips that make things worse at first. Worst faces first.
+  // Tries flips that may make things worse at first, starting at the worst faces.
   void flip_with_foresight() {
     std::vector<std::pair<double, Face>> queue;
     for (const Face f : bad_faces({mesh_.faces().begin(), mesh_.faces().end()})) queue.emplace_back(-energy(f), f);
     std::sort(queue.begin(), queue.end());
     int failures = 0;
     for (const auto& [_, f] : queue) {
-      if (energy(f) < good_energy_) continue;  // a flip nearby has mended it
+      if (energy(f) < good_energy_) continue;  // already mended by a flip nearby
       failures = mend(f) ? 0 : failures + 1;
       if (failures == kPatience) break;
     }
@@ -124,7 +124,7 @@ class Polisher {
     return worst;
   }
 
-  // Faces worth polishing. Folded ones are not: what would be an improvement there is not to be told from shape.
+  // Faces worth polishing. Not folded ones: shape alone does not tell what would improve them.
   std::vector<Face> bad_faces(std::vector<Face> faces) const {
     std::erase_if(faces, [&](Face f) { return energy(f) < good_energy_ || folded(f); });
     return faces;

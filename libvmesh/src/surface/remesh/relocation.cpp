@@ -83,7 +83,7 @@ class Relocator {
   }
 
   bool improves(Vertex v, const BoundaryPoint& target, double old_energy) const {
-    // A vertex that is not on the boundary yet must get there, at any price in shape that keeps its faces upright.
+    // A vertex that is not yet on the boundary must get there, whatever the shape, as long as its faces stay upright.
     if (state_.off_boundary(v)) old_energy = std::numeric_limits<double>::infinity();
     const Landing landing(target);
     double sum = 0;

@@ -5,9 +5,9 @@
 namespace vmesh {
 
 struct RelocationOptions {
-  int power = 1;  ///< of the faces' energies in the sum: the higher, the more the worst counts
-  double highest = std::numeric_limits<double>::infinity();  ///< no face's energy rises above that
-  double noticeable = 0.02;  ///< move, in target lengths, from which on the neighbours are active in the next sweep
+  int power = 1;  ///< of the energies in the sum: the higher, the more the worst face counts
+  double highest = std::numeric_limits<double>::infinity();  ///< no face's energy may rise above this
+  double noticeable = 0.02;  ///< in target lengths: a longer move makes the neighbours active in the next sweep
 };
 
 /// Moves every active vertex to where the shape energy of its faces is least: one Newton step in its tangent plane,

@@ -7,16 +7,16 @@
 namespace vmesh {
 namespace {
 
-// In target lengths; safe 1.35 to 1.6, below that vertices +6 %, above vertices -7 %.
+// In target lengths; safe 1.35 to 1.6, below vertices +6 %, above vertices -7 %.
 constexpr double kSplitLength = 1.35;
-// Safe 0.55 to 0.78, below that vertices +14 %, above vertices -6 %.
+// In target lengths; safe 0.55 to 0.78, below vertices +14 %, above vertices -6 %.
 constexpr double kCollapseLength = 0.65;
 constexpr double kSplitFar = 0.8;  // safe 0.56 to 1.1
 constexpr double kMaxBulge = 0.3;  // see bulge(); safe 0.21 to 0.42
-// Target lengths: shorter edges keep close to the boundary; safe 0.35 to 0.7.
+// In target lengths: shorter edges cannot stray from the boundary; safe 0.35 to 0.7.
 constexpr double kCannotStray = 0.5;
-constexpr double kUprightFlip = 0.5;   // agreement that a flip may always lead to; safe 0.35 to 0.7
-constexpr int kLeastValenceGain = -2;  // of a flip that may yet pay off; safe -2 to 0
+constexpr double kUprightFlip = 0.5;   // agreement from which on a flip is always allowed; safe 0.35 to 0.7
+constexpr int kLeastValenceGain = -2;  // of a flip that may still pay off; safe -2 to 0
 constexpr double kBadEnergy = 1.8;     // of a face: skewness about 0.4; safe 1.3 to 2.5
 
 }  // namespace
@@ -35,11 +35,12 @@ void Remesher::split_long_edges() {
     const auto [excess, index] = queue.top();
     queue.pop();
     const Edge e(index);
-    if (state_.length(e) / state_.target_length(e) != excess) continue;  // has changed since, and was pushed again
+    if (state_.length(e) / state_.target_length(e) != excess)
+      continue;  // outdated: it has changed and was pushed again
     if (full()) break;
     const Vertex v = split(e);
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
-      push(mesh_.edge(h), 0.99 * excess);  // shorter each time: this ends
+      push(mesh_.edge(h), 0.99 * excess);  // ever lower priority, so this ends
       try_flip(mesh_.edge(mesh_.prev(h)), 0);
     }
   }
@@ -175,7 +176,7 @@ void Remesher::split_far_faces(double max_distance) {
       longest = std::max(longest, state_.length(mesh_.edge(h)));
       target = std::max(target, state_.target_length(mesh_.edge(h)));
     }
-    if (longest < kSplitFar * target) continue;  // a web over a crotch: finer faces would not bring it closer
+    if (longest < kSplitFar * target) continue;  // a web over a crotch: refinement would not bring it closer
     if (full()) break;
     for (const Vertex v : surface_.split_edge_centric(f)) {
       state_.size[v] = std::min({state_.size[corner[0]], state_.size[corner[1]], state_.size[corner[2]]}) / 2;

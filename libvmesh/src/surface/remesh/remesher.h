@@ -13,15 +13,16 @@ class Remesher {
   explicit Remesher(SweepState& state)
       : state_(state), surface_(state.surface), mesh_(state.mesh), field_(state.field) {}
 
-  /// Longest first, relative to the target: a chord over a bend must be halved before anything nestles against it.
+  /// Splits edges, the longest relative to their target first: a chord over a bend must be split before other edges
+  /// settle along it.
   void split_long_edges();
-  /// Edges much shorter than the target go, where the faces around stay upright.
+  /// Collapses edges much shorter than their target where the faces around stay upright.
   void collapse_short_edges();
-  /// A bad face that no flip and no move mends goes away with its shortest edge, if what is left is better.
+  /// Collapses the shortest edge of bad faces that no flip and no move mends, if the result is better.
   void collapse_bad_faces();
-  /// The paper's accuracy step: faces whose centre is too far from the boundary.
+  /// The paper's accuracy step: splits faces whose centre is too far from the boundary.
   void split_far_faces(double max_distance);
-  /// Edges that bridge a crotch or cut through a vessel are flipped out of it.
+  /// Flips edges that bridge a crotch or cut through a vessel.
   void repair_strays();
   /// Flips where the two triangles' energy plus `regularity` times the valence defects falls and both stay upright.
   void flip_edges(double regularity);
@@ -29,10 +30,10 @@ class Remesher {
   bool flip_for_shape(Edge e) { return try_flip(e, 0); }
   /// Flips one edge whatever becomes of the shape, unless a face would turn over or valences get much worse.
   bool flip_with_foresight(Edge e);
-  /// Takes that back.
+  /// Undoes that flip.
   void flip_back(Edge e) { flip(mesh_.halfedge(e)); }
 
-  /// From now on nothing is refined when the mesh has so many vertices.
+  /// Stops all refinement once the mesh has so many vertices.
   void limit_vertices(std::size_t count) { max_vertices_ = count; }
   /// Whether something was not refined because of that.
   bool limited() const { return limited_; }
@@ -43,7 +44,7 @@ class Remesher {
     limited_ = limited_ || is_full;
     return is_full;
   }
-  // Folded faces are not refined: there is no telling where their new vertices belong.
+  // Folded faces are not refined: it is unclear where their new vertices would belong.
   bool upright(Edge e) const;
   bool held(Edge e) const;
   Vertex split(Edge e);

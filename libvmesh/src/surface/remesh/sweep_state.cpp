@@ -5,14 +5,14 @@
 namespace vmesh {
 namespace {
 
-// Target length in edges of a regular polygon around the vessel; safe there alone, below that vertices +12 %, above
+// Target length in edges of a regular polygon around the vessel; safe only at this value, below vertices +12 %, above
 // vertices -8 %.
 constexpr double kEdgeFactor = 1.026;
-constexpr double kErrorMargin = 0.87;  // safe 0.74 to 1.2, below that vertices +9 %
+constexpr double kErrorMargin = 0.87;  // safe 0.74 to 1.2, below vertices +9 %
 constexpr double kGradation = 0.5;     // largest slope of the size field along the surface; safe 0.35 to 0.7
 constexpr int kGradationPasses = 3;    // safe 2 to 4
-constexpr double kMaxTurn = 0.5;       // cosine of the angle a face may turn in one move ... (safe 0.35 to 0.7)
-// ... unless it agrees so well with the boundary afterwards; safe 0.56 to 1.1.
+constexpr double kMaxTurn = 0.5;       // cosine of the angle by which a face may turn in one move; safe 0.35 to 0.7
+// Agreement with the boundary from which on it may turn by more; safe 0.56 to 1.1.
 constexpr double kFreeToTurn = 0.8;
 
 }  // namespace

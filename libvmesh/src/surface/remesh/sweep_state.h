@@ -12,13 +12,13 @@ namespace vmesh {
 /// faces half of that on average.
 double balanced_ring_radius(double around);
 
-/// Share of the error limit up to which vertices are lifted: the rest is for what lies between them.
+/// Share of the error limit up to which vertices are lifted; the rest is left for the faces between them.
 inline constexpr double kShareOfLimit = 0.95;  // safe 0.66 to 1.3
 
 /// Target edge length in vessel radii at `around` vertices around a vessel.
 double edge_length_per_radius(double around);
 
-/// Longest edge, mm, with which a surface in balanced placement keeps within `limit` (mm) of a vessel of `radius`.
+/// Longest edge, mm, with which a surface in balanced placement stays within `limit` (mm) of a vessel of `radius`.
 double edge_length_for(double limit, double radius);
 
 /// Where a vertex may go, and the boundary's normal there.
@@ -28,7 +28,7 @@ struct Landing {
   const Vec3 position, normal;
 };
 
-/// What the steps of a sweep share: the surface, its size field, and which vertices are worth looking at.
+/// What the steps of a sweep share: the surface, its size field, and which vertices are active.
 class SweepState {
  public:
   explicit SweepState(BoundSurface& bound_surface);
@@ -67,7 +67,7 @@ class SweepState {
   /// the vertex's fineness, its slope along the surface bounded.
   void update_sizes(double edge_per_radius, const ErrorLimit& limit = {});
 
-  // Only what changed in the last sweep, and its neighbours, is looked at in the next one.
+  // Whether `v` is to be visited in this sweep: it or a neighbour changed in the last one.
   bool active(Vertex v) const { return stirred_[v] & kActive; }
   bool active(Edge e) const { return active(mesh.vertex(e, 0)) || active(mesh.vertex(e, 1)); }
   bool active(Face f) const {
@@ -116,15 +116,15 @@ class SweepState {
     return std::abs(surface.distance[v] - surface.lift[v]) > kOffBoundary * surface.radius(v);
   }
 
-  /// Where `v` belongs when it goes to `p`.
+  /// Where `v` belongs when it is moved to `p`.
   BoundaryPoint project(Vertex v, const Vec3& p, double tolerance = kProjectionTolerance) const {
     return project_to_boundary(field, p, surface.cone[v], tolerance, surface.lift[v]);
   }
-  /// Where `v` belongs when it stays about where it is.
+  /// Where `v` belongs near its present position.
   BoundaryPoint project(Vertex v) const {
     return project_to_boundary(field, {point(v), surface.sample(v)}, kProjectionTolerance, surface.lift[v]);
   }
-  /// Where the vertex belongs that `a` and `b` become.
+  /// Where the vertex belongs to which `a` and `b` would collapse.
   BoundaryPoint project_middle(Vertex a, Vertex b) const {
     return project_to_boundary(field, 0.5 * (point(a) + point(b)), surface.cone[a], kProjectionTolerance,
                                0.5 * (surface.lift[a] + surface.lift[b]));

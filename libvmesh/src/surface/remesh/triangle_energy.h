@@ -20,7 +20,7 @@ inline double squared_inverse_mean_ratio(const Vec3& a, const Vec3& b, const Vec
   return edges * edges / (12 * ab.cross(ac).squaredNorm());
 }
 
-/// Power with an exponent of 0 or more, by multiplications alone.
+/// Power with an exponent >= 0, by multiplications alone.
 inline double whole_power(double base, int exponent) {
   double power = 1;
   for (; exponent > 0; exponent /= 2, base *= base) {
@@ -31,7 +31,7 @@ inline double whole_power(double base, int exponent) {
 
 /// Value, gradient and Hessian of the sum over triangles (x, b, c) of the inverse mean ratio to the power of 2 `power`,
 /// as x moves in the plane spanned by the orthonormal u, w. The triangles' normals are held fixed, which makes the
-/// Hessian positive. A high power is for the worst triangle.
+/// Hessian positive definite. The higher the power, the more the worst triangle counts.
 struct PlanarEnergy {
   int power = 1;
   double value = 0;

@@ -6,8 +6,8 @@
 namespace vmesh {
 namespace {
 
-constexpr int kRings = 2;   // around a tangle that take part; safe 1 to 3
-constexpr int kPasses = 5;  // safe 4 to 7
+constexpr int kNeighbourDepth = 2;  // layers of neighbours around a tangle that take part; safe 1 to 3
+constexpr int kPasses = 5;          // safe 4 to 7
 
 bool neighbours(const BoundSurface& surface, const Triangle& f, const Triangle& g) {
   for (const Index v : f) {
@@ -19,7 +19,7 @@ bool neighbours(const BoundSurface& surface, const Triangle& f, const Triangle& 
   return false;
 }
 
-void add_ring(const SurfaceMesh& mesh, std::vector<Vertex>& region) {
+void add_neighbours(const SurfaceMesh& mesh, std::vector<Vertex>& region) {
   const std::size_t count = region.size();
   for (std::size_t i = 0; i < count; ++i) {
     for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(region[i]))) region.push_back(mesh.source(h));
@@ -71,7 +71,7 @@ std::vector<Vertex> find_tangles(const SweepState& state) {
 std::vector<Vertex> loosen(SweepState& state, const std::vector<Vertex>& tangles) {
   const SurfaceMesh& mesh = state.mesh;
   std::vector<Vertex> region = tangles;
-  for (int ring = 0; ring < kRings; ++ring) add_ring(mesh, region);
+  for (int depth = 0; depth < kNeighbourDepth; ++depth) add_neighbours(mesh, region);
   for (int pass = 0; pass < kPasses; ++pass) {
     for (const Vertex v : region) {
       if (state.surface.held(v)) continue;

@@ -6,18 +6,18 @@
 
 namespace vmesh {
 
-/// Vertices of faces that intersect although their vessels are neighbours along the graph, and vertices off the
-/// boundary: what a local operation can mend. Ascending.
+/// Vertices of intersecting faces whose vessels are neighbours along the graph, and vertices off the boundary: what
+/// local operations can mend. Ascending.
 std::vector<Vertex> find_tangles(const SweepState& state);
 
-/// Lets the surroundings of `tangles` relax on the boundary like a rubber sheet, which pulls folds flat. Returns them,
-/// ascending, stirred.
+/// Relaxes the surroundings of `tangles` on the boundary like a rubber sheet, which pulls folds flat. Stirs and returns
+/// their vertices, ascending.
 std::vector<Vertex> loosen(SweepState& state, const std::vector<Vertex>& tangles);
 
-/// The surface as it is, its vertices by their indices; with its lids or without.
+/// The current surface, with the indices of its vertices kept, with or without its lids.
 TriMesh indexed_mesh(const SweepState& state, bool with_lids);
 
-/// Vertices of all faces that intersect others, be it of vessels that are no neighbours; ascending.
+/// Vertices of all intersecting faces, including those of vessels that are not neighbours; ascending.
 std::vector<Vertex> find_crossing_walls(const SweepState& state);
 
 }  // namespace vmesh

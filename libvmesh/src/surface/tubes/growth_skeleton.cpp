@@ -9,7 +9,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kShortHandle = 6;  // rings; measured on random graphs with loops, safe from 4 to 8
+constexpr double kShortHandle = 6;  // rings; measured on random graphs with loops; safe 4 to 8
 
 std::vector<SegmentPlace> places_of(const Centerline& centerline, const std::vector<Branch>& branches) {
   std::vector<SegmentPlace> places(centerline.segments().size());
@@ -82,8 +82,7 @@ class SkeletonMaker {
     collect_junctions();
   }
 
-  // A short tube with both ends at one junction cannot be grown apart from it: the ends of the junction's vessels would
-  // overlap there.
+  // A short tube with both ends at the same junction is given to the junction, whose vessels would overlap at its ends.
   bool dissolve_handles() {
     bool dissolved = false;
     std::vector<Index> first(skeleton_.tubes.size(), kNone);
@@ -108,14 +107,14 @@ class SkeletonMaker {
     }
   }
 
-  // The free rings from number `k` on, up to the next that is not; `k` becomes the number of that one.
+  // The run of free rings that starts at number `k`; `k` becomes the number of the first ring after it.
   static std::span<const Ring> free_run(const std::vector<Ring>& rings, std::size_t& k) {
     const std::size_t first = k;
     while (k < rings.size() && rings[k].free) ++k;
     return {rings.data() + first, k - first};
   }
 
-  // Runs of free rings become tubes; what lies between them, bare stretches.
+  // Runs of free rings become tubes; the stretches between them are bare.
   void divide(const Stretch& stretch, std::vector<Ring>& rings) {
     if (is_loop(stretch)) {
       divide_loop(stretch, rings);
@@ -226,7 +225,7 @@ class SkeletonMaker {
     for (Index g = 0; g < bare_.size(); ++g) {
       Junction& junction = junction_of(node_count + g);
       const auto& nodes = tubes_.axes()[bare_[g].branch].branch().nodes;
-      // A loop that is one bare stretch all around hangs at its own first node.
+      // A loop that is a single bare stretch is attached to its own first node.
       if (junction.nodes.empty() && bare_[g].docks[0].tube == kNone) junction.nodes.push_back(nodes.front());
       junction.bare_stretches.push_back(bare_[g]);
     }
@@ -271,12 +270,18 @@ void VesselTubes::lay_all() {
 
 Elongation VesselTubes::elongation_at(Index cone, double t) const {
   if (cone >= segment_count() || place_of(cone).branch == kNone) return {};
-  const auto [branch, piece] = place_of(cone);
+  const auto [branch, nth] = place_of(cone);
   const BranchAxis& axis = axes()[branch];
-  const double place = axis.place_of(piece, t);
+  const double place = axis.place_of(nth, t);
   const double times = rings_[branch].elongation.at(axis.radii_of(place));
   if (times <= 1) return {};
   return {times, layer().direction_at(branch, place)};
+}
+
+Elongation VesselTubes::longest_at(Index cone, double t, double times) const {
+  if (cone >= segment_count() || place_of(cone).branch == kNone) return {};
+  const auto [branch, nth] = place_of(cone);
+  return {times, layer().direction_at(branch, axes()[branch].place_of(nth, t))};
 }
 
 double even_rings(const Tube& tube) {

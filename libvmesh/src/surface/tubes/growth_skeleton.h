@@ -12,7 +12,7 @@ namespace vmesh {
 /// Branches of a centerline, ready for rings to be laid along them.
 class VesselAxes {
  public:
-  /// `field` must outlive it. All branches, or these.
+  /// Axes of all branches, or of these. `field` must outlive it.
   VesselAxes(const VesselField& field, const RingOptions& rings);
   VesselAxes(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches);
   VesselAxes(const VesselAxes&) = delete;
@@ -20,6 +20,7 @@ class VesselAxes {
 
   const VesselField& field() const { return field_; }
   const Centerline& centerline() const { return field_.centerline(); }
+  const std::vector<Branch>& branches() const { return branches_; }
   const std::vector<BranchAxis>& axes() const { return axes_; }
   const RingLayer& layer() const { return layer_; }
 
@@ -35,7 +36,7 @@ class VesselAxes {
   RingLayer layer_;
 };
 
-/// The same with the rings laid, and how far they may be apart.
+/// VesselAxes with the rings laid, and how far apart they may be.
 class VesselTubes : public VesselAxes, public ElongationField {
  public:
   VesselTubes(const VesselField& field, const RingOptions& rings);
@@ -43,6 +44,8 @@ class VesselTubes : public VesselAxes, public ElongationField {
 
   const std::vector<Ring>& rings(Index branch) const { return rings_[branch].rings; }
   Elongation elongation_at(Index cone, double t) const override;
+  /// `times` along the vessel, whatever the error; none on an isolated node.
+  Elongation longest_at(Index cone, double t, double times) const;
   /// Itself, or nullptr where triangles are no longer than wide anywhere.
   const ElongationField* elongation_field() const { return elongated_ ? this : nullptr; }
 
@@ -53,10 +56,10 @@ class VesselTubes : public VesselAxes, public ElongationField {
   bool elongated_;
 };
 
-/// A stretch of a branch whose cross-sections are its own: rings that follow each other.
+/// A run of consecutive free rings along a branch.
 struct Tube {
   Index branch = kNone;
-  std::span<const Ring> rings;                      ///< of those of the skeleton
+  std::span<const Ring> rings;                      ///< a run of GrowthSkeleton::rings
   bool starts_at_tip = false, ends_at_tip = false;  ///< closed by a cap there
   bool periodic = false;                            ///< the last ring is followed by the first
   bool starts_at_seam = false, ends_at_seam = false;
@@ -79,8 +82,8 @@ struct TubeEnd {
   bool at_end = false;  ///< at its last ring; at its first otherwise
 };
 
-/// A stretch of a branch without rings, between tubes, branching nodes or both. Where an end has no dock it is the
-/// branch's end.
+/// A stretch of a branch without rings, between tubes, branching nodes or both. An end without a dock is an end of the
+/// branch.
 struct BareStretch {
   Index branch = kNone;
   double begin = 0, end = 0;  ///< places
@@ -96,9 +99,9 @@ struct Junction {
 /// The ends of tubes at which a junction docks, in the order of its bare stretches.
 std::vector<TubeEnd> docks_of(const Junction& junction);
 
-/// The graph that steers growth: junctions joined by tubes. Crowded branching nodes fall into one junction, siblings
-/// part into tubes of their own where their cross-sections do, and a branch without a cross-section of its own is part
-/// of a junction.
+/// The graph that steers growth: junctions joined by tubes. Crowded branching nodes share a junction, sibling branches
+/// become separate tubes where their cross-sections separate, and a branch without a cross-section of its own belongs
+/// to a junction.
 struct GrowthSkeleton {
   std::vector<std::vector<Ring>> rings;                 ///< of the plan's stretches
   std::vector<std::vector<BoundaryPoint>> seam_points;  ///< of the rings that are seams, lifted

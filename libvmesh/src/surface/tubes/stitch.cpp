@@ -8,9 +8,9 @@ namespace vmesh {
 namespace {
 
 constexpr std::size_t kStarts = 6;  // places from which a band is tried; idle 4 to 8
-constexpr double kTie = 1 - 1e-9;   // derived: of a value; what is not less than that is equal but for rounding
+constexpr double kTie = 1 - 1e-9;   // derived: ratio of two values from which on they are equal up to rounding
 
-// Shortest way through the grid of pairs (bottom i, top j) from (0, start) once around both loops.
+// Shortest path through the grid of pairs (bottom i, top j) from (0, start) once around both loops.
 class BandSearch {
  public:
   BandSearch(std::span<const Vec3> bottom, std::span<const Vec3> top)
@@ -47,7 +47,7 @@ class BandSearch {
  private:
   static constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-  // Neither loop may be walked around while the other stands still: an edge would come back.
+  // Neither loop may be walked all the way around while the other stands still: an edge would occur twice.
   bool in_step(std::size_t i, std::size_t j) const {
     const auto n = static_cast<double>(bottom_.size()), m = static_cast<double>(top_.size());
     return std::abs(static_cast<double>(i) / n - static_cast<double>(j) / m) < 0.5;
@@ -72,7 +72,7 @@ double distance2_to(std::span<const Vec3> loop, const Vec3& p) {
   return least;
 }
 
-// The numbers of the kStarts nearest points, nearest first; ties, rounding apart, by number.
+// The numbers of the kStarts nearest points, nearest first; ties (up to rounding) by number.
 std::vector<std::size_t> nearest_of(std::span<const Vec3> points, const Vec3& p) {
   double farthest = 0;
   for (const Vec3& q : points) farthest = std::max(farthest, (q - p).squaredNorm());

@@ -7,33 +7,33 @@
 namespace vmesh {
 namespace {
 
-// Of rings, in heights of the equilateral band at their final radius; safe there alone, below that vertices +13 %,
-// above vertices -11 %, skewer.
+// Distance between rings, in heights of an equilateral band at their final radius; safe only at this value, below
+// vertices +13 %, above vertices -11 %, skewer.
 constexpr double kPitch = 1.055;
-// Radii before and behind over which the direction of the vessel is taken; safe 0.42 to 0.84.
+// Radii to either side over which the direction of the vessel is averaged; safe 0.42 to 0.84.
 constexpr double kSmoothing = 0.6;
 constexpr int kSteps = 8;             // of the search for the boundary along a ray; safe 6 to 11
-constexpr double kOnBoundary = 1e-3;  // radii; derived: a tenth of what a surface may be off (kOffBoundary)
-// Radii at which the boundary may lie; kNearest: idle 0.35 to 0.7; kFarthest: safe 1.4 to 2.8.
+constexpr double kOnBoundary = 1e-3;  // radii; derived: a tenth of kOffBoundary
+// Radii between which the boundary must lie; kNearest: idle 0.35 to 0.7; kFarthest: safe 1.4 to 2.8.
 constexpr double kNearest = 0.5, kFarthest = 2;
 constexpr double kFacing = 0.5;    // cosine between ray and boundary normal; safe 0.35 to 0.7
 constexpr double kOwnReach = 1.5;  // radii along the branch from which the boundary may come; safe 1 to 2.1
-// Nothing else may come as close as `space` to the points `far` from the axis, both in radii, in kDirections
-// directions.
+// No other vessel may come closer than `space` to the points at the distance `far` from the axis (both in radii) in
+// kDirections directions.
 struct Clearance {
   double far, space;
 };
 constexpr Clearance kClearances[] = {{0, 0}, {0.5, 0}, {1, 0}, {1.35, 0.15}};
-constexpr double kNeighbourhood = 1.5;  // radii around the axis where that may fail; safe 1 to 2.1
+constexpr double kNeighbourhood = 1.5;  // radii around the axis within which that may fail; safe 1 to 2.1
 constexpr int kDirections = 24;         // safe 17 to 34
 constexpr int kPlacesThrough = 6;       // idle 4 to 8
-// Cosine between the vessel's way and the normal of its cross-section; safe 0.21 to 0.42.
+// Least cosine between the vessel's direction and the normal of its cross-section; safe 0.21 to 0.42.
 constexpr double kThrough = 0.3;
 constexpr double kStraight = 1e-3;      // derived: sine below which directions count as equal, far above their rounding
 constexpr double kLongestSkip = 2.5;    // radii along the branch; safe 1.8 to 3.5
 constexpr double kStraightSkip = 0.95;  // cosine; safe 0.66 to 1.3
 constexpr double kNoGap = 1.5;          // even steps between rings from which on one is missing between them
-constexpr double kMinGap = 0.2;         // pitches between two rings anywhere; safe 0.14 to 0.28
+constexpr double kMinSpacing = 0.2;     // least distance between two rings, in pitches; safe 0.14 to 0.28
 
 // Height of the band of triangles between two rings, in ring radii, when all its edges are as long as the ring's.
 double equilateral_height(int around) {
@@ -52,7 +52,7 @@ bool apart(const Ring& ring, const Ring& next, double gap) {
   return true;
 }
 
-// A short way along which the vessel hardly bends.
+// Whether the rings are close together and the vessel hardly bends between them.
 bool is_straight_between(const Ring& ring, const Ring& next) {
   const double along = next.place - ring.place;
   const Vec3 chord = next.center - ring.center;
@@ -100,11 +100,11 @@ Rings RingLayer::lay_evenly(Index branch, std::vector<Vec3>& sides) const {
   std::vector<char> collides(rings.size(), 0);
   for (std::size_t k = 0; k < bands && rings.size() > 1; ++k) {
     const std::size_t next = (k + 1) % rings.size();
-    if (!rings[k].free || !rings[next].free || apart(rings[k], rings[next], kMinGap * pitch)) continue;
+    if (!rings[k].free || !rings[next].free || apart(rings[k], rings[next], kMinSpacing * pitch)) continue;
     collides[k] = collides[next] = 1;
   }
   for (std::size_t k = 0; k < rings.size(); ++k) rings[k].free = rings[k].free && !collides[k];
-  leave_out_steps(rings, sides, kMinGap * pitch);
+  leave_out_steps(rings, sides, kMinSpacing * pitch);
   if (!axis.periodic() && !axis.starts_at_tip()) rings.front().free = false;
   if (!axis.periodic() && !axis.ends_at_tip()) rings.back().free = false;
   clear_ends(branch, rings, axis.periodic());
@@ -188,7 +188,7 @@ std::vector<Ring> RingLayer::spread_run(Index branch, std::span<const Ring> run,
     Ring& ring = rings.back();
     ring.beside = {section(branch, places[k] - step / 2), section(branch, places[k] + step / 2)};
     ring.elongation = here.at(places[k]);
-    if (!ring.free || (k > 0 && !apart(rings[k - 1], ring, kMinGap * ring_pitch(options_.around)))) return {};
+    if (!ring.free || (k > 0 && !apart(rings[k - 1], ring, kMinSpacing * ring_pitch(options_.around)))) return {};
   }
   profile.append(here, step);
   return rings;
@@ -228,7 +228,7 @@ void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings, bool loop) co
   }
 }
 
-// From where angles count: turns with the centerline, where that is not straight throughout.
+// Direction from which angles are counted. It rotates with the centerline unless that is straight throughout.
 Vec3 RingLayer::reference(Index branch, const Vec3& normal) const {
   const Centerline& centerline = field_.centerline();
   const auto& nodes = axes_[branch].branch().nodes;
@@ -272,7 +272,7 @@ Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& s
 
 bool RingLayer::see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way,
                     BoundaryPoint& seen) const {
-  const Index segment = axes_[branch].branch().segments[axis.piece];
+  const Index segment = axes_[branch].branch().segments[axis.nth];
   double far = ring.radius;
   FieldSample s;
   for (int step = 0; step < kSteps; ++step) {
@@ -293,10 +293,10 @@ bool RingLayer::is_own(Index branch, const CrossSection& section, const FieldSam
   if (at.branch != branch) return false;
   const BranchAxis& axis = axes_[branch];
   const double radius = std::max(section.radius, field_.radius_at(sample.cone, sample.t));
-  return axis.apart(axis.place_of(at.piece, sample.t), section.place) <= kOwnReach * radius;
+  return axis.apart(axis.place_of(at.nth, sample.t), section.place) <= kOwnReach * radius;
 }
 
-// Whether the vessel comes from behind the plane and goes on before it, as far as it counts as the section's own.
+// Whether the section's own part of the branch runs through the plane from back to front.
 bool RingLayer::goes_through(Index branch, const CrossSection& section) const {
   const BranchAxis& axis = axes_[branch];
   for (int k = 1; k <= kPlacesThrough; ++k) {
@@ -310,14 +310,14 @@ bool RingLayer::goes_through(Index branch, const CrossSection& section) const {
   return true;
 }
 
-// Whether `cone` reaches beyond what counts as the section's own part of the branch.
+// Whether `cone` reaches beyond the section's own part of the branch.
 bool RingLayer::may_be_foreign(Index branch, const CrossSection& section, Index cone) const {
   return !is_own(branch, section, {0, {}, cone, 0}) || !is_own(branch, section, {0, {}, cone, 1});
 }
 
 bool RingLayer::is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
                          const Vec3& up) const {
-  const Index segment = axes_[branch].branch().segments[axis.piece];
+  const Index segment = axes_[branch].branch().segments[axis.nth];
   std::vector<Index> near, others;
   field_.local_cones_near(section.center, segment, kNeighbourhood * section.radius, near);
   for (const Index cone : near) {

@@ -14,22 +14,22 @@ namespace vmesh {
 struct CrossSection {
   double place = 0;  ///< on the branch
   Vec3 center = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();  ///< along the branch, in the order of its nodes
+  Vec3 normal = Vec3::Zero();  ///< along the branch, towards its last node
   double radius = 0;
 };
 
 /// A ring of vertices around a branch, on the vessel boundary, counter-clockwise about `normal`.
 struct Ring : CrossSection {
-  std::span<const BoundaryPoint> points;  ///< none where one of them is not seen from the axis
+  std::span<const BoundaryPoint> points;  ///< empty if any of them is not visible from the axis
   std::array<CrossSection, 2> beside;     ///< half a step before and after it
   double elongation = 1;  ///< how much longer than wide triangles may be here, see GenerateOptions::elongation
   /// Vector of the metric in which bands are even, see ElongatedMetric.
   Vec3 metric() const { return ElongatedMetric::vector(normal, elongation); }
   bool clear = false;  ///< no other vessel, nor a far part of this one, covers the cross-section or comes close
-  bool free = false;   ///< clear, and the boundary is seen from the axis all around
+  bool free = false;   ///< clear, and the boundary is visible from the axis all around
 };
 
-/// Rings and the points they consist of. Moved, not copied: rings refer to the points by address.
+/// Rings and their points. Movable, not copyable: rings refer to the points by address.
 struct Rings {
   Rings() = default;
   Rings(Rings&&) = default;
@@ -56,17 +56,18 @@ struct RingOptions {
   }
 };
 
-/// Where every segment lies: its branch and its number there.
+/// Where a segment lies: its branch and its number there.
 struct SegmentPlace {
   Index branch = kNone;
-  Index piece = kNone;
+  Index nth = kNone;
 };
 
-/// Lays rings of `around` vertices along branches, evenly in units of the local radius, each turned half a step
-/// against the one before: bands of nearly equilateral triangles. The first and the last ring lie at the branch's ends.
-/// Rings that are clear but not free, for a step in the radius or a sharp bend, are left out where the band between
-/// their neighbours stays short. Where free rings begin or end off a tip, the cross-section half a step further is free
-/// as well. With an elongation, rings of a run of free ones are laid anew, as far apart as the error allows.
+/// Lays rings of `around` vertices along branches, evenly in units of the local radius, each turned half a step against
+/// the one before: bands of nearly equilateral triangles. The first and the last ring lie at the branch's ends. Rings
+/// that are clear but not free (at a step in the radius or a sharp bend) are left out where the band between their
+/// neighbours stays short. Where a run of free rings begins or ends away from a tip, the cross-section half a step
+/// further out is free as well. With an elongation, the rings of every such run are laid again, as far apart as the
+/// error allows.
 class RingLayer {
  public:
   RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes, const std::vector<SegmentPlace>& places,
@@ -77,18 +78,18 @@ class RingLayer {
   /// The direction of the vessel, bends smoothed.
   Vec3 direction_at(Index branch, double place) const;
 
-  /// The ring's points where balanced placement will have them: off the boundary, so that the volume is kept.
+  /// The ring's points as balanced placement lifts them off the boundary, so that the volume is kept.
   std::vector<BoundaryPoint> lifted(const Ring& ring) const;
 
-  /// Frees no more than what can end a tube: where free rings begin or end off a tip, the cross-section half a step
-  /// further is free as well. `loop`: the first ring follows the last one.
+  /// Keeps free only rings that can end a tube: where a run of free rings begins or ends away from a tip, the
+  /// cross-section half a step further out must be free as well. `loop`: the first ring follows the last one.
   void clear_ends(Index branch, std::vector<Ring>& rings, bool loop) const;
 
  private:
   Rings lay_evenly(Index branch, std::vector<Vec3>& sides) const;
   CrossSection section(Index branch, double radii) const;
   Vec3 reference(Index branch, const Vec3& normal) const;
-  // Its points go to the end of `points`, which must have room for them.
+  // Appends its points to `points`, which must have capacity for them.
   Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
                std::vector<BoundaryPoint>& points) const;
 
@@ -103,7 +104,7 @@ class RingLayer {
   bool goes_through(Index branch, const CrossSection& section) const;
   bool may_be_foreign(Index branch, const CrossSection& section, Index cone) const;
   bool is_own(Index branch, const CrossSection& section, const FieldSample& sample) const;
-  // The boundary point seen from `center` in direction `way`; false if it does not belong to the place alone.
+  // Finds the boundary point visible from `center` in direction `way`; false if it does not belong to this ring alone.
   bool see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way, BoundaryPoint& seen) const;
 
   const VesselField& field_;

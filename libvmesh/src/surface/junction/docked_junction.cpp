@@ -1,4 +1,4 @@
-#include "surface/junction/junction_piece.h"
+#include "surface/junction/docked_junction.h"
 
 #include <optional>
 #include <span>
@@ -11,20 +11,20 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kRingsGivenAway = 2;  // at most, at an end of a tube; safe 1 to 3
+constexpr std::size_t kRingsGivenAway = 2;  // at most, at each end of a tube; safe 1 to 3
 
-// How a junction's surface is made; tried in this order. Of 1,794 junctions of random trees the first was clean 1,762
-// times, the second 19 and the third twice.
+// How a junction's surface is made, tried in this order. Of 1,794 junctions of random trees, the first was clean for
+// 1,762, the second for 19 and the third for two.
 struct Variant {
-  double finer;         ///< resolution at which the junction's surface is made, in that asked for
+  double finer;         ///< resolution of the junction's surface, relative to the requested one
   bool smooth_rims;     ///< see JunctionGrowth::make()
   bool guarded;         ///< no step is taken after which faces cross
-  double fineness = 1;  ///< factor on the target edge length from then on
+  double fineness = 1;  ///< factor on the target edge length after docking
 };
 constexpr Variant kVariants[] = {{1, true, false}, {1.5, true, false}, {1.5, true, false, 0.67}, {2, true, false, 0.5}};
 constexpr Variant kGuardedVariants[] = {{1, true, false}, {1, true, true}, {1, false, true}};
-// Measured on stars of 250, 500 and 1,000 branches: no variant brings every vertex onto the boundary there; as they
-// were cut, rims do not cross.
+// Measured on stars of 250, 500 and 1,000 branches: no variant brings every vertex onto the boundary; rims left as cut
+// do not cross.
 constexpr Variant kHubVariants[] = {{1, false, true}, {1, true, true}};
 
 std::span<const Variant> variants_of(bool guarded, bool hub) {
@@ -32,10 +32,10 @@ std::span<const Variant> variants_of(bool guarded, bool hub) {
   return guarded ? std::span<const Variant>(kGuardedVariants) : std::span<const Variant>(kVariants);
 }
 
-class PieceMaker {
+class JunctionDocker {
  public:
-  PieceMaker(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
-             const std::vector<TubeEnd>& docks, const GenerateOptions& options, const Progress& progress)
+  JunctionDocker(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
+                 const std::vector<TubeEnd>& docks, const GenerateOptions& options, const Progress& progress)
       : skeleton_(skeleton),
         growth_(growth),
         docks_(docks),
@@ -45,17 +45,17 @@ class PieceMaker {
     surface_.elongation_field = tubes.elongation_field();
   }
 
-  JunctionPiece make(const Variant& variant) {
+  DockedJunction make(const Variant& variant) {
     const JunctionSurface junction = growth_.make(variant.finer, variant.smooth_rims, variant.guarded);
     add(junction.patch);
     for (const Vertex v : surface_.mesh.vertices()) surface_.fineness[v] = variant.fineness;
     for (Index i = 0; i < docks_.size(); ++i) dock(i, junction.rims[i]);
     if (variant.guarded) surface_.guard_crossings();
-    JunctionPiece piece;
-    piece.filled_loops = growth_.filled_loops();
-    finish(variant.fineness, piece);
-    export_to(piece);
-    return piece;
+    DockedJunction docked;
+    docked.filled_loops = growth_.filled_loops();
+    finish(variant.fineness, docked);
+    export_to(docked);
+    return docked;
   }
 
  private:
@@ -70,7 +70,7 @@ class PieceMaker {
     for (const auto& [a, b, c] : patch.faces) add_face(vertex_[a], vertex_[b], vertex_[c]);
   }
 
-  // Joins the rim to the first ring of the tube's end, that to the next one, up to the ring that is kept.
+  // Joins the rim to the outermost ring of the tube's end, that ring to the next, and so on up to the kept ring.
   void dock(Index number_of_dock, const std::vector<Index>& rim) {
     const TubeEnd& dock = docks_[number_of_dock];
     const Tube& tube = skeleton_.tubes[dock.tube];
@@ -100,7 +100,7 @@ class PieceMaker {
 
   void add_face(Vertex a, Vertex b, Vertex c) {
     if (surface_.mesh.add_face(a, b, c) == SurfaceMesh::null_face())
-      throw std::logic_error("the pieces of a junction do not fit together");
+      throw std::logic_error("the surfaces of a junction and its tubes are inconsistent");
   }
 
   void band(const std::vector<Vertex>& bottom, const std::vector<Vertex>& top) {
@@ -114,32 +114,32 @@ class PieceMaker {
     return result;
   }
 
-  void finish(double fineness, JunctionPiece& piece) {
+  void finish(double fineness, DockedJunction& docked) {
     if (options_.sweeps == 0) {
-      piece.tangles = find_tangles(SweepState(surface_)).size();
+      docked.tangles = find_tangles(SweepState(surface_)).size();
       return;
     }
     const double radii = growth_.length_in_radii() + static_cast<double>(docks_.size() * (kRingsGivenAway + 1));
     const GrownMesh grown{double(options_.around), expected_vertices(radii, options_.around / fineness),
                           GrownMesh::Stage::piece};
     const OptimizeReport report = optimize(surface_, options_, grown, progress_);
-    piece.tangles = report.tangles;
-    piece.crossings = report.tangles > 0 ? find_crossing_walls(SweepState(surface_)).size() : 0;
-    piece.unproven = report.unproven.size();
+    docked.tangles = report.tangles;
+    docked.crossings = report.tangles > 0 ? find_crossing_walls(SweepState(surface_)).size() : 0;
+    docked.unproven = report.unproven.size();
   }
 
-  void export_to(JunctionPiece& piece) const {
+  void export_to(DockedJunction& docked) const {
     const SurfaceMesh& mesh = surface_.mesh;
     std::vector<Index> number(mesh.num_vertices() + mesh.number_of_removed_vertices(), kNone);
     for (const Vertex v : mesh.vertices()) {
       if (surface_.role[v] == BoundSurface::Role::lid) continue;
-      number[v.idx()] = static_cast<Index>(piece.vertices.size());
-      piece.vertices.push_back({surface_.position(v), surface_.cone[v], surface_.fineness[v], surface_.lift[v], kNone,
-                                0, surface_.elongation_share[v]});
+      number[v.idx()] = static_cast<Index>(docked.vertices.size());
+      docked.vertices.push_back({surface_.position(v), surface_.cone[v], surface_.fineness[v], surface_.lift[v], kNone,
+                                 0, surface_.elongation_share[v]});
     }
     for (const auto& [dock, vertices] : kept_) {
       for (Index j = 0; j < vertices.size(); ++j) {
-        PieceVertex& v = piece.vertices[number[vertices[j].idx()]];
+        DockedVertex& v = docked.vertices[number[vertices[j].idx()]];
         v.dock = dock;
         v.number = j;
       }
@@ -147,7 +147,7 @@ class PieceMaker {
     for (const Face f : mesh.faces()) {
       if (surface_.is_lid(f)) continue;
       const Halfedge h = mesh.halfedge(f);
-      piece.faces.push_back(
+      docked.faces.push_back(
           {number[mesh.source(h).idx()], number[mesh.target(h).idx()], number[mesh.target(mesh.next(h)).idx()]});
     }
   }
@@ -179,20 +179,20 @@ Index kept_ring(const Tube& tube, bool at_end) {
   return static_cast<Index>(at_end ? tube.rings.size() - 1 - given : given);
 }
 
-JunctionPiece make_junction_piece(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
-                                  const GenerateOptions& options, bool guarded, const Progress& progress) {
+DockedJunction make_docked_junction(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
+                                    const GenerateOptions& options, bool guarded, const Progress& progress) {
   const VesselField& field = tubes.field();
   const std::vector<TubeEnd> docks = docks_of(junction);
-  const auto flaws = [](const JunctionPiece& p) { return std::tuple(p.crossings, p.tangles, p.unproven); };
-  std::optional<JunctionPiece> best;
+  const auto flaws = [](const DockedJunction& p) { return std::tuple(p.crossings, p.tangles, p.unproven); };
+  std::optional<DockedJunction> best;
   const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options);
-  // With the guard, what is refined for the limit on the error is refined on the whole piece.
-  GenerateOptions piece_options = options;
-  if (guarded) piece_options.max_error = {};
+  // When guarded, refinement for the error limit is left to the whole piece.
+  GenerateOptions own_options = options;
+  if (guarded) own_options.max_error = {};
   const bool hub = guarded && docks.size() >= kHub;
   for (const Variant& variant : variants_of(guarded, hub)) {
-    JunctionPiece piece = PieceMaker(tubes, skeleton, growth, docks, piece_options, progress).make(variant);
-    if (!best || flaws(piece) < flaws(*best)) best = std::move(piece);
+    DockedJunction docked = JunctionDocker(tubes, skeleton, growth, docks, own_options, progress).make(variant);
+    if (!best || flaws(docked) < flaws(*best)) best = std::move(docked);
     if (best->tangles == 0 && best->unproven == 0) break;
     if (hub && best->crossings == 0) break;
   }

@@ -42,8 +42,8 @@ Index add_crowded_junction(CenterlineBuilder& builder) {
   return builder.add_after(builder.add_after(junction, {9, 9, 1}, 6), {14, 14, 4}, kSphere);
 }
 
-// A straight thread out of the sphere around `from`, in direction `way`.
-void add_thread(CenterlineBuilder& builder, Index from, const Vec3& way, double radius) {
+// A straight twig out of the sphere around `from`, in direction `way`.
+void add_twig(CenterlineBuilder& builder, Index from, const Vec3& way, double radius) {
   const Vec3 center = builder.position(from), unit = way.normalized();
   const Index inside = builder.add_after(from, center + 0.35 * kSphere * unit, radius);
   const Index outside = builder.add_after(inside, center + (kSphere + 15 * radius) * unit, radius);
@@ -66,19 +66,19 @@ void expect_good_surface(const Centerline& centerline, int around = 6) {
   EXPECT_EQ(std::count(inside.begin(), inside.end(), false), 0);
 }
 
-class ThreadTo : public ::testing::TestWithParam<std::tuple<Direction, double>> {};
+class TwigTo : public ::testing::TestWithParam<std::tuple<Direction, double>> {};
 
-TEST_P(ThreadTo, LeavesTheSphereOfACrowdedJunction) {
+TEST_P(TwigTo, LeavesTheSphereOfACrowdedJunction) {
   const auto& [direction, ratio] = GetParam();
   CenterlineBuilder builder;
-  add_thread(builder, add_crowded_junction(builder), direction.way, kSphere / ratio);
+  add_twig(builder, add_crowded_junction(builder), direction.way, kSphere / ratio);
   expect_good_surface(builder.build());
 }
 
 constexpr double kRatios[] = {30, 100};
 
 INSTANTIATE_TEST_SUITE_P(
-    ThinThreads, ThreadTo,
+    ThinTwigs, TwigTo,
     ::testing::Combine(::testing::Values(Direction{"Outwards", {5, 5, 3}}, Direction{"AcrossTheTrunk", {0, 1, 0}},
                                          Direction{"Upwards", {0, 0, 1}}, Direction{"Oblique", {-1, 2, -0.4}},
                                          Direction{"PastTheTrunk", {1, 0.4, -1}}),
@@ -87,17 +87,17 @@ INSTANTIATE_TEST_SUITE_P(
       return std::get<Direction>(test.param).name + std::to_string(static_cast<int>(std::get<double>(test.param)));
     });
 
-TEST(ThinThreads, LeaveOneSphereSideBySide) {
+TEST(ThinTwigs, LeaveOneSphereSideBySide) {
   CenterlineBuilder builder;
   const Index sphere = add_crowded_junction(builder);
-  add_thread(builder, sphere, {5, 5, 3}, kSphere / 40);
-  add_thread(builder, sphere, {5, 2, 4}, kSphere / 90);
-  add_thread(builder, sphere, {1, 5, 5}, kSphere / 60);
+  add_twig(builder, sphere, {5, 5, 3}, kSphere / 40);
+  add_twig(builder, sphere, {5, 2, 4}, kSphere / 90);
+  add_twig(builder, sphere, {1, 5, 5}, kSphere / 60);
   expect_good_surface(builder.build());
 }
 
-// Its radius falls to the thread's while it still is below the wall, as in the vessel this was found at.
-TEST(ThinThreads, TaperBelowTheWallAndBendBeyondIt) {
+// Its radius falls to the twig's while it still is below the wall, as in the vessel this was found at.
+TEST(ThinTwigs, TaperBelowTheWallAndBendBeyondIt) {
   CenterlineBuilder builder;
   const Index sphere = add_crowded_junction(builder);
   const Vec3 center = builder.position(sphere), way = Vec3(5, 5, 3).normalized(), aside = way.unitOrthogonal();
@@ -112,18 +112,18 @@ TEST(ThinThreads, TaperBelowTheWallAndBendBeyondIt) {
   expect_good_surface(builder.build());
 }
 
-TEST(ThinThreads, LeaveAtOtherResolutions) {
+TEST(ThinTwigs, LeaveAtOtherResolutions) {
   for (const int around : {4, 9, 12}) {
     SCOPED_TRACE(around);
     CenterlineBuilder builder;
-    add_thread(builder, add_crowded_junction(builder), {5, 5, 3}, kSphere / 60);
+    add_twig(builder, add_crowded_junction(builder), {5, 5, 3}, kSphere / 60);
     expect_good_surface(builder.build(), around);
   }
 }
 
-TEST(ThinThreads, LeaveInTheSameBytesOnAnyNumberOfThreads) {
+TEST(ThinTwigs, LeaveInTheSameBytesOnAnyNumberOfThreads) {
   CenterlineBuilder builder;
-  add_thread(builder, add_crowded_junction(builder), {5, 5, 3}, kSphere / 60);
+  add_twig(builder, add_crowded_junction(builder), {5, 5, 3}, kSphere / 60);
   const Centerline centerline = builder.build();
   GenerateOptions one, four;
   one.threads = 1;

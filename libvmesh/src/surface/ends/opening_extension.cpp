@@ -1,4 +1,4 @@
-#include "surface/ends/opening_tube.h"
+#include "surface/ends/opening_extension.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 namespace vmesh {
 namespace {
 
-/// The ring turned by half a step: points in the middle between its own, on the cubic through four of them, and of the
-/// same area.
+/// The ring turned by half a step: points midway between its own, on the cubic through four of them, scaled to enclose
+/// the same area.
 std::vector<Vec3> between(const std::vector<Vec3>& ring) {
   const std::size_t count = ring.size();
   std::vector<Vec3> result;
