@@ -253,8 +253,14 @@ class Coarsener {
       return changed ? *changed : corner_[v.idx()];
     };
     const auto face = [&](const FaceCorners& f) { return ErrorProof::Face{corner(f[0]), corner(f[1]), corner(f[2])}; };
+    // Shells get no lower than they are.
+    Shares least{1, 1};
+    for (const Face f : step.gone) {
+      least.inner = std::min(least.inner, shares_[f.idx()].inner);
+      least.outer = std::min(least.outer, shares_[f.idx()].outer);
+    }
     for (const FaceCorners& f : step.faces) {
-      outlook.made.emplace_back(f, proof_.shares(face(f)));
+      outlook.made.emplace_back(f, proof_.shares(face(f), least));
       if (!is_proven(outlook.made.back().second)) return std::nullopt;
     }
     for (const auto& [v, changed] : outlook.corners) {
@@ -262,7 +268,7 @@ class Coarsener {
       for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
         if (is_gone(step, f) || find(outlook.kept, f)) continue;
         if (fixed_[f.idx()]) return std::nullopt;
-        outlook.kept.emplace_back(f, proof_.shares(face(state_.corners(f))));
+        outlook.kept.emplace_back(f, proof_.shares(face(state_.corners(f)), shares_[f.idx()]));
         if (!is_proven(outlook.kept.back().second)) return std::nullopt;
       }
     }
