@@ -21,7 +21,9 @@ constexpr double kShareForSamples = 0.9;  // of the limit: beyond, proofs fail t
 constexpr double kWorstShape = 0.75;      // skewness of a face in its metric, unless one that it replaces was worse
 constexpr double kOutdated = 1.05;        // a step whose cost has grown by so much waits for its turn
 constexpr int kHeights = 40;              // of a new vertex, that are tried: within a twentieth of the best
-constexpr int kRounds = 4;
+constexpr double kBetter = 0.95;          // deviation after a step that leaves no vertex out against that before
+constexpr double kMoves[] = {0, 0.5};     // of a vertex on its way to the middle of its neighbours
+constexpr int kRounds = 6;
 constexpr double kFewSteps = 0.01;   // of the vertices: not worth another round
 constexpr double kTolerance = 1e-3;  // radii, of projections
 
@@ -29,10 +31,9 @@ using Corner = ErrorProof::Corner;
 using Shares = ErrorProof::Shares;
 using FaceCorners = std::array<Vertex, 3>;
 
-// A replacement of faces by others, around a vertex that is moved.
+// A replacement of faces by others around a vertex.
 struct Step {
-  Vertex at;                       // that is moved
-  Vertex removed;                  // merged with it, if any
+  Vertex at;
   BoundaryPoint target;            // where it goes
   std::vector<Face> gone;          // faces that are replaced
   std::vector<FaceCorners> faces;  // by which
@@ -65,6 +66,7 @@ class Coarsener {
     const double enough = kFewSteps * static_cast<double>(mesh_.number_of_vertices());
     for (int round = 0; round < kRounds; ++round) {
       if (static_cast<double>(collapse_all()) < enough) break;
+      relax();
     }
   }
 
@@ -72,6 +74,7 @@ class Coarsener {
   // Corners, shares and whether faces are proven, as unproven_faces() sees them.
   void measure() {
     corner_.resize(mesh_.num_vertices());
+    changed_.assign(mesh_.num_vertices(), 1);
     for (const Vertex v : mesh_.vertices()) corner_[v.idx()] = corner_of(v);
     shares_.resize(mesh_.num_faces());
     fixed_.assign(mesh_.num_faces(), 0);
@@ -99,7 +102,11 @@ class Coarsener {
 
   // One pass over all edges. Returns how many were collapsed.
   std::size_t collapse_all() {
-    std::vector<Edge> edges(mesh_.edges().begin(), mesh_.edges().end());
+    std::vector<Edge> edges;
+    for (const Edge e : mesh_.edges()) {
+      if (is_near_change(mesh_.vertex(e, 0)) || is_near_change(mesh_.vertex(e, 1))) edges.push_back(e);
+    }
+    changed_.assign(changed_.size(), 0);
     std::vector<double> cost(edges.size());
     tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t i) {
       const std::optional<Step> step = collapse_of(edges[i]);
@@ -135,12 +142,77 @@ class Coarsener {
     return count;
   }
 
+  // Takes steps that leave fewer deviations and as many vertices, so that more can go.
+  void relax() {
+    for (const Edge e : mesh_.edges()) {
+      const std::optional<Step> step = flip_of(e);
+      if (!step || !surface_.may_flip(mesh_.halfedge(e))) continue;
+      const std::optional<Outlook> outlook = outlook_of(*step);
+      if (!outlook) continue;
+      CGAL::Euler::flip_edge(mesh_.halfedge(e), mesh_);
+      surface_.touch_faces(step->at);
+      note(*step, *outlook, step->at);
+    }
+    for (const Vertex v : mesh_.vertices()) {
+      const std::optional<Step> step = move_of(v);
+      if (!step || !surface_.may_place(v, step->target.position)) continue;
+      const std::optional<Outlook> outlook = outlook_of(*step);
+      if (!outlook) continue;
+      surface_.place(v, step->target.position, step->target.sample);
+      note(*step, *outlook, v);
+    }
+  }
+
+  // The step that flips the edge, if that is allowed and brings its faces closer to the boundary.
+  std::optional<Step> flip_of(Edge e) const {
+    const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
+    if (fixed_[mesh_.face(h).idx()] || fixed_[mesh_.face(o).idx()]) return std::nullopt;
+    const Vertex a = mesh_.source(h), b = mesh_.target(h);
+    const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
+    if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge())
+      return std::nullopt;
+    const Step now{a, {state_.point(a), surface_.sample(a)}, {}, {{a, b, c}, {b, a, d}}};
+    Step step{c, {state_.point(c), surface_.sample(c)}, {mesh_.face(h), mesh_.face(o)}, {{c, d, b}, {d, c, a}}};
+    if (deviation(step) > kBetter * deviation(now) || !is_well_shaped(step)) return std::nullopt;
+    return step;
+  }
+
+  // The step that moves the vertex between its neighbours, if that is allowed and brings its faces closer.
+  std::optional<Step> move_of(Vertex v) const {
+    Step step{v, {state_.point(v), surface_.sample(v)}, {}, {}};
+    Vec3 middle = Vec3::Zero();
+    double count = 0;
+    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
+      if (fixed_[f.idx()]) return std::nullopt;
+      step.gone.push_back(f);
+      step.faces.push_back(state_.corners(f));
+    }
+    for (const Vertex w : mesh_.vertices_around_target(mesh_.halfedge(v))) {
+      middle += state_.point(w);
+      ++count;
+    }
+    const double before = deviation(step);
+    Step best = step;
+    best.cost = kBetter * before;
+    for (const double share : kMoves) {
+      const Vec3 p = state_.point(v) + share * (middle / count - state_.point(v));
+      if (place(step, p, surface_.cone[v]) && step.cost < best.cost) best = step;
+    }
+    if (best.cost >= kBetter * before) return std::nullopt;
+    return best;
+  }
+
+  // Whether a face at the vertex or at one of its neighbours has changed in the last pass.
+  bool is_near_change(Vertex v) const {
+    const auto around = mesh_.vertices_around_target(mesh_.halfedge(v));
+    return changed_[v.idx()] || std::any_of(around.begin(), around.end(), [&](Vertex w) { return changed_[w.idx()]; });
+  }
+
   // The step that collapses the edge, unless it is not allowed or leaves too much.
   std::optional<Step> collapse_of(Edge e) const {
     const Vertex a = mesh_.vertex(e, 0), b = mesh_.vertex(e, 1);
     Step step;
     step.at = a;
-    step.removed = b;
     for (const Vertex v : {a, b}) {
       for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
         if (fixed_[f.idx()]) return std::nullopt;
@@ -165,8 +237,7 @@ class Coarsener {
   // Finds where the step's vertex deviates least, near `p`. Returns whether that is allowed.
   bool place(Step& step, const Vec3& p, Index hint) const {
     step.target = project_to_boundary(field_, p, hint, kTolerance, 0);
-    const double radius = field_.radius_at(step.target.sample.cone, step.target.sample.t);
-    const double most = most_deviation(radius);
+    const double most = most_deviation(field_.radius_at(step.target.sample.cone, step.target.sample.t));
     const Vec3 way = step.target.sample.gradient.normalized();
     std::vector<std::pair<double, double>> deviations;  // on the boundary, and by how much they grow with the height
     visit_samples(step, [&](double share, double distance, double) { deviations.emplace_back(distance, share); });
@@ -186,11 +257,17 @@ class Coarsener {
     if (least > kShareForSamples * most) return false;
     step.target.position += best * way;
     step.target.sample = field_.sample_fast(step.target.position, step.target.sample.cone);
-    step.cost = std::abs(step.target.sample.distance) / most;
-    visit_samples(step, [&](double, double distance, double limit) {
-      step.cost = std::max(step.cost, std::abs(distance) / limit);
-    });
+    step.cost = deviation(step);
     return step.cost <= kShareForSamples && is_well_shaped(step);
+  }
+
+  // The largest of the step's vertex and of its faces, in limits.
+  double deviation(const Step& step) const {
+    const FieldSample& s = step.target.sample;
+    double result = std::abs(s.distance) / most_deviation(field_.radius_at(s.cone, s.t));
+    visit_samples(
+        step, [&](double, double distance, double limit) { result = std::max(result, std::abs(distance) / limit); });
+    return result;
   }
 
   double most_deviation(double radius) const { return std::min(limit_.at(radius), kMostDeviation * radius); }
@@ -216,7 +293,7 @@ class Coarsener {
     const Landing landing(step.target);
     const Elongation at_target = longest_({step.target.sample.cone, step.target.sample.t});
     double worst = kWorstShape;
-    bool known = false;  // how bad the faces are that go
+    bool known = false;  // how bad the faces are that are replaced
     for (const FaceCorners& f : step.faces) {
       const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), step.at) - f.begin());
       const Vertex b = f[(at + 1) % 3], c = f[(at + 2) % 3];
@@ -264,7 +341,6 @@ class Coarsener {
       if (!is_proven(outlook.made.back().second)) return std::nullopt;
     }
     for (const auto& [v, changed] : outlook.corners) {
-      if (v == step.at) continue;
       for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
         if (is_gone(step, f) || find(outlook.kept, f)) continue;
         if (fixed_[f.idx()]) return std::nullopt;
@@ -296,16 +372,13 @@ class Coarsener {
       if (!has(f, v)) continue;
       normal += (position(f[1]) - position(f[0])).cross(position(f[2]) - position(f[0]));
     }
-    if (v == step.at) {
-      const FieldSample& s = step.target.sample;
-      return {step.target.position, normal.normalized(), limit_.at(field_.radius_at(s.cone, s.t)), s.cone};
-    }
     for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
       if (!is_gone(step, f)) normal += surface_.face_area_normal(f);
     }
-    Corner corner = corner_[v.idx()];
-    corner.normal = normal.normalized();
-    return corner;
+    normal.normalize();
+    if (v != step.at) return {state_.point(v), normal, corner_[v.idx()].limit, corner_[v.idx()].cone};
+    const FieldSample& s = step.target.sample;
+    return {step.target.position, normal, limit_.at(field_.radius_at(s.cone, s.t)), s.cone};
   }
 
   // Where faces need shells of different heights at a corner, the lowest counts (ErrorProof::unproven). Whether all
@@ -335,7 +408,6 @@ class Coarsener {
     };
     bool at_fixed = false;
     const auto look_around = [&](Vertex v) {
-      if (v == step.at) return;
       for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) at_fixed = !look(f) || at_fixed;
     };
     for (const Vertex v : vertices) look_around(v);
@@ -377,18 +449,27 @@ class Coarsener {
   Vertex collapse(Edge e, const Step& step, const Outlook& outlook) {
     const Vertex v = CGAL::Euler::collapse_edge(e, mesh_);
     surface_.place(v, step.target.position, step.target.sample);
-    elongation_[v.idx()] = longest_({step.target.sample.cone, step.target.sample.t});
-    for (const auto& [x, corner] : outlook.corners) corner_[(x == step.at ? v : x).idx()] = corner;
+    note(step, outlook, v);
+    return v;
+  }
+
+  // After a step. `at`: its vertex, as it is called now.
+  void note(const Step& step, const Outlook& outlook, Vertex at) {
+    elongation_[at.idx()] = longest_({surface_.cone[at], surface_.t[at]});
+    for (const auto& [x, corner] : outlook.corners) {
+      const Vertex now = x == step.at ? at : x;
+      corner_[now.idx()] = corner;
+      changed_[now.idx()] = 1;
+    }
     for (const auto& [f, shares] : outlook.kept) shares_[f.idx()] = shares;
-    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
+    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(at))) {
+      const FaceCorners corners = state_.corners(f);
       for (const auto& [made, shares] : outlook.made) {
-        const FaceCorners corners = state_.corners(f);
         const bool same =
-            std::all_of(made.begin(), made.end(), [&](Vertex x) { return has(corners, x == step.at ? v : x); });
+            std::all_of(made.begin(), made.end(), [&](Vertex x) { return has(corners, x == step.at ? at : x); });
         if (same) shares_[f.idx()] = shares;
       }
     }
-    return v;
   }
 
   using Entry = std::pair<double, Index>;
@@ -402,6 +483,7 @@ class Coarsener {
   const std::function<Elongation(const CenterlineBinding&)>& longest_;
   std::vector<Elongation> elongation_;  // by vertex
   std::vector<Corner> corner_;
+  std::vector<char> changed_;   // in this pass, vertices whose faces have changed
   std::vector<Shares> shares_;  // by face
   std::vector<char> fixed_;
 };
