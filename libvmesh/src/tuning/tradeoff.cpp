@@ -91,6 +91,15 @@ class Sweep {
             o.blend = 0;
           });
       }
+      // Like marching cubes, whose voxels have one size for thick and thin vessels.
+      const double most = kElongations[std::size(kElongations) - 1], radius = mean_radius(centerline_);
+      for (const double limit : kLimits)
+        vary("max-error in mm, elongation " + text_of(most), text_of(limit * radius) + " mm", [&](GenerateOptions& o) {
+          o.around = std::min(given.around, kLimitAround);
+          o.max_error.mm = limit * radius;
+          o.elongation = most;
+          o.blend = 0;
+        });
     }
     if (options_.blend) {
       for (const double blend : kBlends) vary("blend", text_of(blend), [&](auto& o) { o.blend = blend; });
@@ -115,7 +124,7 @@ class Sweep {
   // Makes a surface and adds its point; a refused case has no point.
   template <class Make>
   std::optional<TriMesh> add(const std::string& curve, const std::string& setting, Make&& make) {
-    report_progress(progress_, "sweep", std::min(1.0, static_cast<double>(points_.size()) / 50));
+    report_progress(progress_, "sweep", std::min(1.0, static_cast<double>(points_.size()) / 80));
     TradeoffPoint point;
     point.curve = curve;
     point.setting = setting;

@@ -23,8 +23,8 @@ constexpr double kOutdated = 1.05;        // a step whose cost has grown by so m
 constexpr int kHeights = 40;              // of a new vertex, that are tried: within a twentieth of the best
 constexpr double kBetter = 0.95;          // deviation after a step that leaves no vertex out against that before
 constexpr double kMoves[] = {0, 0.5};     // of a vertex on its way to the middle of its neighbours
-constexpr int kRounds = 6;
-constexpr double kFewSteps = 0.01;   // of the vertices: not worth another round
+constexpr int kRounds = 5;
+constexpr double kFewSteps = 0.02;   // of the vertices: not worth another round
 constexpr double kTolerance = 1e-3;  // radii, of projections
 
 using Corner = ErrorProof::Corner;
@@ -81,6 +81,7 @@ class Coarsener {
     std::vector<Face> faces;
     std::vector<Triangle> triangles;
     for (const Face f : mesh_.faces()) {
+      if (surface_.is_lid(f)) continue;
       const auto [a, b, c] = state_.corners(f);
       faces.push_back(f);
       triangles.push_back({a.idx(), b.idx(), c.idx()});
@@ -381,69 +382,65 @@ class Coarsener {
     return {step.target.position, normal, limit_.at(field_.radius_at(s.cone, s.t)), s.cone};
   }
 
+  // Faces as they will be after a step, with the shares of their shells.
+  struct Surroundings {
+    std::vector<std::pair<FaceCorners, Shares>> faces;
+    std::vector<Face> known;  // those of them that are there already
+    bool at_fixed = false;
+
+    bool are_even() const {
+      return std::all_of(faces.begin(), faces.end(),
+                         [](const auto& f) { return f.second.inner == 1 && f.second.outer == 1; });
+    }
+    std::vector<Vertex> vertices() const {
+      std::vector<Vertex> all;
+      for (const auto& [f, shares] : faces) all.insert(all.end(), f.begin(), f.end());
+      std::sort(all.begin(), all.end());
+      all.erase(std::unique(all.begin(), all.end()), all.end());
+      return all;
+    }
+  };
+
+  void add_around(Vertex v, const Step& step, const Outlook& outlook, Surroundings& to) const {
+    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
+      if (is_gone(step, f) || std::find(to.known.begin(), to.known.end(), f) != to.known.end()) continue;
+      const Shares* changed = find(outlook.kept, f);
+      to.known.push_back(f);
+      to.faces.emplace_back(state_.corners(f), changed ? *changed : shares_[f.idx()]);
+      to.at_fixed = to.at_fixed || fixed_[f.idx()];
+    }
+  }
+
   // Where faces need shells of different heights at a corner, the lowest counts (ErrorProof::unproven). Whether all
-  // faces whose heights the step changes hold with them.
+  // faces whose heights the step may change hold with them.
   template <class CornerAfter>
   bool heights_hold(const Step& step, const Outlook& outlook, const CornerAfter& corner) const {
-    // The shares of all faces at vertices whose faces have changed.
-    std::vector<Vertex> vertices;
-    const auto add = [&](const FaceCorners& f) {
-      for (const Vertex v : f) {
-        if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) vertices.push_back(v);
-      }
-    };
-    for (const auto& [f, shares] : outlook.made) add(f);
-    for (const auto& [f, shares] : outlook.kept) add(state_.corners(f));
-    std::vector<std::pair<FaceCorners, Shares>> faces = outlook.made;
-    std::vector<Face> known;
-    bool even = true;
-    const auto look = [&](Face f) {
-      if (is_gone(step, f) || std::find(known.begin(), known.end(), f) != known.end()) return true;
-      known.push_back(f);
-      const Shares* changed = find(outlook.kept, f);
-      const Shares& shares = changed ? *changed : shares_[f.idx()];
-      faces.emplace_back(state_.corners(f), shares);
-      even = even && shares.inner == 1 && shares.outer == 1;
-      return !fixed_[f.idx()];
-    };
-    bool at_fixed = false;
-    const auto look_around = [&](Vertex v) {
-      for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) at_fixed = !look(f) || at_fixed;
-    };
-    for (const Vertex v : vertices) look_around(v);
-    for (const auto& [f, shares] : outlook.made) even = even && shares.inner == 1 && shares.outer == 1;
-    if (even) return true;
-    // Heights at corners of faces that are not proven must not change.
-    if (at_fixed) return false;
-    // The next ring, too: its faces lower the heights of those here.
-    const std::size_t inner = faces.size();
-    std::vector<Vertex> outer;
-    for (std::size_t i = 0; i < inner; ++i) {
-      for (const Vertex v : faces[i].first) {
-        if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) outer.push_back(v);
-      }
-    }
-    std::sort(outer.begin(), outer.end());
-    outer.erase(std::unique(outer.begin(), outer.end()), outer.end());
-    for (const Vertex v : outer) look_around(v);
-    for (const ErrorProof::Side side : {ErrorProof::Side::inner, ErrorProof::Side::outer}) {
+    Surroundings changed{outlook.made, {}};
+    for (const auto& [f, shares] : outlook.kept) changed.faces.emplace_back(state_.corners(f), shares);
+    Surroundings near{outlook.made, {}};
+    for (const Vertex v : changed.vertices()) add_around(v, step, outlook, near);
+    if (near.are_even()) return true;
+    if (near.at_fixed) return false;  // heights of faces that are not proven must not change
+    Surroundings wider = near;
+    for (const Vertex v : near.vertices()) add_around(v, step, outlook, wider);
+    const auto holds = [&](const std::pair<FaceCorners, Shares>& face, ErrorProof::Side side) {
       const auto share = [&](const Shares& s) { return side == ErrorProof::Side::inner ? s.inner : s.outer; };
-      const auto height = [&](Vertex v) {
-        double lowest = corner(v).limit;
-        for (const auto& [f, shares] : faces) {
-          if (has(f, v) && share(shares) > 0) lowest = std::min(lowest, share(shares) * corner(v).limit);
+      ErrorProof::Face corners;
+      std::array<double, 3> own, heights;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vertex v = face.first[k];
+        corners[k] = corner(v);
+        own[k] = share(face.second) * corners[k].limit;
+        heights[k] = corners[k].limit;
+        for (const auto& [f, shares] : wider.faces) {
+          if (share(shares) > 0 && has(f, v)) heights[k] = std::min(heights[k], share(shares) * corners[k].limit);
         }
-        return lowest;
-      };
-      for (std::size_t i = 0; i < inner; ++i) {
-        const auto& [f, shares] = faces[i];
-        const std::array<double, 3> heights = {height(f[0]), height(f[1]), height(f[2])};
-        const double s = share(shares);
-        const std::array<double, 3> own = {s * corner(f[0]).limit, s * corner(f[1]).limit, s * corner(f[2]).limit};
-        if (heights != own && !proof_.holds({corner(f[0]), corner(f[1]), corner(f[2])}, heights, side)) return false;
       }
-    }
-    return true;
+      return heights == own || proof_.holds(corners, heights, side);
+    };
+    return std::all_of(near.faces.begin(), near.faces.end(), [&](const auto& face) {
+      return holds(face, ErrorProof::Side::inner) && holds(face, ErrorProof::Side::outer);
+    });
   }
 
   Vertex collapse(Edge e, const Step& step, const Outlook& outlook) {
