@@ -1,8 +1,9 @@
 // Counts sound and unsound surfaces, over files and over random trees. A table in Markdown of those that are not
 // (--all: of all) and one closing line. Usage:
-//   bench_soundness [--all] [--keep] [--around N] [--blend B] [--rotate] [FILE...]
-//                   [--noisy FIRST COUNT] [--plausible FIRST COUNT] [--looped FIRST COUNT]
-// --rotate grows each random tree with the next of a list of options; --keep does not separate vessels that touch.
+//   bench_soundness [--all] [--keep] [--around N] [--blend B] [--elongation E] [--max-error LIMIT] [--rotate]
+//                   [FILE...] [--noisy FIRST COUNT] [--plausible FIRST COUNT] [--looped FIRST COUNT]
+// --rotate grows each random tree with the next of a list of options, whatever --around and --blend; --keep does not
+// separate vessels that touch; LIMIT as in `vmesh generate`.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -16,6 +17,7 @@
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/surface/metric_skewness.h"
 #include "vmesh/volume/contacts.h"
 
 #include "random_vessels.h"
@@ -71,7 +73,7 @@ void examine(const std::string& name, const Centerline& given, const GenerateOpt
   tally.seconds += spent;
   const Topology topology = measure_topology(with_lids(result));
   const auto crossings = self_intersections(result.mesh);
-  const SkewnessSummary skewness = summarize_skewness(result.mesh);
+  const SkewnessSummary skewness = summarize_skewness(metric_skewness(result.mesh, result.elongation));
   const std::size_t outside = nodes_outside(result);
   const bool topology_right = topology.closed && topology.manifold && topology.oriented && topology.outward &&
                               topology.components == result.growth.components &&
@@ -103,6 +105,8 @@ int main(int argc, char** argv) {
     for (std::uint32_t seed = first; seed < first + count; ++seed) {
       GenerateOptions options = settings.rotate ? testing::rotated_options(seed) : settings.options;
       options.threads = settings.options.threads;
+      options.elongation = settings.options.elongation;
+      if (settings.options.max_error.is_set()) options.max_error = settings.options.max_error;
       examine(std::string(name) + "_" + std::to_string(seed), make(seed), options, settings, tally);
     }
   };
@@ -119,6 +123,10 @@ int main(int argc, char** argv) {
       settings.options.around = std::atoi(argv[++i]);
     } else if (word == "--blend" && i + 1 < argc) {
       settings.options.blend = std::atof(argv[++i]);
+    } else if (word == "--elongation" && i + 1 < argc) {
+      settings.options.elongation = std::atof(argv[++i]);
+    } else if (word == "--max-error" && i + 1 < argc) {
+      settings.options.max_error = parse_error_limit(argv[++i]);
     } else if (word == "--noisy" && i + 2 < argc) {
       random("noisy", number(1), number(2), [](std::uint32_t seed) { return testing::noisy_tree(seed); });
       i += 2;

@@ -104,6 +104,9 @@ TEST(Parts, GrowTheSameSurfaceUnderOtherOptions) {
   options.blend = 2;
   options.placement = Placement::inscribed;
   EXPECT_GE(expect_same_in_parts(tree, 250, options), 2u);
+  options = all_nodes();
+  options.elongation = 4;
+  EXPECT_GE(expect_same_in_parts(tree, 250, options), 2u);
 }
 
 TEST(Parts, GrowTheSameSurfaceWithLoopsIsolatedNodesAndComponents) {

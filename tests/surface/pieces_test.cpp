@@ -15,7 +15,7 @@ struct Divided {
       : options(o),
         centerline(std::move(c)),
         field(centerline, options.blend),
-        tubes(field, {options.around, options.placement, options.max_error}),
+        tubes(field, RingOptions::of(options)),
         division(divide(tubes, options)),
         open(centerline.nodes().size(), 0) {}
 

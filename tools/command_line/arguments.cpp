@@ -150,6 +150,8 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
           "0.3mm, 10% (of the local radius), or both, separated by a comma")
       ->type_name("Xmm|X%");
+  verb.add_flag("--deformable", arguments.options.deformable,
+                "for a centerline that is to move: a ring of vertices at every node, whatever the elongation");
   add_budget(verb, arguments.budget,
              "choose the resolution: the finest surface with vertices=N at most, or grown within time=Xms, or the one "
              "with the fewest vertices that keeps error=Xmm or error=X% everywhere")
@@ -171,7 +173,9 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   add_extraction(verb, arguments.extraction);
   add_html(verb, arguments.common);
   add_common(verb, arguments.common);
-  group(verb, "Resolution", {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification"});
+  group(verb, "Resolution",
+        {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification", "--elongation",
+         "--deformable"});
   group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
   group(verb, "Ends", {"--ends", "--open-ends", "--flow-extensions"});
   group(verb, "How it is made", {"--growth", "--beta", "--max-center-distance", "--sweeps", "--threads"});

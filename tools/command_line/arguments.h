@@ -222,6 +222,9 @@ using Arguments =
 /// Whether the file is a part of a surface to be grown, by its name.
 bool is_part(const std::filesystem::path& path);
 
+/// Named only where it is not 1.
+inline constexpr std::string_view kElongationFlag = "--elongation";
+
 /// Calls `visit(flag, member, low, high, help)` for every option of growth: the common list behind the command line and
 /// the summary.
 template <class Options, class Visitor>
@@ -231,6 +234,8 @@ void for_each_generate_option(Options& options, Visitor visit) {
   visit("--around", options.around, 3, 200, "intended number of vertices around a vessel");
   visit("--max-center-distance", options.max_center_distance, 0.01, 10.0,
         "split faces whose centre is farther from the wall than this, in local radii");
+  visit(kElongationFlag.data(), options.elongation, 1.0, double(kMostElongation),
+        "along vessels, triangles as long as the error allows, at most so many times their even length; 1: even");
   visit("--simplification", options.simplification, 0.0, 1.0,
         "leave out nodes where that changes the vessels by at most this share of what edges across them cut off; 0: "
         "none");

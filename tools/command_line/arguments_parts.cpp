@@ -26,7 +26,7 @@ void add_split(CLI::App& app, SplitArguments& arguments) {
       ->capture_default_str();
   add_growth(verb, arguments.generate);
   add_common(verb, arguments.common);
-  group(verb, "Resolution", {"--around", "--preset", "--max-vertices", "--simplification"});
+  group(verb, "Resolution", {"--around", "--preset", "--max-vertices", "--simplification", "--elongation"});
   group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
   group(verb, "How it is made", {"--beta", "--max-center-distance", "--sweeps", "--threads"});
   verb.footer(kSplitExamples);

@@ -73,6 +73,9 @@ void log_result(const GenerateReport& report, Console& console) {
     vertices += " (" + number(static_cast<double>(mesh.vertices.size()) / size, 1) + " per radius of length)";
   console.log(vertices + ", " + std::to_string(mesh.faces.size()) + " faces, skewness " +
               number(report.measurement.skewness.mean) + " mean, " + number(report.measurement.skewness.max) + " max");
+  if (!report.result->elongation.empty())
+    console.log("as if even along the vessels, skewness " + number(report.measurement.metric_skewness.mean) +
+                " mean, " + number(report.measurement.metric_skewness.max) + " max");
   console.log("distance to the volume " + number(report.deviation.mean_relative) + " mean, " +
               number(report.deviation.max_relative) + " max, in local radii");
   const ErrorLimit& limit = report.arguments->options.max_error;

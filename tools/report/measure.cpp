@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "vmesh/surface/metric_skewness.h"
+
 #include "command_line/interrupt.h"
 
 namespace vmesh::tool {
@@ -18,7 +20,7 @@ bool has_genus(const Topology& topology) { return topology.closed && topology.ma
 SurfaceMeasurement measure_surface(const TriMesh& mesh) {
   SurfaceMeasurement measurement;
   measurement.topology = measure_topology(mesh);
-  measurement.skewness = summarize_skewness(mesh);
+  measurement.metric_skewness = measurement.skewness = summarize_skewness(mesh);
   stop_if_interrupted();
   measurement.self_intersections = self_intersections(mesh).size();
   return measurement;
@@ -27,7 +29,9 @@ SurfaceMeasurement measure_surface(const TriMesh& mesh) {
 SurfaceMeasurement measurement_of(const GenerateResult& result) {
   SurfaceMeasurement measurement;
   measurement.topology = result.check.topology;
-  measurement.skewness = summarize_skewness(result.mesh);
+  measurement.skewness = measurement.metric_skewness = summarize_skewness(result.mesh);
+  if (!result.elongation.empty())
+    measurement.metric_skewness = summarize_skewness(metric_skewness(result.mesh, result.elongation));
   measurement.self_intersections = result.check.crossing_pairs;
   measurement.openings = result.openings.size();
   if (measurement.openings > 0) measurement.open_elsewhere = result.check.topology.boundary_edges;

@@ -17,6 +17,7 @@ namespace vmesh::tool {
 struct SurfaceMeasurement {
   Topology topology;
   SkewnessSummary skewness;
+  SkewnessSummary metric_skewness;  ///< that of triangles that may be longer than wide, see metric_skewness()
   std::size_t self_intersections = 0;
   std::size_t openings = 0;        ///< intended ones
   std::size_t open_elsewhere = 0;  ///< boundary edges besides those of openings

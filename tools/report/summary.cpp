@@ -46,6 +46,7 @@ Json options_json(const GenerateArguments& arguments) {
   json["growth"] = to_string(arguments.options.growth);
   json["placement"] = to_string(arguments.options.placement);
   json["max_error"] = to_json(arguments.options.max_error);
+  json["deformable"] = arguments.options.deformable;
   json["overlap"] = to_string(arguments.overlap);
   json["gap"] = arguments.gap;
   json["ends"] = to_string(arguments.ends);
@@ -222,6 +223,7 @@ Json to_json(const SurfaceMeasurement& measurement) {
             {"boundary_edges", topology.boundary_edges},
             {"euler_characteristic", topology.euler_characteristic}}},
           {"skewness", {{"mean", measurement.skewness.mean}, {"max", measurement.skewness.max}}},
+          {"metric_skewness", {{"mean", measurement.metric_skewness.mean}, {"max", measurement.metric_skewness.max}}},
           {"self_intersections", measurement.self_intersections}};
 }
 
@@ -373,10 +375,12 @@ void write_json(const std::filesystem::path& path, const Json& json) {
 std::string describe(const GenerateArguments& arguments) {
   std::ostringstream text;
   for_each_generate_option(arguments.options, [&text](const char* flag, const auto& value, auto, auto, const char*) {
-    text << (text.tellp() > 0 ? " " : "") << flag << " " << exact_text(value);
+    if (flag != kElongationFlag) text << (text.tellp() > 0 ? " " : "") << flag << " " << exact_text(value);
   });
   const GenerateOptions& options = arguments.options;
+  if (options.elongation > 1) text << " " << kElongationFlag << " " << exact_text(options.elongation);
   text << " --growth " << to_string(options.growth) << " --placement " << to_string(options.placement);
+  if (options.deformable) text << " --deformable";
   if (options.max_error.is_set()) text << " --max-error " << to_string(options.max_error);
   const bool round = arguments.ends == EndShape::round;
   if (!round) text << " --ends " << to_string(arguments.ends);

@@ -123,10 +123,20 @@ void write(const GenerateReport& report) {
                 arguments.writing, skin ? &*skin : nullptr);
 }
 
+/// Fitting makes triangles even again.
+void check_elongation(const GenerateArguments& arguments) {
+  if (arguments.options.elongation == 1) return;
+  if (!arguments.fitting.reference.path.empty() || is_image(arguments.input.path))
+    throw UsageError(std::string(kElongationFlag) + " cannot be combined with fitting, which makes triangles even");
+  if (arguments.options.growth == GrowthMethod::paper)
+    throw UsageError(std::string(kElongationFlag) + " needs --growth guided");
+}
+
 /// Refuses what can be refused before anything is read.
 void check_arguments(const GenerateArguments& arguments) {
   using Kind = PlannedOutput::Kind;
   check_input(arguments);
+  check_elongation(arguments);
   check_writing(arguments.output, arguments.writing);
   if (arguments.bones && extension_of(arguments.output) != ".glb")
     throw UsageError(arguments.output.string() + ": --bones are for .glb only");

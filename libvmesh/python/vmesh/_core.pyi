@@ -435,6 +435,8 @@ def generate(
     open_ends: Sequence[int],
     flow_extension: float,
     simplification: float,
+    elongation: float,
+    deformable: bool,
     sweeps: int,
     max_vertices: int,
     threads: int,

@@ -54,6 +54,8 @@ def generate(
     open_ends: Sequence[int] = (),
     flow_extension: float = 0.0,
     simplification: float = 0.35,
+    elongation: float = 1.0,
+    deformable: bool = False,
     sweeps: int = 30,
     max_vertices: int = 20_000_000,
     threads: int = 0,
@@ -78,6 +80,9 @@ def generate(
     flow_extension  length of straight extensions at ends that are not round, in radii
     simplification  nodes are left out where that changes the vessels by at most this share of what edges across
                     them cut off anyway, 0 to 1
+    elongation      along vessels, triangles as long as the error allows, at most so many times their even
+                    length, 1 (even) to 16
+    deformable      for a centerline that is to move: a ring of vertices at every node
     sweeps          of the final optimisation
     max_vertices    a centerline that would need more is refused
     threads         0: all; the result does not depend on it
@@ -108,6 +113,8 @@ def generate(
         open_ends=open_ends,
         flow_extension=flow_extension,
         simplification=simplification,
+        elongation=elongation,
+        deformable=deformable,
         sweeps=sweeps,
         max_vertices=max_vertices,
         threads=threads,

@@ -72,13 +72,15 @@ std::vector<double> equiangle_skewness(const TriMesh& mesh) {
   return skewness;
 }
 
-SkewnessSummary summarize_skewness(const TriMesh& mesh) {
+SkewnessSummary summarize_skewness(const TriMesh& mesh) { return summarize_skewness(equiangle_skewness(mesh)); }
+
+SkewnessSummary summarize_skewness(const std::vector<double>& skewness) {
   SkewnessSummary summary;
-  for (const double s : equiangle_skewness(mesh)) {
+  for (const double s : skewness) {
     summary.mean += s;
     summary.max = std::max(summary.max, s);
   }
-  if (!mesh.faces.empty()) summary.mean /= static_cast<double>(mesh.faces.size());
+  if (!skewness.empty()) summary.mean /= static_cast<double>(skewness.size());
   return summary;
 }
 

@@ -45,9 +45,14 @@ std::vector<std::vector<Index>> read_lists(ArrayFile& file, const std::string& n
 }
 
 json to_json(const GenerateOptions& o) {
-  return {{"beta", o.beta},     {"blend", o.blend},
-          {"around", o.around}, {"max_center_distance", o.max_center_distance},
-          {"sweeps", o.sweeps}, {"placement", to_string(o.placement)}};
+  return {{"beta", o.beta},
+          {"blend", o.blend},
+          {"around", o.around},
+          {"max_center_distance", o.max_center_distance},
+          {"sweeps", o.sweeps},
+          {"placement", to_string(o.placement)},
+          {"elongation", o.elongation},
+          {"deformable", o.deformable}};
 }
 
 GenerateOptions options_of(const json& j) {
@@ -58,7 +63,10 @@ GenerateOptions options_of(const json& j) {
   o.max_center_distance = j.at("max_center_distance").get<double>();
   o.sweeps = j.at("sweeps").get<int>();
   o.placement = parse_placement(j.at("placement").get<std::string>());
+  o.elongation = j.at("elongation").get<double>();
+  o.deformable = j.at("deformable").get<bool>();
   o.simplification = 0;
+  if (!(o.elongation >= 1 && o.elongation <= kMostElongation)) throw InvalidInput("its options are out of range");
   if (!(o.around >= 3 && o.around <= 200 && o.sweeps >= 0)) throw InvalidInput("its options are out of range");
   return o;
 }

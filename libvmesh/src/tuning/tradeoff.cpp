@@ -20,6 +20,7 @@ constexpr int kArounds[] = {3, 4, 5, 6, 8, 10, 12, 16, 20};
 constexpr double kBetas[] = {0, 0.15, 0.3, 0.6, 1};
 constexpr double kLimits[] = {0.4, 0.3, 0.2, 0.15, 0.1, 0.07, 0.05};  // of --max-error, local radii
 constexpr int kLimitAround = 5;                                       // so that the limit decides
+constexpr double kElongations[] = {1, 4, 16};                         // with each of these limits
 constexpr double kBlends[] = {0, 0.1, 0.25, 0.5, 1};
 constexpr int kEfforts[] = {0, 10, 20, 30, 60};               // sweeps
 constexpr double kVoxels[] = {1.4, 1, 0.7, 0.5, 0.35, 0.25};  // in mean radii
@@ -80,10 +81,23 @@ class Sweep {
         vary("around, blend 0", std::to_string(around), [&](auto& o) { o.around = around, o.blend = 0; });
     }
     if (options_.max_error) {
+      for (const double elongation : kElongations) {
+        const std::string curve = elongation > 1 ? "max-error, elongation " + text_of(elongation) : "max-error";
+        for (const double limit : kLimits)
+          vary(curve, text_of(100 * limit) + " %", [&](GenerateOptions& o) {
+            o.around = std::min(given.around, kLimitAround);
+            o.max_error.relative = limit;
+            o.elongation = elongation;
+            o.blend = 0;
+          });
+      }
+      // Like marching cubes, whose voxels have one size for thick and thin vessels.
+      const double most = kElongations[std::size(kElongations) - 1], radius = mean_radius(centerline_);
       for (const double limit : kLimits)
-        vary("max-error", text_of(100 * limit) + " %", [&](GenerateOptions& o) {
+        vary("max-error in mm, elongation " + text_of(most), text_of(limit * radius) + " mm", [&](GenerateOptions& o) {
           o.around = std::min(given.around, kLimitAround);
-          o.max_error.relative = limit;
+          o.max_error.mm = limit * radius;
+          o.elongation = most;
           o.blend = 0;
         });
     }
@@ -110,7 +124,7 @@ class Sweep {
   // Makes a surface and adds its point; a refused case has no point.
   template <class Make>
   std::optional<TriMesh> add(const std::string& curve, const std::string& setting, Make&& make) {
-    report_progress(progress_, "sweep", std::min(1.0, static_cast<double>(points_.size()) / 50));
+    report_progress(progress_, "sweep", std::min(1.0, static_cast<double>(points_.size()) / 80));
     TradeoffPoint point;
     point.curve = curve;
     point.setting = setting;

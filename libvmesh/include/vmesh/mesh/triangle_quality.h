@@ -31,5 +31,7 @@ struct SkewnessSummary {
   double max = 0;
 };
 SkewnessSummary summarize_skewness(const TriMesh& mesh);
+/// The same of skewness that is known.
+SkewnessSummary summarize_skewness(const std::vector<double>& skewness);
 
 }  // namespace vmesh

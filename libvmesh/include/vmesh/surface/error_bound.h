@@ -53,7 +53,8 @@ class ErrorProof {
   /// Whether the copy of the face at these heights (mm, by corner) is proven to be on its side of the boundary.
   bool holds(const Face& face, const std::array<double, 3>& heights, Side side) const;
 
-  Shares shares(const Face& face) const;
+  /// The shares of a face; lower ones than `least` are not tried.
+  Shares shares(const Face& face, const Shares& least = {0, 0}) const;
 
   /// Faces of a surface for which no shell is proven, ascending. Where faces need different heights at a common corner,
   /// the lower one is taken. `shares`: one entry per face. Independent of the number of threads.

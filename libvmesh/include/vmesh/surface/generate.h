@@ -58,6 +58,9 @@ struct OpenEnds {
   std::vector<Index> nodes;  ///< these; ignored with `all`
 };
 
+/// Largest GenerateOptions::elongation: beyond it triangles would be nearly degenerate.
+inline constexpr int kMostElongation = 16;
+
 /// How a surface is grown and finished. Lengths are in units of the local vessel radius unless said otherwise.
 struct GenerateOptions {
   /// Weight of the attraction by the vessel boundary against the vertex normal, Eq. 11; in [0, 1].
@@ -71,6 +74,13 @@ struct GenerateOptions {
   Placement placement = Placement::balanced;
   /// The surface is refined wherever it would be farther from the boundary. May raise `around`: see least_around().
   ErrorLimit max_error;
+  /// Along vessels, triangles are as long as the error allows, at most so many times what they are evenly, in
+  /// [1, kMostElongation]; around junctions and ends they stay even. The error: what edges across the vessel cut off,
+  /// or max_error. Guided growth only.
+  double elongation = 1;
+  /// For a centerline that is to move: no node is left out by `simplification`, and triangles are no longer than the
+  /// segments around, so that there is a ring of vertices at every node.
+  bool deformable = false;
   /// Sweeps of the final optimisation; 0 leaves the surface as it was grown.
   int sweeps = 30;
   /// Nodes of the centerline are left out where that changes the vessels by at most this share of the distance that the
@@ -200,8 +210,11 @@ struct GenerateResult {
   TriMesh mesh;
   std::vector<CenterlineBinding> binding;  ///< one per vertex
   std::vector<double> radius;              ///< local vessel radius at every vertex's binding (mm)
-  std::vector<Opening> openings;           ///< ascending in the nodes
-  ErrorSummary error;                      ///< with max_error
+  /// How much longer than wide triangles may be at every vertex, along the vector; empty without
+  /// GenerateOptions::elongation, zero where they are even. Vertices of extensions have none.
+  std::vector<Vec3> elongation;
+  std::vector<Opening> openings;  ///< ascending in the nodes
+  ErrorSummary error;             ///< with max_error
   SimplificationSummary simplification;
   GrowthSummary growth;         ///< of guided growth; empty after paper growth
   std::vector<Defect> defects;  ///< none: the surface is sound

@@ -17,7 +17,7 @@ enum class DefectKind {
   wrong_topology,  ///< components or genus differ from those of the centerline
   inside_out,      ///< a component that encloses a negative volume
   crossing_faces,  ///< faces that intersect other than at common vertices and edges
-  bad_triangle,    ///< a triangle of equiangle skewness above kWorstSkewness
+  bad_triangle,    ///< a triangle of equiangle skewness above kWorstSkewness, see metric_skewness()
   node_outside     ///< a node of the centerline that is not inside
 };
 

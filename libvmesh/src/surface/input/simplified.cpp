@@ -41,6 +41,7 @@ std::vector<char> nodes_less_rounded(const Centerline& centerline, double blend)
 }  // namespace
 
 SimplifiedCenterline simplify_for_growth(const Centerline& centerline, const GenerateOptions& options) {
+  if (options.deformable) return simplify(centerline, [](Index) { return -1.0; });
   const double edge = edge_length_per_radius(std::max(kLeastAround, options.around));
   const double cut_off = edge * edge / 16;  // balanced: half of it is outside
   const auto tolerance = [&](Index node) { return options.simplification * cut_off * centerline.node(node).radius; };

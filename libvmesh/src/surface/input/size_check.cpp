@@ -17,6 +17,9 @@ void check_options(const GenerateOptions& o) {
   if (!(o.around >= 3 && o.around <= 200)) throw InvalidInput("around must be in [3, 200]");
   if (!(o.max_center_distance > 0)) throw InvalidInput("max_center_distance must be > 0");
   if (!(o.simplification >= 0 && o.simplification <= 1)) throw InvalidInput("simplification must be in [0, 1]");
+  if (!(o.elongation >= 1 && o.elongation <= kMostElongation))
+    throw InvalidInput("elongation must be in [1, " + std::to_string(kMostElongation) + "]");
+  if (o.elongation > 1 && o.growth == GrowthMethod::paper) throw InvalidInput("elongation needs guided growth");
   if (o.sweeps < 0) throw InvalidInput("sweeps must be >= 0");
   if (!(o.max_error.mm > 0 && o.max_error.relative > 0)) throw InvalidInput("max_error must be > 0");
   if (o.max_error.is_set() && o.sweeps == 0) throw InvalidInput("max_error needs sweeps to refine in");

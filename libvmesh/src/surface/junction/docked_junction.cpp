@@ -34,9 +34,16 @@ std::span<const Variant> variants_of(bool guarded, bool hub) {
 
 class JunctionDocker {
  public:
-  JunctionDocker(const VesselField& field, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
+  JunctionDocker(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
                  const std::vector<TubeEnd>& docks, const GenerateOptions& options, const Progress& progress)
-      : skeleton_(skeleton), growth_(growth), docks_(docks), options_(options), progress_(progress), surface_(field) {}
+      : skeleton_(skeleton),
+        growth_(growth),
+        docks_(docks),
+        options_(options),
+        progress_(progress),
+        surface_(tubes.field()) {
+    surface_.elongation_field = tubes.elongation_field();
+  }
 
   DockedJunction make(const Variant& variant) {
     const JunctionSurface junction = growth_.make(variant.finer, variant.smooth_rims, variant.guarded);
@@ -127,8 +134,8 @@ class JunctionDocker {
     for (const Vertex v : mesh.vertices()) {
       if (surface_.role[v] == BoundSurface::Role::lid) continue;
       number[v.idx()] = static_cast<Index>(docked.vertices.size());
-      docked.vertices.push_back(
-          {surface_.position(v), surface_.cone[v], surface_.fineness[v], surface_.lift[v], kNone, 0});
+      docked.vertices.push_back({surface_.position(v), surface_.cone[v], surface_.fineness[v], surface_.lift[v], kNone,
+                                 0, surface_.elongation_share[v]});
     }
     for (const auto& [dock, vertices] : kept_) {
       for (Index j = 0; j < vertices.size(); ++j) {
@@ -184,7 +191,7 @@ DockedJunction make_docked_junction(const VesselTubes& tubes, const GrowthSkelet
   if (guarded) own_options.max_error = {};
   const bool hub = guarded && docks.size() >= kHub;
   for (const Variant& variant : variants_of(guarded, hub)) {
-    DockedJunction docked = JunctionDocker(field, skeleton, growth, docks, own_options, progress).make(variant);
+    DockedJunction docked = JunctionDocker(tubes, skeleton, growth, docks, own_options, progress).make(variant);
     if (!best || flaws(docked) < flaws(*best)) best = std::move(docked);
     if (best->tangles == 0 && best->unproven == 0) break;
     if (hub && best->crossings == 0) break;

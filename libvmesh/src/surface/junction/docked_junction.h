@@ -18,6 +18,7 @@ struct DockedVertex {
   double fineness, lift;
   Index dock = kNone;  ///< index into docks_of(junction): the dock of the ring's tube
   Index number = 0;    ///< in the ring
+  double elongation_share = 1;
 };
 
 /// The finished surface of a junction and of the tube ends around it, up to one ring of each tube that is kept

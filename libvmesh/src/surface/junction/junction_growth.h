@@ -13,8 +13,9 @@ inline constexpr double kAsLaid = std::numeric_limits<double>::infinity();
 struct SurfacePoint {
   Vec3 position;
   Index cone;
-  double fineness = 1;  ///< factor on the target edge length
-  double lift = 0;      ///< signed distance to the boundary at which it belongs, mm; or kAsLaid
+  double fineness = 1;          ///< factor on the target edge length
+  double lift = 0;              ///< signed distance to the boundary at which it belongs, mm; or kAsLaid
+  double elongation_share = 1;  ///< see BoundSurface
 };
 
 /// Vertices and faces of a surface, whole or in part.

@@ -61,7 +61,7 @@ void Assembly::add_junction(const Junction& junction, const DockedJunction& dock
   for (const DockedVertex& v : docked.vertices) {
     if (v.dock == kNone) {
       number.push_back(size());
-      vertices_.push_back({v.position, v.cone, v.fineness, v.lift});
+      vertices_.push_back({v.position, v.cone, v.fineness, v.lift, v.elongation_share});
     } else {
       const auto [tube, at_end] = docks[v.dock];
       number.push_back(first_[tube][kept_ring(skeleton_.tubes[tube], at_end)] + v.number);
@@ -79,6 +79,7 @@ std::vector<PieceLoop> Assembly::build(BoundSurface& surface) const {
       vertex[v] = surface.mesh.add_vertex(p.position);
       surface.place(vertex[v], p.position, surface.field.sample_fast(p.position, p.cone));
       surface.fineness[vertex[v]] = p.fineness;
+      surface.elongation_share[vertex[v]] = p.elongation_share;
       surface.lift[vertex[v]] = p.lift == kAsLaid ? surface.distance[vertex[v]] : p.lift;
     }
   }
@@ -86,6 +87,7 @@ std::vector<PieceLoop> Assembly::build(BoundSurface& surface) const {
     if (surface.mesh.add_face(vertex[a], vertex[b], vertex[c]) == SurfaceMesh::null_face())
       throw std::logic_error("pieces of the surface are inconsistent");
   }
+  surface.update_elongation();
   std::vector<PieceLoop> loops;
   for (const Loop& loop : loops_) {
     PieceLoop result{loop.node, loop.seam, {}};

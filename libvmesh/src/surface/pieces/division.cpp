@@ -26,8 +26,9 @@ struct Band {
   std::vector<Vec3> points;
   std::vector<Index> cones;
   std::vector<Triangle> faces;
+  ElongatedMetric metric;
 
-  Band(const Ring& ring, const Ring& next) {
+  Band(const Ring& ring, const Ring& next) : metric(0.5 * (ring.metric() + next.metric())) {
     for (const Ring* r : {&ring, &next}) {
       for (const BoundaryPoint& p : r->points) {
         points.push_back(p.position);
@@ -114,7 +115,7 @@ class SeamSearch {
   bool is_even(const Band& band) const {
     return std::all_of(band.faces.begin(), band.faces.end(), [&](const Triangle& f) {
       const std::array<Vec3, 3> p = {band.points[f[0]], band.points[f[1]], band.points[f[2]]};
-      if (SweepState::energy(p[0], p[1], p[2]) >= kSeamEnergy) return false;
+      if (SweepState::elongated_energy(p[0], p[1], p[2], band.metric) >= kSeamEnergy) return false;
       const FieldSample center = field_.sample((p[0] + p[1] + p[2]) / 3, band.cones[f[0]]);
       const double radius = field_.radius_at(center.cone, center.t);
       const double before_lift = std::abs(center.distance) + (balanced_ring_radius(options_.around) - 1) * radius;

@@ -55,9 +55,7 @@ void check_places(const SurfacePart& part, const VesselTubes& tubes) {
 class PartGrower {
  public:
   PartGrower(const SurfacePart& part, const VesselField& field)
-      : part_(part),
-        tubes_(field, {part.options.around, part.options.placement, part.options.max_error}, part.branches),
-        open_(part.field.nodes.size(), 0) {
+      : part_(part), tubes_(field, RingOptions::of(part.options), part.branches), open_(part.field.nodes.size(), 0) {
     check_places(part, tubes_);
   }
 

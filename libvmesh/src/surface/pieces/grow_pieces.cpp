@@ -11,6 +11,8 @@
 #include "surface/pieces/gathering.h"
 #include "surface/pieces/parting.h"
 #include "surface/pieces/whole_tasks.h"
+#include "surface/proof/coarsening.h"
+#include "surface/proof/error_limit.h"
 #include "surface/proof/notches.h"
 
 namespace vmesh {
@@ -24,7 +26,7 @@ class PieceGrower {
  public:
   PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
               const Progress& progress)
-      : tubes_(field, {options.around, options.placement, options.max_error}),
+      : tubes_(field, RingOptions::of(options)),
         rings_(tubes_),
         options_(options),
         progress_(progress),
@@ -43,6 +45,7 @@ class PieceGrower {
       if (round == kRounds || !regroup()) break;
     }
     if (!unproven_.empty()) close_notches_left(result.error);
+    if (may_be_coarser()) coarsen_proven(result.error);
     tell(result);
     return std::move(crossings_);
   }
@@ -122,6 +125,34 @@ class PieceGrower {
     crossings_ = self_intersections(gathered_.mesh);
   }
 
+  // Not with a ring at every node.
+  bool may_be_coarser() const {
+    return options_.max_error.is_set() && options_.elongation > 1 && !options_.deformable && crossings_.empty();
+  }
+
+  void coarsen_proven(ErrorSummary& summary) {
+    FinishedSurface surface{gathered_.mesh, gathered_.binding, gathered_.radius, gathered_.openings};
+    coarsen(surface, tubes_.field(), options_.max_error,
+            [&](const CenterlineBinding& at) { return tubes_.longest_at(at.segment, at.t, options_.elongation); });
+    // Faces that were proven by bending their shells are at corners that stay; neighbours may lower their shells.
+    const std::vector<Index> unproven =
+        unproven_faces(surface.mesh, surface.binding, tubes_.field(), options_.max_error);
+    if (unproven.size() > summary.unproven_faces) return;
+    summary.unproven_faces = unproven.size();
+    summary.unproven_places = places_of(surface.mesh, unproven);
+    gathered_.mesh = std::move(surface.mesh);
+    gathered_.binding = std::move(surface.binding);
+    gathered_.radius = std::move(surface.radius);
+    gathered_.openings = std::move(surface.openings);
+    crossings_ = self_intersections(gathered_.mesh);
+    coarsened_ = true;
+  }
+
+  Elongation elongation_at(const CenterlineBinding& at) const {
+    return coarsened_ ? tubes_.longest_at(at.segment, at.t, options_.elongation)
+                      : tubes_.elongation_at(at.segment, at.t);
+  }
+
   bool vessels_overlap(Index f, Index g) const {
     for (const Index face : {f, g}) {
       for (const Index v : gathered_.mesh.faces[face]) {
@@ -180,6 +211,12 @@ class PieceGrower {
                " loops of the centerline are too short to have a hole; the surface is filled there"});
     result.mesh = std::move(gathered_.mesh);
     result.binding = std::move(gathered_.binding);
+    if (tubes_.elongation_field()) {
+      for (const CenterlineBinding& at : result.binding) {
+        const Elongation allowed = elongation_at(at);
+        result.elongation.push_back(allowed.times > 1 ? Vec3(allowed.times * allowed.direction) : Vec3(Vec3::Zero()));
+      }
+    }
     result.radius = std::move(gathered_.radius);
     result.openings = std::move(gathered_.openings);
   }
@@ -202,6 +239,7 @@ class PieceGrower {
   GatheredSurface gathered_;
   std::vector<std::pair<Index, Index>> crossings_;
   std::vector<Index> unproven_;
+  bool coarsened_ = false;
 };
 
 }  // namespace

@@ -190,6 +190,7 @@ class PieceMaker {
       note_simplifications(tubes_, junction, grown.filled_loops, piece.simplifications);
     }
     BoundSurface surface(tubes_.field());
+    surface.elongation_field = tubes_.elongation_field();
     const std::vector<PieceLoop> loops = assembly.build(surface);
     if (rung.guarded) surface.guard_crossings();
     if (rung.finer > 0) surface.fine_spots = fine_spots_;
@@ -241,8 +242,11 @@ class PieceMaker {
   }
 
   double length_in_radii() const {
-    double rings = 0;
-    for (const Stretch& stretch : plan_.stretches) rings += stretch.count;
+    double rings = 0;  // if they lay evenly
+    for (const Stretch& stretch : plan_.stretches) {
+      const std::vector<Ring>& all = tubes_.rings(stretch.branch);
+      for (Index k = 0; k < stretch.count; ++k) rings += all[(stretch.first + k) % all.size()].elongation;
+    }
     return (rings + 2 * static_cast<double>(plan_.nodes.size())) * ring_pitch(context_.options.around);
   }
 

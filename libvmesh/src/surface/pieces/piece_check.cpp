@@ -1,7 +1,6 @@
 #include "surface/pieces/piece_check.h"
 
 #include "vmesh/mesh/topology.h"
-#include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/soundness.h"
 
 #include "surface/remesh/untangle.h"
@@ -38,7 +37,7 @@ void find_bad_faces(const SweepState& state, PieceFindings& findings) {
   for (const Face f : state.mesh.faces()) {
     if (state.surface.is_lid(f)) continue;
     const auto [a, b, c] = state.corners(f);
-    const double skewness = equiangle_skewness(state.point(a), state.point(b), state.point(c));
+    const double skewness = state.surface.metric(a, b, c).skewness(state.point(a), state.point(b), state.point(c));
     findings.worst_skewness = std::max(findings.worst_skewness, skewness);
     if (skewness <= kWorstSkewness) continue;
     const double radius = std::min({state.surface.radius(a), state.surface.radius(b), state.surface.radius(c)});

@@ -111,7 +111,7 @@ std::vector<RingPlace> scan(const WholeBranches& whole, const GenerateOptions& o
   const VesselField field(centerline, excerpt);
   std::vector<Branch> branches;
   for (Index b = first; b < end; ++b) branches.push_back(whole.as_in(excerpt, b));
-  const VesselAxes axes(field, {options.around, options.placement, options.max_error}, std::move(branches));
+  const VesselAxes axes(field, RingOptions::of(options), std::move(branches));
   std::vector<RingPlace> seams;
   for (Index b = first; b < end; ++b) {
     const Rings laid = axes.layer().lay(b - first);

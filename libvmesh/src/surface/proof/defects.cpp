@@ -6,7 +6,7 @@
 #include "vmesh/centerline/branches.h"
 #include "vmesh/core/disjoint_sets.h"
 #include "vmesh/mesh/topology.h"
-#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/metric_skewness.h"
 
 namespace vmesh {
 
@@ -143,7 +143,7 @@ class DefectSearch {
   void bad_triangles() {
     Index worst = kNone;
     std::size_t count = 0;
-    const std::vector<double> skewness = equiangle_skewness(mesh_);
+    const std::vector<double> skewness = metric_skewness(mesh_, result_.elongation);
     for (Index f = 0; f < skewness.size(); ++f) {
       if (skewness[f] <= kWorstSkewness) continue;
       if (worst == kNone || skewness[f] > skewness[worst]) worst = f;

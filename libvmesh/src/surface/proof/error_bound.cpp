@@ -402,10 +402,11 @@ bool ErrorProof::holds(const Face& face, const std::array<double, 3>& heights, S
   });
 }
 
-ErrorProof::Shares ErrorProof::shares(const Face& face) const {
+ErrorProof::Shares ErrorProof::shares(const Face& face, const Shares& least) const {
   Shares result;
   for (const Side side : {Side::inner, Side::outer}) {
-    for (double s = 1; s > kLowestShell && share(result, side) == 0; s *= kLowerShell) {
+    const double lowest = side == Side::inner ? least.inner : least.outer;
+    for (double s = 1; s > kLowestShell && s >= lowest && share(result, side) == 0; s *= kLowerShell) {
       if (holds(face, heights_of(face, s), side)) share(result, side) = s;
     }
   }

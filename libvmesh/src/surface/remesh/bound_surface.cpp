@@ -8,6 +8,9 @@ namespace {
 constexpr int kMaxProjectionSteps = 12;  // safe 8 to 17
 // Radii: single precision is enough for tolerances from here on; idle 7e-5 to 0.00014.
 constexpr double kRoughTolerance = 1e-4;
+// Slope of the elongation along the surface, per radius, and how far it is followed.
+constexpr double kElongationSlope = 0.5;
+constexpr int kElongationPasses = 3;
 
 FieldSample sample(const VesselField& field, const Vec3& p, Index hint, double tolerance) {
   return tolerance >= kRoughTolerance ? field.sample_fast(p, hint) : field.sample(p, hint);
@@ -40,6 +43,8 @@ BoundSurface::BoundSurface(const VesselField& vessel_field)
       distance(mesh.add_property_map<Vertex, double>("v:distance", 0.0).first),
       lift(mesh.add_property_map<Vertex, double>("v:lift", 0.0).first),
       fineness(mesh.add_property_map<Vertex, double>("v:fineness", 1.0).first),
+      elongation(mesh.add_property_map<Vertex, Vec3>("v:elongation", Vec3::Zero()).first),
+      elongation_share(mesh.add_property_map<Vertex, double>("v:elongation_share", 1.0).first),
       role(mesh.add_property_map<Vertex, Role>("v:role", Role::free).first) {}
 
 bool BoundSurface::is_lid(Face f) const {
@@ -66,6 +71,30 @@ void BoundSurface::place(Vertex v, const Vec3& p, const FieldSample& sample) {
   gradient[v] = sample.gradient.normalized();
   distance[v] = sample.distance;
   if (guard_) guard_->touch(v);
+}
+
+void BoundSurface::update_elongation() {
+  if (!elongation_field) return;
+  std::vector<double> times(mesh.num_vertices(), 1.0);
+  bool shortened = false;
+  for (const Vertex v : mesh.vertices()) {
+    const Elongation full = elongation_field->elongation_at(cone[v], t[v]);
+    times[v.idx()] = 1 + elongation_share[v] * (full.times - 1);
+    elongation[v] = full.direction;
+    shortened = shortened || elongation_share[v] < 1;
+  }
+  // The field is graded by itself.
+  for (int pass = 0; shortened && pass < kElongationPasses; ++pass) {
+    for (const Edge e : mesh.edges()) {
+      const Vertex a = mesh.vertex(e, 0), b = mesh.vertex(e, 1);
+      const double way = (mesh.point(a) - mesh.point(b)).norm();
+      const double most = kElongationSlope * way / std::min(radius(a), radius(b));
+      double &of_a = times[a.idx()], &of_b = times[b.idx()];
+      of_a = std::min(of_a, of_b + most);
+      of_b = std::min(of_b, of_a + most);
+    }
+  }
+  for (const Vertex v : mesh.vertices()) elongation[v] = ElongatedMetric::vector(elongation[v], times[v.idx()]);
 }
 
 void BoundSurface::guard_crossings() {
@@ -108,6 +137,8 @@ Vertex BoundSurface::halve(Halfedge h) {
   cone[v] = cone[a];
   t[v] = t[a];
   fineness[v] = 0.5 * (fineness[a] + fineness[b]);
+  elongation[v] = 0.5 * (elongation[a] + elongation[b]);
+  elongation_share[v] = 0.5 * (elongation_share[a] + elongation_share[b]);
   lift[v] = 0.5 * (lift[a] + lift[b]);
   gradient[v] = (gradient[a] + gradient[b]).normalized();
   return v;

@@ -10,6 +10,7 @@
 #include "vmesh/volume/vessel_field.h"
 
 #include "surface/remesh/crossing_guard.h"
+#include "surface/remesh/elongated_metric.h"
 
 namespace vmesh {
 
@@ -39,6 +40,21 @@ class BoundSurface {
 
   /// Factor on the target edge length: 1, or less in narrow places where full-size triangles do not fit.
   SurfaceMesh::Property_map<Vertex, double> fineness;
+
+  /// Where triangles may be longer than wide. Without (nullptr) they are not. To be set before vertices are placed.
+  const ElongationField* elongation_field = nullptr;
+  /// Vector of the metric in which triangles are to be equilateral, see ElongatedMetric; zero without a stretch field.
+  SurfaceMesh::Property_map<Vertex, Vec3> elongation;
+  /// Share of what the elongation exceeds 1 by that is left to a vertex: less where the limit on the error asks for it.
+  SurfaceMesh::Property_map<Vertex, double> elongation_share;
+
+  /// The metric of an edge, and of a triangle.
+  ElongatedMetric metric(Vertex a, Vertex b) const { return ElongatedMetric(0.5 * (elongation[a] + elongation[b])); }
+  ElongatedMetric metric(Vertex a, Vertex b, Vertex c) const {
+    return ElongatedMetric((elongation[a] + elongation[b] + elongation[c]) / 3);
+  }
+  /// Sets the elongation of all vertices to what is allowed where they are bound; graded along the surface.
+  void update_elongation();
 
   struct Spot {
     Vec3 position;

@@ -6,8 +6,6 @@
 
 #include <CGAL/boost/graph/Euler_operations.h>
 
-#include "vmesh/mesh/triangle_quality.h"
-
 namespace vmesh {
 namespace {
 
@@ -89,8 +87,13 @@ class Mender {
 
   double skewness(Face f) const {
     const Halfedge h = mesh_.halfedge(f);
-    return equiangle_skewness(mesh_.point(mesh_.source(h)), mesh_.point(mesh_.target(h)),
-                              mesh_.point(mesh_.target(mesh_.next(h))));
+    return skewness(mesh_.source(h), mesh_.target(h), mesh_.target(mesh_.next(h)));
+  }
+
+  double skewness(Vertex a, Vertex b, Vertex c) const { return skewness(a, b, c, mesh_.point(a)); }
+  // That of abc once `a` is at `place`.
+  double skewness(Vertex a, Vertex b, Vertex c, const Vec3& place) const {
+    return surface_.metric(a, b, c).skewness(place, mesh_.point(b), mesh_.point(c));
   }
 
   bool mend(Face f) {
@@ -123,8 +126,7 @@ class Mender {
     if (any_is_lid({a, b, c, d})) return;
     if ((surface_.held(a) && surface_.held(b)) || (surface_.held(c) && surface_.held(d))) return;
     if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge()) return;
-    const double worst = std::max(equiangle_skewness(mesh_.point(c), mesh_.point(d), mesh_.point(b)),
-                                  equiangle_skewness(mesh_.point(d), mesh_.point(c), mesh_.point(a)));
+    const double worst = std::max(skewness(c, d, b), skewness(d, c, a));
     const double before = std::max(skewness(mesh_.face(h)), skewness(mesh_.face(o)));
     if (keeps_ == Keeps::to_boundary && !stays_flat(a, b, c, d)) return;
     offer({Kind::flip, h, {}, Vec3::Zero(), before, worst}, steps);
@@ -152,7 +154,7 @@ class Mender {
     double worst = 0;
     for (const Vertex apex : {c, d}) {
       for (const Vertex end : {a, b})
-        worst = std::max(worst, equiangle_skewness(mesh_.point(apex), mesh_.point(end), middle));
+        worst = std::max(worst, surface_.metric(apex, a, b).skewness(mesh_.point(apex), mesh_.point(end), middle));
     }
     const double before = std::max(skewness(mesh_.face(h)), skewness(mesh_.face(o)));
     offer({Kind::split, h, {}, middle, before, worst}, steps);
@@ -163,9 +165,10 @@ class Mender {
     if (surface_.held(v)) return;
     Vec3 center = Vec3::Zero();
     double length = 0;
+    const ElongatedMetric metric(surface_.elongation[v]);
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       center += mesh_.point(mesh_.source(h));
-      length += (mesh_.point(mesh_.source(h)) - mesh_.point(v)).norm();
+      length += metric.shrunk(mesh_.point(mesh_.source(h)) - mesh_.point(v)).norm();
     }
     center /= static_cast<double>(mesh_.degree(v));
     length /= static_cast<double>(mesh_.degree(v));
@@ -180,7 +183,8 @@ class Mender {
       if (share < kMostOffBoundary && keeps_ == Keeps::nothing) {
         for (const double way : {-share, share}) offer_place(mesh_.point(v) + way * length * normal);
       }
-      for (const auto& [x, y] : kDirections) offer_place(mesh_.point(v) + share * length * (x * side + y * across));
+      for (const auto& [x, y] : kDirections)
+        offer_place(mesh_.point(v) + share * length * metric.stretched(x * side + y * across));
     }
   }
 
@@ -199,7 +203,7 @@ class Mender {
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
       if (other != v && (b == other || c == other)) continue;
-      worst = std::max(worst, equiangle_skewness(place, mesh_.point(b), mesh_.point(c)));
+      worst = std::max(worst, skewness(v, b, c, place));
       if (worst >= enough) break;
     }
     return worst;

@@ -41,6 +41,9 @@ constexpr double kMostRefined = 1.8;  // edge length before refinement relative 
 // not sound, vertices +7 %, skewer, unproven, slower; kFinest: idle 0.07 to 0.14.
 constexpr double kFiner = 0.87, kFinest = 0.1;
 
+// Of the elongation beyond 1, where the error is too large: that goes before edges are shortened all around.
+constexpr double kShorter = 0.6, kLeastShare = 0.1;
+
 class Optimizer {
  public:
   Optimizer(BoundSurface& surface, const GenerateOptions& options, const Progress& progress)
@@ -190,8 +193,16 @@ class Optimizer {
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     bool any = false;
     for (const Vertex v : vertices) {
+      if (is_calm(v)) continue;
       double& fineness = state_.surface.fineness[v];
-      if (fineness * kFiner < kFinest || is_calm(v)) continue;
+      double& share = state_.surface.elongation_share[v];
+      if (state_.surface.elongation[v] != Vec3::Zero() && share > kLeastShare) {
+        share = kShorter * share > kLeastShare ? kShorter * share : 0;
+        state_.stir(v);
+        any = true;
+        continue;
+      }
+      if (fineness * kFiner < kFinest) continue;
       fineness *= kFiner;
       state_.stir(v);
       any = true;

@@ -16,36 +16,72 @@ class Relocator {
   // One Newton step of the shape energy in the tangent plane, reprojected; halved until it is an improvement.
   void relocate(Vertex v) {
     const Vec3 x = state_.point(v);
-    const Vec3 n = surface_.gradient[v];
-    const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
     PlanarEnergy energy{options_.power};
-    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
-      energy.add(x, state_.point(mesh_.target(mesh_.next(h))), state_.point(mesh_.source(h)), u, w);
-    }
-    Vec3 step = Vec3::Zero();
-    if (std::isfinite(energy.value)) {
-      const Eigen::Vector2d s = -energy.hessian.inverse() * energy.gradient;
-      step = s.x() * u + s.y() * w;
-    } else {
+    Vec3 step = surface_.elongation_field ? elongated_step(v, energy) : newton_step(v, energy);
+    const double before = surface_.elongation_field ? energy_around(v) : energy.value;
+    if (!std::isfinite(energy.value)) {
       for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v)))
         step += state_.point(mesh_.source(h)) - x;
       step /= static_cast<double>(mesh_.degree(v));
     }
-    const double longest = kLongestMove * state_.size[v], norm = step.norm();
+    const double longest = kLongestMove * state_.size[v], norm = length_of(v, step);
     if (!std::isfinite(norm)) return;
     if (norm > longest) step *= longest / norm;
     for (int attempt = 0; attempt < kAttempts; ++attempt, step *= 0.5) {
       const BoundaryPoint target = state_.project(v, x + step);
-      if ((target.position - x).norm() > state_.size[v] || !improves(v, target, energy.value) ||
-          !surface_.may_place(v, target.position))
-        continue;
-      if (state_.off_boundary(v) || (target.position - x).norm() > options_.noticeable * state_.size[v]) state_.stir(v);
+      const double way = state_.away(v, target.position);
+      if (way > state_.size[v] || !improves(v, target, before) || !surface_.may_place(v, target.position)) continue;
+      if (state_.off_boundary(v) || way > options_.noticeable * state_.size[v]) state_.stir(v);
       surface_.place(v, target.position, target.sample);
       return;
     }
   }
 
  private:
+  // Of a way of `v`, in the metric.
+  double length_of(Vertex v, const Vec3& way) const {
+    return surface_.elongation_field ? ElongatedMetric(surface_.elongation[v]).length(way) : way.norm();
+  }
+
+  // In the metric of each face.
+  double energy_around(Vertex v) const {
+    double sum = 0;
+    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v)))
+      sum += whole_power(state_.energy(v, mesh_.target(mesh_.next(h)), mesh_.source(h)), options_.power);
+    return sum;
+  }
+
+  // Adds the faces around `v` to the energy. Nothing where that is not finite.
+  Vec3 newton_step(Vertex v, PlanarEnergy& energy) const {
+    const Vec3 x = state_.point(v);
+    const Vec3 n = surface_.gradient[v];
+    const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
+    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+      energy.add(x, state_.point(mesh_.target(mesh_.next(h))), state_.point(mesh_.source(h)), u, w);
+    }
+    return step_in(energy, u, w);
+  }
+
+  // The same where the metric of the surface at `v` is that of space. Planes with normal n become such with a normal
+  // along n stretched.
+  Vec3 elongated_step(Vertex v, PlanarEnergy& energy) const {
+    const ElongatedMetric metric(surface_.elongation[v]);
+    const Vec3 x = state_.point(v);
+    const Vec3 n = metric.stretched(surface_.gradient[v]).normalized();
+    const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
+    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+      energy.add(Vec3::Zero(), metric.shrunk(state_.point(mesh_.target(mesh_.next(h))) - x),
+                 metric.shrunk(state_.point(mesh_.source(h)) - x), u, w);
+    }
+    return metric.stretched(step_in(energy, u, w));
+  }
+
+  static Vec3 step_in(const PlanarEnergy& energy, const Vec3& u, const Vec3& w) {
+    if (!std::isfinite(energy.value)) return Vec3::Zero();
+    const Eigen::Vector2d s = -energy.hessian.inverse() * energy.gradient;
+    return s.x() * u + s.y() * w;
+  }
+
   bool improves(Vertex v, const BoundaryPoint& target, double old_energy) const {
     // A vertex that is not yet on the boundary must get there, whatever the shape, as long as its faces stay upright.
     if (state_.off_boundary(v)) old_energy = std::numeric_limits<double>::infinity();
@@ -54,7 +90,7 @@ class Relocator {
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
       if (!state_.stays_upright(v, b, c, landing)) return false;
-      const double energy = SweepState::energy(target.position, state_.point(b), state_.point(c));
+      const double energy = state_.energy(v, b, c, target.position);
       if (energy > options_.highest && energy > state_.energy(v, b, c)) return false;
       sum += whole_power(energy, options_.power);
     }

@@ -104,8 +104,12 @@ bool Remesher::collapse(Edge e) {
   const double size = std::min(state_.size[a], state_.size[b]);
   const double fineness = std::min(surface_.fineness[a], surface_.fineness[b]);
   const double lift = 0.5 * (surface_.lift[a] + surface_.lift[b]);
+  const double elongation_share = std::min(surface_.elongation_share[a], surface_.elongation_share[b]);
+  const Vec3 elongation = 0.5 * (surface_.elongation[a] + surface_.elongation[b]);
   const Vertex v = CGAL::Euler::collapse_edge(e, mesh_);
   surface_.fineness[v] = fineness;
+  surface_.elongation_share[v] = elongation_share;
+  surface_.elongation[v] = elongation;
   surface_.lift[v] = lift;
   surface_.place(v, target.position, target.sample);
   state_.size[v] = size;
@@ -135,7 +139,7 @@ double Remesher::worst_energy(Vertex v, Vertex other, const Vec3& p) const {
   double worst = 0;
   for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
     const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
-    if (b != other && c != other) worst = std::max(worst, SweepState::energy(p, state_.point(b), state_.point(c)));
+    if (b != other && c != other) worst = std::max(worst, state_.energy(v, b, c, p));
   }
   return worst;
 }
@@ -145,7 +149,7 @@ bool Remesher::collapsible_to(Vertex v, Vertex other, const BoundaryPoint& targe
   for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
     const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
     if (b == other || c == other) continue;
-    const double reach = (state_.point(c) - target.position).norm();
+    const double reach = state_.length(v, c, target.position);
     const double size = 0.5 * (state_.size[c] + state_.size[v]);
     if (reach > kSplitLength * size || !state_.stays_upright(v, b, c, landing)) return false;
     if (reach > kCannotStray * size &&
@@ -185,7 +189,7 @@ void Remesher::split_far_faces(double max_distance) {
 
 double Remesher::bulge(Vertex a, Vertex b) const {
   const Vec3 middle = 0.5 * (state_.point(a) + state_.point(b));
-  return std::abs(field_.sample_fast(middle, surface_.cone[a]).distance) / (state_.point(a) - state_.point(b)).norm();
+  return std::abs(field_.sample_fast(middle, surface_.cone[a]).distance) / state_.length(a, b, state_.point(a));
 }
 
 void Remesher::repair_strays() {

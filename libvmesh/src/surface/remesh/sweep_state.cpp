@@ -42,6 +42,7 @@ SweepState::~SweepState() {
 }
 
 void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
+  surface.update_elongation();
   for (const Vertex v : mesh.vertices()) {
     const double radius = surface.radius(v);
     double edge = edge_per_radius * radius;
@@ -53,7 +54,7 @@ void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
   for (int pass = 0; pass < kGradationPasses; ++pass) {
     for (const Edge e : mesh.edges()) {
       const Vertex a = mesh.vertex(e, 0), b = mesh.vertex(e, 1);
-      const double slack = kGradation * length(e);
+      const double slack = kGradation * (point(a) - point(b)).norm();
       size[a] = std::min(size[a], size[b] + slack);
       size[b] = std::min(size[b], size[a] + slack);
     }

@@ -42,7 +42,21 @@ class SweepState {
   SurfaceMesh::Property_map<Vertex, double> size;  ///< target edge length, mm
 
   const Vec3& point(Vertex v) const { return mesh.point(v); }
-  double length(Edge e) const { return (point(mesh.vertex(e, 0)) - point(mesh.vertex(e, 1))).norm(); }
+  /// Length in the surface's metric.
+  double length(Edge e) const {
+    const Vertex a = mesh.vertex(e, 0);
+    return length(a, mesh.vertex(e, 1), point(a));
+  }
+  /// That of the edge ab once a has moved to `p`.
+  double length(Vertex a, Vertex b, const Vec3& p) const {
+    const Vec3 way = p - point(b);
+    return surface.elongation_field ? surface.metric(a, b).length(way) : way.norm();
+  }
+  /// How far `v` would go to `p`, in the metric.
+  double away(Vertex v, const Vec3& p) const {
+    const Vec3 way = p - point(v);
+    return surface.elongation_field ? ElongatedMetric(surface.elongation[v]).length(way) : way.norm();
+  }
   double target_length(Edge e) const { return 0.5 * (size[mesh.vertex(e, 0)] + size[mesh.vertex(e, 1)]); }
   std::array<Vertex, 3> corners(Face f) const {
     const Halfedge h = mesh.halfedge(f);
@@ -85,9 +99,17 @@ class SweepState {
   /// Whether the face vbc stays upright and does not turn far when `v` moves to `target`.
   bool stays_upright(Vertex v, Vertex b, Vertex c, const Landing& target) const;
 
-  /// Squared inverse mean ratio: 1 equilateral.
-  double energy(Vertex a, Vertex b, Vertex c) const { return energy(point(a), point(b), point(c)); }
-  static double energy(const Vec3& a, const Vec3& b, const Vec3& c) { return squared_inverse_mean_ratio(a, b, c); }
+  /// Squared inverse mean ratio, in the surface's metric: 1 equilateral.
+  double energy(Vertex a, Vertex b, Vertex c) const { return energy(a, b, c, point(a)); }
+  /// That of abc once `a` has moved to `p`.
+  double energy(Vertex a, Vertex b, Vertex c, const Vec3& p) const {
+    if (!surface.elongation_field) return squared_inverse_mean_ratio(p, point(b), point(c));
+    return elongated_energy(p, point(b), point(c), surface.metric(a, b, c));
+  }
+  static double elongated_energy(const Vec3& a, const Vec3& b, const Vec3& c, const ElongatedMetric& metric) {
+    if (metric.is_plain()) return squared_inverse_mean_ratio(a, b, c);
+    return squared_inverse_mean_ratio(Vec3::Zero(), metric.shrunk(b - a), metric.shrunk(c - a));
+  }
 
   /// Whether `v` is not yet where it belongs, at its lift from the boundary.
   bool off_boundary(Vertex v) const {

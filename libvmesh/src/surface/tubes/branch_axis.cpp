@@ -67,6 +67,24 @@ double BranchAxis::apart(double place, double other) const {
   return periodic_ ? std::min(distance, length() - distance) : distance;
 }
 
+double BranchAxis::shortest_at(double place) const {
+  const std::size_t nth = at(place).nth;
+  const auto length_of = [&](std::size_t i) { return places_[i + 1] - places_[i]; };
+  double shortest = length_of(nth);
+  if (place <= places_[nth] && nth > 0) shortest = std::min(shortest, length_of(nth - 1));
+  if (place >= places_[nth + 1] && nth + 2 < places_.size()) shortest = std::min(shortest, length_of(nth + 1));
+  return shortest;
+}
+
+double BranchAxis::radii_of(double place) const {
+  const Point point = at(place);
+  if (periodic_) place -= length() * std::floor(place / length());
+  const double along = std::clamp(place, 0.0, length()) - places_[point.nth];
+  return along > 0
+             ? radii_[point.nth] + radii_along(along, centerline_->node(branch_->nodes[point.nth]).radius, point.radius)
+             : radii_[point.nth];
+}
+
 double BranchAxis::place_at_radii(double radii) const {
   radii = std::clamp(radii, 0.0, radii_.back());
   const auto above = std::upper_bound(radii_.begin(), radii_.end(), radii);

@@ -40,8 +40,12 @@ class BranchAxis {
   double apart(double place, double other) const;
   double node_place(std::size_t node) const { return places_[node]; }
 
+  /// Length of the segment at `place`, the shorter one at a node.
+  double shortest_at(double place) const;
   /// Integral of ds / radius over the branch.
   double length_in_radii() const { return radii_.back(); }
+  /// The integral up to `place`.
+  double radii_of(double place) const;
   /// The place at which that integral reaches `radii`.
   double place_at_radii(double radii) const;
 

@@ -9,7 +9,7 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kShortHandle = 6;  // rings; measured on random graphs with loops; safe 4 to 8
+constexpr double kShortHandle = 6;  // rings; measured on random graphs with loops; safe 4 to 8
 
 std::vector<SegmentPlace> places_of(const Centerline& centerline, const std::vector<Branch>& branches) {
   std::vector<SegmentPlace> places(centerline.segments().size());
@@ -90,7 +90,7 @@ class SkeletonMaker {
       for (const TubeEnd& end : docks_of(skeleton_.junctions[j])) {
         if (first[end.tube] == kNone) {
           first[end.tube] = j;
-        } else if (first[end.tube] == j && skeleton_.tubes[end.tube].rings.size() <= kShortHandle) {
+        } else if (first[end.tube] == j && even_rings(skeleton_.tubes[end.tube]) <= kShortHandle) {
           cover(skeleton_.tubes[end.tube]);
           dissolved = true;
         }
@@ -252,10 +252,13 @@ VesselAxes::VesselAxes(const VesselField& field, const RingOptions& rings, std::
       places_(places_of(field.centerline(), branches_)),
       layer_(field, axes_, places_, rings) {}
 
-VesselTubes::VesselTubes(const VesselField& field, const RingOptions& rings) : VesselAxes(field, rings) { lay_all(); }
+VesselTubes::VesselTubes(const VesselField& field, const RingOptions& rings)
+    : VesselAxes(field, rings), elongated_(rings.elongation > 1) {
+  lay_all();
+}
 
 VesselTubes::VesselTubes(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches)
-    : VesselAxes(field, rings, std::move(branches)) {
+    : VesselAxes(field, rings, std::move(branches)), elongated_(rings.elongation > 1) {
   lay_all();
 }
 
@@ -263,6 +266,28 @@ void VesselTubes::lay_all() {
   rings_.resize(axes().size());
   tbb::parallel_for(std::size_t{0}, rings_.size(),
                     [&](std::size_t b) { rings_[b] = layer().lay(static_cast<Index>(b)); });
+}
+
+Elongation VesselTubes::elongation_at(Index cone, double t) const {
+  if (cone >= segment_count() || place_of(cone).branch == kNone) return {};
+  const auto [branch, nth] = place_of(cone);
+  const BranchAxis& axis = axes()[branch];
+  const double place = axis.place_of(nth, t);
+  const double times = rings_[branch].elongation.at(axis.radii_of(place));
+  if (times <= 1) return {};
+  return {times, layer().direction_at(branch, place)};
+}
+
+Elongation VesselTubes::longest_at(Index cone, double t, double times) const {
+  if (cone >= segment_count() || place_of(cone).branch == kNone) return {};
+  const auto [branch, nth] = place_of(cone);
+  return {times, layer().direction_at(branch, axes()[branch].place_of(nth, t))};
+}
+
+double even_rings(const Tube& tube) {
+  double count = 0;
+  for (const Ring& ring : tube.rings) count += ring.elongation;
+  return count;
 }
 
 PiecePlan whole_plan(const VesselTubes& tubes) {

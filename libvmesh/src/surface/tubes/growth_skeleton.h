@@ -24,6 +24,10 @@ class VesselAxes {
   const std::vector<BranchAxis>& axes() const { return axes_; }
   const RingLayer& layer() const { return layer_; }
 
+ protected:
+  const SegmentPlace& place_of(Index segment) const { return places_[segment]; }
+  Index segment_count() const { return static_cast<Index>(places_.size()); }
+
  private:
   const VesselField& field_;
   std::vector<Branch> branches_;
@@ -32,18 +36,24 @@ class VesselAxes {
   RingLayer layer_;
 };
 
-/// VesselAxes with the rings laid.
-class VesselTubes : public VesselAxes {
+/// VesselAxes with the rings laid, and how far apart they may be.
+class VesselTubes : public VesselAxes, public ElongationField {
  public:
   VesselTubes(const VesselField& field, const RingOptions& rings);
   VesselTubes(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches);
 
   const std::vector<Ring>& rings(Index branch) const { return rings_[branch].rings; }
+  Elongation elongation_at(Index cone, double t) const override;
+  /// `times` along the vessel, whatever the error; none on an isolated node.
+  Elongation longest_at(Index cone, double t, double times) const;
+  /// Itself, or nullptr where triangles are no longer than wide anywhere.
+  const ElongationField* elongation_field() const { return elongated_ ? this : nullptr; }
 
  private:
   void lay_all();
 
   std::vector<Rings> rings_;  // of every branch
+  bool elongated_;
 };
 
 /// A run of consecutive free rings along a branch.
@@ -57,6 +67,9 @@ struct Tube {
   bool starts_at_junction() const { return !starts_at_tip && !periodic && !starts_at_seam; }
   bool ends_at_junction() const { return !ends_at_tip && !periodic && !ends_at_seam; }
 };
+
+/// Rings that the tube would have if they lay evenly.
+double even_rings(const Tube& tube);
 
 /// Whether ring `k` of the tube is a seam.
 inline bool is_seam(const Tube& tube, std::size_t k) {

@@ -32,6 +32,7 @@ constexpr double kThrough = 0.3;
 constexpr double kStraight = 1e-3;      // derived: sine below which directions count as equal, far above their rounding
 constexpr double kLongestSkip = 2.5;    // radii along the branch; safe 1.8 to 3.5
 constexpr double kStraightSkip = 0.95;  // cosine; safe 0.66 to 1.3
+constexpr double kNoGap = 1.5;          // even steps between rings from which on one is missing between them
 constexpr double kMinSpacing = 0.2;     // least distance between two rings, in pitches; safe 0.14 to 0.28
 
 // Height of the band of triangles between two rings, in ring radii, when all its edges are as long as the ring's.
@@ -68,6 +69,13 @@ RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& ax
     : field_(field), axes_(axes), places_(places), options_(options) {}
 
 Rings RingLayer::lay(Index branch) const {
+  std::vector<Vec3> sides;
+  Rings even = lay_evenly(branch, sides);
+  return options_.elongation > 1 ? spread(branch, even, sides) : std::move(even);
+}
+
+// `sides`: of every ring, from where its angles count.
+Rings RingLayer::lay_evenly(Index branch, std::vector<Vec3>& sides) const {
   const BranchAxis& axis = axes_[branch];
   const double pitch = ring_pitch(options_.around);
   const double total = axis.length_in_radii();
@@ -87,6 +95,7 @@ Rings RingLayer::lay(Index branch) const {
     side = (side - side.dot(here.normal) * here.normal).normalized();
     rings.push_back(lay_one(branch, here, side, static_cast<double>(k % 2) / 2, laid.points));
     rings.back().beside = {section(branch, radii - step / 2), section(branch, radii + step / 2)};
+    sides.push_back(side);
   }
   std::vector<char> collides(rings.size(), 0);
   for (std::size_t k = 0; k < bands && rings.size() > 1; ++k) {
@@ -95,7 +104,7 @@ Rings RingLayer::lay(Index branch) const {
     collides[k] = collides[next] = 1;
   }
   for (std::size_t k = 0; k < rings.size(); ++k) rings[k].free = rings[k].free && !collides[k];
-  leave_out_steps(rings, kMinSpacing * pitch);
+  leave_out_steps(rings, sides, kMinSpacing * pitch);
   if (!axis.periodic() && !axis.starts_at_tip()) rings.front().free = false;
   if (!axis.periodic() && !axis.ends_at_tip()) rings.back().free = false;
   clear_ends(branch, rings, axis.periodic());
@@ -110,9 +119,15 @@ CrossSection RingLayer::section(Index branch, double radii) const {
   return {place, point.position, axis.direction(place, kSmoothing * point.radius), point.radius};
 }
 
-void RingLayer::leave_out_steps(std::vector<Ring>& rings, double least_gap) {
+Vec3 RingLayer::direction_at(Index branch, double place) const {
+  const BranchAxis& axis = axes_[branch];
+  return axis.direction(place, kSmoothing * axis.at(place).radius);
+}
+
+void RingLayer::leave_out_steps(std::vector<Ring>& rings, std::vector<Vec3>& sides, double least_gap) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < rings.size();) {
+    sides[kept] = sides[k];
     rings[kept++] = rings[k];
     std::size_t next = k + 1;
     while (next < rings.size() && rings[next].clear && !rings[next].free) ++next;
@@ -121,6 +136,62 @@ void RingLayer::leave_out_steps(std::vector<Ring>& rings, double least_gap) {
     k = skip ? next : k + 1;
   }
   rings.resize(kept);
+  sides.resize(kept);
+}
+
+Rings RingLayer::spread(Index branch, const Rings& even, const std::vector<Vec3>& sides) const {
+  const BranchAxis& axis = axes_[branch];
+  const std::vector<Ring>& rings = even.rings;
+  const double pitch = ring_pitch(options_.around);
+  const double step = axis.length_in_radii() / std::max(1.0, std::round(axis.length_in_radii() / pitch));
+  Rings laid;
+  laid.points.reserve(even.points.size());
+  const auto keep = [&](Ring ring) {
+    const std::size_t first = laid.points.size();
+    laid.points.insert(laid.points.end(), ring.points.begin(), ring.points.end());
+    ring.points = std::span(laid.points).subspan(first);
+    laid.rings.push_back(ring);
+  };
+  for (std::size_t k = 0; k < rings.size();) {
+    std::size_t end = k;
+    while (end < rings.size() && rings[end].free &&
+           (end == k || axis.radii_of(rings[end].place) - axis.radii_of(rings[end - 1].place) < kNoGap * step))
+      ++end;
+    const std::size_t before = laid.points.size();
+    const std::vector<Ring> run = end > k + 1 ? spread_run(branch, std::span(rings).subspan(k, end - k), sides[k], step,
+                                                           laid.elongation, laid.points)
+                                              : std::vector<Ring>();
+    laid.rings.insert(laid.rings.end(), run.begin(), run.end());
+    if (run.empty()) laid.points.resize(before);
+    end = std::max(end, k + 1);
+    for (; k < end; ++k) {
+      if (run.empty()) keep(rings[k]);
+    }
+  }
+  clear_ends(branch, laid.rings, axis.periodic());
+  return laid;
+}
+
+std::vector<Ring> RingLayer::spread_run(Index branch, std::span<const Ring> run, const Vec3& side, double step,
+                                        ElongationProfile& profile, std::vector<BoundaryPoint>& points) const {
+  const BranchAxis& axis = axes_[branch];
+  const ElongationProfile here = elongation_of_run(axis, run, step, options_);
+  const std::vector<double> places = here.spread(step);
+  if (places.size() >= run.size()) return {};
+  std::vector<Ring> rings;
+  Vec3 across = side;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const CrossSection next = section(branch, places[k]);
+    if (k > 0) across = Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, next.normal) * across);
+    across = (across - across.dot(next.normal) * next.normal).normalized();
+    rings.push_back(lay_one(branch, next, across, static_cast<double>(k % 2) / 2, points));
+    Ring& ring = rings.back();
+    ring.beside = {section(branch, places[k] - step / 2), section(branch, places[k] + step / 2)};
+    ring.elongation = here.at(places[k]);
+    if (!ring.free || (k > 0 && !apart(rings[k - 1], ring, kMinSpacing * ring_pitch(options_.around)))) return {};
+  }
+  profile.append(here, step);
+  return rings;
 }
 
 std::vector<BoundaryPoint> RingLayer::lifted(const Ring& ring) const {
@@ -180,7 +251,7 @@ Vec3 RingLayer::reference(Index branch, const Vec3& normal) const {
 Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
                         std::vector<BoundaryPoint>& points) const {
   const BranchAxis::Point axis = axes_[branch].at(section.place);
-  Ring ring{section, {}, {}, false, false};
+  Ring ring{section, {}, {}, 1, false, false};
   const Vec3 up = section.normal.cross(side);
   ring.clear = goes_through(branch, section) && is_clear(branch, section, axis, side, up);
   if (!ring.clear) return ring;

@@ -6,6 +6,7 @@
 
 #include "surface/remesh/bound_surface.h"
 #include "surface/tubes/branch_axis.h"
+#include "surface/tubes/elongation_profile.h"
 
 namespace vmesh {
 
@@ -21,6 +22,9 @@ struct CrossSection {
 struct Ring : CrossSection {
   std::span<const BoundaryPoint> points;  ///< empty if any of them is not visible from the axis
   std::array<CrossSection, 2> beside;     ///< half a step before and after it
+  double elongation = 1;  ///< how much longer than wide triangles may be here, see GenerateOptions::elongation
+  /// Vector of the metric in which bands are even, see ElongatedMetric.
+  Vec3 metric() const { return ElongatedMetric::vector(normal, elongation); }
   bool clear = false;  ///< no other vessel, nor a far part of this one, covers the cross-section or comes close
   bool free = false;   ///< clear, and the boundary is visible from the axis all around
 };
@@ -33,6 +37,7 @@ struct Rings {
 
   std::vector<Ring> rings;
   std::vector<BoundaryPoint> points;
+  ElongationProfile elongation;
 };
 
 /// Distance in radii between rings of `around` vertices whose band consists of nearly equilateral triangles.
@@ -42,7 +47,13 @@ double ring_pitch(int around);
 struct RingOptions {
   int around;
   Placement placement = Placement::inscribed;
-  ErrorLimit limit = {};  ///< no ring is lifted beyond it
+  ErrorLimit limit = {};       ///< no ring is lifted beyond it
+  double elongation = 1;       ///< the most that rings lie farther apart than evenly
+  bool ring_per_node = false;  ///< they lie no farther apart than nodes
+
+  static RingOptions of(const GenerateOptions& o) {
+    return {o.around, o.placement, o.max_error, o.elongation, o.deformable};
+  }
 };
 
 /// Where a segment lies: its branch and its number there.
@@ -55,13 +66,17 @@ struct SegmentPlace {
 /// the one before: bands of nearly equilateral triangles. The first and the last ring lie at the branch's ends. Rings
 /// that are clear but not free (at a step in the radius or a sharp bend) are left out where the band between their
 /// neighbours stays short. Where a run of free rings begins or ends away from a tip, the cross-section half a step
-/// further out is free as well.
+/// further out is free as well. With an elongation, the rings of every such run are laid again, as far apart as the
+/// error allows.
 class RingLayer {
  public:
   RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes, const std::vector<SegmentPlace>& places,
             const RingOptions& options);
 
   Rings lay(Index branch) const;
+
+  /// The direction of the vessel, bends smoothed.
+  Vec3 direction_at(Index branch, double place) const;
 
   /// The ring's points as balanced placement lifts them off the boundary, so that the volume is kept.
   std::vector<BoundaryPoint> lifted(const Ring& ring) const;
@@ -71,13 +86,18 @@ class RingLayer {
   void clear_ends(Index branch, std::vector<Ring>& rings, bool loop) const;
 
  private:
+  Rings lay_evenly(Index branch, std::vector<Vec3>& sides) const;
   CrossSection section(Index branch, double radii) const;
   Vec3 reference(Index branch, const Vec3& normal) const;
   // Appends its points to `points`, which must have capacity for them.
   Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
                std::vector<BoundaryPoint>& points) const;
 
-  static void leave_out_steps(std::vector<Ring>& rings, double least_gap);
+  static void leave_out_steps(std::vector<Ring>& rings, std::vector<Vec3>& sides, double least_gap);
+  Rings spread(Index branch, const Rings& even, const std::vector<Vec3>& sides) const;
+  // Rings in place of those of a run; none where one of them would not be free.
+  std::vector<Ring> spread_run(Index branch, std::span<const Ring> run, const Vec3& side, double step,
+                               ElongationProfile& profile, std::vector<BoundaryPoint>& points) const;
   // Whether no other vessel, nor a far part of this one, covers the cross-section or comes close.
   bool is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
                 const Vec3& up) const;

@@ -1,0 +1,59 @@
+#include "vmesh/surface/metric_skewness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vmesh/mesh/triangle_quality.h"
+
+#include "surface/remesh/least_skewness.h"
+
+namespace vmesh {
+namespace {
+
+Elongation mean_of(const std::array<Elongation, 3>& corners) {
+  Elongation mean;
+  for (const Elongation& e : corners) {
+    mean.times = std::max(mean.times, e.times);
+    mean.direction += (mean.direction.dot(e.direction) < 0 ? -1 : 1) * e.direction;
+  }
+  const double norm = mean.direction.norm();
+  if (norm == 0) return {};
+  mean.direction /= norm;
+  return mean;
+}
+
+}  // namespace
+
+double least_skewness(const std::array<Vec3, 3>& p, const std::array<Elongation, 3>& corners) {
+  const double plain = equiangle_skewness(p[0], p[1], p[2]);
+  const Elongation allowed = mean_of(corners);
+  if (allowed.times <= 1) return plain;
+  // Divided by k along the direction, the squares across stay and those along shrink by k^2, the area by k.
+  double along = 0, across = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 edge = p[(i + 1) % 3] - p[i];
+    const double part = edge.dot(allowed.direction);
+    along += part * part;
+    across += edge.squaredNorm() - part * part;
+  }
+  const double times = std::sqrt(along / std::max(across, along / (allowed.times * allowed.times)));
+  if (!(times > 1)) return plain;
+  const ElongatedMetric metric(ElongatedMetric::vector(allowed.direction, times));
+  return std::min(plain, metric.skewness(p[0], p[1], p[2]));
+}
+
+std::vector<double> metric_skewness(const TriMesh& mesh, const std::vector<Vec3>& elongation) {
+  if (elongation.empty()) return equiangle_skewness(mesh);
+  const auto at = [&](Index v) -> Elongation {
+    const double times = v < elongation.size() ? elongation[v].norm() : 0;
+    if (times <= 1) return {};
+    return {times, elongation[v] / times};
+  };
+  std::vector<double> skewness;
+  skewness.reserve(mesh.faces.size());
+  for (const auto& [a, b, c] : mesh.faces)
+    skewness.push_back(least_skewness({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {at(a), at(b), at(c)}));
+  return skewness;
+}
+
+}  // namespace vmesh

@@ -1,0 +1,526 @@
+#include "surface/proof/coarsening.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <queue>
+
+#include <CGAL/boost/graph/Euler_operations.h>
+#include <tbb/parallel_for.h>
+
+#include "vmesh/surface/error_bound.h"
+
+#include "surface/remesh/least_skewness.h"
+#include "surface/remesh/sweep_state.h"
+
+namespace vmesh {
+namespace {
+
+constexpr double kMostDeviation = 0.5;    // radii, whatever the limit: the axis stays inside
+constexpr double kShareForSamples = 0.9;  // of the limit: beyond, proofs fail too often to be worth trying
+constexpr double kWorstShape = 0.75;      // skewness of a face in its metric, unless one that it replaces was worse
+constexpr double kOutdated = 1.05;        // a step whose cost has grown by so much waits for its turn
+constexpr int kHeights = 40;              // of a new vertex, that are tried: within a twentieth of the best
+constexpr double kBetter = 0.95;          // deviation after a step that leaves no vertex out against that before
+constexpr double kMoves[] = {0, 0.5};     // of a vertex on its way to the middle of its neighbours
+constexpr int kRounds = 5;
+constexpr double kFewSteps = 0.02;   // of the vertices: not worth another round
+constexpr double kTolerance = 1e-3;  // radii, of projections
+
+using Corner = ErrorProof::Corner;
+using Shares = ErrorProof::Shares;
+using FaceCorners = std::array<Vertex, 3>;
+
+// A replacement of faces by others around a vertex.
+struct Step {
+  Vertex at;
+  BoundaryPoint target;            // where it goes
+  std::vector<Face> gone;          // faces that are replaced
+  std::vector<FaceCorners> faces;  // by which
+  double cost = 0;                 // largest deviation, in limits
+};
+
+// What a step would change in the proof.
+struct Outlook {
+  std::vector<std::pair<Vertex, Corner>> corners;
+  std::vector<std::pair<FaceCorners, Shares>> made;
+  std::vector<std::pair<Face, Shares>> kept;
+};
+
+class Coarsener {
+ public:
+  Coarsener(BoundSurface& surface, const ErrorLimit& limit,
+            const std::function<Elongation(const CenterlineBinding&)>& longest)
+      : surface_(surface),
+        mesh_(surface.mesh),
+        state_(surface),
+        field_(surface.field),
+        proof_(field_),
+        limit_(limit),
+        longest_(longest) {
+    for (const Vertex v : mesh_.vertices()) elongation_.push_back(longest_({surface_.cone[v], surface_.t[v]}));
+    measure();
+  }
+
+  void run() {
+    const double enough = kFewSteps * static_cast<double>(mesh_.number_of_vertices());
+    for (int round = 0; round < kRounds; ++round) {
+      if (static_cast<double>(collapse_all()) < enough) break;
+      relax();
+    }
+  }
+
+ private:
+  // Corners, shares and whether faces are proven, as unproven_faces() sees them.
+  void measure() {
+    corner_.resize(mesh_.num_vertices());
+    changed_.assign(mesh_.num_vertices(), 1);
+    for (const Vertex v : mesh_.vertices()) corner_[v.idx()] = corner_of(v);
+    shares_.resize(mesh_.num_faces());
+    fixed_.assign(mesh_.num_faces(), 0);
+    std::vector<Face> faces;
+    std::vector<Triangle> triangles;
+    for (const Face f : mesh_.faces()) {
+      if (surface_.is_lid(f)) continue;
+      const auto [a, b, c] = state_.corners(f);
+      faces.push_back(f);
+      triangles.push_back({a.idx(), b.idx(), c.idx()});
+    }
+    std::vector<Shares> shares(faces.size());
+    tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
+      shares[i] = proof_.shares({corner_[triangles[i][0]], corner_[triangles[i][1]], corner_[triangles[i][2]]});
+    });
+    for (std::size_t i = 0; i < faces.size(); ++i) shares_[faces[i].idx()] = shares[i];
+    for (const Index i : proof_.unproven(corner_, triangles, shares)) fixed_[faces[i].idx()] = 1;
+    for (const Face f : mesh_.faces()) {
+      for (const Vertex v : state_.corners(f)) fixed_[f.idx()] |= surface_.held(v);
+    }
+  }
+
+  Corner corner_of(Vertex v) const {
+    return {state_.point(v), surface_.vertex_normal(v), limit_.at(surface_.radius(v)), surface_.cone[v]};
+  }
+
+  // One pass over all edges. Returns how many were collapsed.
+  std::size_t collapse_all() {
+    std::vector<Edge> edges;
+    for (const Edge e : mesh_.edges()) {
+      if (is_near_change(mesh_.vertex(e, 0)) || is_near_change(mesh_.vertex(e, 1))) edges.push_back(e);
+    }
+    changed_.assign(changed_.size(), 0);
+    std::vector<double> cost(edges.size());
+    tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t i) {
+      const std::optional<Step> step = collapse_of(edges[i]);
+      cost[i] = step ? step->cost : std::numeric_limits<double>::infinity();
+    });
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      if (std::isfinite(cost[i])) queue.emplace(cost[i], edges[i].idx());
+    }
+    std::size_t count = 0;
+    while (!queue.empty()) {
+      const auto [expected, index] = queue.top();
+      queue.pop();
+      const Edge e(index);
+      if (mesh_.is_removed(e)) continue;
+      const std::optional<Step> step = collapse_of(e);
+      if (!step) continue;
+      if (step->cost > kOutdated * expected) {
+        queue.emplace(step->cost, index);
+        continue;
+      }
+      if (!surface_.may_collapse(mesh_.vertex(e, 0), mesh_.vertex(e, 1), step->target.position)) continue;
+      const std::optional<Outlook> outlook = outlook_of(*step);
+      if (!outlook) continue;
+      const Vertex v = collapse(e, *step, *outlook);
+      ++count;
+      for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+        for (const Edge changed : {mesh_.edge(h), mesh_.edge(mesh_.prev(h))}) {
+          if (const std::optional<Step> next = collapse_of(changed)) queue.emplace(next->cost, changed.idx());
+        }
+      }
+    }
+    return count;
+  }
+
+  // Takes steps that leave fewer deviations and as many vertices, so that more can go.
+  void relax() {
+    for (const Edge e : mesh_.edges()) {
+      const std::optional<Step> step = flip_of(e);
+      if (!step || !surface_.may_flip(mesh_.halfedge(e))) continue;
+      const std::optional<Outlook> outlook = outlook_of(*step);
+      if (!outlook) continue;
+      CGAL::Euler::flip_edge(mesh_.halfedge(e), mesh_);
+      surface_.touch_faces(step->at);
+      note(*step, *outlook, step->at);
+    }
+    for (const Vertex v : mesh_.vertices()) {
+      const std::optional<Step> step = move_of(v);
+      if (!step || !surface_.may_place(v, step->target.position)) continue;
+      const std::optional<Outlook> outlook = outlook_of(*step);
+      if (!outlook) continue;
+      surface_.place(v, step->target.position, step->target.sample);
+      note(*step, *outlook, v);
+    }
+  }
+
+  // The step that flips the edge, if that is allowed and brings its faces closer to the boundary.
+  std::optional<Step> flip_of(Edge e) const {
+    const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
+    if (fixed_[mesh_.face(h).idx()] || fixed_[mesh_.face(o).idx()]) return std::nullopt;
+    const Vertex a = mesh_.source(h), b = mesh_.target(h);
+    const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
+    if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge())
+      return std::nullopt;
+    const Step now{a, {state_.point(a), surface_.sample(a)}, {}, {{a, b, c}, {b, a, d}}};
+    Step step{c, {state_.point(c), surface_.sample(c)}, {mesh_.face(h), mesh_.face(o)}, {{c, d, b}, {d, c, a}}};
+    if (deviation(step) > kBetter * deviation(now) || !is_well_shaped(step)) return std::nullopt;
+    return step;
+  }
+
+  // The step that moves the vertex between its neighbours, if that is allowed and brings its faces closer.
+  std::optional<Step> move_of(Vertex v) const {
+    Step step{v, {state_.point(v), surface_.sample(v)}, {}, {}};
+    Vec3 middle = Vec3::Zero();
+    double count = 0;
+    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
+      if (fixed_[f.idx()]) return std::nullopt;
+      step.gone.push_back(f);
+      step.faces.push_back(state_.corners(f));
+    }
+    for (const Vertex w : mesh_.vertices_around_target(mesh_.halfedge(v))) {
+      middle += state_.point(w);
+      ++count;
+    }
+    const double before = deviation(step);
+    Step best = step;
+    best.cost = kBetter * before;
+    for (const double share : kMoves) {
+      const Vec3 p = state_.point(v) + share * (middle / count - state_.point(v));
+      if (place(step, p, surface_.cone[v]) && step.cost < best.cost) best = step;
+    }
+    if (best.cost >= kBetter * before) return std::nullopt;
+    return best;
+  }
+
+  // Whether a face at the vertex or at one of its neighbours has changed in the last pass.
+  bool is_near_change(Vertex v) const {
+    const auto around = mesh_.vertices_around_target(mesh_.halfedge(v));
+    return changed_[v.idx()] || std::any_of(around.begin(), around.end(), [&](Vertex w) { return changed_[w.idx()]; });
+  }
+
+  // The step that collapses the edge, unless it is not allowed or leaves too much.
+  std::optional<Step> collapse_of(Edge e) const {
+    const Vertex a = mesh_.vertex(e, 0), b = mesh_.vertex(e, 1);
+    Step step;
+    step.at = a;
+    for (const Vertex v : {a, b}) {
+      for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
+        if (fixed_[f.idx()]) return std::nullopt;
+        FaceCorners corners = state_.corners(f);
+        const bool has_a = std::find(corners.begin(), corners.end(), a) != corners.end();
+        const bool has_b = std::find(corners.begin(), corners.end(), b) != corners.end();
+        if (has_a && has_b) {
+          if (v == a) step.gone.push_back(f);
+          continue;
+        }
+        step.gone.push_back(f);
+        std::replace(corners.begin(), corners.end(), b, a);
+        step.faces.push_back(corners);
+      }
+    }
+    if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return std::nullopt;
+    const Vec3 middle = 0.5 * (state_.point(a) + state_.point(b));
+    if (!place(step, middle, surface_.cone[a])) return std::nullopt;
+    return step;
+  }
+
+  // Finds where the step's vertex deviates least, near `p`. Returns whether that is allowed.
+  bool place(Step& step, const Vec3& p, Index hint) const {
+    step.target = project_to_boundary(field_, p, hint, kTolerance, 0);
+    const double most = most_deviation(field_.radius_at(step.target.sample.cone, step.target.sample.t));
+    const Vec3 way = step.target.sample.gradient.normalized();
+    std::vector<std::pair<double, double>> deviations;  // on the boundary, and by how much they grow with the height
+    visit_samples(step, [&](double share, double distance, double) { deviations.emplace_back(distance, share); });
+    const auto worst = [&](double height) {
+      double result = std::abs(height);
+      for (const auto& [distance, share] : deviations) result = std::max(result, std::abs(distance + share * height));
+      return result;
+    };
+    double best = 0, least = worst(0);
+    for (int i = -kHeights; i <= kHeights; ++i) {
+      const double height = kShareForSamples * most * i / kHeights, w = worst(height);
+      if (w < least) {
+        least = w;
+        best = height;
+      }
+    }
+    if (least > kShareForSamples * most) return false;
+    step.target.position += best * way;
+    step.target.sample = field_.sample_fast(step.target.position, step.target.sample.cone);
+    step.cost = deviation(step);
+    return step.cost <= kShareForSamples && is_well_shaped(step);
+  }
+
+  // The largest of the step's vertex and of its faces, in limits.
+  double deviation(const Step& step) const {
+    const FieldSample& s = step.target.sample;
+    double result = std::abs(s.distance) / most_deviation(field_.radius_at(s.cone, s.t));
+    visit_samples(
+        step, [&](double, double distance, double limit) { result = std::max(result, std::abs(distance) / limit); });
+    return result;
+  }
+
+  double most_deviation(double radius) const { return std::min(limit_.at(radius), kMostDeviation * radius); }
+
+  // Calls visit(share of the vertex in the point, signed distance, limit) for points of the new faces.
+  template <class Visit>
+  void visit_samples(const Step& step, Visit&& visit) const {
+    const Vec3& p = step.target.position;
+    const double radius = field_.radius_at(step.target.sample.cone, step.target.sample.t);
+    for (const FaceCorners& f : step.faces) {
+      const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), step.at) - f.begin());
+      const Vertex b = f[(at + 1) % 3], c = f[(at + 2) % 3];
+      const double limit = most_deviation(std::min({radius, surface_.radius(b), surface_.radius(c)}));
+      const auto offer = [&](double share, const Vec3& q, Vertex near) {
+        visit(share, field_.sample_fast(q, surface_.cone[near]).distance, limit);
+      };
+      offer(1.0 / 3, (p + state_.point(b) + state_.point(c)) / 3, b);
+      offer(0.5, 0.5 * (p + state_.point(b)), b);
+    }
+  }
+
+  bool is_well_shaped(const Step& step) const {
+    const Landing landing(step.target);
+    const Elongation at_target = longest_({step.target.sample.cone, step.target.sample.t});
+    double worst = kWorstShape;
+    bool known = false;  // how bad the faces are that are replaced
+    for (const FaceCorners& f : step.faces) {
+      const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), step.at) - f.begin());
+      const Vertex b = f[(at + 1) % 3], c = f[(at + 2) % 3];
+      if (state_.agreement(landing, b, c) < SweepState::kMinAgreement) return false;
+      const double skewness = least_skewness({step.target.position, state_.point(b), state_.point(c)},
+                                             {at_target, elongation_[b.idx()], elongation_[c.idx()]});
+      if (skewness <= worst) continue;
+      if (known) return false;
+      known = true;
+      for (const Face g : step.gone) worst = std::max(worst, skewness_of(g));
+      if (skewness > worst) return false;
+    }
+    return true;
+  }
+
+  double skewness_of(Face f) const {
+    const auto [a, b, c] = state_.corners(f);
+    return least_skewness({state_.point(a), state_.point(b), state_.point(c)},
+                          {elongation_[a.idx()], elongation_[b.idx()], elongation_[c.idx()]});
+  }
+
+  static bool has(const FaceCorners& f, Vertex v) { return std::find(f.begin(), f.end(), v) != f.end(); }
+
+  // What the step changes in the proof; nothing if that does not hold.
+  std::optional<Outlook> outlook_of(const Step& step) const {
+    Outlook outlook;
+    for (const FaceCorners& f : step.faces) {
+      for (const Vertex v : f) {
+        if (!find(outlook.corners, v)) outlook.corners.emplace_back(v, corner_after(step, v));
+      }
+    }
+    const auto corner = [&](Vertex v) -> const Corner& {
+      const Corner* changed = find(outlook.corners, v);
+      return changed ? *changed : corner_[v.idx()];
+    };
+    const auto face = [&](const FaceCorners& f) { return ErrorProof::Face{corner(f[0]), corner(f[1]), corner(f[2])}; };
+    // Shells get no lower than they are.
+    Shares least{1, 1};
+    for (const Face f : step.gone) {
+      least.inner = std::min(least.inner, shares_[f.idx()].inner);
+      least.outer = std::min(least.outer, shares_[f.idx()].outer);
+    }
+    for (const FaceCorners& f : step.faces) {
+      outlook.made.emplace_back(f, proof_.shares(face(f), least));
+      if (!is_proven(outlook.made.back().second)) return std::nullopt;
+    }
+    for (const auto& [v, changed] : outlook.corners) {
+      for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
+        if (is_gone(step, f) || find(outlook.kept, f)) continue;
+        if (fixed_[f.idx()]) return std::nullopt;
+        outlook.kept.emplace_back(f, proof_.shares(face(state_.corners(f)), shares_[f.idx()]));
+        if (!is_proven(outlook.kept.back().second)) return std::nullopt;
+      }
+    }
+    if (!heights_hold(step, outlook, corner)) return std::nullopt;
+    return outlook;
+  }
+
+  template <class Key, class Value>
+  static const Value* find(const std::vector<std::pair<Key, Value>>& all, Key key) {
+    const auto it = std::find_if(all.begin(), all.end(), [&](const auto& entry) { return entry.first == key; });
+    return it == all.end() ? nullptr : &it->second;
+  }
+
+  static bool is_proven(const Shares& shares) { return shares.inner > 0 && shares.outer > 0; }
+  static bool is_gone(const Step& step, Face f) {
+    return std::find(step.gone.begin(), step.gone.end(), f) != step.gone.end();
+  }
+
+  Corner corner_after(const Step& step, Vertex v) const {
+    const auto position = [&](Vertex x) -> const Vec3& {
+      return x == step.at ? step.target.position : state_.point(x);
+    };
+    Vec3 normal = Vec3::Zero();
+    for (const FaceCorners& f : step.faces) {
+      if (!has(f, v)) continue;
+      normal += (position(f[1]) - position(f[0])).cross(position(f[2]) - position(f[0]));
+    }
+    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
+      if (!is_gone(step, f)) normal += surface_.face_area_normal(f);
+    }
+    normal.normalize();
+    if (v != step.at) return {state_.point(v), normal, corner_[v.idx()].limit, corner_[v.idx()].cone};
+    const FieldSample& s = step.target.sample;
+    return {step.target.position, normal, limit_.at(field_.radius_at(s.cone, s.t)), s.cone};
+  }
+
+  // Faces as they will be after a step, with the shares of their shells.
+  struct Surroundings {
+    std::vector<std::pair<FaceCorners, Shares>> faces;
+    std::vector<Face> known;  // those of them that are there already
+    bool at_fixed = false;
+
+    bool are_even() const {
+      return std::all_of(faces.begin(), faces.end(),
+                         [](const auto& f) { return f.second.inner == 1 && f.second.outer == 1; });
+    }
+    std::vector<Vertex> vertices() const {
+      std::vector<Vertex> all;
+      for (const auto& [f, shares] : faces) all.insert(all.end(), f.begin(), f.end());
+      std::sort(all.begin(), all.end());
+      all.erase(std::unique(all.begin(), all.end()), all.end());
+      return all;
+    }
+  };
+
+  void add_around(Vertex v, const Step& step, const Outlook& outlook, Surroundings& to) const {
+    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
+      if (is_gone(step, f) || std::find(to.known.begin(), to.known.end(), f) != to.known.end()) continue;
+      const Shares* changed = find(outlook.kept, f);
+      to.known.push_back(f);
+      to.faces.emplace_back(state_.corners(f), changed ? *changed : shares_[f.idx()]);
+      to.at_fixed = to.at_fixed || fixed_[f.idx()];
+    }
+  }
+
+  // Where faces need shells of different heights at a corner, the lowest counts (ErrorProof::unproven). Whether all
+  // faces whose heights the step may change hold with them.
+  template <class CornerAfter>
+  bool heights_hold(const Step& step, const Outlook& outlook, const CornerAfter& corner) const {
+    Surroundings changed{outlook.made, {}};
+    for (const auto& [f, shares] : outlook.kept) changed.faces.emplace_back(state_.corners(f), shares);
+    Surroundings near{outlook.made, {}};
+    for (const Vertex v : changed.vertices()) add_around(v, step, outlook, near);
+    if (near.are_even()) return true;
+    if (near.at_fixed) return false;  // heights of faces that are not proven must not change
+    Surroundings wider = near;
+    for (const Vertex v : near.vertices()) add_around(v, step, outlook, wider);
+    const auto holds = [&](const std::pair<FaceCorners, Shares>& face, ErrorProof::Side side) {
+      const auto share = [&](const Shares& s) { return side == ErrorProof::Side::inner ? s.inner : s.outer; };
+      ErrorProof::Face corners;
+      std::array<double, 3> own, heights;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vertex v = face.first[k];
+        corners[k] = corner(v);
+        own[k] = share(face.second) * corners[k].limit;
+        heights[k] = corners[k].limit;
+        for (const auto& [f, shares] : wider.faces) {
+          if (share(shares) > 0 && has(f, v)) heights[k] = std::min(heights[k], share(shares) * corners[k].limit);
+        }
+      }
+      return heights == own || proof_.holds(corners, heights, side);
+    };
+    return std::all_of(near.faces.begin(), near.faces.end(), [&](const auto& face) {
+      return holds(face, ErrorProof::Side::inner) && holds(face, ErrorProof::Side::outer);
+    });
+  }
+
+  Vertex collapse(Edge e, const Step& step, const Outlook& outlook) {
+    const Vertex v = CGAL::Euler::collapse_edge(e, mesh_);
+    surface_.place(v, step.target.position, step.target.sample);
+    note(step, outlook, v);
+    return v;
+  }
+
+  // After a step. `at`: its vertex, as it is called now.
+  void note(const Step& step, const Outlook& outlook, Vertex at) {
+    elongation_[at.idx()] = longest_({surface_.cone[at], surface_.t[at]});
+    for (const auto& [x, corner] : outlook.corners) {
+      const Vertex now = x == step.at ? at : x;
+      corner_[now.idx()] = corner;
+      changed_[now.idx()] = 1;
+    }
+    for (const auto& [f, shares] : outlook.kept) shares_[f.idx()] = shares;
+    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(at))) {
+      const FaceCorners corners = state_.corners(f);
+      for (const auto& [made, shares] : outlook.made) {
+        const bool same =
+            std::all_of(made.begin(), made.end(), [&](Vertex x) { return has(corners, x == step.at ? at : x); });
+        if (same) shares_[f.idx()] = shares;
+      }
+    }
+  }
+
+  using Entry = std::pair<double, Index>;
+
+  BoundSurface& surface_;
+  SurfaceMesh& mesh_;
+  SweepState state_;
+  const VesselField& field_;
+  ErrorProof proof_;
+  const ErrorLimit& limit_;
+  const std::function<Elongation(const CenterlineBinding&)>& longest_;
+  std::vector<Elongation> elongation_;  // by vertex
+  std::vector<Corner> corner_;
+  std::vector<char> changed_;   // in this pass, vertices whose faces have changed
+  std::vector<Shares> shares_;  // by face
+  std::vector<char> fixed_;
+};
+
+// Whether the surface is a manifold, so that it can be worked on.
+bool build(const FinishedSurface& from, BoundSurface& surface) {
+  for (Index v = 0; v < from.mesh.vertices.size(); ++v) {
+    const Vec3& p = from.mesh.vertices[v];
+    FieldSample sample = surface.field.sample_fast(p, from.binding[v].segment);
+    sample.cone = from.binding[v].segment;
+    sample.t = from.binding[v].t;
+    surface.place(surface.mesh.add_vertex(p), p, sample);
+  }
+  for (const auto& [a, b, c] : from.mesh.faces) {
+    if (surface.mesh.add_face(Vertex(a), Vertex(b), Vertex(c)) == SurfaceMesh::null_face()) return false;
+  }
+  for (const Opening& opening : from.openings) {
+    std::vector<Vertex> loop;
+    for (const Index v : opening.ring) loop.emplace_back(v);
+    surface.close_with_lid(loop, opening.center);
+  }
+  return true;
+}
+
+}  // namespace
+
+void coarsen(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit,
+             const std::function<Elongation(const CenterlineBinding&)>& longest) {
+  BoundSurface work(field);
+  if (!build(surface, work)) return;
+  work.guard_crossings();
+  Coarsener(work, limit, longest).run();
+  GenerateResult result;
+  const std::vector<Index> number = work.export_to(result);
+  surface.mesh = std::move(result.mesh);
+  surface.binding = std::move(result.binding);
+  surface.radius = std::move(result.radius);
+  for (Opening& opening : surface.openings) {
+    for (Index& v : opening.ring) v = number[v];
+  }
+}
+
+}  // namespace vmesh
