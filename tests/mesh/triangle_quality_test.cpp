@@ -130,7 +130,7 @@ TEST(TriangleMeasures, AgreeWithTheDefinitionsOnRandomTriangles) {
 }
 
 TEST(EquiangleSkewness, OfAnEmptyMeshIsZero) {
-  const auto summary = summarize_skewness({});
+  const auto summary = summarize_skewness(TriMesh{});
   EXPECT_EQ(summary.mean, 0);
   EXPECT_EQ(summary.max, 0);
 }
