@@ -24,8 +24,16 @@ TEST_F(Tradeoff, WritesReportPlotAndSummary) {
     EXPECT_GT(point.at("error_mm").at("mean"), 0.0);
     EXPECT_GE(point.at("error_mm").at("max"), point.at("error_mm").at("mean"));
   }
-  std::set<std::string> expected = {"around",    "around, blend 0", "beta, single seed", "blend",
-                                    "max-error", "sweeps",          "truncated cones"};
+  std::set<std::string> expected = {"around",
+                                    "around, blend 0",
+                                    "beta, single seed",
+                                    "blend",
+                                    "max-error",
+                                    "max-error in mm, elongation 16",
+                                    "max-error, elongation 16",
+                                    "max-error, elongation 4",
+                                    "sweeps",
+                                    "truncated cones"};
   if (VMESH_TEST_WITH_VTK) expected.insert({"marching cubes", "marching cubes, decimated"});
   EXPECT_EQ(curves, expected);
   EXPECT_NE(read("r.md").find("| around "), std::string::npos);

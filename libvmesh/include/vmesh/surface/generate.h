@@ -76,7 +76,8 @@ struct GenerateOptions {
   ErrorLimit max_error;
   /// Along vessels, triangles are as long as the error allows, at most so many times what they are evenly, in
   /// [1, kMostElongation]; around junctions and ends they stay even. The error: what edges across the vessel cut off,
-  /// or max_error. Guided growth only.
+  /// or max_error. With that, unless deformable, vertices are then left out anywhere as long as it stays proven.
+  /// Guided growth only.
   double elongation = 1;
   /// For a centerline that is to move: no node is left out by `simplification`, and triangles are no longer than the
   /// segments around, so that there is a ring of vertices at every node.

@@ -16,9 +16,9 @@ struct DockedVertex {
   Vec3 position;
   Index cone;
   double fineness, lift;
-  Index dock = kNone;  ///< index into docks_of(junction): the dock of the ring's tube
-  Index number = 0;    ///< in the ring
-  double elongation_share = 1;
+  Index dock = kNone;           ///< index into docks_of(junction): the dock of the ring's tube
+  Index number = 0;             ///< in the ring
+  double elongation_share = 1;  ///< see BoundSurface
 };
 
 /// The finished surface of a junction and of the tube ends around it, up to one ring of each tube that is kept

@@ -132,8 +132,10 @@ class PieceGrower {
 
   void coarsen_proven(ErrorSummary& summary) {
     FinishedSurface surface{gathered_.mesh, gathered_.binding, gathered_.radius, gathered_.openings};
-    coarsen(surface, tubes_.field(), options_.max_error,
-            [&](const CenterlineBinding& at) { return tubes_.longest_at(at.segment, at.t, options_.elongation); });
+    const auto longest = [&](const CenterlineBinding& at) {
+      return tubes_.longest_at(at.segment, at.t, options_.elongation);
+    };
+    coarsen(surface, tubes_.field(), options_.max_error, longest, progress_);
     // Faces that were proven by bending their shells are at corners that stay; neighbours may lower their shells.
     const std::vector<Index> unproven =
         unproven_faces(surface.mesh, surface.binding, tubes_.field(), options_.max_error);

@@ -16,6 +16,7 @@
 namespace vmesh {
 namespace {
 
+// None of these is in the surveys yet (libvmesh/README.md, Constants).
 constexpr double kMostDeviation = 0.5;    // radii, whatever the limit: the axis stays inside
 constexpr double kShareForSamples = 0.9;  // of the limit: beyond, proofs fail too often to be worth trying
 constexpr double kWorstShape = 0.75;      // skewness of a face in its metric, unless one that it replaces was worse
@@ -26,6 +27,7 @@ constexpr double kMoves[] = {0, 0.5};     // of a vertex on its way to the middl
 constexpr int kRounds = 5;
 constexpr double kFewSteps = 0.02;   // of the vertices: not worth another round
 constexpr double kTolerance = 1e-3;  // radii, of projections
+constexpr int kPollInterval = 64;    // steps looked at, a millisecond each at most
 
 using Corner = ErrorProof::Corner;
 using Shares = ErrorProof::Shares;
@@ -50,14 +52,15 @@ struct Outlook {
 class Coarsener {
  public:
   Coarsener(BoundSurface& surface, const ErrorLimit& limit,
-            const std::function<Elongation(const CenterlineBinding&)>& longest)
+            const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress)
       : surface_(surface),
         mesh_(surface.mesh),
         state_(surface),
         field_(surface.field),
         proof_(field_),
         limit_(limit),
-        longest_(longest) {
+        longest_(longest),
+        progress_(progress) {
     for (const Vertex v : mesh_.vertices()) elongation_.push_back(longest_({surface_.cone[v], surface_.t[v]}));
     measure();
   }
@@ -65,6 +68,7 @@ class Coarsener {
   void run() {
     const double enough = kFewSteps * static_cast<double>(mesh_.number_of_vertices());
     for (int round = 0; round < kRounds; ++round) {
+      done_ = static_cast<double>(round) / kRounds;
       if (static_cast<double>(collapse_all()) < enough) break;
       relax();
     }
@@ -97,6 +101,10 @@ class Coarsener {
     }
   }
 
+  void poll() {
+    if (++polls_ % kPollInterval == 0) report_progress(progress_, "coarsen", done_);
+  }
+
   Corner corner_of(Vertex v) const {
     return {state_.point(v), surface_.vertex_normal(v), limit_.at(surface_.radius(v)), surface_.cone[v]};
   }
@@ -119,6 +127,7 @@ class Coarsener {
     }
     std::size_t count = 0;
     while (!queue.empty()) {
+      poll();
       const auto [expected, index] = queue.top();
       queue.pop();
       const Edge e(index);
@@ -146,6 +155,7 @@ class Coarsener {
   // Takes steps that leave fewer deviations and as many vertices, so that more can go.
   void relax() {
     for (const Edge e : mesh_.edges()) {
+      poll();
       const std::optional<Step> step = flip_of(e);
       if (!step || !surface_.may_flip(mesh_.halfedge(e))) continue;
       const std::optional<Outlook> outlook = outlook_of(*step);
@@ -155,6 +165,7 @@ class Coarsener {
       note(*step, *outlook, step->at);
     }
     for (const Vertex v : mesh_.vertices()) {
+      poll();
       const std::optional<Step> step = move_of(v);
       if (!step || !surface_.may_place(v, step->target.position)) continue;
       const std::optional<Outlook> outlook = outlook_of(*step);
@@ -478,6 +489,9 @@ class Coarsener {
   ErrorProof proof_;
   const ErrorLimit& limit_;
   const std::function<Elongation(const CenterlineBinding&)>& longest_;
+  const Progress& progress_;
+  double done_ = 0;
+  std::size_t polls_ = 0;
   std::vector<Elongation> elongation_;  // by vertex
   std::vector<Corner> corner_;
   std::vector<char> changed_;   // in this pass, vertices whose faces have changed
@@ -508,11 +522,11 @@ bool build(const FinishedSurface& from, BoundSurface& surface) {
 }  // namespace
 
 void coarsen(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit,
-             const std::function<Elongation(const CenterlineBinding&)>& longest) {
+             const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress) {
   BoundSurface work(field);
   if (!build(surface, work)) return;
   work.guard_crossings();
-  Coarsener(work, limit, longest).run();
+  Coarsener(work, limit, longest, progress).run();
   GenerateResult result;
   const std::vector<Index> number = work.export_to(result);
   surface.mesh = std::move(result.mesh);

@@ -2,6 +2,8 @@
 
 #include <functional>
 
+#include "vmesh/core/progress.h"
+
 #include "surface/proof/patch.h"
 #include "surface/remesh/elongated_metric.h"
 
@@ -18,6 +20,6 @@ namespace vmesh {
 ///
 /// The result is proven like the surface before: the same faces are not. One thread.
 void coarsen(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit,
-             const std::function<Elongation(const CenterlineBinding&)>& longest);
+             const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress);
 
 }  // namespace vmesh

@@ -43,7 +43,7 @@ class BoundSurface {
 
   /// Where triangles may be longer than wide. Without (nullptr) they are not. To be set before vertices are placed.
   const ElongationField* elongation_field = nullptr;
-  /// Vector of the metric in which triangles are to be equilateral, see ElongatedMetric; zero without a stretch field.
+  /// Vector of the metric in which triangles are to be equilateral, see ElongatedMetric; zero where they are even.
   SurfaceMesh::Property_map<Vertex, Vec3> elongation;
   /// Share of what the elongation exceeds 1 by that is left to a vertex: less where the limit on the error asks for it.
   SurfaceMesh::Property_map<Vertex, double> elongation_share;
