@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kSchema = "vmesh.part/1";
+constexpr const char* kSchema = "vmesh.part/2";
 
 // A list of lists as a flat one, and where each begins.
 struct Lists {
