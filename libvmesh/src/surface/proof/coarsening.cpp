@@ -8,10 +8,8 @@
 #include <CGAL/boost/graph/Euler_operations.h>
 #include <tbb/parallel_for.h>
 
-#include "vmesh/surface/error_bound.h"
-
+#include "surface/proof/kept_proof.h"
 #include "surface/remesh/least_skewness.h"
-#include "surface/remesh/sweep_state.h"
 
 namespace vmesh {
 namespace {
@@ -29,24 +27,8 @@ constexpr double kFewSteps = 0.02;   // of the vertices: not worth another round
 constexpr double kTolerance = 1e-3;  // radii, of projections
 constexpr int kPollInterval = 64;    // steps looked at, a millisecond each at most
 
-using Corner = ErrorProof::Corner;
-using Shares = ErrorProof::Shares;
-using FaceCorners = std::array<Vertex, 3>;
-
-// A replacement of faces by others around a vertex.
-struct Step {
-  Vertex at;
-  BoundaryPoint target;            // where it goes
-  std::vector<Face> gone;          // faces that are replaced
-  std::vector<FaceCorners> faces;  // by which
-  double cost = 0;                 // largest deviation, in limits
-};
-
-// What a step would change in the proof.
-struct Outlook {
-  std::vector<std::pair<Vertex, Corner>> corners;
-  std::vector<std::pair<FaceCorners, Shares>> made;
-  std::vector<std::pair<Face, Shares>> kept;
+struct Step : Replacement {
+  double cost = 0;  // largest deviation, in limits
 };
 
 class Coarsener {
@@ -57,12 +39,12 @@ class Coarsener {
         mesh_(surface.mesh),
         state_(surface),
         field_(surface.field),
-        proof_(field_),
+        proof_(state_, limit),
         limit_(limit),
         longest_(longest),
         progress_(progress) {
     for (const Vertex v : mesh_.vertices()) elongation_.push_back(longest_({surface_.cone[v], surface_.t[v]}));
-    measure();
+    changed_.assign(mesh_.num_vertices(), 1);
   }
 
   void run() {
@@ -75,38 +57,8 @@ class Coarsener {
   }
 
  private:
-  // Corners, shares and whether faces are proven, as unproven_faces() sees them.
-  void measure() {
-    corner_.resize(mesh_.num_vertices());
-    changed_.assign(mesh_.num_vertices(), 1);
-    for (const Vertex v : mesh_.vertices()) corner_[v.idx()] = corner_of(v);
-    shares_.resize(mesh_.num_faces());
-    fixed_.assign(mesh_.num_faces(), 0);
-    std::vector<Face> faces;
-    std::vector<Triangle> triangles;
-    for (const Face f : mesh_.faces()) {
-      if (surface_.is_lid(f)) continue;
-      const auto [a, b, c] = state_.corners(f);
-      faces.push_back(f);
-      triangles.push_back({a.idx(), b.idx(), c.idx()});
-    }
-    std::vector<Shares> shares(faces.size());
-    tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
-      shares[i] = proof_.shares({corner_[triangles[i][0]], corner_[triangles[i][1]], corner_[triangles[i][2]]});
-    });
-    for (std::size_t i = 0; i < faces.size(); ++i) shares_[faces[i].idx()] = shares[i];
-    for (const Index i : proof_.unproven(corner_, triangles, shares)) fixed_[faces[i].idx()] = 1;
-    for (const Face f : mesh_.faces()) {
-      for (const Vertex v : state_.corners(f)) fixed_[f.idx()] |= surface_.held(v);
-    }
-  }
-
   void poll() {
     if (++polls_ % kPollInterval == 0) report_progress(progress_, "coarsen", done_);
-  }
-
-  Corner corner_of(Vertex v) const {
-    return {state_.point(v), surface_.vertex_normal(v), limit_.at(surface_.radius(v)), surface_.cone[v]};
   }
 
   // One pass over all edges. Returns how many were collapsed.
@@ -139,7 +91,7 @@ class Coarsener {
         continue;
       }
       if (!surface_.may_collapse(mesh_.vertex(e, 0), mesh_.vertex(e, 1), step->target.position)) continue;
-      const std::optional<Outlook> outlook = outlook_of(*step);
+      const std::optional<KeptProof::Outlook> outlook = proof_.after(*step);
       if (!outlook) continue;
       const Vertex v = collapse(e, *step, *outlook);
       ++count;
@@ -158,7 +110,7 @@ class Coarsener {
       poll();
       const std::optional<Step> step = flip_of(e);
       if (!step || !surface_.may_flip(mesh_.halfedge(e))) continue;
-      const std::optional<Outlook> outlook = outlook_of(*step);
+      const std::optional<KeptProof::Outlook> outlook = proof_.after(*step);
       if (!outlook) continue;
       CGAL::Euler::flip_edge(mesh_.halfedge(e), mesh_);
       surface_.touch_faces(step->at);
@@ -168,7 +120,7 @@ class Coarsener {
       poll();
       const std::optional<Step> step = move_of(v);
       if (!step || !surface_.may_place(v, step->target.position)) continue;
-      const std::optional<Outlook> outlook = outlook_of(*step);
+      const std::optional<KeptProof::Outlook> outlook = proof_.after(*step);
       if (!outlook) continue;
       surface_.place(v, step->target.position, step->target.sample);
       note(*step, *outlook, v);
@@ -178,24 +130,24 @@ class Coarsener {
   // The step that flips the edge, if that is allowed and brings its faces closer to the boundary.
   std::optional<Step> flip_of(Edge e) const {
     const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
-    if (fixed_[mesh_.face(h).idx()] || fixed_[mesh_.face(o).idx()]) return std::nullopt;
+    if (proof_.is_fixed(mesh_.face(h)) || proof_.is_fixed(mesh_.face(o))) return std::nullopt;
     const Vertex a = mesh_.source(h), b = mesh_.target(h);
     const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
     if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge())
       return std::nullopt;
-    const Step now{a, {state_.point(a), surface_.sample(a)}, {}, {{a, b, c}, {b, a, d}}};
-    Step step{c, {state_.point(c), surface_.sample(c)}, {mesh_.face(h), mesh_.face(o)}, {{c, d, b}, {d, c, a}}};
+    const Step now{{a, {state_.point(a), surface_.sample(a)}, {}, {{a, b, c}, {b, a, d}}}};
+    Step step{{c, {state_.point(c), surface_.sample(c)}, {mesh_.face(h), mesh_.face(o)}, {{c, d, b}, {d, c, a}}}};
     if (deviation(step) > kBetter * deviation(now) || !is_well_shaped(step)) return std::nullopt;
     return step;
   }
 
   // The step that moves the vertex between its neighbours, if that is allowed and brings its faces closer.
   std::optional<Step> move_of(Vertex v) const {
-    Step step{v, {state_.point(v), surface_.sample(v)}, {}, {}};
+    Step step{{v, {state_.point(v), surface_.sample(v)}, {}, {}}};
     Vec3 middle = Vec3::Zero();
     double count = 0;
     for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-      if (fixed_[f.idx()]) return std::nullopt;
+      if (proof_.is_fixed(f)) return std::nullopt;
       step.gone.push_back(f);
       step.faces.push_back(state_.corners(f));
     }
@@ -227,11 +179,9 @@ class Coarsener {
     step.at = a;
     for (const Vertex v : {a, b}) {
       for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-        if (fixed_[f.idx()]) return std::nullopt;
+        if (proof_.is_fixed(f)) return std::nullopt;
         FaceCorners corners = state_.corners(f);
-        const bool has_a = std::find(corners.begin(), corners.end(), a) != corners.end();
-        const bool has_b = std::find(corners.begin(), corners.end(), b) != corners.end();
-        if (has_a && has_b) {
+        if (has(corners, a) && has(corners, b)) {
           if (v == a) step.gone.push_back(f);
           continue;
         }
@@ -327,134 +277,7 @@ class Coarsener {
                           {elongation_[a.idx()], elongation_[b.idx()], elongation_[c.idx()]});
   }
 
-  static bool has(const FaceCorners& f, Vertex v) { return std::find(f.begin(), f.end(), v) != f.end(); }
-
-  // What the step changes in the proof; nothing if that does not hold.
-  std::optional<Outlook> outlook_of(const Step& step) const {
-    Outlook outlook;
-    for (const FaceCorners& f : step.faces) {
-      for (const Vertex v : f) {
-        if (!find(outlook.corners, v)) outlook.corners.emplace_back(v, corner_after(step, v));
-      }
-    }
-    const auto corner = [&](Vertex v) -> const Corner& {
-      const Corner* changed = find(outlook.corners, v);
-      return changed ? *changed : corner_[v.idx()];
-    };
-    const auto face = [&](const FaceCorners& f) { return ErrorProof::Face{corner(f[0]), corner(f[1]), corner(f[2])}; };
-    // Shells get no lower than they are.
-    Shares least{1, 1};
-    for (const Face f : step.gone) {
-      least.inner = std::min(least.inner, shares_[f.idx()].inner);
-      least.outer = std::min(least.outer, shares_[f.idx()].outer);
-    }
-    for (const FaceCorners& f : step.faces) {
-      outlook.made.emplace_back(f, proof_.shares(face(f), least));
-      if (!is_proven(outlook.made.back().second)) return std::nullopt;
-    }
-    for (const auto& [v, changed] : outlook.corners) {
-      for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-        if (is_gone(step, f) || find(outlook.kept, f)) continue;
-        if (fixed_[f.idx()]) return std::nullopt;
-        outlook.kept.emplace_back(f, proof_.shares(face(state_.corners(f)), shares_[f.idx()]));
-        if (!is_proven(outlook.kept.back().second)) return std::nullopt;
-      }
-    }
-    if (!heights_hold(step, outlook, corner)) return std::nullopt;
-    return outlook;
-  }
-
-  template <class Key, class Value>
-  static const Value* find(const std::vector<std::pair<Key, Value>>& all, Key key) {
-    const auto it = std::find_if(all.begin(), all.end(), [&](const auto& entry) { return entry.first == key; });
-    return it == all.end() ? nullptr : &it->second;
-  }
-
-  static bool is_proven(const Shares& shares) { return shares.inner > 0 && shares.outer > 0; }
-  static bool is_gone(const Step& step, Face f) {
-    return std::find(step.gone.begin(), step.gone.end(), f) != step.gone.end();
-  }
-
-  Corner corner_after(const Step& step, Vertex v) const {
-    const auto position = [&](Vertex x) -> const Vec3& {
-      return x == step.at ? step.target.position : state_.point(x);
-    };
-    Vec3 normal = Vec3::Zero();
-    for (const FaceCorners& f : step.faces) {
-      if (!has(f, v)) continue;
-      normal += (position(f[1]) - position(f[0])).cross(position(f[2]) - position(f[0]));
-    }
-    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-      if (!is_gone(step, f)) normal += surface_.face_area_normal(f);
-    }
-    normal.normalize();
-    if (v != step.at) return {state_.point(v), normal, corner_[v.idx()].limit, corner_[v.idx()].cone};
-    const FieldSample& s = step.target.sample;
-    return {step.target.position, normal, limit_.at(field_.radius_at(s.cone, s.t)), s.cone};
-  }
-
-  // Faces as they will be after a step, with the shares of their shells.
-  struct Surroundings {
-    std::vector<std::pair<FaceCorners, Shares>> faces;
-    std::vector<Face> known;  // those of them that are there already
-    bool at_fixed = false;
-
-    bool are_even() const {
-      return std::all_of(faces.begin(), faces.end(),
-                         [](const auto& f) { return f.second.inner == 1 && f.second.outer == 1; });
-    }
-    std::vector<Vertex> vertices() const {
-      std::vector<Vertex> all;
-      for (const auto& [f, shares] : faces) all.insert(all.end(), f.begin(), f.end());
-      std::sort(all.begin(), all.end());
-      all.erase(std::unique(all.begin(), all.end()), all.end());
-      return all;
-    }
-  };
-
-  void add_around(Vertex v, const Step& step, const Outlook& outlook, Surroundings& to) const {
-    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-      if (is_gone(step, f) || std::find(to.known.begin(), to.known.end(), f) != to.known.end()) continue;
-      const Shares* changed = find(outlook.kept, f);
-      to.known.push_back(f);
-      to.faces.emplace_back(state_.corners(f), changed ? *changed : shares_[f.idx()]);
-      to.at_fixed = to.at_fixed || fixed_[f.idx()];
-    }
-  }
-
-  // Where faces need shells of different heights at a corner, the lowest counts (ErrorProof::unproven). Whether all
-  // faces whose heights the step may change hold with them.
-  template <class CornerAfter>
-  bool heights_hold(const Step& step, const Outlook& outlook, const CornerAfter& corner) const {
-    Surroundings changed{outlook.made, {}};
-    for (const auto& [f, shares] : outlook.kept) changed.faces.emplace_back(state_.corners(f), shares);
-    Surroundings near{outlook.made, {}};
-    for (const Vertex v : changed.vertices()) add_around(v, step, outlook, near);
-    if (near.are_even()) return true;
-    if (near.at_fixed) return false;  // heights of faces that are not proven must not change
-    Surroundings wider = near;
-    for (const Vertex v : near.vertices()) add_around(v, step, outlook, wider);
-    const auto holds = [&](const std::pair<FaceCorners, Shares>& face, ErrorProof::Side side) {
-      const auto share = [&](const Shares& s) { return side == ErrorProof::Side::inner ? s.inner : s.outer; };
-      ErrorProof::Face corners;
-      std::array<double, 3> own, heights;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vertex v = face.first[k];
-        corners[k] = corner(v);
-        own[k] = share(face.second) * corners[k].limit;
-        heights[k] = corners[k].limit;
-        for (const auto& [f, shares] : wider.faces) {
-          if (share(shares) > 0 && has(f, v)) heights[k] = std::min(heights[k], share(shares) * corners[k].limit);
-        }
-      }
-      return heights == own || proof_.holds(corners, heights, side);
-    };
-    return std::all_of(near.faces.begin(), near.faces.end(), [&](const auto& face) {
-      return holds(face, ErrorProof::Side::inner) && holds(face, ErrorProof::Side::outer);
-    });
-  }
-
-  Vertex collapse(Edge e, const Step& step, const Outlook& outlook) {
+  Vertex collapse(Edge e, const Step& step, const KeptProof::Outlook& outlook) {
     const Vertex v = CGAL::Euler::collapse_edge(e, mesh_);
     surface_.place(v, step.target.position, step.target.sample);
     note(step, outlook, v);
@@ -462,22 +285,10 @@ class Coarsener {
   }
 
   // After a step. `at`: its vertex, as it is called now.
-  void note(const Step& step, const Outlook& outlook, Vertex at) {
+  void note(const Step& step, const KeptProof::Outlook& outlook, Vertex at) {
     elongation_[at.idx()] = longest_({surface_.cone[at], surface_.t[at]});
-    for (const auto& [x, corner] : outlook.corners) {
-      const Vertex now = x == step.at ? at : x;
-      corner_[now.idx()] = corner;
-      changed_[now.idx()] = 1;
-    }
-    for (const auto& [f, shares] : outlook.kept) shares_[f.idx()] = shares;
-    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(at))) {
-      const FaceCorners corners = state_.corners(f);
-      for (const auto& [made, shares] : outlook.made) {
-        const bool same =
-            std::all_of(made.begin(), made.end(), [&](Vertex x) { return has(corners, x == step.at ? at : x); });
-        if (same) shares_[f.idx()] = shares;
-      }
-    }
+    for (const auto& [x, corner] : outlook.corners) changed_[(x == step.at ? at : x).idx()] = 1;
+    proof_.note(step, outlook, at);
   }
 
   using Entry = std::pair<double, Index>;
@@ -486,17 +297,14 @@ class Coarsener {
   SurfaceMesh& mesh_;
   SweepState state_;
   const VesselField& field_;
-  ErrorProof proof_;
+  KeptProof proof_;
   const ErrorLimit& limit_;
   const std::function<Elongation(const CenterlineBinding&)>& longest_;
   const Progress& progress_;
   double done_ = 0;
   std::size_t polls_ = 0;
   std::vector<Elongation> elongation_;  // by vertex
-  std::vector<Corner> corner_;
-  std::vector<char> changed_;   // in this pass, vertices whose faces have changed
-  std::vector<Shares> shares_;  // by face
-  std::vector<char> fixed_;
+  std::vector<char> changed_;           // in this pass, vertices whose faces have changed
 };
 
 // Whether the surface is a manifold, so that it can be worked on.

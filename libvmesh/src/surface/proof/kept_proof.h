@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "vmesh/surface/error_bound.h"
+
+#include "surface/proof/error_limit.h"
+#include "surface/remesh/sweep_state.h"
+
+namespace vmesh {
+
+using FaceCorners = std::array<Vertex, 3>;
+
+inline bool has(const FaceCorners& f, Vertex v) { return f[0] == v || f[1] == v || f[2] == v; }
+
+/// A step on a surface: faces replaced by others around a vertex, which may move.
+struct Replacement {
+  Vertex at;
+  BoundaryPoint target;            ///< where `at` goes
+  std::vector<Face> gone;          ///< faces that are replaced
+  std::vector<FaceCorners> faces;  ///< by which; each has `at` as a corner
+};
+
+/// The proof of a surface's error limit, kept while the surface changes step by step (ErrorProof). Faces that were not
+/// proven at first, and faces at held vertices, are fixed: no step may replace them or change what holds for them.
+class KeptProof {
+ public:
+  /// What a step changes in the proof.
+  struct Outlook {
+    std::vector<std::pair<Vertex, ErrorProof::Corner>> corners;
+    std::vector<std::pair<FaceCorners, ErrorProof::Shares>> made;
+    std::vector<std::pair<Face, ErrorProof::Shares>> kept;
+  };
+
+  /// Measures the surface as unproven_faces() does. Keeps references.
+  KeptProof(const SweepState& state, const ErrorLimit& limit);
+
+  bool is_fixed(Face f) const { return fixed_[f.idx()]; }
+
+  /// What the step would change; nothing if the surface would not be proven any more.
+  std::optional<Outlook> after(const Replacement& step) const;
+
+  /// Tells that the step has been taken. `at`: its vertex, as it is called now.
+  void note(const Replacement& step, const Outlook& outlook, Vertex at);
+
+ private:
+  // Faces as they will be after a step, with the shares of their shells.
+  struct Surroundings {
+    std::vector<std::pair<FaceCorners, ErrorProof::Shares>> faces;
+    std::vector<Face> known;  // those of them that are there already
+    bool at_fixed = false;
+
+    bool are_even() const;
+    std::vector<Vertex> vertices() const;
+  };
+
+  ErrorProof::Corner corner_of(Vertex v) const;
+  ErrorProof::Corner corner_after(const Replacement& step, Vertex v) const;
+  void add_around(Vertex v, const Replacement& step, const Outlook& outlook, Surroundings& to) const;
+  bool heights_hold(const Replacement& step, const Outlook& outlook) const;
+
+  const SweepState& state_;
+  const BoundSurface& surface_;
+  const SurfaceMesh& mesh_;
+  const ErrorLimit& limit_;
+  ErrorProof proof_;
+  std::vector<ErrorProof::Corner> corner_;  // by vertex
+  std::vector<ErrorProof::Shares> shares_;  // by face
+  std::vector<char> fixed_;
+};
+
+}  // namespace vmesh
