@@ -47,7 +47,7 @@ void write_markdown(const std::string& file, const std::vector<TradeoffPoint>& p
                "vertices, ratio | mean skewness, ratio |\n|--|--:|--|--:|--:|--:|\n");
   for (const char* theirs : {"marching cubes", "marching cubes, decimated", "CGAL Mesh_3"}) {
     for (const char* ours : {"around, blend 0", "max-error", "max-error, elongation 4", "max-error, elongation 16",
-                             "max-error in mm, elongation 16"}) {
+                             "max-error in mm, elongation 16", "vertices, elongation 16"}) {
       for (const CurveComparison& c : compare_curves(points, ours, theirs))
         std::fprintf(out, "| %s | %zu | %s | %.2f | %.2f | %.2f |\n", theirs, c.theirs.vertices, ours,
                      c.our_vertices / static_cast<double>(c.theirs.vertices),

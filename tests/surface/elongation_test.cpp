@@ -4,6 +4,7 @@
 #include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/deviation.h"
 #include "vmesh/surface/error_bound.h"
 #include "vmesh/surface/metric_skewness.h"
 
@@ -180,6 +181,31 @@ TEST(Elongation, LimitsOnTheErrorTakeFarFewerVertices) {
     EXPECT_EQ(again.mesh.vertices, result.mesh.vertices);
     EXPECT_EQ(again.mesh.faces, result.mesh.faces);
   }
+}
+
+// As many vertices as asked for, proven, and a smaller mean error than that of an even surface of as many.
+TEST(Elongation, LeavesAsManyVerticesAsAskedForWhereTheyReduceTheError) {
+  const Centerline fork = testing::fork();
+  const VesselField field(fork, GenerateOptions{}.blend);
+  GenerateOptions options = with_elongation(1);
+  const GenerateResult even = generate_surface(fork, options);
+  options = with_elongation(16);
+  options.around = 20;
+  options.max_error.relative = 0.5;
+  options.least_vertices = even.mesh.vertices.size();
+  for (const bool open : {false, true}) {
+    SCOPED_TRACE(open);
+    options.open_ends.all = open;
+    const GenerateResult result = generate_surface(fork, options);
+    EXPECT_TRUE(result.is_sound());
+    EXPECT_EQ(result.error.unproven_faces, 0u);
+    if (open) continue;  // rims keep their vertices
+    EXPECT_EQ(result.mesh.vertices.size(), options.least_vertices);
+    const double mean = measure_deviation(result.mesh, result.binding, field).mean_mm;
+    EXPECT_LT(2 * mean, measure_deviation(even.mesh, even.binding, field).mean_mm);
+  }
+  options.max_error = {};
+  EXPECT_THROW(generate_surface(fork, options), InvalidInput);
 }
 
 TEST(Elongation, IsRefusedOutOfRangeAndWithPaperGrowth) {

@@ -32,6 +32,7 @@ TEST_F(Tradeoff, WritesReportPlotAndSummary) {
                                     "max-error in mm, elongation 16",
                                     "max-error, elongation 16",
                                     "max-error, elongation 4",
+                                    "vertices, elongation 16",
                                     "sweeps",
                                     "truncated cones"};
   if (VMESH_TEST_WITH_VTK) expected.insert({"marching cubes", "marching cubes, decimated"});

@@ -57,6 +57,26 @@ TEST_P(VertexBudget, GivesTheFinestSurfaceWithin) {
   EXPECT_TRUE(same_surface(generate_surface(fork, surface.choice().options).mesh, surface.result.mesh));
 }
 
+TEST(BudgetOfVertices, WithLongTrianglesLeavesVerticesOutOfAFinerSurface) {
+  Budget budget;
+  budget.vertices = 120;
+  const Centerline fork = testing::fork();
+  const BudgetedSurface even = generate_within(budget, fork);
+  GenerateOptions options;
+  options.elongation = 16;
+  const BudgetedSurface surface = generate_within(budget, fork, options);
+  ASSERT_TRUE(surface.met());
+  EXPECT_TRUE(surface.result.is_sound());
+  EXPECT_EQ(surface.result.error.unproven_faces, 0u);
+  EXPECT_LE(surface.result.mesh.vertices.size(), budget.vertices);
+  EXPECT_LT(2 * surface.choice().error.mean_mm, even.choice().error.mean_mm);
+  EXPECT_TRUE(same_surface(generate_surface(fork, surface.choice().options).mesh, surface.result.mesh));
+  options.deformable = true;  // the finest with a ring at every node
+  const BudgetedSurface deformable = generate_within(budget, fork, options);
+  EXPECT_EQ(deformable.choice().options.least_vertices, 0u);
+  EXPECT_LE(deformable.result.mesh.vertices.size(), budget.vertices);
+}
+
 INSTANTIATE_TEST_SUITE_P(Budget, VertexBudget, ::testing::Values(90, 200, 1000, 10'000));
 
 TEST(BudgetOfVertices, TellsTheNeighboursToo) {

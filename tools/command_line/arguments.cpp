@@ -150,15 +150,21 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
           "0.3mm, 10% (of the local radius), or both, separated by a comma")
       ->type_name("Xmm|X%");
+  verb.add_option("--least-vertices", arguments.options.least_vertices,
+                  "with --elongation and --max-error: leave out no more vertices once there are so few; those that are "
+                  "left are where they reduce the mean error most; 0: as few as the limit allows")
+      ->capture_default_str();
   verb.add_flag("--deformable", arguments.options.deformable,
                 "for a centerline that is to move: a ring of vertices at every node, whatever the elongation");
   add_budget(verb, arguments.budget,
              "choose the resolution: the finest surface with vertices=N at most, or grown within time=Xms, or the one "
-             "with the fewest vertices that keeps error=Xmm or error=X% everywhere")
+             "with the fewest vertices that keeps error=Xmm or error=X% everywhere; with --elongation, vertices=N are "
+             "where they reduce the mean error most")
       .type_name("vertices=N|time=Xms|error=X")
       ->excludes("--around")
       ->excludes("--preset")
-      ->excludes("--max-error");
+      ->excludes("--max-error")
+      ->excludes("--least-vertices");
   add_ends(verb, arguments);
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
@@ -175,7 +181,7 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   add_common(verb, arguments.common);
   group(verb, "Resolution",
         {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification", "--elongation",
-         "--deformable"});
+         "--least-vertices", "--deformable"});
   group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
   group(verb, "Ends", {"--ends", "--open-ends", "--flow-extensions"});
   group(verb, "How it is made", {"--growth", "--beta", "--max-center-distance", "--sweeps", "--threads"});

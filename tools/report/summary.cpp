@@ -382,6 +382,7 @@ std::string describe(const GenerateArguments& arguments) {
   text << " --growth " << to_string(options.growth) << " --placement " << to_string(options.placement);
   if (options.deformable) text << " --deformable";
   if (options.max_error.is_set()) text << " --max-error " << to_string(options.max_error);
+  if (options.least_vertices > 0) text << " --least-vertices " << options.least_vertices;
   const bool round = arguments.ends == EndShape::round;
   if (!round) text << " --ends " << to_string(arguments.ends);
   if (round && options.open_ends.all) text << " --open-ends all";

@@ -15,6 +15,8 @@ constexpr int kCoarsest = 3, kFinest = 200;  // vertices around that generate_su
 constexpr int kMaxTrials = 12;               // the secant needs four or five; time is noisy
 constexpr double kRefused = 0.8;             // of max_vertices: if more are expected, the run may be refused
 constexpr int kMostFiner = 3;                // refinement steps while the error is not proven
+constexpr double kStart = 12;                // times the vertices wanted: a surface to leave vertices out of
+constexpr double kLooseLimit = 0.5;          // local radii: of no consequence but that it is proven
 constexpr int kErrorLadder[] = {4, 5, 6, 8, 10, 12, 16, 20, 24};
 
 InvalidInput unknown_budget(std::string_view text) {
@@ -41,6 +43,8 @@ class BudgetSearch {
   BudgetedSurface run() {
     if (budget_.kind == Budget::Kind::error) {
       find_fewest_vertices();
+    } else if (budget_.kind == Budget::Kind::vertices && options_.elongation > 1 && !options_.deformable) {
+      leave_out_the_rest();
     } else {
       find_finest();
     }
@@ -75,6 +79,15 @@ class BudgetSearch {
       around = static_cast<int>(std::clamp<double>(std::floor(law), fits + 1, std::max(too_fine - 1, fits + 1)));
     }
     if (fits > kCoarsest) attempt(fits - 1);
+  }
+
+  void leave_out_the_rest() {
+    if (!options_.max_error.is_set()) options_.max_error.relative = kLooseLimit;
+    options_.least_vertices = budget_.vertices;
+    const double start = std::min(kStart * allowed(), kRefused * options_.max_vertices);
+    int around = std::max(kCoarsest, least_around(centerline_, options_.max_error));
+    while (around < kFinest && expected_vertices(centerline_, around) < start) ++around;
+    attempt(around);
   }
 
   // Goes up from the given resolution until the limit is proven, then to the fewest vertices.

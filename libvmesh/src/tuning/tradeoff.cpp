@@ -10,6 +10,7 @@
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/reference/cones.h"
 #include "vmesh/reference/reference_surface.h"
+#include "vmesh/tuning/budget.h"
 
 #include "tuning/decimation.h"
 
@@ -115,6 +116,7 @@ class Sweep {
       for (const int sweeps : kEfforts) vary("sweeps", std::to_string(sweeps), [&](auto& o) { o.sweeps = sweeps; });
     }
     if (options_.marching_cubes) sweep_marching_cubes();
+    if (options_.max_error) sweep_vertices();
     if (options_.cones) sweep_cones();
     mark_best(points_);
     return std::move(points_);
@@ -148,6 +150,30 @@ class Sweep {
     add(curve, setting, [&] { return generate_surface(centerline_, options, progress_).mesh; });
   }
 
+  // As many vertices as the even surfaces have, and half as many as the coarsest.
+  std::vector<std::size_t> counts() const {
+    std::vector<std::size_t> counts;
+    for (const TradeoffPoint& point : points_) {
+      if (point.curve != "around") continue;
+      if (counts.empty()) counts.push_back(point.vertices / 2);
+      counts.push_back(point.vertices);
+    }
+    return counts;
+  }
+
+  // With the longest triangles.
+  void sweep_vertices() {
+    for (const std::size_t count : counts()) {
+      GenerateOptions options = options_.generate;
+      options.elongation = kElongations[std::size(kElongations) - 1];
+      options.blend = 0;
+      Budget budget;
+      budget.vertices = count;
+      add("vertices, elongation " + text_of(options.elongation), std::to_string(count),
+          [&] { return generate_within(budget, centerline_, options, progress_).result.mesh; });
+    }
+  }
+
   void sweep_marching_cubes() {
     const double radius = mean_radius(centerline_);
     std::optional<TriMesh> finest;
@@ -162,11 +188,8 @@ class Sweep {
       seconds = points_.back().seconds;
     }
     if (!finest) return;
-    std::vector<std::size_t> counts;
-    for (const TradeoffPoint& point : points_) {
-      if (point.curve == "around" && point.vertices < finest->vertices.size()) counts.push_back(point.vertices);
-    }
-    for (const std::size_t count : counts) {
+    for (const std::size_t count : counts()) {
+      if (count >= finest->vertices.size()) break;
       if (add("marching cubes, decimated", std::to_string(count), [&] { return decimated(*finest, count); }))
         points_.back().seconds += seconds;
     }

@@ -79,6 +79,9 @@ struct GenerateOptions {
   /// or max_error. With that, unless deformable, vertices are then left out anywhere as long as it stays proven.
   /// Guided growth only.
   double elongation = 1;
+  /// No more vertices are left out once there are so few: those that are left are where they reduce the mean error
+  /// most. 0: as many are left out as max_error allows. Only with max_error and an elongation above 1.
+  std::size_t least_vertices = 0;
   /// For a centerline that is to move: no node is left out by `simplification`, and triangles are no longer than the
   /// segments around, so that there is a ring of vertices at every node.
   bool deformable = false;
@@ -233,6 +236,10 @@ TriMesh with_lids(const GenerateResult& result);
 /// be refined; what a limit in local radii needs along a vessel; and enough that nowhere edges must be refined to less
 /// than 1 / 1.8 of their length for a limit in mm: refined farther, faces fold.
 int least_around(const Centerline& centerline, const ErrorLimit& limit);
+
+/// Approximate number of vertices of a surface with even triangles, as measured on trees. With a limit on the error:
+/// where that asks for finer triangles along straight vessels, with those.
+double expected_vertices(const Centerline& centerline, double around, const ErrorLimit& limit = {});
 
 /// Converts a surface around a simplified centerline to the original's numbers and notes what was left out. Nodes that
 /// are not the original's (kNone) stay kNone.

@@ -44,6 +44,11 @@ struct BudgetedSurface {
 /// The best operating point within a budget: for vertices or time the finest surface within it, for an error the
 /// surface with the fewest vertices. GenerateOptions::around varies, an error budget also sets max_error; the rest is
 /// as in `options`. Neighbours of the choice are tried, too. If nothing is within the budget, the closest is chosen.
+///
+/// With an elongation above 1 (and not deformable), a surface within a budget of vertices is a much finer one of which
+/// all but so many were left out, those that increase the mean error least (GenerateOptions::least_vertices); max_error
+/// is half the local radius unless it is set.
+///
 /// Repeating the chosen options gives the same surface; a time budget may choose differently each time. Throws what
 /// generate_surface() throws.
 BudgetedSurface generate_within(const Budget& budget, const Centerline& centerline, GenerateOptions options = {},

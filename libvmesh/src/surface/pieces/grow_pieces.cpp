@@ -135,7 +135,7 @@ class PieceGrower {
     const auto longest = [&](const CenterlineBinding& at) {
       return tubes_.longest_at(at.segment, at.t, options_.elongation);
     };
-    coarsen(surface, tubes_.field(), options_.max_error, longest, progress_);
+    coarsen(surface, tubes_.field(), options_.max_error, options_.least_vertices, longest, progress_);
     // Faces that were proven by bending their shells are at corners that stay; neighbours may lower their shells.
     const std::vector<Index> unproven =
         unproven_faces(surface.mesh, surface.binding, tubes_.field(), options_.max_error);

@@ -9,54 +9,77 @@
 #include <tbb/parallel_for.h>
 
 #include "surface/proof/kept_proof.h"
+#include "surface/proof/step_deviation.h"
 #include "surface/remesh/least_skewness.h"
 
 namespace vmesh {
 namespace {
 
 // None of these is in the surveys yet (libvmesh/README.md, Constants).
-constexpr double kMostDeviation = 0.5;    // radii, whatever the limit: the axis stays inside
 constexpr double kShareForSamples = 0.9;  // of the limit: beyond, proofs fail too often to be worth trying
 constexpr double kWorstShape = 0.75;      // skewness of a face in its metric, unless one that it replaces was worse
 constexpr double kOutdated = 1.05;        // a step whose cost has grown by so much waits for its turn
-constexpr int kHeights = 40;              // of a new vertex, that are tried: within a twentieth of the best
-constexpr double kBetter = 0.95;          // deviation after a step that leaves no vertex out against that before
-constexpr double kMoves[] = {0, 0.5};     // of a vertex on its way to the middle of its neighbours
+constexpr double kBetter = 0.98;       // squared deviation after a step that leaves out no vertex against that before
+constexpr double kToMiddle = 0.5;      // of the way to the middle of its neighbours: where a vertex may move to,
+constexpr double kToNeighbour = 0.08;  // or of that to a neighbour
+constexpr double kMany = 2;            // times the vertices that are to be left
 constexpr int kRounds = 5;
-constexpr double kFewSteps = 0.02;   // of the vertices: not worth another round
-constexpr double kTolerance = 1e-3;  // radii, of projections
-constexpr int kPollInterval = 64;    // steps looked at, a millisecond each at most
+constexpr int kRelaxations = 6;     // at the end
+constexpr double kFewSteps = 0.02;  // of the vertices: not worth another round
+constexpr int kPollInterval = 64;   // steps looked at, a millisecond each at most
 
 struct Step : Replacement {
-  double cost = 0;  // largest deviation, in limits
+  double cost = 0;  // by how much the squared deviation grows, mm^4
 };
 
 class Coarsener {
  public:
-  Coarsener(BoundSurface& surface, const ErrorLimit& limit,
+  Coarsener(BoundSurface& surface, const ErrorLimit& limit, std::size_t least_vertices,
             const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress)
       : surface_(surface),
         mesh_(surface.mesh),
         state_(surface),
         field_(surface.field),
         proof_(state_, limit),
-        limit_(limit),
+        deviation_(state_, limit),
+        least_vertices_(least_vertices),
         longest_(longest),
         progress_(progress) {
-    for (const Vertex v : mesh_.vertices()) elongation_.push_back(longest_({surface_.cone[v], surface_.t[v]}));
+    for (const Vertex v : mesh_.vertices()) {
+      elongation_.push_back(longest_({surface_.cone[v], surface_.t[v]}));
+      if (surface_.role[v] == BoundSurface::Role::lid) ++lids_;
+    }
     changed_.assign(mesh_.num_vertices(), 1);
+    squared_.resize(mesh_.num_faces());
+    tbb::parallel_for(Index{0}, static_cast<Index>(mesh_.num_faces()), [&](Index f) {
+      if (!proof_.is_fixed(Face(f))) squared_[f] = deviation_.measure(Face(f)).squared;
+    });
   }
 
   void run() {
-    const double enough = kFewSteps * static_cast<double>(mesh_.number_of_vertices());
     for (int round = 0; round < kRounds; ++round) {
-      done_ = static_cast<double>(round) / kRounds;
-      if (static_cast<double>(collapse_all()) < enough) break;
+      done_ = static_cast<double>(round) / (kRounds + kRelaxations);
+      if (is_few(collapse_all())) break;
       relax();
+    }
+    for (int round = 0; round < kRelaxations; ++round) {
+      done_ = static_cast<double>(kRounds + round) / (kRounds + kRelaxations);
+      if (is_few(relax())) break;
     }
   }
 
  private:
+  // So many that it matters little in which order the next ones go: steps are measured again when it is their turn, not
+  // whenever something has changed around them.
+  bool has_many_to_leave_out() const {
+    return least_vertices_ > 0 &&
+           static_cast<double>(mesh_.number_of_vertices()) > kMany * static_cast<double>(least_vertices_);
+  }
+
+  bool is_few(std::size_t steps) const {
+    return static_cast<double>(steps) < kFewSteps * static_cast<double>(mesh_.number_of_vertices());
+  }
+
   void poll() {
     if (++polls_ % kPollInterval == 0) report_progress(progress_, "coarsen", done_);
   }
@@ -78,7 +101,7 @@ class Coarsener {
       if (std::isfinite(cost[i])) queue.emplace(cost[i], edges[i].idx());
     }
     std::size_t count = 0;
-    while (!queue.empty()) {
+    while (!queue.empty() && mesh_.number_of_vertices() - lids_ > least_vertices_) {
       poll();
       const auto [expected, index] = queue.top();
       queue.pop();
@@ -86,7 +109,7 @@ class Coarsener {
       if (mesh_.is_removed(e)) continue;
       const std::optional<Step> step = collapse_of(e);
       if (!step) continue;
-      if (step->cost > kOutdated * expected) {
+      if (step->cost > expected + (kOutdated - 1) * std::abs(expected)) {
         queue.emplace(step->cost, index);
         continue;
       }
@@ -95,6 +118,7 @@ class Coarsener {
       if (!outlook) continue;
       const Vertex v = collapse(e, *step, *outlook);
       ++count;
+      if (has_many_to_leave_out()) continue;
       for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
         for (const Edge changed : {mesh_.edge(h), mesh_.edge(mesh_.prev(h))}) {
           if (const std::optional<Step> next = collapse_of(changed)) queue.emplace(next->cost, changed.idx());
@@ -104,8 +128,9 @@ class Coarsener {
     return count;
   }
 
-  // Takes steps that leave fewer deviations and as many vertices, so that more can go.
-  void relax() {
+  // Takes steps that leave less deviation and as many vertices, so that more can go. Returns how many.
+  std::size_t relax() {
+    std::size_t count = 0;
     for (const Edge e : mesh_.edges()) {
       poll();
       const std::optional<Step> step = flip_of(e);
@@ -115,6 +140,7 @@ class Coarsener {
       CGAL::Euler::flip_edge(mesh_.halfedge(e), mesh_);
       surface_.touch_faces(step->at);
       note(*step, *outlook, step->at);
+      ++count;
     }
     for (const Vertex v : mesh_.vertices()) {
       poll();
@@ -124,7 +150,9 @@ class Coarsener {
       if (!outlook) continue;
       surface_.place(v, step->target.position, step->target.sample);
       note(*step, *outlook, v);
+      ++count;
     }
+    return count;
   }
 
   // The step that flips the edge, if that is allowed and brings its faces closer to the boundary.
@@ -135,9 +163,8 @@ class Coarsener {
     const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
     if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge())
       return std::nullopt;
-    const Step now{{a, {state_.point(a), surface_.sample(a)}, {}, {{a, b, c}, {b, a, d}}}};
     Step step{{c, {state_.point(c), surface_.sample(c)}, {mesh_.face(h), mesh_.face(o)}, {{c, d, b}, {d, c, a}}}};
-    if (deviation(step) > kBetter * deviation(now) || !is_well_shaped(step)) return std::nullopt;
+    if (!is_allowed(step) || step.cost >= enough_gain(step)) return std::nullopt;
     return step;
   }
 
@@ -151,19 +178,31 @@ class Coarsener {
       step.gone.push_back(f);
       step.faces.push_back(state_.corners(f));
     }
+    const Vec3 here = state_.point(v);
+    Step best = step;
+    best.cost = enough_gain(step);
+    const double least = best.cost;
+    const auto attempt = [&](const Vec3& p) {
+      if (place(step, p, surface_.cone[v]) && step.cost < best.cost) best = step;
+    };
     for (const Vertex w : mesh_.vertices_around_target(mesh_.halfedge(v))) {
+      attempt(here + kToNeighbour * (state_.point(w) - here));
       middle += state_.point(w);
       ++count;
     }
-    const double before = deviation(step);
-    Step best = step;
-    best.cost = kBetter * before;
-    for (const double share : kMoves) {
-      const Vec3 p = state_.point(v) + share * (middle / count - state_.point(v));
-      if (place(step, p, surface_.cone[v]) && step.cost < best.cost) best = step;
-    }
-    if (best.cost >= kBetter * before) return std::nullopt;
+    attempt(here);
+    attempt(here + kToMiddle * (middle / count - here));
+    if (best.cost >= least) return std::nullopt;
     return best;
+  }
+
+  // What a step that leaves out no vertex must at least change.
+  double enough_gain(const Step& step) const { return (kBetter - 1) * squared_before(step); }
+
+  double squared_before(const Step& step) const {
+    double sum = 0;
+    for (const Face f : step.gone) sum += squared_[f.idx()];
+    return sum;
   }
 
   // Whether a face at the vertex or at one of its neighbours has changed in the last pass.
@@ -191,64 +230,28 @@ class Coarsener {
       }
     }
     if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return std::nullopt;
-    const Vec3 middle = 0.5 * (state_.point(a) + state_.point(b));
-    if (!place(step, middle, surface_.cone[a])) return std::nullopt;
-    return step;
-  }
-
-  // Finds where the step's vertex deviates least, near `p`. Returns whether that is allowed.
-  bool place(Step& step, const Vec3& p, Index hint) const {
-    step.target = project_to_boundary(field_, p, hint, kTolerance, 0);
-    const double most = most_deviation(field_.radius_at(step.target.sample.cone, step.target.sample.t));
-    const Vec3 way = step.target.sample.gradient.normalized();
-    std::vector<std::pair<double, double>> deviations;  // on the boundary, and by how much they grow with the height
-    visit_samples(step, [&](double share, double distance, double) { deviations.emplace_back(distance, share); });
-    const auto worst = [&](double height) {
-      double result = std::abs(height);
-      for (const auto& [distance, share] : deviations) result = std::max(result, std::abs(distance + share * height));
-      return result;
+    std::optional<Step> best;
+    const auto attempt = [&](const Vec3& p, Vertex near) {
+      if (place(step, p, surface_.cone[near]) && (!best || step.cost < best->cost)) best.emplace(step);
     };
-    double best = 0, least = worst(0);
-    for (int i = -kHeights; i <= kHeights; ++i) {
-      const double height = kShareForSamples * most * i / kHeights, w = worst(height);
-      if (w < least) {
-        least = w;
-        best = height;
-      }
-    }
-    if (least > kShareForSamples * most) return false;
-    step.target.position += best * way;
-    step.target.sample = field_.sample_fast(step.target.position, step.target.sample.cone);
-    step.cost = deviation(step);
-    return step.cost <= kShareForSamples && is_well_shaped(step);
+    attempt(0.5 * (state_.point(a) + state_.point(b)), a);
+    attempt(state_.point(a), a);
+    attempt(state_.point(b), b);
+    return best;
   }
 
-  // The largest of the step's vertex and of its faces, in limits.
-  double deviation(const Step& step) const {
-    const FieldSample& s = step.target.sample;
-    double result = std::abs(s.distance) / most_deviation(field_.radius_at(s.cone, s.t));
-    visit_samples(
-        step, [&](double, double distance, double limit) { result = std::max(result, std::abs(distance) / limit); });
-    return result;
+  // Puts the step's vertex where its faces deviate least, near `p`. Returns whether that is allowed.
+  bool place(Step& step, const Vec3& p, Index hint) const {
+    deviation_.place(step, p, hint, kShareForSamples);
+    return is_allowed(step);
   }
 
-  double most_deviation(double radius) const { return std::min(limit_.at(radius), kMostDeviation * radius); }
-
-  // Calls visit(share of the vertex in the point, signed distance, limit) for points of the new faces.
-  template <class Visit>
-  void visit_samples(const Step& step, Visit&& visit) const {
-    const Vec3& p = step.target.position;
-    const double radius = field_.radius_at(step.target.sample.cone, step.target.sample.t);
-    for (const FaceCorners& f : step.faces) {
-      const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), step.at) - f.begin());
-      const Vertex b = f[(at + 1) % 3], c = f[(at + 2) % 3];
-      const double limit = most_deviation(std::min({radius, surface_.radius(b), surface_.radius(c)}));
-      const auto offer = [&](double share, const Vec3& q, Vertex near) {
-        visit(share, field_.sample_fast(q, surface_.cone[near]).distance, limit);
-      };
-      offer(1.0 / 3, (p + state_.point(b) + state_.point(c)) / 3, b);
-      offer(0.5, 0.5 * (p + state_.point(b)), b);
-    }
+  // Whether the step's faces are close enough to the boundary and well-shaped. Sets its cost.
+  bool is_allowed(Step& step) const {
+    if (!is_well_shaped(step)) return false;
+    const StepDeviation::Measured after = deviation_.measure(step);
+    step.cost = after.squared - squared_before(step);
+    return after.largest <= kShareForSamples;
   }
 
   bool is_well_shaped(const Step& step) const {
@@ -289,6 +292,9 @@ class Coarsener {
     elongation_[at.idx()] = longest_({surface_.cone[at], surface_.t[at]});
     for (const auto& [x, corner] : outlook.corners) changed_[(x == step.at ? at : x).idx()] = 1;
     proof_.note(step, outlook, at);
+    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(at))) {
+      if (!proof_.is_fixed(f)) squared_[f.idx()] = deviation_.measure(f).squared;
+    }
   }
 
   using Entry = std::pair<double, Index>;
@@ -298,12 +304,15 @@ class Coarsener {
   SweepState state_;
   const VesselField& field_;
   KeptProof proof_;
-  const ErrorLimit& limit_;
+  StepDeviation deviation_;
+  std::size_t least_vertices_;
+  std::size_t lids_ = 0;
   const std::function<Elongation(const CenterlineBinding&)>& longest_;
   const Progress& progress_;
   double done_ = 0;
   std::size_t polls_ = 0;
   std::vector<Elongation> elongation_;  // by vertex
+  std::vector<double> squared_;         // by face: the integral of its squared deviation, mm^4
   std::vector<char> changed_;           // in this pass, vertices whose faces have changed
 };
 
@@ -329,12 +338,12 @@ bool build(const FinishedSurface& from, BoundSurface& surface) {
 
 }  // namespace
 
-void coarsen(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit,
+void coarsen(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit, std::size_t least_vertices,
              const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress) {
   BoundSurface work(field);
   if (!build(surface, work)) return;
   work.guard_crossings();
-  Coarsener(work, limit, longest, progress).run();
+  Coarsener(work, limit, least_vertices, longest, progress).run();
   GenerateResult result;
   const std::vector<Index> number = work.export_to(result);
   surface.mesh = std::move(result.mesh);

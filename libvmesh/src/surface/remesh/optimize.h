@@ -14,8 +14,7 @@ struct OptimizeReport {
   std::vector<Face> unproven;  ///< faces for which options.max_error is not proven
 };
 
-/// Approximate number of vertices that the size field leads to, as measured on trees.
-double expected_vertices(const Centerline& centerline, double around, const ErrorLimit& limit = {});
+/// The number of vertices that the size field leads to, as expected_vertices() of a centerline.
 double expected_vertices(double length_in_radii, double around);
 
 /// Resolution, in vertices around a vessel, at which any grown mesh becomes even.

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "surface/proof/kept_proof.h"
+
+namespace vmesh {
+
+/// How far faces are from the boundary that a step would bring, at samples: corners, the middles of edges, and centres,
+/// weighted so that cubic functions are integrated exactly.
+class StepDeviation {
+ public:
+  struct Measured {
+    double largest = 0;  ///< in limits; corners that stay do not count
+    double squared = 0;  ///< integral of the squared deviation, mm^4
+  };
+
+  /// Keeps references.
+  StepDeviation(const SweepState& state, const ErrorLimit& limit) : state_(state), limit_(limit) {}
+
+  Measured measure(const Replacement& step) const;
+
+  /// Of a face of the surface.
+  Measured measure(Face f) const;
+
+  /// Puts the step's vertex near `p`: on the boundary, then along its normal to where the squared deviation is least,
+  /// as if it changed linearly, but no farther than `share` of the limit.
+  void place(Replacement& step, const Vec3& p, Index hint, double share) const;
+
+  /// How far the surface may be from the boundary at a place of this radius: never so far that it loses the axis.
+  double most(double radius) const;
+
+ private:
+  enum class Samples { all, moving };  // moving: those that move with the step's vertex
+
+  template <class Visit>
+  void visit_samples(Samples which, const Replacement& step, Visit&& visit) const;
+
+  const SweepState& state_;
+  const ErrorLimit& limit_;
+};
+
+}  // namespace vmesh
