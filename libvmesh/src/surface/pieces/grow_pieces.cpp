@@ -92,16 +92,17 @@ class PieceGrower {
       if (vessels_overlap(f, g)) return false;
       part(gathered_.piece_of(f), gathered_.piece_of(g), dissolved, joined);
     }
-    for (Index p = 0; p < pieces_.size(); ++p) {
-      for (const RingPlace& seam : seams_of(rings_, division_.plans[p])) {
-        if (has_fault_near(pieces_[p], seam)) dissolved.push_back(seam);
-      }
-    }
+    for_seams_of_faulty_pieces([&](const PieceSurface& piece, const RingPlace& seam) {
+      if (has_fault_near(piece, seam)) dissolved.push_back(seam);
+    });
     for (const Index f : unproven_) {
       for (const Index v : gathered_.mesh.faces[f]) {
         if (const auto seam = seam_of_vertex(v)) dissolved.push_back(*seam);
       }
     }
+    // A piece that is not sound by itself may be together with its neighbours.
+    if (dissolved.empty() && joined.empty())
+      for_seams_of_faulty_pieces([&](const PieceSurface&, const RingPlace& seam) { dissolved.push_back(seam); });
     if (dissolved.empty() && joined.empty()) return false;
     std::sort(dissolved.begin(), dissolved.end());
     dissolved.erase(std::unique(dissolved.begin(), dissolved.end()), dissolved.end());
@@ -174,6 +175,14 @@ class PieceGrower {
       neighbours = true;
     }
     if (!neighbours) joined.emplace_back(anchor_of(division_.plans[p]), anchor_of(division_.plans[q]));
+  }
+
+  template <class Visit>
+  void for_seams_of_faulty_pieces(Visit&& visit) const {
+    for (Index p = 0; p < pieces_.size(); ++p) {
+      if (pieces_[p].faults.empty()) continue;
+      for (const RingPlace& seam : seams_of(rings_, division_.plans[p])) visit(pieces_[p], seam);
+    }
   }
 
   bool has_fault_near(const PieceSurface& piece, const RingPlace& seam) const {
