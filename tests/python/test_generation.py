@@ -159,6 +159,15 @@ def test_an_error_limit_is_proven(limit):
     assert max(measured) <= (0.05 if limit == "5%" else 0.1)
 
 
+def test_long_triangles_leave_out_vertices_down_to_a_number():
+    fewest = vmesh.generate(*FORK, max_error="10%", elongation=16)
+    more = vmesh.generate(*FORK, max_error="10%", elongation=16, least_vertices=len(fewest.vertices) + 20)
+    assert len(more.vertices) == len(fewest.vertices) + 20
+    assert more.unproven_faces == 0
+    with pytest.raises(vmesh.InvalidInput, match="least_vertices"):
+        vmesh.generate(*FORK, elongation=16, least_vertices=50)
+
+
 @pytest.mark.parametrize(
     "options, message",
     [

@@ -19,6 +19,19 @@ using nlohmann::json;
 class Generate : public CommandTest {
  protected:
   Generate() { write_y("y.swc"); }
+
+  // The surface of y.swc made by the command that the run announces; y.ply is where it wrote its own.
+  std::string same_again(const Outcome& run) {
+    const std::string announced =
+        "the same again: vmesh generate " + path("y.swc").string() + " -o " + path("y.ply").string() + " ";
+    const std::size_t at = run.err.find(announced);
+    if (at == std::string::npos) return "not announced: " + run.err;
+    std::istringstream line(run.err.substr(at + announced.size(), run.err.find('\n', at) - at - announced.size()));
+    std::vector<std::string> command = {"generate", "@y.swc", "-o", "@again.ply"};
+    for (std::string word; line >> word;) command.push_back(word);
+    const Outcome again = vmesh(command);
+    return again.exit_code == 0 ? read("again.ply") : again.err;
+  }
 };
 
 TEST_F(Generate, WritesEverySurfaceFormat) {
@@ -199,15 +212,28 @@ TEST_F(Generate, ABudgetSaysHowToHaveTheSameAgain) {
   EXPECT_TRUE(budget.at("met"));
   EXPECT_GE(budget.at("tried").size(), 3u);
   EXPECT_LE(json::parse(read("y.json")).at("vertices"), 400);
-  const std::string announced =
-      "the same again: vmesh generate " + path("y.swc").string() + " -o " + path("y.ply").string() + " ";
-  const std::size_t at = run.err.find(announced);
-  ASSERT_NE(at, std::string::npos) << run.err;
-  std::istringstream line(run.err.substr(at + announced.size(), run.err.find('\n', at) - at - announced.size()));
-  std::vector<std::string> command = {"generate", "@y.swc", "-o", "@again.ply"};
-  for (std::string word; line >> word;) command.push_back(word);
-  ASSERT_EQ(vmesh(command).exit_code, 0);
-  EXPECT_EQ(read("again.ply"), read("y.ply"));
+  EXPECT_EQ(same_again(run), read("y.ply"));
+}
+
+TEST_F(Generate, ABudgetOfVerticesWithLongTrianglesSaysHowToHaveTheSameAgain) {
+  const Outcome run = vmesh(
+      {"generate", "@y.swc", "-o", "@y.ply", "--budget", "vertices=100", "--elongation", "16", "--json", "@y.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(json::parse(read("y.json")).at("vertices"), 100);
+  EXPECT_NE(run.err.find(" --least-vertices 100 "), std::string::npos) << run.err;
+  EXPECT_EQ(same_again(run), read("y.ply"));
+}
+
+TEST_F(Generate, LeastVerticesNeedWhatLeavesVerticesOut) {
+  for (const std::vector<std::string>& other :
+       {std::vector<std::string>{}, {"--max-error", "10%"}, {"--elongation", "4"}}) {
+    std::vector<std::string> command = {"generate", "@y.swc", "-o", "@y.ply", "--least-vertices", "100"};
+    command.insert(command.end(), other.begin(), other.end());
+    const Outcome run = vmesh(command);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_NE(run.err.find("--least-vertices needs --elongation above 1 and --max-error"), std::string::npos)
+        << run.err;
+  }
 }
 
 TEST_F(Generate, ABudgetThatNothingKeepsIsAnErrorOfItsOwn) {

@@ -9,7 +9,7 @@ namespace {
 GrowthRequest request_of(int around, const std::string& max_error, double blend, const std::string& placement,
                          const std::string& growth, const std::string& overlap, double gap, const std::string& ends,
                          const py::object& open_ends, double flow_extension, double simplification, double elongation,
-                         bool deformable, int sweeps, int max_vertices, int threads) {
+                         std::size_t least_vertices, bool deformable, int sweeps, int max_vertices, int threads) {
   GrowthRequest request;
   GenerateOptions& options = request.options;
   options.around = around;
@@ -26,6 +26,7 @@ GrowthRequest request_of(int around, const std::string& max_error, double blend,
   request.extension = flow_extension;
   options.simplification = simplification;
   options.elongation = elongation;
+  options.least_vertices = least_vertices;
   options.deformable = deformable;
   options.sweeps = sweeps;
   options.max_vertices = max_vertices;
@@ -41,16 +42,16 @@ void bind_generation(py::module_& module) {
       [](const CenterlinePtr& centerline, const py::object& progress, int around, const std::string& max_error,
          double blend, const std::string& placement, const std::string& growth, const std::string& overlap, double gap,
          const std::string& ends, const py::object& open_ends, double flow_extension, double simplification,
-         double elongation, bool deformable, int sweeps, int max_vertices, int threads) {
+         double elongation, std::size_t least_vertices, bool deformable, int sweeps, int max_vertices, int threads) {
         const GrowthRequest request =
             request_of(around, max_error, blend, placement, growth, overlap, gap, ends, open_ends, flow_extension,
-                       simplification, elongation, deformable, sweeps, max_vertices, threads);
+                       simplification, elongation, least_vertices, deformable, sweeps, max_vertices, threads);
         return result_of(progress, [&](const Progress& report) { return grow(centerline, request, report); });
       },
       py::arg("centerline").none(false), py::kw_only(), py::arg("progress"), py::arg("around"), py::arg("max_error"),
       py::arg("blend"), py::arg("placement"), py::arg("growth"), py::arg("overlap"), py::arg("gap"), py::arg("ends"),
       py::arg("open_ends"), py::arg("flow_extension"), py::arg("simplification"), py::arg("elongation"),
-      py::arg("deformable"), py::arg("sweeps"), py::arg("max_vertices"), py::arg("threads"),
+      py::arg("least_vertices"), py::arg("deformable"), py::arg("sweeps"), py::arg("max_vertices"), py::arg("threads"),
       "vmesh.generate() without its checks.");
   module.def(
       "finish_ends",

@@ -436,6 +436,7 @@ def generate(
     flow_extension: float,
     simplification: float,
     elongation: float,
+    least_vertices: int,
     deformable: bool,
     sweeps: int,
     max_vertices: int,

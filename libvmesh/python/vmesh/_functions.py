@@ -55,6 +55,7 @@ def generate(
     flow_extension: float = 0.0,
     simplification: float = 0.35,
     elongation: float = 1.0,
+    least_vertices: int = 0,
     deformable: bool = False,
     sweeps: int = 30,
     max_vertices: int = 20_000_000,
@@ -82,6 +83,8 @@ def generate(
                     them cut off anyway, 0 to 1
     elongation      along vessels, triangles as long as the error allows, at most so many times their even
                     length, 1 (even) to 16
+    least_vertices  with an elongation and `max_error`: leave out no more vertices once there are so few; those
+                    that are left are where they reduce the mean error most
     deformable      for a centerline that is to move: a ring of vertices at every node
     sweeps          of the final optimisation
     max_vertices    a centerline that would need more is refused
@@ -114,6 +117,7 @@ def generate(
         flow_extension=flow_extension,
         simplification=simplification,
         elongation=elongation,
+        least_vertices=least_vertices,
         deformable=deformable,
         sweeps=sweeps,
         max_vertices=max_vertices,
