@@ -165,7 +165,7 @@ def test_long_triangles_leave_out_vertices_down_to_a_number():
     assert len(more.vertices) == len(fewest.vertices) + 20
     assert more.unproven_faces == 0
     with pytest.raises(vmesh.InvalidInput, match="least_vertices"):
-        vmesh.generate(*FORK, elongation=16, least_vertices=50)
+        vmesh.generate(*FORK, max_error="10%", least_vertices=50)
 
 
 @pytest.mark.parametrize(

@@ -226,12 +226,12 @@ TEST_F(Generate, ABudgetOfVerticesWithLongTrianglesSaysHowToHaveTheSameAgain) {
 
 TEST_F(Generate, LeastVerticesNeedWhatLeavesVerticesOut) {
   for (const std::vector<std::string>& other :
-       {std::vector<std::string>{}, {"--max-error", "10%"}, {"--elongation", "4"}}) {
+       {std::vector<std::string>{}, {"--max-error", "10%"}, {"--elongation", "4", "--deformable"}}) {
     std::vector<std::string> command = {"generate", "@y.swc", "-o", "@y.ply", "--least-vertices", "100"};
     command.insert(command.end(), other.begin(), other.end());
     const Outcome run = vmesh(command);
     EXPECT_EQ(run.exit_code, 2) << run.err;
-    EXPECT_NE(run.err.find("--least-vertices needs --elongation above 1 and --max-error"), std::string::npos)
+    EXPECT_NE(run.err.find("--least-vertices needs --elongation above 1, and no --deformable"), std::string::npos)
         << run.err;
   }
 }

@@ -151,8 +151,9 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "0.3mm, 10% (of the local radius), or both, separated by a comma")
       ->type_name("Xmm|X%");
   verb.add_option("--least-vertices", arguments.options.least_vertices,
-                  "with --elongation and --max-error: leave out no more vertices once there are so few; those that are "
-                  "left are where they reduce the mean error most; 0: as few as the limit allows")
+                  "with --elongation: leave out vertices until there are so few; those that are left are where they "
+                  "reduce the mean error most; with --max-error, only as long as that stays proven; 0: as few as "
+                  "--max-error allows")
       ->capture_default_str();
   verb.add_flag("--deformable", arguments.options.deformable,
                 "for a centerline that is to move: a ring of vertices at every node, whatever the elongation");

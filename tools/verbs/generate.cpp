@@ -125,10 +125,9 @@ void write(const GenerateReport& report) {
 
 /// Fitting makes triangles even again.
 void check_elongation(const GenerateArguments& arguments) {
-  if (arguments.options.least_vertices > 0 &&
-      !(arguments.options.elongation > 1 && arguments.options.max_error.is_set()))
+  if (arguments.options.least_vertices > 0 && (arguments.options.elongation == 1 || arguments.options.deformable))
     throw UsageError("--least-vertices needs " + std::string(kElongationFlag) +
-                     " above 1 and --max-error: else no vertices are left out");
+                     " above 1, and no --deformable: else no vertices are left out");
   if (arguments.options.elongation == 1) return;
   if (!arguments.fitting.reference.path.empty() || is_image(arguments.input.path))
     throw UsageError(std::string(kElongationFlag) + " cannot be combined with fitting, which makes triangles even");

@@ -83,8 +83,8 @@ def generate(
                     them cut off anyway, 0 to 1
     elongation      along vessels, triangles as long as the error allows, at most so many times their even
                     length, 1 (even) to 16
-    least_vertices  with an elongation and `max_error`: leave out no more vertices once there are so few; those
-                    that are left are where they reduce the mean error most
+    least_vertices  with an elongation: leave out vertices until there are so few, those that are left where
+                    they reduce the mean error most; with `max_error`, as long as that stays proven
     deformable      for a centerline that is to move: a ring of vertices at every node
     sweeps          of the final optimisation
     max_vertices    a centerline that would need more is refused

@@ -16,7 +16,6 @@ constexpr int kMaxTrials = 12;               // the secant needs four or five; t
 constexpr double kRefused = 0.8;             // of max_vertices: if more are expected, the run may be refused
 constexpr int kMostFiner = 3;                // refinement steps while the error is not proven
 constexpr double kStart = 12;                // times the vertices wanted: a surface to leave vertices out of
-constexpr double kLooseLimit = 0.5;          // local radii: of no consequence but that it is proven
 constexpr int kErrorLadder[] = {4, 5, 6, 8, 10, 12, 16, 20, 24};
 
 InvalidInput unknown_budget(std::string_view text) {
@@ -82,7 +81,6 @@ class BudgetSearch {
   }
 
   void leave_out_the_rest() {
-    if (!options_.max_error.is_set()) options_.max_error.relative = kLooseLimit;
     options_.least_vertices = budget_.vertices;
     const double start = std::min(kStart * allowed(), kRefused * options_.max_vertices);
     int around = std::max(kCoarsest, least_around(centerline_, options_.max_error));

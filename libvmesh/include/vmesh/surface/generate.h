@@ -80,7 +80,8 @@ struct GenerateOptions {
   /// Guided growth only.
   double elongation = 1;
   /// No more vertices are left out once there are so few: those that are left are where they reduce the mean error
-  /// most. 0: as many are left out as max_error allows. Only with max_error and an elongation above 1.
+  /// most. Without max_error, nothing is proven then, but no vertex is farther from the boundary than half the local
+  /// radius. 0: as many are left out as max_error allows. Only with an elongation above 1, and not deformable.
   std::size_t least_vertices = 0;
   /// For a centerline that is to move: no node is left out by `simplification`, and triangles are no longer than the
   /// segments around, so that there is a ring of vertices at every node.

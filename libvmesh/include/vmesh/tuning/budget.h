@@ -46,8 +46,7 @@ struct BudgetedSurface {
 /// as in `options`. Neighbours of the choice are tried, too. If nothing is within the budget, the closest is chosen.
 ///
 /// With an elongation above 1 (and not deformable), a surface within a budget of vertices is a much finer one of which
-/// all but so many were left out, those that increase the mean error least (GenerateOptions::least_vertices); max_error
-/// is half the local radius unless it is set.
+/// all but so many were left out, those that increase the mean error least (GenerateOptions::least_vertices).
 ///
 /// Repeating the chosen options gives the same surface; a time budget may choose differently each time. Throws what
 /// generate_surface() throws.

@@ -20,8 +20,8 @@ void check_options(const GenerateOptions& o) {
   if (!(o.elongation >= 1 && o.elongation <= kMostElongation))
     throw InvalidInput("elongation must be in [1, " + std::to_string(kMostElongation) + "]");
   if (o.elongation > 1 && o.growth == GrowthMethod::paper) throw InvalidInput("elongation needs guided growth");
-  if (o.least_vertices > 0 && !(o.elongation > 1 && o.max_error.is_set()))
-    throw InvalidInput("least_vertices needs an elongation above 1 and max_error: else no vertices are left out");
+  if (o.least_vertices > 0 && (o.elongation == 1 || o.deformable))
+    throw InvalidInput("least_vertices needs an elongation above 1, and not deformable: else no vertices are left out");
   if (o.sweeps < 0) throw InvalidInput("sweeps must be >= 0");
   if (!(o.max_error.mm > 0 && o.max_error.relative > 0)) throw InvalidInput("max_error must be > 0");
   if (o.max_error.is_set() && o.sweeps == 0) throw InvalidInput("max_error needs sweeps to refine in");

@@ -45,7 +45,7 @@ class PieceGrower {
       if (round == kRounds || !regroup()) break;
     }
     if (!unproven_.empty()) close_notches_left(result.error);
-    if (may_be_coarser()) coarsen_proven(result.error);
+    if (may_be_coarser()) leave_out_vertices(result.error);
     tell(result);
     return std::move(crossings_);
   }
@@ -128,21 +128,24 @@ class PieceGrower {
 
   // Not with a ring at every node.
   bool may_be_coarser() const {
-    return options_.max_error.is_set() && options_.elongation > 1 && !options_.deformable && crossings_.empty();
+    const bool has_goal = options_.max_error.is_set() || options_.least_vertices > 0;
+    return has_goal && options_.elongation > 1 && !options_.deformable && crossings_.empty();
   }
 
-  void coarsen_proven(ErrorSummary& summary) {
+  void leave_out_vertices(ErrorSummary& summary) {
     FinishedSurface surface{gathered_.mesh, gathered_.binding, gathered_.radius, gathered_.openings};
     const auto longest = [&](const CenterlineBinding& at) {
       return tubes_.longest_at(at.segment, at.t, options_.elongation);
     };
-    coarsen(surface, tubes_.field(), options_.max_error, options_.least_vertices, longest, progress_);
-    // Faces that were proven by bending their shells are at corners that stay; neighbours may lower their shells.
-    const std::vector<Index> unproven =
-        unproven_faces(surface.mesh, surface.binding, tubes_.field(), options_.max_error);
-    if (unproven.size() > summary.unproven_faces) return;
-    summary.unproven_faces = unproven.size();
-    summary.unproven_places = places_of(surface.mesh, unproven);
+    coarsen(surface, tubes_.field(), {options_.max_error, options_.least_vertices}, longest, progress_);
+    if (options_.max_error.is_set()) {
+      // Faces that were proven by bending their shells are at corners that stay; neighbours may lower their shells.
+      const std::vector<Index> unproven =
+          unproven_faces(surface.mesh, surface.binding, tubes_.field(), options_.max_error);
+      if (unproven.size() > summary.unproven_faces) return;
+      summary.unproven_faces = unproven.size();
+      summary.unproven_places = places_of(surface.mesh, unproven);
+    }
     gathered_.mesh = std::move(surface.mesh);
     gathered_.binding = std::move(surface.binding);
     gathered_.radius = std::move(surface.radius);

@@ -34,17 +34,17 @@ struct Step : Replacement {
 
 class Coarsener {
  public:
-  Coarsener(BoundSurface& surface, const ErrorLimit& limit, std::size_t least_vertices,
+  Coarsener(BoundSurface& surface, const CoarseningGoal& goal,
             const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress)
       : surface_(surface),
         mesh_(surface.mesh),
         state_(surface),
         field_(surface.field),
-        proof_(state_, limit),
-        deviation_(state_, limit),
-        least_vertices_(least_vertices),
+        deviation_(state_, goal.proven),
+        least_vertices_(goal.least_vertices),
         longest_(longest),
         progress_(progress) {
+    if (goal.proven.is_set()) proof_.emplace(state_, goal.proven);
     for (const Vertex v : mesh_.vertices()) {
       elongation_.push_back(longest_({surface_.cone[v], surface_.t[v]}));
       if (surface_.role[v] == BoundSurface::Role::lid) ++lids_;
@@ -52,7 +52,7 @@ class Coarsener {
     changed_.assign(mesh_.num_vertices(), 1);
     squared_.resize(mesh_.num_faces());
     tbb::parallel_for(Index{0}, static_cast<Index>(mesh_.num_faces()), [&](Index f) {
-      if (!proof_.is_fixed(Face(f))) squared_[f] = deviation_.measure(Face(f)).squared;
+      if (!is_fixed(Face(f))) squared_[f] = deviation_.measure(Face(f)).squared;
     });
   }
 
@@ -69,6 +69,18 @@ class Coarsener {
   }
 
  private:
+  // Whether no step may replace the face.
+  bool is_fixed(Face f) const {
+    if (proof_) return proof_->is_fixed(f);
+    const FaceCorners corners = state_.corners(f);
+    return std::any_of(corners.begin(), corners.end(), [&](Vertex v) { return surface_.held(v); });
+  }
+
+  // What the step would change in the proof, if there is one; nothing if the step must not be taken.
+  std::optional<KeptProof::Outlook> after(const Step& step) const {
+    return proof_ ? proof_->after(step) : KeptProof::Outlook{};
+  }
+
   // So many that it matters little in which order the next ones go: steps are measured again when it is their turn, not
   // whenever something has changed around them.
   bool has_many_to_leave_out() const {
@@ -114,7 +126,7 @@ class Coarsener {
         continue;
       }
       if (!surface_.may_collapse(mesh_.vertex(e, 0), mesh_.vertex(e, 1), step->target.position)) continue;
-      const std::optional<KeptProof::Outlook> outlook = proof_.after(*step);
+      const std::optional<KeptProof::Outlook> outlook = after(*step);
       if (!outlook) continue;
       const Vertex v = collapse(e, *step, *outlook);
       ++count;
@@ -135,7 +147,7 @@ class Coarsener {
       poll();
       const std::optional<Step> step = flip_of(e);
       if (!step || !surface_.may_flip(mesh_.halfedge(e))) continue;
-      const std::optional<KeptProof::Outlook> outlook = proof_.after(*step);
+      const std::optional<KeptProof::Outlook> outlook = after(*step);
       if (!outlook) continue;
       CGAL::Euler::flip_edge(mesh_.halfedge(e), mesh_);
       surface_.touch_faces(step->at);
@@ -146,7 +158,7 @@ class Coarsener {
       poll();
       const std::optional<Step> step = move_of(v);
       if (!step || !surface_.may_place(v, step->target.position)) continue;
-      const std::optional<KeptProof::Outlook> outlook = proof_.after(*step);
+      const std::optional<KeptProof::Outlook> outlook = after(*step);
       if (!outlook) continue;
       surface_.place(v, step->target.position, step->target.sample);
       note(*step, *outlook, v);
@@ -158,7 +170,7 @@ class Coarsener {
   // The step that flips the edge, if that is allowed and brings its faces closer to the boundary.
   std::optional<Step> flip_of(Edge e) const {
     const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
-    if (proof_.is_fixed(mesh_.face(h)) || proof_.is_fixed(mesh_.face(o))) return std::nullopt;
+    if (is_fixed(mesh_.face(h)) || is_fixed(mesh_.face(o))) return std::nullopt;
     const Vertex a = mesh_.source(h), b = mesh_.target(h);
     const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
     if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge())
@@ -174,7 +186,7 @@ class Coarsener {
     Vec3 middle = Vec3::Zero();
     double count = 0;
     for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-      if (proof_.is_fixed(f)) return std::nullopt;
+      if (is_fixed(f)) return std::nullopt;
       step.gone.push_back(f);
       step.faces.push_back(state_.corners(f));
     }
@@ -218,7 +230,7 @@ class Coarsener {
     step.at = a;
     for (const Vertex v : {a, b}) {
       for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-        if (proof_.is_fixed(f)) return std::nullopt;
+        if (is_fixed(f)) return std::nullopt;
         FaceCorners corners = state_.corners(f);
         if (has(corners, a) && has(corners, b)) {
           if (v == a) step.gone.push_back(f);
@@ -290,10 +302,12 @@ class Coarsener {
   // After a step. `at`: its vertex, as it is called now.
   void note(const Step& step, const KeptProof::Outlook& outlook, Vertex at) {
     elongation_[at.idx()] = longest_({surface_.cone[at], surface_.t[at]});
-    for (const auto& [x, corner] : outlook.corners) changed_[(x == step.at ? at : x).idx()] = 1;
-    proof_.note(step, outlook, at);
+    for (const FaceCorners& f : step.faces) {
+      for (const Vertex x : f) changed_[(x == step.at ? at : x).idx()] = 1;
+    }
+    if (proof_) proof_->note(step, outlook, at);
     for (const Face f : mesh_.faces_around_target(mesh_.halfedge(at))) {
-      if (!proof_.is_fixed(f)) squared_[f.idx()] = deviation_.measure(f).squared;
+      if (!is_fixed(f)) squared_[f.idx()] = deviation_.measure(f).squared;
     }
   }
 
@@ -303,7 +317,7 @@ class Coarsener {
   SurfaceMesh& mesh_;
   SweepState state_;
   const VesselField& field_;
-  KeptProof proof_;
+  std::optional<KeptProof> proof_;
   StepDeviation deviation_;
   std::size_t least_vertices_;
   std::size_t lids_ = 0;
@@ -338,12 +352,12 @@ bool build(const FinishedSurface& from, BoundSurface& surface) {
 
 }  // namespace
 
-void coarsen(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit, std::size_t least_vertices,
+void coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal,
              const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress) {
   BoundSurface work(field);
   if (!build(surface, work)) return;
   work.guard_crossings();
-  Coarsener(work, limit, least_vertices, longest, progress).run();
+  Coarsener(work, goal, longest, progress).run();
   GenerateResult result;
   const std::vector<Index> number = work.export_to(result);
   surface.mesh = std::move(result.mesh);

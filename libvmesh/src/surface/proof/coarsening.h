@@ -9,7 +9,13 @@
 
 namespace vmesh {
 
-/// Leaves out vertices of a surface for which a limit on the error is proven, as long as it stays proven.
+/// How far vertices are left out.
+struct CoarseningGoal {
+  ErrorLimit proven;               ///< what stays proven; if not set, nothing need be
+  std::size_t least_vertices = 0;  ///< no more are left out once there are so few
+};
+
+/// Leaves out vertices of a surface as long as a limit on the error stays proven, or down to a number.
 ///
 /// Edges are collapsed, those first by which the integral of the squared deviation from the boundary grows least; the
 /// new vertex lies where it is least (compare Lindstrom and Turk, "Fast and memory efficient polygonal simplification",
@@ -17,10 +23,10 @@ namespace vmesh {
 /// that makes it smaller. No step lets faces cross, or a face the axis of a vessel, nor makes triangles much worse than
 /// they may be in the metric of `longest`: how many times longer than wide they may be at a place of the vessels.
 /// Vertices at openings stay, and faces that are not proven. Deviations stay below half the local radius, whatever the
-/// limit. Ends when there are `least_vertices`.
+/// limit.
 ///
 /// The result is proven like the surface before: the same faces are not. One thread.
-void coarsen(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit, std::size_t least_vertices,
+void coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal,
              const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress);
 
 }  // namespace vmesh
