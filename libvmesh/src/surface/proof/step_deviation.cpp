@@ -4,10 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Cholesky>
+
 namespace vmesh {
 namespace {
 
 constexpr double kMostDeviation = 0.5;  // radii, whatever the limit: the axis stays inside
+constexpr double kDamping = 0.01;       // of steps, so that vertices do not slide where nothing is gained
 constexpr double kTolerance = 1e-3;     // radii, of projections
 
 // Weights of samples: a rule for triangles that is exact for cubic functions.
@@ -23,7 +26,7 @@ struct Sector {
 
 double StepDeviation::most(double radius) const { return std::min(limit_.at(radius), kMostDeviation * radius); }
 
-// Calls visit(signed distance, share of the step's vertex in the point, weight, limit) for samples of the new faces.
+// Calls visit(sample, share of the step's vertex in the point, weight, limit) for samples of the new faces.
 template <class Visit>
 void StepDeviation::visit_samples(Samples which, const Replacement& step, Visit&& visit) const {
   const BoundSurface& surface = state_.surface;
@@ -43,7 +46,7 @@ void StepDeviation::visit_samples(Samples which, const Replacement& step, Visit&
     const Vec3 &b = state_.point(s.b), &c = state_.point(s.c);
     const double limit = most(std::min({radius, surface.radius(s.b), surface.radius(s.c)}));
     const auto offer = [&](const Vec3& q, Vertex near, double share, double weight) {
-      visit(field.sample_fast(q, surface.cone[near]).distance, share, weight, limit);
+      visit(field.sample_fast(q, surface.cone[near]), share, weight, limit);
     };
     const auto before = std::find_if(sectors.begin(), sectors.end(), [&](const Sector& o) { return o.c == s.b; });
     const double both = s.area + (before == sectors.end() ? 0 : before->area);
@@ -53,17 +56,17 @@ void StepDeviation::visit_samples(Samples which, const Replacement& step, Visit&
     if (is_last) offer(0.5 * (p + c), s.c, 0.5, kAtMiddle * s.area);
     if (which == Samples::moving) continue;
     offer(0.5 * (b + c), s.b, 0, kAtMiddle * s.area);
-    visit(surface.distance[s.b], 0, kAtCorner * both, kUnlimited);
-    if (is_last) visit(surface.distance[s.c], 0, kAtCorner * s.area, kUnlimited);
+    visit(surface.sample(s.b), 0, kAtCorner * both, kUnlimited);
+    if (is_last) visit(surface.sample(s.c), 0, kAtCorner * s.area, kUnlimited);
   }
-  visit(step.target.sample.distance, 1, kAtCorner * area, most(radius));
+  visit(step.target.sample, 1, kAtCorner * area, most(radius));
 }
 
 StepDeviation::Measured StepDeviation::measure(const Replacement& step) const {
   Measured result;
-  visit_samples(Samples::all, step, [&](double distance, double, double weight, double limit) {
-    result.largest = std::max(result.largest, std::abs(distance) / limit);
-    result.squared += weight * distance * distance;
+  visit_samples(Samples::all, step, [&](const FieldSample& sample, double, double weight, double limit) {
+    result.largest = std::max(result.largest, std::abs(sample.distance) / limit);
+    result.squared += weight * sample.distance * sample.distance;
   });
   return result;
 }
@@ -76,16 +79,37 @@ StepDeviation::Measured StepDeviation::measure(Face f) const {
 
 void StepDeviation::place(Replacement& step, const Vec3& p, Index hint, double share) const {
   step.target = project_to_boundary(state_.field, p, hint, kTolerance, 0);
-  const FieldSample& sample = step.target.sample;
-  double slope = 0, product = 0;
-  visit_samples(Samples::moving, step, [&](double distance, double part, double weight, double) {
-    slope += weight * part * part;
-    product += weight * part * distance;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Vec3 product = Vec3::Zero();
+  double total = 0;
+  visit_samples(Samples::moving, step, [&](const FieldSample& sample, double part, double weight, double) {
+    const Vec3 slope = part * sample.gradient.normalized();
+    normal += weight * slope * slope.transpose();
+    product += weight * sample.distance * slope;
+    total += weight * part * part;
   });
-  const double far = share * most(state_.field.radius_at(sample.cone, sample.t));
-  const double height = slope > 0 ? std::clamp(-product / slope, -far, far) : 0;
-  step.target.position += height * sample.gradient.normalized();
+  if (total <= 0) return;
+  normal.diagonal().array() += kDamping * total;
+  const Vec3 move = -normal.ldlt().solve(product);
+  const double reach = reach_of(step);
+  step.target.position += std::min(1.0, reach / move.norm()) * move;
+  step.target.sample = state_.field.sample_fast(step.target.position, step.target.sample.cone);
+  const FieldSample& sample = step.target.sample;
+  const double excess = std::abs(sample.distance) - share * most(state_.field.radius_at(sample.cone, sample.t));
+  if (excess <= 0) return;
+  step.target.position -= std::copysign(excess, sample.distance) * sample.gradient.normalized();
   step.target.sample = state_.field.sample_fast(step.target.position, sample.cone);
+}
+
+// The longest edge at the step's vertex.
+double StepDeviation::reach_of(const Replacement& step) const {
+  double squared = 0;
+  for (const FaceCorners& f : step.faces) {
+    for (const Vertex v : f) {
+      if (v != step.at) squared = std::max(squared, (state_.point(v) - step.target.position).squaredNorm());
+    }
+  }
+  return std::sqrt(squared);
 }
 
 }  // namespace vmesh
