@@ -1,7 +1,8 @@
 // Counts sound and unsound surfaces, over files and over random trees. A table in Markdown of those that are not
 // (--all: of all) and one closing line. Usage:
-//   bench_soundness [--all] [--keep] [--around N] [--blend B] [--elongation E] [--max-error LIMIT] [--rotate]
-//                   [FILE...] [--noisy FIRST COUNT] [--plausible FIRST COUNT] [--looped FIRST COUNT]
+//   bench_soundness [--all] [--keep] [--around N] [--blend B] [--elongation E] [--max-error LIMIT]
+//                   [--least-vertices N] [--rotate] [FILE...]
+//                   [--noisy FIRST COUNT] [--plausible FIRST COUNT] [--looped FIRST COUNT]
 // --rotate grows each random tree with the next of a list of options, whatever --around and --blend; --keep does not
 // separate vessels that touch; LIMIT as in `vmesh generate`.
 #include <algorithm>
@@ -127,6 +128,8 @@ int main(int argc, char** argv) {
       settings.options.elongation = std::atof(argv[++i]);
     } else if (word == "--max-error" && i + 1 < argc) {
       settings.options.max_error = parse_error_limit(argv[++i]);
+    } else if (word == "--least-vertices" && i + 1 < argc) {
+      settings.options.least_vertices = static_cast<std::size_t>(std::atoi(argv[++i]));
     } else if (word == "--noisy" && i + 2 < argc) {
       random("noisy", number(1), number(2), [](std::uint32_t seed) { return testing::noisy_tree(seed); });
       i += 2;
