@@ -356,7 +356,7 @@ void coarsen(FinishedSurface& surface, const VesselField& field, const Coarsenin
              const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress) {
   BoundSurface work(field);
   if (!build(surface, work)) return;
-  work.guard_crossings();
+  work.guard_crossings(BoundSurface::Axes::all);
   Coarsener(work, goal, longest, progress).run();
   GenerateResult result;
   const std::vector<Index> number = work.export_to(result);

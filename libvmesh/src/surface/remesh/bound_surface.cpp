@@ -1,5 +1,8 @@
 #include "surface/remesh/bound_surface.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include <CGAL/boost/graph/Euler_operations.h>
 
 namespace vmesh {
@@ -97,11 +100,16 @@ void BoundSurface::update_elongation() {
   for (const Vertex v : mesh.vertices()) elongation[v] = ElongatedMetric::vector(elongation[v], times[v.idx()]);
 }
 
-void BoundSurface::guard_crossings() {
+void BoundSurface::guard_crossings(Axes kept) {
   std::vector<Index> cones;
-  for (const Vertex v : mesh.vertices()) cones.push_back(cone[v]);
-  std::sort(cones.begin(), cones.end());
-  cones.erase(std::unique(cones.begin(), cones.end()), cones.end());
+  if (kept == Axes::all) {
+    cones.resize(field.centerline().segments().size());
+    std::iota(cones.begin(), cones.end(), Index{0});
+  } else {
+    for (const Vertex v : mesh.vertices()) cones.push_back(cone[v]);
+    std::sort(cones.begin(), cones.end());
+    cones.erase(std::unique(cones.begin(), cones.end()), cones.end());
+  }
   std::vector<CrossingGuard::AxisLine> axes;
   for (const Index c : cones) {
     const Vec3 from = field.axis_point(c, 0), to = field.axis_point(c, 1);

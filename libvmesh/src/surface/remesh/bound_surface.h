@@ -76,8 +76,12 @@ class BoundSurface {
   /// them.
   void close_with_lid(const std::vector<Vertex>& loop, const Vec3& center);
 
-  /// From now on only guarded steps are taken (CrossingGuard).
-  void guard_crossings();
+  enum class Axes {
+    bound,  ///< of the cones that vertices are bound to
+    all     ///< for a surface around all vessels: the shortest cones may have no vertex
+  };
+  /// From now on only guarded steps are taken (CrossingGuard), which keep these axes inside.
+  void guard_crossings(Axes kept = Axes::bound);
   /// Whether the steps are allowed: always, unless guarded.
   bool may_place(Vertex v, const Vec3& p) const { return !guard_ || guard_->may_move(v, p); }
   bool may_collapse(Vertex a, Vertex b, const Vec3& p) const { return !guard_ || guard_->may_collapse(a, b, p); }
