@@ -45,7 +45,8 @@ void write_markdown(const std::string& file, const std::vector<TradeoffPoint>& p
   std::fprintf(out,
                "\n| theirs | vertices | ours | vertices at the same maximum error, ratio | mean error with as many "
                "vertices, ratio | mean skewness, ratio |\n|--|--:|--|--:|--:|--:|\n");
-  for (const char* theirs : {"marching cubes", "marching cubes, decimated", "CGAL Mesh_3"}) {
+  for (const char* theirs :
+       {"marching cubes", "marching cubes, decimated", "marching cubes, quadric decimation", "CGAL Mesh_3"}) {
     for (const char* ours : {"around, blend 0", "max-error", "max-error, elongation 4", "max-error, elongation 16",
                              "max-error in mm, elongation 16", "vertices, elongation 16"}) {
       for (const CurveComparison& c : compare_curves(points, ours, theirs))

@@ -35,7 +35,8 @@ TEST_F(Tradeoff, WritesReportPlotAndSummary) {
                                     "vertices, elongation 16",
                                     "sweeps",
                                     "truncated cones"};
-  if (VMESH_TEST_WITH_VTK) expected.insert({"marching cubes", "marching cubes, decimated"});
+  if (VMESH_TEST_WITH_VTK)
+    expected.insert({"marching cubes", "marching cubes, decimated", "marching cubes, quadric decimation"});
   EXPECT_EQ(curves, expected);
   EXPECT_NE(read("r.md").find("| around "), std::string::npos);
   EXPECT_NE(read("r.md").find("vmesh against marching cubes"), std::string::npos);

@@ -13,8 +13,8 @@
 namespace vmesh::tool {
 namespace {
 
-constexpr const char* kPeers[] = {"marching cubes, decimated", "marching cubes"};
-constexpr const char* kOurs[] = {"max-error", "around, blend 0"};
+constexpr const char* kPeers[] = {"marching cubes, decimated", "marching cubes, quadric decimation", "marching cubes"};
+constexpr const char* kOurs[] = {"max-error", "around, blend 0", "vertices, elongation 16"};
 
 std::string text_or_dash(double value) { return std::isfinite(value) ? format_number(value) : "-"; }
 

@@ -3,12 +3,14 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_plane_policies.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 
 namespace vmesh {
 namespace {
 
-using Point = CGAL::Simple_cartesian<double>::Point_3;
+using Kernel = CGAL::Simple_cartesian<double>;
+using Point = Kernel::Point_3;
 using Mesh = CGAL::Surface_mesh<Point>;
 
 Mesh to_cgal(const TriMesh& mesh) {
@@ -35,11 +37,18 @@ TriMesh from_cgal(Mesh& mesh) {
 
 }  // namespace
 
-TriMesh decimated(const TriMesh& mesh, std::size_t vertices) {
+TriMesh decimated(const TriMesh& mesh, std::size_t vertices, Decimation order) {
   namespace simplification = CGAL::Surface_mesh_simplification;
   Mesh work = to_cgal(mesh);
   const std::size_t edges = 3 * vertices;  // of a closed triangle mesh, approximately
-  simplification::edge_collapse(work, simplification::Count_stop_predicate<Mesh>(edges));
+  const simplification::Count_stop_predicate<Mesh> stop(edges);
+  if (order == Decimation::volume) {
+    simplification::edge_collapse(work, stop);
+  } else {
+    const simplification::GarlandHeckbert_plane_policies<Mesh, Kernel> quadrics(work);
+    simplification::edge_collapse(
+        work, stop, CGAL::parameters::get_cost(quadrics.get_cost()).get_placement(quadrics.get_placement()));
+  }
   return from_cgal(work);
 }
 

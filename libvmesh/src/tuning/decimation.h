@@ -4,8 +4,13 @@
 
 namespace vmesh {
 
-/// `mesh` (closed and manifold) reduced to about so many vertices by collapsing edges where that changes volume,
-/// boundary and shape least (Lindstrom and Turk 1998, CGAL).
-TriMesh decimated(const TriMesh& mesh, std::size_t vertices);
+/// Which edges are collapsed first, and where the new vertex lies.
+enum class Decimation {
+  volume,   ///< where volume, boundary and shape change least (Lindstrom and Turk 1998)
+  quadrics  ///< where the squared distances from the planes of the faces are least (Garland and Heckbert 1997)
+};
+
+/// `mesh` (closed and manifold) reduced to about so many vertices by collapsing edges (CGAL).
+TriMesh decimated(const TriMesh& mesh, std::size_t vertices, Decimation order = Decimation::volume);
 
 }  // namespace vmesh

@@ -188,10 +188,13 @@ class Sweep {
       seconds = points_.back().seconds;
     }
     if (!finest) return;
-    for (const std::size_t count : counts()) {
-      if (count >= finest->vertices.size()) break;
-      if (add("marching cubes, decimated", std::to_string(count), [&] { return decimated(*finest, count); }))
-        points_.back().seconds += seconds;
+    for (const auto& [curve, order] : {std::pair("marching cubes, decimated", Decimation::volume),
+                                       {"marching cubes, quadric decimation", Decimation::quadrics}}) {
+      for (const std::size_t count : counts()) {
+        if (count >= finest->vertices.size()) break;
+        if (add(curve, std::to_string(count), [&, order = order] { return decimated(*finest, count, order); }))
+          points_.back().seconds += seconds;
+      }
     }
   }
 
