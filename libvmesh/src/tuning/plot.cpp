@@ -11,10 +11,16 @@ namespace {
 
 constexpr double kWidth = 460, kHeight = 400;  // of one plot, with its margins
 constexpr double kLeft = 70, kRight = 30, kTop = 40, kBottom = 50;
-constexpr double kLegendLine = 18, kLegendColumn = 230, kMargin = 0.04;  // of an axis
+constexpr double kLegendLine = 18, kLegendColumn = 290, kMargin = 0.04;  // of an axis
 // Distinguishable with colour blindness as well (Okabe and Ito 2008).
 constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
                                    "#56b4e9", "#000000", "#999999", "#8b5e3c", "#6a3d9a"};
+
+// Curves beyond the last colour have the first again, with hollow points on dashed lines.
+struct Style {
+  std::string color;
+  bool hollow = false;
+};
 
 std::string number(double value, const char* format = "%.2f") {
   char text[32];
@@ -34,6 +40,12 @@ std::string escaped(const std::string& text) {
     }
   }
   return result;
+}
+
+std::string dot(double x, double y, int radius, const Style& style) {
+  const std::string fill = style.hollow ? "white\" stroke=\"" + style.color : style.color;
+  return "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"" + std::to_string(radius) + "\" fill=\"" +
+         fill + "\"/>\n";
 }
 
 std::string text_at(double x, double y, const std::string& text, const std::string& attributes = "") {
@@ -76,8 +88,7 @@ struct Axis {
 
 class Panel {
  public:
-  Panel(const LogPlot& plot, double x, const std::map<std::string, std::string>& colors)
-      : plot_(plot), colors_(colors) {
+  Panel(const LogPlot& plot, double x, const std::map<std::string, Style>& styles) : plot_(plot), styles_(styles) {
     x_.begin = x + kLeft;
     x_.end = x + kWidth - kRight;
     y_.begin = kHeight - kBottom;
@@ -126,20 +137,22 @@ class Panel {
   }
 
   std::string drawn(const LogPlot::Curve& curve) const {
-    const std::string& color = colors_.at(curve.name);
+    const Style& style = styles_.at(curve.name);
     std::string path, dots;
     for (const auto& point : curve.points) {
       if (!drawable(point)) continue;
-      const std::string x = number(x_(point.first)), y = number(y_(point.second));
-      path += (path.empty() ? "" : " ") + x + "," + y;
-      dots += "<circle cx=\"" + x + "\" cy=\"" + y + "\" r=\"3\" fill=\"" + color + "\"/>\n";
+      const double x = x_(point.first), y = y_(point.second);
+      path += (path.empty() ? "" : " ") + number(x) + "," + number(y);
+      dots += dot(x, y, 3, style);
     }
     if (!curve.joined) return dots;
-    return "<polyline points=\"" + path + "\" fill=\"none\" stroke=\"" + color + "\" stroke-width=\"1.5\"/>\n" + dots;
+    const std::string dashes = style.hollow ? " stroke-dasharray=\"4 3\"" : "";
+    return "<polyline points=\"" + path + "\" fill=\"none\" stroke=\"" + style.color + "\" stroke-width=\"1.5\"" +
+           dashes + "/>\n" + dots;
   }
 
   const LogPlot& plot_;
-  const std::map<std::string, std::string>& colors_;
+  const std::map<std::string, Style>& styles_;
   Axis x_, y_;
 };
 
@@ -147,10 +160,11 @@ class Panel {
 
 std::string svg_of(const std::vector<LogPlot>& plots) {
   std::vector<std::string> names;
-  std::map<std::string, std::string> colors;
+  std::map<std::string, Style> styles;
   for (const LogPlot& plot : plots) {
     for (const LogPlot::Curve& curve : plot.curves) {
-      if (!colors.emplace(curve.name, kColors[names.size() % std::size(kColors)]).second) continue;
+      const std::size_t n = names.size(), count = std::size(kColors);
+      if (!styles.emplace(curve.name, Style{kColors[n % count], n / count % 2 == 1}).second) continue;
       names.push_back(curve.name);
     }
   }
@@ -161,12 +175,11 @@ std::string svg_of(const std::vector<LogPlot>& plots) {
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + number(width) + "\" height=\"" +
                     number(height) + "\" font-family=\"sans-serif\" font-size=\"12\">\n" +
                     "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
-  for (std::size_t i = 0; i < plots.size(); ++i) svg += Panel(plots[i], kWidth * static_cast<double>(i), colors).svg();
+  for (std::size_t i = 0; i < plots.size(); ++i) svg += Panel(plots[i], kWidth * static_cast<double>(i), styles).svg();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double x = 20 + kLegendColumn * static_cast<double>(i % columns);
     const double y = kHeight + kLegendLine * static_cast<double>(i / columns) + 8;
-    svg += "<circle cx=\"" + number(x) + "\" cy=\"" + number(y - 4) + "\" r=\"4\" fill=\"" + colors.at(names[i]) +
-           "\"/>\n";
+    svg += dot(x, y - 4, 4, styles.at(names[i]));
     svg += text_at(x + 10, y, names[i]);
   }
   return svg + "</svg>\n";
