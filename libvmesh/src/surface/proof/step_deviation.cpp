@@ -11,8 +11,8 @@ namespace {
 
 // Radii, whatever the limit: the axis stays inside. With 0.35 and 0.7 errors and vertices stay within 0.3 %.
 constexpr double kMostDeviation = 0.5;
-constexpr double kDamping = 0.01;       // of steps, so that vertices do not slide where nothing is gained
-constexpr double kTolerance = 1e-3;     // radii, of projections
+constexpr double kDamping = 0.01;    // of steps, so that vertices do not slide where nothing is gained
+constexpr double kTolerance = 1e-3;  // radii, of projections
 
 // Weights of samples: a rule for triangles that is exact for cubic functions.
 constexpr double kAtCentre = 27.0 / 60, kAtMiddle = 8.0 / 60, kAtCorner = 3.0 / 60;

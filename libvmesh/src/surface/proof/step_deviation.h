@@ -21,8 +21,8 @@ class StepDeviation {
   /// Of a face of the surface.
   Measured measure(Face f) const;
 
-  /// Puts the step's vertex near `p`: on the boundary, then to where the squared deviation is least if distances changed
-  /// linearly, but no farther from the boundary than `share` of the limit.
+  /// Puts the step's vertex near `p`: on the boundary, then to where the squared deviation is least if distances
+  /// changed linearly, but no farther from the boundary than `share` of the limit.
   void place(Replacement& step, const Vec3& p, Index hint, double share) const;
 
   /// How far the surface may be from the boundary at a place of this radius: never so far that it loses the axis.
