@@ -10,15 +10,22 @@
 namespace vmesh {
 namespace {
 
+// Directions have no sign: they are added so that the sum is longest, whatever their order.
 Elongation mean_of(const std::array<Elongation, 3>& corners) {
+  const auto& [a, b, c] = corners;
   Elongation mean;
-  for (const Elongation& e : corners) {
-    mean.times = std::max(mean.times, e.times);
-    mean.direction += (mean.direction.dot(e.direction) < 0 ? -1 : 1) * e.direction;
+  mean.times = std::max({a.times, b.times, c.times});
+  double longest = 0;
+  for (const double of_b : {-1.0, 1.0}) {
+    for (const double of_c : {-1.0, 1.0}) {
+      const Vec3 sum = a.direction + of_b * b.direction + of_c * c.direction;
+      if (sum.squaredNorm() <= longest) continue;
+      longest = sum.squaredNorm();
+      mean.direction = sum;
+    }
   }
-  const double norm = mean.direction.norm();
-  if (norm == 0) return {};
-  mean.direction /= norm;
+  if (longest == 0) return {};
+  mean.direction /= std::sqrt(longest);
   return mean;
 }
 

@@ -2,75 +2,71 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <queue>
 
 #include <CGAL/boost/graph/Euler_operations.h>
 #include <tbb/parallel_for.h>
 
+#include "surface/proof/coarsening_steps.h"
 #include "surface/proof/kept_proof.h"
-#include "surface/proof/step_deviation.h"
-#include "surface/remesh/least_skewness.h"
 
 namespace vmesh {
 namespace {
 
-// Not in the surveys of libvmesh/README.md. Each was changed alone, to about 0.7 and 1.4 times its value, on a portal
-// vein: with 630 vertices left, the mean error changes by at most 1.6 %; with a limit of 10 %, the vertices by at most
-// 4 % unless said.
-constexpr double kShareForSamples = 0.9;  // of the limit; 0.8: 13 % more vertices, 0.97: 5 % fewer
-constexpr double kWorstShape = 0.75;      // skewness of a face in its metric, unless one that it replaces was worse
-constexpr double kOutdated = 1.05;        // a step whose cost has grown by so much waits for its turn
-constexpr double kBetter = 0.98;       // squared deviation after a step that leaves out no vertex against that before
-constexpr double kToMiddle = 0.5;      // of the way to the middle of its neighbours: where a vertex may move to,
-constexpr double kToNeighbour = 0.08;  // or of that to a neighbour
-constexpr double kMany = 2;            // times the vertices that are to be left
+// Not in the surveys of libvmesh/README.md, but changed as those of coarsening_steps.cpp, with the same outcome.
+constexpr double kOutdated = 1.05;  // a step whose cost has grown by so much waits for its turn
+constexpr double kMany = 2;         // times the vertices that are to be left
 constexpr int kRounds = 5;
+constexpr int kExchanges = 6;       // 8 and 16: at most 0.3 % less mean error
 constexpr int kRelaxations = 6;     // at the end
 constexpr double kFewSteps = 0.02;  // of the vertices: not worth another round
-constexpr int kPollInterval = 64;   // steps looked at, a millisecond each at most
+// An edge is split if that gains so many times what leaving out a vertex costs: less than once, as flips and moves
+// follow. 0.25 and 1: mean error within 0.7 %.
+constexpr double kPays = 0.5;
+constexpr std::size_t kEdgesPerVertex = 4;  // collapses nearby that one makes worse; the cheapest are often neighbours
+constexpr int kPollInterval = 64;           // steps looked at, a millisecond each at most
 
-struct Step : Replacement {
-  double cost = 0;  // by how much the squared deviation grows, mm^4
-};
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 class Coarsener {
  public:
-  Coarsener(BoundSurface& surface, const CoarseningGoal& goal,
-            const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress)
+  Coarsener(BoundSurface& surface, const CoarseningGoal& goal, const LongestAt& longest, const Progress& progress)
       : surface_(surface),
         mesh_(surface.mesh),
         state_(surface),
-        field_(surface.field),
-        deviation_(state_, goal.proven),
+        proof_(goal.proven.is_set() ? std::make_optional<KeptProof>(state_, goal.proven) : std::nullopt),
+        steps_(state_, goal.proven, longest, [this](Face f) { return is_fixed(f); }),
         least_vertices_(goal.least_vertices),
-        longest_(longest),
-        progress_(progress) {
-    if (goal.proven.is_set()) proof_.emplace(state_, goal.proven);
+        progress_(progress),
+        changed_(mesh_.num_vertices(), 1) {
     for (const Vertex v : mesh_.vertices()) {
-      elongation_.push_back(longest_({surface_.cone[v], surface_.t[v]}));
       if (surface_.role[v] == BoundSurface::Role::lid) ++lids_;
     }
-    changed_.assign(mesh_.num_vertices(), 1);
-    squared_.resize(mesh_.num_faces());
-    tbb::parallel_for(Index{0}, static_cast<Index>(mesh_.num_faces()), [&](Index f) {
-      if (!is_fixed(Face(f))) squared_[f] = deviation_.measure(Face(f)).squared;
-    });
   }
 
   void run() {
-    for (int round = 0; round < kRounds; ++round) {
-      done_ = static_cast<double>(round) / (kRounds + kRelaxations);
+    for (int round = 0; round < kRounds; ++round, ++rounds_) {
       if (is_few(collapse_all())) break;
       relax();
     }
-    for (int round = 0; round < kRelaxations; ++round) {
-      done_ = static_cast<double>(kRounds + round) / (kRounds + kRelaxations);
+    rounds_ = kRounds;
+    // With a limit, as few vertices as it allows are wanted, not so many.
+    for (int round = 0; !proof_ && round < kExchanges; ++round, ++rounds_) {
+      relax();
+      if (exchange() == 0) break;
+    }
+    rounds_ = kRounds + kExchanges;
+    for (int round = 0; round < kRelaxations; ++round, ++rounds_) {
       if (is_few(relax())) break;
     }
   }
 
  private:
+  using Entry = std::pair<double, Index>;
+
   // Whether no step may replace the face.
   bool is_fixed(Face f) const {
     if (proof_) return proof_->is_fixed(f);
@@ -79,15 +75,16 @@ class Coarsener {
   }
 
   // What the step would change in the proof, if there is one; nothing if the step must not be taken.
-  std::optional<KeptProof::Outlook> after(const Step& step) const {
+  std::optional<KeptProof::Outlook> after(const Replacement& step) const {
     return proof_ ? proof_->after(step) : KeptProof::Outlook{};
   }
+
+  std::size_t vertices() const { return mesh_.number_of_vertices() - lids_; }
 
   // So many that it matters little in which order the next ones go: steps are measured again when it is their turn, not
   // whenever something has changed around them.
   bool has_many_to_leave_out() const {
-    return least_vertices_ > 0 &&
-           static_cast<double>(mesh_.number_of_vertices()) > kMany * static_cast<double>(least_vertices_);
+    return least_vertices_ > 0 && static_cast<double>(vertices()) > kMany * static_cast<double>(least_vertices_);
   }
 
   bool is_few(std::size_t steps) const {
@@ -95,49 +92,94 @@ class Coarsener {
   }
 
   void poll() {
-    if (++polls_ % kPollInterval == 0) report_progress(progress_, "coarsen", done_);
+    if (++polls_ % kPollInterval == 0)
+      report_progress(progress_, "coarsen", static_cast<double>(rounds_) / (kRounds + kExchanges + kRelaxations));
   }
 
-  // One pass over all edges. Returns how many were collapsed.
-  std::size_t collapse_all() {
+  // Measures again what collapses cost near faces that have changed since.
+  void update_costs() {
+    cost_.resize(mesh_.num_edges(), kNever);
     std::vector<Edge> edges;
     for (const Edge e : mesh_.edges()) {
       if (is_near_change(mesh_.vertex(e, 0)) || is_near_change(mesh_.vertex(e, 1))) edges.push_back(e);
     }
     changed_.assign(changed_.size(), 0);
-    std::vector<double> cost(edges.size());
     tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t i) {
-      const std::optional<Step> step = collapse_of(edges[i]);
-      cost[i] = step ? step->cost : std::numeric_limits<double>::infinity();
+      const std::optional<CoarseningStep> step = steps_.collapse(edges[i]);
+      cost_[edges[i].idx()] = step ? step->cost : kNever;
     });
+  }
+
+  // One pass over all edges. Returns how many were collapsed.
+  std::size_t collapse_all() {
+    update_costs();
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      if (std::isfinite(cost[i])) queue.emplace(cost[i], edges[i].idx());
+    for (const Edge e : mesh_.edges()) {
+      if (std::isfinite(cost_[e.idx()])) queue.emplace(cost_[e.idx()], e.idx());
     }
     std::size_t count = 0;
-    while (!queue.empty() && mesh_.number_of_vertices() - lids_ > least_vertices_) {
+    while (!queue.empty() && vertices() > least_vertices_) {
       poll();
       const auto [expected, index] = queue.top();
       queue.pop();
       const Edge e(index);
       if (mesh_.is_removed(e)) continue;
-      const std::optional<Step> step = collapse_of(e);
+      const std::optional<CoarseningStep> step = steps_.collapse(e);
+      cost_[index] = step ? step->cost : kNever;
       if (!step) continue;
       if (step->cost > expected + (kOutdated - 1) * std::abs(expected)) {
         queue.emplace(step->cost, index);
         continue;
       }
-      if (!surface_.may_collapse(mesh_.vertex(e, 0), mesh_.vertex(e, 1), step->target.position)) continue;
-      const std::optional<KeptProof::Outlook> outlook = after(*step);
-      if (!outlook) continue;
-      const Vertex v = collapse(e, *step, *outlook);
+      const std::optional<Vertex> v = collapse(e, *step);
+      if (!v) {
+        cost_[index] = kNever;
+        continue;
+      }
       ++count;
       if (has_many_to_leave_out()) continue;
-      for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
-        for (const Edge changed : {mesh_.edge(h), mesh_.edge(mesh_.prev(h))}) {
-          if (const std::optional<Step> next = collapse_of(changed)) queue.emplace(next->cost, changed.idx());
+      for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(*v))) {
+        for (const Edge near : {mesh_.edge(h), mesh_.edge(mesh_.prev(h))}) {
+          if (const std::optional<CoarseningStep> next = steps_.collapse(near)) queue.emplace(next->cost, near.idx());
         }
       }
+    }
+    return count;
+  }
+
+  // Splits edges where that gains more than collapses cost elsewhere, and collapses as many. Returns how many.
+  std::size_t exchange() {
+    update_costs();
+    const std::size_t count = split_where_it_pays();
+    collapse_all();
+    return count;
+  }
+
+  std::size_t split_where_it_pays() {
+    const std::vector<Edge> edges(mesh_.edges().begin(), mesh_.edges().end());
+    std::vector<double> gain(edges.size()), cost(edges.size());
+    tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t i) {
+      const std::optional<CoarseningStep> step = steps_.split(edges[i]);
+      gain[i] = step ? -step->cost : 0;
+      cost[i] = cost_[edges[i].idx()];
+    });
+    std::sort(cost.begin(), cost.end());
+    std::vector<std::size_t> order(edges.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gain[a] > gain[b]; });
+    std::vector<char> near_split(mesh_.num_faces(), 0);
+    std::size_t count = 0;
+    for (const std::size_t i : order) {
+      poll();
+      const std::size_t paid_with = kEdgesPerVertex * count;
+      if (paid_with >= cost.size() || !(gain[i] >= kPays * cost[paid_with])) break;
+      const Halfedge h = mesh_.halfedge(edges[i]), o = mesh_.opposite(h);
+      if (near_split[mesh_.face(h).idx()] || near_split[mesh_.face(o).idx()]) continue;
+      for (const Vertex v :
+           {mesh_.source(h), mesh_.target(h), mesh_.target(mesh_.next(h)), mesh_.target(mesh_.next(o))}) {
+        for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) near_split[f.idx()] = 1;
+      }
+      if (split(edges[i])) ++count;
     }
     return count;
   }
@@ -147,7 +189,7 @@ class Coarsener {
     std::size_t count = 0;
     for (const Edge e : mesh_.edges()) {
       poll();
-      const std::optional<Step> step = flip_of(e);
+      const std::optional<CoarseningStep> step = steps_.flip(e);
       if (!step || !surface_.may_flip(mesh_.halfedge(e))) continue;
       const std::optional<KeptProof::Outlook> outlook = after(*step);
       if (!outlook) continue;
@@ -158,7 +200,7 @@ class Coarsener {
     }
     for (const Vertex v : mesh_.vertices()) {
       poll();
-      const std::optional<Step> step = move_of(v);
+      const std::optional<CoarseningStep> step = steps_.move(v);
       if (!step || !surface_.may_place(v, step->target.position)) continue;
       const std::optional<KeptProof::Outlook> outlook = after(*step);
       if (!outlook) continue;
@@ -169,167 +211,65 @@ class Coarsener {
     return count;
   }
 
-  // The step that flips the edge, if that is allowed and brings its faces closer to the boundary.
-  std::optional<Step> flip_of(Edge e) const {
-    const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
-    if (is_fixed(mesh_.face(h)) || is_fixed(mesh_.face(o))) return std::nullopt;
-    const Vertex a = mesh_.source(h), b = mesh_.target(h);
-    const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
-    if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge())
-      return std::nullopt;
-    Step step{{c, {state_.point(c), surface_.sample(c)}, {mesh_.face(h), mesh_.face(o)}, {{c, d, b}, {d, c, a}}}};
-    if (!is_allowed(step) || step.cost >= enough_gain(step)) return std::nullopt;
-    return step;
-  }
-
-  // The step that moves the vertex between its neighbours, if that is allowed and brings its faces closer.
-  std::optional<Step> move_of(Vertex v) const {
-    Step step{{v, {state_.point(v), surface_.sample(v)}, {}, {}}};
-    Vec3 middle = Vec3::Zero();
-    double count = 0;
-    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-      if (is_fixed(f)) return std::nullopt;
-      step.gone.push_back(f);
-      step.faces.push_back(state_.corners(f));
-    }
-    const Vec3 here = state_.point(v);
-    Step best = step;
-    best.cost = enough_gain(step);
-    const double least = best.cost;
-    const auto attempt = [&](const Vec3& p) {
-      if (place(step, p, surface_.cone[v]) && step.cost < best.cost) best = step;
-    };
-    for (const Vertex w : mesh_.vertices_around_target(mesh_.halfedge(v))) {
-      attempt(here + kToNeighbour * (state_.point(w) - here));
-      middle += state_.point(w);
-      ++count;
-    }
-    attempt(here);
-    attempt(here + kToMiddle * (middle / count - here));
-    if (best.cost >= least) return std::nullopt;
-    return best;
-  }
-
-  // What a step that leaves out no vertex must at least change.
-  double enough_gain(const Step& step) const { return (kBetter - 1) * squared_before(step); }
-
-  double squared_before(const Step& step) const {
-    double sum = 0;
-    for (const Face f : step.gone) sum += squared_[f.idx()];
-    return sum;
-  }
-
-  // Whether a face at the vertex or at one of its neighbours has changed in the last pass.
+  // Whether a face at the vertex or at one of its neighbours has changed.
   bool is_near_change(Vertex v) const {
     const auto around = mesh_.vertices_around_target(mesh_.halfedge(v));
     return changed_[v.idx()] || std::any_of(around.begin(), around.end(), [&](Vertex w) { return changed_[w.idx()]; });
   }
 
-  // The step that collapses the edge, unless it is not allowed or leaves too much.
-  std::optional<Step> collapse_of(Edge e) const {
-    const Vertex a = mesh_.vertex(e, 0), b = mesh_.vertex(e, 1);
-    Step step;
-    step.at = a;
-    for (const Vertex v : {a, b}) {
-      for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-        if (is_fixed(f)) return std::nullopt;
-        FaceCorners corners = state_.corners(f);
-        if (has(corners, a) && has(corners, b)) {
-          if (v == a) step.gone.push_back(f);
-          continue;
-        }
-        step.gone.push_back(f);
-        std::replace(corners.begin(), corners.end(), b, a);
-        step.faces.push_back(corners);
-      }
-    }
-    if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return std::nullopt;
-    std::optional<Step> best;
-    const auto attempt = [&](const Vec3& p, Vertex near) {
-      if (place(step, p, surface_.cone[near]) && (!best || step.cost < best->cost)) best.emplace(step);
-    };
-    attempt(0.5 * (state_.point(a) + state_.point(b)), a);
-    attempt(state_.point(a), a);
-    attempt(state_.point(b), b);
-    return best;
-  }
-
-  // Puts the step's vertex where its faces deviate least, near `p`. Returns whether that is allowed.
-  bool place(Step& step, const Vec3& p, Index hint) const {
-    deviation_.place(step, p, hint, kShareForSamples);
-    return is_allowed(step);
-  }
-
-  // Whether the step's faces are close enough to the boundary and well-shaped. Sets its cost.
-  bool is_allowed(Step& step) const {
-    if (!is_well_shaped(step)) return false;
-    const StepDeviation::Measured after = deviation_.measure(step);
-    step.cost = after.squared - squared_before(step);
-    return after.largest <= kShareForSamples;
-  }
-
-  bool is_well_shaped(const Step& step) const {
-    const Landing landing(step.target);
-    const Elongation at_target = longest_({step.target.sample.cone, step.target.sample.t});
-    double worst = kWorstShape;
-    bool known = false;  // how bad the faces are that are replaced
-    for (const FaceCorners& f : step.faces) {
-      const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), step.at) - f.begin());
-      const Vertex b = f[(at + 1) % 3], c = f[(at + 2) % 3];
-      if (state_.agreement(landing, b, c) < SweepState::kMinAgreement) return false;
-      const double skewness = least_skewness({step.target.position, state_.point(b), state_.point(c)},
-                                             {at_target, elongation_[b.idx()], elongation_[c.idx()]});
-      if (skewness <= worst) continue;
-      if (known) return false;
-      known = true;
-      for (const Face g : step.gone) worst = std::max(worst, skewness_of(g));
-      if (skewness > worst) return false;
-    }
-    return true;
-  }
-
-  double skewness_of(Face f) const {
-    const auto [a, b, c] = state_.corners(f);
-    return least_skewness({state_.point(a), state_.point(b), state_.point(c)},
-                          {elongation_[a.idx()], elongation_[b.idx()], elongation_[c.idx()]});
-  }
-
-  Vertex collapse(Edge e, const Step& step, const KeptProof::Outlook& outlook) {
+  // Returns the vertex that is left; nothing if the edge cannot be collapsed.
+  std::optional<Vertex> collapse(Edge e, const CoarseningStep& step) {
+    if (!surface_.may_collapse(mesh_.vertex(e, 0), mesh_.vertex(e, 1), step.target.position)) return std::nullopt;
+    const std::optional<KeptProof::Outlook> outlook = after(step);
+    if (!outlook) return std::nullopt;
     const Vertex v = CGAL::Euler::collapse_edge(e, mesh_);
     surface_.place(v, step.target.position, step.target.sample);
-    note(step, outlook, v);
+    note(step, *outlook, v);
     return v;
   }
 
-  // After a step. `at`: its vertex, as it is called now.
-  void note(const Step& step, const KeptProof::Outlook& outlook, Vertex at) {
-    elongation_[at.idx()] = longest_({surface_.cone[at], surface_.t[at]});
-    for (const FaceCorners& f : step.faces) {
-      for (const Vertex x : f) changed_[(x == step.at ? at : x).idx()] = 1;
+  // Not with a proof. Returns whether the edge was split.
+  bool split(Edge e) {
+    const CoarseningStep step = *steps_.split(e);
+    const Vertex a = mesh_.vertex(e, 0);
+    const BoundaryPoint end{state_.point(a), surface_.sample(a)};
+    Vertex v = surface_.split_edge(e);
+    const bool is_safe = surface_.may_place(v, step.target.position);
+    if (is_safe) {
+      surface_.place(v, step.target.position, step.target.sample);
+    } else {  // as it was
+      v = CGAL::Euler::collapse_edge(mesh_.edge(mesh_.halfedge(v, a)), mesh_);
+      surface_.place(v, end.position, end.sample);
     }
-    if (proof_) proof_->note(step, outlook, at);
-    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(at))) {
-      if (!is_fixed(f)) squared_[f.idx()] = deviation_.measure(f).squared;
-    }
+    changed_.resize(mesh_.num_vertices());
+    note_around(v);
+    return is_safe;
   }
 
-  using Entry = std::pair<double, Index>;
+  // After a step. `at`: its vertex, as it is called now.
+  void note(const CoarseningStep& step, const KeptProof::Outlook& outlook, Vertex at) {
+    if (proof_) proof_->note(step, outlook, at);
+    note_around(at);
+  }
+
+  void note_around(Vertex v) {
+    steps_.note(v);
+    changed_[v.idx()] = 1;
+    for (const Vertex w : mesh_.vertices_around_target(mesh_.halfedge(v))) changed_[w.idx()] = 1;
+  }
 
   BoundSurface& surface_;
   SurfaceMesh& mesh_;
   SweepState state_;
-  const VesselField& field_;
   std::optional<KeptProof> proof_;
-  StepDeviation deviation_;
+  CoarseningSteps steps_;
   std::size_t least_vertices_;
   std::size_t lids_ = 0;
-  const std::function<Elongation(const CenterlineBinding&)>& longest_;
   const Progress& progress_;
-  double done_ = 0;
+  int rounds_ = 0;
   std::size_t polls_ = 0;
-  std::vector<Elongation> elongation_;  // by vertex
-  std::vector<double> squared_;         // by face: the integral of its squared deviation, mm^4
-  std::vector<char> changed_;           // in this pass, vertices whose faces have changed
+  std::vector<double> cost_;   // by edge: what its collapse cost when it was last looked at
+  std::vector<char> changed_;  // vertices whose faces have changed since costs were updated
 };
 
 // Whether the surface is a manifold, so that it can be worked on.
@@ -354,8 +294,8 @@ bool build(const FinishedSurface& from, BoundSurface& surface) {
 
 }  // namespace
 
-void coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal,
-             const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress) {
+void coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal, const LongestAt& longest,
+             const Progress& progress) {
   BoundSurface work(field);
   if (!build(surface, work)) return;
   work.guard_crossings(BoundSurface::Axes::all);

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <functional>
-
 #include "vmesh/core/progress.h"
 
+#include "surface/proof/coarsening_steps.h"
 #include "surface/proof/patch.h"
-#include "surface/remesh/elongated_metric.h"
 
 namespace vmesh {
 
@@ -17,16 +15,18 @@ struct CoarseningGoal {
 
 /// Leaves out vertices of a surface as long as a limit on the error stays proven, or down to a number.
 ///
-/// Edges are collapsed, those first by which the integral of the squared deviation from the boundary grows least; the
-/// new vertex lies where it is least (compare Lindstrom and Turk, "Fast and memory efficient polygonal simplification",
-/// 1998, who measure volumes between surfaces). In between and at the end, edges are flipped and vertices moved where
-/// that makes it smaller. No step lets faces cross, or a face the axis of a vessel, nor makes triangles much worse than
-/// they may be in the metric of `longest`: how many times longer than wide they may be at a place of the vessels.
-/// Vertices at openings stay, and faces that are not proven. Deviations stay below half the local radius, whatever the
-/// limit.
+/// Edges are collapsed, those first by which the deviation from the boundary grows least; the new vertex lies where it
+/// is least (compare Lindstrom and Turk, "Fast and memory efficient polygonal simplification", 1998, who measure
+/// volumes between surfaces). In between and at the end, edges are flipped and vertices moved where that makes it
+/// smaller. Down to a number, vertices are then exchanged: edges are split where that gains more than collapses cost
+/// elsewhere (compare Hoppe et al., "Mesh optimization", 1993). The deviation is the integral of the distance to the
+/// power 1.5. No step lets faces cross, or a face the axis of a vessel, nor makes triangles much worse than they may be
+/// in the metric of `longest`. Vertices at openings stay, and faces that are not proven. Deviations stay below half the
+/// local radius, whatever the limit.
 ///
-/// The result is proven like the surface before: the same faces are not. One thread.
-void coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal,
-             const std::function<Elongation(const CenterlineBinding&)>& longest, const Progress& progress);
+/// The result is proven like the surface before: the same faces are not. One thread but for the first look at each
+/// edge.
+void coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal, const LongestAt& longest,
+             const Progress& progress);
 
 }  // namespace vmesh

@@ -13,6 +13,15 @@ namespace {
 constexpr double kMostDeviation = 0.5;
 constexpr double kDamping = 0.01;    // of steps, so that vertices do not slide where nothing is gained
 constexpr double kTolerance = 1e-3;  // radii, of projections
+constexpr double kNearZero = 0.02;   // radii: distances that need not be told from none; 0.005 and 0.1: within 1 %
+constexpr int kIterations = 2;       // of reweighted least squares; 3: within 1 %
+
+// Distances count to a power between that of the mean error (1), whose sum hardly tells which of many collapses is the
+// better one, and squares, which spend vertices on thick vessels. Nine trees with so many vertices, four of them
+// synthetic: mean error at a power of 1.3 and 1.7 .7 and .8 % larger, at 2 with one iteration 3 %.
+double powered(double distance) { return distance * std::sqrt(distance); }
+// Its derivative, divided by the distance: the weight in least squares.
+double least_squares_weight(double distance, double radius) { return 1 / std::sqrt(distance + kNearZero * radius); }
 
 // Weights of samples: a rule for triangles that is exact for cubic functions.
 constexpr double kAtCentre = 27.0 / 60, kAtMiddle = 8.0 / 60, kAtCorner = 3.0 / 60;
@@ -67,7 +76,7 @@ StepDeviation::Measured StepDeviation::measure(const Replacement& step) const {
   Measured result;
   visit_samples(Samples::all, step, [&](const FieldSample& sample, double, double weight, double limit) {
     result.largest = std::max(result.largest, std::abs(sample.distance) / limit);
-    result.squared += weight * sample.distance * sample.distance;
+    result.deviation += weight * powered(std::abs(sample.distance));
   });
   return result;
 }
@@ -80,26 +89,35 @@ StepDeviation::Measured StepDeviation::measure(Face f) const {
 
 void StepDeviation::place(Replacement& step, const Vec3& p, Index hint, double share) const {
   step.target = project_to_boundary(state_.field, p, hint, kTolerance, 0);
+  const auto move_by = [&](const Vec3& move) {
+    step.target.position += move;
+    step.target.sample = state_.field.sample_fast(step.target.position, step.target.sample.cone);
+  };
+  for (int i = 0; i < kIterations; ++i) {
+    const Vec3 move = least_squares_move(step);
+    move_by(std::min(1.0, reach_of(step) / move.norm()) * move);
+  }
+  const FieldSample& sample = step.target.sample;
+  const double excess = std::abs(sample.distance) - share * most(state_.field.radius_at(sample.cone, sample.t));
+  if (excess > 0) move_by(-std::copysign(excess, sample.distance) * sample.gradient.normalized());
+}
+
+// A step of Gauss and Newton.
+Vec3 StepDeviation::least_squares_move(const Replacement& step) const {
+  const double radius = state_.field.radius_at(step.target.sample.cone, step.target.sample.t);
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Vec3 product = Vec3::Zero();
   double total = 0;
-  visit_samples(Samples::moving, step, [&](const FieldSample& sample, double part, double weight, double) {
+  visit_samples(Samples::moving, step, [&](const FieldSample& sample, double part, double area, double) {
+    const double weight = area * least_squares_weight(std::abs(sample.distance), radius);
     const Vec3 slope = part * sample.gradient.normalized();
     normal += weight * slope * slope.transpose();
     product += weight * sample.distance * slope;
     total += weight * part * part;
   });
-  if (total <= 0) return;
+  if (total <= 0) return Vec3::Zero();
   normal.diagonal().array() += kDamping * total;
-  const Vec3 move = -normal.ldlt().solve(product);
-  const double reach = reach_of(step);
-  step.target.position += std::min(1.0, reach / move.norm()) * move;
-  step.target.sample = state_.field.sample_fast(step.target.position, step.target.sample.cone);
-  const FieldSample& sample = step.target.sample;
-  const double excess = std::abs(sample.distance) - share * most(state_.field.radius_at(sample.cone, sample.t));
-  if (excess <= 0) return;
-  step.target.position -= std::copysign(excess, sample.distance) * sample.gradient.normalized();
-  step.target.sample = state_.field.sample_fast(step.target.position, sample.cone);
+  return -normal.ldlt().solve(product);
 }
 
 // The longest edge at the step's vertex.

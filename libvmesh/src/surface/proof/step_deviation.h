@@ -9,8 +9,8 @@ namespace vmesh {
 class StepDeviation {
  public:
   struct Measured {
-    double largest = 0;  ///< in limits; corners that stay do not count
-    double squared = 0;  ///< integral of the squared deviation, mm^4
+    double largest = 0;    ///< in limits; corners that stay do not count
+    double deviation = 0;  ///< integral of the distance to the power 1.5, mm^3.5
   };
 
   /// Keeps references.
@@ -21,8 +21,8 @@ class StepDeviation {
   /// Of a face of the surface.
   Measured measure(Face f) const;
 
-  /// Puts the step's vertex near `p`: on the boundary, then to where the squared deviation is least if distances
-  /// changed linearly, but no farther from the boundary than `share` of the limit.
+  /// Puts the step's vertex near `p`: on the boundary, then to where the deviation is least by iteratively reweighted
+  /// least squares, as if distances changed linearly, but no farther from the boundary than `share` of the limit.
   void place(Replacement& step, const Vec3& p, Index hint, double share) const;
 
   /// How far the surface may be from the boundary at a place of this radius: never so far that it loses the axis.
@@ -31,6 +31,7 @@ class StepDeviation {
  private:
   enum class Samples { all, moving };  // moving: those that move with the step's vertex
 
+  Vec3 least_squares_move(const Replacement& step) const;
   double reach_of(const Replacement& step) const;
 
   template <class Visit>
