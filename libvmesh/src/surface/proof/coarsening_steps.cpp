@@ -19,19 +19,17 @@ constexpr double kShareForSamples = 0.9;  // of the limit; 0.8: 13 % more vertic
 constexpr double kBetter = 0.98;  // deviation after a step that leaves out no vertex against that before; 0.9: 4 % more
 constexpr double kToMiddle = 0.5;      // of the way to the middle of its neighbours: where a vertex may move to,
 constexpr double kToNeighbour = 0.08;  // or of that to a neighbour
-// Skewness of a face in its metric, unless one that it replaces was worse. Nine trees with 0.75: 1.5 % more mean error;
-// faces above 0.9 count as defects.
-constexpr double kWorstShape = 0.85;
 
 }  // namespace
 
 CoarseningSteps::CoarseningSteps(const SweepState& state, const ErrorLimit& limit, const LongestAt& longest,
-                                 std::function<bool(Face)> is_fixed)
+                                 double worst_skewness, std::function<bool(Face)> is_fixed)
     : state_(state),
       surface_(state.surface),
       mesh_(state.mesh),
       measure_(state, limit),
       longest_(longest),
+      worst_skewness_(worst_skewness),
       is_fixed_(std::move(is_fixed)) {
   for (const Vertex v : mesh_.vertices()) elongation_.push_back(longest_at(v));
   deviation_.resize(mesh_.num_faces());
@@ -147,7 +145,7 @@ bool CoarseningSteps::is_allowed(CoarseningStep& step) const {
 bool CoarseningSteps::is_well_shaped(const CoarseningStep& step) const {
   const Landing landing(step.target);
   const Elongation at_target = longest_({step.target.sample.cone, step.target.sample.t});
-  double worst = kWorstShape;
+  double worst = worst_skewness_;
   bool known = false;  // how bad the faces are that are replaced
   for (const FaceCorners& f : step.faces) {
     const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), step.at) - f.begin());

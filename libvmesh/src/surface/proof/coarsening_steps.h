@@ -20,8 +20,9 @@ struct CoarseningStep : Replacement {
 /// well-shaped and, at samples, within the limit. Neither crossings nor the proof of the limit are looked at.
 class CoarseningSteps {
  public:
-  /// Keeps references. `is_fixed`: faces that no step may replace.
-  CoarseningSteps(const SweepState& state, const ErrorLimit& limit, const LongestAt& longest,
+  /// Keeps references. `worst_skewness`: of a face in the metric of `longest`, unless one that it replaces was worse.
+  /// `is_fixed`: faces that no step may replace.
+  CoarseningSteps(const SweepState& state, const ErrorLimit& limit, const LongestAt& longest, double worst_skewness,
                   std::function<bool(Face)> is_fixed);
 
   /// To a vertex at the middle or at either end, from there to where it deviates least. Its vertex is the first of `e`.
@@ -53,6 +54,7 @@ class CoarseningSteps {
   const SurfaceMesh& mesh_;
   StepDeviation measure_;
   const LongestAt& longest_;
+  double worst_skewness_;
   std::function<bool(Face)> is_fixed_;
   std::vector<Elongation> elongation_;  // by vertex
   std::vector<double> deviation_;       // by face
