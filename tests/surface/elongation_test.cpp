@@ -191,6 +191,7 @@ TEST(Elongation, LeavesAsManyVerticesAsAskedForWhereTheyReduceTheError) {
   const GenerateResult even = generate_surface(fork, options);
   options = with_elongation(16);
   options.around = 20;
+  options.threads = 1;
   options.least_vertices = even.mesh.vertices.size();
   for (const auto& [proven, open] : {std::pair(false, false), {false, true}, {true, false}, {true, true}}) {
     SCOPED_TRACE(::testing::Message() << "proven " << proven << " open " << open);
@@ -199,6 +200,12 @@ TEST(Elongation, LeavesAsManyVerticesAsAskedForWhereTheyReduceTheError) {
     const GenerateResult result = generate_surface(fork, options);
     EXPECT_TRUE(result.is_sound());
     EXPECT_EQ(result.error.unproven_faces, 0u);
+    EXPECT_LT(summarize_skewness(metric_skewness(result.mesh, result.elongation)).max,
+              (proven ? 0.75 : 0.85) + kRounding);
+    options.threads = 3 - options.threads;
+    const GenerateResult again = generate_surface(fork, options);
+    EXPECT_EQ(again.mesh.vertices, result.mesh.vertices);
+    EXPECT_EQ(again.mesh.faces, result.mesh.faces);
     if (open) continue;  // rims keep their vertices
     EXPECT_EQ(result.mesh.vertices.size(), options.least_vertices);
     const double mean = measure_deviation(result.mesh, result.binding, field).mean_mm;
@@ -225,6 +232,16 @@ TEST(MetricSkewness, TellsLongTrianglesFromBadOnes) {
   EXPECT_NEAR(metric_skewness(mesh, along)[0], 0, kRounding);
   EXPECT_EQ(metric_skewness(mesh, across)[0], metric_skewness(mesh, {})[0]);
   EXPECT_GT(metric_skewness(mesh, shorter)[0], 0.2);
+}
+
+// At a junction, where the vessels at the corners have far different directions.
+TEST(MetricSkewness, DoesNotDependOnTheOrderOfCorners) {
+  const std::vector<Vec3> vertices{{0, 0, 0}, {4, 0, 0}, {2, 1.2, 0}};
+  const std::vector<Vec3> elongation{4 * Vec3(1, 0.2, 0).normalized(), 4 * Vec3(0.5, -0.9, 0).normalized(),
+                                     4 * Vec3(0.2, 1, 0).normalized()};
+  const TriMesh mesh{vertices, {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  const std::vector<double> skewness = metric_skewness(mesh, elongation);
+  for (const double s : skewness) EXPECT_NEAR(s, skewness[0], kRounding);
 }
 
 }  // namespace
