@@ -237,8 +237,9 @@ TEST(MetricSkewness, TellsLongTrianglesFromBadOnes) {
 // At a junction, where the vessels at the corners have far different directions.
 TEST(MetricSkewness, DoesNotDependOnTheOrderOfCorners) {
   const std::vector<Vec3> vertices{{0, 0, 0}, {4, 0, 0}, {2, 1.2, 0}};
-  const std::vector<Vec3> elongation{4 * Vec3(1, 0.2, 0).normalized(), 4 * Vec3(0.5, -0.9, 0).normalized(),
-                                     4 * Vec3(0.2, 1, 0).normalized()};
+  std::vector<Vec3> elongation;
+  for (const double degrees : {0, 58, 124})
+    elongation.push_back(4 * Vec3(std::cos(degrees * M_PI / 180), std::sin(degrees * M_PI / 180), 0));
   const TriMesh mesh{vertices, {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
   const std::vector<double> skewness = metric_skewness(mesh, elongation);
   for (const double s : skewness) EXPECT_NEAR(s, skewness[0], kRounding);
