@@ -7,6 +7,9 @@
 namespace vmesh {
 namespace {
 
+// Around faces that are not proven: shells may be bent for them there. One: a hepatic vein's 39 become 41.
+constexpr int kFixedRings = 2;
+
 using Corner = ErrorProof::Corner;
 using Shares = ErrorProof::Shares;
 
@@ -54,8 +57,20 @@ KeptProof::KeptProof(const SweepState& state, const ErrorLimit& limit)
   });
   for (std::size_t i = 0; i < faces.size(); ++i) shares_[faces[i].idx()] = shares[i];
   for (const Index i : proof_.unproven(corner_, triangles, shares)) fixed_[faces[i].idx()] = 1;
+  for (int ring = 0; ring < kFixedRings; ++ring) fix_neighbours();
   for (const Face f : mesh_.faces()) {
     for (const Vertex v : state_.corners(f)) fixed_[f.idx()] |= surface_.held(v);
+  }
+}
+
+void KeptProof::fix_neighbours() {
+  std::vector<char> at_fixed(mesh_.num_vertices(), 0);
+  for (const Face f : mesh_.faces()) {
+    if (!is_fixed(f)) continue;
+    for (const Vertex v : state_.corners(f)) at_fixed[v.idx()] = 1;
+  }
+  for (const Face f : mesh_.faces()) {
+    for (const Vertex v : state_.corners(f)) fixed_[f.idx()] |= at_fixed[v.idx()];
   }
 }
 

@@ -25,7 +25,8 @@ struct Replacement {
 };
 
 /// The proof of a surface's error limit, kept while the surface changes step by step (ErrorProof). Faces that were not
-/// proven at first, and faces at held vertices, are fixed: no step may replace them or change what holds for them.
+/// proven at first, those around them, and faces at held vertices are fixed: no step may replace them or change what
+/// holds for them.
 class KeptProof {
  public:
   /// What a step changes in the proof.
@@ -57,6 +58,7 @@ class KeptProof {
     std::vector<Vertex> vertices() const;
   };
 
+  void fix_neighbours();
   ErrorProof::Corner corner_of(Vertex v) const;
   ErrorProof::Corner corner_after(const Replacement& step, Vertex v) const;
   void add_around(Vertex v, const Replacement& step, const Outlook& outlook, Surroundings& to) const;
