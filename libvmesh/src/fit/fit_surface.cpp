@@ -17,6 +17,7 @@
 #include "fit/reshaping.h"
 #include "fit/resizing.h"
 #include "fit/rounds.h"
+#include "fit/spikes.h"
 #include "fit/unmatched.h"
 #include "surface/proof/defects.h"
 
@@ -226,11 +227,13 @@ class Fit {
   // `first`: rounds are left to repair triangles that flips make skew.
   void reshape(int power, bool first) {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
+      if (options_.resize) collapse_spikes(surface, frozen, setting_);
       if (options_.resize) flip_closer(surface, frozen, first, setting_);
       if (options_.resize && first) flip_edges(surface, frozen, setting_.guard);
       for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, setting_.guard, power);
       repair(surface, frozen, setting_.guard);
     });
+    if (surface_.vertex_count() < surface_.vertices.size()) pack();
   }
 
   // Resizes triangles; for an error, until the number of vertices has settled.

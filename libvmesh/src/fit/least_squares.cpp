@@ -14,7 +14,6 @@ constexpr double kInPlane = 100;    // of a vertex's area
 constexpr double kFrozen = 1e4;     // of a vertex's area: the remaining step is dropped
 constexpr double kAccuracy = 1e-5;  // of the residual, scaled by each vertex's stiffness
 // Large distances count more, up to this many times the RMS distance, so that distant regions are brought near.
-constexpr double kEmphasis = 0.8;
 constexpr double kMostEmphasized = 4;
 constexpr int kMostIterations = 200;
 
@@ -115,6 +114,12 @@ void for_each_match(const Matches& matches, Visit&& visit) {
 
 }  // namespace
 
+void keep_in_opening(const FitMesh& surface, Index v, const std::vector<Vec3>& opening_normals, Vec3& step) {
+  if (!surface.on_border(v)) return;
+  const Vec3& across = opening_normals[surface.vertices[v].opening];
+  step -= across.dot(step) * across;
+}
+
 double rms_distance(const Matches& matches) {
   double sum = 0, area = 0;
   for_each_match(matches, [&](const Match& match) {
@@ -124,13 +129,13 @@ double rms_distance(const Matches& matches) {
   return area > 0 && sum > 0 ? std::sqrt(sum / area) : 1;
 }
 
-std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& matches, const std::vector<Vec3>& pull,
-                                      const std::vector<Vec3>& opening_normals, const std::vector<char>& frozen,
-                                      const LeastSquaresWeights& weights) {
+std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& matches,
+                                      const std::vector<ShapePull>& pulls, const std::vector<Vec3>& opening_normals,
+                                      const std::vector<char>& frozen, const LeastSquaresWeights& weights) {
   Equations equations(surface);
   const double rms = rms_distance(matches);
   for_each_match(matches, [&](const Match& match) {
-    const double emphasis = 1 + kEmphasis * std::min(kMostEmphasized, std::abs(match.distance) / rms);
+    const double emphasis = 1 + weights.emphasis * std::min(kMostEmphasized, std::abs(match.distance) / rms);
     equations.add(match, match.area * emphasis);
   });
   std::vector<double> area(surface.vertices.size(), 0);
@@ -145,7 +150,8 @@ std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& mat
   for (Vec3& n : normal) n.normalize();
   for (Index v = 0; v < surface.vertices.size(); ++v) {
     const Mat3 along = normal[v] * normal[v].transpose();
-    equations.add(v, weights.tangential * area[v] * (Mat3::Identity() - along), pull[v]);
+    const double tangential = weights.tangential * pulls[v].weight;
+    equations.add(v, tangential * area[v] * (Mat3::Identity() - along), pulls[v].step);
     const double hold = is_frozen(frozen, v) ? kFrozen : kHold;
     equations.add(v, hold * area[v] * Mat3::Identity(), Vec3::Zero());
     if (surface.on_border(v)) {
@@ -161,9 +167,7 @@ std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& mat
   std::vector<Vec3> steps = equations.solve();
   for (Index v = 0; v < surface.vertices.size(); ++v) {
     if (is_frozen(frozen, v)) steps[v].setZero();
-    if (!surface.on_border(v)) continue;
-    const Vec3& across = opening_normals[surface.vertices[v].opening];
-    steps[v] -= across.dot(steps[v]) * across;
+    keep_in_opening(surface, v, opening_normals, steps[v]);
   }
   return steps;
 }

@@ -22,8 +22,9 @@ struct SizeLimits {
   double grading = 0.4;                 ///< largest difference of sizes over distance
 };
 
-/// Sets the intended sizes so that errors become even at about `vertices` vertices if that is not 0, else so that they
-/// become `error`: errors are proportional to the square of the edges. Returns the approximate number of faces.
+/// Sets the intended sizes: for the least sum of squared errors with about `vertices` vertices if that is not 0, else
+/// so that errors become `error` everywhere. Errors are proportional to the square of the edges. Returns the
+/// approximate number of faces.
 double set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t vertices, double error,
                  const SizeLimits& limits);
 

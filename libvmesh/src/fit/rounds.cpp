@@ -1,5 +1,7 @@
 #include "fit/rounds.h"
 
+#include <algorithm>
+
 #include <tbb/parallel_for.h>
 
 #include "fit/least_squares.h"
@@ -10,6 +12,10 @@ namespace {
 
 constexpr double kLongestStep = 0.35;  // of the edges around
 constexpr int kShapePower = 2;
+// The pull to good shapes counts relative to distances, which shrink with the square of the edges: it grows with the
+// square of edges by radius, between this and 1. Measured on portal vein 008 at 12 vertices around: mean distance .023
+// mm with 1, .021 with .4 and with .2; the aorta's Hausdorff distance grows when weights at 6 around are less than 1.
+constexpr double kLeastPull = 0.4;
 constexpr int kRepairs = 4, kRepairPower = 8;
 
 // How far a point on an edge is from the reference; negative: unknown.
@@ -23,11 +29,22 @@ double distance_at(const FitMesh& surface, Index a, Index b, const Vec3& p, cons
   return found ? found->distance : -1;
 }
 
+std::vector<ShapePull> shape_pulls(const FitMesh& surface, const VesselField& field) {
+  const std::vector<Vec3> steps = shape_steps(surface, kShapePower);
+  std::vector<ShapePull> pulls(steps.size());
+  for (Index v = 0; v < pulls.size(); ++v) {
+    const double share = surface.mean_edge(v) / widest_radius(field, surface.vertices[v].cone);
+    pulls[v] = {steps[v], std::clamp(share * share, kLeastPull, 1.0)};
+  }
+  return pulls;
+}
+
 }  // namespace
 
-void step_nearer(FitMesh& surface, const Matches& matches, const FitSetting& setting, const std::vector<char>& frozen) {
-  std::vector<Vec3> steps =
-      least_squares_steps(surface, matches, shape_steps(surface, kShapePower), setting.opening_normals, frozen);
+void step_nearer(FitMesh& surface, const Matches& matches, const FitSetting& setting, const std::vector<char>& frozen,
+                 const LeastSquaresWeights& weights) {
+  std::vector<Vec3> steps = least_squares_steps(surface, matches, shape_pulls(surface, setting.field),
+                                                setting.opening_normals, frozen, weights);
   for (Index v = 0; v < steps.size(); ++v) {
     const double longest = kLongestStep * surface.mean_edge(v), norm = steps[v].norm();
     if (norm > longest) steps[v] *= longest / norm;

@@ -8,6 +8,7 @@
 #include "fit/fit_mesh.h"
 #include "fit/fit_reference.h"
 #include "fit/guarded_step.h"
+#include "fit/least_squares.h"
 
 namespace vmesh {
 
@@ -21,7 +22,7 @@ struct FitSetting {
 
 /// Moves the vertices by one guarded step of least squares, except for frozen ones, and renews their cones.
 void step_nearer(FitMesh& surface, const Matches& matches, const FitSetting& setting,
-                 const std::vector<char>& frozen = {});
+                 const std::vector<char>& frozen = {}, const LeastSquaresWeights& weights = {});
 
 void find_cones(FitMesh& surface, const VesselField& field);
 

@@ -1,6 +1,8 @@
 #include "fit/unmatched.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include <tbb/parallel_for.h>
 
@@ -9,7 +11,33 @@
 namespace vmesh {
 namespace {
 
-constexpr double kFar = 0.5;  // local radii
+constexpr double kFar = 0.5;          // local radii
+constexpr double kInTriangle = 1e-9;  // of its area: what rounding adds to the parts into which a point divides it
+
+// One interface to the faces of both surfaces.
+struct FittedFaces {
+  const FitMesh& surface;
+
+  std::size_t count() const { return surface.faces.size(); }
+  std::array<Vec3, 3> corners(Index f) const { return surface.corners(f); }
+  Vec3 normal(Index f) const { return surface.unit_normal(f); }
+  Triangle across(Index f) const {
+    const Triangle& face = surface.faces[f];
+    return {surface.face_of(face[1], face[0]), surface.face_of(face[2], face[1]), surface.face_of(face[0], face[2])};
+  }
+};
+
+struct ReferenceFaces {
+  const FitReference& reference;
+
+  std::size_t count() const { return reference.mesh().faces.size(); }
+  std::array<Vec3, 3> corners(Index f) const {
+    const auto& [a, b, c] = reference.mesh().faces[f];
+    return {reference.mesh().vertices[a], reference.mesh().vertices[b], reference.mesh().vertices[c]};
+  }
+  Vec3 normal(Index f) const { return reference.normal(f); }
+  const Triangle& across(Index f) const { return reference.across(f); }
+};
 
 struct FarFace {
   Vec3 position = Vec3::Zero();
@@ -19,13 +47,13 @@ struct FarFace {
   Index cone = kNone;
 };
 
-// Neighbours among the far faces are joined; across(f) lists the faces beside face f.
-template <class Across>
-std::vector<UnmatchedPart> parts_of(const std::vector<FarFace>& faces, Across&& across) {
+// Neighbours among the far faces are joined.
+template <class Faces>
+std::vector<UnmatchedPart> parts_of(const std::vector<FarFace>& faces, const Faces& own) {
   DisjointSets sets(faces.size());
   for (Index f = 0; f < faces.size(); ++f) {
     if (faces[f].distance < 0) continue;
-    for (const Index g : across(f)) {
+    for (const Index g : own.across(f)) {
       if (g != kNone && faces[g].distance >= 0) sets.join(f, g);
     }
   }
@@ -50,13 +78,35 @@ std::vector<UnmatchedPart> parts_of(const std::vector<FarFace>& faces, Across&& 
   return parts;
 }
 
-// `normal(face)`: normal of a face of the other surface.
-template <class Normal>
-FarFace far_face(const Vec3& p, double area, Index cone, const ClosestPointIndex& to, const VesselField& field,
-                 Normal&& normal) {
+bool is_in_triangle(const std::array<Vec3, 3>& corners, const Vec3& p) {
+  const auto& [a, b, c] = corners;
+  const double parts = (a - p).cross(b - p).norm() + (b - p).cross(c - p).norm() + (c - p).cross(a - p).norm();
+  return parts <= (1 + kInTriangle) * (b - a).cross(c - a).norm();
+}
+
+// Whether p lies behind the closest point. Of the faces that share that point, on an edge or corner, the one that looks
+// at p or away from it the most decides: p can lie behind others of a ridge or tip although it is outside.
+template <class Faces>
+bool is_behind(const Vec3& p, const ClosestPoint& closest, const Faces& faces) {
+  std::vector<Index> sharing = {closest.face};
+  double most = 0;
+  for (std::size_t i = 0; i < sharing.size(); ++i) {
+    const double height = faces.normal(sharing[i]).dot(p - closest.point);
+    if (std::abs(height) > std::abs(most)) most = height;
+    for (const Index g : faces.across(sharing[i])) {
+      if (g == kNone || std::find(sharing.begin(), sharing.end(), g) != sharing.end()) continue;
+      if (is_in_triangle(faces.corners(g), closest.point)) sharing.push_back(g);
+    }
+  }
+  return most < 0;
+}
+
+template <class Faces>
+FarFace far_face(const Vec3& p, double area, Index cone, const ClosestPointIndex& to, const Faces& others,
+                 const VesselField& field) {
   const ClosestPoint found = to.closest(p);
   if (found.distance <= kFar * widest_radius(field, cone)) return {};
-  return {p, found.distance, area, normal(found.face).dot(p - found.point) < 0, cone};
+  return {p, found.distance, area, is_behind(p, found, others), cone};
 }
 
 }  // namespace
@@ -87,27 +137,26 @@ std::vector<char> faces_apart(const Matches& matches, const std::vector<Referenc
 std::vector<UnmatchedPart> uncovered_parts(const FitMesh& surface, const FitReference& reference,
                                            const VesselField& field) {
   const ClosestPointIndex index(surface.tri_mesh());
-  std::vector<FarFace> faces(reference.mesh().faces.size());
+  const ReferenceFaces own{reference};
+  const FittedFaces others{surface};
+  std::vector<FarFace> faces(own.count());
   tbb::parallel_for(Index{0}, static_cast<Index>(faces.size()), [&](Index f) {
-    faces[f] = far_face(reference.center(f), reference.area(f), reference.cone(f), index, field,
-                        [&](Index g) { return surface.area_normal(g); });
+    faces[f] = far_face(reference.center(f), reference.area(f), reference.cone(f), index, others, field);
   });
-  return parts_of(faces, [&](Index f) { return reference.across(f); });
+  return parts_of(faces, own);
 }
 
 std::vector<UnmatchedPart> unsupported_parts(const FitMesh& surface, const FitReference& reference,
                                              const VesselField& field) {
-  std::vector<FarFace> faces(surface.faces.size());
+  const FittedFaces own{surface};
+  const ReferenceFaces others{reference};
+  std::vector<FarFace> faces(own.count());
   tbb::parallel_for(Index{0}, static_cast<Index>(faces.size()), [&](Index f) {
     const auto [a, b, c] = surface.corners(f);
     faces[f] = far_face((a + b + c) / 3, surface.area_normal(f).norm() / 2, surface.vertices[surface.faces[f][0]].cone,
-                        reference.index(), field, [&](Index g) { return reference.normal(g); });
+                        reference.index(), others, field);
   });
-  return parts_of(faces, [&](Index f) {
-    const Triangle& face = surface.faces[f];
-    return Triangle{surface.face_of(face[1], face[0]), surface.face_of(face[2], face[1]),
-                    surface.face_of(face[0], face[2])};
-  });
+  return parts_of(faces, own);
 }
 
 }  // namespace vmesh

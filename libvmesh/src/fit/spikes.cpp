@@ -1,0 +1,95 @@
+#include "fit/spikes.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace vmesh {
+namespace {
+
+// Measured on the aorta and SU201, forty centerlines each whose nodes were moved by 1e-3 radii: Hausdorff distance at
+// most 1.02 and .33 mm with these, 1.02 and .43 where only vertices of at most five faces are collapsed, up to 2.2 mm
+// where the triangles may only have a skewness of .6, 2.3 and .39 without any.
+constexpr double kBlunt = 0.6;      // length of the sum of the faces' area vectors by that of the lengths
+constexpr double kFar = 0.15;       // of the edges around: what is nearer does no harm
+constexpr double kNearer = 0.6;     // of the vertex's distance: the most that may remain
+constexpr double kSkewness = 0.75;  // of the triangles that remain; repair mends that
+constexpr double kFarthest = 1.5;   // local radii, from the reference
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+class Spikes {
+ public:
+  Spikes(FitMesh& surface, const std::vector<char>& frozen, const FitSetting& setting)
+      : surface_(surface), frozen_(frozen), setting_(setting) {}
+
+  void collapse() {
+    for (Index v = 0; v < surface_.vertices.size(); ++v) {
+      if (!surface_.has_vertex(v) || surface_.on_border(v) || is_frozen(frozen_, v) || !is_pointed(v)) continue;
+      const double distance = distance_from(v, surface_.position(v));
+      if (distance == kInfinite || distance < kFar * surface_.mean_edge(v)) continue;
+      const Index end = nearest_end(v, kNearer * distance);
+      if (end != kNone) surface_.collapse(end, v);
+    }
+  }
+
+ private:
+  bool is_pointed(Index v) const {
+    Vec3 sum = Vec3::Zero();
+    double area = 0;
+    for (const Index f : surface_.faces_around(v)) {
+      const Vec3 normal = surface_.area_normal(f);
+      sum += normal;
+      area += normal.norm();
+    }
+    return sum.norm() < kBlunt * area;
+  }
+
+  // From the reference around the vessel of vertex v, whichever way it faces; infinite if there is none.
+  double distance_from(Index v, const Vec3& p) const {
+    const Index cone = surface_.vertices[v].cone;
+    const auto accepts = [&](Index g) { return same_vessel(setting_.field, cone, setting_.reference.cone(g)); };
+    const double limit = kFarthest * widest_radius(setting_.field, cone);
+    const auto found = setting_.reference.index().closest_among(p, limit, accepts);
+    return found ? found->distance : kInfinite;
+  }
+
+  // The neighbour into which v can be collapsed so that the triangles that remain are nearest, and nearer than `limit`.
+  Index nearest_end(Index v, double limit) const {
+    std::vector<Index> neighbours;
+    surface_.neighbours(v, neighbours);
+    Index nearest = kNone;
+    for (const Index w : neighbours) {
+      if (is_frozen(frozen_, w) || !surface_.may_collapse(w, v)) continue;
+      const double distance = distance_after_collapse(w, v);
+      if (distance >= limit) continue;
+      limit = distance;
+      nearest = w;
+    }
+    return nearest;
+  }
+
+  // The largest distance of the centres of the triangles that remain; infinite if one is too skew.
+  double distance_after_collapse(Index w, Index v) const {
+    double farthest = 0;
+    for (const Index f : surface_.faces_around(v)) {
+      const Triangle& face = surface_.faces[f];
+      if (std::find(face.begin(), face.end(), w) != face.end()) continue;
+      if (skewness_with(surface_, f, v, surface_.position(w)) > kSkewness) return kInfinite;
+      Vec3 center = Vec3::Zero();
+      for (const Index corner : face) center += surface_.position(corner == v ? w : corner) / 3;
+      farthest = std::max(farthest, distance_from(w, center));
+    }
+    return farthest;
+  }
+
+  FitMesh& surface_;
+  const std::vector<char>& frozen_;
+  const FitSetting& setting_;
+};
+
+}  // namespace
+
+void collapse_spikes(FitMesh& surface, const std::vector<char>& frozen, const FitSetting& setting) {
+  Spikes(surface, frozen, setting).collapse();
+}
+
+}  // namespace vmesh
