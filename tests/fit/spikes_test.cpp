@@ -86,9 +86,9 @@ TEST_F(Spike, StaysWhereItIsBlunt) {
 TEST_F(Spike, IsSeenFromOutside) {
   pull(2.5);
   const Vec3 tip = surface_.position(spike_), u = normal_.unitOrthogonal(), w = normal_.cross(u);
-  for (int i = 0; i < 12; ++i) {
-    const double angle = i * std::numbers::pi / 6;
-    const Vec3 p = tip + 1.5 * normal_ + 0.8 * (std::cos(angle) * u + std::sin(angle) * w);
+  for (int i = 0; i < 36; ++i) {
+    const double angle = i * std::numbers::pi / 18;
+    const Vec3 p = tip + normal_ + 1.2 * (std::cos(angle) * u + std::sin(angle) * w);
     TriMesh wall = tube(centerline_, 24);
     const auto first = static_cast<Index>(wall.vertices.size());
     for (const Vec3& corner : {u, w, Vec3(-u - w)}) wall.vertices.push_back(p + 0.01 * corner);

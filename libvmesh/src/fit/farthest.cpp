@@ -54,17 +54,17 @@ class FarPlaces {
   void improve(std::size_t most_vertices) {
     std::vector<Place> left_alone;
     const double near = kFar * rms_distance(matches_);
-    for (int i = 0; i < kMostPlaces && surface_.vertices.size() < most_vertices; ++i) {
+    for (int i = 0; i < kMostPlaces; ++i) {
       const Match worst = farthest_match(surface_, matches_, left_alone);
       if (worst.face == kNone || std::abs(worst.distance) <= near) return;
       const Place place = place_of(surface_, worst);
-      if (!put_vertex_at(worst)) left_alone.push_back(place);
+      if (!bring_nearer(worst, surface_.vertices.size() < most_vertices)) left_alone.push_back(place);
     }
   }
 
  private:
   // Returns whether that brought its surroundings nearer.
-  bool put_vertex_at(const Match& worst) {
+  bool bring_nearer(const Match& worst, bool may_add) {
     double edge = 0;
     for (const Index v : surface_.faces[worst.face]) edge = std::max(edge, surface_.mean_edge(v));
     if (std::abs(worst.distance) > kNotOfReach * edge) return false;
@@ -93,7 +93,7 @@ class FarPlaces {
         try_change([&](FitPatch& changed, PatchMatches&) { move_vertex(changed, there, share); });
       cut = farthest_beside(patch, before.matches, tip_of(patch, there));
     }
-    if (!best && cut.face != kNone) {
+    if (!best && may_add && cut.face != kNone) {
       for (int side = 0; side < 3; ++side)
         try_change([&](FitPatch& changed, PatchMatches& matches) { put_vertex(changed, cut, side, matches); });
     }

@@ -25,8 +25,8 @@ Match farthest_match(const FitMesh& surface, const Matches& matches, const std::
 /// Adds a vertex at a match's end on the reference by splitting a side of the match's face; does nothing on a border.
 void split_at(FitMesh& surface, const Match& match, int side);
 
-/// Where the packed surface is farthest from the reference, at ridges crossed by a triangle or an edge, adds one vertex
-/// at a time and refits its surroundings, as long as that brings them nearer.
+/// Where the packed surface is farthest from the reference, at ridges crossed by a triangle or an edge, moves a vertex,
+/// adds one (as long as there are fewer than `most_vertices`) or refits the surroundings, if that brings them nearer.
 void put_vertices_where_farthest(FitMesh& surface, const std::vector<ReferenceSample>& samples,
                                  const FitSetting& setting, std::size_t most_vertices);
 

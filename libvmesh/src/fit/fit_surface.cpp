@@ -144,12 +144,12 @@ class Fit {
       reshape(1, true);
     }
     if (options_.resize) resize();
-    if (options_.resize && !to_error_) keep_to_most_vertices();
+    if (options_.resize && !to_error_) keep_to_wanted_vertices();
     finish();
     for (int i = 0; options_.resize && to_error_ && i < kCorrections && !keeps_error(); ++i) {
       even_error_ *= kCorrection;
       for (int round = 0; round < 2; ++round) resize_once(matches_after_step());
-      if (!to_error_) keep_to_most_vertices();
+      if (!to_error_) keep_to_wanted_vertices();
       finish();
     }
   }
@@ -251,8 +251,9 @@ class Fit {
     }
   }
 
-  void keep_to_most_vertices() {
-    for (int i = 0; i < kCorrections && surface_.vertices.size() > most_vertices_; ++i) {
+  // Leaves some of them for put_vertices_where_farthest().
+  void keep_to_wanted_vertices() {
+    for (int i = 0; i < kCorrections && surface_.vertices.size() > wanted_vertices_; ++i) {
       aim_ *= kCorrection;
       resize_once(matches_after_step());
     }
