@@ -71,7 +71,7 @@ TEST_F(Ridge, IsSeenByItsTips) {
 
 TEST_F(Ridge, GetsAVertex) {
   setting_.guard.max_skewness = 0.9;  // halves of them are slim
-  put_vertices_where_farthest(surface_, samples_, setting_, 5);
+  bring_farthest_nearer(surface_, samples_, setting_, 5);
   ASSERT_EQ(surface_.vertices.size(), 5u);
   EXPECT_LT((surface_.vertices[4].position - saddle(0, 0)).norm(), 0.4);
   EXPECT_TRUE(self_intersections(surface_.tri_mesh()).empty());

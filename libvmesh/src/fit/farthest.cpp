@@ -269,8 +269,8 @@ void split_at(FitMesh& surface, const Match& match, int side) {
                  0.5 * (first.base_size + second.base_size)});
 }
 
-void put_vertices_where_farthest(FitMesh& surface, const std::vector<ReferenceSample>& samples,
-                                 const FitSetting& setting, std::size_t most_vertices) {
+void bring_farthest_nearer(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting,
+                           std::size_t most_vertices) {
   FarPlaces(surface, samples, setting).improve(most_vertices);
 }
 

@@ -27,7 +27,7 @@ void split_at(FitMesh& surface, const Match& match, int side);
 
 /// Where the packed surface is farthest from the reference, at ridges crossed by a triangle or an edge, moves a vertex,
 /// adds one (as long as there are fewer than `most_vertices`) or refits the surroundings, if that brings them nearer.
-void put_vertices_where_farthest(FitMesh& surface, const std::vector<ReferenceSample>& samples,
-                                 const FitSetting& setting, std::size_t most_vertices);
+void bring_farthest_nearer(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting,
+                           std::size_t most_vertices);
 
 }  // namespace vmesh

@@ -213,7 +213,7 @@ class Fit {
       step(next_matches(!last && !to_error_));
       if (!last) reshape(2, false);
     }
-    if (options_.resize) put_vertices_where_farthest(surface_, samples_and_rims_, setting_, most_vertices_);
+    if (options_.resize) bring_farthest_nearer(surface_, samples_and_rims_, setting_, most_vertices_);
   }
 
   bool keeps_error() const {
@@ -227,9 +227,11 @@ class Fit {
   // `first`: rounds are left to repair triangles that flips make skew.
   void reshape(int power, bool first) {
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
-      if (options_.resize) collapse_spikes(surface, frozen, setting_);
-      if (options_.resize) flip_closer(surface, frozen, first, setting_);
-      if (options_.resize && first) flip_edges(surface, frozen, setting_.guard);
+      if (options_.resize) {
+        collapse_spikes(surface, frozen, setting_);
+        flip_closer(surface, frozen, first, setting_);
+        if (first) flip_edges(surface, frozen, setting_.guard);
+      }
       for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, setting_.guard, power);
       repair(surface, frozen, setting_.guard);
     });
@@ -251,7 +253,7 @@ class Fit {
     }
   }
 
-  // Leaves some of them for put_vertices_where_farthest().
+  // Leaves some of them for bring_farthest_nearer().
   void keep_to_wanted_vertices() {
     for (int i = 0; i < kCorrections && surface_.vertices.size() > wanted_vertices_; ++i) {
       aim_ *= kCorrection;

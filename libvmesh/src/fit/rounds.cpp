@@ -12,23 +12,13 @@ namespace {
 
 constexpr double kLongestStep = 0.35;  // of the edges around
 constexpr int kShapePower = 2;
+constexpr double kFarthest = 1.5;  // local radii, from the reference
 // The pull to good shapes counts relative to distances, which shrink with the square of the edges: it grows with the
 // square of edges by radius, between this and 1. Measured on portal vein 008 at 12 vertices around: mean distance .023
 // mm with 1, .021 with this and with half of it; less than 1 at 6 around costs portal vein 002 its shape (skewness .144
 // instead of .138 with five sixths).
 constexpr double kLeastPull = 1.0 / 3;
 constexpr int kRepairs = 4, kRepairPower = 8;
-
-// How far a point on an edge is from the reference; negative: unknown.
-double distance_at(const FitMesh& surface, Index a, Index b, const Vec3& p, const FitSetting& setting) {
-  const Index cone = surface.vertices[a].cone;
-  const Vec3 normal = surface.vertex_normal(a) + surface.vertex_normal(b);
-  const auto accepts = [&](Index g) {
-    return setting.reference.normal(g).dot(normal) > 0 && same_vessel(setting.field, cone, setting.reference.cone(g));
-  };
-  const auto found = setting.reference.index().closest_among(p, 1.5 * widest_radius(setting.field, cone), accepts);
-  return found ? found->distance : -1;
-}
 
 std::vector<ShapePull> shape_pulls(const FitMesh& surface, const VesselField& field) {
   const std::vector<Vec3> steps = shape_steps(surface, kShapePower);
@@ -54,6 +44,16 @@ void step_nearer(FitMesh& surface, const Matches& matches, const FitSetting& set
   find_cones(surface, setting.field);
 }
 
+double distance_from_reference(const Vec3& p, Index cone, const Vec3& normal, const FitSetting& setting) {
+  const auto accepts = [&](Index g) {
+    return (normal.isZero(0) || setting.reference.normal(g).dot(normal) > 0) &&
+           same_vessel(setting.field, cone, setting.reference.cone(g));
+  };
+  const double limit = kFarthest * widest_radius(setting.field, cone);
+  const auto found = setting.reference.index().closest_among(p, limit, accepts);
+  return found ? found->distance : -1;
+}
+
 void find_cones(FitMesh& surface, const VesselField& field) {
   tbb::parallel_for(std::size_t{0}, surface.vertices.size(), [&](std::size_t v) {
     surface.vertices[v].cone = field.sample(surface.vertices[v].position, surface.vertices[v].cone).cone;
@@ -61,8 +61,10 @@ void find_cones(FitMesh& surface, const VesselField& field) {
 }
 
 void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh, const FitSetting& setting) {
-  flip_edges_closer(surface, frozen, harsh,
-                    [&](Index a, Index b, const Vec3& p) { return distance_at(surface, a, b, p, setting); });
+  flip_edges_closer(surface, frozen, harsh, [&](Index a, Index b, const Vec3& p) {
+    const Vec3 normal = surface.vertex_normal(a) + surface.vertex_normal(b);
+    return distance_from_reference(p, surface.vertices[a].cone, normal, setting);
+  });
 }
 
 void repair(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard) {

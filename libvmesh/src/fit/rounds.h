@@ -24,6 +24,10 @@ struct FitSetting {
 void step_nearer(FitMesh& surface, const Matches& matches, const FitSetting& setting,
                  const std::vector<char>& frozen = {}, const LeastSquaresWeights& weights = {});
 
+/// Distance (mm) of a point from the reference around the vessel of `cone`, within 1.5 local radii. If `normal` is not
+/// zero, only faces that look the same way count. Negative: unknown.
+double distance_from_reference(const Vec3& p, Index cone, const Vec3& normal, const FitSetting& setting);
+
 void find_cones(FitMesh& surface, const VesselField& field);
 
 /// flip_edges_closer() by the distance from the reference.

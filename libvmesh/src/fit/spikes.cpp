@@ -14,7 +14,6 @@ constexpr double kBlunt = 0.6;      // length of the sum of the faces' area vect
 constexpr double kFar = 0.15;       // of the edges around: what is nearer does no harm
 constexpr double kNearer = 0.6;     // of the vertex's distance: the most that may remain
 constexpr double kSkewness = 0.75;  // of the triangles that remain; repair mends that
-constexpr double kFarthest = 1.5;   // local radii, from the reference
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 class Spikes {
@@ -26,7 +25,7 @@ class Spikes {
     for (Index v = 0; v < surface_.vertices.size(); ++v) {
       if (!surface_.has_vertex(v) || surface_.on_border(v) || is_frozen(frozen_, v) || !is_pointed(v)) continue;
       const double distance = distance_from(v, surface_.position(v));
-      if (distance == kInfinite || distance < kFar * surface_.mean_edge(v)) continue;
+      if (distance < kFar * surface_.mean_edge(v)) continue;
       const Index end = nearest_end(v, kNearer * distance);
       if (end != kNone) collapse(v, end);
     }
@@ -63,13 +62,9 @@ class Spikes {
     return sum.norm() < kBlunt * area;
   }
 
-  // From the reference around the vessel of vertex v, whichever way it faces; infinite if there is none.
+  // Whichever way the reference faces, as a spike's normal tells nothing. Negative: unknown.
   double distance_from(Index v, const Vec3& p) const {
-    const Index cone = surface_.vertices[v].cone;
-    const auto accepts = [&](Index g) { return same_vessel(setting_.field, cone, setting_.reference.cone(g)); };
-    const double limit = kFarthest * widest_radius(setting_.field, cone);
-    const auto found = setting_.reference.index().closest_among(p, limit, accepts);
-    return found ? found->distance : kInfinite;
+    return distance_from_reference(p, surface_.vertices[v].cone, Vec3::Zero(), setting_);
   }
 
   // The neighbour into which v can be collapsed so that the triangles that remain are nearest, and nearer than `limit`.
@@ -87,7 +82,8 @@ class Spikes {
     return nearest;
   }
 
-  // The largest distance of the centres of the triangles that remain; infinite if one is too skew.
+  // The largest distance of the centres of the triangles that remain; infinite if one is too skew or
+  // its distance is unknown.
   double distance_after_collapse(Index w, Index v) const {
     double farthest = 0;
     for (const Index f : surface_.faces_around(v)) {
@@ -96,7 +92,9 @@ class Spikes {
       if (skewness_with(surface_, f, v, surface_.position(w)) > kSkewness) return kInfinite;
       Vec3 center = Vec3::Zero();
       for (const Index corner : face) center += surface_.position(corner == v ? w : corner) / 3;
-      farthest = std::max(farthest, distance_from(w, center));
+      const double distance = distance_from(w, center);
+      if (distance < 0) return kInfinite;
+      farthest = std::max(farthest, distance);
     }
     return farthest;
   }
