@@ -50,7 +50,7 @@ TriMesh reference_of(const Case& c) {
   const std::string path = std::string(VMESH_SHARED_DATA) + "/" + c.file;
   if (!c.label) return read_surface(path).mesh;
   ReferenceOptions options;
-  options.label = c.label;
+  options.labels = {*c.label};
   options.spacing = options.smooth = 1;
   return reference_surface(read_image(path), options).mesh;
 }

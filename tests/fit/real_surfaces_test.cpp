@@ -131,7 +131,7 @@ TEST(FitRealSurfaces, EndInTheCapsOfTheModelsThatFlowIsComputedIn) {
 
 TriMesh portal_vein() {
   ReferenceOptions options;
-  options.label = 2;
+  options.labels = {2};
   options.spacing = options.smooth = 1;
   return reference_surface(read_image(testing::shared_data(kPortalVein)), options).mesh;
 }

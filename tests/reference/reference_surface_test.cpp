@@ -37,7 +37,7 @@ LoadedImage balls() {
 
 ReferenceOptions label(double value) {
   ReferenceOptions options;
-  options.label = value;
+  options.labels = {value};
   return options;
 }
 
@@ -98,7 +98,7 @@ TEST(ReferenceSurface, AsksForAChoiceAmongLabels) {
   ReferenceOptions options = label(1);
   options.threshold = 0.5;
   EXPECT_THROW(reference_surface(balls(), options), InvalidInput);
-  options.label.reset();
+  options.labels.clear();
   options.threshold = 3;
   EXPECT_THROW(reference_surface(balls(), options), InvalidInput);
   options.threshold = 0.5;

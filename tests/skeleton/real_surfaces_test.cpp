@@ -19,7 +19,7 @@ void expect_whole_path(const std::string& name) {
   const std::filesystem::path file = kData / "liver_segmentations" / name;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
   ReferenceOptions options;
-  options.label = 2;
+  options.labels = {2};
   options.spacing = 0.8;
   options.smooth = 0.8;
   const ReferenceSurface reference = reference_surface(read_image(file), options);

@@ -32,7 +32,11 @@ constexpr const char* kTradeoffExamples = R"(Examples:
 }  // namespace
 
 void add_image_options(CLI::App& verb, ReferenceOptions& options) {
-  CLI::Option* label = verb.add_option("--label", options.label, "image: voxels of this value are inside");
+  CLI::Option* label =
+      verb.add_option("--label", options.labels, "image: voxels of this value are inside, or of these: 1,2,5")
+          ->delimiter(',')
+          ->expected(1)
+          ->type_name("N,N,...");
   verb.add_option("--threshold", options.threshold, "image: voxels of at least this value are inside")->excludes(label);
   verb.add_option("--spacing", options.spacing, "image: resample to cubic voxels of this side, mm; 0: do not resample")
       ->check(in_range(0.0, 1e6))
@@ -47,10 +51,16 @@ void add_extraction(CLI::App& verb, ExtractOptions& options) {
       ->check(in_range(0.1, 10.0))
       ->capture_default_str();
   verb.add_option("--join", options.join,
-                  "join parts whose vessels are closer than this times the smaller of their radii")
+                  "join ends with what they point at over gaps of up to this times the smaller radius; 0: none")
       ->check(in_range(0.0, 1e6))
       ->capture_default_str();
-  verb.add_flag("--tree", options.tree, "break all loops");
+  CLI::Option* largest = verb.add_flag("--largest", options.largest, "keep the longest component only");
+  verb.add_option("--least-length", options.least_length,
+                  "leave out components shorter than this, mm; 0: those no longer than wide")
+      ->check(in_range(0.0, 1e9))
+      ->excludes(largest)
+      ->capture_default_str();
+  verb.add_flag("--tree", options.tree, "open all loops, each at its thinnest contact");
 }
 
 void add_fitting(CLI::App& verb, FittingArguments& arguments) {
@@ -130,13 +140,11 @@ void add_cones(CLI::App& app, ConesArguments& arguments) {
 
 void add_centerline(CLI::App& app, CenterlineArguments& arguments) {
   CLI::App& verb =
-      *app.add_subcommand("centerline", "Extract the centerline with radii from a closed surface or an image");
+      *app.add_subcommand("centerline", "Extract the centerline with radii from a surface, open or closed, or an image");
   add_input(verb, arguments.input, "surface, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files)");
   add_output(verb, arguments.output, "centerline");
   add_image_options(verb, arguments.image);
   add_extraction(verb, arguments.options);
-  verb.add_flag("--all-components", arguments.options.all_components,
-                "keep all parts that remain apart, not only the one of the largest volume");
   add_common(verb, arguments.common);
   verb.footer(kCenterlineExamples);
 }

@@ -8,6 +8,7 @@
 #include "vmesh/image/image_io.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/skeleton/vessel_mask.h"
 
 #include "command_line/arguments.h"
 #include "command_line/console.h"
@@ -33,6 +34,9 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
 
 /// An image; --unit and --space are refused (UsageError), as images contain their position and unit.
 LoadedImage load_image(const InputArguments& input, Console& console);
+
+/// The vessels' voxels of an image, likewise.
+VesselMask load_vessel_mask(const InputArguments& input, const ReferenceOptions& options, Console& console);
 
 /// Throws Unsupported, naming the verbs that take images, if it is one.
 void check_is_no_image(const InputArguments& input);

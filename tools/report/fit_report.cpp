@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "report/evaluation_report.h"
+#include "report/extraction_report.h"
 
 namespace vmesh::tool {
 namespace {
@@ -109,11 +110,7 @@ bool keeps_error(const FitReport& report, double error, std::vector<std::string>
 
 std::string describe(const FittingArguments& arguments) {
   std::ostringstream text;
-  const ReferenceOptions& image = arguments.image;
-  if (image.label) text << " --label " << *image.label;
-  if (image.threshold) text << " --threshold " << *image.threshold;
-  if (image.spacing > 0) text << " --spacing " << image.spacing;
-  if (image.smooth > 0) text << " --smooth " << image.smooth;
+  text << tool::describe(arguments.image);
   if (arguments.options.error > 0) text << " --fit-error " << arguments.options.error << "mm";
   text << " --fit-rounds " << arguments.options.rounds;
   if (!arguments.options.resize) text << " --keep-triangles";

@@ -166,12 +166,12 @@ Json budget_json(const Budget& budget, const GenerateOptions& chosen, const std:
   return json;
 }
 
-Json coverage_json(const Coverage& coverage) {
-  return {{"area_mm2", coverage.area},
-          {"mean_mm", coverage.mean},
-          {"p95_mm", coverage.percentile_95},
-          {"max_mm", coverage.max},
-          {"max_at", to_json(coverage.max_at)}};
+Json wall_json(const WallDistance& wall) {
+  return {{"area_mm2", wall.area},
+          {"mean_mm", wall.mean},
+          {"p95_mm", wall.percentile_95},
+          {"max_mm", wall.max},
+          {"max_at", to_json(wall.max_at)}};
 }
 
 }  // namespace
@@ -306,20 +306,34 @@ Json to_json(const GenerateReport& report) {
 Json to_json(const ExtractionReport& report) {
   Json branches = Json::array();
   for (std::size_t b = 0; b < report.branches.size(); ++b) {
-    branches.push_back(coverage_json(report.branches[b]));
+    branches.push_back(wall_json(report.branches[b]));
     branches.back()["branch"] = b;
   }
-  return {{"parts", report.parts},
-          {"joined", report.joined},
+  Json joined = Json::array(), loops = Json::array(), missed = Json::array();
+  for (const JoinedGap& gap : report.joined)
+    joined.push_back({{"from", to_json(gap.from)}, {"to", to_json(gap.to)}, {"gap_mm", gap.gap}});
+  for (const VesselLoop& loop : report.loops)
+    loops.push_back({{"neck", to_json(loop.neck)},
+                     {"neck_radius_mm", loop.neck_radius},
+                     {"vessel_radius_mm", loop.radius},
+                     {"length_mm", loop.length},
+                     {"opened", loop.opened}});
+  for (const MissedWall& region : report.missed)
+    missed.push_back({{"place", to_json(region.place)},
+                      {"area_mm2", region.area},
+                      {"distance_mm", region.distance},
+                      {"reason", region.reason}});
+  return {{"components", report.components},
           {"left_out", report.left_out},
           {"spurs_removed", report.spurs},
-          {"loops_broken", report.loops_broken},
-          {"merged", report.merged},
-          {"mean_distance_mm", report.coverage.mean},
-          {"distance_95_mm", report.coverage.percentile_95},
-          {"max_distance_mm", report.coverage.max},
-          {"coverage", coverage_json(report.coverage)},
-          {"branches", branches}};
+          {"coverage", report.coverage},
+          {"length_coverage", report.length_coverage},
+          {"missed", missed},
+          {"joined", joined},
+          {"loops", loops},
+          {"wall", wall_json(report.wall)},
+          {"branches", branches},
+          {"notes", report.notes}};
 }
 
 Json openings_json(const GenerateResult& result) {

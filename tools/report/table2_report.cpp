@@ -38,9 +38,9 @@ ReportTable source_table(const Table2Report& report) {
   add("its components", std::to_string(centerline.component_count()));
   add("its loops", std::to_string(centerline.cycle_rank()));
   if (!source.extraction) return table;
-  add("reference to the boundary of its vessels, mean, mm", format_number(source.extraction->coverage.mean));
-  add("the same at 95 %, mm", format_number(source.extraction->coverage.percentile_95));
-  add("parts of the reference that were joined", std::to_string(source.extraction->joined));
+  add("reference to the boundary of its vessels, mean, mm", format_number(source.extraction->wall.mean));
+  add("the same at 95 %, mm", format_number(source.extraction->wall.percentile_95));
+  add("parts of the reference that were joined", std::to_string(source.extraction->joined.size()));
   add("parts that were left out", std::to_string(source.extraction->left_out));
   return table;
 }

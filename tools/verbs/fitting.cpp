@@ -8,7 +8,7 @@
 namespace vmesh::tool {
 
 bool has_options(const ReferenceOptions& image) {
-  return image.label || image.threshold || image.spacing > 0 || image.smooth > 0;
+  return !image.labels.empty() || image.threshold || image.spacing > 0 || image.smooth > 0;
 }
 
 void set_budget(const Budget& budget, FitOptions& options) {

@@ -71,7 +71,8 @@ void check_input(const GenerateArguments& arguments) {
     throw UsageError("--centerline-output is for an input that is an image; this is taken for a centerline");
   const ExtractOptions plain;
   if (arguments.extraction.tree || arguments.extraction.spacing != plain.spacing ||
-      arguments.extraction.join != plain.join)
+      arguments.extraction.join != plain.join ||
+      arguments.extraction.largest || arguments.extraction.least_length > 0)
     throw UsageError("--step, --join and --tree are for an input that is an image; this is taken for a centerline");
   if (fits) return;
   if (arguments.fitting.options.error > 0) throw UsageError("--fit-error needs --fit REFERENCE");

@@ -5,6 +5,7 @@
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
+#include "report/extraction_report.h"
 #include "report/summary.h"
 #include "verbs/verbs.h"
 
@@ -17,7 +18,7 @@ void check(const ReferenceArguments& arguments) {
   const std::string name = arguments.input.path.string();
   if (image && arguments.voxel > 0) throw UsageError(name + ": --voxel is for centerlines; see --spacing");
   if (image) return;
-  if (options.label || options.threshold || options.spacing > 0)
+  if (!options.labels.empty() || options.threshold || options.spacing > 0)
     throw UsageError(name + ": --label, --threshold and --spacing are for images; this is taken for a centerline");
   if (arguments.voxel == 0)
     throw UsageError(name + ": to contour the volume of a centerline, give the side of the voxels: --voxel MM");
@@ -28,10 +29,7 @@ std::string describe(const ReferenceArguments& arguments) {
   std::ostringstream text;
   text << "reference";
   if (arguments.voxel > 0) text << " --voxel " << arguments.voxel;
-  if (options.label) text << " --label " << *options.label;
-  if (options.threshold) text << " --threshold " << *options.threshold;
-  if (options.spacing > 0) text << " --spacing " << options.spacing;
-  if (options.smooth > 0) text << " --smooth " << options.smooth;
+  text << tool::describe(options);
   if (options.binary) text << " --binary";
   if (options.all_components) text << " --all-components";
   return text.str();

@@ -32,7 +32,7 @@ bool has_image(const Table2Arguments& arguments) { return is_image(arguments.ref
 void check_options(const Table2Arguments& arguments) {
   const ReferenceOptions& image = arguments.image;
   const bool has_reference = !arguments.reference.path.empty(), has_centerline = !arguments.centerline.path.empty();
-  if (!has_image(arguments) && (image.label || image.threshold || image.spacing > 0))
+  if (!has_image(arguments) && (!image.labels.empty() || image.threshold || image.spacing > 0))
     throw UsageError("--label, --threshold and --spacing are for a --reference that is an image");
   if (has_reference && !has_image(arguments) && (image.smooth > 0 || image.binary))
     throw UsageError(arguments.reference.path.string() + ": --smooth and --binary do not apply to a surface");
@@ -116,7 +116,7 @@ Centerline centerline_of(const Table2Arguments& arguments, const TriMesh& refere
   if (!arguments.centerline.path.empty())
     return load_clean_centerline(arguments.centerline, console).cleaned.centerline;
   ExtractOptions options = arguments.extraction;
-  options.all_components = arguments.all_components;
+  options.largest = !arguments.all_components;
   ExtractedCenterline extracted =
       naming(arguments.reference.path, [&] { return extract_centerline(reference, options, console.progress()); });
   source.extraction = extracted.report;
@@ -139,9 +139,9 @@ std::vector<std::string> warnings_of(const Table2Report& report) {
     for (const std::string& warning : row.warnings) warnings.push_back(name_of(row) + ": " + warning);
   const std::optional<ExtractionReport>& extraction = report.source.extraction;
   if (extraction && extraction->left_out > 0)
-    warnings.push_back(std::to_string(extraction->left_out) + " of " + std::to_string(extraction->parts) +
-                       " parts of the reference are apart from the rest: they have no centerline but count in the "
-                       "distances; --join joins over wider gaps, --all-components keeps them");
+    warnings.push_back(std::to_string(extraction->left_out) + " of " + std::to_string(extraction->components) +
+                       " components of the reference have no centerline but count in the distances; --all-components "
+                       "keeps them");
   return warnings;
 }
 

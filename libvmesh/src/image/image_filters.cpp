@@ -114,6 +114,14 @@ VoxelImage binary_mask(const VoxelImage& image, double low, double high) {
   return mask;
 }
 
+VoxelImage binary_mask(const VoxelImage& image, std::span<const double> labels) {
+  VoxelImage mask = like(image);
+  mask.values.reserve(image.values.size());
+  for (const float value : image.values)
+    mask.values.push_back(std::find(labels.begin(), labels.end(), double{value}) != labels.end() ? 1.0f : 0.0f);
+  return mask;
+}
+
 VoxelImage cropped(const VoxelImage& image, const std::array<std::size_t, 3>& low,
                    const std::array<std::size_t, 3>& high) {
   VoxelImage result = like(image);

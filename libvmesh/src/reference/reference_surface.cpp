@@ -19,13 +19,6 @@ namespace {
 
 constexpr std::size_t kListedLabels = 20;
 
-/// The image to be contoured, and the isovalue.
-struct Scene {
-  VoxelImage image;
-  double isovalue = 0;
-  bool binary = false;
-};
-
 /// The values other than 0, ascending; at most `most` of them.
 std::set<float> labels_of(const VoxelImage& image, std::size_t most) {
   std::set<float> labels;
@@ -75,21 +68,16 @@ void check_memory_for_contour(const VoxelImage& image, const ReferenceOptions& o
                  options.spacing > 0 ? "choose a larger spacing" : "resample it to a larger spacing, or crop it");
 }
 
-void check(const ReferenceOptions& options) {
-  if (options.label && options.threshold) throw InvalidInput("a label and a threshold exclude each other; give one");
-  if (!(options.spacing >= 0) || !(options.smooth >= 0)) throw InvalidInput("spacing and smoothing are 0 or more mm");
-}
-
-Scene mask_scene(const VoxelImage& image, double low, double high) {
-  Scene scene{binary_mask(image, low, high), 0.5, true};
+PreparedImage mask_scene(const VoxelImage& image, VoxelImage mask) {
+  PreparedImage scene{std::move(mask), 0.5, true};
   if (std::find(scene.image.values.begin(), scene.image.values.end(), 1.0f) == scene.image.values.end())
     throw InvalidInput("no voxel is inside: " + list_of(image) + "; choose a label or a threshold that occurs");
   return scene;
 }
 
-Scene scene_of(const LoadedImage& loaded, const ReferenceOptions& options) {
+PreparedImage scene_of(const LoadedImage& loaded, const ReferenceOptions& options) {
   const VoxelImage& image = loaded.image;
-  if (options.label) return mask_scene(image, *options.label, *options.label);
+  if (!options.labels.empty()) return mask_scene(image, binary_mask(image, options.labels));
   if (options.threshold) {
     const double highest = *std::max_element(image.values.begin(), image.values.end());
     if (highest >= *options.threshold) return {image, *options.threshold, false};
@@ -100,8 +88,7 @@ Scene scene_of(const LoadedImage& loaded, const ReferenceOptions& options) {
   if (labels.size() > 1)
     throw InvalidInput("there is more than one value besides 0 (" + list_of(image) +
                        "); choose one with --label, or --threshold for grey values");
-  const double label = labels.empty() ? 1 : *labels.begin();
-  return mask_scene(image, label, label);
+  return mask_scene(image, binary_mask(image, {labels.empty() ? 1.0 : *labels.begin()}));
 }
 
 /// How far from inside voxels values can matter (mm).
@@ -124,11 +111,7 @@ TriMesh largest_component(TriMesh mesh, std::size_t& count) {
   return std::move(parts[best]);
 }
 
-ReferenceSurface contour_scene(Scene scene, const ReferenceOptions& options) {
-  if (options.smooth > 0) {
-    scene.image = smoothed(scene.image, options.smooth);
-    scene.binary = false;
-  }
+ReferenceSurface contour_scene(PreparedImage scene, const ReferenceOptions& options) {
   if (options.binary) {
     scene.image = binary_mask(scene.image, scene.isovalue, std::numeric_limits<double>::infinity());
     scene.isovalue = 0.5;
@@ -149,22 +132,37 @@ ReferenceSurface contour_scene(Scene scene, const ReferenceOptions& options) {
 
 }  // namespace
 
-ReferenceSurface reference_surface(const LoadedImage& image, const ReferenceOptions& options) {
+void check(const ReferenceOptions& options) {
+  if (!options.labels.empty() && options.threshold) throw InvalidInput("a label and a threshold exclude each other; give one");
+  if (!(options.spacing >= 0) || !(options.smooth >= 0)) throw InvalidInput("spacing and smoothing are 0 or more mm");
+}
+
+PreparedImage prepared_image(const LoadedImage& image, const ReferenceOptions& options) {
   check(options);
   check_memory_for_mask(image.image);
-  Scene scene = scene_of(image, options);
+  PreparedImage scene = scene_of(image, options);
   scene.image = cropped_to(scene.image, scene.isovalue, margin_of(scene.image, options));
   check_memory_for_contour(scene.image, options);
   if (options.spacing > 0) {
     scene.image = resampled(scene.image, options.spacing);
     scene.binary = false;
   }
-  return contour_scene(std::move(scene), options);
+  if (options.smooth > 0) {
+    scene.image = smoothed(scene.image, options.smooth);
+    scene.binary = false;
+  }
+  return scene;
+}
+
+ReferenceSurface reference_surface(const LoadedImage& image, const ReferenceOptions& options) {
+  return contour_scene(prepared_image(image, options), options);
 }
 
 ReferenceSurface reference_surface(const Centerline& centerline, double voxel, const ReferenceOptions& options) {
   check(options);
-  return contour_scene({sample_field(centerline, voxel), 0, false}, options);
+  PreparedImage scene{sample_field(centerline, voxel), 0, false};
+  if (options.smooth > 0) scene.image = smoothed(scene.image, options.smooth);
+  return contour_scene(std::move(scene), options);
 }
 
 }  // namespace vmesh

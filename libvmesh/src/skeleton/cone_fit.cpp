@@ -3,31 +3,34 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <unordered_map>
+#include <limits>
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
+#include <tbb/parallel_for.h>
 
-#include "vmesh/volume/vessel_field.h"
+#include "vmesh/core/ascending.h"
+#include "vmesh/core/box_tree.h"
 
 namespace vmesh::skeleton {
 namespace {
 
 using Vector4 = Eigen::Vector4d;  // displacement and change of radius of a node
 using Matrix4 = Eigen::Matrix4d;
+using Place = GraphCones::Place;
 
 // Relative to a node's own weight, which is the area of its samples.
 constexpr double kSmoothPosition = 0.03;
 constexpr double kSmoothRadius = 0.1;
+constexpr double kRough = 2;  // more of both by this times the square of voxels per radius
 constexpr double kDamping = 0.02;
 // Sliding along the vessel changes hardly anything except the spacing of nodes.
 constexpr double kDampingAlong = 1;
 constexpr double kDampingOfFixed = 1e6;  // makes nodes practically immovable
-constexpr int kAround = 2;               // edges from a merged node to the nodes that are refitted with it
 // Distance, in local radii, at which samples farther off are counted.
 constexpr double kNear = 0.5;
 constexpr double kRadiusFactor = 2;
+constexpr double kWithinSlack = 0.1;  // weight of a sample's distance within its slack
 
 /// Normal equations of one round, a 4 x 4 block per pair of nodes.
 class Equations {
@@ -45,7 +48,7 @@ class Equations {
 
   /// Adds weight * (sum of factors * states - wanted)^2, states being the unknowns of the nodes, component by
   /// component.
-  void add_term(const std::vector<std::pair<Index, double>>& factors, const Vector4& weights, const Vector4& wanted) {
+  void add_term(const std::array<std::pair<Index, double>, 3>& factors, const Vector4& weights, const Vector4& wanted) {
     for (const auto& [a, fa] : factors) {
       add_side(a, fa * weights.cwiseProduct(wanted));
       for (const auto& [b, fb] : factors) add_block(a, b, Matrix4((fa * fb * weights).asDiagonal()));
@@ -68,36 +71,44 @@ class Equations {
   Eigen::VectorXd side_;
 };
 
-/// Sums over the samples of one cone: the blocks (2 x 2) and right-hand sides of its two nodes.
+/// Sums over the samples of one cone: the blocks and right-hand sides of its two nodes.
 struct ConeSums {
   std::array<Matrix4, 3> blocks = {Matrix4::Zero(), Matrix4::Zero(), Matrix4::Zero()};  // aa, ab, bb
   std::array<Vector4, 2> sides = {Vector4::Zero(), Vector4::Zero()};
   std::array<double, 2> weight = {0, 0};
 };
 
-void add_samples(Equations& equations, const VesselField& field, const SurfaceSamples& samples) {
-  std::vector<ConeSums> sums(field.cone_count());
-  for (std::size_t i = 0; i < samples.points.size(); ++i) {
-    const FieldSample s = field.sample_global(samples.points[i]);
-    const double near = kNear * field.radius_at(s.cone, s.t);
-    const double weight = samples.areas[i] * std::min(1.0, near / std::max(std::abs(s.distance), 1e-12));
-    // The distance is stationary in the touching sphere's position along the axis, so the derivatives are those of that
-    // sphere.
-    Vector4 derivative;
-    derivative << s.gradient, 1;
-    const Matrix4 block = weight * derivative * derivative.transpose();
-    const Vector4 side = weight * s.distance * derivative;
-    ConeSums& sum = sums[s.cone];
-    sum.blocks[0] += (1 - s.t) * (1 - s.t) * block;
-    sum.blocks[1] += s.t * (1 - s.t) * block;
-    sum.blocks[2] += s.t * s.t * block;
-    sum.sides[0] += (1 - s.t) * side;
-    sum.sides[1] += s.t * side;
-    sum.weight[0] += (1 - s.t) * weight;
-    sum.weight[1] += s.t * weight;
-  }
+void add_sample(ConeSums& sum, const GraphCones& cones, const Place& place, const Vec3& point, double area,
+                double slack) {
+  const double near = std::max(kNear * cones.radius_at(place), slack);
+  const double off = std::abs(place.distance);
+  const double weight = area * std::min(1.0, near / std::max(off, 1e-12));
+  // Beyond the slack, the distance beyond it; within, a little of the distance.
+  const double beyond = off > slack ? 1 : 0;
+  const double pull = std::copysign(beyond * (off - slack), place.distance) + kWithinSlack * place.distance;
+  // The distance is stationary in the touching sphere's position along the axis, so the derivatives are those of that
+  // sphere.
+  Vector4 derivative;
+  derivative << cones.cone(place.cone).gradient(point, place.t), 1;
+  const Matrix4 block = weight * (beyond + kWithinSlack) * derivative * derivative.transpose();
+  const Vector4 side = weight * pull * derivative;
+  const double t = place.t;
+  sum.blocks[0] += (1 - t) * (1 - t) * block;
+  sum.blocks[1] += t * (1 - t) * block;
+  sum.blocks[2] += t * t * block;
+  sum.sides[0] += (1 - t) * side;
+  sum.sides[1] += t * side;
+  sum.weight[0] += (1 - t) * weight;
+  sum.weight[1] += t * weight;
+}
+
+void add_samples(Equations& equations, const GraphCones& cones, const FitSamples& samples,
+                 const std::vector<Place>& places) {
+  std::vector<ConeSums> sums(cones.size());
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    add_sample(sums[places[i].cone], cones, places[i], samples.points[i], samples.areas[i], samples.slack[i]);
   for (Index cone = 0; cone < sums.size(); ++cone) {
-    const Index a = field.first_node(cone), b = field.last_node(cone);
+    const Index a = cones.first_node(cone), b = cones.last_node(cone);
     const ConeSums& sum = sums[cone];
     equations.add_block(a, a, sum.blocks[0]);
     equations.add_block(b, b, sum.blocks[2]);
@@ -116,13 +127,13 @@ Vector4 state(const Node& node) {
   return result;
 }
 
-void add_priors(Equations& equations, const Graph& graph, const std::vector<char>& fixed) {
-  const auto edges_at = incidence(graph);
+void add_priors(Equations& equations, const Graph& graph, const std::vector<std::vector<Index>>& edges_at,
+                double voxel) {
   double mean = 0;
   for (const double w : equations.weight()) mean += w / static_cast<double>(graph.nodes.size());
   for (Index n = 0; n < graph.nodes.size(); ++n) {
     const double weight = equations.weight()[n] + 0.05 * mean;  // nodes deep inside others have no samples
-    if (fixed[n]) {
+    if (graph.nodes[n].fixed) {
       equations.add_block(n, n, Matrix4::Identity() * (kDampingOfFixed * weight));
       continue;
     }
@@ -130,8 +141,10 @@ void add_priors(Equations& equations, const Graph& graph, const std::vector<char
     if (edges_at[n].size() == 2) {
       const Index a = other_end(graph, edges_at[n][0], n), b = other_end(graph, edges_at[n][1], n);
       const Vector4 bend = state(graph.nodes[n]) - 0.5 * (state(graph.nodes[a]) + state(graph.nodes[b]));
-      const Vector4 weights = weight * Vector4(kSmoothPosition, kSmoothPosition, kSmoothPosition, kSmoothRadius);
-      equations.add_term({{n, 1.0}, {a, -0.5}, {b, -0.5}}, weights, -bend);
+      const double rough = voxel / graph.nodes[n].radius;
+      const Vector4 weights = weight * (1 + kRough * rough * rough) *
+                              Vector4(kSmoothPosition, kSmoothPosition, kSmoothPosition, kSmoothRadius);
+      equations.add_term({{{n, 1.0}, {a, -0.5}, {b, -0.5}}}, weights, -bend);
       const Vec3 along = (graph.nodes[b].position - graph.nodes[a].position).normalized();
       damping.topLeftCorner<3, 3>() += kDampingAlong * weight * along * along.transpose();
     }
@@ -141,12 +154,11 @@ void add_priors(Equations& equations, const Graph& graph, const std::vector<char
 
 /// Applies a step, cut to half a radius; radii stay within a factor of their first values, so that nodes without
 /// samples of their own cannot vanish. Returns the largest change relative to the radius.
-double apply(Graph& graph, const std::vector<Node>& first, const std::vector<char>& fixed,
-             const Eigen::VectorXd& step) {
+double apply(Graph& graph, const std::vector<Node>& first, const Eigen::VectorXd& step) {
   double most = 0;
   for (Index n = 0; n < graph.nodes.size(); ++n) {
-    if (fixed[n]) continue;
     Node& node = graph.nodes[n];
+    if (node.fixed) continue;
     const double limit = 0.5 * node.radius;
     Vec3 move = step.segment<3>(4 * n);
     if (move.norm() > limit) move *= limit / move.norm();
@@ -160,63 +172,88 @@ double apply(Graph& graph, const std::vector<Node>& first, const std::vector<cha
   return most;
 }
 
-void fit(Graph& graph, const std::vector<char>& fixed, const SurfaceSamples& samples, int rounds) {
-  constexpr double kSettled = 1e-3;
-  const std::vector<Node> first = graph.nodes;
-  for (int round = 0; round < rounds; ++round) {
-    const Centerline centerline = to_centerline(graph);
-    const VesselField field(centerline);
-    Equations equations(graph.nodes.size());
-    add_samples(equations, field, samples);
-    add_priors(equations, graph, fixed);
-    if (apply(graph, first, fixed, equations.solve()) < kSettled) return;
-  }
-}
-
 }  // namespace
 
-SurfaceSamples samples_of(const TriMesh& mesh) {
-  SurfaceSamples samples;
-  std::unordered_map<std::uint64_t, std::size_t> number;
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    const double share = 0.5 * area_normal(mesh, f).norm() / 3;
-    for (int c = 0; c < 3; ++c) {
-      const auto [a, b] = std::minmax(mesh.faces[f][c], mesh.faces[f][(c + 1) % 3]);
-      const auto [it, fresh] = number.try_emplace(std::uint64_t{a} << 32 | b, samples.points.size());
-      if (fresh) {
-        samples.points.push_back(0.5 * (mesh.vertices[a] + mesh.vertices[b]));
-        samples.areas.push_back(0);
+GraphCones::GraphCones(const Graph& graph) {
+  const auto node = [&](Index n) { return CenterlineNode{graph.nodes[n].position, graph.nodes[n].radius}; };
+  const auto edges_at = incidence(graph);
+  ends_.assign(graph.edges.begin(), graph.edges.end());
+  for (Index n = 0; n < graph.nodes.size(); ++n)
+    if (edges_at[n].empty()) ends_.push_back({n, n});
+  for (const auto& [a, b] : ends_) cones_.emplace_back(node(a), node(b));
+  std::vector<Index> near;
+  near_at_ = {0};
+  for (Index c = 0; c < cones_.size(); ++c) {
+    near.assign(1, c);
+    for (const Index n : ends_[c]) {
+      for (const Index e : edges_at[n]) {
+        near.push_back(e);
+        const std::vector<Index>& beyond = edges_at[other_end(graph, e, n)];
+        near.insert(near.end(), beyond.begin(), beyond.end());
       }
-      samples.areas[it->second] += share;
+    }
+    sort_unique(near);
+    near_.insert(near_.end(), near.begin(), near.end());
+    near_at_.push_back(static_cast<Index>(near_.size()));
+  }
+}
+
+BoxTree GraphCones::tree() const {
+  std::vector<Vec3> low, high;
+  for (const RoundCone& cone : cones_) {
+    const Vec3 end = cone.origin + cone.axis;
+    low.push_back((cone.origin.array() - cone.r0).min(end.array() - cone.r1));
+    high.push_back((cone.origin.array() + cone.r0).max(end.array() + cone.r1));
+  }
+  return {low, high};
+}
+
+std::vector<GraphCones::Place> GraphCones::closest(const std::vector<Vec3>& points) const {
+  const BoxTree boxes = tree();
+  std::vector<Place> places(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    Place best{kNone, std::numeric_limits<double>::infinity(), 0};
+    boxes.visit(points[i], best.distance, [&](Index c) {
+      const auto [distance, t] = cones_[c].distance_to(points[i]);
+      if (distance < best.distance || (distance == best.distance && c < best.cone)) best = {c, distance, t};
+    });
+    places[i] = best;
+  });
+  return places;
+}
+
+GraphCones::Place GraphCones::closest(const Vec3& point, Index from) const {
+  const auto at = [&](Index c) {
+    const auto [distance, t] = cones_[c].distance_to(point);
+    return Place{c, distance, t};
+  };
+  Place best = at(from);
+  for (Index last = kNone; last != best.cone;) {
+    last = best.cone;
+    for (Index i = near_at_[last]; i < near_at_[last + 1]; ++i) {
+      const Place other = at(near_[i]);
+      if (other.distance < best.distance) best = other;
     }
   }
-  return samples;
+  return best;
 }
 
-Centerline to_centerline(const Graph& graph) {
-  std::vector<CenterlineNode> nodes;
-  std::vector<CenterlineSegment> segments;
-  for (const Node& node : graph.nodes) nodes.push_back({node.position, node.radius});
-  for (const auto& [a, b] : graph.edges) segments.push_back({a, b});
-  return {std::move(nodes), std::move(segments)};
-}
-
-void fit_cones(Graph& graph, const SurfaceSamples& samples, int rounds) {
-  fit(graph, std::vector<char>(graph.nodes.size(), 0), samples, rounds);
-}
-
-void fit_merged_cones(Graph& graph, const SurfaceSamples& samples, int rounds) {
-  std::vector<char> fixed(graph.nodes.size(), 1);
-  for (Index n = 0; n < fixed.size(); ++n) {
-    if (graph.nodes[n].merged) fixed[n] = 0;
+void fit_cones(Graph& graph, const FitSamples& samples, double voxel, int rounds, const Progress& progress) {
+  constexpr double kSettled = 2e-3;
+  const std::vector<Node> first = graph.nodes;
+  const auto edges_at = incidence(graph);
+  std::vector<Place> places = GraphCones(graph).closest(samples.points);
+  for (int round = 0; round < rounds; ++round) {
+    report_progress(progress, "cones", static_cast<double>(round) / rounds);
+    const GraphCones cones(graph);
+    tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+      places[i] = cones.closest(samples.points[i], places[i].cone);
+    });
+    Equations equations(graph.nodes.size());
+    add_samples(equations, cones, samples, places);
+    add_priors(equations, graph, edges_at, voxel);
+    if (apply(graph, first, equations.solve()) < kSettled) return;
   }
-  for (int i = 0; i < kAround; ++i) {
-    const std::vector<char> before = fixed;
-    for (const auto& [a, b] : graph.edges) {
-      if (!before[a] || !before[b]) fixed[a] = fixed[b] = 0;
-    }
-  }
-  fit(graph, fixed, samples, rounds);
 }
 
 }  // namespace vmesh::skeleton

@@ -1,31 +1,59 @@
 #pragma once
 
-#include "vmesh/centerline/centerline.h"
+#include <vector>
+
+#include "vmesh/core/box_tree.h"
+#include "vmesh/core/progress.h"
+#include "vmesh/volume/round_cone.h"
 
 #include "skeleton_graph.h"
 
 namespace vmesh::skeleton {
 
-/// Points spread over a surface, each representing a share of its area.
-struct SurfaceSamples {
+/// Points spread over the vessels' wall by area, each standing for a share of it.
+struct FitSamples {
   std::vector<Vec3> points;
   std::vector<double> areas;  ///< mm^2
+  /// How far the wall may be from the point along the normal, mm: a wall between two voxels is anywhere between them.
+  std::vector<double> slack;
+
+  std::size_t size() const { return points.size(); }
 };
 
-/// Samples at the midpoints of the edges. Sums over them are exact for quadratic functions on faces, such as (nearly)
-/// the distance of flat faces to a round vessel, so a coarse surface keeps its mean radius.
-SurfaceSamples samples_of(const TriMesh& mesh);
+/// The round cones of a graph's edges, then the spheres of its nodes without an edge.
+class GraphCones {
+ public:
+  explicit GraphCones(const Graph& graph);
+
+  struct Place {
+    Index cone = kNone;
+    double distance = 0, t = 0;  ///< mm, signed; parameter on the axis
+  };
+  /// The closest of all cones to every point.
+  std::vector<Place> closest(const std::vector<Vec3>& points) const;
+  /// The closest of the cones near `from` along the graph, and so on until there is no closer one.
+  Place closest(const Vec3& point, Index from) const;
+
+  /// Of the cones' boxes.
+  BoxTree tree() const;
+  const RoundCone& cone(Index c) const { return cones_[c]; }
+  std::size_t size() const { return cones_.size(); }
+  Index first_node(Index c) const { return ends_[c][0]; }
+  Index last_node(Index c) const { return ends_[c][1]; }
+  double radius_at(const Place& place) const { return cones_[place.cone].radius_at(place.t); }
+
+ private:
+  std::vector<RoundCone> cones_;
+  std::vector<std::array<Index, 2>> ends_;
+  std::vector<Index> near_at_, near_;  // of every cone: those at most two edges away
+};
 
 /// Moves the nodes of `graph` and changes their radii so that the boundary of the union of its round cones comes as
-/// close to the samples as possible: weighted least squares of the signed distances (Gauss-Newton, at most `rounds`
-/// steps), with a little weight on smooth chains. Far samples count less, as they may belong to a region that the graph
-/// does not reach. Ends thus come to lie where their spheres touch the surface's ends.
-void fit_cones(Graph& graph, const SurfaceSamples& samples, int rounds);
-
-/// The same for nodes that were merged and those around them; the others stay.
-void fit_merged_cones(Graph& graph, const SurfaceSamples& samples, int rounds);
-
-/// Throws InvalidInput if `graph` is not a valid centerline.
-Centerline to_centerline(const Graph& graph);
+/// close to the wall as possible: weighted least squares of the signed distances beyond the samples' slack
+/// (Gauss-Newton, at most `rounds` steps), with a little weight on smooth chains, more where `voxel` (mm, 0 for a wall
+/// that is not made of voxels) is large beside the radius. Far samples count less, as they may belong to a region that
+/// the graph does not reach. Ends thus come to lie where their spheres touch the wall's ends; fixed nodes stay. Polls
+/// `progress` for cancellation.
+void fit_cones(Graph& graph, const FitSamples& samples, double voxel, int rounds, const Progress& progress);
 
 }  // namespace vmesh::skeleton

@@ -47,10 +47,12 @@ Node smoothed_at(const Curve& curve, double at, double radius) {
 }
 
 /// Distances from the start, spaced evenly in radii, both ends included.
-std::vector<double> divisions(const Curve& curve, double spacing, std::size_t least) {
+std::vector<double> divisions(const Curve& curve, double spacing, double least_radius, std::size_t least) {
   std::vector<double> radii(curve.at.size(), 0);  // length in radii up to every node
   for (std::size_t i = 1; i < curve.at.size(); ++i)
-    radii[i] = radii[i - 1] + 2 * (curve.at[i] - curve.at[i - 1]) / (curve.nodes[i - 1].radius + curve.nodes[i].radius);
+    radii[i] = radii[i - 1] + 2 * (curve.at[i] - curve.at[i - 1]) /
+                                  (std::max(curve.nodes[i - 1].radius, least_radius) +
+                                   std::max(curve.nodes[i].radius, least_radius));
   if (!(radii.back() > 0)) return {0, curve.at.back()};
   const auto count = std::max(least, static_cast<std::size_t>(std::lround(radii.back() / spacing)));
   std::vector<double> places = {0};
@@ -67,8 +69,10 @@ std::vector<double> divisions(const Curve& curve, double spacing, std::size_t le
 
 }  // namespace
 
-Graph resampled(const Graph& graph, double spacing) {
+Graph resampled(const Graph& graph, double spacing, double least) {
   const std::vector<Chain> chains = chains_of(graph);
+  std::vector<bool> is_alone(graph.nodes.size(), true);
+  for (const auto& [a, b] : graph.edges) is_alone[a] = is_alone[b] = false;
   Graph result;
   std::vector<Index> number(graph.nodes.size(), kNone);
   const auto kept = [&](Index n) {
@@ -82,7 +86,7 @@ Graph resampled(const Graph& graph, double spacing) {
     const Curve curve = curve_of(graph, chain);
     const bool closed = chain.nodes.front() == chain.nodes.back();
     // Two edges between the same nodes would coincide, so every chain gets a node of its own if possible.
-    const std::vector<double> places = divisions(curve, spacing, closed ? 3 : chain.edges.size() > 1 ? 2 : 1);
+    const std::vector<double> places = divisions(curve, spacing, least, closed ? 3 : chain.edges.size() > 1 ? 2 : 1);
     Index before = kept(chain.nodes.front());
     for (std::size_t n = 1; n + 1 < places.size(); ++n) {
       const double radius = node_at(curve, places[n]).radius;
@@ -93,7 +97,8 @@ Graph resampled(const Graph& graph, double spacing) {
     }
     result.edges.push_back({before, kept(chain.nodes.back())});
   }
-  if (chains.empty()) result.nodes = {graph.nodes.front()};
+  for (Index n = 0; n < graph.nodes.size(); ++n)
+    if (number[n] == kNone && is_alone[n]) kept(n);
   return result;
 }
 

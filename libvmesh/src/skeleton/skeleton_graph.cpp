@@ -11,19 +11,6 @@
 namespace vmesh::skeleton {
 namespace {
 
-DisjointSets parts_of(const Graph& graph) {
-  DisjointSets parts(graph.nodes.size());
-  for (const auto& [a, b] : graph.edges) parts.join(a, b);
-  return parts;
-}
-
-void remove_edges(Graph& graph, const std::vector<bool>& removed) {
-  std::size_t kept = 0;
-  for (std::size_t e = 0; e < graph.edges.size(); ++e)
-    if (!removed[e]) graph.edges[kept++] = graph.edges[e];
-  graph.edges.resize(kept);
-}
-
 /// Edges in the order of their lengths.
 std::vector<Index> by_length(const Graph& graph) {
   std::vector<Index> order(graph.edges.size());
@@ -71,6 +58,13 @@ double length_of(const Graph& graph, const Chain& chain) {
 
 }  // namespace
 
+void remove_edges(Graph& graph, const std::vector<bool>& removed) {
+  std::size_t kept = 0;
+  for (std::size_t e = 0; e < graph.edges.size(); ++e)
+    if (!removed[e]) graph.edges[kept++] = graph.edges[e];
+  graph.edges.resize(kept);
+}
+
 std::vector<std::vector<Index>> incidence(const Graph& graph) {
   std::vector<std::vector<Index>> edges_at(graph.nodes.size());
   for (Index e = 0; e < graph.edges.size(); ++e)
@@ -100,25 +94,6 @@ std::vector<Chain> chains_of(const Graph& graph) {
         for (const Index e : edges_at[n])
           if (!used[e]) follow(n, e);
   return chains;
-}
-
-void connect(Graph& graph) {
-  for (;;) {
-    DisjointSets parts = parts_of(graph);
-    const Index first = parts.find(0);
-    double best = std::numeric_limits<double>::infinity();
-    std::array<Index, 2> edge{};
-    for (Index a = 0; a < graph.nodes.size(); ++a) {
-      if (parts.find(a) != first) continue;
-      for (Index b = 0; b < graph.nodes.size(); ++b) {
-        if (parts.find(b) == first) continue;
-        const double distance = (graph.nodes[a].position - graph.nodes[b].position).norm();
-        if (distance < best) best = distance, edge = {a, b};
-      }
-    }
-    if (best == std::numeric_limits<double>::infinity()) return;
-    graph.edges.push_back(edge);
-  }
 }
 
 std::size_t break_loops(Graph& graph, std::size_t loops) {

@@ -11,7 +11,7 @@ namespace vmesh::skeleton {
 struct Node {
   Vec3 position = Vec3::Zero();
   double radius = 0;    ///< mm
-  bool merged = false;  ///< of several that shared a lumen
+  bool fixed = false;  ///< stays where it is: in the middle of an opening or a flat end
 };
 
 /// A graph without multiple edges. Removals may leave nodes without an edge.
@@ -37,8 +37,7 @@ struct Chain {
 };
 std::vector<Chain> chains_of(const Graph& graph);
 
-/// Joins components by the shortest edge between them, one by one. A surface of one component has a skeleton of one.
-void connect(Graph& graph);
+void remove_edges(Graph& graph, const std::vector<bool>& removed);
 
 /// Removes edges until the graph has at most `loops` independent loops, starting with the shortest loop; the longest
 /// edge of a loop is removed. Returns the number of edges removed.
@@ -53,6 +52,7 @@ void compact(Graph& graph);
 
 /// The graph with every chain resampled at about `spacing` radii, after smoothing the curve and its radii over about a
 /// radius.
-Graph resampled(const Graph& graph, double spacing);
+/// Radii below `least` (mm) count as that.
+Graph resampled(const Graph& graph, double spacing, double least = 0);
 
 }  // namespace vmesh::skeleton

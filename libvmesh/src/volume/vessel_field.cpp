@@ -53,45 +53,12 @@ void VesselField::measure_spheres() {
 }
 
 VesselField::Cone VesselField::make_cone(const Centerline& centerline, Index a, Index b) {
-  const auto& first = centerline.node(a);
-  const auto& last = centerline.node(b);
-  Cone cone;
-  cone.a = a;
-  cone.b = b;
-  cone.origin = first.position;
-  cone.axis = last.position - first.position;
-  cone.r0 = first.radius;
-  cone.r1 = last.radius;
-  const double length = cone.axis.norm();
-  if (length > 0) cone.inv_length2 = 1 / (length * length);
-  if (std::abs(cone.r0 - cone.r1) >= length) {
-    cone.t_low = cone.t_high = cone.r0 >= cone.r1 ? 0 : 1;
-  } else {
-    const double sine = (cone.r0 - cone.r1) / length;
-    cone.lag = sine / std::sqrt(1 - sine * sine) / length;
-  }
-  return cone;
-}
-
-// The closest of the spheres that sweep the cone: its centre is where the normal of the lateral surface through p meets
-// the axis, clamped to the axis.
-VesselField::Distance VesselField::distance_to(const Cone& cone, const Vec3& p) {
-  const Vec3 q = p - cone.origin;
-  const double foot = q.dot(cone.axis) * cone.inv_length2;
-  const double off_axis = (q - foot * cone.axis).norm();
-  const double t = std::clamp(foot - off_axis * cone.lag, cone.t_low, cone.t_high);
-  return {(q - t * cone.axis).norm() - (cone.r0 + t * (cone.r1 - cone.r0)), t};
-}
-
-Vec3 VesselField::gradient_of(const Cone& cone, const Vec3& p, double t) {
-  const Vec3 away = p - cone.origin - t * cone.axis;
-  const double norm = away.norm();
-  return norm > 0 ? Vec3(away / norm) : Vec3(Vec3::Zero());
+  return {RoundCone(centerline.node(a), centerline.node(b)), a, b};
 }
 
 FieldSample VesselField::sample_of(const Cone& cone, const Vec3& p, Index number) {
-  const Distance d = distance_to(cone, p);
-  return {d.value, gradient_of(cone, p, d.t), number, d.t};
+  const Distance d = cone.distance_to(p);
+  return {d.value, cone.gradient(p, d.t), number, d.t};
 }
 
 FieldSample VesselField::sample_cone(const Vec3& p, Index cone) const { return sample_of(cones_[cone], p, cone); }
@@ -113,7 +80,7 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, In
   // Kept between calls, so that a query allocates nothing.
   thread_local std::vector<Candidate> candidates;
   candidates.clear();
-  const Distance nearby = distance_to(cones_[first], p);
+  const Distance nearby = cones_[first].distance_to(p);
   candidates.push_back({nearby.value, nearby.t, first});
   double least = nearby.value;
   // One pass keeps the cones within the widest possible blend of the best so far. After a cone out of reach it skips
@@ -124,7 +91,7 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, In
     if (c == first || (run.number == out_of_reach.number && run.travel < out_of_reach.travel)) continue;
     const double reach = least + spheres_[c].reach;
     if (reach <= 0 || (p - spheres_[c].center).squaredNorm() >= reach * reach) continue;
-    const Distance d = distance_to(cones_[c], p);
+    const Distance d = cones_[c].distance_to(p);
     const double excess = d.value - least - 2 * blend_ * max_radius(c);
     if (excess >= 0 && d.value > least) {  // of equally near cones the lowest number counts: they are all kept
       out_of_reach = {run.number, run.travel + excess};
@@ -140,7 +107,7 @@ FieldSample VesselField::blended(const Vec3& p, std::span<const Index> cones, In
   const auto best = std::min_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.value != b.value ? a.value < b.value : a.cone < b.cone;
   });
-  sample = {best->value, gradient_of(cones_[best->cone], p, best->t), best->cone, best->t};
+  sample = {best->value, cones_[best->cone].gradient(p, best->t), best->cone, best->t};
   if (blend_ > 0 && candidates.size() > 1) blend_candidates(p, candidates, sample);
   return sample;
 }
@@ -172,7 +139,7 @@ void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidate
   candidates = at_different_places(candidates);
   for (Candidate& c : candidates) {
     c.reach = blend_ * radius_at(c.cone, c.t) * rounding_at(c.cone, c.t);
-    c.gradient = gradient_of(cones_[c.cone], p, c.t);
+    c.gradient = cones_[c.cone].gradient(p, c.t);
   }
   Batch batch;
   for (std::size_t begin = 0; begin < candidates.size(); begin += kBatch) {
@@ -212,7 +179,7 @@ FieldSample VesselField::sample_global(const Vec3& p) const {
   Index best = 0;
   double least = std::numeric_limits<double>::infinity(), limit = least;
   visit_near(p, limit, [&](Index c) {
-    const double value = distance_to(cones_[c], p).value;
+    const double value = cones_[c].distance_to(p).value;
     if (value < least || (value == least && c < best)) {
       least = value;
       limit = value + rounding;

@@ -73,9 +73,9 @@ FieldSample VesselField::blended_local(const Vec3& p, Index hint) const {
   thread_local std::vector<Index> near;
   near.clear();
   const double rounding = kRounding * p.norm();
-  double limit = distance_to(cones_[hint], p).value + rounding;
+  double limit = cones_[hint].distance_to(p).value + rounding;
   visit_near(p, limit, [&](Index c) {
-    const double value = distance_to(cones_[c], p).value;
+    const double value = cones_[c].distance_to(p).value;
     if (value > limit + 2 * blend_ * max_radius(c) || !std::binary_search(local.begin(), local.end(), c)) return;
     near.push_back(c);
     limit = std::min(limit, value + rounding);

@@ -114,7 +114,7 @@ double VesselField::distance_to_others(const Vec3& p, Index cone, double limit) 
     return limit;
   const std::span<const Index> local = local_cones(cone);
   visit_near(p, limit, [&](Index c) {
-    if (!std::binary_search(local.begin(), local.end(), c)) limit = std::min(limit, distance_to(cones_[c], p).value);
+    if (!std::binary_search(local.begin(), local.end(), c)) limit = std::min(limit, cones_[c].distance_to(p).value);
   });
   return limit;
 }

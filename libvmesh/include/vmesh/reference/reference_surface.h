@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vmesh/centerline/centerline.h"
 #include "vmesh/image/image_io.h"
@@ -12,10 +13,10 @@ namespace vmesh {
 /// How to make a surface from an image. Steps in this order: inside or outside, resampling, smoothing, contouring,
 /// components.
 struct ReferenceOptions {
-  /// Voxels of this value are inside. Without label and threshold: non-zero voxels, provided that the image has only
+  /// Voxels of these values are inside. Without labels and threshold: non-zero voxels, provided that the image has only
   /// one value besides 0.
-  std::optional<double> label;
-  /// Voxels of at least this value are inside; the image's own values are contoured. Not together with `label`.
+  std::vector<double> labels;
+  /// Voxels of at least this value are inside; the image's own values are contoured. Not together with `labels`.
   std::optional<double> threshold;
   /// Side of cubic voxels to resample to (mm); 0: the image's own voxels.
   double spacing = 0;
@@ -34,6 +35,19 @@ struct ReferenceSurface {
   std::size_t components = 0;   ///< of the contour, before any were removed
   Vec3 spacing = Vec3::Zero();  ///< of the voxels contoured (mm)
 };
+
+/// Throws InvalidInput for options out of range, or that exclude each other.
+void check(const ReferenceOptions& options);
+
+/// An image to be contoured at `isovalue`: cropped to what is inside and as much around it as matters, resampled and
+/// smoothed.
+struct PreparedImage {
+  VoxelImage image;
+  double isovalue = 0;
+  bool binary = false;  ///< the values are 0 and 1
+};
+/// Throws what reference_surface() throws.
+PreparedImage prepared_image(const LoadedImage& image, const ReferenceOptions& options);
 
 /// Throws InvalidInput for options out of range, an image with several labels and no choice, and if nothing is inside
 /// (listing the labels); Unsupported without VTK, and if there is not enough free memory for the image to be contoured.

@@ -8,6 +8,7 @@
 
 #include "vmesh/core/box_tree.h"
 #include "vmesh/volume/cone_relations.h"
+#include "vmesh/volume/round_cone.h"
 
 namespace vmesh {
 
@@ -92,20 +93,15 @@ class VesselField {
  private:
   friend class ConeRelations;
 
-  struct Cone {
-    Vec3 origin, axis;  // axis = last - first, mm
-    double r0 = 0, r1 = 0;
+  struct Cone : RoundCone {
+    Cone() = default;
+    Cone(const RoundCone& cone, Index first, Index last) : RoundCone(cone), a(first), b(last) {}
+
     double rounding0 = 1, rounding1 = 1;  // shares of the blend
-    double inv_length2 = 0;               // 1 / |axis|^2; 0 for a sphere
-    double lag = 0;                       // tan(half angle) / |axis|: how far the touching sphere lags the foot point
-    double t_low = 0, t_high = 1;         // equal where one end sphere contains the other
     Index a = kNone, b = kNone;
     bool is_apart = false;  // apart from some other: listed in relations_
   };
-  struct Distance {
-    double value;
-    double t;
-  };
+  using Distance = RoundCone::Distance;
   // At points farther from `center` than `reach` plus the distance of the nearest cone, the cone is neither nearest nor
   // blended.
   struct Sphere {
@@ -121,8 +117,6 @@ class VesselField {
 
   static Cone make_cone(const Centerline& centerline, Index a, Index b);
   static FieldSample sample_of(const Cone& cone, const Vec3& p, Index number);
-  static Distance distance_to(const Cone& cone, const Vec3& p);
-  static Vec3 gradient_of(const Cone& cone, const Vec3& p, double t);
   double max_radius(Index cone) const { return std::max(cones_[cone].r0, cones_[cone].r1); }
   // `first`: one of the cones, likely to be near.
   FieldSample blended(const Vec3& p, std::span<const Index> cones, Index first) const;
