@@ -111,7 +111,7 @@ void drop_others(VoxelSkeleton& skeleton, std::vector<EndSection>& sections) {
 /// Places the nodes at flat ends in their middle.
 void place_sections(Graph& graph, const std::vector<EndSection>& sections) {
   for (const EndSection& section : sections)
-    graph.nodes[section.node] = {section.center, std::sqrt(section.area / M_PI), true};
+    graph.nodes[section.node] = {section.center, std::sqrt(section.area / M_PI), 0, true};
 }
 
 /// The samples of components that are kept.

@@ -18,6 +18,9 @@ class FrontGraph {
   std::size_t front_count() const { return level_.size(); }
   Index front_of(Index voxel) const { return front_of_voxel_[voxel]; }
 
+  /// Path length from the root at which a front's band begins, mm.
+  double level_mm(Index front) const { return width_ * level_[front]; }
+
   /// Fronts that part at one front and meet at another.
   struct Loop {
     Index parting, meeting;          ///< fronts

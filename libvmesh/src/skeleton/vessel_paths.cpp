@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <unordered_map>
 
 #include "front_graph.h"
 
@@ -16,6 +17,9 @@ constexpr double kNearDepths = 1.2, kNearVoxels = 2;
 // Fronts that meet again sooner are a tunnel in a rough boundary, or a notch: so many depths, and voxels.
 constexpr double kLoopDepths = 1, kLoopVoxels = 5;
 constexpr float kOnPath = 1e-3f;  // of the cost of other voxels: a second path prefers the first one's way
+
+// A path around a loop may go so many depths, and this share of the loop, beyond where its sides meet.
+constexpr double kBeyondDepths = 4, kBeyond = 0.5;
 
 using Entry = std::pair<float, Index>;
 using NearestFirst = std::priority_queue<Entry, std::vector<Entry>, std::greater<>>;
@@ -30,10 +34,11 @@ class PathFinder {
         parent_(graph.size(), kNone),
         reach_(graph.size(), -kFar),
         place_(graph.size(), kNone) {
+    const double e = getenv("VE") ? atof(getenv("VE")) : 4; const float fw = getenv("VF") ? (float)atof(getenv("VF")) : 1.f;
     const auto half = static_cast<float>(0.5 * graph.finest()), whole = static_cast<float>(graph.finest());
     for (Index n = 0; n < graph.size(); ++n) {
-      const float inner = (depth[n] - half + whole * occupancy[n]) / whole;
-      cost_[n] = 1 / (inner * inner * inner);
+      const float inner = (depth[n] - half + fw * whole * occupancy[n]) / whole;
+      cost_[n] = (float)std::pow(inner, -e);
     }
   }
 
@@ -75,7 +80,7 @@ class PathFinder {
   double least_loop(Index voxel) const { return kLoopDepths * depth_[voxel] + kLoopVoxels * graph_.finest(); }
 
  private:
-  float reach_at(double depth) const { return static_cast<float>(kNearDepths * depth + kNearVoxels * graph_.finest()); }
+  float reach_at(double depth) const { return static_cast<float>((getenv("VN")?atof(getenv("VN")):kNearDepths) * depth + (getenv("VV")?atof(getenv("VV")):kNearVoxels) * graph_.finest()); }
 
   void find_parents(Index root) {
     NearestFirst queue;
@@ -99,13 +104,18 @@ class PathFinder {
                              [&](Index a, Index b) { return std::pair(cost_[a], a) < std::pair(cost_[b], b); });
   }
 
-  /// The cheapest path from `top` to `bottom` through the fronts of one side.
+  /// The cheapest path from `top` to `bottom` through the fronts of one side, and those a little beyond the meeting and
+  /// the parting: where two vessels kiss near a branching, it is the branching that the path should take.
   std::vector<Index> path_along(const FrontGraph& fronts, const FrontGraph::Loop& loop, const std::vector<Index>& side,
                                 Index top, Index bottom) {
     side_way_.resize(graph_.size(), kFar);
     side_parent_.resize(graph_.size(), kNone);
+    const double more = kBeyondDepths * std::max(depth_[top], depth_[bottom]) + kBeyond * loop.persistence;
     const auto allowed = [&](Index m) {
       const Index front = fronts.front_of(m);
+      const double above = fronts.level_mm(front) - fronts.level_mm(loop.meeting);
+      const double below = fronts.level_mm(loop.parting) - fronts.level_mm(front);
+      if (above > 0 || below > 0) return std::max(above, below) < more;
       return front == loop.parting || front == loop.meeting || std::binary_search(side.begin(), side.end(), front);
     };
     std::vector<Index> touched = {top};
@@ -156,19 +166,27 @@ class PathFinder {
     spread(fresh);
   }
 
-  /// Marks what is near new voxels of paths.
+  /// Marks what is near new voxels of paths: within their reach as the crow flies, by ways inside the vessels.
   void spread(const std::vector<std::pair<Index, float>>& sources) {
-    std::priority_queue<Entry> queue;
-    for (const auto& [n, reach] : sources)
-      if (reach > reach_[n]) queue.emplace(reach_[n] = reach, n);
+    struct Front {
+      float left;
+      Index voxel, source;
+      bool operator<(const Front& other) const { return left < other.left; }
+    };
+    std::priority_queue<Front> queue;
+    const auto total = [&](Index source) { return reach_of_source_[source]; };
+    for (const auto& [n, reach] : sources) {
+      reach_of_source_[n] = reach;
+      if (reach > reach_[n]) queue.push({reach_[n] = reach, n, n});
+    }
     while (!queue.empty()) {
-      const auto [reach, n] = queue.top();
+      const Front front = queue.top();
       queue.pop();
-      if (reach < reach_[n]) continue;
-      graph_.visit_neighbours(n, [&, r = reach](Index m, float step) {
-        const float left = r - step;
+      if (front.left < reach_[front.voxel]) continue;
+      graph_.visit_neighbours(front.voxel, [&](Index m, float) {
+        const float left = total(front.source) - graph_.distance(front.source, m);
         if (left < 0 || !(left > reach_[m])) return;
-        queue.emplace(reach_[m] = left, m);
+        queue.push({reach_[m] = left, m, front.source});
       });
     }
   }
@@ -178,6 +196,7 @@ class PathFinder {
   std::vector<float> cost_, length_, way_;
   std::vector<Index> parent_;
   std::vector<float> reach_;  // how much farther a path reaches beyond a voxel, mm
+  std::unordered_map<Index, float> reach_of_source_;
   std::vector<Index> place_;  // in paths_
   std::vector<std::vector<Index>> neighbours_;  // of every voxel with a path, those of higher place
   std::vector<float> side_way_;

@@ -13,6 +13,9 @@ constexpr int kSmoothings = 4;
 // A component is a vessel if it is longer than this times its width, and than so many voxels.
 constexpr double kLongerThanWide = 1.25, kLeastVoxels = 5;
 
+// A sphere counts as reaching an end if its radius and a voxel are this share of the way; the fit does the rest.
+constexpr double kReachesEnd = 0.8;
+
 void smooth(Graph& graph, const std::vector<std::vector<Index>>& edges_at) {
   for (int round = 0; round < kSmoothings; ++round) {
     const std::vector<Node> before = graph.nodes;
@@ -26,7 +29,7 @@ void smooth(Graph& graph, const std::vector<std::vector<Index>>& edges_at) {
 }
 
 /// Cuts free ends back to where the sphere still reaches the end, and takes away what is within its parent.
-void trim_ends(Graph& graph) {
+void trim_ends(Graph& graph, double voxel) {
   const auto edges_at = incidence(graph);
   std::vector<bool> removed(graph.edges.size(), false);
   for (const Chain& chain : chains_of(graph)) {
@@ -38,7 +41,7 @@ void trim_ends(Graph& graph) {
       const bool free_chain = edges_at[node(chain.nodes.size() - 1)].size() == 1;
       for (std::size_t i = 0; i < chain.edges.size(); ++i) {
         const Node& next = graph.nodes[node(i + 1)];
-        if (next.radius < (next.position - graph.nodes[end].position).norm()) break;
+        if (next.radius + voxel < kReachesEnd * (next.position - graph.nodes[end].position).norm()) break;
         if (free_chain && (i + 1 == chain.edges.size() || removed[edge(i + 1)])) break;  // one edge stays
         removed[edge(i)] = true;
       }
@@ -83,7 +86,8 @@ VoxelSkeleton skeleton_of(const VoxelSet& voxels, const VoxelFrame& frame, std::
                                 bridge.length - graph.finest()});
   }
   const std::vector<float> depth = boundary_distances(graph);
-  VesselPaths paths = find_paths(graph, depth, smoothed_occupancy(voxels), ends, progress);
+  const std::vector<float> occupancy = smoothed_occupancy(voxels);
+  VesselPaths paths = find_paths(graph, depth, occupancy, ends, progress);
   judge(result.components, paths.component, graph, depth, paths.length);
   for (VoxelComponent& component : result.components)
     component.place = frame.origin + frame.steps * component.place;
@@ -92,7 +96,9 @@ VoxelSkeleton skeleton_of(const VoxelSet& voxels, const VoxelFrame& frame, std::
   for (std::size_t p = 0; p < paths.voxels.size(); ++p) {
     const Index n = paths.voxels[p];
     number[p] = static_cast<Index>(result.graph.nodes.size());
-    result.graph.nodes.push_back({frame.position(graph.voxel(n)), depth[n] - 0.5 * graph.finest(), false});
+    const double voxel = graph.finest();
+    result.graph.nodes.push_back(
+        {frame.position(graph.voxel(n)), depth[n] - 0.5 * voxel, depth[n] + (occupancy[n] - 1) * voxel, false});
     result.component_of_node.push_back(paths.component[n]);
   }
   for (const auto& [a, b] : paths.edges)
@@ -102,7 +108,7 @@ VoxelSkeleton skeleton_of(const VoxelSet& voxels, const VoxelFrame& frame, std::
     if (n != kNone) result.graph.nodes[n].fixed = true;
   result.loops = paths.loops;
   break_loops(result.graph, result.loops);  // none but where two paths run side by side
-  trim_ends(result.graph);
+  trim_ends(result.graph, graph.finest());
   smooth(result.graph, incidence(result.graph));
   result.component_of_voxel = std::move(paths.component);
   result.frame = frame;
