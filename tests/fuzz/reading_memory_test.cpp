@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include "vmesh/image/image_slices.h"
+
 #include "../image/image_files.h"
 #include "readers.h"
 
@@ -282,6 +284,27 @@ TEST(ReadingMemory, OfImagesIsAMultipleOfWhatTheyHold) {
     EXPECT_EQ(reader_named(reader).read(content), Verdict::read);
     EXPECT_LT(content.size(), kSize / 100);
     EXPECT_LE(peak_while_reading(reader_named(reader), content), kMostPerUnpackedByte * kSize + kRoom) << reader;
+  }
+}
+
+TEST(ReadingMemory, OfImagesSliceBySliceIsThatOfTwoSlices) {
+  SampleImage image;
+  image.size = {128, 128, 4096};
+  const std::string voxels(std::size_t{1} << 26, '\7');
+  const std::size_t slice = sizeof(float) * 128 * 128, room = 2 << 20;
+  const std::pair<const char*, std::string> files[] = {
+      {"a.nii", nifti_file<std::uint8_t>(image, {}) + voxels},
+      {"a.nii.gz", packed(nifti_file<std::uint8_t>(image, {}) + voxels, true)},
+      {"a.nrrd", nrrd_header(image, "uchar", "encoding: gzip\n") + packed(voxels, true)},
+      {"a.mha", mha_header(image, "MET_UCHAR", "CompressedData = True\n") + packed(voxels, false)}};
+  for (const auto& [name, content] : files) {
+    std::size_t slices = 0;
+    const std::size_t before = live;
+    peak = before;
+    parse_image_slices(
+        content, name, [](const ImageFrame&) {}, [&](std::size_t, std::span<const float>) { ++slices; });
+    EXPECT_EQ(slices, 4096u) << name;
+    EXPECT_LE(peak - before, 2 * slice + room) << name;
   }
 }
 

@@ -9,6 +9,13 @@
 
 namespace vmesh::image {
 
+bool has_own_format(const std::filesystem::path& path) {
+  const std::string name = folded(path.filename().string());
+  for (const char* ending : {".nii", ".nii.gz", ".nrrd", ".mha"})
+    if (name.ends_with(ending)) return true;
+  return false;
+}
+
 void set_size(ImageHeader& header, const std::vector<double>& sizes, const std::string& name) {
   if (sizes.size() < 3)
     throw InvalidInput(name + ": has " + std::to_string(sizes.size()) + " dimensions; give an image of 3");

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,9 @@ struct ImageHeader {
 
   std::uint64_t voxels() const { return size[0] * size[1] * size[2]; }
 };
+
+/// Whether the name has the extension of a format that is parsed here; other formats are read through ITK.
+bool has_own_format(const std::filesystem::path& path);
 
 ImageHeader parse_nifti_header(std::string_view bytes, const std::string& name);
 ImageHeader parse_nrrd_header(std::string_view bytes, const std::string& name);

@@ -6,7 +6,7 @@
 
 namespace vmesh::image {
 
-LoadedImage read_by_itk(const std::filesystem::path& path) {
+void read_by_itk(const std::filesystem::path& path, const ImageBegin&, const SliceVisitor&) {
   std::error_code error;
   if (!std::filesystem::is_directory(path, error)) const InputFile there(path);
   throw Unsupported(path.string() +

@@ -21,8 +21,9 @@ struct StoredNumbers {
 };
 
 /// Reads values.size() numbers from `bytes`, which must contain as many. Throws InvalidInput for numbers that are not
-/// finite, Unsupported for integers that float cannot represent; `name` is the file's.
-void read_numbers(std::string_view bytes, const StoredNumbers& stored, std::span<float> values,
-                  const std::string& name);
+/// finite, Unsupported for integers that float cannot represent; `name` is the file's, `first` the number of voxels
+/// before these.
+void read_numbers(std::string_view bytes, const StoredNumbers& stored, std::span<float> values, const std::string& name,
+                  std::size_t first = 0);
 
 }  // namespace vmesh::image

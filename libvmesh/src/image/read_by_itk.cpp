@@ -80,7 +80,7 @@ void add_lines(std::string_view text, std::vector<std::string>& lines) {
 
 }  // namespace
 
-LoadedImage read_by_itk(const std::filesystem::path& path) {
+void read_by_itk(const std::filesystem::path& path, const ImageBegin& begin, const SliceVisitor& visit) {
   const std::string name = path.string();
   const bool dicom = is_dicom(path);
   if (!dicom && folded(path.extension().string()) == ".dcm")
@@ -94,9 +94,9 @@ LoadedImage read_by_itk(const std::filesystem::path& path) {
   const ImageHeader header = header_from(answer, name);
   ForeignHeader foreign;
   std::memcpy(static_cast<void*>(&foreign), answer.data(), sizeof foreign);
-  LoadedImage loaded;
-  loaded.integer = foreign.integer;
-  add_lines(std::string_view(answer).substr(sizeof foreign), loaded.warnings);
+  ImageFrame image;
+  image.integer = foreign.integer;
+  add_lines(std::string_view(answer).substr(sizeof foreign), image.warnings);
 
   // Per voxel besides the values: what the library needs, then what is returned.
   const std::uint64_t more = std::max<std::uint64_t>(foreign.bytes, sizeof(float));
@@ -107,12 +107,13 @@ LoadedImage read_by_itk(const std::filesystem::path& path) {
   add_lines(
       in_child_process(name, file_size,
                        [&] { return dicom ? dicom_voxels(path, voxels.values()) : itk_voxels(path, voxels.values()); }),
-      loaded.warnings);
-  loaded.image.size = {header.size[0], header.size[1], header.size[2]};
-  loaded.image.origin = header.origin;
-  loaded.image.steps = header.steps;
-  loaded.image.values.assign(voxels.values().begin(), voxels.values().end());
-  return loaded;
+      image.warnings);
+  image.frame.size = {header.size[0], header.size[1], header.size[2]};
+  image.frame.origin = header.origin;
+  image.frame.steps = header.steps;
+  begin(image);
+  const std::size_t area = header.size[0] * header.size[1];
+  for (std::size_t k = 0; k < header.size[2]; ++k) visit(k, voxels.values().subspan(k * area, area));
 }
 
 }  // namespace vmesh::image

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
-#include "vmesh/image/image_io.h"
+#include "vmesh/image/image_slices.h"
 
 namespace vmesh::image {
 
-/// See read_image(). Throws Unsupported in a build without ITK.
-LoadedImage read_by_itk(const std::filesystem::path& path);
+/// See read_image_slices(). Throws Unsupported in a build without ITK.
+void read_by_itk(const std::filesystem::path& path, const ImageBegin& begin, const SliceVisitor& visit);
 
 }  // namespace vmesh::image

@@ -1,0 +1,166 @@
+#include "vmesh/image/image_slices.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "vmesh/core/error.h"
+#include "vmesh/core/input_file.h"
+#include "vmesh/core/memory.h"
+#include "vmesh/image/image_io.h"
+
+#include "byte_source.h"
+#include "image_header.h"
+#include "read_by_itk.h"
+
+namespace vmesh {
+namespace {
+
+using image::ByteSource;
+using image::ImageHeader;
+using image::PeekedBytes;
+
+/// Whether all of a NIfTI file is compressed. Throws InvalidInput if its name says otherwise.
+bool is_packed(PeekedBytes& file, const std::string& file_name, const std::string& name) {
+  if (file_name.ends_with(".nrrd") || file_name.ends_with(".mha")) return false;
+  const bool packed = file.peek(2) == "\x1f\x8b";
+  if (packed != file_name.ends_with(".gz"))
+    throw InvalidInput(name +
+                       (packed ? ": is compressed with gzip; name it .nii.gz" : ": is not compressed with gzip"));
+  return packed;
+}
+
+ImageHeader parse_header(PeekedBytes& content, const std::string& file_name, const std::string& name) {
+  constexpr std::size_t kLongestText = std::size_t{1} << 20, kLongestNifti = 540;
+  if (file_name.ends_with(".nrrd")) return image::parse_nrrd_header(content.peek(kLongestText), name);
+  if (file_name.ends_with(".mha")) return image::parse_meta_header(content.peek(kLongestText), name);
+  return image::parse_nifti_header(content.peek(kLongestNifti), name);
+}
+
+std::uint64_t bytes_needed(const ImageHeader& header) { return header.voxels() * bytes_of(header.type); }
+
+[[noreturn]] void refuse_incomplete(const ImageHeader& header, std::uint64_t bytes, const std::string& name) {
+  throw InvalidInput(name + ": the header claims " + std::to_string(header.voxels()) + " voxels, " +
+                     std::to_string(bytes_needed(header)) + " bytes, but the file holds " + std::to_string(bytes) +
+                     "; it is broken or incomplete");
+}
+
+/// Throws if a file of that size is too short to contain the voxels, or if there is not enough memory for a slice.
+void check_size(std::uint64_t file_size, const ImageHeader& header, bool packed, const std::string& name) {
+  constexpr double kMostUnpacked = 1032;  // bytes from one, by deflate
+  const std::uint64_t bytes = file_size - std::min(file_size, header.data_begin);
+  if (!packed && bytes < bytes_needed(header)) refuse_incomplete(header, bytes, name);
+  if (packed && static_cast<double>(bytes_needed(header)) > kMostUnpacked * static_cast<double>(file_size))
+    throw InvalidInput(name + ": the header claims " + std::to_string(header.voxels()) +
+                       " voxels, more than the compressed file can contain; it is broken or incomplete");
+  require_memory(static_cast<double>(header.size[0] * header.size[1]) * sizeof(float),
+                 name + ": a slice of " + std::to_string(header.size[0] * header.size[1]) + " voxels",
+                 "crop it to the vessels, or store larger voxels");
+}
+
+ImageFrame frame_of(const ImageHeader& header) {
+  ImageFrame image;
+  image.frame.size = {header.size[0], header.size[1], header.size[2]};
+  image.frame.origin = header.origin;
+  image.frame.steps = header.steps;
+  image.integer = is_integer(header.type) && header.slope == 1 && header.intercept == 0;
+  image.warnings = header.warnings;
+  return image;
+}
+
+/// Reads the values of voxels in blocks, whatever the size of slices.
+class VoxelReader {
+ public:
+  VoxelReader(ByteSource& bytes, const ImageHeader& header, const std::string& name)
+      : bytes_(bytes), header_(header), name_(name), block_(kBlock) {}
+
+  /// The next values. `values` grows as they are read, so that its memory is bounded by what the file holds, whatever
+  /// its header claims.
+  void read(std::uint64_t count, std::vector<float>& values) {
+    for (std::uint64_t done = 0; done < count;) {
+      if (begin_ == end_) fill();
+      const std::size_t step = static_cast<std::size_t>(std::min<std::uint64_t>(count - done, end_ - begin_));
+      if (values.size() < done + step) values.resize(done + step);
+      const std::size_t width = bytes_of(header_.type);
+      image::read_numbers({block_.data() + begin_ * width, step * width},
+                          {header_.type, header_.big_endian, header_.slope, header_.intercept},
+                          std::span(values).subspan(done, step), name_, voxels_ - (end_ - begin_));
+      begin_ += step;
+      done += step;
+    }
+  }
+
+ private:
+  static constexpr std::size_t kBlock = std::size_t{1} << 16;
+
+  /// Reads the next block. Throws InvalidInput if voxels are missing.
+  void fill() {
+    const std::size_t width = bytes_of(header_.type);
+    begin_ = 0;
+    end_ = static_cast<std::size_t>(std::min<std::uint64_t>(header_.voxels() - voxels_, kBlock / width));
+    const std::size_t count = bytes_.read(std::span(block_).first(end_ * width));
+    if (count < end_ * width) refuse_incomplete(header_, voxels_ * width + count, name_);
+    voxels_ += end_;
+  }
+
+  ByteSource& bytes_;
+  const ImageHeader& header_;
+  const std::string& name_;
+  std::vector<char> block_;
+  std::size_t begin_ = 0, end_ = 0;  ///< voxels in the block that have not been used
+  std::uint64_t voxels_ = 0;         ///< read so far, up to the end of the block
+};
+
+void visit_voxels(ByteSource& bytes, const ImageHeader& header, const std::string& name, const SliceVisitor& visit) {
+  VoxelReader reader(bytes, header, name);
+  std::vector<float> slice;
+  for (std::size_t k = 0; k < header.size[2]; ++k) {
+    reader.read(header.size[0] * header.size[1], slice);
+    visit(k, slice);
+  }
+}
+
+/// `file_size`: of all bytes that `file` will give; `source` names it.
+void parse(ByteSource& file, std::uint64_t file_size, const std::string& source, const ImageBegin& begin,
+           const SliceVisitor& visit) {
+  if (!image::has_own_format(source))
+    throw Unsupported(source + ": images are .nii, .nii.gz, .nrrd or .mha, or a folder of DICOM files");
+  const std::string file_name = image::folded(std::filesystem::path(source).filename().string());
+  PeekedBytes stored(file);
+  std::optional<image::UnpackedBytes> unpacked;  // from the first byte, or from the first voxel
+  const bool all_packed = is_packed(stored, file_name, source);
+  if (all_packed) unpacked.emplace(stored);
+  PeekedBytes content(all_packed ? static_cast<ByteSource&>(*unpacked) : stored);
+  const ImageHeader header = parse_header(content, file_name, source);
+  check_place(header, source);
+  check_size(file_size, header, all_packed || header.packed, source);
+  begin(frame_of(header));
+  skip(content, header.data_begin);
+  if (header.packed) unpacked.emplace(content);
+  visit_voxels(header.packed ? static_cast<ByteSource&>(*unpacked) : content, header, source, visit);
+}
+
+}  // namespace
+
+void parse_image_slices(std::string_view content, const std::string& source, const ImageBegin& begin,
+                        const SliceVisitor& visit) {
+  image::BytesInMemory bytes(content);
+  parse(bytes, content.size(), source, begin, visit);
+}
+
+void read_image_slices(const std::filesystem::path& path, const ImageBegin& begin, const SliceVisitor& visit) {
+  std::error_code error;
+  const bool own = image::has_own_format(path) && !std::filesystem::is_directory(path, error);
+  if (!own && is_image(path)) return image::read_by_itk(path, begin, visit);
+  InputFile file(path);
+  // Files that the system generates do not tell their size; an empty one is refused.
+  if (file.size() == 0) return parse_image_slices(read_file(path), path.string(), begin, visit);
+  image::BytesOfFile bytes(file);
+  parse(bytes, file.size(), path.string(), begin, visit);
+}
+
+void visit_slices(const VoxelImage& image, const SliceVisitor& visit) {
+  const std::size_t area = image.size[0] * image.size[1];
+  for (std::size_t k = 0; k < image.size[2]; ++k) visit(k, std::span(image.values).subspan(k * area, area));
+}
+
+}  // namespace vmesh
