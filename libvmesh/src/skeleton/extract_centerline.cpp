@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "vmesh/core/error.h"
 #include "vmesh/core/memory.h"
 
+#include "closed_wall.h"
 #include "cone_fit.h"
 #include "coverage.h"
 #include "end_joining.h"
@@ -16,7 +18,8 @@
 #include "mask_content.h"
 #include "skeleton_graph.h"
 #include "voxel_cleaning.h"
-// WALL
+#include "wall_samples.h"
+#include "wall_voxels.h"
 
 namespace vmesh {
 namespace {
@@ -108,10 +111,20 @@ void drop_others(VoxelSkeleton& skeleton, std::vector<EndSection>& sections) {
   graph = std::move(kept);
 }
 
-/// Places the nodes at flat ends in their middle.
+/// Places the nodes at flat ends in their middle. The depth of the voxels near a flat end tells nothing of the radius.
 void place_sections(Graph& graph, const std::vector<EndSection>& sections) {
-  for (const EndSection& section : sections)
-    graph.nodes[section.node] = {section.center, std::sqrt(section.area / M_PI), 0, true};
+  const auto edges_at = skeleton::incidence(graph);
+  for (const EndSection& section : sections) {
+    const double radius = std::sqrt(section.area / M_PI);
+    graph.nodes[section.node] = {section.center, radius, radius, true};
+    Index n = section.node, before = kNone;
+    while (edges_at[n].size() == (n == section.node ? 1u : 2u)) {
+      before = edges_at[n][edges_at[n].front() == before ? edges_at[n].size() - 1 : 0];
+      n = skeleton::other_end(graph, before, n);
+      if (graph.nodes[n].fixed || (graph.nodes[n].position - section.center).norm() > radius) break;
+      graph.nodes[n].radius = std::max(graph.nodes[n].radius, radius);
+    }
+  }
 }
 
 /// The samples of components that are kept.
@@ -219,6 +232,109 @@ ExtractedCenterline extract_centerline(VesselMask vessels, const ExtractOptions&
 }
 
 }  // namespace vmesh
+
 namespace vmesh {
-ExtractedCenterline extract_centerline(const TriMesh&, const ExtractOptions&, const Progress&) { throw InvalidInput("todo"); }
+namespace {
+
+/// The voxel inside that is nearest to the middle of a flat end.
+Index voxel_at(const skeleton::VoxelVolume& volume, const skeleton::FlatWallEnd& end) {
+  constexpr int kReach = 4;  // voxels
+  const double voxel = volume.frame.steps(0, 0);
+  const Vec3 middle = (end.center - 0.5 * voxel * end.normal - volume.frame.origin) / voxel;
+  const Vec3 rounded = middle.array().round();
+  Index nearest = kNone;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = -kReach; k <= kReach; ++k)
+    for (int j = -kReach; j <= kReach; ++j)
+      for (int i = -kReach; i <= kReach; ++i) {
+        const Vec3 at = rounded + Vec3(i, j, k);
+        if ((at.array() < -4).any()) continue;
+        const double distance = (at - middle).squaredNorm();
+        if (!(distance < least)) continue;
+        const skeleton::Voxel v = {static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2])};
+        bool within = true;
+        for (std::size_t a = 0; a < 3; ++a) within = within && v[a] < static_cast<int>(volume.voxels.grid_size()[a]);
+        if (const Index n = within ? volume.voxels.number(v) : kNone; n != kNone) least = distance, nearest = n;
+      }
+  return nearest;
 }
+
+constexpr double kSampleSpacing = 0.3;  // radii
+
+/// Samples of the wall, without what closes its ends.
+void add_samples(const skeleton::WallPart& part, const Graph& graph, Index component, Work& work) {
+  const skeleton::GraphCones cones(graph);
+  std::vector<Vec3> middles;
+  for (const auto& [a, b, c] : part.mesh.faces)
+    middles.push_back((part.mesh.vertices[a] + part.mesh.vertices[b] + part.mesh.vertices[c]) / 3);
+  const std::vector<skeleton::GraphCones::Place> places = cones.closest(middles);
+  const skeleton::WallSamples samples = skeleton::samples_by_area(part.mesh, [&](Index f) {
+    return part.is_wall(f) ? kSampleSpacing * cones.radius_at(places[f]) : 0.0;
+  });
+  work.wall.points.insert(work.wall.points.end(), samples.points.begin(), samples.points.end());
+  work.wall.areas.insert(work.wall.areas.end(), samples.areas.begin(), samples.areas.end());
+  work.wall.slack.resize(work.wall.size(), 0);
+  work.component_of_sample.resize(work.wall.size(), component);
+}
+
+void append(VoxelSkeleton&& part, VoxelSkeleton& all) {
+  const auto nodes = static_cast<Index>(all.graph.nodes.size()), components = static_cast<Index>(all.components.size());
+  all.graph.nodes.insert(all.graph.nodes.end(), part.graph.nodes.begin(), part.graph.nodes.end());
+  for (const auto& [a, b] : part.graph.edges) all.graph.edges.push_back({a + nodes, b + nodes});
+  for (const Index c : part.component_of_node) all.component_of_node.push_back(c + components);
+  all.components.insert(all.components.end(), part.components.begin(), part.components.end());
+}
+
+/// Of a part's components, the one with the longest path stands for its wall.
+Index main_component(const VoxelSkeleton& part) {
+  const auto longer = [](const auto& a, const auto& b) { return a.length < b.length; };
+  return static_cast<Index>(std::max_element(part.components.begin(), part.components.end(), longer) -
+                            part.components.begin());
+}
+
+}  // namespace
+
+ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOptions& options,
+                                       const Progress& progress) {
+  check(options);
+  report_progress(progress, "wall", 0);
+  const skeleton::ClosedWall wall = skeleton::close_wall(surface, progress);
+  Work work;
+  work.report.notes = wall.notes;
+  work.voxel = std::numeric_limits<double>::infinity();
+  VoxelSkeleton all;
+  for (std::size_t p = 0; p < wall.parts.size(); ++p) {
+    const skeleton::WallPart& part = wall.parts[p];
+    const double voxel = skeleton::voxel_size_for(part.mesh, part.volume);
+    work.voxel = std::min(work.voxel, voxel);
+    skeleton::VoxelVolume volume = skeleton::voxels_inside(part.mesh, voxel);
+    skeleton::fill_holes(volume.voxels);
+    if (volume.voxels.size() == 0) continue;
+    std::vector<skeleton::KnownEnd> known;
+    std::vector<EndSection> sections;
+    for (const skeleton::FlatWallEnd& end : wall.ends) {
+      if (end.part != p) continue;
+      known.push_back({voxel_at(volume, end), std::sqrt(end.area / M_PI)});
+      sections.push_back({kNone, end.center, end.normal, end.area, end.ring, end.was_open});
+    }
+    VoxelSkeleton skeleton = skeleton::skeleton_of(volume.voxels, volume.frame, known, progress);
+    const auto offset = static_cast<Index>(all.graph.nodes.size());
+    for (std::size_t e = 0; e < sections.size(); ++e) {
+      if (skeleton.node_of_end[e] == kNone) continue;
+      sections[e].node = skeleton.node_of_end[e] + offset;
+      work.sections.push_back(std::move(sections[e]));
+    }
+    add_samples(part, skeleton.graph, static_cast<Index>(all.components.size()) + main_component(skeleton), work);
+    append(std::move(skeleton), all);
+  }
+  if (all.graph.nodes.empty()) throw InvalidInput("the surface encloses no volume");
+  choose_components(all, options, work.report);
+  drop_others(all, work.sections);
+  place_sections(all.graph, work.sections);
+  work.report.loops = skeleton::find_loops(all.graph, work.voxel, options.tree);
+  for (const skeleton::VoxelComponent& component : all.components) work.kept.push_back(component.kept);
+  work.graph = std::move(all.graph);
+  return finish(std::move(work), options, progress);
+}
+
+}  // namespace vmesh

@@ -119,6 +119,7 @@ std::size_t prune_spurs(Graph& graph) {
     for (const Chain& chain : chains) {
       const std::size_t first = edges_at[chain.nodes.front()].size(), last = edges_at[chain.nodes.back()].size();
       if ((first == 1) == (last == 1)) continue;  // no free end, or two
+      if (graph.nodes[first == 1 ? chain.nodes.front() : chain.nodes.back()].fixed) continue;
       const Index root = first == 1 ? chain.nodes.back() : chain.nodes.front();
       const double relative = length_of(graph, chain) / graph.nodes[root].radius;
       if (relative < least) least = relative, worst = &chain;

@@ -7,6 +7,7 @@
 
 #include "vmesh/core/error.h"
 #include "vmesh/image/image_io.h"
+#include "vmesh/image/image_slices.h"
 
 #include "mask_content.h"
 #include "voxel_cleaning.h"
@@ -156,9 +157,16 @@ VesselMask read_vessel_mask(const std::filesystem::path& path, const ReferenceOp
     warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
     return vessel_mask(loaded, options);
   }
-  LoadedImage loaded = read_image(path);
-  warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
-  return vessel_mask(loaded, options);
+  std::unique_ptr<VesselMask> mask;
+  read_image_slices(
+      path,
+      [&](const ImageFrame& image) {
+        warnings.insert(warnings.end(), image.warnings.begin(), image.warnings.end());
+        mask = std::make_unique<VesselMask>(image.frame, options);
+      },
+      [&](std::size_t k, std::span<const float> values) { mask->add_slice(k, values); });
+  mask->finish();
+  return std::move(*mask);
 }
 
 namespace skeleton {

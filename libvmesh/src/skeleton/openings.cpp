@@ -1,0 +1,241 @@
+#include "openings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+
+#include "vmesh/mesh/polygon_triangulation.h"
+#include "vmesh/mesh/topology.h"
+
+#include "ring_shape.h"
+#include "wall_probe.h"
+#include "wall_text.h"
+
+namespace vmesh::skeleton {
+namespace {
+
+// What an end of a vessel is like. Its ring has so many vertices, is so round, and so flat, in radii.
+constexpr std::size_t kLeastRing = 5;
+constexpr double kLargestAspect = 4, kLeastCompactness = 0.4, kLargestUnevenness = 0.5;
+// Behind an end, the wall is near at this depth; behind a hole that has a tenth of the cross-section of a tube or a
+// ball, it is 2.16 radii away. Both in the hole's radii.
+constexpr double kDepth = 2, kFarthestWall = 2.1;
+// A ring that is flat within this many radii is triangulated in its plane.
+constexpr double kFlat = 0.25;
+// Filling takes cubic time in the worst case.
+constexpr std::size_t kLongestFilled = 500;
+
+using Edge = std::array<Index, 2>;
+using Ring = std::vector<Index>;
+
+/// Boundary loops in the direction in which faces that close them run. Vertices where boundaries meet are left out,
+/// with the loops through them; a sound shell has none.
+std::vector<Ring> rings_of(const TriMesh& mesh) {
+  std::vector<Index> before(mesh.vertices.size(), kNone), degree(mesh.vertices.size(), 0);
+  std::vector<Index> order;
+  for (const auto& [from, to] : boundary_edges(mesh)) {
+    before[to] = from;
+    ++degree[from];
+    ++degree[to];
+    order.push_back(to);
+  }
+  std::vector<bool> seen(mesh.vertices.size(), false);
+  std::vector<Ring> rings;
+  for (const Index first : order) {
+    Ring ring;
+    Index v = first;
+    for (; v != kNone && !seen[v] && degree[v] == 2; v = before[v]) {
+      seen[v] = true;
+      ring.push_back(v);
+    }
+    if (v == first && ring.size() > 2) rings.push_back(std::move(ring));
+  }
+  return rings;
+}
+
+std::vector<Vec3> positions(const TriMesh& mesh, const Ring& ring) {
+  std::vector<Vec3> points;
+  for (const Index v : ring) points.push_back(mesh.vertices[v]);
+  return points;
+}
+
+/// Edges between vertices of the rings, ascending.
+std::vector<Edge> edges_among(const TriMesh& mesh, const std::vector<Ring>& rings) {
+  std::vector<bool> in_ring(mesh.vertices.size(), false);
+  for (const Ring& ring : rings) {
+    for (const Index v : ring) in_ring[v] = true;
+  }
+  std::vector<Edge> edges;
+  for (const Triangle& face : mesh.faces) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [a, b] = std::minmax(face[i], face[(i + 1) % 3]);
+      if (in_ring[a] && in_ring[b]) edges.push_back({a, b});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+/// Triangles between the corners of a polygon that is not flat. Empty if there are none.
+std::vector<Triangle> fill_uneven(const std::vector<Vec3>& ring) {
+  using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+  std::vector<Triangle> faces;
+  if (ring.size() > kLongestFilled) return faces;
+  std::vector<Point> points;
+  for (const Vec3& p : ring) points.emplace_back(p.x(), p.y(), p.z());
+  struct Corners {
+    Triangle corners;
+    Corners(int a, int b, int c) : corners{static_cast<Index>(a), static_cast<Index>(b), static_cast<Index>(c)} {}
+  };
+  std::vector<Corners> found;
+  CGAL::Polygon_mesh_processing::triangulate_hole_polyline(points, std::back_inserter(found));
+  for (const Corners& face : found) faces.push_back(face.corners);
+  return faces;
+}
+
+/// Whether the faces close a polygon of `count` corners without an edge that the mesh has already.
+bool fit(const std::vector<Triangle>& faces, const Ring& ring, const std::vector<Edge>& taken) {
+  if (faces.size() + 2 != ring.size()) return false;
+  for (const Triangle& face : faces) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [a, b] = std::minmax(face[i], face[(i + 1) % 3]);
+      if (a + 1 == b || (a == 0 && b + 1 == ring.size())) continue;
+      const auto [low, high] = std::minmax(ring[a], ring[b]);
+      if (std::binary_search(taken.begin(), taken.end(), Edge{low, high})) return false;
+    }
+  }
+  return true;
+}
+
+/// Appends faces that close the ring.
+void fill(TriMesh& mesh, const Ring& ring, const RingShape& shape, const std::vector<Edge>& taken) {
+  const std::vector<Vec3> points = positions(mesh, ring);
+  const bool is_flat = ring.size() == 3 || (shape.area > 0 && shape.unevenness <= kFlat * shape.radius);
+  std::vector<Triangle> faces = is_flat ? triangulate_polygon(points) : fill_uneven(points);
+  if (fit(faces, ring, taken)) {
+    for (const auto& [a, b, c] : faces) mesh.faces.push_back({ring[a], ring[b], ring[c]});
+    return;
+  }
+  const auto middle = static_cast<Index>(mesh.vertices.size());
+  mesh.vertices.push_back(shape.center);
+  for (std::size_t i = 0; i < ring.size(); ++i) mesh.faces.push_back({ring[i], ring[(i + 1) % ring.size()], middle});
+}
+
+enum class Kind { end, hole, uneven };
+
+Kind kind_of(std::size_t corners, const RingShape& shape, const WallProbe& wall) {
+  if (corners < kLeastRing || !(shape.compactness >= kLeastCompactness) || shape.aspect > kLargestAspect)
+    return Kind::hole;
+  const Vec3 behind = shape.center - kDepth * shape.radius * shape.normal;
+  if (wall.nearest(behind).distance > kFarthestWall * shape.radius) return Kind::hole;
+  return shape.unevenness > kLargestUnevenness * shape.radius ? Kind::uneven : Kind::end;
+}
+
+void note(OpeningsClosed& closed, Kind kind, const RingShape& shape) {
+  if (kind == Kind::end) {
+    closed.smallest_end = closed.ends == 0 ? shape.area : std::min(closed.smallest_end, shape.area);
+    closed.largest_end = std::max(closed.largest_end, shape.area);
+    ++closed.ends;
+  } else if (kind == Kind::hole) {
+    if (closed.holes++ > 0 && closed.largest_hole >= shape.area) return;
+    closed.largest_hole = shape.area;
+    closed.hole_at = shape.center;
+  } else if (closed.uneven++ == 0) {
+    closed.uneven_at = shape.center;
+  }
+}
+
+/// The shell's mesh is `mesh` with all rings closed. Where the faces that close each ring begin, and the last end.
+std::vector<std::size_t> fill_all(Shell& shell, const TriMesh& mesh, const std::vector<Ring>& rings) {
+  TriMesh& full = shell.part.mesh = mesh;
+  std::vector<std::size_t> begin;
+  const std::vector<Edge> taken = edges_among(mesh, rings);
+  for (const Ring& ring : rings) {
+    begin.push_back(full.faces.size());
+    fill(full, ring, shape_of(positions(mesh, ring)), taken);
+  }
+  begin.push_back(full.faces.size());
+  shell.part.end_of_face.assign(full.faces.size(), kNone);
+  shell.part.is_filling.assign(mesh.faces.size(), false);
+  shell.part.is_filling.resize(full.faces.size(), true);
+  return begin;
+}
+
+/// Notes what was closed by the faces from `begin` to `end`, and remembers it if it is an end. `ring`:
+/// counter-clockwise seen from outside.
+void label(Shell& shell, std::vector<Vec3> ring, const WallProbe& wall, std::size_t begin, std::size_t end,
+           OpeningsClosed& closed) {
+  const RingShape shape = shape_of(ring);
+  const Kind kind = kind_of(ring.size(), shape, wall);
+  note(closed, kind, shape);
+  if (kind != Kind::end) return;
+  for (std::size_t f = begin; f < end; ++f) shell.part.end_of_face[f] = static_cast<Index>(shell.ends.size());
+  shell.ends.push_back({shape.center, shape.normal, shape.area, std::move(ring), true, 0});
+}
+
+}  // namespace
+
+std::vector<std::string> OpeningsClosed::notes() const {
+  std::vector<std::string> lines;
+  if (ends > 0) {
+    const std::string sizes =
+        ends == 1 ? text(largest_end) : "areas of " + text(smallest_end) + " to " + text(largest_end);
+    lines.push_back(counted(ends, "opening is closed and taken for a flat end of a vessel, ",
+                            "openings are closed and taken for flat ends of vessels, ") +
+                    sizes + " mm^2");
+  }
+  if (holes > 0) {
+    lines.push_back(counted(holes, "hole in the wall is closed, ", "holes in the wall are closed, the largest ") +
+                    text(largest_hole) + " mm^2 at " + text(hole_at));
+  }
+  if (uneven > 0) {
+    lines.push_back(counted(uneven, "opening that is far from flat is closed, at ",
+                            "openings that are far from flat are closed, the first at ") +
+                    text(uneven_at));
+  }
+  return lines;
+}
+
+Shell closed_shell(TriMesh mesh, OpeningsClosed& closed) {
+  Shell shell;
+  const std::vector<Ring> rings = rings_of(mesh);
+  const std::vector<std::size_t> begin = fill_all(shell, mesh, rings);
+  shell.part.volume = enclosed_volume(shell.part.mesh);
+  shell.was_inward = shell.part.volume < 0;
+  if (shell.was_inward) {
+    shell.part.volume = -shell.part.volume;
+    for (Triangle& face : shell.part.mesh.faces) std::swap(face[1], face[2]);
+  }
+  if (rings.empty()) return shell;
+  const WallProbe wall(mesh);
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    std::vector<Vec3> ring = positions(mesh, rings[r]);
+    if (shell.was_inward) std::reverse(ring.begin(), ring.end());
+    label(shell, std::move(ring), wall, begin[r], begin[r + 1], closed);
+  }
+  return shell;
+}
+
+Shell closed_soup(TriMesh mesh, OpeningsClosed& closed) {
+  Shell shell;
+  const std::vector<Ring> rings = rings_of(mesh);
+  const std::vector<std::size_t> begin = fill_all(shell, mesh, rings);
+  const WallProbe wall(mesh);
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    std::vector<Vec3> ring = positions(mesh, rings[r]);
+    const RingShape shape = shape_of(ring);
+    const Vec3 way = kDepth * shape.radius * shape.normal;
+    // The wall of a tube is nearer behind its end than before it.
+    if (wall.nearest(shape.center + way).distance < wall.nearest(shape.center - way).distance)
+      std::reverse(ring.begin(), ring.end());
+    label(shell, std::move(ring), wall, begin[r], begin[r + 1], closed);
+  }
+  return shell;
+}
+
+}  // namespace vmesh::skeleton
