@@ -30,6 +30,7 @@ constexpr double kDampingOfFixed = 1e6;  // makes nodes practically immovable
 // Distance, in local radii, at which samples farther off are counted.
 constexpr double kNear = 0.5;
 constexpr double kRadiusFactor = 2;
+constexpr double kSticksOut = 0.35;   // radii by which a vessel sticks out of others
 constexpr double kWithinSlack = 0.1;  // weight of a sample's distance within its slack
 
 /// Normal equations of one round, a 4 x 4 block per pair of nodes.
@@ -236,6 +237,37 @@ GraphCones::Place GraphCones::closest(const Vec3& point, Index from) const {
     }
   }
   return best;
+}
+
+std::size_t prune_contained(Graph& graph) {
+  const auto edges_at = incidence(graph);
+  const GraphCones cones(graph);
+  const BoxTree boxes = cones.tree();
+  std::vector<bool> removed(graph.edges.size(), false);
+  std::size_t count = 0;
+  for (const Chain& chain : chains_of(graph)) {
+    const bool first_free = edges_at[chain.nodes.front()].size() == 1;
+    const bool last_free = edges_at[chain.nodes.back()].size() == 1;
+    if (first_free == last_free) continue;
+    if (graph.nodes[first_free ? chain.nodes.front() : chain.nodes.back()].fixed) continue;
+    double most = -1;  // how far it sticks out, in radii
+    for (const Index n : chain.nodes) {
+      Place best{kNone, std::numeric_limits<double>::infinity(), 0};
+      boxes.visit(graph.nodes[n].position, best.distance, [&](Index c) {
+        if (c < removed.size() && (removed[c] || std::find(chain.edges.begin(), chain.edges.end(), c) != chain.edges.end()))
+          return;
+        const auto [distance, t] = cones.cone(c).distance_to(graph.nodes[n].position);
+        if (distance < best.distance) best = {c, distance, t};
+      });
+      if (best.cone == kNone) continue;
+      most = std::max(most, (best.distance + graph.nodes[n].radius) / cones.radius_at(best));
+    }
+    if (most > kSticksOut) continue;
+    for (const Index e : chain.edges) removed[e] = true;
+    ++count;
+  }
+  remove_edges(graph, removed);
+  return count;
 }
 
 void fit_cones(Graph& graph, const FitSamples& samples, double voxel, int rounds, const Progress& progress) {

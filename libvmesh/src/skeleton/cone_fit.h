@@ -48,6 +48,10 @@ class GraphCones {
   std::vector<Index> near_at_, near_;  // of every cone: those at most two edges away
 };
 
+/// Removes end chains that stick out of the rest of the vessels by less than a third of the radius there: two ways to one
+/// end of a vessel that is not round. Returns the number removed.
+std::size_t prune_contained(Graph& graph);
+
 /// Moves the nodes of `graph` and changes their radii so that the boundary of the union of its round cones comes as
 /// close to the wall as possible: weighted least squares of the signed distances beyond the samples' slack
 /// (Gauss-Newton, at most `rounds` steps), with a little weight on smooth chains, more where `voxel` (mm, 0 for a wall

@@ -144,7 +144,7 @@ void fit(Work& work, const ExtractOptions& options, const Progress& progress) {
   for (int i = 0; i < kRefinements; ++i) {
     work.graph = skeleton::resampled(work.graph, options.spacing, kLeastRadius * work.voxel);
     skeleton::fit_cones(work.graph, samples, work.wall_voxel, kFitRounds, progress);
-    work.report.spurs += skeleton::prune_spurs(work.graph);
+    work.report.spurs += skeleton::prune_spurs(work.graph) + skeleton::prune_contained(work.graph);
   }
 }
 
