@@ -31,7 +31,7 @@ using skeleton::VoxelSkeleton;
 
 constexpr int kFitRounds = 20;
 constexpr int kRefinements = 2;  // the second works on the result of the first
-constexpr double kLeastRadius = 1.5;  // voxels; thinner vessels have nodes as far apart as ones of that radius
+static const double kLeastRadius = getenv("LR")?atof(getenv("LR")):1.5;  // voxels; thinner vessels have nodes as far apart as ones of that radius
 constexpr double kBytesPerVoxel = 120;  // measured
 
 void check(const ExtractOptions& options) {

@@ -15,7 +15,7 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 // A voxel is near a path within this times the depth there, and so many voxels more, which a rough boundary needs.
 constexpr double kNearDepths = 1.2, kNearVoxels = 2;
 // Fronts that meet again sooner are a tunnel in a rough boundary, or a notch: so many depths, and voxels.
-constexpr double kLoopDepths = 1, kLoopVoxels = 5;
+constexpr double kLoopDepths = 1, kLoopVoxels = 5, kLoopSlices = 3;
 constexpr float kOnPath = 1e-3f;  // of the cost of other voxels: a second path prefers the first one's way
 
 // A path around a loop may go so many depths, and this share of the loop, beyond where its sides meet.
@@ -34,11 +34,10 @@ class PathFinder {
         parent_(graph.size(), kNone),
         reach_(graph.size(), -kFar),
         place_(graph.size(), kNone) {
-    const double e = getenv("VE") ? atof(getenv("VE")) : 4; const float fw = getenv("VF") ? (float)atof(getenv("VF")) : 1.f;
     const auto half = static_cast<float>(0.5 * graph.finest()), whole = static_cast<float>(graph.finest());
     for (Index n = 0; n < graph.size(); ++n) {
-      const float inner = (depth[n] - half + fw * whole * occupancy[n]) / whole;
-      cost_[n] = (float)std::pow(inner, -e);
+      const float inner = (depth[n] - half + whole * occupancy[n]) / whole;
+      cost_[n] = 1 / (inner * inner * inner * inner);
     }
   }
 
@@ -77,10 +76,10 @@ class PathFinder {
   Index place_of(Index n) const { return place_[n]; }
   void count_loop() { ++paths_.loops; }
 
-  double least_loop(Index voxel) const { return kLoopDepths * depth_[voxel] + kLoopVoxels * graph_.finest(); }
+  double least_loop(Index voxel) const { return kLoopDepths * depth_[voxel] + std::max(kLoopVoxels * graph_.finest(), kLoopSlices * graph_.spacing().maxCoeff()); }
 
  private:
-  float reach_at(double depth) const { return static_cast<float>((getenv("VN")?atof(getenv("VN")):kNearDepths) * depth + (getenv("VV")?atof(getenv("VV")):kNearVoxels) * graph_.finest()); }
+  float reach_at(double depth) const { return static_cast<float>(kNearDepths * depth); }
 
   void find_parents(Index root) {
     NearestFirst queue;
@@ -177,14 +176,15 @@ class PathFinder {
     const auto total = [&](Index source) { return reach_of_source_[source]; };
     for (const auto& [n, reach] : sources) {
       reach_of_source_[n] = reach;
-      if (reach > reach_[n]) queue.push({reach_[n] = reach, n, n});
+      const float left = reach - graph_.distance_beyond(n, n, kNearVoxels);
+      if (left > reach_[n]) queue.push({reach_[n] = left, n, n});
     }
     while (!queue.empty()) {
       const Front front = queue.top();
       queue.pop();
       if (front.left < reach_[front.voxel]) continue;
       graph_.visit_neighbours(front.voxel, [&](Index m, float) {
-        const float left = total(front.source) - graph_.distance(front.source, m);
+        const float left = total(front.source) - graph_.distance_beyond(front.source, m, kNearVoxels);
         if (left < 0 || !(left > reach_[m])) return;
         queue.push({reach_[m] = left, m, front.source});
       });

@@ -27,7 +27,7 @@ struct VesselPaths {
 };
 
 /// Finds paths as follows. Every component has a root: a known end, or the voxel that is farthest from any other. A
-/// voxel costs the cube of the inverse of its depth, so shortest paths keep to the middle of vessels, wide and thin
+/// voxel costs the inverse fourth power of its depth, so shortest paths keep to the middle of vessels, wide and thin
 /// alike. Loops, where fronts from the root meet again, get a path along either side. Then the voxel that is farthest
 /// from the root gets a path, and so on, until every voxel is near a path: nearer than 1.2 times the depth there plus
 /// two voxels. `depth`: distance from the nearest voxel outside, mm; `occupancy`: see smoothed_occupancy().

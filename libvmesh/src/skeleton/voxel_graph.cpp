@@ -65,6 +65,14 @@ float VoxelGraph::distance(Index a, Index b) const {
   return static_cast<float>(Vec3(w[0] - v[0], w[1] - v[1], w[2] - v[2]).cwiseProduct(spacing_).norm());
 }
 
+float VoxelGraph::distance_beyond(Index a, Index b, double voxels) const {
+  const Voxel &v = voxel_[a], &w = voxel_[b];
+  const Vec3 steps(w[0] - v[0], w[1] - v[1], w[2] - v[2]);
+  const double count = steps.norm();
+  if (count == 0) return static_cast<float>(-voxels * finest());
+  return static_cast<float>(steps.cwiseProduct(spacing_).norm() * (1 - voxels / count));
+}
+
 std::vector<Index> components_of(const VoxelGraph& graph) {
   std::vector<Index> component(graph.size(), kNone);
   std::vector<Index> stack;
