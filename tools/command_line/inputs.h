@@ -6,6 +6,7 @@
 
 #include "vmesh/core/error.h"
 #include "vmesh/image/image_io.h"
+#include "vmesh/image/image_summary.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 
@@ -33,6 +34,9 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
 
 /// An image; --unit and --space are refused (UsageError), as images contain their position and unit.
 LoadedImage load_image(const InputArguments& input, Console& console);
+
+/// What an image holds, read slice by slice; likewise.
+ImageSummary load_image_summary(const InputArguments& input, Console& console);
 
 /// Throws Unsupported, naming the verbs that take images, if it is one.
 void check_is_no_image(const InputArguments& input);
