@@ -90,6 +90,23 @@ TEST_F(DicomInputs, AllVerbsThatTakeImagesTakeIt) {
     EXPECT_LT((dicom.vertices[v] - nifti.vertices[v]).norm(), 1e-4);
 }
 
+TEST_F(DicomInputs, InfoDescribesItLikeTheSameImageInOneFile) {
+  write_series("mask", mask_of(values_), {.series = "1.2.3.6", .intercept = 0});
+  write("mask.nii", nifti_file<std::int16_t>(image_, mask_of(values_)));
+  const auto described = [&](const std::string& input) {
+    const Outcome run = vmesh({"info", input, "--json", "-"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return nlohmann::json::parse(run.out);
+  };
+  const nlohmann::json dicom = described("@mask"), nifti = described("@mask.nii");
+  EXPECT_EQ(dicom.at("kind"), "image");
+  EXPECT_EQ(dicom.at("size_voxels"), nifti.at("size_voxels"));
+  ASSERT_EQ(dicom.at("labels").size(), 1u);
+  for (const char* key : {"value", "voxels", "components"})
+    EXPECT_EQ(dicom.at("labels")[0].at(key), nifti.at("labels")[0].at(key)) << key;
+  EXPECT_EQ(dicom.at("next")[0], "vmesh generate " + path("mask").string() + " --label 1 -o mask.ply");
+}
+
 TEST_F(DicomInputs, SeveralSeriesAreListed) {
   write_series("ct", values_, {.description = "first"});
   write("ct/other", dicom_slice(image_, values_, 0, {.series = "1.2.3.7", .description = "scout"}));

@@ -60,9 +60,8 @@ TEST_F(Messages, AFileOfTheWrongKindIsAnsweredWithTheVerbThatTakesIt) {
   expect_says({"evaluate", "@y.swc"}, 4, "vmesh generate");
   expect_says({"render", "@scan.nii.gz", "@y.png"}, 4,
               "vmesh reference " + path("scan.nii.gz").string() + " -o scan.ply");
-  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"info", "@scan.mha"},
-                                                    {"convert", "@scan.mha", "@y.ply"},
-                                                    {"convert", "@scan.mha", "@y.swc"}}) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"convert", "@scan.mha", "@y.ply"}, {"convert", "@scan.mha", "@y.swc"}}) {
     expect_says(arguments, 4, "vmesh reference " + path("scan.mha").string() + " -o scan.ply");
     expect_says(arguments, 4, "vmesh centerline " + path("scan.mha").string() + " -o scan.centerline.json");
   }

@@ -37,6 +37,7 @@ constexpr const char* kGenerateExamples = R"(Examples:
 constexpr const char* kInfoExamples = R"(Examples:
   vmesh info tree.swc
   vmesh info tree.ply --json -
+  vmesh info liver.nii.gz
   vmesh info tree.ply --check && echo flawless)";
 constexpr const char* kSynthExamples = R"(Examples:
   vmesh synth -o tree.json
@@ -191,8 +192,9 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
 }
 
 void add_info(CLI::App& app, InfoArguments& arguments) {
-  CLI::App& verb = *app.add_subcommand("info", "Show what a centerline or surface contains, and what is wrong with it");
-  add_centerline_input(verb, arguments.input, "centerline or surface");
+  CLI::App& verb =
+      *app.add_subcommand("info", "Show what a centerline, surface or image contains, and what is wrong with it");
+  add_centerline_input(verb, arguments.input, "centerline, surface or image");
   verb.add_flag("--check", arguments.check, "exit with 1 when there is a problem");
   add_common(verb, arguments.common);
   verb.footer(kInfoExamples);

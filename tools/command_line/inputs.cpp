@@ -174,6 +174,20 @@ RawCenterline read_centerline_of(const InputArguments& input) {
   }
 }
 
+/// Calls `read` to read an image.
+template <class Read>
+auto reading_image(const InputArguments& input, Read read) {
+  if (input.unit || input.space)
+    throw UsageError(input.path.string() +
+                     ": an image contains its position and unit; --unit and --space do not apply");
+  try {
+    return read();
+  } catch (const InvalidInput&) {
+    stop_if_interrupted();  // which also ends the reading process
+    throw;
+  }
+}
+
 }  // namespace
 
 RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said) {
@@ -215,6 +229,7 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
   return loaded;
 }
 
+<<<<<<< HEAD
 namespace {
 
 /// Calls `read` on the image's path; an image contains its position and unit.
@@ -229,6 +244,18 @@ auto read_image_of(const InputArguments& input, Read read) {
     stop_if_interrupted();  // which also ends the reading process
     throw;
   }
+=======
+LoadedImage load_image(const InputArguments& input, Console& console) {
+  LoadedImage loaded = reading_image(input, [&] { return read_image(input.path); });
+  console.warn(loaded.warnings);
+  return loaded;
+}
+
+ImageSummary load_image_summary(const InputArguments& input, Console& console) {
+  ImageSummary summary = reading_image(input, [&] { return summarize_image(input.path, console.progress()); });
+  console.warn(summary.image.warnings);
+  return summary;
+>>>>>>> image-slices
 }
 
 }  // namespace

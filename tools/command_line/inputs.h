@@ -6,6 +6,7 @@
 
 #include "vmesh/core/error.h"
 #include "vmesh/image/image_io.h"
+#include "vmesh/image/image_summary.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 #include "vmesh/skeleton/vessel_mask.h"
@@ -37,6 +38,8 @@ LoadedImage load_image(const InputArguments& input, Console& console);
 
 /// The vessels' voxels of an image, likewise.
 VesselMask load_vessel_mask(const InputArguments& input, const ReferenceOptions& options, Console& console);
+/// What an image holds, read slice by slice; likewise.
+ImageSummary load_image_summary(const InputArguments& input, Console& console);
 
 /// Throws Unsupported, naming the verbs that take images, if it is one.
 void check_is_no_image(const InputArguments& input);

@@ -11,6 +11,7 @@
 #include "command_line/outputs.h"
 #include "report/openings.h"
 #include "report/summary.h"
+#include "verbs/info_image.h"
 #include "verbs/verbs.h"
 
 namespace vmesh::tool {
@@ -89,22 +90,31 @@ void describe(const LoadedSurface& surface, Json& json) {
   json["problems"] = problems_of(measurement);
 }
 
+/// What is in the input, by its kind.
+Json description(const InputArguments& input, Console& console) {
+  if (is_image(input.path)) return describe_image(input, console);
+  std::vector<std::string> warnings;
+  FileFrame frame;
+  const AnyInput any = load_any(input, warnings, &frame);
+  console.warn(warnings);
+  Json json;
+  std::visit([&json](const auto& content) { describe(content, json); }, any);
+  json["unit_in_file"] = to_string(frame.unit);
+  json["space_in_file"] = to_string(frame.space);
+  json["warnings"] = warnings;
+  return json;
+}
+
 }  // namespace
 
 int run(const InfoArguments& arguments, Console& console) {
   check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, files_of(arguments.input));
-  std::vector<std::string> warnings;
-  FileFrame frame;
-  const AnyInput input = load_any(arguments.input, warnings, &frame);
-  console.warn(warnings);
+  const Json content = description(arguments.input, console);
   Json json = {{"schema", "vmesh.info/1"},
                {"generator", generator_json()},
                {"file", arguments.input.path.string()},
                {"sha256", sha256_of(arguments.input)}};
-  std::visit([&json](const auto& content) { describe(content, json); }, input);
-  json["unit_in_file"] = to_string(frame.unit);
-  json["space_in_file"] = to_string(frame.space);
-  json["warnings"] = warnings;
+  json.update(content);
   stop_if_interrupted();
 
   if (arguments.common.json != "-") {

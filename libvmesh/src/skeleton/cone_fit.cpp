@@ -20,19 +20,18 @@ using Matrix4 = Eigen::Matrix4d;
 using Place = GraphCones::Place;
 
 // Relative to a node's own weight, which is the area of its samples.
-static double K(const char*n,double d){const char*v=getenv(n);return v?atof(v):d;}
-static const double kSmoothPosition = K("SP",0.03);
-static const double kSmoothRadius = K("SR",0.1);
-static const double kRough = K("KR",2);  // more of both by this times the square of voxels per radius
+constexpr double kSmoothPosition = 0.01;
+constexpr double kSmoothRadius = 0.1;
+constexpr double kRough = 5;  // more of both by this times the square of voxels per radius
 constexpr double kDamping = 0.02;
 // Sliding along the vessel changes hardly anything except the spacing of nodes.
 constexpr double kDampingAlong = 1;
 constexpr double kDampingOfFixed = 1e6;  // makes nodes practically immovable
 // Distance, in local radii, at which samples farther off are counted.
-static const double kNear = K("KN",0.5);
+constexpr double kNear = 0.5;
 constexpr double kRadiusFactor = 2;
 constexpr double kSticksOut = 0.35;   // radii by which a vessel sticks out of others
-static const double kWithinSlack = K("KW",0.1);  // weight of a sample's distance within its slack
+constexpr double kWithinSlack = 0.15;  // weight of a sample's distance within its slack
 
 /// Normal equations of one round, a 4 x 4 block per pair of nodes.
 class Equations {

@@ -31,7 +31,7 @@ using skeleton::VoxelSkeleton;
 
 constexpr int kFitRounds = 20;
 constexpr int kRefinements = 2;  // the second works on the result of the first
-static const double kLeastRadius = getenv("LR")?atof(getenv("LR")):1.5;  // voxels; thinner vessels have nodes as far apart as ones of that radius
+constexpr double kLeastRadius = 1.5;  // voxels; thinner vessels have nodes as far apart as ones of that radius
 constexpr double kBytesPerVoxel = 120;  // measured
 
 void check(const ExtractOptions& options) {
@@ -210,6 +210,7 @@ ExtractedCenterline extract_centerline(VesselMask vessels, const ExtractOptions&
   require_memory(kBytesPerVoxel * static_cast<double>(mask.voxels.size()),
                  "the centerline of " + std::to_string(mask.voxels.size()) + " voxels", "use larger voxels");
   Work work;
+  mask.as_given = mask.voxels;
   note_filled(skeleton::fill_holes(mask.voxels), work.report.notes);
   work.voxel = work.wall_voxel = mask.frame.spacing().minCoeff();
   const std::vector<skeleton::BorderEnd> ends = skeleton::border_ends(mask.voxels, mask.frame);

@@ -18,7 +18,8 @@ struct Crossing {
 };
 
 struct MaskContent {
-  VoxelSet voxels;
+  VoxelSet voxels;  ///< without holes once these are filled
+  VoxelSet as_given;  ///< with small holes: the wall is measured on what is given, so that noise on either side cancels
   VoxelFrame frame;
   ReferenceOptions options;
   std::vector<Crossing> crossings;    ///< of grey values

@@ -190,7 +190,7 @@ class WallBuilder {
   }
 
   void add(const Voxel& v, int axis, int way, double share, double slack, Index component) {
-    Vec3 normal = normal_at(mask_.voxels, v, spacing_);
+    Vec3 normal = normal_at(mask_.as_given, v, spacing_);
     const double norm = normal.norm();
     // In a vessel of one voxel the sum is zero: every face counts as a side of a square tube.
     const double facing = norm > 1e-9 * spacing_.norm() ? std::abs(normal[axis]) / norm : std::sqrt(0.5);
@@ -222,7 +222,7 @@ bool is_beyond(const VoxelSet& voxels, const Voxel& v) {
 FitSamples wall_of(const MaskContent& mask, const std::vector<BorderEnd>& ends, const std::vector<Index>& component,
                    std::vector<Index>& component_of_sample) {
   WallBuilder wall(mask, component_of_sample);
-  const VoxelSet& set = mask.voxels;
+  const VoxelSet& set = mask.as_given;
   const auto is_cut = [&](const Voxel& v, int axis, int way) {
     return std::any_of(ends.begin(), ends.end(), [&](const BorderEnd& end) {
       if (end.axis != axis || end.way != way) return false;
@@ -234,12 +234,12 @@ FitSamples wall_of(const MaskContent& mask, const std::vector<BorderEnd>& ends, 
   for (const Crossing& crossing : mask.crossings) {
     Voxel outside = crossing.inside;
     outside[crossing.axis] += crossing.way;
-    const Index n = set.number(crossing.inside);
-    if (n != kNone && !set.contains(outside))
+    const Index n = mask.voxels.number(crossing.inside);
+    if (n != kNone && set.contains(crossing.inside) && !set.contains(outside))
       wall.add(crossing.inside, crossing.axis, crossing.way, crossing.share, 0, component[n]);
   }
-  Index n = 0;
   for (const Voxel& v : set.voxels()) {
+    const Index n = mask.voxels.number(v);
     for (int axis = 0; axis < 3; ++axis) {
       for (const int way : {-1, 1}) {
         Voxel outside = v;
@@ -249,7 +249,6 @@ FitSamples wall_of(const MaskContent& mask, const std::vector<BorderEnd>& ends, 
         if (beyond ? !is_cut(v, axis, way) : !grey) wall.add(v, axis, way, 0.5, 0.5, component[n]);
       }
     }
-    ++n;
   }
   return std::move(wall.samples);
 }
