@@ -229,49 +229,23 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
   return loaded;
 }
 
-<<<<<<< HEAD
-namespace {
-
-/// Calls `read` on the image's path; an image contains its position and unit.
-template <class Read>
-auto read_image_of(const InputArguments& input, Read read) {
-  if (input.unit || input.space)
-    throw UsageError(input.path.string() +
-                     ": an image contains its position and unit; --unit and --space do not apply");
-  try {
-    return read(input.path);
-  } catch (const InvalidInput&) {
-    stop_if_interrupted();  // which also ends the reading process
-    throw;
-  }
-=======
 LoadedImage load_image(const InputArguments& input, Console& console) {
   LoadedImage loaded = reading_image(input, [&] { return read_image(input.path); });
   console.warn(loaded.warnings);
   return loaded;
 }
 
+VesselMask load_vessel_mask(const InputArguments& input, const ReferenceOptions& options, Console& console) {
+  std::vector<std::string> warnings;
+  VesselMask mask = reading_image(input, [&] { return read_vessel_mask(input.path, options, warnings); });
+  console.warn(warnings);
+  return mask;
+}
+
 ImageSummary load_image_summary(const InputArguments& input, Console& console) {
   ImageSummary summary = reading_image(input, [&] { return summarize_image(input.path, console.progress()); });
   console.warn(summary.image.warnings);
   return summary;
->>>>>>> image-slices
-}
-
-}  // namespace
-
-LoadedImage load_image(const InputArguments& input, Console& console) {
-  LoadedImage loaded = read_image_of(input, [](const std::filesystem::path& path) { return read_image(path); });
-  console.warn(loaded.warnings);
-  return loaded;
-}
-
-VesselMask load_vessel_mask(const InputArguments& input, const ReferenceOptions& options, Console& console) {
-  std::vector<std::string> warnings;
-  VesselMask mask = read_image_of(
-      input, [&](const std::filesystem::path& path) { return read_vessel_mask(path, options, warnings); });
-  console.warn(warnings);
-  return mask;
 }
 
 void check_is_no_image(const InputArguments& input) {
