@@ -64,7 +64,7 @@ def detail(cases: list[dict], program: str) -> list[str]:
         row += [cpu(run["cpu_seconds"]), f"{run['peak_mb']:.0f}"]
         row += [pair(result, "recall"), pair(result, "precision")]
         for key in ("position", "radius"):
-            row += [pair(result, f"{key}_mean", 2 + (key == "position")), pair(result, f"{key}_p95", 2)]
+            row += [pair(result, f"{key}_mean"), pair(result, f"{key}_p95", 2)]
         row += [ends(result), of_true(result, "branchings"), of_true(result, "loops")]
         rows.append(row)
     return table(header, rows)
