@@ -91,7 +91,7 @@ def run(program: Build | Peer, case: dict, folder: Path, truth: Graph, timeout: 
     measured = json.loads(measured_file.read_text())
     printed = measured.pop("printed")
     if measured["timed_out"]:
-        return {**measured, "error": f"no result after {timeout:g} s"}
+        return {**measured, "error": f"no result after {measured['cpu_seconds']:.0f} s of CPU"}
     if measured["exit_code"] != 0 or not output.exists():
         return {**measured, "error": f"exit code {measured['exit_code']}: {last_line(printed)}"}
     if isinstance(program, Peer):
@@ -111,7 +111,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="a few small cases, under a minute with vmesh alone")
     parser.add_argument("--list", action="store_true", help="print the names of the cases that were chosen, and end")
     parser.add_argument("--peers", default="none", help=f"none, all, or some of {','.join(PEERS)} (none)")
-    parser.add_argument("--timeout", type=float, default=300, help="of each program on each case, s (300)")
+    parser.add_argument("--timeout", type=float, default=300,
+                        help="of each program on each case, CPU s; four times as much of wall time (300)")
     parser.add_argument("--data", type=Path, default=ROOT.parent / "shared" / "data",
                         help="the folder of the test data; without it, their cases are left out (../shared/data)")
     parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here, not to stdout")

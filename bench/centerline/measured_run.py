@@ -8,7 +8,9 @@ program; started by the benchmark itself, with masks in memory, every command wo
 from __future__ import annotations
 
 import json
+import math
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -16,12 +18,19 @@ import tempfile
 import time
 
 
+PATIENCE = 4  # wall seconds for each CPU second of a timeout: on a busy machine a command gets a share of a core only
+
+
 def run(command: list[str], timeout: float) -> dict:
-    """Runs a command; `timeout` in s of wall time, after which it is killed with all that it started."""
+    """Runs a command; `timeout` in CPU seconds, after which it is killed with all that it started."""
+    def limit() -> None:
+        seconds = math.ceil(timeout)
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
+
     with tempfile.TemporaryFile() as printed:
         start = time.monotonic()
         child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.STDOUT,
-                                 start_new_session=True)
+                                 start_new_session=True, preexec_fn=limit)
         timed_out = False
         pid = 0
         try:
@@ -29,7 +38,7 @@ def run(command: list[str], timeout: float) -> dict:
                 pid, status, usage = os.wait4(child.pid, os.WNOHANG)
                 if pid:
                     break
-                if not timed_out and time.monotonic() - start > timeout:
+                if not timed_out and time.monotonic() - start > PATIENCE * timeout:
                     timed_out = True
                     os.killpg(child.pid, signal.SIGKILL)
                 time.sleep(.005)
@@ -44,7 +53,7 @@ def run(command: list[str], timeout: float) -> dict:
     code = os.WEXITSTATUS(status) if os.WIFEXITED(status) else -os.WTERMSIG(status)
     return {
         "exit_code": code,
-        "timed_out": timed_out,
+        "timed_out": timed_out or code == -signal.SIGXCPU,
         "cpu_seconds": usage.ru_utime + usage.ru_stime,
         "wall_seconds": wall,
         "peak_mb": usage.ru_maxrss / 1024,  # Linux gives KB
