@@ -95,7 +95,7 @@ def run(program: Build | Peer, case: dict, folder: Path, truth: Graph, timeout: 
     if measured["exit_code"] != 0 or not output.exists():
         return {**measured, "error": f"exit code {measured['exit_code']}: {last_line(printed)}"}
     if isinstance(program, Peer):
-        # The peer's own work: without its imports and without reading the mask, which vmesh's figure has in it.
+        # The peer's own work, without reading the mask and writing the result, which are in vmesh's figure.
         measured = {**measured, **json.loads(peer_file.read_text())}
     return {**measured, "measures": compare(truth, read_json(output), case["size"])}
 

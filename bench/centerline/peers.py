@@ -1,8 +1,9 @@
 """Other programs that extract centerlines: peers.py PEER FOLDER OUTPUT.json runs one of them on a case.
 
-Each gets the mask in memory; reading it, and making a graph in our form of the result, are not timed. The output has
-nodes and segments as vmesh's JSON, and the CPU seconds of the peer. Peers are imported only when they run, for each has
-an environment that may lack the others.
+Each gets the mask in memory, its cavities filled, as they would all trace something around each. Reading it, that
+filling, and making a graph in our form of the result are not timed. The output has nodes and segments as vmesh's JSON;
+a file beside it has the CPU seconds of the peer. Peers are imported only when they run, for each has an environment
+that may lack the others.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from pathlib import Path
 
 import nibabel
 import numpy as np
+from scipy.ndimage import binary_fill_holes
 
 from graph import Graph, make_graph, read_json, write_json
 
@@ -55,11 +57,13 @@ class Stopwatch:
 
 
 def read_case(folder: Path) -> Image:
-    """Reads what make_case() wrote."""
+    """Reads what make_case() wrote, and fills cavities."""
     case = json.loads((folder / "case.json").read_text())
     nifti = nibabel.load(folder / "mask.nii.gz")
     to_lps = np.array([-1, -1, 1])
-    return Image(np.asarray(nifti.dataobj), case["threshold"] or .5, to_lps * np.diag(nifti.affine)[:3],
+    values, level = np.asarray(nifti.dataobj), case["threshold"] or .5
+    cavities = binary_fill_holes(values >= level) & (values < level)
+    return Image(np.where(cavities, values.max(), values), level, to_lps * np.diag(nifti.affine)[:3],
                  to_lps * nifti.affine[:3, 3], *tips(read_json(folder / "truth.json")))
 
 

@@ -77,7 +77,7 @@ def centerlines(image, watch) -> Graph:
     """vmtkcenterlines. It is told what the others have to find: where the true vessels end.
 
     In each part of the surface that has at least two of the true ends, the first is the source, and the others are the
-    targets. Specks and the walls of cavities, which rough masks have, are no such parts.
+    targets. Specks and the walls of cavities that marching cubes sees are no such parts.
     """
     graphs = []
     with watch:
