@@ -129,7 +129,8 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   CLI::App& verb = *app.add_subcommand("generate", "Grow a surface around a centerline");
   add_centerline_input(
       verb, arguments.input,
-      "centerline, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files) to extract it from and to fit to");
+      "centerline, or segmentation to extract it from and to fit to: an image (.nii, .nii.gz, .nrrd, .mha, or a folder "
+      "of DICOM files) or a wall (.stl, .ply, .obj, .vtp ...), open or closed");
   add_output_after_several(verb, arguments.output, "surface (.ply, .vtp, .stl, .obj, .off, .glb)");
   add_writing(verb, arguments.writing);
   verb.add_flag("--bones", arguments.bones, "add bones along the centerline to a .glb, for bending it");
@@ -177,8 +178,9 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
                   "fit to this surface or image: the vessels' own walls instead of round cones");
   add_fitting(verb, arguments.fitting);
   verb.add_option("--centerline-output", arguments.centerline_output,
-                  "with an image as input: where to save the extracted centerline");
+                  "with an image or a wall as input: where to save the extracted centerline");
   add_extraction(verb, arguments.extraction);
+  add_required_coverage(verb, arguments.required_coverage);
   add_html(verb, arguments.common);
   add_common(verb, arguments.common);
   group(verb, "Resolution",

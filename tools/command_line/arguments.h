@@ -65,6 +65,12 @@ struct FittingArguments {
   FitOptions options;
 };
 
+/// What an extracted centerline has to cover at least; 0: no requirement.
+struct RequiredCoverage {
+  double wall = 0;    ///< share of the wall's area
+  double length = 0;  ///< share of the length of all paths
+};
+
 struct GenerateArguments {
   CommonArguments common;
   InputArguments input;
@@ -81,7 +87,9 @@ struct GenerateArguments {
   bool check = false;            ///< exit code 1 unless the surface is flawless
   bool allow_defects = false;    ///< write a surface even if it is not sound
   FittingArguments fitting;      ///< of the grown surface; without a reference, the image options apply to the input
-  ExtractOptions extraction;     ///< of the centerline, from an input that is an image
+  bool segmentation = false;     ///< the input is an image or a wall, from which a centerline is extracted
+  ExtractOptions extraction;     ///< of that centerline
+  RequiredCoverage required_coverage;
   std::filesystem::path centerline_output;  ///< file for it; empty: none
 };
 
@@ -156,7 +164,9 @@ struct CenterlineArguments {
   InputArguments input;
   std::filesystem::path output;
   ExtractOptions options;
-  ReferenceOptions image;  ///< how an image becomes a surface first
+  ReferenceOptions image;   ///< which voxels of an image are inside
+  bool each_label = false;  ///< a centerline of each label on its own
+  RequiredCoverage required_coverage;
 };
 
 struct Table2Arguments {

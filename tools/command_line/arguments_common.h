@@ -93,6 +93,8 @@ void add_join(CLI::App& app, JoinArguments& arguments);
 void add_image_options(CLI::App& verb, ReferenceOptions& options);
 /// Adds options for extracting a centerline.
 void add_extraction(CLI::App& verb, ExtractOptions& options);
+/// Adds --require for what extraction has to cover.
+void add_required_coverage(CLI::App& verb, RequiredCoverage& required);
 /// Adds options for the target and the parameters of a fit.
 void add_fitting(CLI::App& verb, FittingArguments& arguments);
 

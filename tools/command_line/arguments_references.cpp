@@ -1,4 +1,5 @@
 #include <cmath>
+#include <sstream>
 
 #include "vmesh/core/error.h"
 
@@ -16,7 +17,9 @@ constexpr const char* kConesExamples = R"(Examples:
   vmesh cones tree.swc -o cones.stl --sides 12)";
 constexpr const char* kCenterlineExamples = R"(Examples:
   vmesh centerline portal.ply -o portal.json
-  vmesh centerline liver.nii.gz --label 2 --spacing 0.8 --smooth 0.8 -o portal.swc --tree)";
+  vmesh centerline liver.nii.gz --label 2 -o portal.swc --tree
+  vmesh centerline aorta-open.stl --unit mm -o aorta.vtp --require coverage=.98
+  vmesh centerline circle.nii.gz --each-label -o circle.json)";
 constexpr const char* kTable2Examples = R"(Examples:
   vmesh table2
   vmesh table2 --centerline tree.swc --voxel 0.5 --format markdown
@@ -61,6 +64,30 @@ void add_extraction(CLI::App& verb, ExtractOptions& options) {
       ->excludes(largest)
       ->capture_default_str();
   verb.add_flag("--tree", options.tree, "open all loops, each at its thinnest contact");
+}
+
+void add_required_coverage(CLI::App& verb, RequiredCoverage& required) {
+  verb.add_option_function<std::string>(
+          "--require",
+          [&required](const std::string& text) {
+            std::istringstream list(text);
+            for (std::string item; std::getline(list, item, ',');) {
+              const std::size_t equals = item.find('=');
+              const std::string name = item.substr(0, equals);
+              double value = -1;
+              const bool is_number =
+                  equals != std::string::npos && CLI::detail::lexical_cast(item.substr(equals + 1), value);
+              double* target =
+                  name == "coverage" ? &required.wall : name == "length-coverage" ? &required.length : nullptr;
+              if (target == nullptr || !is_number || !(value >= 0 && value <= 1))
+                throw CLI::ValidationError(
+                    "--require", "\"" + item + "\" is none of coverage=SHARE and length-coverage=SHARE, with 0 to 1");
+              *target = value;
+            }
+          },
+          "exit with 1 unless the extracted centerline covers this share of the wall (coverage=.98) or of the length "
+          "of all vessels (length-coverage=.99)")
+      ->type_name("NAME=SHARE,...");
 }
 
 void add_fitting(CLI::App& verb, FittingArguments& arguments) {
@@ -144,8 +171,12 @@ void add_centerline(CLI::App& app, CenterlineArguments& arguments) {
   add_input(verb, arguments.input, "surface, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files)");
   add_output(verb, arguments.output, "centerline");
   add_image_options(verb, arguments.image);
+  verb.add_flag("--each-label", arguments.each_label,
+                "image: a centerline of each label on its own, in one file; segments carry the label (.json, .vtp)");
   add_extraction(verb, arguments.options);
+  add_required_coverage(verb, arguments.required_coverage);
   add_common(verb, arguments.common);
+  group(verb, "What of an image is inside", {"--label", "--each-label", "--threshold", "--spacing", "--smooth"});
   verb.footer(kCenterlineExamples);
 }
 

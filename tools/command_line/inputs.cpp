@@ -248,6 +248,13 @@ ImageSummary load_image_summary(const InputArguments& input, Console& console) {
   return summary;
 }
 
+bool is_segmentation(const InputArguments& input) {
+  if (is_image(input.path)) return true;
+  if (!input.more.empty()) return false;
+  if (has_surface_extension(input.path)) return true;
+  return may_be_both(input.path) && !holds_centerline(input.path) && holds_surface(input.path);
+}
+
 void check_is_no_image(const InputArguments& input) {
   if (is_image(input.path)) throw Unsupported(make_either_first(input.path));
 }

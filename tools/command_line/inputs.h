@@ -41,6 +41,9 @@ VesselMask load_vessel_mask(const InputArguments& input, const ReferenceOptions&
 /// What an image holds, read slice by slice; likewise.
 ImageSummary load_image_summary(const InputArguments& input, Console& console);
 
+/// Whether a file is an image or a surface, of which a centerline can be extracted, and not a centerline.
+bool is_segmentation(const InputArguments& input);
+
 /// Throws Unsupported, naming the verbs that take images, if it is one.
 void check_is_no_image(const InputArguments& input);
 

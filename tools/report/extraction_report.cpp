@@ -4,6 +4,8 @@
 #include <sstream>
 #include <string>
 
+#include "report/exact_text.h"
+
 namespace vmesh::tool {
 namespace {
 
@@ -88,9 +90,9 @@ std::string describe(const ReferenceOptions& image) {
 
 std::string describe(const ExtractOptions& options) {
   std::ostringstream text;
-  text << " --step " << options.spacing << " --join " << options.join;
+  text << " --step " << exact_text(options.spacing) << " --join " << exact_text(options.join);
   if (options.largest) text << " --largest";
-  if (options.least_length > 0) text << " --least-length " << options.least_length;
+  if (options.least_length > 0) text << " --least-length " << exact_text(options.least_length);
   if (options.tree) text << " --tree";
   return text.str();
 }

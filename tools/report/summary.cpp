@@ -10,6 +10,8 @@
 #include "vmesh/core/version.h"
 
 #include "command_line/outputs.h"
+#include "report/exact_text.h"
+#include "report/extraction_report.h"
 #include "report/fit_report.h"
 
 namespace vmesh::tool {
@@ -23,13 +25,6 @@ std::string key_of(const char* flag) {
   key.erase(0, key.find_first_not_of('-'));
   std::replace(key.begin(), key.end(), '-', '_');
   return key;
-}
-
-/// The shortest text that reads back as the same number.
-template <class Number>
-std::string exact_text(Number value) {
-  char text[32];
-  return {text, std::to_chars(std::begin(text), std::end(text), value).ptr};
 }
 
 /// Null where there is no limit.
@@ -134,17 +129,6 @@ std::string measured_centerline(const GenerateReport& report) {
   if (!report.separation || report.separation->nodes_narrowed + report.separation->nodes_moved == 0)
     return report.result->simplification.nodes_left_out > 0 ? "the simplified vessels" : "the vessels";
   return report.separation->nodes_moved > 0 ? "the narrowed and moved vessels" : "the narrowed vessels";
-}
-
-Json stages_json(const std::vector<StageTime>& stages) {
-  Json json = Json::object();
-  double total = 0;
-  for (const StageTime& stage : stages) {
-    json[stage.stage] = json.value(stage.stage, 0.0) + stage.seconds;
-    total += stage.seconds;
-  }
-  json["total"] = total;
-  return json;
 }
 
 Json to_json(const OperatingPoint& point) {
@@ -257,6 +241,17 @@ Json error_bound_json(const GenerateArguments& arguments, const GenerateResult& 
   return json;
 }
 
+Json stages_json(const std::vector<StageTime>& stages) {
+  Json json = Json::object();
+  double total = 0;
+  for (const StageTime& stage : stages) {
+    json[stage.stage] = json.value(stage.stage, 0.0) + stage.seconds;
+    total += stage.seconds;
+  }
+  json["total"] = total;
+  return json;
+}
+
 Json to_json(const GenerateReport& report) {
   const GenerateArguments& arguments = *report.arguments;
   const Centerline& centerline = report.cleaned->centerline;
@@ -295,6 +290,7 @@ Json to_json(const GenerateReport& report) {
   }
   json["contacts"] = to_json(report.contacts);
   if (report.separation) json["separation"] = to_json(*report.separation);
+  if (report.extraction) json["extraction"] = to_json(*report.extraction);
   json["seconds"] = stages_json(report.stages);
   json["warnings"] = report.warnings;
   json["sound"] = report.result->is_sound();
@@ -406,11 +402,9 @@ std::string describe(const GenerateArguments& arguments) {
   text << " --overlap " << to_string(arguments.overlap) << " --gap " << exact_text(arguments.gap);
   const std::filesystem::path& reference = arguments.fitting.reference.path;
   if (!reference.empty()) text << " --fit " << reference.string();
-  if (!reference.empty() || is_image(arguments.input.path)) text << describe(arguments.fitting);
-  if (is_image(arguments.input.path)) {
-    text << " --step " << exact_text(arguments.extraction.spacing) << " --join "
-         << exact_text(arguments.extraction.join);
-    if (arguments.extraction.tree) text << " --tree";
+  if (!reference.empty() || arguments.segmentation) text << describe(arguments.fitting);
+  if (arguments.segmentation) {
+    text << tool::describe(arguments.extraction);
   }
   if (arguments.input.unit) text << " --unit " << to_string(*arguments.input.unit);
   if (arguments.input.space) text << " --space " << to_string(*arguments.input.space);

@@ -35,6 +35,7 @@ struct GenerateReport {
   Deviation deviation;            ///< from the vessels as grown: after separation, the narrowed and moved ones
   Deviation rounding;             ///< of the boundary at branches, against the plain union
   std::optional<FitReport> fit;   ///< with a reference to fit to
+  std::optional<ExtractionReport> extraction;  ///< of the centerline, from a segmentation
   std::vector<StageTime> stages;  ///< of the whole run
   std::vector<std::string> warnings, problems;
 };
@@ -46,6 +47,7 @@ Json to_json(const Centerline& centerline);
 Json to_json(const CleaningReport& report);
 Json to_json(const GrowthSummary& growth);
 Json to_json(const ExtractionReport& report);
+Json stages_json(const std::vector<StageTime>& stages);
 Json openings_json(const GenerateResult& result);
 Json caps_json(const FlatEnds& ends);
 Json to_json(const SurfaceMeasurement& measurement);

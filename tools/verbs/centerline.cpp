@@ -23,7 +23,8 @@ int run(const CenterlineArguments& arguments, Console& console) {
   std::vector<PlannedOutput> outputs = {{arguments.common.json, Kind::summary}};
   for (const std::filesystem::path& file : files_of(arguments.output)) outputs.push_back({file, Kind::centerline});
   check_outputs(outputs, files_of_input(path));
-  const ExtractedCenterline result = extract(arguments.input, arguments.image, arguments.options, console);
+  std::vector<StageTime> stages;
+  const ExtractedCenterline result = extract(arguments.input, arguments.image, arguments.options, stages, console);
   stop_if_interrupted();
   const std::string sha256 = sha256_of_input(path);
   write_centerline(arguments.output, result.centerline,
@@ -35,8 +36,9 @@ int run(const CenterlineArguments& arguments, Console& console) {
                                        {"input", {{"file", path.string()}, {"sha256", sha256}}},
                                        {"options", describe(arguments)},
                                        {"centerline", to_json(result.centerline)},
-                                       {"extraction", to_json(result.report)}});
-  return kOk;
+                                       {"extraction", to_json(result.report)},
+                                       {"seconds", stages_json(stages)}});
+  return meets(arguments.required_coverage, result.report, console) ? kOk : kCheckFailed;
 }
 
 }  // namespace vmesh::tool

@@ -10,8 +10,11 @@ namespace vmesh::tool {
 /// Refuses options for images where the input is none (UsageError).
 void check_extraction(const InputArguments& input, const ReferenceOptions& image);
 
-/// The centerline of an image's vessels, or of a wall; what happened is logged.
+/// The centerline of an image's vessels, or of a wall; what happened is logged, and the times of the stages appended.
 ExtractedCenterline extract(const InputArguments& input, const ReferenceOptions& image, const ExtractOptions& options,
-                            Console& console);
+                            std::vector<StageTime>& stages, Console& console);
+
+/// Whether the coverage is as required; warns if not.
+bool meets(const RequiredCoverage& required, const ExtractionReport& report, Console& console);
 
 }  // namespace vmesh::tool

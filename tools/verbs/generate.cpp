@@ -12,6 +12,7 @@
 #include "report/generate_log.h"
 #include "report/pages.h"
 #include "report/summary.h"
+#include "verbs/extraction.h"
 #include "verbs/generate_input.h"
 #include "verbs/prepared_centerline.h"
 #include "verbs/verbs.h"
@@ -129,7 +130,7 @@ void check_elongation(const GenerateArguments& arguments) {
     throw UsageError("--least-vertices needs " + std::string(kElongationFlag) +
                      " above 1, and no --deformable: else no vertices are left out");
   if (arguments.options.elongation == 1) return;
-  if (!arguments.fitting.reference.path.empty() || is_image(arguments.input.path))
+  if (!arguments.fitting.reference.path.empty() || arguments.segmentation)
     throw UsageError(std::string(kElongationFlag) + " cannot be combined with fitting, which makes triangles even");
   if (arguments.options.growth == GrowthMethod::paper)
     throw UsageError(std::string(kElongationFlag) + " needs --growth guided");
@@ -179,18 +180,22 @@ GrownSurface grow(GenerateReport& report, const PreparedCenterline& prepared, Ge
 
 int run(const GenerateArguments& given, Console& console) {
   if (is_part(given.input.path)) return run_part(given, console);
-  check_arguments(given);
   GenerateArguments arguments = given;  // a budget may change some of them
+  arguments.segmentation = is_segmentation(arguments.input);
+  check_arguments(arguments);
   apply_budget_to_fit(arguments);
   Stopwatch watch;
   GenerateReport report;
   report.arguments = &arguments;
 
-  const auto& [loaded, reference] = load_input(arguments, console);
+  const GenerateInput input = load_input(arguments, console);
+  const auto& [loaded, reference, extraction, read_stages] = input;
   report.input_sha256 = sha256_of(arguments.input);
   report.cleaned = &loaded.cleaned;
   report.warnings = loaded.warnings;
-  report.stages.push_back({"read", watch.lap()});
+  report.stages = read_stages;
+  report.extraction = extraction;
+  watch.lap();
   stop_if_interrupted();
 
   const PreparedCenterline prepared = prepare_centerline(report, console);
@@ -229,6 +234,7 @@ int run(const GenerateArguments& given, Console& console) {
     const TriMesh* fitted_to = reference ? &*reference : nullptr;
     write_page(arguments.common.html, page_of(report, prepared.grown(), attributes_of(report), fitted_to), console);
   }
+  if (extraction && !meets(arguments.required_coverage, *extraction, console)) return kCheckFailed;
   if (arguments.check && !report.problems.empty()) return kCheckFailed;
   return result.error.unproven_faces > 0 || !kept_budget ? kNotConverged : kOk;
 }

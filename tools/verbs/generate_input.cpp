@@ -6,11 +6,13 @@
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
 #include "report/summary.h"
+#include "verbs/extraction.h"
 #include "verbs/fitting.h"
 
 namespace vmesh::tool {
 namespace {
 
+/// Whether --label and the like apply to the input.
 bool has_image(const GenerateArguments& arguments) { return is_image(arguments.input.path); }
 
 LoadedCenterline load(const InputArguments& input, Console& console) {
@@ -22,27 +24,30 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
   return loaded;
 }
 
-/// The centerline of the vessels in an image, and their surface, to which the grown one is fitted.
-LoadedCenterline extract(const GenerateArguments& arguments, std::optional<TriMesh>& reference, Console& console) {
-  FittingArguments image = arguments.fitting;
-  image.reference = arguments.input;
-  TriMesh surface = load_fit_reference(image, console);
-  stop_if_interrupted();
-  const ExtractedCenterline extracted = naming(
-      arguments.input.path, [&] { return extract_centerline(surface, arguments.extraction, console.progress()); });
+/// The centerline of a segmentation, and its surface, to which the grown one is fitted.
+GenerateInput extract_input(const GenerateArguments& arguments, std::optional<TriMesh> reference, Console& console) {
+  GenerateInput input;
+  ExtractedCenterline extracted =
+      extract(arguments.input, arguments.fitting.image, arguments.extraction, input.stages, console);
   const Centerline& centerline = extracted.centerline;
-  console.log(std::to_string(centerline.nodes().size()) + " nodes, " + std::to_string(centerline.segments().size()) +
-              " segments, " + std::to_string(centerline.component_count()) + " components, " +
-              std::to_string(centerline.cycle_rank()) + " loops extracted");
   if (!arguments.centerline_output.empty())
     write_centerline(arguments.centerline_output, centerline,
                      {generator_name(), "extracted by generate", arguments.input.path.filename().string(),
                       sha256_of_input(arguments.input.path)});
-  if (!reference) reference = std::move(surface);
-  LoadedCenterline loaded{{centerline, {}, {}, {}}, {}, {}};
-  for (Index n = 0; n < centerline.nodes().size(); ++n) loaded.cleaned.raw_node.push_back(n);
-  for (Index s = 0; s < centerline.segments().size(); ++s) loaded.cleaned.raw_segment.push_back(s);
-  return loaded;
+  stop_if_interrupted();
+  if (!reference) {
+    FittingArguments own = arguments.fitting;
+    own.reference = arguments.input;
+    StageClock contour;
+    reference = load_fit_reference(own, console);
+    contour.lap("contour", input.stages);
+  }
+  input.reference = std::move(reference);
+  input.centerline.cleaned.centerline = centerline;
+  for (Index n = 0; n < centerline.nodes().size(); ++n) input.centerline.cleaned.raw_node.push_back(n);
+  for (Index s = 0; s < centerline.segments().size(); ++s) input.centerline.cleaned.raw_segment.push_back(s);
+  input.extraction = std::move(extracted.report);
+  return input;
 }
 
 void check_left_open(const GenerateArguments& arguments, const Centerline& centerline) {
@@ -67,13 +72,20 @@ void check_input(const GenerateArguments& arguments) {
           "first (vmesh centerline), or omit --fit: the surface is then fitted to its own image");
     return;
   }
+  if (arguments.segmentation) {
+    if (!fits && has_options(image))
+      throw UsageError("--label, --threshold, --spacing and --smooth are for images; none is given");
+    return;
+  }
   if (!arguments.centerline_output.empty())
-    throw UsageError("--centerline-output is for an input that is an image; this is taken for a centerline");
+    throw UsageError("--centerline-output is for an image or a wall as input; this is taken for a centerline");
   const ExtractOptions plain;
+  const RequiredCoverage& required = arguments.required_coverage;
   if (arguments.extraction.tree || arguments.extraction.spacing != plain.spacing ||
-      arguments.extraction.join != plain.join ||
-      arguments.extraction.largest || arguments.extraction.least_length > 0)
-    throw UsageError("--step, --join and --tree are for an input that is an image; this is taken for a centerline");
+      arguments.extraction.join != plain.join || arguments.extraction.largest || arguments.extraction.least_length > 0 ||
+      required.wall > 0 || required.length > 0)
+    throw UsageError("--step, --join, --largest, --least-length, --tree and --require are for an image or a wall as "
+                     "input; this is taken for a centerline");
   if (fits) return;
   if (arguments.fitting.options.error > 0) throw UsageError("--fit-error needs --fit REFERENCE");
   if (has_options(image))
@@ -94,7 +106,7 @@ void apply_budget_to_fit(GenerateArguments& arguments) {
 
 std::filesystem::path fit_reference(const GenerateArguments& arguments) {
   const std::filesystem::path& path = arguments.fitting.reference.path;
-  return path.empty() && has_image(arguments) ? arguments.input.path : path;
+  return path.empty() && arguments.segmentation ? arguments.input.path : path;
 }
 
 GenerateInput load_input(const GenerateArguments& arguments, Console& console) {
@@ -104,10 +116,17 @@ GenerateInput load_input(const GenerateArguments& arguments, Console& console) {
     if (has_image(arguments) && !is_image(fitting.reference.path)) fitting.image = {};  // they are the input's
     reference = load_fit_reference(fitting, console);
   }
-  LoadedCenterline loaded =
-      has_image(arguments) ? extract(arguments, reference, console) : load(arguments.input, console);
-  check_left_open(arguments, loaded.cleaned.centerline);
-  return {std::move(loaded), std::move(reference)};
+  GenerateInput input;
+  if (arguments.segmentation) {
+    input = extract_input(arguments, std::move(reference), console);
+  } else {
+    StageClock clock;
+    input.centerline = load(arguments.input, console);
+    clock.lap("read", input.stages);
+    input.reference = std::move(reference);
+  }
+  check_left_open(arguments, input.centerline.cleaned.centerline);
+  return input;
 }
 
 }  // namespace vmesh::tool

@@ -17,11 +17,13 @@ std::filesystem::path fit_reference(const GenerateArguments& arguments);
 
 /// The input of `vmesh generate`.
 struct GenerateInput {
-  LoadedCenterline centerline;       ///< clean
-  std::optional<TriMesh> reference;  ///< to fit to
+  LoadedCenterline centerline = {{Centerline({{Vec3::Zero(), 1}}, {}), {}, {}, {}}, {}, {}};  ///< clean
+  std::optional<TriMesh> reference;            ///< to fit to
+  std::optional<ExtractionReport> extraction;  ///< if the centerline was extracted
+  std::vector<StageTime> stages;               ///< read, and those of extraction
 };
 
-/// Reads the centerline, or extracts it from an image, and the reference.
+/// Reads the centerline, or extracts it from an image or a wall, and the reference.
 GenerateInput load_input(const GenerateArguments& arguments, Console& console);
 
 }  // namespace vmesh::tool

@@ -49,6 +49,7 @@ struct Work {
   std::vector<EndSection> sections;
   double voxel = 0;           // mm, of the grid
   double wall_voxel = 0;      // mm; 0 for a wall that is not made of voxels
+  StageClock clock;
   ExtractionReport report;
 };
 
@@ -176,15 +177,18 @@ void find_sections(const Graph& graph, std::vector<EndSection>& sections) {
 }
 
 ExtractedCenterline finish(Work work, const ExtractOptions& options, const Progress& progress) {
+  work.clock.lap("skeleton", work.report.stages);
   fit(work, options, progress);
   for (const JoinedGap& gap : skeleton::join_ends(work.graph, options.join, work.voxel))
     work.report.joined.push_back(gap);
   skeleton::compact(work.graph);
   find_sections(work.graph, work.sections);
   Centerline centerline = cleaned(work.graph, work.sections);
+  work.clock.lap("cones", work.report.stages);
   std::vector<bool> left_out;
   for (const Index c : work.component_of_sample) left_out.push_back(!work.kept[c]);
   skeleton::measure_coverage(centerline, work.wall, left_out, work.wall_voxel, work.report);
+  work.clock.lap("coverage", work.report.stages);
   return {std::move(centerline), std::move(work.sections), std::move(work.report)};
 }
 
@@ -212,6 +216,7 @@ ExtractedCenterline extract_centerline(VesselMask vessels, const ExtractOptions&
   Work work;
   mask.as_given = mask.voxels;
   note_filled(skeleton::fill_holes(mask.voxels), work.report.notes);
+  work.clock.lap("voxels", work.report.stages);
   work.voxel = work.wall_voxel = mask.frame.spacing().minCoeff();
   const std::vector<skeleton::BorderEnd> ends = skeleton::border_ends(mask.voxels, mask.frame);
   std::vector<skeleton::KnownEnd> known;
@@ -302,6 +307,7 @@ ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOpti
   const skeleton::ClosedWall wall = skeleton::close_wall(surface, progress);
   Work work;
   work.report.notes = wall.notes;
+  work.clock.lap("wall", work.report.stages);
   work.voxel = std::numeric_limits<double>::infinity();
   VoxelSkeleton all;
   for (std::size_t p = 0; p < wall.parts.size(); ++p) {

@@ -7,6 +7,7 @@
 #include "vmesh/centerline/centerline.h"
 #include "vmesh/centerline/end_section.h"
 #include "vmesh/core/progress.h"
+#include "vmesh/core/stage_time.h"
 #include "vmesh/mesh/tri_mesh.h"
 #include "vmesh/skeleton/vessel_mask.h"
 
@@ -72,6 +73,7 @@ struct ExtractionReport {
   /// Of the regions of the wall nearest to each branch, in the order of find_branches().
   std::vector<WallDistance> branches;
   std::vector<std::string> notes;  ///< what was done to the wall, or to the voxels, a line each
+  std::vector<StageTime> stages;   ///< voxels, skeleton, cones, coverage
 };
 
 struct ExtractedCenterline {

@@ -9,6 +9,7 @@
 
 #include "vmesh/centerline/simplification.h"
 #include "vmesh/core/progress.h"
+#include "vmesh/core/stage_time.h"
 #include "vmesh/mesh/tri_mesh.h"
 #include "vmesh/surface/soundness.h"
 
@@ -116,12 +117,6 @@ GenerateOptions after_simplification(const GenerateOptions& options, const Simpl
 struct CenterlineBinding {
   Index segment = kNone;
   double t = 0;
-};
-
-/// Seconds spent in one stage of a run.
-struct StageTime {
-  std::string stage;
-  double seconds = 0;
 };
 
 /// Something that guided growth changed in the graph that steers it. The volume itself is unchanged.
