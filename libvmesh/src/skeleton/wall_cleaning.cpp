@@ -68,6 +68,14 @@ TriMesh welded(const TriMesh& surface) {
   return mesh;
 }
 
+std::vector<std::array<Index, 2>> edges_of(const TriMesh& mesh) {
+  std::vector<std::array<Index, 2>> edges;
+  visit_edges(sides_by_edge(mesh), [&](std::span<const EdgeSide> edge) {
+    edges.push_back({edge[0].low, edge[0].high});
+  });
+  return edges;
+}
+
 std::vector<Index> boundary_vertices(const TriMesh& mesh) {
   std::vector<Index> vertices;
   for (const auto& [from, to] : boundary_edges(mesh)) vertices.insert(vertices.end(), {from, to});
@@ -76,8 +84,9 @@ std::vector<Index> boundary_vertices(const TriMesh& mesh) {
   return vertices;
 }
 
-/// `mesh` with those of the vertices one that are closer than `tolerance`.
+/// `mesh` with those of the vertices one that are closer than `tolerance`, but for the ends of an edge.
 TriMesh joined_within(const TriMesh& mesh, const std::vector<Index>& vertices, double tolerance) {
+  const std::vector<std::array<Index, 2>> neighbours = edges_of(mesh);
   using Cell = std::array<double, 3>;
   std::map<Cell, std::vector<Index>> cells;
   const auto cell_of = [&](const Vec3& p) {
@@ -90,7 +99,9 @@ TriMesh joined_within(const TriMesh& mesh, const std::vector<Index>& vertices, d
       const auto there = cells.find({home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1, home[2] + n / 9 - 1});
       if (there == cells.end()) continue;
       for (const Index w : there->second) {
-        if ((mesh.vertices[v] - mesh.vertices[w]).norm() <= tolerance) sets.join(v, w);
+        if (!((mesh.vertices[v] - mesh.vertices[w]).norm() <= tolerance)) continue;
+        const auto [low, high] = std::minmax(v, w);
+        if (!std::binary_search(neighbours.begin(), neighbours.end(), std::array{low, high})) sets.join(v, w);
       }
     }
     cells[home].push_back(v);

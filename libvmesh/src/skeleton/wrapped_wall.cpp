@@ -77,17 +77,16 @@ Wrap wrap_of(const TriMesh& soup, double ball) {
   return wrap;
 }
 
-/// The finest wrap that is worth it, or the last one before the wrap enters the vessels.
+/// The finest wrap that is worth it, or the last one before the wrap enters the vessels. Empty if the coarsest does.
 Wrap finest_wrap(const TriMesh& soup, const Progress& progress) {
   Wrap best;
   for (double ball = kLargestBall * extent_of(soup);; ball /= 2) {
     report_progress(progress, "wrapping", 0.5);
     Wrap wrap = wrap_of(soup, ball);
-    const bool entered = wrap.radius < kThinWall * wrap.offset;
-    if (entered && !best.mesh.faces.empty()) return best;
+    if (wrap.radius < kThinWall * wrap.offset) return best;
     best = std::move(wrap);
     const double faces = kFacesPerBall * best.area / (ball * ball / 4);
-    if (entered || ball <= kBallPerRadius * best.radius || faces > kMostFaces) return best;
+    if (ball <= kBallPerRadius * best.radius || faces > kMostFaces) return best;
   }
 }
 
@@ -121,9 +120,14 @@ void take_labels(Shell& shell, const Shell& soup, const WallProbe& probe) {
 
 WrappedWall wrapped(const Shell& soup, const Progress& progress) {
   Wrap wrap = finest_wrap(soup.part.mesh, progress);
+  WrappedWall result;
+  if (wrap.mesh.faces.empty()) {
+    result.note = counted(soup.part.mesh.faces.size(), "face that bounds no volume is left out",
+                          "faces that bound no volume are left out");
+    return result;
+  }
   const WallProbe probe(soup.part.mesh);
   move_back(wrap, probe);
-  WrappedWall result;
   result.offset = wrap.offset;
   result.note = counted(soup.part.mesh.faces.size(), "face that bounds no volume by itself is wrapped",
                         "faces that bound no volume by themselves are wrapped") +
