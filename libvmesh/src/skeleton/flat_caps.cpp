@@ -222,8 +222,8 @@ void find_flat_caps(Shell& shell, std::size_t& caps) {
   std::vector<bool> seen(shell.part.mesh.faces.size(), false);
   std::vector<Index> order;
   for (Index f = 0; f < seen.size(); ++f) {
-    seen[f] = shell.part.end_of_face[f] != kNone || shell.part.is_filling[f];
-    if (!seen[f] && finder.area(f) > 0) order.push_back(f);
+    seen[f] = shell.part.end_of_face[f] != kNone;
+    if (!seen[f] && !shell.part.is_filling[f] && finder.area(f) > 0) order.push_back(f);
   }
   // From large faces: small ones may lean any way.
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return finder.area(a) > finder.area(b); });
