@@ -21,8 +21,10 @@ namespace {
 
 constexpr double kBytesPerFace = 1000;  // measured, without wrapping
 // A piece that is closed bounds no volume by itself if its mean half thickness, twice the volume by the area, is less
-// than this share of its largest opening's radius; or than the second if most of it would be what closes it.
+// than this share of its largest opening's size; or than the second if the piece is little more than the rim of that
+// opening: of several such dishes, each is one of a wall's many faces.
 constexpr double kSheet = 0.02, kDish = 0.25, kMostlyOpen = 0.6;
+constexpr std::size_t kManyPieces = 10;
 // Sheets of less than this share of the area are left out.
 constexpr double kFewSheets = 0.05;
 
@@ -50,14 +52,15 @@ void check(const TriMesh& surface) {
 }
 
 /// Whether a piece bounds no volume by itself.
-bool is_sheet(const Shell& shell) {
+bool is_sheet(const Shell& shell, bool among_many) {
+  if (shell.largest_opening == 0) return false;
   double wall = 0, filling = 0;
   const TriMesh& mesh = shell.part.mesh;
   for (Index f = 0; f < mesh.faces.size(); ++f)
     (shell.part.is_filling[f] ? filling : wall) += 0.5 * area_normal(mesh, f).norm();
-  if (filling == 0) return false;
-  const double thickness = 2 * shell.part.volume / (wall + filling), opening = std::sqrt(filling);
-  return thickness < kSheet * opening || (filling > kMostlyOpen * wall && thickness < kDish * opening);
+  const double thickness = 2 * shell.part.volume / (wall + filling), opening = std::sqrt(shell.largest_opening);
+  if (thickness < kSheet * opening) return true;
+  return among_many && shell.largest_opening > kMostlyOpen * wall && thickness < kDish * opening;
 }
 
 bool is_sound(const TriMesh& mesh) {
@@ -102,7 +105,7 @@ Pieces closed_pieces(WallShells&& found, ClosedWall& wall) {
     area += area_of(mesh);
     OpeningsClosed with_this = closed;
     Shell shell = closed_shell(mesh, with_this);
-    if (is_sheet(shell)) {
+    if (is_sheet(shell, found.sound.size() >= kManyPieces)) {
       sheet_area += area_of(mesh);
       sheets.push_back(opened(shell));
     } else if (!is_sound(shell.part.mesh)) {

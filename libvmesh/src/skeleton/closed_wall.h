@@ -42,10 +42,12 @@ struct ClosedWall {
 };
 
 /// The volumes within a surface of any kind:
-/// - equal vertices become one; so do those at boundaries that are closer than a millionth (at most a ten-thousandth)
-///   of the extent, if that closes them; faces without corners of their own and duplicates are left out;
+/// - equal vertices become one; so do those at boundaries within a millionth of the extent, or at most a tenth of the
+///   median edge, as far as that closes edges; faces without corners of their own, duplicates and fins are left out;
 /// - faces are turned to face the same side as their neighbours, and outwards;
-/// - openings are closed; those that are ends of vessels are remembered, slits and pinholes are only noted;
+/// - openings are closed; those that are ends of vessels are remembered: round, no more uneven than half their radius,
+///   with at least a tenth of the cross-section behind them; slits, pinholes and others are only noted;
+/// - flat caps that a wall has are found, but for those of contours of masks that are stairs;
 /// - of a shell within a shell, the inner is taken if it has at least a quarter of the volume (a wall with a thickness:
 ///   the inner is the lumen), else left out as a cavity; components with almost no volume are left out;
 /// - what has no sides (soups, edges with three faces, sheets) is wrapped (CGAL's alpha wrap).

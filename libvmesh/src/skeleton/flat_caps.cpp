@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -14,18 +15,36 @@
 namespace vmesh::skeleton {
 namespace {
 
-constexpr double kFlat = 0.985;             // cosine between normals of a cap's faces: 10 degrees
+constexpr double kFlat = 0.985;  // cosine between normals of a cap's faces: 10 degrees
+// Faces at its rim lean less than the crease within so many radii from its plane, or in any way within so few.
+constexpr double kRim = 0.08, kSliver = 0.005;
 constexpr double kCrease = 0.766;           // cosine between the cap's normal and the wall's at its edge: 40 degrees
 constexpr double kSharp = 0.9;              // of the perimeter has such a crease
 constexpr std::size_t kLeastRing = 6;       // vertices
-constexpr double kLeastRoundness = 0.3;     // area of that of a circle with the perimeter
+constexpr double kLeastRoundness = 0.3;     // area relative to that of a circle with the perimeter
 constexpr double kLargestUnevenness = 0.1;  // radii
+// Of the turning along the ring, so much is in corners beyond this angle: 70 degrees. Rims of voxels have no other.
+constexpr double kCornered = 0.5, kCorner = 1.22;
+// On contours of masks, so much of the area is parallel to a step, besides that in a few planes: other caps may be.
+constexpr double kParallel = 1 - 1e-6, kStairs = 0.02;
+constexpr std::size_t kOtherCaps = 3;
 // Behind a cap there is a tube: at these depths, so many of the directions across meet a wall at these distances, all
 // in the cap's radii. The flat top of a ball with half the cap's curvature and more passes, one of a bump does not.
 constexpr std::size_t kDirections = 12;
 constexpr std::array<double, 2> kDepths = {0.5, 1};
 constexpr std::array<std::size_t, 2> kLeastMet = {10, 8};
 constexpr double kNearest = 0.5, kFarthest = 1.5;
+
+bool is_cornered(const std::vector<Vec3>& ring) {
+  double corners = 0, all = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vec3 &a = ring[i], &b = ring[(i + 1) % ring.size()], &c = ring[(i + 2) % ring.size()];
+    const double turning = std::atan2((b - a).cross(c - b).norm(), (b - a).dot(c - b));
+    all += turning;
+    if (turning > kCorner) corners += turning;
+  }
+  return corners > kCornered * all;
+}
 
 class CapFinder {
  public:
@@ -43,15 +62,32 @@ class CapFinder {
   std::vector<Index> patch_around(Index seed, std::vector<bool>& seen) const {
     std::vector<Index> patch = {seed};
     seen[seed] = true;
-    for (std::size_t i = 0; i < patch.size(); ++i) {
-      for (Index side = 3 * patch[i]; side < 3 * patch[i] + 3; ++side) {
-        const Index next = mates_[side] == kNone ? kNone : mates_[side] / 3;
-        if (next == kNone || seen[next]) continue;
-        if (areas_[next] > 0 && !(normals_[next].dot(normals_[seed]) > kFlat)) continue;
-        seen[next] = true;
-        patch.push_back(next);
-      }
+    grow(patch, seen, [&](Index f) { return !(areas_[f] > 0) || normals_[f].dot(normals_[seed]) > kFlat; });
+    return patch;
+  }
+
+  /// With small faces at its rim that lean, as rounding and remeshing leave them. `taken`: faces that are out of
+  /// question; unchanged.
+  std::vector<Index> with_rim(std::vector<Index> patch, std::vector<bool>& taken) const {
+    double area = 0;
+    Vec3 middle = Vec3::Zero(), normal = Vec3::Zero();
+    for (const Index f : patch) {
+      area += areas_[f];
+      normal += areas_[f] * normals_[f];
+      for (const Index v : mesh_.faces[f]) middle += areas_[f] / 3 * mesh_.vertices[v];
     }
+    middle /= area;
+    normal.normalize();
+    const double radius = std::sqrt(area / std::numbers::pi);
+    for (const Index f : patch) taken[f] = true;
+    grow(patch, taken, [&](Index f) {
+      double farthest = 0;
+      for (const Index v : mesh_.faces[f])
+        farthest = std::max(farthest, std::abs((mesh_.vertices[v] - middle).dot(normal)));
+      const bool leans = areas_[f] > 0 && !(normals_[f].dot(normal) > kCrease);
+      return farthest <= (leans ? kSliver : kRim) * radius;
+    });
+    for (const Index f : patch) taken[f] = false;
     return patch;
   }
 
@@ -64,6 +100,19 @@ class CapFinder {
   }
 
  private:
+  /// Appends neighbours that fit and are not taken; they become so.
+  template <class Fits>
+  void grow(std::vector<Index>& patch, std::vector<bool>& taken, Fits&& fits) const {
+    for (std::size_t i = 0; i < patch.size(); ++i) {
+      for (Index side = 3 * patch[i]; side < 3 * patch[i] + 3; ++side) {
+        const Index next = mates_[side] == kNone ? kNone : mates_[side] / 3;
+        if (next == kNone || taken[next] || !fits(next)) continue;
+        taken[next] = true;
+        patch.push_back(next);
+      }
+    }
+  }
+
   Index from(Index side) const { return mesh_.faces[side / 3][side % 3]; }
   Index to(Index side) const { return mesh_.faces[side / 3][(side + 1) % 3]; }
   Index opposite(Index side) const { return mesh_.faces[side / 3][(side + 2) % 3]; }
@@ -108,6 +157,26 @@ class CapFinder {
     return sharp >= kSharp * all;
   }
 
+  bool is_step_of_stairs(const RingShape& shape) const {
+    std::vector<std::pair<double, double>> parallel;  // heights and areas
+    double all = 0;
+    for (Index f = 0; f < mesh_.faces.size(); ++f) {
+      all += areas_[f];
+      if (in_patch_[f] || !(std::abs(normals_[f].dot(shape.normal)) > kParallel)) continue;
+      parallel.push_back({(mesh_.vertices[mesh_.faces[f][0]] - shape.center).dot(shape.normal), areas_[f]});
+    }
+    std::sort(parallel.begin(), parallel.end());
+    std::vector<double> planes;  // their areas
+    for (std::size_t i = 0; i < parallel.size(); ++i) {
+      if (i == 0 || parallel[i].first - parallel[i - 1].first > kRim * shape.radius) planes.push_back(0);
+      planes.back() += parallel[i].second;
+    }
+    std::sort(planes.begin(), planes.end(), std::greater<>());
+    double steps = 0;
+    for (std::size_t i = kOtherCaps; i < planes.size(); ++i) steps += planes[i];
+    return steps > kStairs * all;
+  }
+
   bool closes_a_tube(const RingShape& shape) const {
     const Vec3 u = shape.normal.unitOrthogonal(), v = shape.normal.cross(u);
     for (std::size_t d = 0; d < kDepths.size(); ++d) {
@@ -133,7 +202,7 @@ class CapFinder {
     const RingShape shape = shape_of(ring);
     const double circle = shape.perimeter * shape.perimeter / (4 * std::numbers::pi);
     if (!(shape.area >= kLeastRoundness * circle) || shape.unevenness > kLargestUnevenness * shape.radius ||
-        !is_sharp(border, shape.normal) || !closes_a_tube(shape))
+        is_cornered(ring) || !is_sharp(border, shape.normal) || !closes_a_tube(shape) || is_step_of_stairs(shape))
       return std::nullopt;
     return FlatWallEnd{shape.center, shape.normal, shape.area, std::move(ring), false, 0};
   }
@@ -153,17 +222,21 @@ void find_flat_caps(Shell& shell, std::size_t& caps) {
   std::vector<bool> seen(shell.part.mesh.faces.size(), false);
   std::vector<Index> order;
   for (Index f = 0; f < seen.size(); ++f) {
-    seen[f] = shell.part.end_of_face[f] != kNone || shell.part.is_filling[f];
-    if (!seen[f] && finder.area(f) > 0) order.push_back(f);
+    seen[f] = shell.part.end_of_face[f] != kNone;
+    if (!seen[f] && !shell.part.is_filling[f] && finder.area(f) > 0) order.push_back(f);
   }
   // From large faces: small ones may lean any way.
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return finder.area(a) > finder.area(b); });
+  std::vector<bool> taken = seen;
   for (const Index seed : order) {
     if (seen[seed]) continue;
-    const std::vector<Index> patch = finder.patch_around(seed, seen);
+    const std::vector<Index> patch = finder.with_rim(finder.patch_around(seed, seen), taken);
     std::optional<FlatWallEnd> cap = finder.cap_of(patch);
     if (!cap) continue;
-    for (const Index f : patch) shell.part.end_of_face[f] = static_cast<Index>(shell.ends.size());
+    for (const Index f : patch) {
+      seen[f] = taken[f] = true;
+      shell.part.end_of_face[f] = static_cast<Index>(shell.ends.size());
+    }
     shell.ends.push_back(std::move(*cap));
     ++caps;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "vmesh/core/box_tree.h"
 #include "vmesh/mesh/topology.h"
 
 #include "wall_text.h"
@@ -53,38 +54,45 @@ void drop_debris(std::vector<Shell>& shells, std::vector<std::string>& notes) {
   }
 }
 
-/// For those of the shells after `outer` that are in its box, whether they are within it.
-std::vector<std::size_t> shells_within(const std::vector<Shell>& shells, const std::vector<Bounds>& bounds,
-                                       std::size_t outer) {
-  std::vector<std::size_t> candidates, within;
+/// Those of the candidates that are within a shell.
+std::vector<std::size_t> within(const std::vector<Shell>& shells, const Shell& outer,
+                                const std::vector<std::size_t>& candidates) {
   std::vector<Vec3> witnesses;
-  for (std::size_t i = outer + 1; i < shells.size(); ++i) {
-    if (!bounds[outer].contains(bounds[i])) continue;
-    candidates.push_back(i);
+  for (const std::size_t i : candidates) {
     const std::vector<Vec3>& vertices = shells[i].part.mesh.vertices;
     for (std::size_t k = 0; k < kWitnesses; ++k) witnesses.push_back(vertices[k * (vertices.size() - 1) / kWitnesses]);
   }
-  if (candidates.empty()) return within;
-  const std::vector<bool> inside = points_inside(shells[outer].part.mesh, witnesses);
+  std::vector<std::size_t> found;
+  if (candidates.empty()) return found;
+  const std::vector<bool> inside = points_inside(outer.part.mesh, witnesses);
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     const auto first = inside.begin() + static_cast<std::ptrdiff_t>(c * kWitnesses);
     if (2 * std::count(first, first + kWitnesses, true) > static_cast<std::ptrdiff_t>(kWitnesses))
-      within.push_back(candidates[c]);
+      found.push_back(candidates[c]);
   }
-  return within;
+  return found;
 }
 
 /// The smallest shell around each; its own number without one.
 std::vector<std::size_t> parents_of(const std::vector<Shell>& shells) {
   std::vector<Bounds> bounds;
+  std::vector<Vec3> low, high;
   std::vector<std::size_t> parent;
   for (const Shell& shell : shells) {
     bounds.push_back(bounds_of(shell.part.mesh));
+    low.push_back(bounds.back().low);
+    high.push_back(bounds.back().high);
     parent.push_back(parent.size());
   }
+  const BoxTree tree(low, high);
   // By volume, largest first: the last one around a shell is the smallest.
   for (std::size_t outer = 0; outer < shells.size(); ++outer) {
-    for (const std::size_t i : shells_within(shells, bounds, outer)) parent[i] = outer;
+    std::vector<std::size_t> candidates;
+    tree.visit_overlapping(low[outer], high[outer], [&](Index i) {
+      if (i > outer && bounds[outer].contains(bounds[i])) candidates.push_back(i);
+    });
+    std::sort(candidates.begin(), candidates.end());
+    for (const std::size_t i : within(shells, shells[outer], candidates)) parent[i] = outer;
   }
   return parent;
 }

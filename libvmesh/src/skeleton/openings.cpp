@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <numbers>
 #include <utility>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -14,6 +14,7 @@
 
 #include "ring_shape.h"
 #include "wall_probe.h"
+#include "wall_shells.h"
 #include "wall_text.h"
 
 namespace vmesh::skeleton {
@@ -22,9 +23,14 @@ namespace {
 // What an end of a vessel is like. Its ring has so many vertices, is so round, and so flat, in radii.
 constexpr std::size_t kLeastRing = 5;
 constexpr double kLargestAspect = 4, kLeastCompactness = 0.4, kLargestUnevenness = 0.5;
+// Its area is so much of that of a circle with the perimeter; a jagged cut has .4 and more.
+constexpr double kLeastRoundness = 0.25;
 // Behind an end, the wall is near at this depth; behind a hole that has a tenth of the cross-section of a tube or a
 // ball, it is 2.16 radii away. Both in the hole's radii.
 constexpr double kDepth = 2, kFarthestWall = 2.1;
+// Faces around a hole in the wall are parallel to it, by this mean cosine; one of so few vertices is no vessel's end.
+constexpr double kFlush = 0.7;
+constexpr std::size_t kFewInFlush = 12;
 // A ring that is flat within this many radii is triangulated in its plane.
 constexpr double kFlat = 0.25;
 // Filling takes cubic time in the worst case.
@@ -112,6 +118,25 @@ bool fit(const std::vector<Triangle>& faces, const Ring& ring, const std::vector
   return true;
 }
 
+/// The normals of the faces at boundary edges, by the vertex that the edge runs to in its face.
+std::vector<Vec3> normals_at_boundary(const TriMesh& mesh) {
+  std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
+  const Mates mates = mates_of(mesh);
+  for (Index side = 0; side < mates.size(); ++side) {
+    if (mates[side] == kNone) normals[mesh.faces[side / 3][(side + 1) % 3]] = area_normal(mesh, side / 3).normalized();
+  }
+  return normals;
+}
+
+double flushness_of(const TriMesh& mesh, const Ring& ring, const RingShape& shape, const std::vector<Vec3>& normals) {
+  double sum = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const double length = (mesh.vertices[ring[(i + 1) % ring.size()]] - mesh.vertices[ring[i]]).norm();
+    sum += length * std::abs(normals[ring[i]].dot(shape.normal));
+  }
+  return shape.perimeter > 0 ? sum / shape.perimeter : 0;
+}
+
 /// Appends faces that close the ring.
 void fill(TriMesh& mesh, const Ring& ring, const RingShape& shape, const std::vector<Edge>& taken) {
   const std::vector<Vec3> points = positions(mesh, ring);
@@ -128,9 +153,12 @@ void fill(TriMesh& mesh, const Ring& ring, const RingShape& shape, const std::ve
 
 enum class Kind { end, hole, uneven };
 
-Kind kind_of(std::size_t corners, const RingShape& shape, const WallProbe& wall) {
+/// `flushness`: mean cosine between the ring's normal and those of the faces around it.
+Kind kind_of(std::size_t corners, const RingShape& shape, double flushness, const WallProbe& wall) {
   if (corners < kLeastRing || !(shape.compactness >= kLeastCompactness) || shape.aspect > kLargestAspect)
     return Kind::hole;
+  if (4 * std::numbers::pi * shape.area < kLeastRoundness * shape.perimeter * shape.perimeter) return Kind::hole;
+  if (flushness > kFlush && corners < kFewInFlush) return Kind::hole;
   const Vec3 behind = shape.center - kDepth * shape.radius * shape.normal;
   if (wall.nearest(behind).distance > kFarthestWall * shape.radius) return Kind::hole;
   return shape.unevenness > kLargestUnevenness * shape.radius ? Kind::uneven : Kind::end;
@@ -157,7 +185,9 @@ std::vector<std::size_t> fill_all(Shell& shell, const TriMesh& mesh, const std::
   const std::vector<Edge> taken = edges_among(mesh, rings);
   for (const Ring& ring : rings) {
     begin.push_back(full.faces.size());
-    fill(full, ring, shape_of(positions(mesh, ring)), taken);
+    const RingShape shape = shape_of(positions(mesh, ring));
+    shell.largest_opening = std::max(shell.largest_opening, shape.area);
+    fill(full, ring, shape, taken);
   }
   begin.push_back(full.faces.size());
   shell.part.end_of_face.assign(full.faces.size(), kNone);
@@ -166,17 +196,33 @@ std::vector<std::size_t> fill_all(Shell& shell, const TriMesh& mesh, const std::
   return begin;
 }
 
-/// Notes what was closed by the faces from `begin` to `end`, and remembers it if it is an end. `ring`:
-/// counter-clockwise seen from outside.
-void label(Shell& shell, std::vector<Vec3> ring, const WallProbe& wall, std::size_t begin, std::size_t end,
-           OpeningsClosed& closed) {
-  const RingShape shape = shape_of(ring);
-  const Kind kind = kind_of(ring.size(), shape, wall);
-  note(closed, kind, shape);
-  if (kind != Kind::end) return;
-  for (std::size_t f = begin; f < end; ++f) shell.part.end_of_face[f] = static_cast<Index>(shell.ends.size());
-  shell.ends.push_back({shape.center, shape.normal, shape.area, std::move(ring), true, 0});
-}
+/// Notes what was closed and remembers what are ends.
+class EndFinder {
+ public:
+  EndFinder(const TriMesh& mesh, Shell& shell, OpeningsClosed& closed)
+      : mesh_(mesh), wall_(mesh), normals_(normals_at_boundary(mesh)), shell_(shell), closed_(closed) {}
+
+  const WallProbe& wall() const { return wall_; }
+
+  /// `ring`: was closed by the faces from `begin` to `end`. `turned`: it is clockwise seen from outside.
+  void take(const Ring& ring, bool turned, std::size_t begin, std::size_t end) {
+    std::vector<Vec3> points = positions(mesh_, ring);
+    if (turned) std::reverse(points.begin(), points.end());
+    const RingShape shape = shape_of(points);
+    const Kind kind = kind_of(ring.size(), shape, flushness_of(mesh_, ring, shape, normals_), wall_);
+    note(closed_, kind, shape);
+    if (kind != Kind::end) return;
+    for (std::size_t f = begin; f < end; ++f) shell_.part.end_of_face[f] = static_cast<Index>(shell_.ends.size());
+    shell_.ends.push_back({shape.center, shape.normal, shape.area, std::move(points), true, 0});
+  }
+
+ private:
+  const TriMesh& mesh_;
+  WallProbe wall_;
+  std::vector<Vec3> normals_;
+  Shell& shell_;
+  OpeningsClosed& closed_;
+};
 
 }  // namespace
 
@@ -212,12 +258,8 @@ Shell closed_shell(TriMesh mesh, OpeningsClosed& closed) {
     for (Triangle& face : shell.part.mesh.faces) std::swap(face[1], face[2]);
   }
   if (rings.empty()) return shell;
-  const WallProbe wall(mesh);
-  for (std::size_t r = 0; r < rings.size(); ++r) {
-    std::vector<Vec3> ring = positions(mesh, rings[r]);
-    if (shell.was_inward) std::reverse(ring.begin(), ring.end());
-    label(shell, std::move(ring), wall, begin[r], begin[r + 1], closed);
-  }
+  EndFinder ends(mesh, shell, closed);
+  for (std::size_t r = 0; r < rings.size(); ++r) ends.take(rings[r], shell.was_inward, begin[r], begin[r + 1]);
   return shell;
 }
 
@@ -225,15 +267,13 @@ Shell closed_soup(TriMesh mesh, OpeningsClosed& closed) {
   Shell shell;
   const std::vector<Ring> rings = rings_of(mesh);
   const std::vector<std::size_t> begin = fill_all(shell, mesh, rings);
-  const WallProbe wall(mesh);
+  EndFinder ends(mesh, shell, closed);
   for (std::size_t r = 0; r < rings.size(); ++r) {
-    std::vector<Vec3> ring = positions(mesh, rings[r]);
-    const RingShape shape = shape_of(ring);
+    const RingShape shape = shape_of(positions(mesh, rings[r]));
     const Vec3 way = kDepth * shape.radius * shape.normal;
     // The wall of a tube is nearer behind its end than before it.
-    if (wall.nearest(shape.center + way).distance < wall.nearest(shape.center - way).distance)
-      std::reverse(ring.begin(), ring.end());
-    label(shell, std::move(ring), wall, begin[r], begin[r + 1], closed);
+    const auto distance = [&](const Vec3& p) { return ends.wall().nearest(p).distance; };
+    ends.take(rings[r], distance(shape.center + way) < distance(shape.center - way), begin[r], begin[r + 1]);
   }
   return shell;
 }

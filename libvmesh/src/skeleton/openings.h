@@ -14,6 +14,7 @@ struct Shell {
   WallPart part;
   std::vector<FlatWallEnd> ends;
   bool was_inward = false;
+  double largest_opening = 0;  ///< projected area of the largest ring that was closed, mm^2
 };
 
 /// What was closed, over all shells.

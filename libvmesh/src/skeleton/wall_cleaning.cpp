@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
-#include <numeric>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 
 #include "vmesh/core/disjoint_sets.h"
 #include "vmesh/mesh/topology.h"
@@ -16,9 +18,10 @@
 namespace vmesh::skeleton {
 namespace {
 
-// Tolerances within which vertices at boundaries become one, of the extent; but less than a tenth of the median edge.
-constexpr std::array kTolerances = {1e-6, 1e-5, 1e-4};
-constexpr double kLargestTolerance = 0.1;
+// Vertices at boundaries become one within the smallest of these tolerances that closes most edges: from this share of
+// the extent, in steps of this factor, up to this share of the median edge; a larger one closes half of what is left.
+constexpr double kSmallestTolerance = 1e-6, kLargestTolerance = 0.1, kNextTolerance = 3;
+constexpr double kWorthIt = 0.5;
 // A fin has at most this share of the area.
 constexpr double kLargestFin = 0.1;
 constexpr int kMostPasses = 10;
@@ -68,6 +71,14 @@ TriMesh welded(const TriMesh& surface) {
   return mesh;
 }
 
+std::vector<std::array<Index, 2>> edges_of(const TriMesh& mesh) {
+  std::vector<std::array<Index, 2>> edges;
+  visit_edges(sides_by_edge(mesh), [&](std::span<const EdgeSide> edge) {
+    edges.push_back({edge[0].low, edge[0].high});
+  });
+  return edges;
+}
+
 std::vector<Index> boundary_vertices(const TriMesh& mesh) {
   std::vector<Index> vertices;
   for (const auto& [from, to] : boundary_edges(mesh)) vertices.insert(vertices.end(), {from, to});
@@ -76,24 +87,37 @@ std::vector<Index> boundary_vertices(const TriMesh& mesh) {
   return vertices;
 }
 
-/// `mesh` with those of the vertices one that are closer than `tolerance`.
-TriMesh joined_within(const TriMesh& mesh, const std::vector<Index>& vertices, double tolerance) {
-  using Cell = std::array<double, 3>;
-  std::map<Cell, std::vector<Index>> cells;
-  const auto cell_of = [&](const Vec3& p) {
-    return Cell{std::floor(p.x() / tolerance), std::floor(p.y() / tolerance), std::floor(p.z() / tolerance)};
+/// `mesh` with those of the vertices one that are closer than `tolerance`, but for the ends of an edge. `neighbours`:
+/// the edges, ascending.
+TriMesh joined_within(const TriMesh& mesh, const std::vector<Index>& vertices,
+                      const std::vector<std::array<Index, 2>>& neighbours, double tolerance) {
+  Vec3 low = mesh.vertices.front();
+  for (const Vec3& p : mesh.vertices) low = low.cwiseMin(p);
+  // Cells by a hash: those that share one only cost time.
+  const auto key = [&](const Vec3& p, int n) {
+    std::uint64_t hash = 0;
+    for (int axis = 0; axis < 3; ++axis, n /= 3) {
+      const auto cell = static_cast<std::int64_t>(std::floor((p[axis] - low[axis]) / tolerance)) + n % 3 - 1;
+      hash = (hash ^ static_cast<std::uint64_t>(cell)) * 0x9e3779b97f4a7c15;
+    }
+    return hash;
   };
+  constexpr int kCells = 27, kHome = 13;
+  std::unordered_map<std::uint64_t, Index> last;  // vertex in a cell
+  std::vector<Index> before(mesh.vertices.size(), kNone);
+  last.reserve(vertices.size());
   DisjointSets sets(mesh.vertices.size());
   for (const Index v : vertices) {
-    const Cell home = cell_of(mesh.vertices[v]);
-    for (int n = 0; n < 27; ++n) {
-      const auto there = cells.find({home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1, home[2] + n / 9 - 1});
-      if (there == cells.end()) continue;
-      for (const Index w : there->second) {
-        if ((mesh.vertices[v] - mesh.vertices[w]).norm() <= tolerance) sets.join(v, w);
+    for (int n = 0; n < kCells; ++n) {
+      const auto there = last.find(key(mesh.vertices[v], n));
+      for (Index w = there == last.end() ? kNone : there->second; w != kNone; w = before[w]) {
+        if (!((mesh.vertices[v] - mesh.vertices[w]).norm() <= tolerance)) continue;
+        if (!std::binary_search(neighbours.begin(), neighbours.end(), std::array{std::min(v, w), std::max(v, w)}))
+          sets.join(v, w);
       }
     }
-    cells[home].push_back(v);
+    const auto [home, fresh] = last.try_emplace(key(mesh.vertices[v], kHome), v);
+    if (!fresh) before[v] = std::exchange(home->second, v);
   }
   TriMesh result{mesh.vertices, {}};
   for (const auto& [a, b, c] : mesh.faces) {
@@ -126,16 +150,16 @@ void close_cracks(TriMesh& mesh, std::vector<std::string>& notes) {
   if (mesh.faces.empty()) return;
   const std::vector<Index> vertices = boundary_vertices(mesh);
   if (vertices.empty()) return;
-  const double extent = extent_of(mesh), largest = kLargestTolerance * median_edge(mesh);
+  const std::vector<std::array<Index, 2>> edges = edges_of(mesh);
+  const double smallest = kSmallestTolerance * extent_of(mesh);
+  const double largest = std::max(smallest, kLargestTolerance * median_edge(mesh));
   std::size_t open = boundary_edges(mesh).size();
   double used = 0;
   TriMesh best;
-  for (const double share : kTolerances) {
-    const double tolerance = share * extent;
-    if (open == 0 || (used > 0 && tolerance > largest) || !(tolerance > 0)) break;
-    TriMesh joined = joined_within(mesh, vertices, std::min(tolerance, std::max(largest, kTolerances[0] * extent)));
+  for (double tolerance = smallest; tolerance > 0 && tolerance <= largest && open > 0; tolerance *= kNextTolerance) {
+    TriMesh joined = joined_within(mesh, vertices, edges, tolerance);
     const std::size_t left = boundary_edges(joined).size();
-    if (left >= open || joined.faces.empty()) continue;
+    if (static_cast<double>(left) > kWorthIt * static_cast<double>(open) || joined.faces.empty()) continue;
     open = left;
     used = tolerance;
     best = std::move(joined);

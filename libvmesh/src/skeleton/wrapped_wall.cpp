@@ -24,12 +24,14 @@ using Point = Kernel::Point_3;
 
 // The largest ball that cannot enter: from this share of the extent, halved until it is this share of the vessels'
 // mean radius; the wrap has about kFacesPerBall * area / ball^2 faces.
-constexpr double kLargestBall = 1. / 20, kBallPerRadius = 1. / 4;
-constexpr double kFacesPerBall = 10, kMostFaces = 150'000;
+constexpr double kLargestBall = 1. / 8, kBallPerRadius = 1. / 4;
+constexpr double kFacesPerBall = 10, kMostFaces = 60'000;
 // Distance of the wrap from the faces, in balls.
 constexpr double kOffset = 1. / 20;
-// A wrap whose walls are thinner than this many offsets has entered the vessels.
-constexpr double kThinWall = 6;
+// A wrap has entered the vessels where both sides of a face are outside, so many offsets from it; if that is more than
+// this share of the area, the wrap is too fine. So many faces are asked.
+constexpr double kBeside = 3, kEntered = 0.05;
+constexpr std::size_t kAsked = 4000;
 // Offsets by which vertices are moved back, at most.
 constexpr double kLongestWay = 2;
 
@@ -77,17 +79,39 @@ Wrap wrap_of(const TriMesh& soup, double ball) {
   return wrap;
 }
 
-/// The finest wrap that is worth it, or the last one before the wrap enters the vessels.
-Wrap finest_wrap(const TriMesh& soup, const Progress& progress) {
+/// The share of the area, without what closes it, that is outside of the wrap on both sides.
+double share_entered(const Wrap& wrap, const Shell& soup) {
+  const TriMesh& mesh = soup.part.mesh;
+  std::vector<Vec3> points;
+  std::vector<double> areas;
+  const std::size_t step = 1 + mesh.faces.size() / kAsked;
+  for (Index f = 0; f < mesh.faces.size(); f += static_cast<Index>(step)) {
+    const Vec3 normal = area_normal(mesh, f);
+    if (soup.part.is_filling[f] || !(normal.norm() > 0)) continue;
+    const auto& [a, b, c] = mesh.faces[f];
+    const Vec3 middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+    for (const double side : {kBeside, -kBeside}) points.push_back(middle + side * wrap.offset * normal.normalized());
+    areas.push_back(0.5 * normal.norm());
+  }
+  const std::vector<bool> inside = points_inside(wrap.mesh, points);
+  double entered = 0, all = 0;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    all += areas[i];
+    if (!inside[2 * i] && !inside[2 * i + 1]) entered += areas[i];
+  }
+  return all > 0 ? entered / all : 0;
+}
+
+/// The finest wrap that is worth it, or the last one before the wrap enters the vessels. Empty if the coarsest does.
+Wrap finest_wrap(const Shell& soup, const Progress& progress) {
   Wrap best;
-  for (double ball = kLargestBall * extent_of(soup);; ball /= 2) {
+  for (double ball = kLargestBall * extent_of(soup.part.mesh);; ball /= 2) {
     report_progress(progress, "wrapping", 0.5);
-    Wrap wrap = wrap_of(soup, ball);
-    const bool entered = wrap.radius < kThinWall * wrap.offset;
-    if (entered && !best.mesh.faces.empty()) return best;
+    Wrap wrap = wrap_of(soup.part.mesh, ball);
+    if (share_entered(wrap, soup) > kEntered) return best;
     best = std::move(wrap);
     const double faces = kFacesPerBall * best.area / (ball * ball / 4);
-    if (entered || ball <= kBallPerRadius * best.radius || faces > kMostFaces) return best;
+    if (ball <= kBallPerRadius * best.radius || faces > kMostFaces) return best;
   }
 }
 
@@ -120,10 +144,15 @@ void take_labels(Shell& shell, const Shell& soup, const WallProbe& probe) {
 }  // namespace
 
 WrappedWall wrapped(const Shell& soup, const Progress& progress) {
-  Wrap wrap = finest_wrap(soup.part.mesh, progress);
+  Wrap wrap = finest_wrap(soup, progress);
+  WrappedWall result;
+  if (wrap.mesh.faces.empty()) {
+    result.note = counted(soup.part.mesh.faces.size(), "face that bounds no volume is left out",
+                          "faces that bound no volume are left out");
+    return result;
+  }
   const WallProbe probe(soup.part.mesh);
   move_back(wrap, probe);
-  WrappedWall result;
   result.offset = wrap.offset;
   result.note = counted(soup.part.mesh.faces.size(), "face that bounds no volume by itself is wrapped",
                         "faces that bound no volume by themselves are wrapped") +
