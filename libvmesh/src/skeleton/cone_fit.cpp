@@ -30,7 +30,9 @@ constexpr double kDampingOfFixed = 1e6;  // makes nodes practically immovable
 // Distance, in local radii, at which samples farther off are counted.
 constexpr double kNear = 0.5;
 constexpr double kRadiusFactor = 2;
-constexpr double kSticksOut = 0.35;   // radii by which a vessel sticks out of others
+// A bump of a vessel sticks out by up to this share of the vessel's radius; a wide one, by up to this share and by up to
+// this times its own radius.
+constexpr double kBump = 0.35, kWideBump = 1, kBumpWidths = 1.5;
 constexpr double kWithinSlack = 0.15;  // weight of a sample's distance within its slack
 
 /// Normal equations of one round, a 4 x 4 block per pair of nodes.
@@ -239,6 +241,33 @@ GraphCones::Place GraphCones::closest(const Vec3& point, Index from) const {
   return best;
 }
 
+namespace {
+
+/// Whether a node of an end chain sticks out of the other vessels by more than a bump would.
+bool sticks_out(const Graph& graph, const GraphCones& cones, const BoxTree& boxes, const Chain& chain,
+                const std::vector<bool>& removed) {
+  const auto is_other = [&](Index c) {
+    return c >= removed.size() ||
+           (!removed[c] && std::find(chain.edges.begin(), chain.edges.end(), c) == chain.edges.end());
+  };
+  for (const Index n : chain.nodes) {
+    const Node& node = graph.nodes[n];
+    Place best{kNone, std::numeric_limits<double>::infinity(), 0};
+    boxes.visit(node.position, best.distance, [&](Index c) {
+      if (!is_other(c)) return;
+      const auto [distance, t] = cones.cone(c).distance_to(node.position);
+      if (distance < best.distance) best = {c, distance, t};
+    });
+    if (best.cone == kNone) return true;
+    const double other = cones.radius_at(best);
+    const double bump = std::max(kBump * other, std::min(kWideBump * other, kBumpWidths * node.radius));
+    if (best.distance + node.radius > bump) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 std::size_t prune_contained(Graph& graph) {
   const auto edges_at = incidence(graph);
   const GraphCones cones(graph);
@@ -250,23 +279,11 @@ std::size_t prune_contained(Graph& graph) {
     const bool last_free = edges_at[chain.nodes.back()].size() == 1;
     if (first_free == last_free) continue;
     if (graph.nodes[first_free ? chain.nodes.front() : chain.nodes.back()].fixed) continue;
-    double most = -1;  // how far it sticks out, in radii
-    for (const Index n : chain.nodes) {
-      Place best{kNone, std::numeric_limits<double>::infinity(), 0};
-      boxes.visit(graph.nodes[n].position, best.distance, [&](Index c) {
-        if (c < removed.size() && (removed[c] || std::find(chain.edges.begin(), chain.edges.end(), c) != chain.edges.end()))
-          return;
-        const auto [distance, t] = cones.cone(c).distance_to(graph.nodes[n].position);
-        if (distance < best.distance) best = {c, distance, t};
-      });
-      if (best.cone == kNone) continue;
-      most = std::max(most, (best.distance + graph.nodes[n].radius) / cones.radius_at(best));
-    }
-    if (most > kSticksOut) continue;
+    if (sticks_out(graph, cones, boxes, chain, removed)) continue;
     for (const Index e : chain.edges) removed[e] = true;
     ++count;
   }
-  remove_edges(graph, removed);
+  remove_with_nodes(graph, removed);
   return count;
 }
 

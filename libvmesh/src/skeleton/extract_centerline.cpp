@@ -181,7 +181,6 @@ ExtractedCenterline finish(Work work, const ExtractOptions& options, const Progr
   fit(work, options, progress);
   for (const JoinedGap& gap : skeleton::join_ends(work.graph, options.join, work.voxel))
     work.report.joined.push_back(gap);
-  skeleton::compact(work.graph);
   find_sections(work.graph, work.sections);
   Centerline centerline = cleaned(work.graph, work.sections);
   work.clock.lap("cones", work.report.stages);

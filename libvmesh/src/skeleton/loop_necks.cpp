@@ -238,21 +238,6 @@ void cut_off(const Graph& graph, const Stretch& stretch, std::vector<bool>& remo
   }
 }
 
-/// Drops nodes that have lost all their edges.
-void drop_bare(Graph& graph, const std::vector<std::vector<Index>>& edges_before) {
-  const auto edges_at = incidence(graph);
-  std::vector<Index> number(graph.nodes.size(), kNone);
-  std::size_t kept = 0;
-  for (Index n = 0; n < graph.nodes.size(); ++n) {
-    if (edges_at[n].empty() && (n >= edges_before.size() || !edges_before[n].empty())) continue;
-    number[n] = static_cast<Index>(kept);
-    graph.nodes[kept++] = graph.nodes[n];
-  }
-  graph.nodes.resize(kept);
-  for (auto& edge : graph.edges)
-    for (Index& n : edge) n = number[n];
-}
-
 /// The loops, and with `open` one pass of opening them.
 std::vector<VesselLoop> pass(Graph& graph, double voxel, bool open) {
   const std::vector<Stretch> stretches = stretches_of(graph, voxel);
@@ -285,8 +270,7 @@ std::vector<VesselLoop> pass(Graph& graph, double voxel, bool open) {
     }
   }
   removed.resize(graph.edges.size(), false);
-  remove_edges(graph, removed);
-  drop_bare(graph, edges_at);
+  remove_with_nodes(graph, removed);
   return loops;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <queue>
 
@@ -65,6 +66,23 @@ void remove_edges(Graph& graph, const std::vector<bool>& removed) {
   graph.edges.resize(kept);
 }
 
+void remove_with_nodes(Graph& graph, const std::vector<bool>& removed) {
+  std::vector<char> had(graph.nodes.size(), 0), has(graph.nodes.size(), 0);
+  for (Index e = 0; e < graph.edges.size(); ++e)
+    for (const Index n : graph.edges[e]) (removed[e] ? had : has)[n] = 1;
+  remove_edges(graph, removed);
+  std::vector<Index> number(graph.nodes.size(), kNone);
+  std::size_t kept = 0;
+  for (Index n = 0; n < graph.nodes.size(); ++n) {
+    if (had[n] && !has[n]) continue;
+    number[n] = static_cast<Index>(kept);
+    graph.nodes[kept++] = graph.nodes[n];
+  }
+  graph.nodes.resize(kept);
+  for (auto& edge : graph.edges)
+    for (Index& n : edge) n = number[n];
+}
+
 std::vector<std::vector<Index>> incidence(const Graph& graph) {
   std::vector<std::vector<Index>> edges_at(graph.nodes.size());
   for (Index e = 0; e < graph.edges.size(); ++e)
@@ -111,39 +129,34 @@ std::size_t break_loops(Graph& graph, std::size_t loops) {
 }
 
 std::size_t prune_spurs(Graph& graph) {
-  for (std::size_t count = 0;; ++count) {
+  struct Spur {
+    double relative = 1;  // length in radii
+    std::size_t chain = 0;
+  };
+  for (std::size_t count = 0;;) {
     const auto edges_at = incidence(graph);
     const std::vector<Chain> chains = chains_of(graph);
-    const Chain* worst = nullptr;
-    double least = 1;
-    for (const Chain& chain : chains) {
+    std::map<Index, Spur> shortest;  // at every node where one branches off
+    for (std::size_t c = 0; c < chains.size(); ++c) {
+      const Chain& chain = chains[c];
       const std::size_t first = edges_at[chain.nodes.front()].size(), last = edges_at[chain.nodes.back()].size();
       if ((first == 1) == (last == 1)) continue;  // no free end, or two
       if (graph.nodes[first == 1 ? chain.nodes.front() : chain.nodes.back()].fixed) continue;
       const Index root = first == 1 ? chain.nodes.back() : chain.nodes.front();
       const double relative = length_of(graph, chain) / graph.nodes[root].radius;
-      if (relative < least) least = relative, worst = &chain;
+      if (Spur& spur = shortest[root]; relative < spur.relative) spur = {relative, c};
     }
-    if (!worst) return count;
     std::vector<bool> removed(graph.edges.size(), false);
-    for (const Index e : worst->edges) removed[e] = true;
-    remove_edges(graph, removed);
+    std::size_t round = 0;
+    for (const auto& [root, spur] : shortest) {
+      if (!(spur.relative < 1)) continue;
+      for (const Index e : chains[spur.chain].edges) removed[e] = true;
+      ++round;
+    }
+    if (round == 0) return count;
+    count += round;
+    remove_with_nodes(graph, removed);
   }
-}
-
-void compact(Graph& graph) {
-  const auto edges_at = incidence(graph);
-  std::vector<Index> number(graph.nodes.size(), kNone);
-  std::vector<Node> kept;
-  for (Index n = 0; n < graph.nodes.size(); ++n) {
-    if (edges_at[n].empty() && !graph.edges.empty()) continue;
-    if (graph.edges.empty() && !kept.empty()) break;
-    number[n] = static_cast<Index>(kept.size());
-    kept.push_back(graph.nodes[n]);
-  }
-  graph.nodes = std::move(kept);
-  for (auto& edge : graph.edges)
-    for (Index& n : edge) n = number[n];
 }
 
 }  // namespace vmesh::skeleton

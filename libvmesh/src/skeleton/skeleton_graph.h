@@ -40,16 +40,16 @@ std::vector<Chain> chains_of(const Graph& graph);
 
 void remove_edges(Graph& graph, const std::vector<bool>& removed);
 
+/// The same with nodes that have no edge then, but had one.
+void remove_with_nodes(Graph& graph, const std::vector<bool>& removed);
+
 /// Removes edges until the graph has at most `loops` independent loops, starting with the shortest loop; the longest
 /// edge of a loop is removed. Returns the number of edges removed.
 std::size_t break_loops(Graph& graph, std::size_t loops);
 
-/// Removes end chains shorter than the radius at the node where they branch off, relatively shortest first, until there
-/// are none. Returns the number removed.
+/// Removes end chains shorter than the radius at the node where they branch off, with their nodes, at every node the
+/// relatively shortest first, until there are none. Returns the number removed.
 std::size_t prune_spurs(Graph& graph);
-
-/// Drops nodes without an edge; keeps one if there is no edge at all.
-void compact(Graph& graph);
 
 /// The graph with every chain resampled at about `spacing` radii, after smoothing the curve and its radii over about a
 /// radius.
