@@ -124,6 +124,17 @@ void add_samples(Equations& equations, const GraphCones& cones, const FitSamples
   }
 }
 
+double noise_of(const FitSamples& samples, const std::vector<Place>& places, const GraphCones& cones) {
+  double sum = 0, area = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double beyond = std::max(std::abs(places[i].distance) - samples.slack[i], 0.0);
+    if (beyond > kNear * cones.radius_at(places[i])) continue;
+    sum += samples.areas[i] * beyond * beyond;
+    area += samples.areas[i];
+  }
+  return area > 0 ? std::sqrt(sum / area) : 0;
+}
+
 Vector4 state(const Node& node) {
   Vector4 result;
   result << node.position, node.radius;
@@ -287,7 +298,7 @@ std::size_t prune_contained(Graph& graph) {
   return count;
 }
 
-void fit_cones(Graph& graph, const FitSamples& samples, double voxel, int rounds, const Progress& progress) {
+double fit_cones(Graph& graph, const FitSamples& samples, double voxel, int rounds, const Progress& progress) {
   constexpr double kSettled = 2e-3;
   const std::vector<Node> first = graph.nodes;
   const auto edges_at = incidence(graph);
@@ -301,8 +312,9 @@ void fit_cones(Graph& graph, const FitSamples& samples, double voxel, int rounds
     Equations equations(graph.nodes.size());
     add_samples(equations, cones, samples, places);
     add_priors(equations, graph, edges_at, voxel);
-    if (apply(graph, first, equations.solve()) < kSettled) return;
+    if (apply(graph, first, equations.solve()) < kSettled) break;
   }
+  return noise_of(samples, places, GraphCones(graph));
 }
 
 }  // namespace vmesh::skeleton

@@ -57,7 +57,7 @@ std::size_t prune_contained(Graph& graph);
 /// (Gauss-Newton, at most `rounds` steps), with a little weight on smooth chains, more where `voxel` (mm, 0 for a wall
 /// that is not made of voxels) is large beside the radius. Far samples count less, as they may belong to a region that
 /// the graph does not reach. Ends thus come to lie where their spheres touch the wall's ends; fixed nodes stay. Polls
-/// `progress` for cancellation.
-void fit_cones(Graph& graph, const FitSamples& samples, double voxel, int rounds, const Progress& progress);
+/// `progress` for cancellation. Returns the root mean square of the distances beyond the slack, far ones left out, mm.
+double fit_cones(Graph& graph, const FitSamples& samples, double voxel, int rounds, const Progress& progress);
 
 }  // namespace vmesh::skeleton

@@ -30,6 +30,8 @@ using skeleton::MaskContent;
 using skeleton::VoxelSkeleton;
 
 constexpr int kFitRounds = 20;
+// A wall that is rough is smoothed like one of voxels larger by so many times the distances beyond the slack.
+constexpr double kNoise = 4;
 constexpr int kRefinements = 2;  // the second works on the result of the first
 constexpr double kLeastRadius = 1.5;  // voxels; thinner vessels have nodes as far apart as ones of that radius
 constexpr double kBytesPerVoxel = 120;  // measured
@@ -48,7 +50,8 @@ struct Work {
   std::vector<bool> kept;  // of every component
   std::vector<EndSection> sections;
   double voxel = 0;           // mm, of the grid
-  double wall_voxel = 0;      // mm; 0 for a wall that is not made of voxels
+  double wall_voxel = 0;      // mm, the longest side; 0 for a wall that is not made of voxels
+  double mean_voxel = 0;      // mm, likewise
   StageClock clock;
   ExtractionReport report;
 };
@@ -142,9 +145,11 @@ FitSamples kept_samples(const Work& work) {
 
 void fit(Work& work, const ExtractOptions& options, const Progress& progress) {
   const FitSamples samples = kept_samples(work);
+  double voxel = work.wall_voxel;
   for (int i = 0; i < kRefinements; ++i) {
     work.graph = skeleton::resampled(work.graph, options.spacing, kLeastRadius * work.voxel);
-    skeleton::fit_cones(work.graph, samples, work.wall_voxel, kFitRounds, progress);
+    const double noise = skeleton::fit_cones(work.graph, samples, voxel, kFitRounds, progress);
+    voxel = work.wall_voxel + kNoise * noise;
     work.report.spurs += skeleton::prune_spurs(work.graph) + skeleton::prune_contained(work.graph);
   }
 }
@@ -186,7 +191,7 @@ ExtractedCenterline finish(Work work, const ExtractOptions& options, const Progr
   work.clock.lap("cones", work.report.stages);
   std::vector<bool> left_out;
   for (const Index c : work.component_of_sample) left_out.push_back(!work.kept[c]);
-  skeleton::measure_coverage(centerline, work.wall, left_out, work.wall_voxel, work.report);
+  skeleton::measure_coverage(centerline, work.wall, left_out, work.mean_voxel, work.report);
   work.clock.lap("coverage", work.report.stages);
   return {std::move(centerline), std::move(work.sections), std::move(work.report)};
 }
@@ -216,7 +221,9 @@ ExtractedCenterline extract_centerline(VesselMask vessels, const ExtractOptions&
   mask.as_given = mask.voxels;
   note_filled(skeleton::fill_holes(mask.voxels), work.report.notes);
   work.clock.lap("voxels", work.report.stages);
-  work.voxel = work.wall_voxel = mask.frame.spacing().minCoeff();
+  work.voxel = mask.frame.spacing().minCoeff();
+  work.wall_voxel = mask.frame.spacing().maxCoeff();
+  work.mean_voxel = std::cbrt(mask.frame.spacing().prod());
   const std::vector<skeleton::BorderEnd> ends = skeleton::border_ends(mask.voxels, mask.frame);
   std::vector<skeleton::KnownEnd> known;
   for (const skeleton::BorderEnd& end : ends) known.push_back(end.end);
