@@ -31,8 +31,8 @@ void expect_whole_path(const std::string& name) {
   EXPECT_EQ(extracted.centerline.cycle_rank(), static_cast<std::size_t>(topology.genus));
   // The lumens are oval and the slices 4 to 5 mm thick: measured 0.47 and 0.27 mm in the mean, 1.17 and 0.82 at 95 %.
   // A voxel in the mean and two at 95 % is what one can ask of circular cross-sections.
-  EXPECT_LT(extracted.report.coverage.mean, 0.8);
-  EXPECT_LT(extracted.report.coverage.percentile_95, 1.6);
+  EXPECT_LT(extracted.report.wall.mean, 0.8);
+  EXPECT_LT(extracted.report.wall.percentile_95, 1.6);
 
   const Topology grown = measure_topology(generate_surface(extracted.centerline).mesh);
   EXPECT_TRUE(grown.closed && grown.manifold && grown.oriented && grown.outward);
@@ -53,8 +53,8 @@ TEST(RealSurfaces, AnAtlasInPiecesBecomesOneTree) {
   EXPECT_EQ(extracted.centerline.component_count(), 1u);
   EXPECT_EQ(extracted.centerline.cycle_rank(), 0u);
   // Measured 0.45 mm in the mean and 1.3 at 95 %, with vessels of 1 to 8 mm that are far from round.
-  EXPECT_LT(extracted.report.coverage.mean, 0.7);
-  EXPECT_LT(extracted.report.coverage.percentile_95, 2);
+  EXPECT_LT(extracted.report.wall.mean, 0.7);
+  EXPECT_LT(extracted.report.wall.percentile_95, 2);
 }
 
 }  // namespace

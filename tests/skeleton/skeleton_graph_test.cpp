@@ -41,7 +41,6 @@ TEST(PruneSpurs, RemovesWhatIsShorterThanTheRadius) {
   graph.edges.push_back({5, 22});
   EXPECT_EQ(prune_spurs(graph), 1u);
   EXPECT_EQ(graph.edges.size(), 21u);
-  compact(graph);
   EXPECT_EQ(graph.nodes.size(), 22u);
 }
 
@@ -62,15 +61,6 @@ TEST(BreakLoops, KeepsTheLongest) {
   const auto edges_at = incidence(graph);
   EXPECT_EQ(edges_at[0].size(), 2u);  // the large one is still there
   EXPECT_EQ(break_loops(graph, 0), 1u);
-}
-
-TEST(Connect, MakesOneComponentWithoutLoops) {
-  Graph graph = line(6, 1);
-  graph.edges.erase(graph.edges.begin() + 2);
-  graph.nodes.push_back({Vec3(0, 3, 0), 1});
-  connect(graph);
-  EXPECT_EQ(graph.edges.size(), graph.nodes.size() - 1);
-  for (const auto& edges : incidence(graph)) EXPECT_FALSE(edges.empty());
 }
 
 TEST(Resampled, SpacesNodesByTheirRadii) {

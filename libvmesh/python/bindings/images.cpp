@@ -49,10 +49,14 @@ SurfacePtr surface_of(const LoadedImage& image, const ReferenceOptions& options)
   return surface;
 }
 
-ReferenceOptions options_of(std::optional<double> label, std::optional<double> threshold, double spacing, double smooth,
+/// None, a number or several.
+using Labels = std::variant<std::monostate, double, std::vector<double>>;
+
+ReferenceOptions options_of(const Labels& label, std::optional<double> threshold, double spacing, double smooth,
                             bool all_components) {
   ReferenceOptions options;
-  options.label = label;
+  if (const auto* one = std::get_if<double>(&label)) options.labels = {*one};
+  if (const auto* several = std::get_if<std::vector<double>>(&label)) options.labels = *several;
   options.threshold = threshold;
   options.spacing = spacing;
   options.smooth = smooth;
@@ -65,7 +69,7 @@ ReferenceOptions options_of(std::optional<double> label, std::optional<double> t
 void bind_images(py::module_& module) {
   module.def(
       "reference_surface",
-      [](const std::variant<fs::path, py::array>& image, const py::object& affine, std::optional<double> label,
+      [](const std::variant<fs::path, py::array>& image, const py::object& affine, const Labels& label,
          std::optional<double> threshold, double spacing, double smooth, bool all_components) {
         const ReferenceOptions options = options_of(label, threshold, spacing, smooth, all_components);
         const auto* path = std::get_if<fs::path>(&image);
@@ -82,7 +86,7 @@ void bind_images(py::module_& module) {
     image           a file (.nii, .nii.gz, .nrrd, .mha ...), or an array (ni, nj, nk) indexed [i, j, k]
     affine          (4, 4), of an array: takes (i, j, k, 1) to LPS, mm. NIfTI's is to RAS:
                     numpy.diag([-1, -1, 1, 1]) @ image.affine
-    label           voxels of this value are inside; without label and threshold, those that are not 0
+    label           voxels of this value, or of one of these, are inside; without label and threshold, those that are not 0
     threshold       voxels of at least this value are inside
     spacing         side of cubic voxels to resample to, mm; 0: the image's own
     smooth          standard deviation of a Gaussian to smooth with, mm; 0: none
@@ -91,30 +95,56 @@ void bind_images(py::module_& module) {
 Raises ReadError, InvalidInput, Unsupported.)");
   module.def(
       "extract_centerline",
-      [](const SurfacePtr& surface, double spacing, double join, bool all_components, bool tree,
+      [](const std::variant<SurfacePtr, fs::path, py::array>& vessels, const py::object& affine, const Labels& label,
+         std::optional<double> threshold, double spacing, double join, bool largest, double least_length, bool tree,
          const py::object& progress) {
         ExtractOptions options;
         options.spacing = spacing;
         options.join = join;
-        options.all_components = all_components;
+        options.largest = largest;
+        options.least_length = least_length;
         options.tree = tree;
+        const auto object_of = [](ExtractedCenterline extracted) {
+          return std::make_shared<CenterlineObject>(CenterlineObject{std::move(extracted.centerline), {}, {}, {}});
+        };
+        if (const auto* surface = std::get_if<SurfacePtr>(&vessels)) {
+          if (*surface == nullptr) throw py::type_error("vessels: a Surface, a file or an array is needed, not None");
+          if (!std::holds_alternative<std::monostate>(label) || threshold)
+            throw InvalidInput("label and threshold are for images, not for a surface");
+          return result_of(progress, [&](const Progress& report) {
+            return object_of(extract_centerline((*surface)->mesh(), options, report));
+          });
+        }
+        ReferenceOptions inside = options_of(label, threshold, 0, 0, true);
+        if (const auto* path = std::get_if<fs::path>(&vessels))
+          return result_of(progress, [&](const Progress& report) {
+            std::vector<std::string> warnings;
+            return object_of(extract_centerline(read_vessel_mask(*path, inside, warnings), options, report));
+          });
+        const LoadedImage loaded = image_of(std::get<py::array>(vessels), affine);
         return result_of(progress, [&](const Progress& report) {
-          return std::make_shared<CenterlineObject>(
-              CenterlineObject{extract_centerline(surface->mesh(), options, report).centerline, {}, {}, {}});
+          return object_of(extract_centerline(vessel_mask(loaded, inside), options, report));
         });
       },
-      py::arg("surface").none(false), py::kw_only(), py::arg("spacing") = ExtractOptions().spacing,
-      py::arg("join") = ExtractOptions().join, py::arg("all_components") = false, py::arg("tree") = false,
-      py::arg("progress") = py::none(),
-      R"(The centerline of a closed surface.
+      py::arg("vessels"), py::arg("affine") = py::none(), py::kw_only(), py::arg("label") = py::none(),
+      py::arg("threshold") = py::none(), py::arg("spacing") = ExtractOptions().spacing,
+      py::arg("join") = ExtractOptions().join, py::arg("largest") = false, py::arg("least_length") = 0.0,
+      py::arg("tree") = false, py::arg("progress") = py::none(),
+      R"(The centerline of a wall or of a segmentation.
 
+    vessels         a Surface, open or closed; or an image, a file or an array (ni, nj, nk) indexed [i, j, k]
+    affine          (4, 4), of an array: takes (i, j, k, 1) to LPS, mm
+    label           image: voxels of this value, or of one of these, are inside; without label and threshold, those
+                    that are not 0
+    threshold       image: voxels of at least this value are inside
     spacing         between nodes, in local radii, 0.1 to 10
-    join            parts closer than this times the smaller radius are joined
-    all_components  keep parts that remain apart instead of the largest
-    tree            break all loops
+    join            ends are joined with what they point at over gaps of up to this times the smaller radius
+    largest         keep only the longest component
+    least_length    leave out components shorter than this, mm; 0: those no longer than wide
+    tree            open all loops, each at its neck
     progress        a function of a stage and a fraction; returning False cancels
 
-Raises InvalidInput for a surface that is not closed, manifold and oriented.)");
+Raises ReadError, InvalidInput, Unsupported.)");
 }
 
 }  // namespace vmesh::python

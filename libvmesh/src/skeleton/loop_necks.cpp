@@ -34,7 +34,7 @@ struct Stretch {
   std::size_t first = 0, last = 0;  ///< the nodes around it that are thinner than both sides
   double strength = 0;        ///< below 1 for contacts
   bool is_contact = false;
-  bool is_bridge = false;     ///< a contact, and short as a whole
+  bool may_be_crossing = false;     ///< a contact, short as a whole, where no neck is to be seen
 };
 
 double bore_of(const Graph& graph, const Chain& chain, std::size_t i) { return graph.nodes[chain.nodes[i]].bore; }
@@ -69,7 +69,7 @@ Stretch stretch_of(const Graph& graph, Chain chain, double widest, double voxel)
   if (is_bridge) s.first = 0, s.last = count - 1;
   if (s.first == s.last) (s.last + 1 < count ? s.last : s.first) += s.last + 1 < count ? 1 : -1;
   s.is_contact = is_neck || is_bridge;
-  s.is_bridge = is_bridge;
+  s.may_be_crossing = is_bridge && (share(s.thinnest) >= kNeck || s.width <= kSeenNeck * voxel);
   s.strength = s.is_contact ? share(s.thinnest) : 1 + bore_of(graph, chain, s.thinnest) / widest;
   s.chain = std::move(chain);
   return s;
@@ -260,7 +260,8 @@ std::vector<VesselLoop> pass(Graph& graph, double voxel, bool open) {
     const Stretch& stretch = stretches[s];
     const Chain& chain = stretch.chain;
     const bool is_free = !touched[chain.nodes.front()] && !touched[chain.nodes.back()];
-    const auto crossing = stretch.is_bridge && is_free ? uncrossing_at(graph, edges_at, stretch) : std::nullopt;
+    const auto crossing =
+        stretch.may_be_crossing && is_free ? uncrossing_at(graph, edges_at, stretch) : std::nullopt;
     if (crossing && uncross(graph, stretch, *crossing, removed)) {
       touched[chain.nodes.front()] = touched[chain.nodes.back()] = true;
     } else if (stretch.is_contact) {

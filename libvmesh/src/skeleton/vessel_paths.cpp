@@ -227,11 +227,13 @@ VesselPaths find_paths(const VoxelGraph& graph, const std::vector<float>& depth,
     if (end.voxel != kNone && end.radius > width[component[end.voxel]])
       known[component[end.voxel]] = end.voxel, width[component[end.voxel]] = end.radius;
   std::vector<float> scratch(graph.size(), kFar);
+  std::vector<Index> roots;
   Index seen = 0;
   for (Index n = 0; n < graph.size(); ++n) {
     if (component[n] != seen) continue;
     report_progress(progress, "skeleton", static_cast<double>(n) / static_cast<double>(graph.size()));
-    finder.start_at(finder.root_component(n, known[seen], scratch));
+    roots.push_back(finder.root_component(n, known[seen], scratch));
+    finder.start_at(roots.back());
     ++seen;
   }
   const FrontGraph fronts(graph, finder.length());
@@ -252,7 +254,7 @@ VesselPaths find_paths(const VoxelGraph& graph, const std::vector<float>& depth,
   VesselPaths paths = finder.take();
   paths.known_ends = std::move(places);
   paths.component = component;
-  paths.length = finder.length();
+  paths.roots = std::move(roots);
   return paths;
 }
 

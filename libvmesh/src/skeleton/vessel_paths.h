@@ -23,7 +23,7 @@ struct VesselPaths {
   std::vector<Index> known_ends;             ///< place in `voxels` of every known end; kNone if it has no path
   std::size_t loops = 0;
   std::vector<Index> component;  ///< of every voxel of the VoxelGraph
-  std::vector<float> length;     ///< of the shortest path from the component's root to every voxel, mm
+  std::vector<Index> roots;      ///< of every component, in the VoxelGraph
 };
 
 /// Finds paths as follows. Every component has a root: a known end, or the voxel that is farthest from any other. A

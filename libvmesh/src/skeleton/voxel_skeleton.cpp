@@ -10,8 +10,9 @@ namespace vmesh::skeleton {
 namespace {
 
 constexpr int kSmoothings = 4;
-// A component is a vessel if it is longer than this times its width, and than so many voxels.
-constexpr double kLongerThanWide = 1.25, kLeastVoxels = 5;
+// A component is a vessel if it is longer than this times its width, and than so many voxels, both measured from outside
+// to outside.
+constexpr double kLongerThanWide = 1.4, kLeastVoxels = 6;
 
 // A sphere counts as reaching an end if its radius and a voxel are this share of the way; the fit does the rest.
 constexpr double kReachesEnd = 0.8;
@@ -51,14 +52,14 @@ void trim_ends(Graph& graph, double voxel) {
 }
 
 void judge(std::vector<VoxelComponent>& components, const std::vector<Index>& component, const VoxelGraph& graph,
-           const std::vector<float>& depth, const std::vector<float>& length) {
+           const std::vector<float>& depth, const std::vector<Index>& roots) {
   const double voxel = graph.finest();
   std::vector<std::size_t> count;
   for (Index n = 0; n < graph.size(); ++n) {
     if (component[n] >= components.size()) components.resize(component[n] + 1), count.resize(component[n] + 1, 0);
     VoxelComponent& c = components[component[n]];
-    c.length = std::max(c.length, static_cast<double>(length[n]) + voxel);
-    c.width = std::max(c.width, 2 * depth[n] - voxel);
+    c.length = std::max(c.length, graph.distance(roots[component[n]], n) + 2 * voxel);
+    c.width = std::max(c.width, 2.0 * depth[n]);
     const Voxel& v = graph.voxel(n);
     c.place += Vec3(v[0], v[1], v[2]);
     ++count[component[n]];
@@ -88,7 +89,7 @@ VoxelSkeleton skeleton_of(const VoxelSet& voxels, const VoxelFrame& frame, std::
   const std::vector<float> depth = boundary_distances(graph);
   const std::vector<float> occupancy = smoothed_occupancy(voxels);
   VesselPaths paths = find_paths(graph, depth, occupancy, ends, progress);
-  judge(result.components, paths.component, graph, depth, paths.length);
+  judge(result.components, paths.component, graph, depth, paths.roots);
   for (VoxelComponent& component : result.components)
     component.place = frame.origin + frame.steps * component.place;
 

@@ -24,8 +24,8 @@ struct VoxelFrame {
 
 /// A component of the voxels.
 struct VoxelComponent {
-  double length = 0;  ///< of the longest path from its root, mm
-  double width = 0;   ///< at its widest, mm
+  double length = 0;  ///< from its root to the farthest voxel, and a voxel more at either end, mm
+  double width = 0;   ///< at its widest, from the first voxels outside, mm
   Vec3 place = Vec3::Zero();
   bool kept = true;  ///< else it is no longer than wide, or than noise
 };
