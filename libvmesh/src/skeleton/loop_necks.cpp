@@ -32,7 +32,7 @@ struct Stretch {
   double width = 0;           ///< largest bore on the thinner side of the thinnest place, mm
   std::size_t thinnest = 0;   ///< in the chain's nodes
   std::size_t first = 0, last = 0;  ///< the nodes around it that are thinner than both sides
-  double strength = 0;        ///< below 1 for contacts
+  double strength = 0;        ///< below a half for short ways from vessel to vessel, below 1 for necks
   bool is_contact = false;
   bool may_be_crossing = false;     ///< a contact, short as a whole, where no neck is to be seen
 };
@@ -70,7 +70,9 @@ Stretch stretch_of(const Graph& graph, Chain chain, double widest, double voxel)
   if (s.first == s.last) (s.last + 1 < count ? s.last : s.first) += s.last + 1 < count ? 1 : -1;
   s.is_contact = is_neck || is_bridge;
   s.may_be_crossing = is_bridge && (share(s.thinnest) >= kNeck || s.width <= kSeenNeck * voxel);
-  s.strength = s.is_contact ? share(s.thinnest) : 1 + bore_of(graph, chain, s.thinnest) / widest;
+  s.strength = is_bridge ? 0.5 * share(s.thinnest)
+               : is_neck ? 0.5 + 0.5 * share(s.thinnest)
+                         : 1 + bore_of(graph, chain, s.thinnest) / widest;
   s.chain = std::move(chain);
   return s;
 }
