@@ -55,6 +55,10 @@ void Console::error(std::string_view line) { print("vmesh: ", line); }
 
 Progress Console::progress() {
   return [this](std::string_view stage, double fraction) {
+    if (stage != stage_) {
+      stage_ = stage;
+      stage_began_ = std::chrono::steady_clock::now();
+    }
     if (!quiet_) terminal_ ? draw_bar(stage, fraction) : tell_progress(stage, fraction);
     return !interrupted();
   };
@@ -66,7 +70,14 @@ void Console::tell_progress(std::string_view stage, double fraction) {
   if (now < next_draw_) return;
   next_draw_ = now + kBetweenLines;
   const double done = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
-  print("", std::string(stage) + ": " + std::to_string(static_cast<int>(100 * done)) + " %");
+  print("", std::string(stage) + ": " + std::to_string(static_cast<int>(100 * done)) + " %" + time_left(done));
+}
+
+std::string Console::time_left(double done) const {
+  constexpr double kLeastDone = 0.02, kLeastSeconds = 1;  // before that, it is a guess
+  const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - stage_began_).count();
+  if (done < kLeastDone || passed < kLeastSeconds) return "";
+  return ", about " + std::to_string(static_cast<long>(std::ceil(passed * (1 - done) / done))) + " s left";
 }
 
 void Console::draw_bar(std::string_view stage, double fraction) {
@@ -77,8 +88,8 @@ void Console::draw_bar(std::string_view stage, double fraction) {
   const double done = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
   const int filled = static_cast<int>(done * kWidth);
   bar_.assign(static_cast<std::size_t>(filled), '#').append(static_cast<std::size_t>(kWidth - filled), '.');
-  std::fprintf(stderr, "\r\x1b[K[%s] %3.0f %% %.*s", bar_.c_str(), 100 * done, static_cast<int>(stage.size()),
-               stage.data());
+  std::fprintf(stderr, "\r\x1b[K[%s] %3.0f %% %.*s%s", bar_.c_str(), 100 * done, static_cast<int>(stage.size()),
+               stage.data(), time_left(done).c_str());
   std::fflush(stderr);
   bar_drawn_ = true;
 }

@@ -31,12 +31,14 @@ class Console {
   void error(std::string_view line);
 
   /// Cancels once the process was interrupted; draws a bar if stderr is a terminal, else writes a line every few
-  /// seconds. Must not outlive the console.
+  /// seconds, both with the time that the stage will still take. Must not outlive the console.
   Progress progress();
 
  private:
   void draw_bar(std::string_view stage, double fraction);
   void tell_progress(std::string_view stage, double fraction);
+  /// ", about 12 s left", once the speed of a stage is known; else nothing.
+  std::string time_left(double done) const;
   void clear_bar();
   void print(std::string_view prefix, std::string_view line);
 
@@ -46,6 +48,8 @@ class Console {
   std::string bar_;
   std::set<std::string, std::less<>> warned_;
   std::chrono::steady_clock::time_point next_draw_;
+  std::string stage_;  // that was last reported, and when it was first
+  std::chrono::steady_clock::time_point stage_began_;
 };
 
 /// Measures the wall time of stages.

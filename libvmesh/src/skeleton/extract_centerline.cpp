@@ -330,7 +330,10 @@ ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOpti
       known.push_back({voxel_at(volume, end), std::sqrt(end.area / M_PI)});
       sections.push_back({kNone, end.center, end.normal, end.area, end.ring, end.was_open});
     }
-    VoxelSkeleton skeleton = skeleton::skeleton_of(volume.voxels, volume.frame, known, progress);
+    const Progress of_part = [&](std::string_view stage, double fraction) {
+      return !progress || progress(stage, (static_cast<double>(p) + fraction) / static_cast<double>(wall.parts.size()));
+    };
+    VoxelSkeleton skeleton = skeleton::skeleton_of(volume.voxels, volume.frame, known, of_part);
     const auto offset = static_cast<Index>(all.graph.nodes.size());
     for (std::size_t e = 0; e < sections.size(); ++e) {
       if (skeleton.node_of_end[e] == kNone) continue;

@@ -16,6 +16,7 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr double kNearDepths = 1.2, kNearVoxels = 2;
 // Fronts that meet again sooner are a tunnel in a rough boundary, or a notch: so many depths, and voxels.
 constexpr double kLoopDepths = 1, kLoopVoxels = 5, kLoopSlices = 3;
+constexpr std::size_t kBetweenReports = 1000;  // voxels
 constexpr float kOnPath = 1e-3f;  // of the cost of other voxels: a second path prefers the first one's way
 
 // A path around a loop may go so many depths, and this share of the loop, beyond where its sides meet.
@@ -231,13 +232,14 @@ VesselPaths find_paths(const VoxelGraph& graph, const std::vector<float>& depth,
   Index seen = 0;
   for (Index n = 0; n < graph.size(); ++n) {
     if (component[n] != seen) continue;
-    report_progress(progress, "skeleton", static_cast<double>(n) / static_cast<double>(graph.size()));
+    report_progress(progress, "skeleton", 0.5 * static_cast<double>(n) / static_cast<double>(graph.size()));
     roots.push_back(finder.root_component(n, known[seen], scratch));
     finder.start_at(roots.back());
     ++seen;
   }
   const FrontGraph fronts(graph, finder.length());
   for (const FrontGraph::Loop& loop : fronts.loops([&](Index voxel) { return finder.least_loop(voxel); })) {
+    report_progress(progress, "skeleton", 0.5);
     finder.add_loop(fronts, loop);
     finder.count_loop();
   }
@@ -246,9 +248,13 @@ VesselPaths find_paths(const VoxelGraph& graph, const std::vector<float>& depth,
     finder.add_path_from(end.voxel);
     finder.mark_end(end.voxel, end.radius);
   }
-  report_progress(progress, "skeleton", 0.5);
-  for (const Index n : farthest_first(finder.length()))
+  std::size_t seen_voxels = 0;
+  for (const Index n : farthest_first(finder.length())) {
+    if (seen_voxels++ % kBetweenReports == 0)
+      report_progress(progress, "skeleton",
+                      0.5 + 0.5 * static_cast<double>(seen_voxels) / static_cast<double>(graph.size()));
     if (!finder.is_near_path(n) && !finder.has_path(n)) finder.add_path_from(n);
+  }
   std::vector<Index> places;
   for (const KnownEnd& end : ends) places.push_back(end.voxel == kNone ? kNone : finder.place_of(end.voxel));
   VesselPaths paths = finder.take();

@@ -30,7 +30,7 @@ Halves halves_of(const TriMesh& mesh, Index f) {
              &c = mesh.vertices[face[(longest + 2) % 3]];
   Halves halves;
   halves.start = a;
-  halves.along = (b - a) / lengths[longest];
+  halves.along = lengths[longest] > 0 ? Vec3((b - a) / lengths[longest]) : Vec3(Vec3::Zero());  // else it has no area
   halves.first = std::clamp((c - a).dot(halves.along), 0.0, lengths[longest]);
   halves.second = lengths[longest] - halves.first;
   const Vec3 up = c - a - (c - a).dot(halves.along) * halves.along;
