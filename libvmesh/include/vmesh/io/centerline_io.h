@@ -103,9 +103,14 @@ struct CenterlineMetadata {
 
 /// Writes a centerline (given in mm and LPS) in the format of the extension, in the unit and frame of `metadata`, which
 /// are recorded: JSON, SWC, VTP, CSV pair. Numbers round-trip exactly, the bytes depend on the arguments alone, and the
-/// file appears complete or not at all. Node order is kept. Throws Unsupported for a centerline with loops in SWC (a
-/// tree format), see centerline_output_format(), and for VTP without VTK; WriteError when the file cannot be written.
+/// file appears complete or not at all. Node order is kept. Flat ends are written to JSON and VTP; other formats cannot
+/// hold them (keeps_end_sections()). Throws InvalidInput for a flat end that is wrong or at no end; Unsupported for a
+/// centerline with loops in SWC (a tree format), see centerline_output_format(), and for VTP without VTK; WriteError
+/// when the file cannot be written.
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
-                      const CenterlineMetadata& metadata = {});
+                      const CenterlineMetadata& metadata = {}, const std::vector<EndSection>& end_sections = {});
+
+/// Whether files of the format have room for flat ends: JSON and VTP.
+bool keeps_end_sections(CenterlineFormat format);
 
 }  // namespace vmesh
