@@ -27,7 +27,8 @@ int run(const CenterlineArguments& arguments, Console& console) {
   stop_if_interrupted();
   const std::string sha256 = sha256_of_input(path);
   write_centerline(arguments.output, result.centerline,
-                   {generator_name(), describe(arguments), path.filename().string(), sha256});
+                   {generator_name(), describe(arguments), path.filename().string(), sha256}, result.end_sections,
+                   console);
   console.log("wrote " + arguments.output.string());
   if (!arguments.common.json.empty())
     write_json(arguments.common.json, {{"schema", "vmesh.extraction/2"},
@@ -35,6 +36,7 @@ int run(const CenterlineArguments& arguments, Console& console) {
                                        {"input", {{"file", path.string()}, {"sha256", sha256}}},
                                        {"options", describe(arguments)},
                                        {"centerline", to_json(result.centerline)},
+                                       {"end_sections", to_json(result.end_sections)},
                                        {"extraction", to_json(result.report)}});
   return kOk;
 }

@@ -37,9 +37,10 @@ LoadedCenterline extract(const GenerateArguments& arguments, std::optional<TriMe
   if (!arguments.centerline_output.empty())
     write_centerline(arguments.centerline_output, centerline,
                      {generator_name(), "extracted by generate", arguments.input.path.filename().string(),
-                      sha256_of_input(arguments.input.path)});
+                      sha256_of_input(arguments.input.path)},
+                     extracted.end_sections, console);
   if (!reference) reference = std::move(surface);
-  LoadedCenterline loaded{{centerline, {}, {}, {}}, {}, {}};
+  LoadedCenterline loaded{{centerline, {}, {}, {}, extracted.end_sections}, {}, {}};
   for (Index n = 0; n < centerline.nodes().size(); ++n) loaded.cleaned.raw_node.push_back(n);
   for (Index s = 0; s < centerline.segments().size(); ++s) loaded.cleaned.raw_segment.push_back(s);
   return loaded;

@@ -68,9 +68,9 @@ struct CleaningReport {
 struct CleanedCenterline {
   Centerline centerline;
   CleaningReport report;
-  std::vector<Index> raw_node;           ///< for every node, the raw node it stems from (the first of those merged)
-  std::vector<Index> raw_segment;        ///< for every segment, the raw segment; kNone for a joined gap
-  std::vector<EndSection> end_sections;  ///< ascending in their nodes, at most one per end; of `centerline`
+  std::vector<Index> raw_node;     ///< for every node, the raw node it stems from (the first of those merged)
+  std::vector<Index> raw_segment;  ///< for every segment, the raw segment; kNone for a joined gap
+  std::vector<EndSection> end_sections = {};  ///< ascending in their nodes, at most one per end; of `centerline`
 };
 
 /// Turns a raw centerline into a valid one. Deterministic; time near linear in the number of nodes. Nodes are merged
