@@ -435,5 +435,42 @@ TEST(CleanAtScale, ScatteredSpheresUnderOneHugeOne) {
   EXPECT_LT(clean(polylines(lines), options).centerline.component_count(), 100000u);
 }
 
+EndSection flat_end(Index n, const Vec3& center, double area = 3) { return {n, center, {2, 0, 0}, area, {}, true}; }
+
+TEST(CleanFlatEnds, FollowTheirNodes) {
+  // Node 3 is where node 2 is, and merged into it; the thickest end comes first.
+  RawCenterline raw = raw_of({node(0, 0, 1), node(4, 0, 1), node(8, 0, 2), node(8, 0, 2)}, {{0, 1}, {1, 2}, {2, 3}});
+  raw.end_sections = {flat_end(0, {0, 0.1, 0}), flat_end(3, {8, 0, 0})};
+  const CleanedCenterline cleaned = clean(raw);
+  EXPECT_EQ(cleaned.report.count(Kind::dropped_end_section), 0u);
+  ASSERT_EQ(cleaned.end_sections.size(), 2u);
+  EXPECT_EQ(cleaned.end_sections[0].node, 0u);
+  EXPECT_EQ(cleaned.end_sections[0].center, Vec3(8, 0, 0));
+  EXPECT_EQ(cleaned.end_sections[0].normal, Vec3(1, 0, 0));
+  EXPECT_EQ(cleaned.end_sections[1].node, 2u);
+  EXPECT_EQ(cleaned.end_sections[1].center, Vec3(0, 0.1, 0));
+}
+
+TEST(CleanFlatEnds, AreDroppedWhereNoVesselEnds) {
+  RawCenterline raw = raw_of({node(0, 0, 1), node(4, 0, 1), node(8, 0, 1)}, {{0, 1}, {1, 2}});
+  raw.end_sections = {flat_end(1, {4, 0, 0}), flat_end(2, {8, 0, 0}), flat_end(2, {8, 0.1, 0}), flat_end(0, {0, 2, 0})};
+  const CleanedCenterline cleaned = clean(raw);
+  ASSERT_EQ(cleaned.end_sections.size(), 1u);
+  EXPECT_EQ(cleaned.end_sections[0].center, Vec3(8, 0, 0));
+  ASSERT_EQ(cleaned.report.count(Kind::dropped_end_section), 3u);
+  EXPECT_EQ(cleaned.report.actions[0].message, "test.swc: line 1: its flat end was dropped: no vessel ends there");
+  EXPECT_EQ(cleaned.report.actions[1].index, 2u);
+  EXPECT_EQ(to_string(cleaned.report.actions[2].kind), "dropped_end_section");
+  EXPECT_NE(cleaned.report.summary().back().find("and 2 more"), std::string::npos);
+}
+
+TEST(CleanFlatEnds, ThatAreWrongAreRefused) {
+  RawCenterline raw = raw_of({node(0, 0, 1), node(4, 0, 1)}, {{0, 1}});
+  for (const EndSection& section : {flat_end(2, {0, 0, 0}), flat_end(0, {0, 0, 0}, -1), flat_end(0, {0, 0, 1e40})}) {
+    raw.end_sections = {section};
+    EXPECT_NE(message_of_failure(raw).find("test.swc: flat end 0: "), std::string::npos) << message_of_failure(raw);
+  }
+}
+
 }  // namespace
 }  // namespace vmesh

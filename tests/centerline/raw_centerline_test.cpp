@@ -28,6 +28,27 @@ TEST(ConvertToInternal, ScalesToMillimetresAndTurnsToLps) {
   EXPECT_EQ(micro.nodes[0].position, Vec3(0.001, 0.002, 0.003));
 }
 
+TEST(ConvertToInternal, ConvertsFlatEnds) {
+  RawCenterline raw = one_node(LengthUnit::cm, Space::ras);
+  raw.end_sections = {{0, {1, 2, 3}, {0, 1, 0}, 2, {{1, 2, 3}, {0, 2, 3}, {0, 2, 4}}, true}};
+  std::vector<std::string> warnings;
+  const EndSection section = convert_to_internal(raw, {}, {}, warnings).end_sections.at(0);
+  EXPECT_EQ(section.center, Vec3(-10, -20, 30));
+  EXPECT_EQ(section.normal, Vec3(0, -1, 0));
+  EXPECT_EQ(section.area, 200);
+  EXPECT_EQ(section.ring, (std::vector<Vec3>{{-10, -20, 30}, {0, -20, 30}, {0, -20, 40}}));
+  const auto area = [](const EndSection& s) -> Vec3 { return (s.ring[1] - s.ring[0]).cross(s.ring[2] - s.ring[0]); };
+  EXPECT_EQ(area(raw.end_sections[0]).dot(raw.end_sections[0].normal) > 0, area(section).dot(section.normal) > 0);
+}
+
+TEST(Merge, RenumbersFlatEnds) {
+  RawCenterline a = one_node(LengthUnit::mm, Space::lps), b = a;
+  b.end_sections = {{0, {1, 2, 3}, {0, 1, 0}, 2, {}, true}};
+  const RawCenterline all = merge({a, b});
+  ASSERT_EQ(all.end_sections.size(), 1u);
+  EXPECT_EQ(all.end_sections[0].node, 1u);
+}
+
 TEST(ConvertToInternal, SaysWhatItAssumes) {
   std::vector<std::string> warnings;
   const auto raw = convert_to_internal(one_node(LengthUnit::unknown, Space::unknown), {}, {}, warnings);

@@ -67,7 +67,11 @@ std::vector<std::string> json_seeds() {
  "nodes": [[0, 0, 0, 2], [8, 0, 0, 1.5], [12, 4, 0, 1], [12, -4, 0, 1]],
  "segments": [[0, 1], [1, 2], [1, 3]]})",
           R"({"schema": "vmesh.centerline/1", "unit": "um", "options": "\u00e4\n", "more": {"a": [true, null, {}]},
- "nodes": [[1e3, -0.5, 1e-9, 2]], "segments": []})"};
+ "nodes": [[1e3, -0.5, 1e-9, 2]], "segments": []})",
+          R"({"schema": "vmesh.centerline/1", "nodes": [[0, 0, 0, 2], [8, 0, 0, 2]], "segments": [[0, 1]],
+ "end_sections": [{"node": 1, "center": [8, 0, 0], "normal": [1, 0, 0.1], "area": 12.5, "open": false},
+ {"node": 0, "center": [0, 0, 0], "normal": [-1, 0, 0], "area": 8, "open": true,
+ "ring": [[0, 2, 0], [0, -1, -2], [0, -1, 2]]}]})"};
 }
 
 std::vector<std::string> markups_seeds() {
@@ -194,6 +198,18 @@ std::vector<std::string> vtp_seeds() {
           array("type=\"Int32\" Name=\"connectivity\" format=\"ascii\"", ids) +
               array("type=\"Int32\" Name=\"offsets\" format=\"ascii\"", offsets),
           "header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\""),
+      // A flat end with a ring.
+      "<VTKFile type=\"PolyData\"><PolyData><FieldData>" + array("type=\"Int32\" Name=\"EndSectionNode\"", "1") +
+          array("type=\"Int8\" Name=\"EndSectionCenter\"", "3 0 0") +
+          array("type=\"Int8\" Name=\"EndSectionNormal\"", "1 0 0") +
+          array("type=\"Int8\" Name=\"EndSectionArea\"", "4") + array("type=\"Int8\" Name=\"EndSectionOpen\"", "1") +
+          array("type=\"Int8\" Name=\"EndSectionRing\"", "3 1 0 3 -1 1 3 -1 -1") +
+          array("type=\"Int8\" Name=\"EndSectionRingOffsets\"", "0 3") +
+          "</FieldData><Piece NumberOfPoints=\"2\" NumberOfLines=\"1\"><PointData>" +
+          array("type=\"Int8\" Name=\"Radius\"", "1 1") + "</PointData><Points>" +
+          array("type=\"Int8\" NumberOfComponents=\"3\"", "0 0 0 3 0 0") + "</Points><Lines>" +
+          array("type=\"Int8\" Name=\"connectivity\"", "0 1") + array("type=\"Int8\" Name=\"offsets\"", "2") +
+          "</Lines></Piece></PolyData></VTKFile>",
       // The data of the points behind everything else.
       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"BigEndian\" header_type=\"UInt64\"><PolyData>"
       "<Piece NumberOfPoints=\"1\" NumberOfVerts=\"1\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">"

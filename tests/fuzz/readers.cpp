@@ -45,6 +45,7 @@ void check(const RawCenterline& raw) {
   for (const auto& [a, b] : raw.segments) require(a < count && b < count, "a segment without its node");
   require(std::is_sorted(raw.path_starts.begin(), raw.path_starts.end()), "paths out of order");
   for (const Index start : raw.path_starts) require(start < raw.segments.size(), "a path without its segment");
+  for (const EndSection& section : raw.end_sections) require(section.node < count, "a flat end without its node");
   require(raw.node_numbers.empty() || raw.node_numbers.size() == count, "nodes without numbers");
   require(raw.segment_numbers.empty() || raw.segment_numbers.size() == raw.segments.size(), "segments without numbers");
 }
@@ -67,6 +68,9 @@ Verdict read_centerline_as(std::string_view content) {
     std::vector<std::string> warnings;
     const CleanedCenterline cleaned = clean(convert_read(std::move(raw), options, {}, {}, warnings));
     require(cleaned.raw_node.size() == cleaned.centerline.nodes().size(), "cleaned nodes of unknown origin");
+    for (const EndSection& section : cleaned.end_sections)
+      require(section.node < cleaned.raw_node.size() && cleaned.centerline.degree(section.node) == 1,
+              "a flat end where no vessel ends");
   });
 }
 

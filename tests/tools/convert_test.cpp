@@ -44,6 +44,31 @@ TEST_F(Convert, CenterlinesGoThroughEveryFormatUnchanged) {
   }
 }
 
+TEST_F(Convert, FlatEndsAreKeptInJsonAndVtp) {
+  write("cut.json", R"({"schema": "vmesh.centerline/1", "unit": "mm", "space": "LPS",
+    "nodes": [[0, 0, 0, 2], [5, 0, 0, 2], [9, 0, 0, 2]], "segments": [[0, 1], [1, 2]],
+    "end_sections": [{"node": 2, "center": [9, 0, 0], "normal": [1, 0, 0], "area": 12, "open": true,
+                      "ring": [[9, 2, 0], [9, -1, 2], [9, -1, -2]]}]})");
+  std::string from = "cut.json";
+  for (const std::string name : {"a.vtp", "b.json"}) {
+    if (name == "a.vtp" && !VMESH_TEST_WITH_VTK) continue;
+    const Outcome run = vmesh({"convert", "@" + from, "@" + name, "--output-unit", "cm", "--output-space", "RAS"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.err.find("flat end"), std::string::npos) << run.err;
+    const RawCenterline raw = read_centerline(path(name));
+    ASSERT_EQ(raw.end_sections.size(), 1u);
+    EXPECT_LT((raw.end_sections[0].center - Vec3(-0.9, 0, 0)).norm(), 1e-12);
+    EXPECT_NEAR(raw.end_sections[0].area, 0.12, 1e-12);
+    EXPECT_LT((raw.end_sections[0].ring.at(1) - Vec3(-0.9, 0.1, 0.2)).norm(), 1e-12);
+    const Outcome info = vmesh({"info", "@" + name});
+    EXPECT_NE(info.out.find("\ncenterline.end_sections: 1\n"), std::string::npos) << info.out;
+    from = name;
+  }
+  const Outcome run = vmesh({"convert", "@cut.json", "@a.swc"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_NE(run.err.find("1 flat end is lost, being kept only in .json and .vtp"), std::string::npos) << run.err;
+}
+
 TEST_F(Convert, VmvIsReadAndNotWritten) {
   write("y.vmv",
         "$VERT_LIST_BEGIN\n1 0 0 0 3000\n2 0 0 9000 2500\n3 0 5000 15000 2000\n4 0 -5000 15000 2000\n$VERT_LIST_END\n"

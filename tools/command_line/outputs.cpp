@@ -156,6 +156,14 @@ void write_surface(const fs::path& path, const TriMesh& mesh, MeshAttributes att
   vmesh::write_surface(path, mesh, attributes, metadata, skin);
 }
 
+void write_centerline(const fs::path& path, const Centerline& centerline, const CenterlineMetadata& metadata,
+                      const std::vector<EndSection>& sections, Console& console) {
+  vmesh::write_centerline(path, centerline, metadata, sections);
+  if (sections.empty() || keeps_end_sections(centerline_format(path))) return;
+  console.log(path.string() + ": " + std::to_string(sections.size()) +
+              (sections.size() == 1 ? " flat end is" : " flat ends are") + " lost, being kept only in .json and .vtp");
+}
+
 void check_writing(const fs::path& path, const WritingArguments& writing) {
   if (extension_of(path) == ".glb" && (writing.unit != LengthUnit::mm || writing.space != Space::lps))
     throw UsageError(path.string() +

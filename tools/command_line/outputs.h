@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 
 #include "command_line/arguments.h"
+#include "command_line/console.h"
 
 namespace vmesh::tool {
 
@@ -32,6 +34,10 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 /// also gets `quality`, which MeshLab shows by default: the distance or displacement, else the radius.
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, MeshAttributes attributes,
                    SurfaceMetadata metadata, const WritingArguments& writing, const SurfaceSkin* skin = nullptr);
+
+/// write_centerline(); logs how many flat ends are lost if the format has no room for them.
+void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
+                      const CenterlineMetadata& metadata, const std::vector<EndSection>& sections, Console& console);
 
 /// Adds what write_surface() adds to the attributes of vertices for this extension: colours, and in PLY the quality.
 void add_for_viewers(const std::string& extension, std::vector<MeshAttribute>& attributes);

@@ -355,7 +355,20 @@ Json caps_json(const FlatEnds& ends) {
                     {"center", to_json(end.center)},
                     {"normal", to_json(end.normal)},
                     {"area_mm2", end.area},
-                    {"capped", end.capped}});
+                    {"capped", end.capped},
+                    {"at_section", end.at_section}});
+  }
+  return json;
+}
+
+Json to_json(const std::vector<EndSection>& sections) {
+  Json json = Json::array();
+  for (const EndSection& section : sections) {
+    json.push_back({{"node", section.node},
+                    {"center", to_json(section.center)},
+                    {"normal", to_json(section.normal)},
+                    {"area_mm2", section.area},
+                    {"open", section.open}});
   }
   return json;
 }

@@ -50,6 +50,8 @@ Json to_json(const ExtractionReport& report);
 Json stages_json(const std::vector<StageTime>& stages);
 Json openings_json(const GenerateResult& result);
 Json caps_json(const FlatEnds& ends);
+/// Without their rings.
+Json to_json(const std::vector<EndSection>& sections);
 Json to_json(const SurfaceMeasurement& measurement);
 Json generator_json();
 

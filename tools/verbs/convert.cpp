@@ -44,7 +44,8 @@ void convert(const RawCenterline& raw, const ConvertArguments& arguments, Consol
   for (const std::string& line : cleaned.report.summary()) console.log("cleaning: " + line);
   write_centerline(arguments.output, cleaned.centerline,
                    {generator_name(), "convert", file_name_of(arguments.input), sha256_of(arguments.input),
-                    arguments.writing.unit, arguments.writing.space});
+                    arguments.writing.unit, arguments.writing.space},
+                   cleaned.end_sections, console);
 }
 
 void convert(const LoadedSurface& surface, const ConvertArguments& arguments, Console&) {

@@ -38,11 +38,14 @@ BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& cen
 }
 
 /// Fits the surface; returns whether the requested error is kept.
-bool fit(GenerateReport& report, GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
+bool fit(GenerateReport& report, GenerateResult& result, const PreparedCenterline& prepared, const TriMesh& reference,
          Console& console) {
+  const Centerline& centerline = prepared.grown();
   Stopwatch watch;
   const FittingArguments& fitting = report.arguments->fitting;
   report.fit = naming(fit_reference(*report.arguments), [&] {
+    // The wall is then fitted up to the planes in which its ends are kept.
+    end_at_sections(result, sections_of_grown(prepared, report.cleaned->end_sections), false);
     const FlatReference flat = end_at_caps(result, reference);
     FitReport fitted = fit_surface(result, centerline, flat.mesh, fitting.options, console.progress());
     match_cap_areas(result, centerline, flat.caps);
@@ -66,7 +69,7 @@ void measure_distance(GenerateReport& report, const Centerline& grown) {
 }
 
 /// Caps and extends ends; nodes are those of the original centerline.
-void finish_ends(GenerateReport& report, GenerateResult& result) {
+void finish_ends(GenerateReport& report, GenerateResult& result, Console& console) {
   const GenerateArguments& arguments = *report.arguments;
   const Centerline& centerline = report.cleaned->centerline;
   report.wall_vertices = result.mesh.vertices.size();
@@ -76,7 +79,13 @@ void finish_ends(GenerateReport& report, GenerateResult& result) {
   options.left_open = arguments.left_open;
   options.extension = arguments.flow_extension;
   options.keep_area = !report.fit && arguments.options.placement == Placement::balanced;
+  options.sections = report.cleaned->end_sections;
   report.ends = vmesh::finish_ends(result, centerline, options);
+  for (const SectionNotKept& end : report.ends.not_kept)
+    warn(report,
+         "the flat end at node " + std::to_string(end.node) + " is not kept: " + end.reason +
+             "; the vessel is cut across its axis there",
+         console);
 }
 
 /// Fills in the measurements and problems of the surface around `grown`.
@@ -212,12 +221,12 @@ int run(const GenerateArguments& given, Console& console) {
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
   for (const GrowthWarning& warning : result.warnings) warn(report, warning.message, console);
   warn_of_error(report, console);
-  if (reference && result.is_sound()) kept_budget &= fit(report, result, prepared.grown(), *reference, console);
+  if (reference && result.is_sound()) kept_budget &= fit(report, result, prepared, *reference, console);
 
   watch.lap();
   measure_distance(report, prepared.grown());
   refer_to_cleaned(prepared, result, report);
-  finish_ends(report, result);
+  finish_ends(report, result, console);
   name_nodes(result.defects, loaded);
   judge(report, prepared.grown(), console);
   report.stages.push_back({"measure", watch.lap()});

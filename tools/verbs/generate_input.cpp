@@ -33,7 +33,8 @@ GenerateInput extract_input(const GenerateArguments& arguments, std::optional<Tr
   if (!arguments.centerline_output.empty())
     write_centerline(arguments.centerline_output, centerline,
                      {generator_name(), "extracted by generate", arguments.input.path.filename().string(),
-                      sha256_of_input(arguments.input.path)});
+                      sha256_of_input(arguments.input.path)},
+                     extracted.end_sections, console);
   stop_if_interrupted();
   if (!reference) {
     FittingArguments own = arguments.fitting;
@@ -44,6 +45,7 @@ GenerateInput extract_input(const GenerateArguments& arguments, std::optional<Tr
   }
   input.reference = std::move(reference);
   input.centerline.cleaned.centerline = centerline;
+  input.centerline.cleaned.end_sections = extracted.end_sections;
   for (Index n = 0; n < centerline.nodes().size(); ++n) input.centerline.cleaned.raw_node.push_back(n);
   for (Index s = 0; s < centerline.segments().size(); ++s) input.centerline.cleaned.raw_segment.push_back(s);
   input.extraction = std::move(extracted.report);

@@ -50,6 +50,7 @@ void describe(const RawCenterline& raw, Json& json) {
   try {
     const CleanedCenterline cleaned = clean(raw);
     json["centerline"] = to_json(cleaned.centerline);
+    json["centerline"]["end_sections"] = cleaned.end_sections.size();
     json["cleaning"] = to_json(cleaned.report);
   } catch (const InvalidInput& error) {
     json["error"] = error.what();

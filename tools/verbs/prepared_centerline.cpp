@@ -1,5 +1,7 @@
 #include "verbs/prepared_centerline.h"
 
+#include <algorithm>
+
 #include "vmesh/core/memory.h"
 #include "vmesh/volume/cone_relations.h"
 
@@ -72,6 +74,15 @@ PreparedCenterline prepare_centerline(GenerateReport& report, Console& console) 
   release_freed_memory();
   prepared.separated = handle_contacts(report, prepared.unseparated(), console);
   return prepared;
+}
+
+// Separation keeps the numbers; simplification keeps all ends.
+std::vector<EndSection> sections_of_grown(const PreparedCenterline& prepared, std::vector<EndSection> sections) {
+  if (!prepared.simplified) return sections;
+  const std::vector<Index>& kept = prepared.simplified->node;  // ascending
+  for (EndSection& section : sections)
+    section.node = static_cast<Index>(std::lower_bound(kept.begin(), kept.end(), section.node) - kept.begin());
+  return sections;
 }
 
 void refer_to_cleaned(const PreparedCenterline& prepared, GenerateResult& result, GenerateReport& report) {

@@ -19,6 +19,9 @@ struct PreparedCenterline {
 /// Prepares report.cleaned according to the arguments. Fills in contacts and their separation in the report.
 PreparedCenterline prepare_centerline(GenerateReport& report, Console& console);
 
+/// Flat ends of the cleaned centerline with the numbers of the grown one's nodes.
+std::vector<EndSection> sections_of_grown(const PreparedCenterline& prepared, std::vector<EndSection> sections);
+
 /// Makes a surface around the grown centerline, and the contacts in the report, refer to the cleaned one.
 void refer_to_cleaned(const PreparedCenterline& prepared, GenerateResult& result, GenerateReport& report);
 

@@ -99,8 +99,11 @@ CleanedCenterline assemble(Workspace& work, const std::vector<Index>& node_order
     segments.push_back(segment);
     raw_segment.push_back(work.raw_segment[s]);
   }
-  return {Centerline(std::move(nodes), std::move(segments)), std::move(work.report), node_order,
-          std::move(raw_segment)};
+  return {Centerline(std::move(nodes), std::move(segments)),
+          std::move(work.report),
+          node_order,
+          std::move(raw_segment),
+          {}};
 }
 
 }  // namespace

@@ -28,6 +28,15 @@ std::string number(double value) {
 
 constexpr double kLargest = 1e30;  // mm; larger lengths are refused for growth, and fourth powers are finite up to here
 
+/// What is wrong with a flat end; empty if nothing is.
+std::string problem_in(const RawCenterline& raw, const EndSection& section) {
+  if (section.node >= raw.nodes.size()) return "there is no node with index " + std::to_string(section.node);
+  if (std::string problem = problem_of(section); !problem.empty()) return problem;
+  double size = std::max(section.center.cwiseAbs().maxCoeff(), radius_of(section));
+  for (const Vec3& p : section.ring) size = std::max(size, p.cwiseAbs().maxCoeff());
+  return size > kLargest ? number(size) + " mm is too much; check the unit" : "";
+}
+
 /// Problems that cleaning cannot mend.
 std::vector<std::string> list_problems(const RawCenterline& raw) {
   std::vector<std::string> problems;
@@ -55,6 +64,11 @@ std::vector<std::string> list_problems(const RawCenterline& raw) {
     problems.push_back(raw.name_of_segment(s) + ": there is no node with index " +
                        std::to_string(a < raw.nodes.size() ? b : a) + "; the file has " +
                        std::to_string(raw.nodes.size()) + " nodes");
+  }
+  for (std::size_t i = 0; i < raw.end_sections.size(); ++i) {
+    if (const std::string problem = problem_in(raw, raw.end_sections[i]); !problem.empty())
+      problems.push_back((raw.source.empty() ? "" : raw.source + ": ") + "flat end " + std::to_string(i) + ": " +
+                         problem);
   }
   return problems;
 }
@@ -230,10 +244,10 @@ void remove_duplicate_segments(Workspace& work) {
 }  // namespace cleaning
 
 std::string_view to_string(CleaningAction::Kind kind) {
-  constexpr std::array<std::string_view, 10> kNames = {"rounded",        "removed_self_loop",         "merged_trunk",
+  constexpr std::array<std::string_view, 11> kNames = {"rounded",        "removed_self_loop",         "merged_trunk",
                                                        "merged_overlap", "contracted_segment",        "merged_node",
                                                        "kept_crossing",  "removed_duplicate_segment", "repaired_radius",
-                                                       "joined_gap"};
+                                                       "joined_gap",     "dropped_end_section"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -244,7 +258,7 @@ std::size_t CleaningReport::count(CleaningAction::Kind kind) const {
 
 std::vector<std::string> CleaningReport::summary() const {
   std::vector<std::string> lines;
-  for (int k = 0; k <= static_cast<int>(CleaningAction::Kind::joined_gap); ++k) {
+  for (int k = 0; k <= static_cast<int>(CleaningAction::Kind::dropped_end_section); ++k) {
     const auto kind = static_cast<CleaningAction::Kind>(k);
     const auto first = std::find_if(actions.begin(), actions.end(), [kind](const auto& a) { return a.kind == kind; });
     if (first == actions.end()) continue;
@@ -271,7 +285,9 @@ CleanedCenterline clean(const RawCenterline& raw, const CleaningOptions& options
   remove_duplicate_segments(work);
   repair_radii(work);
   if (options.join_gaps.value_or(raw.loose_branches)) join_gaps(work);
-  return build(work);
+  CleanedCenterline cleaned = build(work);
+  keep_end_sections(work, cleaned);
+  return cleaned;
 }
 
 }  // namespace vmesh

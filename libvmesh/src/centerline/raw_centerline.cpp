@@ -76,8 +76,40 @@ void append(const RawCenterline& file, bool has_paths, RawCenterline& all) {
     if (has_paths && file.path_starts.empty()) all.path_starts.push_back(first_segment + s);
   }
   for (const Index s : file.path_starts) all.path_starts.push_back(first_segment + s);
+  for (EndSection section : file.end_sections) {
+    section.node += first_node;
+    all.end_sections.push_back(std::move(section));
+  }
   all.warnings.insert(all.warnings.end(), file.warnings.begin(), file.warnings.end());
 }
+
+/// From one unit and frame to mm and LPS.
+struct Conversion {
+  LengthUnit unit;
+  Space space;
+
+  // Division by 1000 is correctly rounded, multiplication by 0.001 is not.
+  double length(double x) const { return unit == LengthUnit::um ? x / 1000 : x * millimetres_per(unit); }
+  /// Half a turn about z, so that what is counter-clockwise stays so.
+  Vec3 direction(const Vec3& v) const { return space == Space::ras ? Vec3(-v.x(), -v.y(), v.z()) : v; }
+  Vec3 point(const Vec3& p) const {
+    const Vec3 turned = direction(p);
+    return {length(turned.x()), length(turned.y()), length(turned.z())};
+  }
+
+  void convert(RawCenterline& raw) const {
+    for (auto& [position, radius] : raw.nodes) {
+      position = point(position);
+      radius = length(radius);
+    }
+    for (EndSection& section : raw.end_sections) {
+      section.center = point(section.center);
+      section.normal = direction(section.normal);
+      section.area = length(length(section.area));
+      for (Vec3& p : section.ring) p = point(p);
+    }
+  }
+};
 
 }  // namespace
 
@@ -194,16 +226,7 @@ RawCenterline convert_to_internal(RawCenterline raw, std::optional<LengthUnit> u
                                   std::optional<Space> space_override, std::vector<std::string>& warnings) {
   raw.unit = choose(raw.unit, unit_override, LengthUnit::mm, raw.source, "unit", "--unit um, mm, cm or m", warnings);
   raw.space = choose(raw.space, space_override, Space::lps, raw.source, "frame", "--space LPS or RAS", warnings);
-  const double scale = millimetres_per(raw.unit);
-  const double flip = raw.space == Space::ras ? -1 : 1;
-  if (scale != 1 || flip != 1) {
-    for (auto& [position, radius] : raw.nodes) {
-      // Division by 1000 is correctly rounded, multiplication by 0.001 is not.
-      const auto convert = [&](double x) { return raw.unit == LengthUnit::um ? x / 1000 : x * scale; };
-      position = {convert(flip * position.x()), convert(flip * position.y()), convert(position.z())};
-      radius = convert(radius);
-    }
-  }
+  if (raw.unit != LengthUnit::mm || raw.space != Space::lps) Conversion{raw.unit, raw.space}.convert(raw);
   raw.unit = LengthUnit::mm;
   raw.space = Space::lps;
   return raw;

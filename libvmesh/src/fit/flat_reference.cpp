@@ -8,6 +8,7 @@
 
 #include "surface/ends/disc.h"
 #include "surface/ends/opening_extension.h"
+#include "surface/ends/ring_moves.h"
 #include "surface/proof/defects.h"
 
 namespace vmesh {
@@ -19,7 +20,6 @@ constexpr double kFacing = 0.7;        // cosine between an opening's normal and
 constexpr double kFlat = 0.87;         // cosine between normals of one cap: 30 degrees, as their edges are rounded
 constexpr double kSmallest = 0.5, kLargest = 5;  // areas of caps, relative to the opening's: a hemisphere has no cap
 constexpr double kShifted = 0.75;                // edges: a nearer opening is moved without an extension
-constexpr double kStretch = 0.25;                // of edges, at most
 
 class CapFinder {
  public:
@@ -112,63 +112,18 @@ class CapFinder {
   std::vector<char> is_cap_;
 };
 
-std::vector<Vec3> positions(const GenerateResult& result, const Opening& opening) {
-  std::vector<Vec3> ring;
-  for (const Index v : opening.ring) ring.push_back(result.mesh.vertices[v]);
-  return ring;
-}
-
-std::vector<std::vector<Index>> neighbours(const TriMesh& mesh) {
-  std::vector<std::vector<Index>> around(mesh.vertices.size());
-  for (const Triangle& f : mesh.faces) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      around[f[i]].push_back(f[(i + 1) % 3]);
-      around[f[(i + 1) % 3]].push_back(f[i]);
-    }
-  }
-  return around;
-}
-
-// Moves the vertices of a ring along `direction`, and those behind it progressively less, so that no triangle is
-// stretched by more than kStretch.
-void shift_ring(TriMesh& mesh, const std::vector<Index>& ring, const std::vector<double>& ways, const Vec3& direction,
-                double edge) {
-  const std::vector<std::vector<Index>> around = neighbours(mesh);
-  double farthest = 0;
-  for (const double way : ways) farthest = std::max(farthest, std::abs(way));
-  const double layers = std::max(1.0, std::ceil(farthest / (kStretch * edge)));
-  std::map<Index, double> moved;
-  std::vector<Index> front = ring;
-  for (std::size_t j = 0; j < ring.size(); ++j) moved[ring[j]] = ways[j];
-  for (double layer = 1; layer < layers; ++layer) {
-    std::map<Index, std::pair<double, double>> sums;
-    for (const Index v : front) {
-      for (const Index w : around[v]) {
-        if (moved.contains(w)) continue;
-        sums[w].first += moved[v];
-        sums[w].second += 1;
-      }
-    }
-    front.clear();
-    for (const auto& [w, sum] : sums) {
-      moved[w] = sum.first / sum.second * (layers - layer) / (layers - layer + 1);
-      front.push_back(w);
-    }
-  }
-  for (const auto& [v, way] : moved) mesh.vertices[v] += way * direction;
-}
-
 // Rotates the ring perpendicular to the cap's normal, then moves it along that to the cap's plane: by an extension, or
 // for a short distance without.
 void move_to(GenerateResult& result, Opening& opening, const ReferenceCap& cap) {
-  const std::vector<Vec3> ring = positions(result, opening);
+  const std::vector<Vec3> ring = ring_positions(result.mesh, opening);
   const double edge = mean_edge(ring), way = (cap.center - area_centroid(ring)).dot(cap.normal);
   const bool by_tube = way > kShifted * edge;
-  std::vector<double> ways;
-  for (const Vec3& p : ring) ways.push_back((area_centroid(ring) - p).dot(cap.normal) + (by_tube ? 0 : way));
-  shift_ring(result.mesh, opening.ring, ways, cap.normal, edge);
+  std::vector<Vec3> ways;
+  for (const Vec3& p : ring)
+    ways.push_back(((area_centroid(ring) - p).dot(cap.normal) + (by_tube ? 0 : way)) * cap.normal);
+  apply_moves(spread_moves(neighbours(result.mesh), vertices_on_rings(result), opening.ring, ways, edge), result.mesh);
   if (by_tube) {
-    std::vector<Vec3> target = positions(result, opening);
+    std::vector<Vec3> target = ring_positions(result.mesh, opening);
     for (Vec3& p : target) p += way * cap.normal;
     extend_opening(result, opening, target);
   }
@@ -184,7 +139,7 @@ FlatReference end_at_caps(GenerateResult& result, const TriMesh& reference) {
   CapFinder finder(reference);
   for (std::size_t i = 0; i < result.openings.size(); ++i) {
     const Opening& opening = result.openings[i];
-    const std::vector<Vec3> ring = positions(result, opening);
+    const std::vector<Vec3> ring = ring_positions(result.mesh, opening);
     std::optional<ReferenceCap> cap = finder.find(opening, area_centroid(ring), area_vector(ring).norm());
     if (!cap) continue;
     cap->opening = i;
@@ -204,7 +159,7 @@ FlatReference end_at_caps(GenerateResult& result, const TriMesh& reference) {
 void match_cap_areas(GenerateResult& result, const Centerline& centerline, const std::vector<ReferenceCap>& caps) {
   for (const ReferenceCap& cap : caps) {
     const Opening& opening = result.openings[cap.opening];
-    const std::vector<Vec3> ring = positions(result, opening);
+    const std::vector<Vec3> ring = ring_positions(result.mesh, opening);
     const Vec3 center = area_centroid(ring);
     const double scale = std::sqrt(cap.area / area_vector(ring).norm());
     for (const Index v : opening.ring) result.mesh.vertices[v] = center + scale * (result.mesh.vertices[v] - center);

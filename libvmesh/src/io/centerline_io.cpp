@@ -127,6 +127,7 @@ RawCenterline names_of(RawCenterline raw) {
   raw.nodes = std::vector<CenterlineNode>();
   raw.segments = std::vector<CenterlineSegment>();
   raw.path_starts = std::vector<Index>();
+  raw.end_sections = std::vector<EndSection>();
   return raw;
 }
 
@@ -169,9 +170,15 @@ LoadedCenterline load_centerline(const std::filesystem::path& path, const Center
 
 namespace {
 
-Centerline converted(const Centerline& centerline, const CenterlineMetadata& metadata) {
+/// What the axes of internal coordinates are multiplied by for those of the file.
+Vec3 axes_of(const CenterlineMetadata& metadata) {
   const double scale = 1 / millimetres_per(metadata.unit);
-  const Vec3 axes = metadata.space == Space::ras ? Vec3(-scale, -scale, scale) : Vec3(scale, scale, scale);
+  return metadata.space == Space::ras ? Vec3(-scale, -scale, scale) : Vec3(scale, scale, scale);
+}
+
+Centerline converted(const Centerline& centerline, const CenterlineMetadata& metadata) {
+  const Vec3 axes = axes_of(metadata);
+  const double scale = axes.z();
   std::vector<CenterlineNode> nodes = centerline.nodes();
   for (CenterlineNode& node : nodes) {
     node.position = node.position.cwiseProduct(axes);
@@ -180,11 +187,39 @@ Centerline converted(const Centerline& centerline, const CenterlineMetadata& met
   return {std::move(nodes), centerline.segments()};
 }
 
+std::vector<EndSection> converted(std::vector<EndSection> sections, const CenterlineMetadata& metadata) {
+  const Vec3 axes = axes_of(metadata);
+  for (EndSection& section : sections) {
+    section.center = section.center.cwiseProduct(axes);
+    section.normal = section.normal.cwiseProduct(axes / axes.z());
+    section.area *= axes.z() * axes.z();
+    for (Vec3& p : section.ring) p = p.cwiseProduct(axes);  // half a turn about z at most: still counter-clockwise
+  }
+  return sections;
+}
+
+void check(const std::vector<EndSection>& sections, const Centerline& centerline) {
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const EndSection& section = sections[i];
+    const std::string name = "flat end " + std::to_string(i) + ": ";
+    if (section.node >= centerline.nodes().size() || centerline.degree(section.node) != 1)
+      throw InvalidInput(name + "node " + std::to_string(section.node) + " is no end of the centerline");
+    if (const std::string problem = problem_of(section); !problem.empty()) throw InvalidInput(name + problem);
+  }
+}
+
 }  // namespace
 
-void write_centerline(const std::filesystem::path& path, const Centerline& given, const CenterlineMetadata& metadata) {
+bool keeps_end_sections(CenterlineFormat format) {
+  return format == CenterlineFormat::json || format == CenterlineFormat::vtp;
+}
+
+void write_centerline(const std::filesystem::path& path, const Centerline& given, const CenterlineMetadata& metadata,
+                      const std::vector<EndSection>& given_sections) {
   const bool converts = metadata.unit != LengthUnit::mm || metadata.space != Space::lps;
+  check(given_sections, given);
   const Centerline& centerline = converts ? converted(given, metadata) : given;
+  const std::vector<EndSection>& sections = converts ? converted(given_sections, metadata) : given_sections;
   const CenterlineFormat format = centerline_output_format(path);
   if (format == CenterlineFormat::swc && centerline.cycle_rank() > 0) {
     throw Unsupported(path.string() + ": SWC holds trees only and this centerline has " +
@@ -197,10 +232,10 @@ void write_centerline(const std::filesystem::path& path, const Centerline& given
       io::write_swc(file.stream(), centerline, metadata);
       break;
     case CenterlineFormat::vtp:
-      io::write_centerline_vtp(file.stream(), centerline, metadata);
+      io::write_centerline_vtp(file.stream(), centerline, metadata, sections);
       break;
     case CenterlineFormat::json:
-      io::write_centerline_json(file.stream(), centerline, metadata);
+      io::write_centerline_json(file.stream(), centerline, metadata, sections);
       break;
     case CenterlineFormat::csv: {
       AtomicFile segments(csv_segments_path(path));

@@ -32,6 +32,7 @@ class JsonReader {
     read_unit_and_space();
     read_nodes(array_of("nodes"));
     read_segments(array_of("segments"));
+    if (document_.contains("end_sections")) read_end_sections(array_of("end_sections"));
     return std::move(raw_);
   }
 
@@ -79,23 +80,75 @@ class JsonReader {
     }
   }
 
-  void read_segments(const Json& segments) {
-    const auto end = [&](const Json& value) {
-      const bool known = value.is_number_unsigned() && value.get<std::uint64_t>() < raw_.nodes.size();
-      if (!known) {
-        fail("segments entry " + std::to_string(raw_.segments.size()) + ": " + shown(value) +
-             " is not a node; the nodes are 0 to " +
-             std::to_string(static_cast<std::ptrdiff_t>(raw_.nodes.size()) - 1));
-      }
-      return static_cast<Index>(value.get<std::uint64_t>());
-    };
-    for (const Json& row : segments) {
-      if (!row.is_array() || row.size() != 2) {
-        fail("segments entry " + std::to_string(raw_.segments.size()) + ": it must be [a, b], two node indices");
-      }
-      const Index a = end(row[0]);
-      raw_.segments.push_back({a, end(row[1])});
+  /// `place`: of the value, for messages.
+  Index node_at(const Json& value, const std::string& place) const {
+    const bool known = value.is_number_unsigned() && value.get<std::uint64_t>() < raw_.nodes.size();
+    if (!known) {
+      fail(place + ": " + shown(value) + " is not a node; the nodes are 0 to " +
+           std::to_string(static_cast<std::ptrdiff_t>(raw_.nodes.size()) - 1));
     }
+    return static_cast<Index>(value.get<std::uint64_t>());
+  }
+
+  void read_segments(const Json& segments) {
+    for (const Json& row : segments) {
+      const std::string name = "segments entry " + std::to_string(raw_.segments.size());
+      if (!row.is_array() || row.size() != 2) fail(name + ": it must be [a, b], two node indices");
+      const Index a = node_at(row[0], name);
+      raw_.segments.push_back({a, node_at(row[1], name)});
+    }
+  }
+
+  void read_end_sections(const Json& sections) {
+    std::vector<std::size_t> degree(raw_.nodes.size(), 0);
+    for (const auto& [a, b] : raw_.segments) {
+      ++degree[a];
+      ++degree[b];
+    }
+    for (const Json& entry : sections) {
+      const std::string name = "end_sections entry " + std::to_string(raw_.end_sections.size());
+      if (!entry.is_object()) fail(name + ": it must be an object {\"node\": ..., \"center\": [x, y, z], ...}");
+      EndSection section = end_section(entry, name);
+      if (degree[section.node] != 1)
+        fail(name + ": node " + std::to_string(section.node) + " is no end: it is in " +
+             std::to_string(degree[section.node]) + " segments");
+      if (const std::string problem = problem_of(section); !problem.empty()) fail(name + ": " + problem);
+      raw_.end_sections.push_back(std::move(section));
+    }
+  }
+
+  EndSection end_section(const Json& entry, const std::string& name) const {
+    EndSection section;
+    section.node = node_at(member(entry, "node", name), name + ": \"node\"");
+    section.center = point(member(entry, "center", name), name + ": \"center\"");
+    section.normal = point(member(entry, "normal", name), name + ": \"normal\"");
+    const Json& area = member(entry, "area", name);
+    if (!area.is_number()) fail(name + ": \"area\": " + shown(area) + " is not a number");
+    section.area = area.get<double>();
+    const Json& open = member(entry, "open", name);
+    if (!open.is_boolean()) fail(name + ": \"open\": " + shown(open) + " is neither true nor false");
+    section.open = open.get<bool>();
+    if (!entry.contains("ring")) return section;
+    const Json& ring = entry["ring"];
+    if (!ring.is_array()) fail(name + ": \"ring\": it must be an array of points [x, y, z]");
+    for (const Json& p : ring)
+      section.ring.push_back(point(p, name + ": \"ring\" entry " + std::to_string(section.ring.size())));
+    if (ring.empty()) fail(name + ": \"ring\": it needs at least three points; leave it out if it is not known");
+    return section;
+  }
+
+  const Json& member(const Json& entry, const char* key, const std::string& name) const {
+    const auto found = entry.find(key);
+    if (found == entry.end()) fail(name + ": \"" + key + "\" is missing");
+    return *found;
+  }
+
+  Vec3 point(const Json& value, const std::string& place) const {
+    if (!value.is_array() || value.size() != 3) fail(place + ": it must be [x, y, z]");
+    for (const Json& x : value) {
+      if (!x.is_number()) fail(place + ": every value of [x, y, z] must be a number");
+    }
+    return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
   }
 
   const Json& document_;
@@ -106,6 +159,31 @@ std::string string_member(const char* key, const std::string& value) {
   if (value.empty()) return {};
   return "  " + Json(key).dump() + ": " + Json(one_line(value)).dump(-1, ' ', false, Json::error_handler_t::replace) +
          ",\n";
+}
+
+std::string text_of(const Vec3& p) {
+  std::string text = "[";
+  append(text, p.x());
+  append(text += ", ", p.y());
+  append(text += ", ", p.z());
+  return text + "]";
+}
+
+std::string text_of(const EndSection& section) {
+  std::string text = "{\"node\": " + std::to_string(section.node) + ", \"center\": " + text_of(section.center) +
+                     ", \"normal\": " + text_of(section.normal) + ", \"area\": ";
+  append(text, section.area);
+  text += std::string(", \"open\": ") + (section.open ? "true" : "false");
+  for (std::size_t i = 0; i < section.ring.size(); ++i)
+    text += (i == 0 ? ",\n     \"ring\": [" : ", ") + text_of(section.ring[i]);
+  return text + (section.ring.empty() ? "}" : "]}");
+}
+
+void write_sections(std::ostream& out, const std::vector<EndSection>& sections) {
+  if (sections.empty()) return;
+  out << ",\n  \"end_sections\": [";
+  for (std::size_t i = 0; i < sections.size(); ++i) out << (i == 0 ? "\n    " : ",\n    ") << text_of(sections[i]);
+  out << "\n  ]";
 }
 
 }  // namespace
@@ -124,7 +202,8 @@ RawCenterline parse_centerline_json(std::string_view content, const std::string&
   return JsonReader(document, source).run();
 }
 
-void write_centerline_json(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata) {
+void write_centerline_json(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,
+                           const std::vector<EndSection>& sections) {
   out << "{\n  \"schema\": \"" << kSchema << "\",\n  \"space\": \"" << to_string(metadata.space)
       << "\",\n  \"unit\": \"" << to_string(metadata.unit) << "\",\n"
       << string_member("generator", metadata.generator) << string_member("options", metadata.options)
@@ -143,7 +222,15 @@ void write_centerline_json(std::ostream& out, const Centerline& centerline, cons
     const auto& [a, b] = centerline.segment(s);
     out << (s == 0 ? "\n    [" : ",\n    [") << std::to_string(a) << ", " << std::to_string(b) << "]";
   }
-  out << "\n  ]\n}\n";
+  out << "\n  ]";
+  if (!metadata.segment_labels.empty()) {
+    row = ",\n  \"segment_labels\": [";
+    for (std::size_t s = 0; s < metadata.segment_labels.size(); ++s)
+      append(row += s == 0 ? "" : ", ", metadata.segment_labels[s]);
+    out << row << "]";
+  }
+  write_sections(out, sections);
+  out << "\n}\n";
 }
 
 }  // namespace vmesh::io

@@ -30,10 +30,12 @@ RawCenterline parse_network(std::string_view content, const std::string& source)
 RawCenterline read_hdf5_network(const std::filesystem::path& path);
 
 void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);
-void write_centerline_json(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);
+void write_centerline_json(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,
+                           const std::vector<EndSection>& sections);
 void write_centerline_csv(std::ostream& nodes, std::ostream& segments, const Centerline& centerline,
                           const CenterlineMetadata& metadata);
-void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);
+void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,
+                          const std::vector<EndSection>& sections);
 
 LoadedSurface parse_off(std::string_view content, const std::string& source);
 LoadedSurface parse_obj(std::string_view content, const std::string& source);

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <set>
 
+#include "end_section_arrays.h"
 #include "formats.h"
 #include "number_types.h"
 #include "poly_lines.h"
@@ -21,6 +22,7 @@ struct LegacyVtkData {
   std::vector<Vec3> points;
   Cells vertices, lines, polygons, strips;
   ScalarArrays point_arrays, cell_arrays;
+  ScalarArrays field_arrays;            ///< of flat ends
   std::set<std::string> whole_numbers;  ///< the names of integer arrays
   LengthUnit unit = LengthUnit::unknown;
   Space space = Space::unknown;
@@ -336,6 +338,7 @@ class LegacyVtkReader {
 
   void read_numbers(const std::string& name, std::size_t components, std::size_t tuples, const std::string& type) {
     std::vector<double> values = numbers(components * tuples, type);
+    if (is_end_section_array(name)) data_.field_arrays[name] = values;
     if (of_ == Of::nothing) return;
     auto& arrays = of_ == Of::points ? data_.point_arrays : data_.cell_arrays;
     const bool is_scalar = components == 1 && tuples == tuples_ && values.size() == tuples;
@@ -422,6 +425,7 @@ RawCenterline parse_centerline_vtk(std::string_view content, const std::string& 
   lines.lines = std::move(data.lines);
   lines.vertices = std::move(data.vertices);
   RawCenterline raw = to_raw_centerline(std::move(lines), source, {data.point_arrays, data.cell_arrays}, options);
+  read_end_sections(data.field_arrays, raw);
   raw.unit = data.unit;
   raw.space = data.space;
   return raw;

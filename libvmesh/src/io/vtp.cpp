@@ -3,6 +3,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "end_section_arrays.h"
 #include "formats.h"
 #include "poly_lines.h"
 #include "text.h"
@@ -57,6 +58,7 @@ struct VtpData {
   std::vector<Vec3> points;
   VtpArrayList point_arrays, cell_arrays;  ///< one number per point, or cell; those of vertices come first,
                                            ///< then of lines, polygons, strips
+  ScalarArrays field_arrays;               ///< of flat ends
   VtpCells vertices, lines, polygons, strips;
   LengthUnit unit = LengthUnit::unknown;
   Space space = Space::unknown;
@@ -76,16 +78,17 @@ class VtpReader {
     }
     const pugi::xml_node data = root.child("PolyData");
     if (!data) throw InvalidInput(source_ + ": it contains no <PolyData>");
-    read_tags(data.child("FieldData"));
+    read_field(data.child("FieldData"));
     for (const pugi::xml_node piece : data.children("Piece")) read_piece(piece);
     if (data_.points.empty()) throw InvalidInput(source_ + ": it contains no point");
     return std::move(data_);
   }
 
  private:
-  void read_tags(pugi::xml_node field) {
+  void read_field(pugi::xml_node field) {
     for (const pugi::xml_node array : field.children()) {
-      const std::string_view name = array.attribute("Name").value();
+      const std::string name = array.attribute("Name").value();
+      if (is_end_section_array(name)) data_.field_arrays[name] = arrays_.numbers(array, VtpArrays::kAll);
       if (name != "SPACE" && name != "UNIT") continue;
       const std::string text = arrays_.text(array);
       if (name == "SPACE") data_.space = parse_space(text).value_or(data_.space);
@@ -220,6 +223,7 @@ RawCenterline parse_centerline_vtp(std::string_view content, const std::string& 
   const ScalarArrays of_points = scalars(data.point_arrays, data.points.size());
   const ScalarArrays of_cells = scalars(data.cell_arrays, cells);
   RawCenterline raw = to_raw_centerline(std::move(poly_lines), source, {of_points, of_cells}, options);
+  read_end_sections(data.field_arrays, raw);
   raw.unit = data.unit;
   raw.space = data.space;
   return raw;

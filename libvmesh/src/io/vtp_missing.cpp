@@ -15,7 +15,9 @@ namespace {
 
 }  // namespace
 
-void write_centerline_vtp(std::ostream&, const Centerline&, const CenterlineMetadata&) { fail(); }
+void write_centerline_vtp(std::ostream&, const Centerline&, const CenterlineMetadata&, const std::vector<EndSection>&) {
+  fail();
+}
 void write_surface_vtp(std::ostream&, const TriMesh&, const MeshAttributes&, const SurfaceMetadata&) { fail(); }
 
 }  // namespace vmesh::io

@@ -17,6 +17,7 @@
 #include <vtkStringArray.h>
 #include <vtkXMLPolyDataWriter.h>
 
+#include "end_section_arrays.h"
 #include "formats.h"
 #include "text.h"
 #include "vtp_names.h"
@@ -102,9 +103,11 @@ void add_points(vtkPolyData& data, std::size_t count, const auto& position) {
   data.SetPoints(points);
 }
 
-void add_numbers(vtkFieldData& target, const std::string& name, const std::vector<double>& values, bool integer) {
+void add_numbers(vtkFieldData& target, const std::string& name, const std::vector<double>& values, bool integer,
+                 int components = 1) {
   const auto fill = [&](auto& array, auto convert) {
     array.SetName(name.c_str());
+    array.SetNumberOfComponents(components);
     array.SetNumberOfValues(static_cast<vtkIdType>(values.size()));
     for (std::size_t i = 0; i < values.size(); ++i) array.SetValue(static_cast<vtkIdType>(i), convert(values[i]));
     target.AddArray(&array);
@@ -132,7 +135,8 @@ void write_poly_data(std::ostream& out, vtkPolyData& data) {
 
 }  // namespace
 
-void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata) {
+void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,
+                          const std::vector<EndSection>& sections) {
   vtkNew<vtkPolyData> data;
   const auto& nodes = centerline.nodes();
   add_points(*data, nodes.size(), [&](std::size_t i) { return nodes[i].position; });
@@ -151,6 +155,9 @@ void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const
     if (centerline.degree(n) == 0) spheres->InsertNextCell(1, &id);
   }
   if (spheres->GetNumberOfCells() > 0) data->SetVerts(spheres);
+  for (const FieldArray& array : end_section_arrays(sections))
+    add_numbers(*data->GetFieldData(), array.name, array.values, array.integer, array.components);
+  if (!metadata.segment_labels.empty()) add_numbers(*data->GetCellData(), "Label", metadata.segment_labels, false);
   add_metadata(*data, metadata);
   write_poly_data(out, *data);
 }

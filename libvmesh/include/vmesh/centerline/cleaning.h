@@ -43,6 +43,7 @@ struct CleaningAction {
     removed_duplicate_segment,  ///< a segment between nodes that are joined already
     repaired_radius,            ///< a zero radius was interpolated along the graph
     joined_gap,                 ///< a segment was added from a branch's loose end to its parent
+    dropped_end_section,        ///< a flat end is at no end of the centerline any more, or beside it
   };
   using Element = CenterlineProblem::Element;
 
@@ -69,15 +70,18 @@ struct CleanedCenterline {
   CleaningReport report;
   std::vector<Index> raw_node;     ///< for every node, the raw node it stems from (the first of those merged)
   std::vector<Index> raw_segment;  ///< for every segment, the raw segment; kNone for a joined gap
+  std::vector<EndSection> end_sections = {};  ///< ascending in their nodes, at most one per end; of `centerline`
 };
 
 /// Turns a raw centerline into a valid one. Deterministic; time near linear in the number of nodes. Nodes are merged
 /// where polylines begin with the same points (VMTK repeats the trunk for every target), where a segment has zero
 /// length, and where two nodes coincide of which at least one is an end. Coinciding interior nodes, and all nodes of a
 /// format that only knows trees, are merged only if that closes no loop. A zero radius becomes the distance-weighted
-/// mean of the two nearest radii along the graph. Precondition: `raw` is in mm and LPS (convert_to_internal), else
-/// InvalidInput. Throws InvalidInput naming file and line or element for: no nodes, non-finite numbers, negative radii,
-/// segments to unknown nodes, a component without any radius.
+/// mean of the two nearest radii along the graph. A flat end
+/// (EndSection) stays if its node still is an end, and within the radius of its area from its centre. Precondition:
+/// `raw` is in mm and LPS (convert_to_internal), else InvalidInput. Throws InvalidInput naming file and line or element
+/// for: no nodes, non-finite numbers, negative radii, segments to unknown nodes, invalid flat ends, a component without
+/// any radius.
 CleanedCenterline clean(const RawCenterline& raw, const CleaningOptions& options = {});
 
 }  // namespace vmesh

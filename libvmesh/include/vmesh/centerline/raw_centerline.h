@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vmesh/centerline/centerline.h"
+#include "vmesh/centerline/end_section.h"
 
 namespace vmesh {
 
@@ -32,6 +33,7 @@ struct RawCenterline {
   std::vector<CenterlineSegment> segments;
   LengthUnit unit = LengthUnit::unknown;
   Space space = Space::unknown;
+  std::vector<EndSection> end_sections;  ///< flat ends, in `unit` and `space`; nodes are those above
 
   /// First segments of polylines, ascending, when the file has polylines: the segments up to the next entry run head to
   /// tail. Empty when the file gives segments one by one.

@@ -99,13 +99,20 @@ struct CenterlineMetadata {
   std::string input_sha256;          ///< see sha256_of_file()
   LengthUnit unit = LengthUnit::mm;  ///< of the written numbers
   Space space = Space::lps;          ///< likewise
+  /// The label of the segmentation that every segment comes from; empty: none. Written to JSON and VTP.
+  std::vector<double> segment_labels;
 };
 
 /// Writes a centerline (given in mm and LPS) in the format of the extension, in the unit and frame of `metadata`, which
 /// are recorded: JSON, SWC, VTP, CSV pair. Numbers round-trip exactly, the bytes depend on the arguments alone, and the
-/// file appears complete or not at all. Node order is kept. Throws Unsupported for a centerline with loops in SWC (a
-/// tree format), see centerline_output_format(), and for VTP without VTK; WriteError when the file cannot be written.
+/// file appears complete or not at all. Node order is kept. Flat ends are written to JSON and VTP; other formats cannot
+/// hold them (keeps_end_sections()). Throws InvalidInput for a flat end that is wrong or at no end; Unsupported for a
+/// centerline with loops in SWC (a tree format), see centerline_output_format(), and for VTP without VTK; WriteError
+/// when the file cannot be written.
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
-                      const CenterlineMetadata& metadata = {});
+                      const CenterlineMetadata& metadata = {}, const std::vector<EndSection>& end_sections = {});
+
+/// Whether files of the format have room for flat ends: JSON and VTP.
+bool keeps_end_sections(CenterlineFormat format);
 
 }  // namespace vmesh

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "vmesh/surface/generate.h"
+#include "vmesh/surface/section_ends.h"
 
 namespace vmesh {
 
@@ -16,6 +17,9 @@ struct FlatEndOptions {
   /// Length of a straight extension of the same cross-section that is first added at every end, in radii of the circle
   /// of equal area. 0: none.
   double extension = 0;
+  /// Ends at these nodes get exactly these cross-sections, see end_at_sections(); keep_area applies to those without a
+  /// ring. The others, and those that cannot be kept, are cut across the vessel.
+  std::vector<EndSection> sections;
 };
 
 /// An end of a vessel where the surface ends flat.
@@ -27,11 +31,13 @@ struct FlatEnd {
   Vec3 normal = Vec3::Zero();  ///< out of the vessel
   double area = 0;             ///< of the cross-section, mm^2
   bool capped = false;         ///< else open
+  bool at_section = false;     ///< the cross-section, before any extension, is that of FlatEndOptions::sections
 };
 
 struct FlatEnds {
   std::vector<FlatEnd> ends;     ///< ascending in the nodes
   std::vector<Index> cap_label;  ///< of every face: the label of the end that it caps; 0: wall
+  std::vector<SectionNotKept> not_kept;
 };
 
 /// Extends and caps the openings of `result`, whose numbers are those of `centerline`. New faces are appended. Caps are

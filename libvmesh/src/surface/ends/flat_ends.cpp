@@ -8,6 +8,7 @@
 
 #include "surface/ends/disc.h"
 #include "surface/ends/opening_extension.h"
+#include "surface/ends/ring_moves.h"
 #include "surface/proof/defects.h"
 
 namespace vmesh {
@@ -26,12 +27,16 @@ class EndFinisher {
 
   FlatEnds run() {
     std::vector<Opening> open;
+    SectionEnds sections = end_at_sections(result_, options_.sections, options_.keep_area);
+    ends_.not_kept = std::move(sections.not_kept);
     for (Opening& opening : result_.openings) {
-      if (options_.keep_area) scale(opening);
+      const bool at_section = std::binary_search(sections.kept.begin(), sections.kept.end(), opening.node);
+      if (options_.keep_area && !at_section) scale(opening);
       if (options_.extension > 0) extend(opening);
-      const std::vector<Vec3> ring = positions(opening.ring);
+      const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
       const Vec3 area = area_vector(ring);
-      FlatEnd end{label_[opening.node], opening.node, area_centroid(ring), area.normalized(), area.norm(), false};
+      FlatEnd end{label_[opening.node], opening.node, area_centroid(ring), area.normalized(),
+                  area.norm(),          false,        at_section};
       const auto& left_open = options_.left_open;
       end.capped = options_.cap && std::find(left_open.begin(), left_open.end(), end.node) == left_open.end();
       if (end.capped) {
@@ -47,14 +52,8 @@ class EndFinisher {
   }
 
  private:
-  std::vector<Vec3> positions(const std::vector<Index>& ring) const {
-    std::vector<Vec3> result;
-    for (const Index v : ring) result.push_back(result_.mesh.vertices[v]);
-    return result;
-  }
-
   void scale(const Opening& opening) {
-    const std::vector<Vec3> ring = positions(opening.ring);
+    const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
     const double factor = std::sqrt(std::numbers::pi / area_vector(ring).norm()) * opening.radius;
     for (const Index v : opening.ring) {
       Vec3& p = result_.mesh.vertices[v];
@@ -63,7 +62,7 @@ class EndFinisher {
   }
 
   void extend(Opening& opening) {
-    const std::vector<Vec3> ring = positions(opening.ring);
+    const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
     const Vec3 area = area_vector(ring);
     const Vec3 shift = options_.extension * std::sqrt(area.norm() / std::numbers::pi) * area.normalized();
     std::vector<Vec3> target = ring;
@@ -92,7 +91,7 @@ class EndFinisher {
 FlatEnds finish_ends(GenerateResult& result, const Centerline& centerline, const FlatEndOptions& options) {
   if (!(options.extension >= 0 && std::isfinite(options.extension)))
     throw InvalidInput("the extension of ends must be >= 0");
-  if (result.openings.empty()) return {{}, std::vector<Index>(result.mesh.faces.size(), 0)};
+  if (result.openings.empty()) return {{}, std::vector<Index>(result.mesh.faces.size(), 0), {}};
   FlatEnds ends = EndFinisher(result, centerline, options).run();
   find_defects_again(centerline, self_intersections(result.mesh), result);
   return ends;
