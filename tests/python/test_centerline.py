@@ -1,4 +1,5 @@
 import gc
+import json
 import os
 import pathlib
 import pickle
@@ -105,6 +106,35 @@ def test_comes_back_from_a_file(tmp_path, extension):
     np.testing.assert_array_equal(again.nodes, tree.nodes)
     np.testing.assert_array_equal(again.radii, tree.radii)
     assert again.warnings == []
+
+
+def test_keeps_flat_ends(tmp_path):
+    path = tmp_path / "cut.json"
+    ring = [[9, 2, 0], [9, -1.5, 2], [9, -1.5, -2]]
+    section = {"node": 1, "center": [9, 0, 0], "normal": [1, 0, 0], "area": 7, "open": True, "ring": ring}
+    other = {"node": 0, "center": [0, 0, 0], "normal": [-1, 0, 0], "area": 12, "open": False}
+    path.write_text(
+        json.dumps(
+            {
+                "schema": "vmesh.centerline/1",
+                "nodes": [[0, 0, 0, 2], [9, 0, 0, 2]],
+                "segments": [[0, 1]],
+                "end_sections": [section, other],
+            }
+        )
+    )
+    tree = vmesh.read_centerline(path, unit="mm", space="LPS")
+    tree.save(tmp_path / "again.json")
+    for centerline in (tree, vmesh.read_centerline(tmp_path / "again.json"), pickle.loads(pickle.dumps(tree))):
+        flat = {tuple(s["center"]): s for s in centerline.end_sections}
+        assert len(flat) == 2
+        np.testing.assert_array_equal(flat[(9, 0, 0)]["ring"], ring)
+        np.testing.assert_array_equal(flat[(9, 0, 0)]["normal"], [1, 0, 0])
+        assert flat[(9, 0, 0)]["open"] and not flat[(0, 0, 0)]["open"]
+        assert flat[(0, 0, 0)]["ring"] is None and flat[(0, 0, 0)]["area"] == 12
+    assert vmesh.clean(*FORK).end_sections == []
+    surface = vmesh.generate(tree, ends="flat")
+    assert sorted(round(end.area, 6) for end in surface.flat_ends)[1] == 12
 
 
 def test_reads_paths_of_any_kind(tmp_path):

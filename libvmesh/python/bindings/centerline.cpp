@@ -73,9 +73,9 @@ CenterlinePtr read(const std::vector<fs::path>& paths, const CenterlineLoadOptio
   LoadedCenterline loaded = load_centerline(paths, options);
   std::vector<std::string> places;
   for (const Index raw : loaded.cleaned.raw_node) places.push_back(loaded.file.place_of_node(raw));
-  return std::make_shared<CenterlineObject>(CenterlineObject{std::move(loaded.cleaned.centerline),
-                                                             messages_of(loaded.cleaned.report),
-                                                             std::move(loaded.warnings), std::move(places)});
+  return std::make_shared<CenterlineObject>(
+      CenterlineObject{std::move(loaded.cleaned.centerline), messages_of(loaded.cleaned.report),
+                       std::move(loaded.warnings), std::move(places), std::move(loaded.cleaned.end_sections)});
 }
 
 py::array nodes_view(const py::object& self) {
@@ -107,7 +107,48 @@ void save(const CenterlineObject& self, const fs::path& path, const std::string&
   metadata.unit = unit_of(unit);
   metadata.space = space_of(space);
   const py::gil_scoped_release release;
-  write_centerline(path, self.centerline, metadata);
+  write_centerline(path, self.centerline, metadata, self.end_sections);
+}
+
+/// (n, 3), a copy.
+py::array ring_of(const EndSection& section) {
+  py::array_t<double> points({static_cast<py::ssize_t>(section.ring.size()), py::ssize_t{3}});
+  for (std::size_t i = 0; i < section.ring.size(); ++i) {
+    for (py::ssize_t axis = 0; axis < 3; ++axis)
+      points.mutable_at(static_cast<py::ssize_t>(i), axis) = section.ring[i][axis];
+  }
+  return points;
+}
+
+py::list sections_of(const CenterlineObject& self) {
+  py::list list;
+  for (const EndSection& section : self.end_sections) {
+    py::dict entry;
+    entry["node"] = section.node;
+    entry["center"] = array_of(section.center);
+    entry["normal"] = array_of(section.normal);
+    entry["area"] = section.area;
+    entry["open"] = section.open;
+    entry["ring"] = section.ring.empty() ? py::object(py::none()) : py::object(ring_of(section));
+    list.append(entry);
+  }
+  return list;
+}
+
+/// The reverse, for pickles.
+std::vector<EndSection> sections_from(const py::list& list) {
+  std::vector<EndSection> sections;
+  for (const py::handle& entry : list) {
+    EndSection section{entry["node"].cast<Index>(),
+                       to_point(entry["center"], "center"),
+                       to_point(entry["normal"], "normal"),
+                       entry["area"].cast<double>(),
+                       {},
+                       entry["open"].cast<bool>()};
+    if (!entry["ring"].is_none()) section.ring = to_points(entry["ring"], "ring");
+    sections.push_back(std::move(section));
+  }
+  return sections;
 }
 
 std::string describe(const CenterlineObject& self) {
@@ -147,6 +188,10 @@ Arrays are copied. Raises InvalidInput that lists what is wrong; clean() mends t
       .def_property_readonly(
           "length_in_radii", [](const CenterlineObject& self) { return self.centerline.length_in_radii(); },
           "Sum of length / mean radius over the segments: the size of the meshing task, independent of scale.")
+      .def_property_readonly("end_sections", &sections_of,
+                             "Flat ends, where the file says how vessels are cut (.json, .vtp): a list of dicts with\n"
+                             "node, center (3,), normal (3,) out of the vessel, area, open, and ring (n, 3) about the\n"
+                             "normal or None; mm, LPS. Ends of generate(ends=\"flat\") and \"open\" get them exactly.")
       .def_readonly("cleaning", &CenterlineObject::cleaning, "What cleaning did, one line each.")
       .def_readonly("warnings", &CenterlineObject::warnings,
                     "What was assumed because the file does not say, one line each.")
@@ -161,12 +206,13 @@ Arrays are copied. Raises InvalidInput that lists what is wrong; clean() mends t
       .def(py::pickle(
           [](const py::object& self) {
             return py::make_tuple(self.attr("nodes"), self.attr("radii"), self.attr("segments"), self.attr("cleaning"),
-                                  self.attr("warnings"));
+                                  self.attr("warnings"), self.attr("end_sections"));
           },
           [](const py::tuple& state) {
             CenterlinePtr centerline = from_arrays(state[0], state[1], state[2]);
             centerline->cleaning = state[3].cast<std::vector<std::string>>();
             centerline->warnings = state[4].cast<std::vector<std::string>>();
+            centerline->end_sections = sections_from(state[5]);
             return centerline;
           }));
 }

@@ -132,7 +132,11 @@ SurfacePtr grow(const CenterlinePtr& centerline, const GrowthRequest& request, c
     finish.left_open = left_open;
     finish.extension = request.extension;
     finish.keep_area = options.placement == Placement::balanced;
+    finish.sections = centerline->end_sections;
     surface->ends = finish_ends(result, c, finish);
+    for (const SectionNotKept& end : surface->ends.not_kept)
+      surface->warnings.push_back("the flat end at node " + std::to_string(end.node) + " is not kept: " + end.reason +
+                                  "; the vessel is cut across its axis there");
   }
   name_nodes(*centerline, result.defects);
   return surface;

@@ -19,6 +19,7 @@ struct CenterlineObject {
   std::vector<std::string> cleaning;       ///< what cleaning did to make it valid
   std::vector<std::string> warnings;       ///< of the reader
   std::vector<std::string> place_of_node;  ///< in the file, for every node; empty: not from a file
+  std::vector<EndSection> end_sections = {};
 };
 using CenterlinePtr = std::shared_ptr<CenterlineObject>;
 

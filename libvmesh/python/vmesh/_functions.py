@@ -76,7 +76,8 @@ def generate(
     growth          "guided", or "paper": a single seed, as published
     overlap         "separate" narrows vessels that touch, or moves them apart; "keep" leaves them
     gap             to be left between them, in smaller radii
-    ends            how vessels end: "round", "flat" (capped, numbered for flow solvers), "open"
+    ends            how vessels end: "round", "flat" (capped, numbered for flow solvers), "open"; ends with one of
+                    Centerline.end_sections are cut exactly there unless they are round
     open_ends       nodes at which the surface is left open regardless of `ends`
     flow_extension  length of straight extensions at ends that are not round, in radii
     simplification  nodes are left out where that changes the vessels by at most this share of what edges across
