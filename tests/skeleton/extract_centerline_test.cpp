@@ -69,6 +69,83 @@ TEST(ExtractCenterline, TellsHowFarTheSurfaceIsByBranches) {
   EXPECT_NEAR(std::abs(field.sample_global(report.wall.max_at).distance), max, 1e-12);
 }
 
+/// A tube around the z axis with two rings of corners only, 16 radii apart: triangles much longer than the vessel is wide.
+TriMesh long_prism(std::size_t sides, double radius, double length) {
+  TriMesh mesh;
+  const auto count = static_cast<Index>(sides);
+  for (const double z : {0.0, length})
+    for (Index i = 0; i < count; ++i)
+      mesh.vertices.emplace_back(radius * std::cos(2 * M_PI * i / count), radius * std::sin(2 * M_PI * i / count), z);
+  for (Index i = 0; i < count; ++i) {
+    const Index j = (i + 1) % count;
+    mesh.faces.push_back({i, j, count + j});
+    mesh.faces.push_back({i, count + j, count + i});
+    if (i > 0 && j > 0) {
+      mesh.faces.push_back({0, j, i});
+      mesh.faces.push_back({count, count + i, count + j});
+    }
+  }
+  return mesh;
+}
+
+/// |Distance| from the centerline's volume of `count` points spread evenly over the side faces of a prism.
+std::pair<double, double> true_distances(const TriMesh& prism, std::size_t sides, const Centerline& centerline) {
+  const VesselField field(centerline);
+  double sum = 0, most = 0;
+  int count = 0;
+  constexpr int kAround = 60, kAlong = 400;
+  for (std::size_t side = 0; side < sides; ++side) {
+    const Vec3 a = prism.vertices[side], b = prism.vertices[(side + 1) % sides];
+    const double length = prism.vertices[sides].z();
+    for (int i = 0; i < kAround; ++i)
+      for (int j = 0; j < kAlong; ++j) {
+        const Vec3 p = a + (i + 0.5) / kAround * (b - a) + Vec3(0, 0, length * (j + 0.5) / kAlong);
+        const double distance = std::abs(field.sample_global(p).distance);
+        sum += distance;
+        most = std::max(most, distance);
+        ++count;
+      }
+  }
+  return {sum / count, most};
+}
+
+TEST(ExtractCenterline, OfLongTrianglesHasTheRadiusOfTheirArea) {
+  for (const std::size_t sides : {8u, 12u, 30u}) {
+    const TriMesh prism = long_prism(sides, 5, 80);
+    const ExtractedCenterline found = extract_centerline(prism);
+    ASSERT_EQ(found.end_sections.size(), 2u);
+    const double n = static_cast<double>(sides);
+    const double radius = 5 * std::sqrt(n * std::sin(2 * M_PI / n) / (2 * M_PI));
+    for (const CenterlineNode& node : found.centerline.nodes()) {
+      EXPECT_NEAR(node.radius, radius, 0.01 * radius);
+      EXPECT_LT(node.position.head<2>().norm(), 0.01 * radius);
+    }
+    // The report against two hundred times as many points. The largest distance is at edges, which samples in the
+    // middle of pieces miss by up to half their spacing (.3 radii) times the slope there (pi / n).
+    const auto [mean, max] = true_distances(prism, sides, found.centerline);
+    EXPECT_NEAR(found.report.wall.mean, mean, 0.1 * mean + 0.002);
+    EXPECT_LE(found.report.wall.max, max + 1e-6);
+    EXPECT_GT(found.report.wall.max, max - 0.15 * radius * M_PI / n);
+  }
+}
+
+TEST(ExtractCenterline, OfAnOpenWallEndsInItsOpenings) {
+  TriMesh open = long_prism(24, 3, 30);
+  std::erase_if(open.faces, [&](const Triangle& f) {
+    const auto z = [&](int i) { return open.vertices[f[static_cast<std::size_t>(i)]].z(); };
+    return z(0) == z(1) && z(1) == z(2);
+  });
+  const ExtractedCenterline found = extract_centerline(open);
+  ASSERT_EQ(found.end_sections.size(), 2u);
+  for (const EndSection& section : found.end_sections) {
+    EXPECT_TRUE(section.open);
+    EXPECT_EQ(section.ring.size(), 24u);
+    EXPECT_EQ(found.centerline.degree(section.node), 1u);
+    EXPECT_LT((found.centerline.node(section.node).position - section.center).norm(), 1e-6);
+  }
+  EXPECT_GT(found.report.coverage, 0.999);
+}
+
 TEST(ExtractCenterline, EndsDoNotStickOut) {
   const Centerline tube = straight();
   const Centerline found = extract_centerline(grown(tube)).centerline;

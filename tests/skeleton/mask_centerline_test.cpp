@@ -36,9 +36,11 @@ LoadedImage sampled(const Centerline& vessels, const Grid& grid) {
   for (std::size_t k = 0; k < image.size[2]; ++k)
     for (std::size_t j = 0; j < image.size[1]; ++j)
       for (std::size_t i = 0; i < image.size[0]; ++i)
-        image.values.push_back(static_cast<float>(
-            -field.sample_global(image.position(Vec3(static_cast<double>(i), static_cast<double>(j),
-                                                     static_cast<double>(k)))).distance));
+        image.values.push_back(
+            static_cast<float>(-field
+                                    .sample_global(image.position(
+                                        Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k))))
+                                    .distance));
   return loaded;
 }
 
@@ -78,8 +80,9 @@ double farthest(const Centerline& a, const Centerline& b) {
 
 Centerline y_shape(double radius) {
   const double r = radius;
-  return {{{{0, 0, 0}, 1.2 * r}, {{0, 0, 10 * r}, 1.2 * r}, {{6 * r, r, 19 * r}, r}, {{-7 * r, 2 * r, 18 * r}, 0.9 * r}},
-          {{0, 1}, {1, 2}, {1, 3}}};
+  return {
+      {{{0, 0, 0}, 1.2 * r}, {{0, 0, 10 * r}, 1.2 * r}, {{6 * r, r, 19 * r}, r}, {{-7 * r, 2 * r, 18 * r}, 0.9 * r}},
+      {{0, 1}, {1, 2}, {1, 3}}};
 }
 
 Centerline ring(double size, double radius) {
@@ -183,8 +186,14 @@ TEST(MaskCenterline, ALoopStaysALoop) {
 
 TEST(MaskCenterline, ATreeOpensLoopsWhereVesselsKiss) {
   // Two vessels from one root that touch again, by less than a voxel, where they are 30 mm from it.
-  const Centerline truth{{{{0, 0, 0}, 4}, {{10, 0, 0}, 4}, {{25, 14, 0}, 3}, {{40, 3, 0}, 3}, {{55, 14, 0}, 3},
-                          {{25, -14, 0}, 3}, {{40, -2.8, 0}, 3}, {{55, -14, 0}, 3}},
+  const Centerline truth{{{{0, 0, 0}, 4},
+                          {{10, 0, 0}, 4},
+                          {{25, 14, 0}, 3},
+                          {{40, 3, 0}, 3},
+                          {{55, 14, 0}, 3},
+                          {{25, -14, 0}, 3},
+                          {{40, -2.8, 0}, 3},
+                          {{55, -14, 0}, 3}},
                          {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {1, 5}, {5, 6}, {6, 7}}};
   const LoadedImage mask = mask_of(truth);
   const ExtractedCenterline kept = extracted(mask);
@@ -219,8 +228,8 @@ TEST(MaskCenterline, ACutByTheImagesBorderIsAFlatEnd) {
     EXPECT_NEAR(std::abs(section.normal.z()), 1, 1e-12);
     EXPECT_NEAR(section.area, M_PI * 16, 4);  // pixels
     EXPECT_FALSE(section.open);
-    const double border = section.normal.z() < 0 ? v.origin.z() - 0.5
-                                                 : v.origin.z() + static_cast<double>(v.size[2]) - 0.5;
+    const double border =
+        section.normal.z() < 0 ? v.origin.z() - 0.5 : v.origin.z() + static_cast<double>(v.size[2]) - 0.5;
     EXPECT_NEAR(found.centerline.node(section.node).position.z(), border, 1e-5);  // rounded to 1e-6
   }
   for (const CenterlineNode& node : found.centerline.nodes()) EXPECT_NEAR(node.radius, 4, 0.2);
@@ -265,9 +274,9 @@ TEST(MaskCenterline, CanBeCancelledAtAnyReport) {
   });
   for (const int stop : {1, all / 2, all}) {
     int calls = 0;
-    EXPECT_THROW(extract_centerline(vessel_mask(image, {}), {},
-                                    [&](std::string_view, double) { return ++calls < stop; }),
-                 Cancelled);
+    EXPECT_THROW(
+        extract_centerline(vessel_mask(image, {}), {}, [&](std::string_view, double) { return ++calls < stop; }),
+        Cancelled);
   }
 }
 

@@ -1,6 +1,6 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -142,7 +142,7 @@ TEST(FillHoles, FillsCavitiesAndPinholesAndLeavesSlits) {
   VoxelSet holed({48, 40, 40});
   const auto is_hole = [](int i, int j, int k) {
     const bool cavity = i >= 8 && i <= 12 && j >= 8 && j <= 12 && k >= 8 && k <= 12;
-    const bool pinhole = j == 20 && k == 20 && i > 2;            // a tunnel of one voxel, open at one end
+    const bool pinhole = j == 20 && k == 20 && i > 2;              // a tunnel of one voxel, open at one end
     const bool tunnel = j >= 24 && j <= 27 && k >= 24 && k <= 27;  // too wide to be noise
     const bool slit = i == 30;
     return cavity || pinhole || tunnel || slit;

@@ -183,7 +183,7 @@ TEST_F(Outputs, WhatTheMemoryDoesNotHoldIsRefusedBeforeItStarts) {
         "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 10000 10000 3999\nspace "
         "directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: raw\n\n");
   std::filesystem::resize_file(path("image.nrrd"), 400'000'000'000);  // takes no space
-  expect_refused({"centerline", "@image.nrrd", "-o", "@y.csv"}, 4, "of memory");
+  expect_refused({"reference", "@image.nrrd", "-o", "@y.ply"}, 4, "of memory");
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@grown.ply"}).exit_code, 0);
   expect_refused(
       {"fit", "@grown.ply", "@grown.ply", "--centerline", "@y.swc", "-o", "@y.ply", "--max-vertices", "1000000000"}, 4,

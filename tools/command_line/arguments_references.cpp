@@ -77,8 +77,9 @@ void add_required_coverage(CLI::App& verb, RequiredCoverage& required) {
               double value = -1;
               const bool is_number =
                   equals != std::string::npos && CLI::detail::lexical_cast(item.substr(equals + 1), value);
-              double* target =
-                  name == "coverage" ? &required.wall : name == "length-coverage" ? &required.length : nullptr;
+              double* target = name == "coverage"          ? &required.wall
+                               : name == "length-coverage" ? &required.length
+                                                           : nullptr;
               if (target == nullptr || !is_number || !(value >= 0 && value <= 1))
                 throw CLI::ValidationError(
                     "--require", "\"" + item + "\" is none of coverage=SHARE and length-coverage=SHARE, with 0 to 1");
@@ -166,8 +167,8 @@ void add_cones(CLI::App& app, ConesArguments& arguments) {
 }
 
 void add_centerline(CLI::App& app, CenterlineArguments& arguments) {
-  CLI::App& verb =
-      *app.add_subcommand("centerline", "Extract the centerline with radii from a surface, open or closed, or an image");
+  CLI::App& verb = *app.add_subcommand("centerline",
+                                       "Extract the centerline with radii from a surface, open or closed, or an image");
   add_input(verb, arguments.input, "surface, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files)");
   add_output(verb, arguments.output, "centerline");
   add_image_options(verb, arguments.image);

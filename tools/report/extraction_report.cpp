@@ -72,8 +72,8 @@ void log_loops(const ExtractionReport& report, Console& console) {
   if (report.loops.empty()) return;
   const VesselLoop& loop = report.loops.front();
   console.log(counted(report.loops.size(), "loop", "loops") + (loop.opened ? " opened" : "") +
-              "; the thinnest neck beside its vessels has a radius of " + number(loop.neck_radius) + " mm, where they have " +
-              number(loop.radius) + ", at " + place(loop.neck) +
+              "; the thinnest neck beside its vessels has a radius of " + number(loop.neck_radius) +
+              " mm, where they have " + number(loop.radius) + ", at " + place(loop.neck) +
               (loop.opened ? "" : "; --tree opens loops at their necks"));
 }
 

@@ -32,11 +32,11 @@ struct GenerateReport {
   SurfaceMeasurement measurement;
   std::size_t grown_nodes = 0;              ///< of the centerline that was grown, including those added by separation
   std::optional<std::size_t> nodes_inside;  ///< of them
-  Deviation deviation;            ///< from the vessels as grown: after separation, the narrowed and moved ones
-  Deviation rounding;             ///< of the boundary at branches, against the plain union
-  std::optional<FitReport> fit;   ///< with a reference to fit to
+  Deviation deviation;           ///< from the vessels as grown: after separation, the narrowed and moved ones
+  Deviation rounding;            ///< of the boundary at branches, against the plain union
+  std::optional<FitReport> fit;  ///< with a reference to fit to
   std::optional<ExtractionReport> extraction;  ///< of the centerline, from a segmentation
-  std::vector<StageTime> stages;  ///< of the whole run
+  std::vector<StageTime> stages;               ///< of the whole run
   std::vector<std::string> warnings, problems;
 };
 

@@ -29,7 +29,7 @@ std::vector<double> labels_of(const CenterlineArguments& arguments, Console& con
   if (!arguments.image.labels.empty()) return arguments.image.labels;
   const ImageSummary summary = load_image_summary(arguments.input, console);
   std::vector<double> labels;
-  for (const LabelSummary& label : summary.labels) labels.push_back(label.value);
+  for (const ImageLabel& label : summary.labels) labels.push_back(label.value);
   if (labels.empty())
     throw InvalidInput(arguments.input.path.string() + ": it holds no labels; give --threshold for grey values");
   return labels;
@@ -59,8 +59,7 @@ void append(ExtractedCenterline&& extracted, Result& result) {
 
 Result extract_all(const CenterlineArguments& arguments, Console& console) {
   Result result;
-  ExtractedCenterline extracted =
-      extract(arguments.input, arguments.image, arguments.options, result.stages, console);
+  ExtractedCenterline extracted = extract(arguments.input, arguments.image, arguments.options, result.stages, console);
   result.covered = meets(arguments.required_coverage, extracted.report, console);
   result.extraction = to_json(extracted.report);
   append(std::move(extracted), result);

@@ -84,10 +84,11 @@ void check_input(const GenerateArguments& arguments) {
   const ExtractOptions plain;
   const RequiredCoverage& required = arguments.required_coverage;
   if (arguments.extraction.tree || arguments.extraction.spacing != plain.spacing ||
-      arguments.extraction.join != plain.join || arguments.extraction.largest || arguments.extraction.least_length > 0 ||
-      required.wall > 0 || required.length > 0)
-    throw UsageError("--step, --join, --largest, --least-length, --tree and --require are for an image or a wall as "
-                     "input; this is taken for a centerline");
+      arguments.extraction.join != plain.join || arguments.extraction.largest ||
+      arguments.extraction.least_length > 0 || required.wall > 0 || required.length > 0)
+    throw UsageError(
+        "--step, --join, --largest, --least-length, --tree and --require are for an image or a wall as "
+        "input; this is taken for a centerline");
   if (fits) return;
   if (arguments.fitting.options.error > 0) throw UsageError("--fit-error needs --fit REFERENCE");
   if (has_options(image))

@@ -18,7 +18,7 @@ std::filesystem::path fit_reference(const GenerateArguments& arguments);
 /// The input of `vmesh generate`.
 struct GenerateInput {
   LoadedCenterline centerline = {{Centerline({{Vec3::Zero(), 1}}, {}), {}, {}, {}, {}}, {}, {}};  ///< clean
-  std::optional<TriMesh> reference;            ///< to fit to
+  std::optional<TriMesh> reference;                                                               ///< to fit to
   std::optional<ExtractionReport> extraction;  ///< if the centerline was extracted
   std::vector<StageTime> stages;               ///< read, and those of extraction
 };

@@ -6,6 +6,7 @@
 #include "vmesh/image/image_io.h"
 #include "vmesh/reference/reference_surface.h"
 #include "vmesh/skeleton/extract_centerline.h"
+#include "vmesh/skeleton/vessel_mask.h"
 
 #include "arrays.h"
 #include "module.h"
@@ -105,7 +106,8 @@ Raises ReadError, InvalidInput, Unsupported.)");
         options.least_length = least_length;
         options.tree = tree;
         const auto object_of = [](ExtractedCenterline extracted) {
-          return std::make_shared<CenterlineObject>(CenterlineObject{std::move(extracted.centerline), {}, {}, {}});
+          return std::make_shared<CenterlineObject>(CenterlineObject{
+              std::move(extracted.centerline), {}, {}, {}, std::move(extracted.end_sections)});
         };
         if (const auto* surface = std::get_if<SurfacePtr>(&vessels)) {
           if (*surface == nullptr) throw py::type_error("vessels: a Surface, a file or an array is needed, not None");

@@ -157,7 +157,11 @@ void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const
   if (spheres->GetNumberOfCells() > 0) data->SetVerts(spheres);
   for (const FieldArray& array : end_section_arrays(sections))
     add_numbers(*data->GetFieldData(), array.name, array.values, array.integer, array.components);
-  if (!metadata.segment_labels.empty()) add_numbers(*data->GetCellData(), "Label", metadata.segment_labels, false);
+  if (!metadata.segment_labels.empty()) {
+    std::vector<double> labels(static_cast<std::size_t>(spheres->GetNumberOfCells()), -1);  // cells before the lines
+    labels.insert(labels.end(), metadata.segment_labels.begin(), metadata.segment_labels.end());
+    add_numbers(*data->GetCellData(), "Label", labels, false);
+  }
   add_metadata(*data, metadata);
   write_poly_data(out, *data);
 }

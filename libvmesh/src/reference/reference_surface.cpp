@@ -133,7 +133,8 @@ ReferenceSurface contour_scene(PreparedImage scene, const ReferenceOptions& opti
 }  // namespace
 
 void check(const ReferenceOptions& options) {
-  if (!options.labels.empty() && options.threshold) throw InvalidInput("a label and a threshold exclude each other; give one");
+  if (!options.labels.empty() && options.threshold)
+    throw InvalidInput("a label and a threshold exclude each other; give one");
   if (!(options.spacing >= 0) || !(options.smooth >= 0)) throw InvalidInput("spacing and smoothing are 0 or more mm");
 }
 

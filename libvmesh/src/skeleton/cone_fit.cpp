@@ -30,8 +30,8 @@ constexpr double kDampingOfFixed = 1e6;  // makes nodes practically immovable
 // Distance, in local radii, at which samples farther off are counted.
 constexpr double kNear = 0.5;
 constexpr double kRadiusFactor = 2;
-// A bump of a vessel sticks out by up to this share of the vessel's radius; a wide one, by up to this share and by up to
-// this times its own radius.
+// A bump of a vessel sticks out by up to this share of the vessel's radius; a wide one, by up to this share and by up
+// to this times its own radius.
 constexpr double kBump = 0.35, kWideBump = 1, kBumpWidths = 1.5;
 constexpr double kWithinSlack = 0.15;  // weight of a sample's distance within its slack
 
@@ -306,9 +306,8 @@ double fit_cones(Graph& graph, const FitSamples& samples, double voxel, int roun
   for (int round = 0; round < rounds; ++round) {
     report_progress(progress, "cones", static_cast<double>(round) / rounds);
     const GraphCones cones(graph);
-    tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-      places[i] = cones.closest(samples.points[i], places[i].cone);
-    });
+    tbb::parallel_for(std::size_t{0}, samples.size(),
+                      [&](std::size_t i) { places[i] = cones.closest(samples.points[i], places[i].cone); });
     Equations equations(graph.nodes.size());
     add_samples(equations, cones, samples, places);
     add_priors(equations, graph, edges_at, voxel);

@@ -48,8 +48,8 @@ class GraphCones {
   std::vector<Index> near_at_, near_;  // of every cone: those at most two edges away
 };
 
-/// Removes end chains that do not stick out of the other vessels, or no more than a bump does: second ways to one end of
-/// a vessel that is not round, and what a rough wall leaves. Returns the number removed.
+/// Removes end chains that do not stick out of the other vessels, or no more than a bump does: second ways to one end
+/// of a vessel that is not round, and what a rough wall leaves. Returns the number removed.
 std::size_t prune_contained(Graph& graph);
 
 /// Moves the nodes of `graph` and changes their radii so that the boundary of the union of its round cones comes as

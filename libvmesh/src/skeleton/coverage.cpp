@@ -88,7 +88,7 @@ std::vector<MissedWall> regions_of(const std::vector<Missed>& missed, const FitS
   std::vector<MissedWall> list;
   for (auto& [first, region] : regions) {
     region.reason = left_out_area[first] > 0.5 * region.area ? "a component that was left out"
-                                                              : "wider than round vessels, or between them";
+                                                             : "wider than round vessels, or between them";
     list.push_back(std::move(region));
   }
   std::stable_sort(list.begin(), list.end(), [](const MissedWall& a, const MissedWall& b) { return a.area > b.area; });

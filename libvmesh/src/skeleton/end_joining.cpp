@@ -11,9 +11,9 @@
 namespace vmesh::skeleton {
 namespace {
 
-constexpr double kVoxels = 3;     // a gap that is joined however thin the vessels
-constexpr double kAhead = 0.5;    // cosine between an end's direction and the way over the gap
-constexpr double kAround = 2;     // radii over which an end's direction is measured
+constexpr double kVoxels = 3;   // a gap that is joined however thin the vessels
+constexpr double kAhead = 0.5;  // cosine between an end's direction and the way over the gap
+constexpr double kAround = 2;   // radii over which an end's direction is measured
 
 struct Candidate {
   double cost, gap;
@@ -24,8 +24,8 @@ struct Candidate {
 Vec3 direction_at(const Graph& graph, const std::vector<std::vector<Index>>& edges_at, Index end) {
   const Node& tip = graph.nodes[end];
   Index n = end, before = kNone;
-  while (n == end || (edges_at[n].size() == 2 &&
-                      (graph.nodes[n].position - tip.position).norm() < kAround * tip.radius)) {
+  while (n == end ||
+         (edges_at[n].size() == 2 && (graph.nodes[n].position - tip.position).norm() < kAround * tip.radius)) {
     const Index e = edges_at[n][edges_at[n].size() == 2 && edges_at[n][0] == before ? 1 : 0];
     before = e;
     n = other_end(graph, e, n);
@@ -71,8 +71,8 @@ std::vector<JoinedGap> join_ends(Graph& graph, double join, double voxel) {
   for (const Candidate& candidate : candidates_of(graph, sets, join, voxel)) {
     if (!sets.join(candidate.from, candidate.to)) continue;
     graph.edges.push_back({candidate.from, candidate.to});
-    joined.push_back({graph.nodes[candidate.from].position, graph.nodes[candidate.to].position,
-                      std::max(candidate.gap, 0.0)});
+    joined.push_back(
+        {graph.nodes[candidate.from].position, graph.nodes[candidate.to].position, std::max(candidate.gap, 0.0)});
   }
   return joined;
 }

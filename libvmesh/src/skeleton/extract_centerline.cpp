@@ -32,8 +32,8 @@ using skeleton::VoxelSkeleton;
 constexpr int kFitRounds = 20;
 // A wall that is rough is smoothed like one of voxels larger by so many times the distances beyond the slack.
 constexpr double kNoise = 4;
-constexpr int kRefinements = 2;  // the second works on the result of the first
-constexpr double kLeastRadius = 1.5;  // voxels; thinner vessels have nodes as far apart as ones of that radius
+constexpr int kRefinements = 2;         // the second works on the result of the first
+constexpr double kLeastRadius = 1.5;    // voxels; thinner vessels have nodes as far apart as ones of that radius
 constexpr double kBytesPerVoxel = 120;  // measured
 
 void check(const ExtractOptions& options) {
@@ -49,9 +49,9 @@ struct Work {
   std::vector<Index> component_of_sample;
   std::vector<bool> kept;  // of every component
   std::vector<EndSection> sections;
-  double voxel = 0;           // mm, of the grid
-  double wall_voxel = 0;      // mm, the longest side; 0 for a wall that is not made of voxels
-  double mean_voxel = 0;      // mm, likewise
+  double voxel = 0;       // mm, of the grid
+  double wall_voxel = 0;  // mm, the longest side; 0 for a wall that is not made of voxels
+  double mean_voxel = 0;  // mm, likewise
   StageClock clock;
   ExtractionReport report;
 };
@@ -79,7 +79,8 @@ void choose_components(VoxelSkeleton& skeleton, const ExtractOptions& options, E
     report.left_out += !component.kept;
   }
   if (report.left_out == lengths.size())
-    throw InvalidInput("no component is as long as the least length of " + std::to_string(options.least_length) + " mm");
+    throw InvalidInput("no component is as long as the least length of " + std::to_string(options.least_length) +
+                       " mm");
   report.components += lengths.size();
   report.length_coverage = all > 0 ? 1 - left / all : 1;
   std::vector<bool> removed(skeleton.graph.edges.size(), false);
@@ -280,9 +281,8 @@ void add_samples(const skeleton::WallPart& part, const Graph& graph, Index compo
   for (const auto& [a, b, c] : part.mesh.faces)
     middles.push_back((part.mesh.vertices[a] + part.mesh.vertices[b] + part.mesh.vertices[c]) / 3);
   const std::vector<skeleton::GraphCones::Place> places = cones.closest(middles);
-  const skeleton::WallSamples samples = skeleton::samples_by_area(part.mesh, [&](Index f) {
-    return part.is_wall(f) ? kSampleSpacing * cones.radius_at(places[f]) : 0.0;
-  });
+  const skeleton::WallSamples samples = skeleton::samples_by_area(
+      part.mesh, [&](Index f) { return part.is_wall(f) ? kSampleSpacing * cones.radius_at(places[f]) : 0.0; });
   work.wall.points.insert(work.wall.points.end(), samples.points.begin(), samples.points.end());
   work.wall.areas.insert(work.wall.areas.end(), samples.areas.begin(), samples.areas.end());
   work.wall.slack.resize(work.wall.size(), 0);

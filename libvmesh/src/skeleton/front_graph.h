@@ -23,9 +23,9 @@ class FrontGraph {
 
   /// Fronts that part at one front and meet at another.
   struct Loop {
-    Index parting, meeting;          ///< fronts
-    std::vector<Index> sides[2];     ///< the fronts between them, which a path along that side may use
-    double persistence = 0;          ///< length of the path between parting and meeting, mm
+    Index parting, meeting;       ///< fronts
+    std::vector<Index> sides[2];  ///< the fronts between them, which a path along that side may use
+    double persistence = 0;       ///< length of the path between parting and meeting, mm
   };
   /// Loops that are at least as long as `least(meeting front's first voxel)` between parting and meeting (mm), those
   /// that meet nearest to the root first.
@@ -50,13 +50,15 @@ class FrontGraph {
   };
   std::vector<Meeting> meetings() const;
   Loop loop_at(Index front, Index first, Index second) const;
-  std::vector<Index> below(Index front) const { return {below_.begin() + below_at_[front], below_.begin() + below_at_[front + 1]}; }
+  std::vector<Index> below(Index front) const {
+    return {below_.begin() + below_at_[front], below_.begin() + below_at_[front + 1]};
+  }
 
-  double width_;                       // of a band, mm
+  double width_;  // of a band, mm
   std::vector<Index> front_of_voxel_;
-  std::vector<int> level_;             // band of every front
-  std::vector<Index> first_voxel_;     // of every front
-  std::vector<Index> offset_, voxels_;  // voxels of every front
+  std::vector<int> level_;               // band of every front
+  std::vector<Index> first_voxel_;       // of every front
+  std::vector<Index> offset_, voxels_;   // voxels of every front
   std::vector<Index> below_at_, below_;  // neighbours of every front in lower bands
 };
 

@@ -28,13 +28,13 @@ constexpr int kMostPasses = 4;
 /// A stretch between branchings, and its thinnest place.
 struct Stretch {
   Chain chain;
-  double length = 0;          ///< mm
-  double width = 0;           ///< largest bore on the thinner side of the thinnest place, mm
-  std::size_t thinnest = 0;   ///< in the chain's nodes
+  double length = 0;                ///< mm
+  double width = 0;                 ///< largest bore on the thinner side of the thinnest place, mm
+  std::size_t thinnest = 0;         ///< in the chain's nodes
   std::size_t first = 0, last = 0;  ///< the nodes around it that are thinner than both sides
-  double strength = 0;        ///< below a half for short ways from vessel to vessel, below 1 for necks
+  double strength = 0;              ///< below a half for short ways from vessel to vessel, below 1 for necks
   bool is_contact = false;
-  bool may_be_crossing = false;     ///< a contact, short as a whole, where no neck is to be seen
+  bool may_be_crossing = false;  ///< a contact, short as a whole, where no neck is to be seen
 };
 
 double bore_of(const Graph& graph, const Chain& chain, std::size_t i) { return graph.nodes[chain.nodes[i]].bore; }
@@ -49,8 +49,7 @@ Stretch stretch_of(const Graph& graph, Chain chain, double widest, double voxel)
   Stretch s;
   const std::size_t count = chain.nodes.size();
   std::vector<double> before(count), after(count);  // largest bore up to a node, and from it on
-  for (std::size_t i = 0; i < count; ++i)
-    before[i] = std::max(bore_of(graph, chain, i), i > 0 ? before[i - 1] : 0.0);
+  for (std::size_t i = 0; i < count; ++i) before[i] = std::max(bore_of(graph, chain, i), i > 0 ? before[i - 1] : 0.0);
   for (std::size_t i = count; i-- > 0;)
     after[i] = std::max(bore_of(graph, chain, i), i + 1 < count ? after[i + 1] : 0.0);
   const auto share = [&](std::size_t i) { return bore_of(graph, chain, i) / std::min(before[i], after[i]); };
@@ -217,8 +216,7 @@ void remove_contact(const Graph& graph, const Stretch& stretch, double voxel, st
   const Chain& chain = stretch.chain;
   const std::size_t end = chain.nodes.size() - 1;
   const auto is_within = [&](std::size_t from, std::size_t to, std::size_t vessel) {
-    return length_between(graph, chain, from, to) <=
-           kRestRadii * bore_of(graph, chain, vessel) + kRestVoxels * voxel;
+    return length_between(graph, chain, from, to) <= kRestRadii * bore_of(graph, chain, vessel) + kRestVoxels * voxel;
   };
   std::size_t first = stretch.first, last = stretch.last;
   if (is_within(0, first, 0)) first = 0;
@@ -262,8 +260,7 @@ std::vector<VesselLoop> pass(Graph& graph, double voxel, bool open) {
     const Stretch& stretch = stretches[s];
     const Chain& chain = stretch.chain;
     const bool is_free = !touched[chain.nodes.front()] && !touched[chain.nodes.back()];
-    const auto crossing =
-        stretch.may_be_crossing && is_free ? uncrossing_at(graph, edges_at, stretch) : std::nullopt;
+    const auto crossing = stretch.may_be_crossing && is_free ? uncrossing_at(graph, edges_at, stretch) : std::nullopt;
     if (crossing && uncross(graph, stretch, *crossing, removed)) {
       touched[chain.nodes.front()] = touched[chain.nodes.back()] = true;
     } else if (stretch.is_contact) {

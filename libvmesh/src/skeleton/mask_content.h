@@ -18,13 +18,13 @@ struct Crossing {
 };
 
 struct MaskContent {
-  VoxelSet voxels;  ///< without holes once these are filled
+  VoxelSet voxels;    ///< without holes once these are filled
   VoxelSet as_given;  ///< with small holes: the wall is measured on what is given, so that noise on either side cancels
   VoxelFrame frame;
   ReferenceOptions options;
-  std::vector<Crossing> crossings;    ///< of grey values
-  std::vector<float> last_slice;      ///< of grey values
-  std::set<float> values;             ///< besides 0, the first few
+  std::vector<Crossing> crossings;  ///< of grey values
+  std::vector<float> last_slice;    ///< of grey values
+  std::set<float> values;           ///< besides 0, the first few
   float highest = 0;
 };
 

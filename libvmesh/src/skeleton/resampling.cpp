@@ -50,9 +50,9 @@ Node smoothed_at(const Curve& curve, double at, double radius) {
 std::vector<double> divisions(const Curve& curve, double spacing, double least_radius, std::size_t least) {
   std::vector<double> radii(curve.at.size(), 0);  // length in radii up to every node
   for (std::size_t i = 1; i < curve.at.size(); ++i)
-    radii[i] = radii[i - 1] + 2 * (curve.at[i] - curve.at[i - 1]) /
-                                  (std::max(curve.nodes[i - 1].radius, least_radius) +
-                                   std::max(curve.nodes[i].radius, least_radius));
+    radii[i] = radii[i - 1] +
+               2 * (curve.at[i] - curve.at[i - 1]) /
+                   (std::max(curve.nodes[i - 1].radius, least_radius) + std::max(curve.nodes[i].radius, least_radius));
   if (!(radii.back() > 0)) return {0, curve.at.back()};
   const auto count = std::max(least, static_cast<std::size_t>(std::lround(radii.back() / spacing)));
   std::vector<double> places = {0};

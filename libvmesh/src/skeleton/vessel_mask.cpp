@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/image/image_io.h"
 #include "vmesh/image/image_slices.h"
 
@@ -98,6 +99,17 @@ void add_crossings(MaskContent& mask, std::span<const float> values, int k) {
 
 VesselMask::VesselMask(const VoxelImage& frame, const ReferenceOptions& options)
     : content_(std::make_unique<MaskContent>()) {
+  constexpr double kMostPerAxis = 1 << 30;
+  double blocks = 1;
+  for (const std::size_t count : frame.size) {
+    if (static_cast<double>(count) > kMostPerAxis)
+      throw Unsupported("an image of " + std::to_string(count) + " voxels along an axis; crop it to the vessels");
+    blocks *= std::ceil(static_cast<double>(count) / skeleton::VoxelSet::kSide) + 2;
+  }
+  require_memory(sizeof(Index) * blocks,
+                 "the vessels of an image of " + std::to_string(frame.size[0]) + " x " + std::to_string(frame.size[1]) +
+                     " x " + std::to_string(frame.size[2]) + " voxels",
+                 "crop it to them");
   content_->voxels = skeleton::VoxelSet(frame.size);
   content_->frame = {frame.origin, frame.steps};
   content_->options = options;
@@ -279,8 +291,8 @@ std::vector<Voxel> patch_at(const VoxelSet& voxels, Index first, int axis, const
 }  // namespace
 
 std::vector<BorderEnd> border_ends(const VoxelSet& voxels, const VoxelFrame& frame) {
-  constexpr double kRound = 0.4;      // of the circle around it
-  constexpr double kGoesOn = 0.6;     // of its voxels, a radius further in
+  constexpr double kRound = 0.4;   // of the circle around it
+  constexpr double kGoesOn = 0.6;  // of its voxels, a radius further in
   const std::vector<Voxel> all = voxels.voxels();
   const Vec3 spacing = frame.spacing();
   std::vector<BorderEnd> ends;

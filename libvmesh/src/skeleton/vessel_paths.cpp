@@ -17,7 +17,7 @@ constexpr double kNearDepths = 1.2, kNearVoxels = 2;
 // Fronts that meet again sooner are a tunnel in a rough boundary, or a notch: so many depths, and voxels.
 constexpr double kLoopDepths = 1, kLoopVoxels = 5, kLoopSlices = 3;
 constexpr std::size_t kBetweenReports = 1000;  // voxels
-constexpr float kOnPath = 1e-3f;  // of the cost of other voxels: a second path prefers the first one's way
+constexpr float kOnPath = 1e-3f;               // of the cost of other voxels: a second path prefers the first one's way
 
 // A path around a loop may go so many depths, and this share of the loop, beyond where its sides meet.
 constexpr double kBeyondDepths = 4, kBeyond = 0.5;
@@ -77,7 +77,10 @@ class PathFinder {
   Index place_of(Index n) const { return place_[n]; }
   void count_loop() { ++paths_.loops; }
 
-  double least_loop(Index voxel) const { return kLoopDepths * depth_[voxel] + std::max(kLoopVoxels * graph_.finest(), kLoopSlices * graph_.spacing().maxCoeff()); }
+  double least_loop(Index voxel) const {
+    return kLoopDepths * depth_[voxel] +
+           std::max(kLoopVoxels * graph_.finest(), kLoopSlices * graph_.spacing().maxCoeff());
+  }
 
  private:
   float reach_at(double depth) const { return static_cast<float>(kNearDepths * depth); }
@@ -198,7 +201,7 @@ class PathFinder {
   std::vector<Index> parent_;
   std::vector<float> reach_;  // how much farther a path reaches beyond a voxel, mm
   std::unordered_map<Index, float> reach_of_source_;
-  std::vector<Index> place_;  // in paths_
+  std::vector<Index> place_;                    // in paths_
   std::vector<std::vector<Index>> neighbours_;  // of every voxel with a path, those of higher place
   std::vector<float> side_way_;
   std::vector<Index> side_parent_;

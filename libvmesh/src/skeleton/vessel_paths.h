@@ -18,9 +18,9 @@ struct KnownEnd {
 
 /// A graph of voxels: the middle of every vessel, from tip to tip, and around every loop.
 struct VesselPaths {
-  std::vector<Index> voxels;                 ///< numbers in the VoxelGraph
-  std::vector<std::array<Index, 2>> edges;   ///< places in `voxels`
-  std::vector<Index> known_ends;             ///< place in `voxels` of every known end; kNone if it has no path
+  std::vector<Index> voxels;                ///< numbers in the VoxelGraph
+  std::vector<std::array<Index, 2>> edges;  ///< places in `voxels`
+  std::vector<Index> known_ends;            ///< place in `voxels` of every known end; kNone if it has no path
   std::size_t loops = 0;
   std::vector<Index> component;  ///< of every voxel of the VoxelGraph
   std::vector<Index> roots;      ///< of every component, in the VoxelGraph

@@ -6,8 +6,8 @@
 namespace vmesh::skeleton {
 namespace {
 
-constexpr int kMostRounds = 2;     // for tunnels of two voxels
-constexpr int kSurrounded = 19;    // of 26 neighbours
+constexpr int kMostRounds = 2;   // for tunnels of two voxels
+constexpr int kSurrounded = 19;  // of 26 neighbours
 constexpr std::uint64_t kFirstColumn = 0x0101010101010101, kLastColumn = kFirstColumn << 7;
 constexpr std::uint64_t kFirstRow = 0xff, kLastRow = kFirstRow << 56;
 
@@ -67,8 +67,8 @@ class Outside {
     while (more) {
       more = false;
       for (int k = 0; k < 8; ++k) {
-        std::uint64_t grown = now[k] | (now[k] & ~kLastColumn) << 1 | (now[k] & ~kFirstColumn) >> 1 | now[k] << 8 |
-                              now[k] >> 8;
+        std::uint64_t grown =
+            now[k] | (now[k] & ~kLastColumn) << 1 | (now[k] & ~kFirstColumn) >> 1 | now[k] << 8 | now[k] >> 8;
         if (k > 0) grown |= now[k - 1];
         if (k < 7) grown |= now[k + 1];
         grown &= ~inside[k];

@@ -10,8 +10,8 @@
 namespace vmesh::skeleton {
 namespace {
 
-constexpr int kGap = 2;               // voxels from centre to centre across a gap of one voxel
-constexpr int kFragmentSide = 8;      // a fragment fits into a box of this side, voxels
+constexpr int kGap = 2;                // voxels from centre to centre across a gap of one voxel
+constexpr int kFragmentSide = 8;       // a fragment fits into a box of this side, voxels
 constexpr std::size_t kFragment = 64;  // and has at most this many
 
 struct Extent {
@@ -48,8 +48,7 @@ VoxelGraph::VoxelGraph(const VoxelSet& voxels, const Vec3& spacing)
   std::size_t at = 0;
   for (int k = -1; k <= 1; ++k)
     for (int j = -1; j <= 1; ++j)
-      for (int i = -1; i <= 1; ++i)
-        lengths_[at++] = static_cast<float>(Vec3(i, j, k).cwiseProduct(spacing).norm());
+      for (int i = -1; i <= 1; ++i) lengths_[at++] = static_cast<float>(Vec3(i, j, k).cwiseProduct(spacing).norm());
 }
 
 void VoxelGraph::add_bridges(std::span<const Bridge> bridges) {

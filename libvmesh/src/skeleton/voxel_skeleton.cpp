@@ -10,8 +10,8 @@ namespace vmesh::skeleton {
 namespace {
 
 constexpr int kSmoothings = 4;
-// A component is a vessel if it is longer than this times its width, and than so many voxels, both measured from outside
-// to outside.
+// A component is a vessel if it is longer than this times its width, and than so many voxels, both measured from
+// outside to outside.
 constexpr double kLongerThanWide = 1.4, kLeastVoxels = 6;
 
 // A sphere counts as reaching an end if its radius and a voxel are this share of the way; the fit does the rest.
@@ -90,8 +90,7 @@ VoxelSkeleton skeleton_of(const VoxelSet& voxels, const VoxelFrame& frame, std::
   const std::vector<float> occupancy = smoothed_occupancy(voxels);
   VesselPaths paths = find_paths(graph, depth, occupancy, ends, progress);
   judge(result.components, paths.component, graph, depth, paths.roots);
-  for (VoxelComponent& component : result.components)
-    component.place = frame.origin + frame.steps * component.place;
+  for (VoxelComponent& component : result.components) component.place = frame.origin + frame.steps * component.place;
 
   std::vector<Index> number(paths.voxels.size(), kNone);
   for (std::size_t p = 0; p < paths.voxels.size(); ++p) {
@@ -102,8 +101,7 @@ VoxelSkeleton skeleton_of(const VoxelSet& voxels, const VoxelFrame& frame, std::
         {frame.position(graph.voxel(n)), depth[n] - 0.5 * voxel, depth[n] + (occupancy[n] - 1) * voxel, false});
     result.component_of_node.push_back(paths.component[n]);
   }
-  for (const auto& [a, b] : paths.edges)
-    result.graph.edges.push_back({number[a], number[b]});
+  for (const auto& [a, b] : paths.edges) result.graph.edges.push_back({number[a], number[b]});
   for (const Index place : paths.known_ends) result.node_of_end.push_back(place == kNone ? kNone : number[place]);
   for (const Index n : result.node_of_end)
     if (n != kNone) result.graph.nodes[n].fixed = true;

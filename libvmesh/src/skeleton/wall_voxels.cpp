@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPerRadius = 3;
 constexpr double kMostVoxels = 6e5;
-constexpr std::size_t kBalls = 2000;   // places where the radius is measured
-constexpr double kThinnest = 0.1;      // of the area: the rest is noise
+constexpr std::size_t kBalls = 2000;  // places where the radius is measured
+constexpr double kThinnest = 0.1;     // of the area: the rest is noise
 constexpr int kMostShrinks = 12;
 
 /// The radius of the largest ball inside the wall that touches it at `p` (Ma et al. 2012, shrinking balls).

@@ -100,7 +100,7 @@ struct CenterlineMetadata {
   LengthUnit unit = LengthUnit::mm;  ///< of the written numbers
   Space space = Space::lps;          ///< likewise
   /// The label of the segmentation that every segment comes from; empty: none. Written to JSON and VTP.
-  std::vector<double> segment_labels;
+  std::vector<double> segment_labels = {};
 };
 
 /// Writes a centerline (given in mm and LPS) in the format of the extension, in the unit and frame of `metadata`, which

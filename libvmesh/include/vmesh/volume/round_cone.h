@@ -12,8 +12,8 @@ struct RoundCone {
   Vec3 origin = Vec3::Zero(), axis = Vec3::Zero();  ///< axis = last - first, mm
   double r0 = 0, r1 = 0;                            ///< mm
   double inv_length2 = 0;                           ///< 1 / |axis|^2; 0 for a sphere
-  double lag = 0;                   ///< tan(half angle) / |axis|: how far the touching sphere lags the foot point
-  double t_low = 0, t_high = 1;     ///< equal where one end sphere contains the other
+  double lag = 0;                ///< tan(half angle) / |axis|: how far the touching sphere lags the foot point
+  double t_low = 0, t_high = 1;  ///< equal where one end sphere contains the other
 
   RoundCone() = default;
   RoundCone(const CenterlineNode& first, const CenterlineNode& last)
