@@ -51,16 +51,16 @@ TEST_F(References, ACenterlineComesBackFromItsSurface) {
   const Centerline back = centerline("back.json");
   EXPECT_EQ(back.component_count(), 1u);
   EXPECT_EQ(back.cycle_rank(), 0u);
-  EXPECT_EQ(json("summary.json")["extraction"]["parts"], 1);
+  EXPECT_EQ(json("summary.json")["extraction"]["components"], 1);
   EXPECT_EQ(vmesh({"generate", "@back.json", "-o", "@again.ply", "--check"}).exit_code, 0);
 }
 
-TEST_F(References, AnOpenSurfaceHasNoCenterline) {
-  write("open.off", "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n");
-  const Outcome run = vmesh({"centerline", "@open.off", "-o", "@open.json"});
+TEST_F(References, ASheetHasNoCenterline) {
+  write("sheet.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n");
+  const Outcome run = vmesh({"centerline", "@sheet.off", "-o", "@sheet.json"});
   EXPECT_EQ(run.exit_code, 3);
-  EXPECT_NE(run.err.find("open.off: the surface is open: 3 edges"), std::string::npos) << run.err;
-  EXPECT_FALSE(exists("open.json"));
+  EXPECT_NE(run.err.find("sheet.off: the surface encloses no volume"), std::string::npos) << run.err;
+  EXPECT_FALSE(exists("sheet.json"));
 }
 
 #if VMESH_TEST_WITH_VTK

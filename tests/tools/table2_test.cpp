@@ -89,7 +89,7 @@ TEST_F(Table2, ComesFromASurfaceAlone) {
   EXPECT_EQ(report["rows"][0]["vertices"], read_surface(path("y.ply")).mesh.vertices.size());
   EXPECT_EQ(report["rows"][0]["paper"]["vertices"], 89'406);
   EXPECT_EQ(report.at("centerline").at("components"), 1);
-  EXPECT_EQ(report.at("source").at("extraction").at("parts"), 1);
+  EXPECT_EQ(report.at("source").at("extraction").at("components"), 1);
   EXPECT_EQ(report["source"]["contour_of"], nullptr);
   EXPECT_EQ(report.at("demands").size(), 6u);
   EXPECT_EQ(report.at("against_paper").size(), 15u);
@@ -142,9 +142,9 @@ TEST_F(Table2, RefusesBadCommandLines) {
   expect_failure({"--reference", "@y.ply", "--centerline", "@missing.swc"}, 3, "missing.swc");
 }
 
-TEST_F(Table2, RefusesAnOpenSurfaceWithoutCenterlineAndNeverOverwritesAnInput) {
-  write("open.off", "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n");
-  expect_failure({"--reference", "@open.off"}, 3, "open.off: the surface is open");
+TEST_F(Table2, RefusesASheetWithoutCenterlineAndNeverOverwritesAnInput) {
+  write("sheet.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n");
+  expect_failure({"--reference", "@sheet.off"}, 3, "sheet.off: the surface encloses no volume");
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@low.ply"}).exit_code, 0);
   const std::string before = read("low.ply");
   expect_failure({"--reference", "@low.ply", "--surfaces", path("").string()}, 2, "low.ply: is an input");

@@ -38,7 +38,7 @@ void add_image_options(CLI::App& verb, ReferenceOptions& options) {
   CLI::Option* label =
       verb.add_option("--label", options.labels, "image: voxels of this value are inside, or of these: 1,2,5")
           ->delimiter(',')
-          ->expected(1)
+          ->allow_extra_args(false)
           ->type_name("N,N,...");
   verb.add_option("--threshold", options.threshold, "image: voxels of at least this value are inside")->excludes(label);
   verb.add_option("--spacing", options.spacing, "image: resample to cubic voxels of this side, mm; 0: do not resample")

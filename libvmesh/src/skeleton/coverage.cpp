@@ -43,7 +43,7 @@ WallDistance summarized(std::vector<Deviation> deviations) {
 
 Graph graph_of(const Centerline& centerline) {
   Graph graph;
-  for (const CenterlineNode& node : centerline.nodes()) graph.nodes.push_back({node.position, node.radius, 0, false});
+  for (const CenterlineNode& node : centerline.nodes()) graph.nodes.push_back({node.position, node.radius});
   for (const CenterlineSegment& segment : centerline.segments()) graph.edges.push_back({segment.a, segment.b});
   return graph;
 }

@@ -11,6 +11,7 @@
 namespace vmesh::skeleton {
 namespace {
 
+constexpr double kTouching = 0.5;  // share of `join` up to which the direction does not matter
 constexpr double kVoxels = 3;   // a gap that is joined however thin the vessels
 constexpr double kAhead = 0.5;  // cosine between an end's direction and the way over the gap
 constexpr double kAround = 2;   // radii over which an end's direction is measured
@@ -48,10 +49,12 @@ std::vector<Candidate> candidates_of(const Graph& graph, DisjointSets& sets, dou
       const RoundCone& cone = cones.cone(c);
       const auto [distance, t] = cone.distance_to(tip.position);
       const double gap = distance - tip.radius;
-      if (gap > std::max(join * std::min(tip.radius, cone.radius_at(t)), kVoxels * voxel)) return;
+      const double reach = join * std::min(tip.radius, cone.radius_at(t));
+      if (gap > std::max(reach, kVoxels * voxel)) return;
       const Vec3 way = cone.origin + t * cone.axis - tip.position;
       const double cosine = way.norm() > 0 ? ahead.dot(way.normalized()) : 1;
-      if (gap > kVoxels * voxel && !edges_at[end].empty() && cosine < kAhead) return;
+      const bool touches = gap <= std::max(kTouching * reach, kVoxels * voxel);
+      if (!touches && !edges_at[end].empty() && cosine < kAhead) return;
       const Index to = t < 0.5 ? cones.first_node(c) : cones.last_node(c);
       candidates.push_back({std::max(gap, 0.0) + (1 - cosine) * tip.radius, gap, end, to});
     });

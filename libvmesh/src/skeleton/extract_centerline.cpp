@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vmesh/centerline/cleaning.h"
+#include "vmesh/core/disjoint_sets.h"
 #include "vmesh/core/error.h"
 #include "vmesh/core/memory.h"
 
@@ -45,9 +46,14 @@ void check(const ExtractOptions& options) {
 /// The vessels on their way to a centerline.
 struct Work {
   Graph graph;
-  FitSamples wall;
-  std::vector<Index> component_of_sample;
-  std::vector<bool> kept;  // of every component
+  struct Wall {
+    FitSamples samples;
+    std::vector<Index> component;  // of every sample
+  };
+  Wall wall;
+  Wall reported;  // denser, for the report; empty: the same
+  std::vector<bool> kept;           // of every component
+  std::vector<double> path_length;  // mm, likewise
   std::vector<EndSection> sections;
   double voxel = 0;       // mm, of the grid
   double wall_voxel = 0;  // mm, the longest side; 0 for a wall that is not made of voxels
@@ -64,29 +70,55 @@ std::vector<double> path_lengths(const VoxelSkeleton& skeleton) {
   return lengths;
 }
 
-/// Chooses components by the options, and takes the others out of the graph.
-void choose_components(VoxelSkeleton& skeleton, const ExtractOptions& options, ExtractionReport& report) {
-  const std::vector<double> lengths = path_lengths(skeleton);
-  const std::size_t longest =
-      static_cast<std::size_t>(std::max_element(lengths.begin(), lengths.end()) - lengths.begin());
-  double all = 0, left = 0;
-  for (std::size_t c = 0; c < lengths.size(); ++c) {
-    skeleton::VoxelComponent& component = skeleton.components[c];
-    all += lengths[c];
-    if (options.largest) component.kept = c == longest;
-    if (!options.largest && options.least_length > 0) component.kept = lengths[c] >= options.least_length;
-    left += component.kept ? 0 : lengths[c];
-    report.left_out += !component.kept;
-  }
-  if (report.left_out == lengths.size())
-    throw InvalidInput("no component is as long as the least length of " + std::to_string(options.least_length) +
-                       " mm");
-  report.components += lengths.size();
-  report.length_coverage = all > 0 ? 1 - left / all : 1;
+/// Takes components that are no vessels out of the graph.
+void leave_out_others(VoxelSkeleton& skeleton, Work& work) {
+  work.path_length = path_lengths(skeleton);
+  for (const skeleton::VoxelComponent& component : skeleton.components) work.kept.push_back(component.kept);
+  for (Index n = 0; n < skeleton.graph.nodes.size(); ++n)
+    skeleton.graph.nodes[n].component = skeleton.component_of_node[n];
   std::vector<bool> removed(skeleton.graph.edges.size(), false);
-  for (Index e = 0; e < removed.size(); ++e)
-    removed[e] = !skeleton.components[skeleton.component_of_node[skeleton.graph.edges[e][0]]].kept;
+  for (Index e = 0; e < removed.size(); ++e) removed[e] = !work.kept[skeleton.component_of_node[skeleton.graph.edges[e][0]]];
   skeleton::remove_edges(skeleton.graph, removed);
+}
+
+/// Applies --largest and --least-length to the components of the graph, as they are after ends were joined.
+void choose_components(Work& work, const ExtractOptions& options) {
+  if (!options.largest && options.least_length == 0) return;
+  Graph& graph = work.graph;
+  DisjointSets sets(graph.nodes.size());
+  for (const auto& [a, b] : graph.edges) sets.join(a, b);
+  std::vector<double> length(graph.nodes.size(), 0);  // of the set that a node stands for
+  for (Index e = 0; e < graph.edges.size(); ++e) length[sets.find(graph.edges[e][0])] += graph.length(e);
+  const auto longest = static_cast<Index>(std::max_element(length.begin(), length.end()) - length.begin());
+  const auto is_chosen = [&](Index n) {
+    const Index set = sets.find(n);
+    return options.largest ? set == longest : length[set] >= options.least_length;
+  };
+  if (!is_chosen(longest))
+    throw InvalidInput("no component is as long as the least length of " + std::to_string(options.least_length) + " mm");
+  Graph chosen;
+  std::vector<Index> number(graph.nodes.size(), kNone);
+  std::fill(work.kept.begin(), work.kept.end(), false);
+  for (Index n = 0; n < graph.nodes.size(); ++n) {
+    if (!is_chosen(n)) continue;
+    number[n] = static_cast<Index>(chosen.nodes.size());
+    chosen.nodes.push_back(graph.nodes[n]);
+    work.kept[graph.nodes[n].component] = true;
+  }
+  for (const auto& [a, b] : graph.edges)
+    if (number[a] != kNone) chosen.edges.push_back({number[a], number[b]});
+  graph = std::move(chosen);
+}
+
+void count_components(Work& work) {
+  double all = 0, left = 0;
+  for (std::size_t c = 0; c < work.kept.size(); ++c) {
+    all += work.path_length[c];
+    left += work.kept[c] ? 0 : work.path_length[c];
+    work.report.left_out += !work.kept[c];
+  }
+  work.report.components = work.kept.size();
+  work.report.length_coverage = all > 0 ? 1 - left / all : 1;
 }
 
 /// Nodes without an edge that stand for a component: the one with the largest radius of each.
@@ -121,7 +153,7 @@ void place_sections(Graph& graph, const std::vector<EndSection>& sections) {
   const auto edges_at = skeleton::incidence(graph);
   for (const EndSection& section : sections) {
     const double radius = std::sqrt(section.area / M_PI);
-    graph.nodes[section.node] = {section.center, radius, radius, true};
+    graph.nodes[section.node] = {section.center, radius, radius, graph.nodes[section.node].component, true};
     Index n = section.node, before = kNone;
     while (edges_at[n].size() == (n == section.node ? 1u : 2u)) {
       before = edges_at[n][edges_at[n].front() == before ? edges_at[n].size() - 1 : 0];
@@ -135,11 +167,12 @@ void place_sections(Graph& graph, const std::vector<EndSection>& sections) {
 /// The samples of components that are kept.
 FitSamples kept_samples(const Work& work) {
   FitSamples samples;
-  for (std::size_t i = 0; i < work.wall.size(); ++i) {
-    if (!work.kept[work.component_of_sample[i]]) continue;
-    samples.points.push_back(work.wall.points[i]);
-    samples.areas.push_back(work.wall.areas[i]);
-    samples.slack.push_back(work.wall.slack[i]);
+  const FitSamples& wall = work.wall.samples;
+  for (std::size_t i = 0; i < wall.size(); ++i) {
+    if (!work.kept[work.wall.component[i]]) continue;
+    samples.points.push_back(wall.points[i]);
+    samples.areas.push_back(wall.areas[i]);
+    samples.slack.push_back(wall.slack[i]);
   }
   return samples;
 }
@@ -187,12 +220,15 @@ ExtractedCenterline finish(Work work, const ExtractOptions& options, const Progr
   fit(work, options, progress);
   for (const JoinedGap& gap : skeleton::join_ends(work.graph, options.join, work.voxel))
     work.report.joined.push_back(gap);
+  choose_components(work, options);
+  count_components(work);
   find_sections(work.graph, work.sections);
   Centerline centerline = cleaned(work.graph, work.sections);
   work.clock.lap("cones", work.report.stages);
   std::vector<bool> left_out;
-  for (const Index c : work.component_of_sample) left_out.push_back(!work.kept[c]);
-  skeleton::measure_coverage(centerline, work.wall, left_out, work.mean_voxel, work.report);
+  const Work::Wall& wall = work.reported.component.empty() ? work.wall : work.reported;
+  for (const Index c : wall.component) left_out.push_back(!work.kept[c]);
+  skeleton::measure_coverage(centerline, wall.samples, left_out, work.mean_voxel, work.report);
   work.clock.lap("coverage", work.report.stages);
   return {std::move(centerline), std::move(work.sections), std::move(work.report)};
 }
@@ -229,16 +265,15 @@ ExtractedCenterline extract_centerline(VesselMask vessels, const ExtractOptions&
   std::vector<skeleton::KnownEnd> known;
   for (const skeleton::BorderEnd& end : ends) known.push_back(end.end);
   VoxelSkeleton skeleton = skeleton::skeleton_of(mask.voxels, mask.frame, known, progress);
-  work.wall = skeleton::wall_of(mask, ends, skeleton.component_of_voxel, work.component_of_sample);
+  work.wall.samples = skeleton::wall_of(mask, ends, skeleton.component_of_voxel, work.wall.component);
   mask = {};
   for (std::size_t e = 0; e < ends.size(); ++e)
     if (skeleton.node_of_end[e] != kNone)
       work.sections.push_back(section_of(ends[e], skeleton.frame, skeleton.node_of_end[e]));
-  choose_components(skeleton, options, work.report);
+  leave_out_others(skeleton, work);
   drop_others(skeleton, work.sections);
   place_sections(skeleton.graph, work.sections);
   work.report.loops = skeleton::find_loops(skeleton.graph, work.voxel, options.tree);
-  for (const skeleton::VoxelComponent& component : skeleton.components) work.kept.push_back(component.kept);
   work.report.joined = std::move(skeleton.bridges);
   work.graph = std::move(skeleton.graph);
   return finish(std::move(work), options, progress);
@@ -272,21 +307,29 @@ Index voxel_at(const skeleton::VoxelVolume& volume, const skeleton::FlatWallEnd&
   return nearest;
 }
 
-constexpr double kSampleSpacing = 0.3;  // radii
+// Radii between samples: for the fit, and for the report, whose figures have to hold between the samples as well.
+constexpr double kFitSpacing = 0.3, kReportSpacing = 0.1;
 
 /// Samples of the wall, without what closes its ends.
-void add_samples(const skeleton::WallPart& part, const Graph& graph, Index component, Work& work) {
+void add_samples(const skeleton::WallPart& part, const std::vector<double>& radius, double spacing, Index component,
+                 Work::Wall& wall) {
+  const skeleton::WallSamples samples = skeleton::samples_by_area(
+      part.mesh, [&](Index f) { return part.is_wall(f) ? spacing * radius[f] : 0.0; });
+  wall.samples.points.insert(wall.samples.points.end(), samples.points.begin(), samples.points.end());
+  wall.samples.areas.insert(wall.samples.areas.end(), samples.areas.begin(), samples.areas.end());
+  wall.samples.slack.resize(wall.samples.size(), 0);
+  wall.component.resize(wall.samples.size(), component);
+}
+
+/// The radius of the vessel at every face.
+std::vector<double> radii_at(const TriMesh& mesh, const Graph& graph) {
   const skeleton::GraphCones cones(graph);
   std::vector<Vec3> middles;
-  for (const auto& [a, b, c] : part.mesh.faces)
-    middles.push_back((part.mesh.vertices[a] + part.mesh.vertices[b] + part.mesh.vertices[c]) / 3);
-  const std::vector<skeleton::GraphCones::Place> places = cones.closest(middles);
-  const skeleton::WallSamples samples = skeleton::samples_by_area(
-      part.mesh, [&](Index f) { return part.is_wall(f) ? kSampleSpacing * cones.radius_at(places[f]) : 0.0; });
-  work.wall.points.insert(work.wall.points.end(), samples.points.begin(), samples.points.end());
-  work.wall.areas.insert(work.wall.areas.end(), samples.areas.begin(), samples.areas.end());
-  work.wall.slack.resize(work.wall.size(), 0);
-  work.component_of_sample.resize(work.wall.size(), component);
+  for (const auto& [a, b, c] : mesh.faces)
+    middles.push_back((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3);
+  std::vector<double> radii;
+  for (const skeleton::GraphCones::Place& place : cones.closest(middles)) radii.push_back(cones.radius_at(place));
+  return radii;
 }
 
 void append(VoxelSkeleton&& part, VoxelSkeleton& all) {
@@ -340,15 +383,17 @@ ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOpti
       sections[e].node = skeleton.node_of_end[e] + offset;
       work.sections.push_back(std::move(sections[e]));
     }
-    add_samples(part, skeleton.graph, static_cast<Index>(all.components.size()) + main_component(skeleton), work);
+    const Index component = static_cast<Index>(all.components.size()) + main_component(skeleton);
+    const std::vector<double> radius = radii_at(part.mesh, skeleton.graph);
+    add_samples(part, radius, kFitSpacing, component, work.wall);
+    add_samples(part, radius, kReportSpacing, component, work.reported);
     append(std::move(skeleton), all);
   }
   if (all.graph.nodes.empty()) throw InvalidInput("the surface encloses no volume");
-  choose_components(all, options, work.report);
+  leave_out_others(all, work);
   drop_others(all, work.sections);
   place_sections(all.graph, work.sections);
   work.report.loops = skeleton::find_loops(all.graph, work.voxel, options.tree);
-  for (const skeleton::VoxelComponent& component : all.components) work.kept.push_back(component.kept);
   work.graph = std::move(all.graph);
   return finish(std::move(work), options, progress);
 }

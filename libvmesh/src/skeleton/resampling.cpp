@@ -30,7 +30,7 @@ Node node_at(const Curve& curve, double at) {
   const auto i = static_cast<std::size_t>(after - curve.at.begin());
   const double t = (at - curve.at[i - 1]) / (curve.at[i] - curve.at[i - 1]);
   const Node &a = curve.nodes[i - 1], &b = curve.nodes[i];
-  return {(1 - t) * a.position + t * b.position, (1 - t) * a.radius + t * b.radius};
+  return {(1 - t) * a.position + t * b.position, (1 - t) * a.radius + t * b.radius, 0, a.component};
 }
 
 /// The mean over half a radius to both sides, less near the ends, which stay fixed.
@@ -43,7 +43,7 @@ Node smoothed_at(const Curve& curve, double at, double radius) {
     sum.position += node.position;
     sum.radius += node.radius;
   }
-  return {sum.position / (2 * kSamples + 1), sum.radius / (2 * kSamples + 1)};
+  return {sum.position / (2 * kSamples + 1), sum.radius / (2 * kSamples + 1), 0, curve.nodes.front().component};
 }
 
 /// Distances from the start, spaced evenly in radii, both ends included.

@@ -12,6 +12,7 @@ struct Node {
   Vec3 position = Vec3::Zero();
   double radius = 0;   ///< mm
   double bore = 0;     ///< how wide the voxels are open there, mm; 0: unknown
+  Index component = 0;  ///< of the segmentation
   bool fixed = false;  ///< stays where it is: in the middle of an opening or a flat end
 };
 

@@ -98,7 +98,7 @@ VoxelSkeleton skeleton_of(const VoxelSet& voxels, const VoxelFrame& frame, std::
     number[p] = static_cast<Index>(result.graph.nodes.size());
     const double voxel = graph.finest();
     result.graph.nodes.push_back(
-        {frame.position(graph.voxel(n)), depth[n] - 0.5 * voxel, depth[n] + (occupancy[n] - 1) * voxel, false});
+        {frame.position(graph.voxel(n)), depth[n] - 0.5 * voxel, depth[n] + (occupancy[n] - 1) * voxel});
     result.component_of_node.push_back(paths.component[n]);
   }
   for (const auto& [a, b] : paths.edges) result.graph.edges.push_back({number[a], number[b]});

@@ -19,7 +19,8 @@ namespace vmesh::skeleton {
 namespace {
 
 // Vertices at boundaries become one within the smallest of these tolerances that closes most edges: from this share of
-// the extent, in steps of this factor, up to this share of the median edge; a larger one closes half of what is left.
+// the extent, in steps of this factor, up to this share of the median of the faces' shortest
+// edges; a larger one closes half of what is left.
 constexpr double kSmallestTolerance = 1e-6, kLargestTolerance = 0.1, kNextTolerance = 3;
 constexpr double kWorthIt = 0.5;
 // A fin has at most this share of the area.
@@ -127,13 +128,13 @@ TriMesh joined_within(const TriMesh& mesh, const std::vector<Index>& vertices,
   return result;
 }
 
+/// Of the shortest edge of every face: triangles along a vessel may be long.
 double median_edge(const TriMesh& mesh) {
   std::vector<double> lengths;
-  for (const auto& [a, b, c] : mesh.faces) {
-    lengths.push_back((mesh.vertices[a] - mesh.vertices[b]).norm());
-    lengths.push_back((mesh.vertices[b] - mesh.vertices[c]).norm());
-    lengths.push_back((mesh.vertices[c] - mesh.vertices[a]).norm());
-  }
+  for (const auto& [a, b, c] : mesh.faces)
+    lengths.push_back(std::min({(mesh.vertices[a] - mesh.vertices[b]).norm(),
+                                (mesh.vertices[b] - mesh.vertices[c]).norm(),
+                                (mesh.vertices[c] - mesh.vertices[a]).norm()}));
   if (lengths.empty()) return 0;
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());
