@@ -69,7 +69,8 @@ TEST(ExtractCenterline, TellsHowFarTheSurfaceIsByBranches) {
   EXPECT_NEAR(std::abs(field.sample_global(report.wall.max_at).distance), max, 1e-12);
 }
 
-/// A tube around the z axis with two rings of corners only, 16 radii apart: triangles much longer than the vessel is wide.
+/// A tube around the z axis with two rings of corners only, 16 radii apart: triangles much longer than the vessel is
+/// wide.
 TriMesh long_prism(std::size_t sides, double radius, double length) {
   TriMesh mesh;
   const auto count = static_cast<Index>(sides);

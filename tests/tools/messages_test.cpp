@@ -53,7 +53,7 @@ TEST_F(Messages, InfoTellsOpeningsAreaBoxAndUnitOfAnOpenSurface) {
 }
 
 TEST_F(Messages, AFileOfTheWrongKindIsAnsweredWithTheVerbThatTakesIt) {
-  expect_says({"generate", "@tube.off", "-o", "@y.ply"}, 4, "vmesh centerline " + path("tube.off").string() + " -o ");
+  expect_says({"cones", "@tube.off", "-o", "@y.ply"}, 4, "vmesh centerline " + path("tube.off").string() + " -o ");
   expect_says({"cones", "@tube.off", "-o", "@y.ply"}, 4, "extract one first");
   expect_says({"cones", "@scan.nii.gz", "-o", "@y.ply"}, 4, "vmesh centerline " + path("scan.nii.gz").string());
   expect_says({"render", "@y.swc", "-o", "@y.png"}, 4, "vmesh generate " + path("y.swc").string() + " -o y.ply");
@@ -71,7 +71,7 @@ TEST_F(Messages, AFileOfTheWrongKindIsAnsweredWithTheVerbThatTakesIt) {
   ASSERT_EQ(vmesh({"convert", "@y.swc", "-o", "@line.vtp"}).exit_code, 0);
   ASSERT_EQ(vmesh({"convert", "@tube.off", "-o", "@wall.vtp"}).exit_code, 0);
   expect_says({"render", "@line.vtp", "-o", "@y.png"}, 3, "vmesh generate");
-  expect_says({"generate", "@wall.vtp", "-o", "@y.ply"}, 3, "vmesh centerline");
+  expect_says({"cones", "@wall.vtp", "-o", "@y.ply"}, 3, "vmesh centerline");
 #endif
 }
 

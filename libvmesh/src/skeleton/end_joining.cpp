@@ -12,9 +12,9 @@ namespace vmesh::skeleton {
 namespace {
 
 constexpr double kTouching = 0.5;  // share of `join` up to which the direction does not matter
-constexpr double kVoxels = 3;   // a gap that is joined however thin the vessels
-constexpr double kAhead = 0.5;  // cosine between an end's direction and the way over the gap
-constexpr double kAround = 2;   // radii over which an end's direction is measured
+constexpr double kVoxels = 3;      // a gap that is joined however thin the vessels
+constexpr double kAhead = 0.5;     // cosine between an end's direction and the way over the gap
+constexpr double kAround = 2;      // radii over which an end's direction is measured
 
 struct Candidate {
   double cost, gap;

@@ -51,7 +51,7 @@ struct Work {
     std::vector<Index> component;  // of every sample
   };
   Wall wall;
-  Wall reported;  // denser, for the report; empty: the same
+  Wall reported;                    // denser, for the report; empty: the same
   std::vector<bool> kept;           // of every component
   std::vector<double> path_length;  // mm, likewise
   std::vector<EndSection> sections;
@@ -77,7 +77,8 @@ void leave_out_others(VoxelSkeleton& skeleton, Work& work) {
   for (Index n = 0; n < skeleton.graph.nodes.size(); ++n)
     skeleton.graph.nodes[n].component = skeleton.component_of_node[n];
   std::vector<bool> removed(skeleton.graph.edges.size(), false);
-  for (Index e = 0; e < removed.size(); ++e) removed[e] = !work.kept[skeleton.component_of_node[skeleton.graph.edges[e][0]]];
+  for (Index e = 0; e < removed.size(); ++e)
+    removed[e] = !work.kept[skeleton.component_of_node[skeleton.graph.edges[e][0]]];
   skeleton::remove_edges(skeleton.graph, removed);
 }
 
@@ -95,7 +96,8 @@ void choose_components(Work& work, const ExtractOptions& options) {
     return options.largest ? set == longest : length[set] >= options.least_length;
   };
   if (!is_chosen(longest))
-    throw InvalidInput("no component is as long as the least length of " + std::to_string(options.least_length) + " mm");
+    throw InvalidInput("no component is as long as the least length of " + std::to_string(options.least_length) +
+                       " mm");
   Graph chosen;
   std::vector<Index> number(graph.nodes.size(), kNone);
   std::fill(work.kept.begin(), work.kept.end(), false);
@@ -313,8 +315,8 @@ constexpr double kFitSpacing = 0.3, kReportSpacing = 0.1;
 /// Samples of the wall, without what closes its ends.
 void add_samples(const skeleton::WallPart& part, const std::vector<double>& radius, double spacing, Index component,
                  Work::Wall& wall) {
-  const skeleton::WallSamples samples = skeleton::samples_by_area(
-      part.mesh, [&](Index f) { return part.is_wall(f) ? spacing * radius[f] : 0.0; });
+  const skeleton::WallSamples samples =
+      skeleton::samples_by_area(part.mesh, [&](Index f) { return part.is_wall(f) ? spacing * radius[f] : 0.0; });
   wall.samples.points.insert(wall.samples.points.end(), samples.points.begin(), samples.points.end());
   wall.samples.areas.insert(wall.samples.areas.end(), samples.areas.begin(), samples.areas.end());
   wall.samples.slack.resize(wall.samples.size(), 0);

@@ -10,10 +10,10 @@ namespace vmesh::skeleton {
 
 struct Node {
   Vec3 position = Vec3::Zero();
-  double radius = 0;   ///< mm
-  double bore = 0;     ///< how wide the voxels are open there, mm; 0: unknown
+  double radius = 0;    ///< mm
+  double bore = 0;      ///< how wide the voxels are open there, mm; 0: unknown
   Index component = 0;  ///< of the segmentation
-  bool fixed = false;  ///< stays where it is: in the middle of an opening or a flat end
+  bool fixed = false;   ///< stays where it is: in the middle of an opening or a flat end
 };
 
 /// A graph without multiple edges. Removals may leave nodes without an edge.

@@ -132,9 +132,9 @@ TriMesh joined_within(const TriMesh& mesh, const std::vector<Index>& vertices,
 double median_edge(const TriMesh& mesh) {
   std::vector<double> lengths;
   for (const auto& [a, b, c] : mesh.faces)
-    lengths.push_back(std::min({(mesh.vertices[a] - mesh.vertices[b]).norm(),
-                                (mesh.vertices[b] - mesh.vertices[c]).norm(),
-                                (mesh.vertices[c] - mesh.vertices[a]).norm()}));
+    lengths.push_back(
+        std::min({(mesh.vertices[a] - mesh.vertices[b]).norm(), (mesh.vertices[b] - mesh.vertices[c]).norm(),
+                  (mesh.vertices[c] - mesh.vertices[a]).norm()}));
   if (lengths.empty()) return 0;
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());
