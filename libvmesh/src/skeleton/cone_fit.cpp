@@ -32,7 +32,7 @@ constexpr double kNear = 0.5;
 constexpr double kRadiusFactor = 2;
 // A bump of a vessel sticks out by up to this share of the vessel's radius; a wide one, by up to this share and by up
 // to this times its own radius.
-constexpr double kBump = 0.35, kWideBump = 1, kBumpWidths = 1.5;
+constexpr double kBump = 0.35, kWideBump = 0.8, kBumpWidths = 1.5;
 constexpr double kWithinSlack = 0.15;  // weight of a sample's distance within its slack
 
 /// Normal equations of one round, a 4 x 4 block per pair of nodes.

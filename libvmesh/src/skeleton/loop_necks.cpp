@@ -18,6 +18,8 @@ constexpr double kNeck = 0.75;
 constexpr double kContactRadii = 1, kContactVoxels = 4;
 // In vessels thinner than so many voxels the width changes too much from voxel to voxel to tell.
 constexpr double kSeenNeck = 1.2;
+// Up to so many, a short way between vessels is opened rather than a neck.
+constexpr double kTrustedNeck = 2.4;
 // What is left of a stretch beside a contact goes with it if it is within the vessel that it leads to: so many radii
 // and voxels.
 constexpr double kRestRadii = 1.5, kRestVoxels = 3;
@@ -32,7 +34,7 @@ struct Stretch {
   double width = 0;                 ///< largest bore on the thinner side of the thinnest place, mm
   std::size_t thinnest = 0;         ///< in the chain's nodes
   std::size_t first = 0, last = 0;  ///< the nodes around it that are thinner than both sides
-  double strength = 0;              ///< below a half for short ways from vessel to vessel, below 1 for necks
+  double strength = 0;              ///< below a half for short ways between thin vessels, below 1 for other contacts
   bool is_contact = false;
   bool may_be_crossing = false;  ///< a contact, short as a whole, where no neck is to be seen
 };
@@ -69,9 +71,10 @@ Stretch stretch_of(const Graph& graph, Chain chain, double widest, double voxel)
   if (s.first == s.last) (s.last + 1 < count ? s.last : s.first) += s.last + 1 < count ? 1 : -1;
   s.is_contact = is_neck || is_bridge;
   s.may_be_crossing = is_bridge && (share(s.thinnest) >= kNeck || s.width <= kSeenNeck * voxel);
-  s.strength = is_bridge ? 0.5 * share(s.thinnest)
-               : is_neck ? 0.5 + 0.5 * share(s.thinnest)
-                         : 1 + bore_of(graph, chain, s.thinnest) / widest;
+  const bool first_choice = is_bridge && s.width <= kTrustedNeck * voxel;
+  s.strength = first_choice   ? 0.5 * share(s.thinnest)
+               : s.is_contact ? 0.5 + 0.5 * share(s.thinnest)
+                              : 1 + bore_of(graph, chain, s.thinnest) / widest;
   s.chain = std::move(chain);
   return s;
 }
