@@ -124,5 +124,14 @@ def test_a_centerline_is_extracted():
     assert tree.components == 1 and tree.loops == 0
     np.testing.assert_allclose(tree.nodes[:, 1:], 0, atol=0.1)
     assert np.median(tree.radii) == pytest.approx(2, rel=0.03)
+    opened = vmesh.extract_centerline(vmesh.generate(*FORK, ends="open"))
+    assert opened.components == 1 and len(opened.end_sections) == 3
+
+
+def test_a_centerline_of_a_mask_is_extracted():
+    inside, affine = mask_of_a_tube(radius=3, spacing=0.5)
+    tree = vmesh.extract_centerline(inside, affine)
+    assert tree.components == 1 and tree.loops == 0
+    assert np.median(tree.radii) == pytest.approx(3, rel=0.02)
     with pytest.raises(vmesh.InvalidInput):
-        vmesh.extract_centerline(vmesh.generate(*FORK, ends="open"))
+        vmesh.extract_centerline(inside, affine, label=7)

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "vmesh/centerline/round_ends.h"
+
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
@@ -44,7 +46,9 @@ GenerateInput extract_input(const GenerateArguments& arguments, std::optional<Tr
     contour.lap("contour", input.stages);
   }
   input.reference = std::move(reference);
-  input.centerline.cleaned.centerline = centerline;
+  input.centerline.cleaned.centerline = arguments.ends == EndShape::round && !arguments.options.open_ends.all
+                                            ? with_round_ends(centerline, extracted.end_sections)
+                                            : centerline;
   input.centerline.cleaned.end_sections = extracted.end_sections;
   for (Index n = 0; n < centerline.nodes().size(); ++n) input.centerline.cleaned.raw_node.push_back(n);
   for (Index s = 0; s < centerline.segments().size(); ++s) input.centerline.cleaned.raw_segment.push_back(s);
