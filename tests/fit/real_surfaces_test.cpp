@@ -18,6 +18,7 @@
 #include "vmesh/skeleton/extract_centerline.h"
 #include "vmesh/surface/flat_ends.h"
 #include "vmesh/volume/contacts.h"
+#include "vmesh/volume/vessel_field.h"
 
 #include "draw.h"
 #include "shared_data.h"
@@ -202,8 +203,12 @@ TEST(FitRealSurfaces, TellsTwigsThatTheCenterlineDoesNotHave) {
     lost.push_back(whole.node(last_ends ? branch.nodes.back() : branch.nodes.front()));
     for (const Index s : branch.segments) cut[s] = 1;
   }
-  ASSERT_GT(lost.size(), 5u);
   const Centerline rest = without(whole, cut);
+  // What other vessels reach as well is not lost.
+  const VesselField field(rest);
+  std::erase_if(lost,
+                [&](const CenterlineNode& end) { return field.sample_global(end.position).distance < 2 * end.radius; });
+  ASSERT_GT(lost.size(), 5u);
   GenerateResult result = generate_surface(rest);
   const FitReport report = fit_surface(result, rest, reference);
   EXPECT_TRUE(result.is_sound());
