@@ -17,8 +17,6 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kListedLabels = 20;
-
 /// The values other than 0, ascending; at most `most` of them.
 std::set<float> labels_of(const VoxelImage& image, std::size_t most) {
   std::set<float> labels;
@@ -32,21 +30,7 @@ std::set<float> labels_of(const VoxelImage& image, std::size_t most) {
   return labels;
 }
 
-std::string list_of(const VoxelImage& image) {
-  const std::set<float> labels = labels_of(image, kListedLabels + 1);
-  if (labels.empty()) return "all its voxels are 0";
-  std::ostringstream text;
-  text << "it holds ";
-  std::size_t count = 0;
-  for (const float label : labels) {
-    if (count == kListedLabels) {
-      text << " ...";
-      break;
-    }
-    text << (count++ ? ", " : "") << label;
-  }
-  return text.str();
-}
+std::string list_of(const VoxelImage& image) { return list_of_values(labels_of(image, kListedValues + 1)); }
 
 double count_of(const std::array<std::size_t, 3>& size) {
   return static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
@@ -131,6 +115,21 @@ ReferenceSurface contour_scene(PreparedImage scene, const ReferenceOptions& opti
 }
 
 }  // namespace
+
+std::string list_of_values(const std::set<float>& values) {
+  if (values.empty()) return "all its voxels are 0";
+  std::ostringstream text;
+  text << "it holds ";
+  std::size_t count = 0;
+  for (const float value : values) {
+    if (count == kListedValues) {
+      text << " ...";
+      break;
+    }
+    text << (count++ ? ", " : "") << value;
+  }
+  return text.str();
+}
 
 void check(const ReferenceOptions& options) {
   if (!options.labels.empty() && options.threshold)

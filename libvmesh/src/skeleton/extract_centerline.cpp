@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
+#include <numbers>
 #include <utility>
 
 #include "vmesh/centerline/cleaning.h"
@@ -66,7 +66,7 @@ struct Work {
 std::vector<double> path_lengths(const VoxelSkeleton& skeleton) {
   std::vector<double> lengths(skeleton.components.size(), 0);
   for (Index e = 0; e < skeleton.graph.edges.size(); ++e)
-    lengths[skeleton.component_of_node[skeleton.graph.edges[e][0]]] += skeleton.graph.length(e);
+    lengths[skeleton.graph.nodes[skeleton.graph.edges[e][0]].component] += skeleton.graph.length(e);
   return lengths;
 }
 
@@ -74,11 +74,9 @@ std::vector<double> path_lengths(const VoxelSkeleton& skeleton) {
 void leave_out_others(VoxelSkeleton& skeleton, Work& work) {
   work.path_length = path_lengths(skeleton);
   for (const skeleton::VoxelComponent& component : skeleton.components) work.kept.push_back(component.kept);
-  for (Index n = 0; n < skeleton.graph.nodes.size(); ++n)
-    skeleton.graph.nodes[n].component = skeleton.component_of_node[n];
   std::vector<bool> removed(skeleton.graph.edges.size(), false);
   for (Index e = 0; e < removed.size(); ++e)
-    removed[e] = !work.kept[skeleton.component_of_node[skeleton.graph.edges[e][0]]];
+    removed[e] = !work.kept[skeleton.graph.nodes[skeleton.graph.edges[e][0]].component];
   skeleton::remove_edges(skeleton.graph, removed);
 }
 
@@ -130,14 +128,14 @@ void drop_others(VoxelSkeleton& skeleton, std::vector<EndSection>& sections) {
   std::vector<bool> has_edge(skeleton.components.size(), false);
   std::vector<Index> widest(skeleton.components.size(), kNone);
   for (Index n = 0; n < graph.nodes.size(); ++n) {
-    const Index c = skeleton.component_of_node[n];
+    const Index c = graph.nodes[n].component;
     if (!edges_at[n].empty()) has_edge[c] = true;
     if (widest[c] == kNone || graph.nodes[n].radius > graph.nodes[widest[c]].radius) widest[c] = n;
   }
   Graph kept;
   std::vector<Index> number(graph.nodes.size(), kNone);
   for (Index n = 0; n < graph.nodes.size(); ++n) {
-    const Index c = skeleton.component_of_node[n];
+    const Index c = graph.nodes[n].component;
     const bool stands_alone = skeleton.components[c].kept && !has_edge[c] && widest[c] == n;
     if (edges_at[n].empty() && !stands_alone) continue;
     number[n] = static_cast<Index>(kept.nodes.size());
@@ -154,7 +152,7 @@ void drop_others(VoxelSkeleton& skeleton, std::vector<EndSection>& sections) {
 void place_sections(Graph& graph, const std::vector<EndSection>& sections) {
   const auto edges_at = skeleton::incidence(graph);
   for (const EndSection& section : sections) {
-    const double radius = std::sqrt(section.area / M_PI);
+    const double radius = std::sqrt(section.area / std::numbers::pi);
     graph.nodes[section.node] = {section.center, radius, radius, graph.nodes[section.node].component, true};
     Index n = section.node, before = kNone;
     while (edges_at[n].size() == (n == section.node ? 1u : 2u)) {
@@ -217,7 +215,13 @@ void find_sections(const Graph& graph, std::vector<EndSection>& sections) {
   std::erase_if(sections, [](const EndSection& section) { return section.node == kNone; });
 }
 
-ExtractedCenterline finish(Work work, const ExtractOptions& options, const Progress& progress) {
+ExtractedCenterline finish(VoxelSkeleton skeleton, Work work, const ExtractOptions& options, const Progress& progress) {
+  leave_out_others(skeleton, work);
+  drop_others(skeleton, work.sections);
+  work.graph = std::move(skeleton.graph);
+  work.report.joined = std::move(skeleton.bridges);
+  place_sections(work.graph, work.sections);
+  work.report.loops = skeleton::find_loops(work.graph, work.voxel, options.tree);
   work.clock.lap("skeleton", work.report.stages);
   fit(work, options, progress);
   for (const JoinedGap& gap : skeleton::join_ends(work.graph, options.join, work.voxel))
@@ -248,43 +252,6 @@ void note_filled(const skeleton::FilledHoles& filled, std::vector<std::string>& 
   if (filled.cavities > 0) notes.push_back(std::to_string(filled.cavities) + " voxels of cavities were filled");
   if (filled.pinholes > 0) notes.push_back(std::to_string(filled.pinholes) + " voxels of pinholes were filled");
 }
-
-}  // namespace
-
-ExtractedCenterline extract_centerline(VesselMask vessels, const ExtractOptions& options, const Progress& progress) {
-  check(options);
-  MaskContent& mask = vessels.content();
-  require_memory(kBytesPerVoxel * static_cast<double>(mask.voxels.size()),
-                 "the centerline of " + std::to_string(mask.voxels.size()) + " voxels", "use larger voxels");
-  Work work;
-  mask.as_given = mask.voxels;
-  note_filled(skeleton::fill_holes(mask.voxels), work.report.notes);
-  work.clock.lap("voxels", work.report.stages);
-  work.voxel = mask.frame.spacing().minCoeff();
-  work.wall_voxel = mask.frame.spacing().maxCoeff();
-  work.mean_voxel = std::cbrt(mask.frame.spacing().prod());
-  const std::vector<skeleton::BorderEnd> ends = skeleton::border_ends(mask.voxels, mask.frame);
-  std::vector<skeleton::KnownEnd> known;
-  for (const skeleton::BorderEnd& end : ends) known.push_back(end.end);
-  VoxelSkeleton skeleton = skeleton::skeleton_of(mask.voxels, mask.frame, known, progress);
-  work.wall.samples = skeleton::wall_of(mask, ends, skeleton.component_of_voxel, work.wall.component);
-  mask = {};
-  for (std::size_t e = 0; e < ends.size(); ++e)
-    if (skeleton.node_of_end[e] != kNone)
-      work.sections.push_back(section_of(ends[e], skeleton.frame, skeleton.node_of_end[e]));
-  leave_out_others(skeleton, work);
-  drop_others(skeleton, work.sections);
-  place_sections(skeleton.graph, work.sections);
-  work.report.loops = skeleton::find_loops(skeleton.graph, work.voxel, options.tree);
-  work.report.joined = std::move(skeleton.bridges);
-  work.graph = std::move(skeleton.graph);
-  return finish(std::move(work), options, progress);
-}
-
-}  // namespace vmesh
-
-namespace vmesh {
-namespace {
 
 /// The voxel inside that is nearest to the middle of a flat end.
 Index voxel_at(const skeleton::VoxelVolume& volume, const skeleton::FlatWallEnd& end) {
@@ -336,9 +303,11 @@ std::vector<double> radii_at(const TriMesh& mesh, const Graph& graph) {
 
 void append(VoxelSkeleton&& part, VoxelSkeleton& all) {
   const auto nodes = static_cast<Index>(all.graph.nodes.size()), components = static_cast<Index>(all.components.size());
-  all.graph.nodes.insert(all.graph.nodes.end(), part.graph.nodes.begin(), part.graph.nodes.end());
+  for (skeleton::Node& node : part.graph.nodes) {
+    node.component += components;
+    all.graph.nodes.push_back(node);
+  }
   for (const auto& [a, b] : part.graph.edges) all.graph.edges.push_back({a + nodes, b + nodes});
-  for (const Index c : part.component_of_node) all.component_of_node.push_back(c + components);
   all.components.insert(all.components.end(), part.components.begin(), part.components.end());
 }
 
@@ -372,7 +341,7 @@ ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOpti
     std::vector<EndSection> sections;
     for (const skeleton::FlatWallEnd& end : wall.ends) {
       if (end.part != p) continue;
-      known.push_back({voxel_at(volume, end), std::sqrt(end.area / M_PI)});
+      known.push_back({voxel_at(volume, end), std::sqrt(end.area / std::numbers::pi)});
       sections.push_back({kNone, end.center, end.normal, end.area, end.ring, end.was_open});
     }
     const Progress of_part = [&](std::string_view stage, double fraction) {
@@ -392,12 +361,31 @@ ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOpti
     append(std::move(skeleton), all);
   }
   if (all.graph.nodes.empty()) throw InvalidInput("the surface encloses no volume");
-  leave_out_others(all, work);
-  drop_others(all, work.sections);
-  place_sections(all.graph, work.sections);
-  work.report.loops = skeleton::find_loops(all.graph, work.voxel, options.tree);
-  work.graph = std::move(all.graph);
-  return finish(std::move(work), options, progress);
+  return finish(std::move(all), std::move(work), options, progress);
+}
+
+ExtractedCenterline extract_centerline(VesselMask vessels, const ExtractOptions& options, const Progress& progress) {
+  check(options);
+  MaskContent& mask = vessels.content();
+  require_memory(kBytesPerVoxel * static_cast<double>(mask.voxels.size()),
+                 "the centerline of " + std::to_string(mask.voxels.size()) + " voxels", "use larger voxels");
+  Work work;
+  mask.as_given = mask.voxels;
+  note_filled(skeleton::fill_holes(mask.voxels), work.report.notes);
+  work.clock.lap("voxels", work.report.stages);
+  work.voxel = mask.frame.spacing().minCoeff();
+  work.wall_voxel = mask.frame.spacing().maxCoeff();
+  work.mean_voxel = std::cbrt(mask.frame.spacing().prod());
+  const std::vector<skeleton::BorderEnd> ends = skeleton::border_ends(mask.voxels, mask.frame);
+  std::vector<skeleton::KnownEnd> known;
+  for (const skeleton::BorderEnd& end : ends) known.push_back(end.end);
+  VoxelSkeleton skeleton = skeleton::skeleton_of(mask.voxels, mask.frame, known, progress);
+  work.wall.samples = skeleton::wall_of(mask, ends, skeleton.component_of_voxel, work.wall.component);
+  mask = {};
+  for (std::size_t e = 0; e < ends.size(); ++e)
+    if (skeleton.node_of_end[e] != kNone)
+      work.sections.push_back(section_of(ends[e], skeleton.frame, skeleton.node_of_end[e]));
+  return finish(std::move(skeleton), std::move(work), options, progress);
 }
 
 }  // namespace vmesh

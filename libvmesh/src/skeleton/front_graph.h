@@ -15,7 +15,6 @@ class FrontGraph {
   /// `length`: of the shortest path from its component's root to every voxel, mm.
   FrontGraph(const VoxelGraph& graph, const std::vector<float>& length);
 
-  std::size_t front_count() const { return level_.size(); }
   Index front_of(Index voxel) const { return front_of_voxel_[voxel]; }
 
   /// Path length from the root at which a front's band begins, mm.
@@ -50,9 +49,6 @@ class FrontGraph {
   };
   std::vector<Meeting> meetings() const;
   Loop loop_at(Index front, Index first, Index second) const;
-  std::vector<Index> below(Index front) const {
-    return {below_.begin() + below_at_[front], below_.begin() + below_at_[front + 1]};
-  }
 
   double width_;  // of a band, mm
   std::vector<Index> front_of_voxel_;

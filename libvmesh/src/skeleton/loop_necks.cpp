@@ -281,12 +281,11 @@ std::vector<VesselLoop> pass(Graph& graph, double voxel, bool open) {
 
 std::vector<VesselLoop> find_loops(Graph& graph, double voxel, bool open) {
   if (!open) return pass(graph, voxel, false);
+  if (weakest(graph, stretches_of(graph, voxel)).empty()) return {};
   split_crossings(graph, voxel);
-  std::vector<VesselLoop> loops;
-  for (int i = 0; i < kMostPasses; ++i) {
-    const std::vector<VesselLoop> opened = pass(graph, voxel, true);
-    loops.insert(loops.end(), opened.begin(), opened.end());
-    if (opened.empty()) break;
+  std::vector<VesselLoop> loops = pass(graph, voxel, true);
+  // What a pass had to leave, as another crossing had changed it, comes with the next; these loops are listed already.
+  for (int i = 1; i < kMostPasses && !pass(graph, voxel, true).empty(); ++i) {
   }
   break_loops(graph, 0);
   return loops;

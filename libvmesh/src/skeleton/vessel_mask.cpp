@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
+#include <numbers>
 
 #include "vmesh/core/error.h"
 #include "vmesh/core/memory.h"
@@ -16,8 +16,6 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kListed = 20;
-
 using skeleton::Crossing;
 using skeleton::MaskContent;
 using skeleton::Voxel;
@@ -26,21 +24,6 @@ bool is_inside(const ReferenceOptions& options, float value) {
   if (options.threshold) return value >= *options.threshold;
   if (options.labels.empty()) return value != 0;
   return std::find(options.labels.begin(), options.labels.end(), static_cast<double>(value)) != options.labels.end();
-}
-
-std::string list_of(const std::set<float>& values) {
-  if (values.empty()) return "all its voxels are 0";
-  std::ostringstream text;
-  text << "it holds ";
-  std::size_t count = 0;
-  for (const float value : values) {
-    if (count == kListed) {
-      text << " ...";
-      break;
-    }
-    text << (count++ ? ", " : "") << value;
-  }
-  return text.str();
 }
 
 /// Inserts the runs of a row that are inside.
@@ -64,7 +47,7 @@ void add_values(MaskContent& mask, std::span<const float> values) {
     if (value == last || value == 0) continue;
     last = value;
     mask.highest = std::max(mask.highest, value);
-    if (mask.values.size() <= kListed) mask.values.insert(value);
+    if (mask.values.size() <= kListedValues) mask.values.insert(value);
   }
 }
 
@@ -133,14 +116,15 @@ void VesselMask::finish() {
   mask.last_slice = {};
   const ReferenceOptions& options = mask.options;
   if (!options.threshold && options.labels.empty() && mask.values.size() > 1)
-    throw InvalidInput("there is more than one value besides 0 (" + list_of(mask.values) +
+    throw InvalidInput("there is more than one value besides 0 (" + list_of_values(mask.values) +
                        "); choose one with --label, or --threshold for grey values");
   mask.voxels.number_voxels();
   if (mask.voxels.size() > 0) return;
   if (options.threshold)
     throw InvalidInput("no voxel is inside: the highest value is " + std::to_string(mask.highest) +
                        "; choose a lower threshold");
-  throw InvalidInput("no voxel is inside: " + list_of(mask.values) + "; choose a label or a threshold that occurs");
+  throw InvalidInput("no voxel is inside: " + list_of_values(mask.values) +
+                     "; choose a label or a threshold that occurs");
 }
 
 std::size_t VesselMask::voxel_count() const { return content_->voxels.size(); }
@@ -306,7 +290,7 @@ std::vector<BorderEnd> border_ends(const VoxelSet& voxels, const VoxelFrame& fra
         if (all[n][axis] != border || seen[n]) continue;
         const std::vector<Voxel> patch = patch_at(voxels, n, axis, all, seen);
         const double area = static_cast<double>(patch.size()) * spacing[u] * spacing[w];
-        const double radius = std::sqrt(area / M_PI);
+        const double radius = std::sqrt(area / std::numbers::pi);
         Vec3 middle = Vec3::Zero();
         for (const Voxel& v : patch) middle += Vec3(v[0], v[1], v[2]) / static_cast<double>(patch.size());
         double reach = 0;
@@ -321,7 +305,7 @@ std::vector<BorderEnd> border_ends(const VoxelSet& voxels, const VoxelFrame& fra
           in[axis] -= way * static_cast<int>(std::ceil(radius / spacing[axis]));
           further += !is_beyond(voxels, in) && voxels.contains(in);
         }
-        if (area < kRound * M_PI * reach * reach ||
+        if (area < kRound * std::numbers::pi * reach * reach ||
             static_cast<double>(further) < kGoesOn * static_cast<double>(patch.size()))
           continue;
         ends.push_back({{voxels.number(*nearest), radius}, *nearest, axis, way, area});

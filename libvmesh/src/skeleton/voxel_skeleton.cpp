@@ -97,9 +97,8 @@ VoxelSkeleton skeleton_of(const VoxelSet& voxels, const VoxelFrame& frame, std::
     const Index n = paths.voxels[p];
     number[p] = static_cast<Index>(result.graph.nodes.size());
     const double voxel = graph.finest();
-    result.graph.nodes.push_back(
-        {frame.position(graph.voxel(n)), depth[n] - 0.5 * voxel, depth[n] + (occupancy[n] - 1) * voxel});
-    result.component_of_node.push_back(paths.component[n]);
+    result.graph.nodes.push_back({frame.position(graph.voxel(n)), depth[n] - 0.5 * voxel,
+                                  depth[n] + (occupancy[n] - 1) * voxel, paths.component[n]});
   }
   for (const auto& [a, b] : paths.edges) result.graph.edges.push_back({number[a], number[b]});
   for (const Index place : paths.known_ends) result.node_of_end.push_back(place == kNone ? kNone : number[place]);

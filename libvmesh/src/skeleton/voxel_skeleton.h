@@ -32,7 +32,6 @@ struct VoxelComponent {
 
 struct VoxelSkeleton {
   Graph graph;  ///< a node for every voxel of a path, smoothed; radii from the depth
-  std::vector<Index> component_of_node;
   std::vector<VoxelComponent> components;
   std::vector<Index> node_of_end;  ///< of every known end; kNone if it has none
   std::vector<Index> component_of_voxel;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,10 @@ struct ReferenceSurface {
   std::size_t components = 0;   ///< of the contour, before any were removed
   Vec3 spacing = Vec3::Zero();  ///< of the voxels contoured (mm)
 };
+
+/// "it holds 1, 2, 5": the values of an image besides 0, for messages; no more than kListedValues of them.
+std::string list_of_values(const std::set<float>& values);
+inline constexpr std::size_t kListedValues = 20;
 
 /// Throws InvalidInput for options out of range, or that exclude each other.
 void check(const ReferenceOptions& options);
