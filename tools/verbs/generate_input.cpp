@@ -1,5 +1,6 @@
 #include "verbs/generate_input.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "vmesh/centerline/round_ends.h"
@@ -26,11 +27,26 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
   return loaded;
 }
 
+/// Draws ends back that are to be round (see with_round_ends()), so that --centerline-output is what the surface is
+/// grown around and refers to. Those ends have no section then.
+void round_ends(const GenerateArguments& arguments, ExtractedCenterline& extracted) {
+  const OpenEnds& open = arguments.options.open_ends;
+  if (arguments.ends != EndShape::round || open.all) return;
+  std::vector<EndSection> round;
+  std::erase_if(extracted.end_sections, [&](const EndSection& section) {
+    if (std::find(open.nodes.begin(), open.nodes.end(), section.node) != open.nodes.end()) return false;
+    round.push_back(section);
+    return true;
+  });
+  extracted.centerline = with_round_ends(extracted.centerline, round);
+}
+
 /// The centerline of a segmentation, and its surface, to which the grown one is fitted.
 GenerateInput extract_input(const GenerateArguments& arguments, std::optional<TriMesh> reference, Console& console) {
   GenerateInput input;
   ExtractedCenterline extracted =
       extract(arguments.input, arguments.fitting.image, arguments.extraction, input.stages, console);
+  round_ends(arguments, extracted);
   const Centerline& centerline = extracted.centerline;
   if (!arguments.centerline_output.empty())
     write_centerline(arguments.centerline_output, centerline,
@@ -46,9 +62,7 @@ GenerateInput extract_input(const GenerateArguments& arguments, std::optional<Tr
     contour.lap("contour", input.stages);
   }
   input.reference = std::move(reference);
-  input.centerline.cleaned.centerline = arguments.ends == EndShape::round && !arguments.options.open_ends.all
-                                            ? with_round_ends(centerline, extracted.end_sections)
-                                            : centerline;
+  input.centerline.cleaned.centerline = centerline;
   input.centerline.cleaned.end_sections = extracted.end_sections;
   for (Index n = 0; n < centerline.nodes().size(); ++n) input.centerline.cleaned.raw_node.push_back(n);
   for (Index s = 0; s < centerline.segments().size(); ++s) input.centerline.cleaned.raw_segment.push_back(s);

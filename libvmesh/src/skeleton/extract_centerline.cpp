@@ -33,9 +33,10 @@ using skeleton::VoxelSkeleton;
 constexpr int kFitRounds = 20;
 // A wall that is rough is smoothed like one of voxels larger by so many times the distances beyond the slack.
 constexpr double kNoise = 4;
-constexpr int kRefinements = 2;         // the second works on the result of the first
-constexpr double kLeastRadius = 1.5;    // voxels; thinner vessels have nodes as far apart as ones of that radius
-constexpr double kBytesPerVoxel = 120;  // measured
+constexpr int kRefinements = 2;       // the second works on the result of the first
+constexpr double kLeastRadius = 1.5;  // voxels; thinner vessels have nodes as far apart as ones of that radius
+// Measured: 70 to 230; several times that in vessels of a voxel, which have few.
+constexpr double kBytesPerVoxel = 250;
 
 void check(const ExtractOptions& options) {
   if (!(options.spacing >= 0.1 && options.spacing <= 10)) throw InvalidInput("the spacing of nodes is 0.1 to 10 radii");
