@@ -8,6 +8,7 @@
 
 #include <sys/resource.h>
 
+#include "vmesh/centerline/round_ends.h"
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/image/image_io.h"
 #include "vmesh/io/surface_io.h"
@@ -84,7 +85,9 @@ void measure(const Case& c) {
   const TriMesh reference = reference_of(c);
   ExtractOptions extraction;
   extraction.tree = c.label.has_value();
-  const Centerline centerline = separate_contacts(extract_centerline(reference, extraction).centerline).centerline;
+  const ExtractedCenterline extracted = extract_centerline(reference, extraction);
+  const Centerline centerline =
+      separate_contacts(with_round_ends(extracted.centerline, extracted.end_sections)).centerline;
   GenerateOptions options;
   options.around = c.around;
   GenerateResult result = generate_surface(centerline, options);
