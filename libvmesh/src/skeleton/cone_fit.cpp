@@ -19,11 +19,8 @@ using Vector4 = Eigen::Vector4d;  // displacement and change of radius of a node
 using Matrix4 = Eigen::Matrix4d;
 using Place = GraphCones::Place;
 
-// Relative to a node's own weight, which is the area of its samples.
-constexpr double kSmoothPosition = 0.01;
-constexpr double kSmoothRadius = 0.1;
-constexpr double kRough = 5;  // more of both by this times the square of voxels per radius
-constexpr double kDamping = 0.02;
+constexpr double kSpacing = 1;   // of nodes for which the weights of bends hold, radii
+constexpr double kDamping = 0.02;  // relative to a node's own weight
 // Sliding along the vessel changes hardly anything except the spacing of nodes.
 constexpr double kDampingAlong = 1;
 constexpr double kDampingOfFixed = 1e6;  // makes nodes practically immovable
@@ -81,35 +78,58 @@ struct ConeSums {
   std::array<double, 2> weight = {0, 0};
 };
 
-void add_sample(ConeSums& sum, const GraphCones& cones, const Place& place, const Vec3& point, double area,
-                double slack) {
-  const double near = std::max(kNear * cones.radius_at(place), slack);
-  const double off = std::abs(place.distance);
-  const double weight = area * std::min(1.0, near / std::max(off, 1e-12));
+/// What a sample asks of the distance of the vessels' boundary at its place: to change by -pull / weight.
+struct Wish {
+  double weight = 0, pull = 0;
+};
+
+Wish wish_of(const FitSamples& samples, std::size_t i, double distance, double radius) {
+  const double slack = samples.slack[i], near = std::max(kNear * radius, slack), off = std::abs(distance);
+  const double weight = samples.areas[i] * std::min(1.0, near / std::max(off, 1e-12));
   // Beyond the slack, the distance beyond it; within, a little of the distance.
   const double beyond = off > slack ? 1 : 0;
-  const double pull = std::copysign(beyond * (off - slack), place.distance) + kWithinSlack * place.distance;
+  const double pull = std::copysign(beyond * (off - slack), distance) + kWithinSlack * distance;
+  return {weight * (beyond + kWithinSlack), weight * pull};
+}
+
+Wish wish_of(const FitVoxels& voxels, std::size_t i, double distance, double radius) {
+  constexpr double kSure = 12, kSmall = 1e-3;  // in blurs: beyond the first, exp() is nothing; below, tanh(x) is x
+  const double x = distance / voxels.blur;
+  const bool is_inside = voxels.inside[i];
+  if (is_inside ? x < -kSure : x > kSure) return {};
+  const double likely_inside = 1 / (1 + std::exp(std::clamp(x, -kSure, kSure)));
+  const double far = std::min(1.0, std::max(kNear * radius, 3 * voxels.blur) / std::max(std::abs(distance), 1e-12));
+  const double bound = std::abs(x) < kSmall ? 0.25 : std::tanh(0.5 * std::abs(x)) / (2 * std::abs(x));
+  const double weight = far * voxels.volume;
+  return {weight * bound / voxels.blur, weight * ((is_inside ? 1 : 0) - likely_inside)};
+}
+
+void add_wish(ConeSums& sum, const RoundCone& cone, const Place& place, const Vec3& point, const Wish& wish) {
   // The distance is stationary in the touching sphere's position along the axis, so the derivatives are those of that
   // sphere.
   Vector4 derivative;
-  derivative << cones.cone(place.cone).gradient(point, place.t), 1;
-  const Matrix4 block = weight * (beyond + kWithinSlack) * derivative * derivative.transpose();
-  const Vector4 side = weight * pull * derivative;
+  derivative << cone.gradient(point, place.t), 1;
+  const Matrix4 block = wish.weight * derivative * derivative.transpose();
+  const Vector4 side = wish.pull * derivative;
   const double t = place.t;
   sum.blocks[0] += (1 - t) * (1 - t) * block;
   sum.blocks[1] += t * (1 - t) * block;
   sum.blocks[2] += t * t * block;
   sum.sides[0] += (1 - t) * side;
   sum.sides[1] += t * side;
-  sum.weight[0] += (1 - t) * weight;
-  sum.weight[1] += t * weight;
+  sum.weight[0] += (1 - t) * wish.weight;
+  sum.weight[1] += t * wish.weight;
 }
 
-void add_samples(Equations& equations, const GraphCones& cones, const FitSamples& samples,
+template <class Samples>
+void add_samples(Equations& equations, const GraphCones& cones, const Samples& samples,
                  const std::vector<Place>& places) {
   std::vector<ConeSums> sums(cones.size());
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    add_sample(sums[places[i].cone], cones, places[i], samples.points[i], samples.areas[i], samples.slack[i]);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Place& place = places[i];
+    const Wish wish = wish_of(samples, i, place.distance, cones.radius_at(place));
+    if (wish.weight > 0) add_wish(sums[place.cone], cones.cone(place.cone), place, samples.points[i], wish);
+  }
   for (Index cone = 0; cone < sums.size(); ++cone) {
     const Index a = cones.first_node(cone), b = cones.last_node(cone);
     const ConeSums& sum = sums[cone];
@@ -142,7 +162,8 @@ Vector4 state(const Node& node) {
 }
 
 void add_priors(Equations& equations, const Graph& graph, const std::vector<std::vector<Index>>& edges_at,
-                double voxel) {
+                const FitRounds& rounds) {
+  const double stiffness = std::pow(kSpacing / rounds.spacing, 4);  // a bend shrinks with the square of the spacing
   double mean = 0;
   for (const double w : equations.weight()) mean += w / static_cast<double>(graph.nodes.size());
   for (Index n = 0; n < graph.nodes.size(); ++n) {
@@ -155,9 +176,10 @@ void add_priors(Equations& equations, const Graph& graph, const std::vector<std:
     if (edges_at[n].size() == 2) {
       const Index a = other_end(graph, edges_at[n][0], n), b = other_end(graph, edges_at[n][1], n);
       const Vector4 bend = state(graph.nodes[n]) - 0.5 * (state(graph.nodes[a]) + state(graph.nodes[b]));
-      const double rough = voxel / graph.nodes[n].radius;
-      const Vector4 weights = weight * (1 + kRough * rough * rough) *
-                              Vector4(kSmoothPosition, kSmoothPosition, kSmoothPosition, kSmoothRadius);
+      const double rough = rounds.voxel / graph.nodes[n].radius;
+      const Vector4 weights =
+          weight * stiffness * (1 + rounds.rough * rough * rough) *
+          Vector4(rounds.smooth_position, rounds.smooth_position, rounds.smooth_position, rounds.smooth_radius);
       equations.add_term({{{n, 1.0}, {a, -0.5}, {b, -0.5}}}, weights, -bend);
       const Vec3 along = (graph.nodes[b].position - graph.nodes[a].position).normalized();
       damping.topLeftCorner<3, 3>() += kDampingAlong * weight * along * along.transpose();
@@ -298,22 +320,37 @@ std::size_t prune_contained(Graph& graph) {
   return count;
 }
 
-double fit_cones(Graph& graph, const FitSamples& samples, double voxel, int rounds, const Progress& progress) {
+namespace {
+
+/// Moves the nodes; returns where the samples were before the last move.
+template <class Samples>
+std::vector<Place> move_nodes(Graph& graph, const Samples& samples, const FitRounds& rounds, const Progress& progress) {
   constexpr double kSettled = 2e-3;
   const std::vector<Node> first = graph.nodes;
   const auto edges_at = incidence(graph);
   std::vector<Place> places = GraphCones(graph).closest(samples.points);
-  for (int round = 0; round < rounds; ++round) {
-    report_progress(progress, "cones", static_cast<double>(round) / rounds);
+  for (int round = 0; round < rounds.most; ++round) {
+    report_progress(progress, "cones", static_cast<double>(round) / rounds.most);
     const GraphCones cones(graph);
     tbb::parallel_for(std::size_t{0}, samples.size(),
                       [&](std::size_t i) { places[i] = cones.closest(samples.points[i], places[i].cone); });
     Equations equations(graph.nodes.size());
     add_samples(equations, cones, samples, places);
-    add_priors(equations, graph, edges_at, voxel);
+    add_priors(equations, graph, edges_at, rounds);
     if (apply(graph, first, equations.solve()) < kSettled) break;
   }
+  return places;
+}
+
+}  // namespace
+
+double fit_cones(Graph& graph, const FitSamples& samples, const FitRounds& rounds, const Progress& progress) {
+  const std::vector<Place> places = move_nodes(graph, samples, rounds, progress);
   return noise_of(samples, places, GraphCones(graph));
+}
+
+void fit_cones(Graph& graph, const FitVoxels& voxels, const FitRounds& rounds, const Progress& progress) {
+  move_nodes(graph, voxels, rounds, progress);
 }
 
 }  // namespace vmesh::skeleton

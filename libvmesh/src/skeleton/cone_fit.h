@@ -20,6 +20,16 @@ struct FitSamples {
   std::size_t size() const { return points.size(); }
 };
 
+/// Centres of voxels beside the wall, inside and outside.
+struct FitVoxels {
+  std::vector<Vec3> points;
+  std::vector<bool> inside;
+  double volume = 0;  ///< of a voxel, mm^3
+  double blur = 0;    ///< how far from the wall the mask may err, mm
+
+  std::size_t size() const { return points.size(); }
+};
+
 /// The round cones of a graph's edges, then the spheres of its nodes without an edge.
 class GraphCones {
  public:
@@ -52,12 +62,29 @@ class GraphCones {
 /// of a vessel that is not round, and what a rough wall leaves. Returns the number removed.
 std::size_t prune_contained(Graph& graph);
 
+/// How the nodes of a graph are moved.
+struct FitRounds {
+  double spacing = 1;  ///< of the nodes, radii
+  /// Chains are smoother where this is large beside their radius, mm; 0 for a wall that is not made of voxels.
+  double voxel = 0;
+  int most = 20;
+  /// Weights of the bends of chains, relative to what the samples of a node weigh; more by `rough` times the square of
+  /// voxels per radius.
+  double smooth_position = 0.01, smooth_radius = 0.1, rough = 5;
+};
+
 /// Moves the nodes of `graph` and changes their radii so that the boundary of the union of its round cones comes as
 /// close to the wall as possible: weighted least squares of the signed distances beyond the samples' slack
-/// (Gauss-Newton, at most `rounds` steps), with a little weight on smooth chains, more where `voxel` (mm, 0 for a wall
-/// that is not made of voxels) is large beside the radius. Far samples count less, as they may belong to a region that
+/// (Gauss-Newton), with a little weight on smooth chains. Far samples count less, as they may belong to a region that
 /// the graph does not reach. Ends thus come to lie where their spheres touch the wall's ends; fixed nodes stay. Polls
 /// `progress` for cancellation. Returns the root mean square of the distances beyond the slack, far ones left out, mm.
-double fit_cones(Graph& graph, const FitSamples& samples, double voxel, int rounds, const Progress& progress);
+double fit_cones(Graph& graph, const FitSamples& samples, const FitRounds& rounds, const Progress& progress);
+
+/// The same for what voxels tell, which is more: that their centres are inside or outside. Logistic regression of
+/// these on the distance to the union of the round cones, solved by its quadratic bounds (Boehning and Lindsay,
+/// "Monotonicity of quadratic-approximation algorithms", 1988; Jaakkola and Jordan 2000 for the bound used). Where it
+/// is best, the vessels have the volume of their voxels, so that radii of thin vessels are not too large: a wall half a
+/// voxel away from the centres inside, however smoothed, would make them so.
+void fit_cones(Graph& graph, const FitVoxels& voxels, const FitRounds& rounds, const Progress& progress);
 
 }  // namespace vmesh::skeleton

@@ -25,15 +25,19 @@
 namespace vmesh {
 namespace {
 
+using skeleton::FitRounds;
 using skeleton::FitSamples;
+using skeleton::FitVoxels;
 using skeleton::Graph;
 using skeleton::MaskContent;
 using skeleton::VoxelSkeleton;
 
-constexpr int kFitRounds = 20;
+constexpr double kSpacing = 1;  // of nodes while they are fitted, radii
 // A wall that is rough is smoothed like one of voxels larger by so many times the distances beyond the slack.
 constexpr double kNoise = 4;
-constexpr int kRefinements = 2;       // the second works on the result of the first
+// The same for voxels beside the wall, whose size counts by a share; they err by a share of a voxel at least.
+constexpr double kVoxelNoise = 6, kVoxelShare = 0.5, kLeastBlur = 0.1;
+constexpr double kVoxelSmoothPosition = 0.003, kVoxelRough = 20;
 constexpr double kLeastRadius = 1.5;  // voxels; thinner vessels have nodes as far apart as ones of that radius
 // Measured: 70 to 230; several times that in vessels of a voxel, which have few.
 constexpr double kBytesPerVoxel = 250;
@@ -52,6 +56,11 @@ struct Work {
     std::vector<Index> component;  // of every sample
   };
   Wall wall;
+  struct Voxels {
+    FitVoxels beside_wall;
+    std::vector<Index> component;  // of every voxel
+  };
+  Voxels voxels;                    // of a mask without grey values
   Wall reported;                    // denser, for the report; empty: the same
   std::vector<bool> kept;           // of every component
   std::vector<double> path_length;  // mm, likewise
@@ -178,15 +187,50 @@ FitSamples kept_samples(const Work& work) {
   return samples;
 }
 
+FitVoxels kept_voxels(const Work& work) {
+  const FitVoxels& all = work.voxels.beside_wall;
+  FitVoxels voxels;
+  voxels.volume = all.volume;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!work.kept[work.voxels.component[i]]) continue;
+    voxels.points.push_back(all.points[i]);
+    voxels.inside.push_back(all.inside[i]);
+  }
+  return voxels;
+}
+
+/// First by the wall, which reaches far and tells how rough it is. Then, on the result, by the voxels if there are
+/// any, else by the wall again. Nodes get their spacing last: the fit and what it prunes depend on that.
 void fit(Work& work, const ExtractOptions& options, const Progress& progress) {
   const FitSamples samples = kept_samples(work);
-  double voxel = work.wall_voxel;
-  for (int i = 0; i < kRefinements; ++i) {
-    work.graph = skeleton::resampled(work.graph, options.spacing, kLeastRadius * work.voxel);
-    const double noise = skeleton::fit_cones(work.graph, samples, voxel, kFitRounds, progress);
-    voxel = work.wall_voxel + kNoise * noise;
+  FitVoxels voxels = kept_voxels(work);
+  const auto resample = [&](double spacing) {
+    work.graph = skeleton::resampled(work.graph, spacing, kLeastRadius * work.voxel);
+  };
+  const auto prune = [&] {
     work.report.spurs += skeleton::prune_spurs(work.graph) + skeleton::prune_contained(work.graph);
-  }
+  };
+  resample(kSpacing);
+  const double noise = skeleton::fit_cones(work.graph, samples, {.voxel = work.wall_voxel}, progress);
+  prune();
+  voxels.blur = std::max(kLeastBlur * work.mean_voxel, noise);
+  const auto refit = [&](double spacing) {
+    FitRounds rounds{.spacing = spacing, .voxel = work.wall_voxel + kNoise * noise};
+    if (voxels.size() == 0) {
+      skeleton::fit_cones(work.graph, samples, rounds, progress);
+      return;
+    }
+    rounds.voxel = kVoxelShare * work.wall_voxel + kVoxelNoise * noise;
+    rounds.smooth_position = kVoxelSmoothPosition;
+    rounds.rough = kVoxelRough;
+    skeleton::fit_cones(work.graph, voxels, rounds, progress);
+  };
+  resample(kSpacing);
+  refit(kSpacing);
+  prune();
+  if (options.spacing == kSpacing) return;
+  resample(options.spacing);
+  refit(options.spacing);
 }
 
 /// As a valid centerline; the sections refer to its nodes.
@@ -382,6 +426,8 @@ ExtractedCenterline extract_centerline(VesselMask vessels, const ExtractOptions&
   for (const skeleton::BorderEnd& end : ends) known.push_back(end.end);
   VoxelSkeleton skeleton = skeleton::skeleton_of(mask.voxels, mask.frame, known, progress);
   work.wall.samples = skeleton::wall_of(mask, ends, skeleton.component_of_voxel, work.wall.component);
+  if (!mask.options.threshold)
+    work.voxels.beside_wall = skeleton::voxels_beside_wall(mask, skeleton.component_of_voxel, work.voxels.component);
   mask = {};
   for (std::size_t e = 0; e < ends.size(); ++e)
     if (skeleton.node_of_end[e] != kNone)

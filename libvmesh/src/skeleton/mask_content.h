@@ -42,4 +42,8 @@ std::vector<BorderEnd> border_ends(const VoxelSet& voxels, const VoxelFrame& fra
 FitSamples wall_of(const MaskContent& mask, const std::vector<BorderEnd>& ends, const std::vector<Index>& component,
                    std::vector<Index>& component_of_sample);
 
+/// The voxels inside that have a neighbour outside, and those neighbours, unless they are beyond the image.
+FitVoxels voxels_beside_wall(const MaskContent& mask, const std::vector<Index>& component,
+                             std::vector<Index>& component_of_voxel);
+
 }  // namespace vmesh::skeleton

@@ -249,6 +249,35 @@ FitSamples wall_of(const MaskContent& mask, const std::vector<BorderEnd>& ends, 
   return std::move(wall.samples);
 }
 
+FitVoxels voxels_beside_wall(const MaskContent& mask, const std::vector<Index>& component,
+                             std::vector<Index>& component_of_voxel) {
+  const VoxelSet& set = mask.as_given;
+  FitVoxels beside;
+  beside.volume = mask.frame.spacing().prod();
+  VoxelSet listed(set.grid_size());  // of those outside
+  const auto add = [&](const Voxel& v, bool inside, Index c) {
+    beside.points.push_back(mask.frame.position(v));
+    beside.inside.push_back(inside);
+    component_of_voxel.push_back(c);
+  };
+  for (const Voxel& v : set.voxels()) {
+    const Index c = component[mask.voxels.number(v)];
+    bool has_neighbour_outside = false;
+    for (int k = -1; k <= 1; ++k)
+      for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) {
+          const Voxel neighbour = {v[0] + i, v[1] + j, v[2] + k};
+          if (set.contains(neighbour) || is_beyond(set, neighbour)) continue;
+          has_neighbour_outside = true;
+          if (listed.contains(neighbour)) continue;
+          listed.insert(neighbour);
+          add(neighbour, false, c);
+        }
+    if (has_neighbour_outside) add(v, true, c);
+  }
+  return beside;
+}
+
 namespace {
 
 /// Voxels at one side of the grid that touch each other.
