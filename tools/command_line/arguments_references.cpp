@@ -64,6 +64,10 @@ void add_extraction(CLI::App& verb, ExtractOptions& options) {
       ->excludes(largest)
       ->capture_default_str();
   verb.add_flag("--tree", options.tree, "open all loops, each at its thinnest contact");
+  verb.add_flag(
+      "--balanced-wall", options.balanced_wall,
+      "the wall's faces, not its vertices, lie on the vessels' boundary in the mean, as in surfaces that vmesh "
+      "grows");
 }
 
 void add_required_coverage(CLI::App& verb, RequiredCoverage& required) {

@@ -94,6 +94,7 @@ std::string describe(const ExtractOptions& options) {
   if (options.largest) text << " --largest";
   if (options.least_length > 0) text << " --least-length " << exact_text(options.least_length);
   if (options.tree) text << " --tree";
+  if (options.balanced_wall) text << " --balanced-wall";
   return text.str();
 }
 

@@ -18,7 +18,7 @@ std::string describe(const CenterlineArguments& arguments) {
 }
 
 void check(const CenterlineArguments& arguments) {
-  check_extraction(arguments.input, arguments.image);
+  check_extraction(arguments.input, arguments.image, arguments.options);
   if (!arguments.each_label) return;
   if (!is_image(arguments.input.path)) throw UsageError("--each-label is for images; this is taken for a surface");
   if (arguments.image.threshold) throw UsageError("--each-label and --threshold exclude each other");

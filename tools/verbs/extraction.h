@@ -8,7 +8,7 @@
 namespace vmesh::tool {
 
 /// Refuses options for images where the input is none (UsageError).
-void check_extraction(const InputArguments& input, const ReferenceOptions& image);
+void check_extraction(const InputArguments& input, const ReferenceOptions& image, const ExtractOptions& options);
 
 /// The centerline of an image's vessels, or of a wall; what happened is logged, and the times of the stages appended.
 ExtractedCenterline extract(const InputArguments& input, const ReferenceOptions& image, const ExtractOptions& options,

@@ -84,6 +84,8 @@ void check_input(const GenerateArguments& arguments) {
   const ReferenceOptions& image = arguments.fitting.image;
   const bool fits = !arguments.fitting.reference.path.empty();
   if (has_image(arguments)) {
+    if (arguments.extraction.balanced_wall)
+      throw UsageError(arguments.input.path.string() + ": --balanced-wall is for surfaces; this is taken for an image");
     if (!arguments.input.more.empty())
       throw UsageError(arguments.input.more.front().string() + ": an image must be the only input");
     if (fits && has_options(image) && is_image(arguments.fitting.reference.path))
@@ -101,11 +103,12 @@ void check_input(const GenerateArguments& arguments) {
     throw UsageError("--centerline-output is for an image or a wall as input; this is taken for a centerline");
   const ExtractOptions plain;
   const RequiredCoverage& required = arguments.required_coverage;
-  if (arguments.extraction.tree || arguments.extraction.spacing != plain.spacing ||
-      arguments.extraction.join != plain.join || arguments.extraction.largest ||
-      arguments.extraction.least_length > 0 || required.wall > 0 || required.length > 0)
+  if (arguments.extraction.tree || arguments.extraction.balanced_wall ||
+      arguments.extraction.spacing != plain.spacing || arguments.extraction.join != plain.join ||
+      arguments.extraction.largest || arguments.extraction.least_length > 0 || required.wall > 0 || required.length > 0)
     throw UsageError(
-        "--step, --join, --largest, --least-length, --tree and --require are for an image or a wall as "
+        "--step, --join, --largest, --least-length, --tree, --balanced-wall and --require are for an image or a wall "
+        "as "
         "input; this is taken for a centerline");
   if (fits) return;
   if (arguments.fitting.options.error > 0) throw UsageError("--fit-error needs --fit REFERENCE");

@@ -98,16 +98,17 @@ Raises ReadError, InvalidInput, Unsupported.)");
       "extract_centerline",
       [](const std::variant<SurfacePtr, fs::path, py::array>& vessels, const py::object& affine, const Labels& label,
          std::optional<double> threshold, double spacing, double join, bool largest, double least_length, bool tree,
-         const py::object& progress) {
+         bool balanced_wall, const py::object& progress) {
         ExtractOptions options;
         options.spacing = spacing;
         options.join = join;
         options.largest = largest;
         options.least_length = least_length;
         options.tree = tree;
+        options.balanced_wall = balanced_wall;
         const auto object_of = [](ExtractedCenterline extracted) {
-          return std::make_shared<CenterlineObject>(CenterlineObject{
-              std::move(extracted.centerline), {}, {}, {}, std::move(extracted.end_sections)});
+          return std::make_shared<CenterlineObject>(
+              CenterlineObject{std::move(extracted.centerline), {}, {}, {}, std::move(extracted.end_sections)});
         };
         if (const auto* surface = std::get_if<SurfacePtr>(&vessels)) {
           if (*surface == nullptr) throw py::type_error("vessels: a Surface, a file or an array is needed, not None");
@@ -131,7 +132,7 @@ Raises ReadError, InvalidInput, Unsupported.)");
       py::arg("vessels"), py::arg("affine") = py::none(), py::kw_only(), py::arg("label") = py::none(),
       py::arg("threshold") = py::none(), py::arg("spacing") = ExtractOptions().spacing,
       py::arg("join") = ExtractOptions().join, py::arg("largest") = false, py::arg("least_length") = 0.0,
-      py::arg("tree") = false, py::arg("progress") = py::none(),
+      py::arg("tree") = false, py::arg("balanced_wall") = false, py::arg("progress") = py::none(),
       R"(The centerline of a wall or of a segmentation.
 
     vessels         a Surface, open or closed; or an image, a file or an array (ni, nj, nk) indexed [i, j, k]
@@ -144,6 +145,8 @@ Raises ReadError, InvalidInput, Unsupported.)");
     largest         keep only the longest component
     least_length    leave out components shorter than this, mm; 0: those no longer than wide
     tree            open all loops, each at its neck
+    balanced_wall   the Surface's faces, not its vertices, lie on the vessels' boundary in the mean, as in surfaces that
+                    vmesh grows
     progress        a function of a stage and a fraction; returning False cancels
 
 Raises ReadError, InvalidInput, Unsupported.)");

@@ -19,7 +19,7 @@ using Vector4 = Eigen::Vector4d;  // displacement and change of radius of a node
 using Matrix4 = Eigen::Matrix4d;
 using Place = GraphCones::Place;
 
-constexpr double kSpacing = 1;   // of nodes for which the weights of bends hold, radii
+constexpr double kSpacing = 1;     // of nodes for which the weights of bends hold, radii
 constexpr double kDamping = 0.02;  // relative to a node's own weight
 // Sliding along the vessel changes hardly anything except the spacing of nodes.
 constexpr double kDampingAlong = 1;

@@ -17,6 +17,7 @@
 #include "end_joining.h"
 #include "loop_necks.h"
 #include "mask_content.h"
+#include "ring_shape.h"
 #include "skeleton_graph.h"
 #include "voxel_cleaning.h"
 #include "wall_samples.h"
@@ -158,11 +159,17 @@ void drop_others(VoxelSkeleton& skeleton, std::vector<EndSection>& sections) {
   graph = std::move(kept);
 }
 
+/// The vertices of a wall's ring lie on the vessel's boundary, as those of the wall do.
+double radius_at(const EndSection& section, bool balanced_wall) {
+  const double arcs = balanced_wall ? 0 : skeleton::area_of_arcs(section.ring, section.normal);
+  return std::sqrt((section.area + arcs) / std::numbers::pi);
+}
+
 /// Places the nodes at flat ends in their middle. The depth of the voxels near a flat end tells nothing of the radius.
-void place_sections(Graph& graph, const std::vector<EndSection>& sections) {
+void place_sections(Graph& graph, const std::vector<EndSection>& sections, bool balanced_wall) {
   const auto edges_at = skeleton::incidence(graph);
   for (const EndSection& section : sections) {
-    const double radius = std::sqrt(section.area / std::numbers::pi);
+    const double radius = radius_at(section, balanced_wall);
     graph.nodes[section.node] = {section.center, radius, radius, graph.nodes[section.node].component, true};
     Index n = section.node, before = kNone;
     while (edges_at[n].size() == (n == section.node ? 1u : 2u)) {
@@ -265,7 +272,7 @@ ExtractedCenterline finish(VoxelSkeleton skeleton, Work work, const ExtractOptio
   drop_others(skeleton, work.sections);
   work.graph = std::move(skeleton.graph);
   work.report.joined = std::move(skeleton.bridges);
-  place_sections(work.graph, work.sections);
+  place_sections(work.graph, work.sections, options.balanced_wall);
   work.report.loops = skeleton::find_loops(work.graph, work.voxel, options.tree);
   work.clock.lap("skeleton", work.report.stages);
   fit(work, options, progress);
@@ -324,11 +331,13 @@ Index voxel_at(const skeleton::VoxelVolume& volume, const skeleton::FlatWallEnd&
 // Radii between samples: for the fit, and for the report, whose figures have to hold between the samples as well.
 constexpr double kFitSpacing = 0.3, kReportSpacing = 0.1;
 
-/// Samples of the wall, without what closes its ends.
-void add_samples(const skeleton::WallPart& part, const std::vector<double>& radius, double spacing, Index component,
-                 Work::Wall& wall) {
-  const skeleton::WallSamples samples =
+/// Samples of the wall, without what closes its ends: on the faces, or for the fit where these have their vertices.
+void add_samples(const skeleton::WallPart& part, const std::vector<double>& radius, double spacing, bool smooth,
+                 Index component, Work::Wall& wall) {
+  const auto is_wall = [&](Index f) { return part.is_wall(f); };
+  skeleton::WallSamples samples =
       skeleton::samples_by_area(part.mesh, [&](Index f) { return part.is_wall(f) ? spacing * radius[f] : 0.0; });
+  if (smooth) skeleton::move_onto_smooth_wall(samples, part.mesh, is_wall);
   wall.samples.points.insert(wall.samples.points.end(), samples.points.begin(), samples.points.end());
   wall.samples.areas.insert(wall.samples.areas.end(), samples.areas.begin(), samples.areas.end());
   wall.samples.slack.resize(wall.samples.size(), 0);
@@ -401,8 +410,8 @@ ExtractedCenterline extract_centerline(const TriMesh& surface, const ExtractOpti
     }
     const Index component = static_cast<Index>(all.components.size()) + main_component(skeleton);
     const std::vector<double> radius = radii_at(part.mesh, skeleton.graph);
-    add_samples(part, radius, kFitSpacing, component, work.wall);
-    add_samples(part, radius, kReportSpacing, component, work.reported);
+    add_samples(part, radius, kFitSpacing, !options.balanced_wall, component, work.wall);
+    add_samples(part, radius, kReportSpacing, false, component, work.reported);
     append(std::move(skeleton), all);
   }
   if (all.graph.nodes.empty()) throw InvalidInput("the surface encloses no volume");

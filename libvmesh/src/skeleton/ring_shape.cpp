@@ -59,4 +59,16 @@ RingShape shape_of(std::span<const Vec3> ring) {
   return shape;
 }
 
+double area_of_arcs(std::span<const Vec3> ring, const Vec3& normal) {
+  const std::size_t n = ring.size();
+  const auto edge = [&](std::size_t i) -> Vec3 { return ring[(i + 1) % n] - ring[i % n]; };
+  const auto turn = [&](std::size_t i) {  // from the edge before to edge i
+    const Vec3 before = edge(i + n - 1), after = edge(i);
+    return std::atan2(before.cross(after).dot(normal), before.dot(after));
+  };
+  double area = 0;
+  for (std::size_t i = 0; i < n; ++i) area += edge(i).squaredNorm() * 0.5 * (turn(i) + turn(i + 1)) / 12;
+  return area;
+}
+
 }  // namespace vmesh::skeleton

@@ -20,4 +20,8 @@ struct RingShape {
 
 RingShape shape_of(std::span<const Vec3> ring);
 
+/// The area between a ring's edges and arcs through its vertices that turn as the ring does, mm^2. Right for circles up
+/// to the fourth power of the angle.
+double area_of_arcs(std::span<const Vec3> ring, const Vec3& normal);
+
 }  // namespace vmesh::skeleton

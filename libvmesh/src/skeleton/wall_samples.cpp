@@ -128,4 +128,47 @@ WallSamples samples_by_area(const TriMesh& mesh, const std::function<double(Inde
   return sampler.take();
 }
 
+namespace {
+
+/// Unit normals of the vertices, weighted by the faces' angles there, which do not depend on how the wall is cut into
+/// triangles; zero where there is no wall.
+std::vector<Vec3> normals_by_angle(const TriMesh& mesh, const std::function<bool(Index face)>& is_wall) {
+  std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    const Vec3 normal = area_normal(mesh, f);
+    if (!is_wall(f) || !(normal.norm() > 0)) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3& at = mesh.vertices[mesh.faces[f][i]];
+      const Vec3 first = mesh.vertices[mesh.faces[f][(i + 1) % 3]] - at;
+      const Vec3 second = mesh.vertices[mesh.faces[f][(i + 2) % 3]] - at;
+      const double angle = std::atan2(first.cross(second).norm(), first.dot(second));
+      normals[mesh.faces[f][i]] += angle * normal.normalized();
+    }
+  }
+  for (Vec3& normal : normals)
+    if (const double norm = normal.norm(); norm > 0) normal /= norm;
+  return normals;
+}
+
+}  // namespace
+
+void move_onto_smooth_wall(WallSamples& samples, const TriMesh& mesh, const std::function<bool(Index face)>& is_wall) {
+  constexpr double kShare = 0.5, kLeastCosine = 0.5;
+  const std::vector<Vec3> normals = normals_by_angle(mesh, is_wall);
+  for (std::size_t s = 0; s < samples.points.size(); ++s) {
+    const Triangle& face = mesh.faces[samples.faces[s]];
+    const Vec3 point = samples.points[s], normal = area_normal(mesh, samples.faces[s]);
+    const double twice_area = normal.norm();
+    Vec3 move = Vec3::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3& of_vertex = normals[face[i]];
+      if (of_vertex.dot(normal) < kLeastCosine * twice_area) continue;
+      const Vec3 first = mesh.vertices[face[(i + 1) % 3]] - point, second = mesh.vertices[face[(i + 2) % 3]] - point;
+      const double share = first.cross(second).norm() / twice_area;
+      move += kShare * share * (mesh.vertices[face[i]] - point).dot(of_vertex) * of_vertex;
+    }
+    samples.points[s] += move;
+  }
+}
+
 }  // namespace vmesh::skeleton

@@ -22,4 +22,11 @@ struct WallSamples {
 /// exist, Unsupported if there is not enough free memory.
 WallSamples samples_by_area(const TriMesh& mesh, const std::function<double(Index face)>& spacing);
 
+/// Moves the samples off their faces onto the smooth wall that the vertices lie on: vertices of measured surfaces are
+/// on the wall, and the faces between them are chords within it (an octagon's are 5 % nearer to its middle). Phong
+/// tessellation (Boubekeur and Alexa 2008) with half of the projection, which is right for circles up to the fourth
+/// power of the angle. Normals are those of faces that are wall; faces at more than 60 degrees to one of a vertex stay
+/// as they are there.
+void move_onto_smooth_wall(WallSamples& samples, const TriMesh& mesh, const std::function<bool(Index face)>& is_wall);
+
 }  // namespace vmesh::skeleton
