@@ -415,6 +415,7 @@ def extract_centerline(
     largest: bool = False,
     least_length: float = 0.0,
     tree: bool = False,
+    balanced_wall: bool = False,
     progress: _Progress = None,
 ) -> Centerline: ...
 def finish_ends(
