@@ -12,7 +12,7 @@ constexpr double kSameWay = 0.2;   // least cosine between normals
 constexpr double kFarthest = 1.5;  // local radii
 // Points farther apart than kNear local radii are counterparts only if neither has a much nearer one: nearer than
 // kMutual times their distance.
-constexpr double kNear = 0.25, kMutual = 0.35;
+constexpr double kNear = 0.25, kMutual = 0.2;
 constexpr double kNoDistance = 1e-9;  // of a radius: below it the line between two points has no direction
 constexpr double kOnEdge = 1e-9;      // a corner's weight on the edge opposite to it
 constexpr std::size_t kGrain = 256;   // consecutive samples, each a hint for the next

@@ -13,7 +13,7 @@
 namespace vmesh {
 namespace {
 
-constexpr int kDivision = 5, kRelaxations = 2;
+constexpr int kDivision = 3, kRelaxations = 2;
 constexpr std::size_t kEdgePoints = 3 * kPerEdge;  // of a face
 // Multiple of the RMS distance from which on a place, such as a ridge crossed by a triangle, gets a vertex of its own.
 // Measured on the aorta and SU201, sixteen starts (growth with `simplification` 0 to .8, vertices moved by 1e-6 radii):

@@ -98,9 +98,9 @@ Wish wish_of(const FitVoxels& voxels, std::size_t i, double distance, double rad
   const bool is_inside = voxels.inside[i];
   if (is_inside ? x < -kSure : x > kSure) return {};
   const double likely_inside = 1 / (1 + std::exp(std::clamp(x, -kSure, kSure)));
-  const double far = std::min(1.0, std::max(kNear * radius, 3 * voxels.blur) / std::max(std::abs(distance), 1e-12));
+  const double nearness = std::min(1.0, std::max(kNear * radius, 3 * voxels.blur) / std::max(std::abs(distance), 1e-12));
   const double bound = std::abs(x) < kSmall ? 0.25 : std::tanh(0.5 * std::abs(x)) / (2 * std::abs(x));
-  const double weight = far * voxels.volume;
+  const double weight = nearness * voxels.volume;
   return {weight * bound / voxels.blur, weight * ((is_inside ? 1 : 0) - likely_inside)};
 }
 

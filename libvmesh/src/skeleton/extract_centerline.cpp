@@ -38,6 +38,7 @@ constexpr double kSpacing = 1;  // of nodes while they are fitted, radii
 constexpr double kNoise = 4;
 // The same for voxels beside the wall, whose size counts by a share; they err by a share of a voxel at least.
 constexpr double kVoxelNoise = 6, kVoxelShare = 0.5, kLeastBlur = 0.1;
+constexpr int kFirstRounds = 6, kVoxelRounds = 10;
 constexpr double kVoxelSmoothPosition = 0.003, kVoxelRough = 20;
 constexpr double kLeastRadius = 1.5;  // voxels; thinner vessels have nodes as far apart as ones of that radius
 // Measured: 70 to 230; several times that in vessels of a voxel, which have few.
@@ -218,7 +219,7 @@ void fit(Work& work, const ExtractOptions& options, const Progress& progress) {
     work.report.spurs += skeleton::prune_spurs(work.graph) + skeleton::prune_contained(work.graph);
   };
   resample(kSpacing);
-  const double noise = skeleton::fit_cones(work.graph, samples, {.voxel = work.wall_voxel}, progress);
+  const double noise = skeleton::fit_cones(work.graph, samples, {.voxel = work.wall_voxel, .most = voxels.size() > 0 ? kFirstRounds : 20}, progress);
   prune();
   voxels.blur = std::max(kLeastBlur * work.mean_voxel, noise);
   const auto refit = [&](double spacing) {
@@ -230,6 +231,7 @@ void fit(Work& work, const ExtractOptions& options, const Progress& progress) {
     rounds.voxel = kVoxelShare * work.wall_voxel + kVoxelNoise * noise;
     rounds.smooth_position = kVoxelSmoothPosition;
     rounds.rough = kVoxelRough;
+    rounds.most = kVoxelRounds;
     skeleton::fit_cones(work.graph, voxels, rounds, progress);
   };
   resample(kSpacing);
