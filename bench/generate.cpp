@@ -1,8 +1,6 @@
 // The cost of a surface, from a centerline in memory to a checked mesh: user CPU on one thread, and wall time on one
 // and on two, medians. A table in Markdown, with CGAL's Mesh_3 on the same volume beside tree1560. Usage:
 //   bench_generate [--runs N] [--no-mesh-3] [FILE...]; without files, those of ../shared/data named below.
-#include "vmesh/surface/generate.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -13,7 +11,7 @@
 
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/mesh/triangle_quality.h"
-#include "vmesh/volume/contacts.h"
+#include "vmesh/production/produce.h"
 
 #include "mesh_3.h"
 
@@ -79,13 +77,9 @@ Cost median_cost(int runs, Work&& work) {
 
 // The surface that `vmesh generate` makes.
 GenerateResult surface_around(const Centerline& centerline, int threads) {
-  GenerateOptions options;
-  options.threads = threads;
-  const SimplifiedCenterline simplified = simplify_for_growth(centerline, options);
-  SeparationOptions separation;
-  separation.blend = options.blend;
-  const SeparatedCenterline separated = separate_contacts(simplified.centerline, separation);
-  return generate_surface(separated.centerline, after_simplification(options, simplified));
+  ProductionOptions options;
+  options.growth.threads = threads;
+  return produce(centerline, {}, options).result;
 }
 
 void tell(const std::string& name, std::size_t nodes, const TriMesh& mesh, const Cost& one, double two) {

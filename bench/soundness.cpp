@@ -17,9 +17,8 @@
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
-#include "vmesh/surface/generate.h"
+#include "vmesh/production/produce.h"
 #include "vmesh/surface/metric_skewness.h"
-#include "vmesh/volume/contacts.h"
 
 #include "random_vessels.h"
 #include "rotated_options.h"
@@ -50,26 +49,20 @@ void examine(const std::string& name, const Centerline& given, const GenerateOpt
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   ++tally.cases;
-  std::size_t left = 0;
-  // As in `vmesh generate`, nodes that growth does not need are left out before vessels are separated.
-  SimplifiedCenterline simplified = simplify_for_growth(given, wanted);
-  const GenerateOptions options = after_simplification(wanted, simplified);
-  Centerline centerline = std::move(simplified.centerline);
-  if (!settings.keep) {
-    SeparationOptions separation;
-    separation.blend = options.blend;
-    SeparatedCenterline separated = separate_contacts(centerline, separation);
-    left = separated.report.left.size();
-    centerline = std::move(separated.centerline);
-  }
-  GenerateResult result;
+  ProductionOptions options;
+  options.growth = wanted;
+  options.preparation.separate = !settings.keep;
+  Production production;
   try {
-    result = generate_surface(centerline, options);
+    production = produce(given, {}, options);
   } catch (const std::exception& error) {
     ++tally.refused;
     std::printf("| %s | refused: %s |\n", name.c_str(), error.what());
     return;
   }
+  const GenerateResult& result = production.result;
+  const PreparedCenterline& prepared = production.prepared;
+  const std::size_t left = prepared.separated ? prepared.separated->report.left.size() : 0;
   const double spent = seconds();
   tally.seconds += spent;
   const Topology topology = measure_topology(with_lids(result));
@@ -87,7 +80,7 @@ void examine(const std::string& name, const Centerline& given, const GenerateOpt
   for (const std::size_t count : result.growth.rungs)
     rungs.append(rungs.empty() ? "" : " ").append(std::to_string(count));
   std::printf("| %s | %zu | %zu | %.3f / %.3f | %s | %zu | %zu | %zu | %zu | %s | %.2f | (%.2f %.2f %.2f) |\n",
-              name.c_str(), centerline.nodes().size(), result.mesh.vertices.size(), skewness.mean, skewness.max,
+              name.c_str(), prepared.grown().nodes().size(), result.mesh.vertices.size(), skewness.mean, skewness.max,
               topology_right ? "right" : "WRONG", crossings.size(), outside, left, result.error.unproven_faces,
               rungs.c_str(), spent, at.x(), at.y(), at.z());
   std::fflush(stdout);

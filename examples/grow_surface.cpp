@@ -3,7 +3,7 @@
 
 #include "vmesh/core/error.h"
 #include "vmesh/io/surface_io.h"
-#include "vmesh/surface/generate.h"
+#include "vmesh/production/produce.h"
 
 int main(int argc, char** argv) {
   const char* output = argc > 1 ? argv[1] : "y.ply";
@@ -12,9 +12,9 @@ int main(int argc, char** argv) {
     const vmesh::Centerline centerline({{{0, 0, 0}, 3.0}, {{0, 0, 20}, 2.8}, {{-9, 0, 32}, 2.1}, {{8, 3, 33}, 2.3}},
                                        {{0, 1}, {1, 2}, {1, 3}});
 
-    vmesh::GenerateOptions options;
-    options.around = 8;
-    const vmesh::GenerateResult result = vmesh::generate_surface(centerline, options);
+    vmesh::ProductionOptions options;
+    options.growth.around = 8;
+    const vmesh::GenerateResult result = vmesh::produce(centerline, {}, options).result;
     for (const vmesh::GrowthWarning& warning : result.warnings)
       std::fprintf(stderr, "warning: %s\n", warning.message.c_str());
     for (const vmesh::Defect& defect : result.defects) std::fprintf(stderr, "defect: %s\n", defect.message.c_str());

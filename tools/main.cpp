@@ -17,7 +17,8 @@ namespace {
 template <class VerbArguments>
 int threads_of(const VerbArguments& verb) {
   if constexpr (requires { verb.threads; }) return verb.threads;
-  if constexpr (requires { verb.generate.options.threads; }) return verb.generate.options.threads;
+  if constexpr (requires { verb.production; }) return verb.production.growth.threads;
+  if constexpr (requires { verb.generate.production; }) return verb.generate.production.growth.threads;
   if constexpr (requires { verb.options.threads; }) return verb.options.threads;
   return 0;
 }

@@ -74,34 +74,32 @@ OpenEnds parse_open_ends(const std::string& text) {
 
 void add_ends(CLI::App& verb, GenerateArguments& arguments) {
   verb.add_option_function<std::string>(
-          "--ends",
-          [&arguments](const std::string& text) {
-            arguments.ends = text == "flat" ? EndShape::flat : text == "open" ? EndShape::open : EndShape::round;
-          },
+          "--ends", [&arguments](const std::string& text) { arguments.production.ends = parse_end_shape(text); },
           "how vessels end: round; flat: closed by flat caps, numbered for flow solvers (ModelFaceID, CapID in .vtp "
           "and .ply); open: not closed")
       ->check(CLI::IsMember({"round", "flat", "open"}))
       ->default_str("round");
   verb.add_option_function<std::string>(
-          "--open-ends", [&arguments](const std::string& text) { arguments.options.open_ends = parse_open_ends(text); },
+          "--open-ends",
+          [&arguments](const std::string& text) { arguments.production.growth.open_ends = parse_open_ends(text); },
           "leave the surface open at these ends of the centerline, regardless of --ends: all, or node numbers as in "
           "the summary, separated by commas")
       ->type_name("all|N,N,...");
-  verb.add_option("--flow-extensions", arguments.flow_extension,
+  verb.add_option("--flow-extensions", arguments.production.extension,
                   "length of straight extensions at ends that are not round, in radii; 0: none")
       ->check(in_range(0.0, 1000.0))
       ->capture_default_str();
 }
 
-/// With --ends flat or open, all ends are grown open; those in `left_open` stay open.
+/// With --ends, --open-ends all means that all are open.
 GenerateArguments settled(GenerateArguments arguments) {
-  OpenEnds& open = arguments.options.open_ends;
-  if (arguments.flow_extension > 0 && arguments.ends == EndShape::round && !open.all && open.nodes.empty())
+  EndShape& ends = arguments.production.ends;
+  OpenEnds& open = arguments.production.growth.open_ends;
+  if (arguments.production.extension > 0 && ends == EndShape::round && !open.all && open.nodes.empty())
     throw UsageError("--flow-extensions needs ends that are not round: --ends flat, or --ends open");
-  if (arguments.ends == EndShape::round) return arguments;
-  if (open.all) arguments.ends = EndShape::open;
-  arguments.left_open = std::move(open.nodes);
-  open = {true, {}};
+  if (ends == EndShape::round || !open.all) return arguments;
+  ends = EndShape::open;
+  open = {};
   return arguments;
 }
 
@@ -136,7 +134,8 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
   verb.add_flag("--bones", arguments.bones, "add bones along the centerline to a .glb, for bending it");
   add_growth(verb, arguments);
   verb.add_option_function<std::string>(
-          "--growth", [&arguments](const std::string& text) { arguments.options.growth = parse_growth_method(text); },
+          "--growth",
+          [&arguments](const std::string& text) { arguments.production.growth.growth = parse_growth_method(text); },
           "guided: with the topology of the centerline; paper: a single seed, as published")
       ->check(CLI::IsMember({"guided", "paper"}))
       ->default_str("guided");
@@ -144,7 +143,7 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "--max-error",
           [&arguments](const std::string& text) {
             try {
-              arguments.options.max_error = parse_error_limit(text);
+              arguments.production.growth.max_error = parse_error_limit(text);
             } catch (const InvalidInput& error) {
               throw CLI::ValidationError("--max-error", error.what());
             }
@@ -152,12 +151,12 @@ void add_generate(CLI::App& app, GenerateArguments& arguments) {
           "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
           "0.3mm, 10% (of the local radius), or both, separated by a comma")
       ->type_name("Xmm|X%");
-  verb.add_option("--least-vertices", arguments.options.least_vertices,
+  verb.add_option("--least-vertices", arguments.production.growth.least_vertices,
                   "with --elongation: leave out vertices until there are so few; those that are left are where they "
                   "reduce the mean error most; with --max-error, only as long as that stays proven; 0: as few as "
                   "--max-error allows")
       ->capture_default_str();
-  verb.add_flag("--deformable", arguments.options.deformable,
+  verb.add_flag("--deformable", arguments.production.growth.deformable,
                 "for a centerline that is to move: a ring of vertices at every node, whatever the elongation");
   add_budget(verb, arguments.budget,
              "choose the resolution: the finest surface with vertices=N at most, or grown within time=Xms, or the one "
@@ -323,39 +322,32 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
 }  // namespace
 
 void add_growth(CLI::App& verb, GenerateArguments& arguments) {
-  for_each_generate_option(arguments.options,
+  for_each_generate_option(arguments.production.growth,
                            [&verb](const char* flag, auto& member, auto low, auto high, const char* help) {
                              verb.add_option(flag, member, help)->check(in_range(low, high))->capture_default_str();
                            });
-  add_preset(verb, arguments.options);
+  add_preset(verb, arguments.production.growth);
   verb.add_option_function<std::string>(
-          "--placement", [&arguments](const std::string& text) { arguments.options.placement = parse_placement(text); },
+          "--placement",
+          [&arguments](const std::string& text) { arguments.production.growth.placement = parse_placement(text); },
           "inscribed: vertices on the boundary; balanced: lifted off it, so that the volume is kept")
       ->check(CLI::IsMember({"inscribed", "balanced"}))
       ->default_str("balanced");
-  verb.add_option("--threads", arguments.options.threads, "to work on; 0: all; the result does not depend on it")
+  verb.add_option("--threads", arguments.production.growth.threads,
+                  "to work on; 0: all; the result does not depend on it")
       ->check(in_range(0, 4096))
       ->capture_default_str();
   verb.add_option_function<std::string>(
           "--overlap",
-          [&arguments](const std::string& text) {
-            arguments.overlap = text == "separate" ? OverlapHandling::separate : OverlapHandling::keep;
-          },
+          [&arguments](const std::string& text) { arguments.production.preparation.separate = text == "separate"; },
           "vessels that touch without being neighbours: separate them by narrowing, and by moving those that cross; or "
           "keep them: the surface then intersects itself there and is refused")
       ->check(CLI::IsMember({"keep", "separate"}))
       ->default_str("separate");
-  verb.add_option("--gap", arguments.gap, "gap between vessels below which they count as touching, in smaller radii")
+  verb.add_option("--gap", arguments.production.preparation.gap,
+                  "gap between vessels below which they count as touching, in smaller radii")
       ->check(in_range(0.001, 1.0))
       ->capture_default_str();
-}
-
-std::string_view to_string(OverlapHandling overlap) {
-  return overlap == OverlapHandling::separate ? "separate" : "keep";
-}
-
-std::string_view to_string(EndShape shape) {
-  return shape == EndShape::flat ? "flat" : shape == EndShape::open ? "open" : "round";
 }
 
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv, int& exit_code) {

@@ -14,6 +14,7 @@
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/parts/part_files.h"
+#include "vmesh/production/produce.h"
 #include "vmesh/reference/reference_surface.h"
 #include "vmesh/render/render.h"
 #include "vmesh/skeleton/extract_centerline.h"
@@ -41,22 +42,12 @@ struct InputArguments {
   std::string options_of;  ///< prefix of these options' names: "reference-" for --reference-unit
 };
 
-/// What to do about vessels that touch without being neighbours: nothing, or separate them.
-enum class OverlapHandling { keep, separate };
-
-std::string_view to_string(OverlapHandling overlap);
-
 /// How the numbers of an output are written.
 struct WritingArguments {
   LengthUnit unit = LengthUnit::mm;
   Space space = Space::lps;
   std::string attributes = "all";  ///< of surfaces: "all", "vertex" or "none"
 };
-
-/// How vessels end: in a hemisphere, with a flat cap, or open.
-enum class EndShape { round, flat, open };
-
-std::string_view to_string(EndShape shape);
 
 /// The target of a fit, and its options.
 struct FittingArguments {
@@ -76,13 +67,8 @@ struct GenerateArguments {
   InputArguments input;
   std::filesystem::path output;
   WritingArguments writing;
-  GenerateOptions options;
-  std::optional<Budget> budget;  ///< chooses options.around, and max_error for a budget of error
-  OverlapHandling overlap = OverlapHandling::separate;
-  double gap = 0.1;  ///< vessels closer than this times the smaller radius count as touching
-  EndShape ends = EndShape::round;
-  std::vector<Index> left_open;  ///< nodes of --open-ends beside --ends
-  double flow_extension = 0;     ///< length of extensions at ends that are not round, in radii
+  ProductionOptions production;
+  std::optional<Budget> budget;  ///< chooses growth.around, and max_error for a budget of error
   bool bones = false;            ///< add bones along the centerline to a .glb
   bool check = false;            ///< exit code 1 unless the surface is flawless
   bool allow_defects = false;    ///< write a surface even if it is not sound

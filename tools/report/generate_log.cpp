@@ -26,8 +26,6 @@ void tell_of_notches(const ErrorSummary& error, Console& console) {
               number(deepest.depth) + " mm at " + text_of(deepest.position));
 }
 
-}  // namespace
-
 void log_simplification(const SimplifiedCenterline& simplified, Console& console) {
   console.log(std::to_string(simplified.node.size()) + " of the nodes steer the surface; leaving out the others " +
               "changes the vessels by at most " + number(100 * simplified.max_deviation_relative, 1) +
@@ -48,6 +46,42 @@ void log_separation(const SeparationReport& separation, Console& console) {
                 number(separation.max_moved) + " mm, " + number(separation.max_moved_relative, 2) +
                 " radii at most, the farthest at " + text_of(separation.max_moved_at));
   }
+}
+
+void warn_of_contacts(GenerateReport& report, Console& console) {
+  warn(report,
+       "vessels that are not neighbours touch in " + places(report.contacts) + ", the deepest " +
+           describe(report.contacts.front()) +
+           "; there the surface intersects itself, and is refused unless --allow-defects (--overlap separate, the "
+           "default, narrows them, and moves those that cross)",
+       console);
+}
+
+void warn_of_contacts_left(GenerateReport& report, const std::vector<Contact>& left, Console& console) {
+  constexpr std::size_t kNamed = 5;
+  for (std::size_t c = 0; c < std::min(kNamed, left.size()); ++c) {
+    warn(report,
+         "vessels still touch " + describe(left[c]) +
+             "; neither narrowing nor a small move can part them: move nodes of one, or join them if they are one "
+             "vessel",
+         console);
+  }
+  if (left.size() > kNamed)
+    warn(report, "vessels still touch in " + places(left) + "; the summary lists them", console);
+}
+
+}  // namespace
+
+void log_preparation(const PreparedCenterline& prepared, GenerateReport& report, Console& console) {
+  if (prepared.simplified) log_simplification(*prepared.simplified, console);
+  report.contacts = prepared.contacts;
+  if (!prepared.separated) {
+    if (!report.contacts.empty()) warn_of_contacts(report, console);
+    return;
+  }
+  report.separation = prepared.separated->report;
+  log_separation(*report.separation, console);
+  warn_of_contacts_left(report, report.separation->left, console);
 }
 
 void log_choice(const BudgetedSurface& surface, const GenerateArguments& arguments, Console& console) {
@@ -78,7 +112,7 @@ void log_result(const GenerateReport& report, Console& console) {
                 " mean, " + number(report.measurement.metric_skewness.max) + " max");
   console.log("distance to the volume " + number(report.deviation.mean_relative) + " mean, " +
               number(report.deviation.max_relative) + " max, in local radii");
-  const ErrorLimit& limit = report.arguments->options.max_error;
+  const ErrorLimit& limit = report.arguments->production.growth.max_error;
   if (limit.is_set() && report.result->error.unproven_faces == 0)
     console.log("proven: nowhere farther than " + to_string(limit) + " from the boundary, nor the boundary from it");
   tell_of_notches(report.result->error, console);
@@ -92,33 +126,11 @@ void warn(GenerateReport& report, const std::string& text, Console& console) {
   report.warnings.push_back(text);
 }
 
-void warn_of_contacts(GenerateReport& report, Console& console) {
-  warn(report,
-       "vessels that are not neighbours touch in " + places(report.contacts) + ", the deepest " +
-           describe(report.contacts.front()) +
-           "; there the surface intersects itself, and is refused unless --allow-defects (--overlap separate, the "
-           "default, narrows them, and moves those that cross)",
-       console);
-}
-
-void warn_of_contacts_left(GenerateReport& report, const std::vector<Contact>& left, Console& console) {
-  constexpr std::size_t kNamed = 5;
-  for (std::size_t c = 0; c < std::min(kNamed, left.size()); ++c) {
-    warn(report,
-         "vessels still touch " + describe(left[c]) +
-             "; neither narrowing nor a small move can part them: move nodes of one, or join them if they are one "
-             "vessel",
-         console);
-  }
-  if (left.size() > kNamed)
-    warn(report, "vessels still touch in " + places(left) + "; the summary lists them", console);
-}
-
 void warn_of_error(GenerateReport& report, Console& console) {
   const ErrorSummary& error = report.result->error;
   if (error.unproven_faces == 0) return;
   constexpr std::size_t kNamed = 5;
-  std::string text = "the surface may be farther than " + to_string(report.arguments->options.max_error) +
+  std::string text = "the surface may be farther than " + to_string(report.arguments->production.growth.max_error) +
                      " from the boundary, or the boundary from it, at " + std::to_string(error.unproven_faces) +
                      " faces in " + std::to_string(error.unproven_places.size()) + " places, the largest at ";
   for (std::size_t i = 0; i < std::min(kNamed, error.unproven_places.size()); ++i)

@@ -6,17 +6,14 @@
 namespace vmesh::tool {
 
 /// Messages of `vmesh generate` while it works; the summary contains all of it.
-void log_simplification(const SimplifiedCenterline& simplified, Console& console);
-void log_separation(const SeparationReport& separation, Console& console);
+/// What preparing the centerline changed, and the contacts, which it puts in the report.
+void log_preparation(const PreparedCenterline& prepared, GenerateReport& report, Console& console);
 /// The operating points tried for a budget, and the command that makes the one chosen.
 void log_choice(const BudgetedSurface& surface, const GenerateArguments& arguments, Console& console);
 void log_result(const GenerateReport& report, Console& console);
 
 /// Warns, and keeps the warning for the summary.
 void warn(GenerateReport& report, const std::string& text, Console& console);
-void warn_of_contacts(GenerateReport& report, Console& console);
-/// Warns of vessels that could not be separated.
-void warn_of_contacts_left(GenerateReport& report, const std::vector<Contact>& left, Console& console);
 /// Warns of faces that are not proven to keep to the limit.
 void warn_of_error(GenerateReport& report, Console& console);
 

@@ -70,7 +70,7 @@ void add_places(Page& page, const GenerateReport& report, const PageSurface& sur
 /// To the vessels: in mm, and for each by its own radius. Caps and what goes on from ends are not of the wall.
 void add_distances(const GenerateReport& report, const Centerline& grown, MeshAttributes& attributes) {
   const GenerateResult& result = *report.result;
-  const VesselField field(grown, report.arguments->options.blend);
+  const VesselField field(grown, report.arguments->production.growth.blend);
   MeshAttribute mm{"volume_distance", vertex_vessel_distances(result.mesh, field)}, radii{"relative_distance", {}};
   for (std::size_t v = report.wall_vertices; v < mm.values.size(); ++v)
     mm.values[v] = std::numeric_limits<double>::quiet_NaN();

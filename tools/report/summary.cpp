@@ -33,19 +33,22 @@ Json to_json(const ErrorLimit& limit) {
           {"relative", std::isfinite(limit.relative) ? Json(limit.relative) : Json()}};
 }
 
+const char* overlap_of(const GenerateArguments& arguments) {
+  return arguments.production.preparation.separate ? "separate" : "keep";
+}
+
 Json options_json(const GenerateArguments& arguments) {
   Json json = Json::object();
-  for_each_generate_option(arguments.options, [&json](const char* flag, const auto& value, auto, auto, const char*) {
-    json[key_of(flag)] = value;
-  });
-  json["growth"] = to_string(arguments.options.growth);
-  json["placement"] = to_string(arguments.options.placement);
-  json["max_error"] = to_json(arguments.options.max_error);
-  json["deformable"] = arguments.options.deformable;
-  json["overlap"] = to_string(arguments.overlap);
-  json["gap"] = arguments.gap;
-  json["ends"] = to_string(arguments.ends);
-  json["flow_extensions"] = arguments.flow_extension;
+  for_each_generate_option(arguments.production.growth, [&json](const char* flag, const auto& value, auto, auto,
+                                                                const char*) { json[key_of(flag)] = value; });
+  json["growth"] = to_string(arguments.production.growth.growth);
+  json["placement"] = to_string(arguments.production.growth.placement);
+  json["max_error"] = to_json(arguments.production.growth.max_error);
+  json["deformable"] = arguments.production.growth.deformable;
+  json["overlap"] = overlap_of(arguments);
+  json["gap"] = arguments.production.preparation.gap;
+  json["ends"] = to_string(arguments.production.ends);
+  json["flow_extensions"] = arguments.production.extension;
   json["unit"] = arguments.input.unit ? Json(to_string(*arguments.input.unit)) : Json();
   json["space"] = arguments.input.space ? Json(to_string(*arguments.input.space)) : Json();
   return json;
@@ -227,7 +230,7 @@ Json to_json(const std::vector<Defect>& defects) {
 
 // What is proven of the distance between the surface and the boundary, both ways.
 Json error_bound_json(const GenerateArguments& arguments, const GenerateResult& result) {
-  Json json = to_json(arguments.options.max_error);
+  Json json = to_json(arguments.production.growth.max_error);
   json["proven"] = result.error.unproven_faces == 0;
   json["unproven_faces"] = result.error.unproven_faces;
   Json places = Json::array();
@@ -275,14 +278,14 @@ Json to_json(const GenerateReport& report) {
   json["topology"]["expected_genus"] = expected.genus;
   json["openings"] = openings_json(*report.result);
   json["caps"] = caps_json(report.ends);
-  json["growth"] = arguments.options.growth == GrowthMethod::guided ? to_json(report.result->growth) : Json();
+  json["growth"] = arguments.production.growth.growth == GrowthMethod::guided ? to_json(report.result->growth) : Json();
   json["nodes_inside"] = report.nodes_inside ? Json(*report.nodes_inside) : Json();
   json["nodes_inside_of"] = {{"centerline", measured_centerline(report)}, {"nodes", report.grown_nodes}};
   json["distance"] = to_json(report.deviation);
   json["distance"]["to"] = measured_centerline(report);
   json["rounding"] = to_json(report.rounding);
-  if (arguments.options.max_error.is_set()) json["error_bound"] = error_bound_json(arguments, *report.result);
-  if (arguments.budget) json["budget"] = budget_json(*arguments.budget, arguments.options, report.tried);
+  if (arguments.production.growth.max_error.is_set()) json["error_bound"] = error_bound_json(arguments, *report.result);
+  if (arguments.budget) json["budget"] = budget_json(*arguments.budget, arguments.production.growth, report.tried);
   if (report.fit) {
     json["fit"] = to_json(*report.fit);
     const std::filesystem::path& reference = arguments.fitting.reference.path;
@@ -397,22 +400,23 @@ void write_json(const std::filesystem::path& path, const Json& json) {
 
 std::string describe(const GenerateArguments& arguments) {
   std::ostringstream text;
-  for_each_generate_option(arguments.options, [&text](const char* flag, const auto& value, auto, auto, const char*) {
-    if (flag != kElongationFlag) text << (text.tellp() > 0 ? " " : "") << flag << " " << exact_text(value);
-  });
-  const GenerateOptions& options = arguments.options;
+  for_each_generate_option(arguments.production.growth,
+                           [&text](const char* flag, const auto& value, auto, auto, const char*) {
+                             if (flag != kElongationFlag)
+                               text << (text.tellp() > 0 ? " " : "") << flag << " " << exact_text(value);
+                           });
+  const GenerateOptions& options = arguments.production.growth;
   if (options.elongation > 1) text << " " << kElongationFlag << " " << exact_text(options.elongation);
   text << " --growth " << to_string(options.growth) << " --placement " << to_string(options.placement);
   if (options.deformable) text << " --deformable";
   if (options.max_error.is_set()) text << " --max-error " << to_string(options.max_error);
   if (options.least_vertices > 0) text << " --least-vertices " << options.least_vertices;
-  const bool round = arguments.ends == EndShape::round;
-  if (!round) text << " --ends " << to_string(arguments.ends);
-  if (round && options.open_ends.all) text << " --open-ends all";
-  const std::vector<Index>& open = round ? options.open_ends.nodes : arguments.left_open;
+  if (arguments.production.ends != EndShape::round) text << " --ends " << to_string(arguments.production.ends);
+  if (options.open_ends.all) text << " --open-ends all";
+  const std::vector<Index>& open = options.open_ends.nodes;
   for (std::size_t i = 0; i < open.size(); ++i) text << (i == 0 ? " --open-ends " : ",") << open[i];
-  if (arguments.flow_extension > 0) text << " --flow-extensions " << exact_text(arguments.flow_extension);
-  text << " --overlap " << to_string(arguments.overlap) << " --gap " << exact_text(arguments.gap);
+  if (arguments.production.extension > 0) text << " --flow-extensions " << exact_text(arguments.production.extension);
+  text << " --overlap " << overlap_of(arguments) << " --gap " << exact_text(arguments.production.preparation.gap);
   const std::filesystem::path& reference = arguments.fitting.reference.path;
   if (!reference.empty()) text << " --fit " << reference.string();
   if (!reference.empty() || arguments.segmentation) text << describe(arguments.fitting);

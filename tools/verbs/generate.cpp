@@ -14,27 +14,27 @@
 #include "report/summary.h"
 #include "verbs/extraction.h"
 #include "verbs/generate_input.h"
-#include "verbs/prepared_centerline.h"
 #include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
 
-/// Chooses the options that make the best use of the budget.
-BudgetedSurface grow_within_budget(GenerateReport& report, const Centerline& centerline, GenerateArguments& arguments,
-                                   Console& console) {
-  BudgetedSurface surface = naming(arguments.input.path, [&] {
-    return generate_within(*arguments.budget, centerline, arguments.options, console.progress());
-  });
-  arguments.options = surface.choice().options;
+/// The surface with the options that make the best use of the budget; `kept`: whether they keep within it.
+GenerateResult grow_within_budget(GenerateReport& report, const Centerline& centerline, const GenerateOptions& options,
+                                  GenerateArguments& arguments, bool& kept, Console& console) {
+  BudgetedSurface surface = generate_within(*arguments.budget, centerline, options, console.progress());
+  const OpenEnds open_ends = arguments.production.growth.open_ends;
+  arguments.production.growth = surface.choice().options;
+  arguments.production.growth.open_ends = open_ends;
   report.tried = surface.tried;
   log_choice(surface, arguments, console);
-  if (!surface.met())
+  kept = surface.met();
+  if (!kept)
     warn(report,
          "nothing is within the budget " + to_string(*arguments.budget) +
              "; the closest surface is written: allow more, or check the radii",
          console);
-  return surface;
+  return std::move(surface.result);
 }
 
 /// Fits the surface; returns whether the requested error is kept.
@@ -60,7 +60,7 @@ bool fit(GenerateReport& report, GenerateResult& result, const PreparedCenterlin
 void measure_distance(GenerateReport& report, const Centerline& grown) {
   const GenerateResult& result = *report.result;
   stop_if_interrupted();
-  const GenerateOptions& options = report.arguments->options;
+  const GenerateOptions& options = report.arguments->production.growth;
   const VesselField field(grown, options.blend);
   report.deviation = measure_deviation(result.mesh, result.binding, field, options.threads);
   if (!report.arguments->common.json.empty())  // reported there only
@@ -68,19 +68,7 @@ void measure_distance(GenerateReport& report, const Centerline& grown) {
   stop_if_interrupted();
 }
 
-/// Caps and extends ends; nodes are those of the original centerline.
-void finish_ends(GenerateReport& report, GenerateResult& result, Console& console) {
-  const GenerateArguments& arguments = *report.arguments;
-  const Centerline& centerline = report.cleaned->centerline;
-  report.wall_vertices = result.mesh.vertices.size();
-  if (result.openings.empty() && arguments.ends == EndShape::round) return;
-  FlatEndOptions options;
-  options.cap = arguments.ends == EndShape::flat;
-  options.left_open = arguments.left_open;
-  options.extension = arguments.flow_extension;
-  options.keep_area = !report.fit && arguments.options.placement == Placement::balanced;
-  options.sections = report.cleaned->end_sections;
-  report.ends = vmesh::finish_ends(result, centerline, options);
+void warn_of_ends(GenerateReport& report, Console& console) {
   for (const SectionNotKept& end : report.ends.not_kept)
     warn(report,
          "the flat end at node " + std::to_string(end.node) + " is not kept: " + end.reason +
@@ -135,14 +123,14 @@ void write(const GenerateReport& report) {
 
 /// Fitting makes triangles even again.
 void check_elongation(const GenerateArguments& arguments) {
-  if (arguments.options.least_vertices > 0 && (arguments.options.elongation == 1 || arguments.options.deformable))
+  const GenerateOptions& options = arguments.production.growth;
+  if (options.least_vertices > 0 && (options.elongation == 1 || options.deformable))
     throw UsageError("--least-vertices needs " + std::string(kElongationFlag) +
                      " above 1, and no --deformable: else no vertices are left out");
-  if (arguments.options.elongation == 1) return;
+  if (options.elongation == 1) return;
   if (!arguments.fitting.reference.path.empty() || arguments.segmentation)
     throw UsageError(std::string(kElongationFlag) + " cannot be combined with fitting, which makes triangles even");
-  if (arguments.options.growth == GrowthMethod::paper)
-    throw UsageError(std::string(kElongationFlag) + " needs --growth guided");
+  if (options.growth == GrowthMethod::paper) throw UsageError(std::string(kElongationFlag) + " needs --growth guided");
 }
 
 /// Refuses what can be refused before anything is read.
@@ -166,25 +154,6 @@ void check_arguments(const GenerateArguments& arguments) {
   check_outputs(outputs, inputs);
 }
 
-struct GrownSurface {
-  GenerateResult result;
-  bool kept_budget = true;
-};
-
-GrownSurface grow(GenerateReport& report, const PreparedCenterline& prepared, GenerateArguments& arguments,
-                  Console& console) {
-  if (arguments.budget) {
-    BudgetedSurface surface = grow_within_budget(report, prepared.grown(), arguments, console);
-    const bool met = surface.met();
-    return {std::move(surface.result), met};
-  }
-  return naming(arguments.input.path, [&]() -> GrownSurface {
-    const GenerateOptions options =
-        prepared.simplified ? after_simplification(arguments.options, *prepared.simplified) : arguments.options;
-    return {generate_surface(prepared.grown(), options, console.progress())};
-  });
-}
-
 }  // namespace
 
 int run(const GenerateArguments& given, Console& console) {
@@ -201,32 +170,50 @@ int run(const GenerateArguments& given, Console& console) {
   const auto& [loaded, reference, extraction, read_stages] = input;
   report.input_sha256 = sha256_of(arguments.input);
   report.cleaned = &loaded.cleaned;
-  report.warnings = loaded.warnings;
-  report.stages = read_stages;
   report.extraction = extraction;
+  bool kept_limits = true;  // budget and error
+
+  ProductionSteps steps;
+  steps.prepared = [&](const PreparedCenterline& prepared) {
+    if (!report.stages.empty()) {
+      console.log("that surface is not sound: growing it once more, with all nodes");
+      arguments.production.growth.simplification = 0;
+    }
+    report.warnings = loaded.warnings;
+    report.stages = read_stages;
+    log_preparation(prepared, report, console);
+    report.stages.push_back({prepared.separated ? "separate" : "contacts", watch.lap()});
+    stop_if_interrupted();
+  };
+  steps.grow = [&](const Centerline& centerline, const GenerateOptions& options) {
+    return naming(arguments.input.path, [&] {
+      if (arguments.budget) return grow_within_budget(report, centerline, options, arguments, kept_limits, console);
+      return generate_surface(centerline, options, console.progress());
+    });
+  };
+  steps.refine = [&](GenerateResult& result, const PreparedCenterline& prepared) {
+    report.result = &result;
+    report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
+    for (const GrowthWarning& warning : result.warnings) warn(report, warning.message, console);
+    warn_of_error(report, console);
+    if (reference && result.is_sound()) kept_limits &= fit(report, result, prepared, *reference, console);
+    watch.lap();
+    measure_distance(report, prepared.grown());
+    return report.fit.has_value();
+  };
+  arguments.production.preparation.simplify = !arguments.budget;  // it decides for every trial
+  const Centerline& centerline = loaded.cleaned.centerline;
+  naming(arguments.input.path, [&] { check_ends(arguments.production, centerline); });
   watch.lap();
   stop_if_interrupted();
-
-  const PreparedCenterline prepared = prepare_centerline(report, console);
-  report.stages.push_back({prepared.separated ? "separate" : "contacts", watch.lap()});
-  stop_if_interrupted();
-
-  auto [result, kept_budget] = grow(report, prepared, arguments, console);
-  if (prepared.simplified && !result.is_sound()) {
-    console.log("that surface is not sound: growing it once more, with all nodes");
-    arguments.options.simplification = 0;
-    return run(arguments, console);
-  }
+  auto [result, ends, wall_vertices, prepared] =
+      produce(centerline, loaded.cleaned.end_sections, arguments.production, console.progress(), steps);
   report.result = &result;
-  report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
-  for (const GrowthWarning& warning : result.warnings) warn(report, warning.message, console);
-  warn_of_error(report, console);
-  if (reference && result.is_sound()) kept_budget &= fit(report, result, prepared, *reference, console);
-
-  watch.lap();
-  measure_distance(report, prepared.grown());
-  refer_to_cleaned(prepared, result, report);
-  finish_ends(report, result, console);
+  report.ends = std::move(ends);
+  report.wall_vertices = wall_vertices;
+  refer_to_original(prepared, report.contacts);
+  if (report.separation) refer_to_original(prepared, *report.separation);
+  warn_of_ends(report, console);
   name_nodes(result.defects, loaded);
   judge(report, prepared.grown(), console);
   report.stages.push_back({"measure", watch.lap()});
@@ -245,7 +232,7 @@ int run(const GenerateArguments& given, Console& console) {
   }
   if (extraction && !meets(arguments.required_coverage, *extraction, console)) return kCheckFailed;
   if (arguments.check && !report.problems.empty()) return kCheckFailed;
-  return result.error.unproven_faces > 0 || !kept_budget ? kNotConverged : kOk;
+  return result.error.unproven_faces > 0 || !kept_limits ? kNotConverged : kOk;
 }
 
 }  // namespace vmesh::tool

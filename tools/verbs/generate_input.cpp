@@ -30,8 +30,8 @@ LoadedCenterline load(const InputArguments& input, Console& console) {
 /// Draws ends back that are to be round (see with_round_ends()), so that --centerline-output is what the surface is
 /// grown around and refers to. Those ends have no section then.
 void round_ends(const GenerateArguments& arguments, ExtractedCenterline& extracted) {
-  const OpenEnds& open = arguments.options.open_ends;
-  if (arguments.ends != EndShape::round || open.all) return;
+  const OpenEnds& open = arguments.production.growth.open_ends;
+  if (arguments.production.ends != EndShape::round || open.all) return;
   std::vector<EndSection> round;
   std::erase_if(extracted.end_sections, [&](const EndSection& section) {
     if (std::find(open.nodes.begin(), open.nodes.end(), section.node) != open.nodes.end()) return false;
@@ -68,14 +68,6 @@ GenerateInput extract_input(const GenerateArguments& arguments, std::optional<Tr
   for (Index s = 0; s < centerline.segments().size(); ++s) input.centerline.cleaned.raw_segment.push_back(s);
   input.extraction = std::move(extracted.report);
   return input;
-}
-
-void check_left_open(const GenerateArguments& arguments, const Centerline& centerline) {
-  for (const Index n : arguments.left_open) {
-    if (n >= centerline.nodes().size() || centerline.degree(n) != 1)
-      throw InvalidInput(arguments.input.path.string() + ": node " + std::to_string(n) +
-                         " cannot be left open: it is not an end of the centerline");
-  }
 }
 
 }  // namespace
@@ -119,9 +111,9 @@ void check_input(const GenerateArguments& arguments) {
 void apply_budget_to_fit(GenerateArguments& arguments) {
   FittingArguments& fitting = arguments.fitting;
   if (fit_reference(arguments).empty()) return;
-  if (arguments.options.max_error.is_set())
+  if (arguments.production.growth.max_error.is_set())
     throw UsageError("--max-error is a limit on the distance to round cones; with --fit see --fit-error");
-  fitting.options.threads = arguments.options.threads;
+  fitting.options.threads = arguments.production.growth.threads;
   if (!arguments.budget) return;
   set_budget(*arguments.budget, fitting.options);
   // A budget of vertices applies to growth as well.
@@ -149,7 +141,6 @@ GenerateInput load_input(const GenerateArguments& arguments, Console& console) {
     clock.lap("read", input.stages);
     input.reference = std::move(reference);
   }
-  check_left_open(arguments, input.centerline.cleaned.centerline);
   return input;
 }
 

@@ -89,7 +89,7 @@ int run_part(const GenerateArguments& arguments, Console& console) {
   stages.push_back({"read", watch.lap()});
   stop_if_interrupted();
   PartSurface surface =
-      naming(arguments.input.path, [&] { return grow_part(part.part, arguments.options.threads, console.progress()); });
+      naming(arguments.input.path, [&] { return grow_part(part.part, arguments.production.growth.threads, console.progress()); });
   stages.push_back({"grow", watch.lap()});
   if (const std::vector<std::string> faults = faults_of(surface); !faults.empty()) {
     log_refusal(faults,

@@ -6,11 +6,11 @@ namespace vmesh::tool {
 
 SplitCenterline::SplitCenterline(PreparedCenterline prepared, const GenerateOptions& options)
     : prepared_(std::move(prepared)),
-      cleaned_segments_(static_cast<Index>(prepared_.cleaned->segments().size())),
+      cleaned_segments_(static_cast<Index>(prepared_.original->segments().size())),
       segments_(static_cast<Index>(prepared_.grown().segments().size())),
       unseparated_nodes_(static_cast<Index>(prepared_.unseparated().nodes().size())),
       options_(prepared_.simplified ? after_simplification(options, *prepared_.simplified) : options),
-      label_(branch_label_of_cones(*prepared_.cleaned)) {
+      label_(branch_label_of_cones(*prepared_.original)) {
   if (options_.simplification == 0) return;
   again_ = simplify_for_growth(prepared_.grown(), options_);
   if (!again_->is_simpler()) again_.reset();
@@ -22,7 +22,7 @@ Centerline SplitCenterline::take_centerline() {
   if (again_) return std::move(again_->centerline);
   if (prepared_.separated) return std::move(prepared_.separated->centerline);
   if (prepared_.simplified) return std::move(prepared_.simplified->centerline);
-  return *prepared_.cleaned;
+  return *prepared_.original;
 }
 
 ConeOrigins SplitCenterline::origins_of(const std::vector<Index>& nodes, const std::vector<Index>& cones) const {

@@ -2,7 +2,7 @@
 
 #include "vmesh/parts/part_files.h"
 
-#include "verbs/prepared_centerline.h"
+#include "vmesh/production/prepared_centerline.h"
 
 namespace vmesh::tool {
 

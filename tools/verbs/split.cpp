@@ -14,7 +14,6 @@
 #include "report/generate_log.h"
 #include "report/summary.h"
 #include "verbs/part_origins.h"
-#include "verbs/prepared_centerline.h"
 #include "verbs/verbs.h"
 
 namespace vmesh::tool {
@@ -113,11 +112,11 @@ int run(const SplitArguments& given, Console& console) {
 
   GenerateReport report;
   report.arguments = &arguments;
-  report.cleaned = &loaded->cleaned;
-  PreparedCenterline prepared = prepare_centerline(report, console);
+  PreparedCenterline prepared = prepare_centerline(loaded->cleaned.centerline, arguments.production.growth,
+                                                   arguments.production.preparation, console.progress());
+  log_preparation(prepared, report, console);
   const bool is_simplified = prepared.simplified.has_value();
-  SplitCenterline centerline(std::move(prepared), arguments.options);
-  report.cleaned = nullptr;
+  SplitCenterline centerline(std::move(prepared), arguments.production.growth);
   if (is_simplified) loaded.reset();  // not needed any more, and large
   release_freed_memory();
   stages.push_back({"prepare", watch.lap()});

@@ -6,12 +6,12 @@
 namespace vmesh::python {
 namespace {
 
-GrowthRequest request_of(int around, const std::string& max_error, double blend, const std::string& placement,
+ProductionOptions request_of(int around, const std::string& max_error, double blend, const std::string& placement,
                          const std::string& growth, const std::string& overlap, double gap, const std::string& ends,
                          const py::object& open_ends, double flow_extension, double simplification, double elongation,
                          std::size_t least_vertices, bool deformable, int sweeps, int max_vertices, int threads) {
-  GrowthRequest request;
-  GenerateOptions& options = request.options;
+  ProductionOptions request;
+  GenerateOptions& options = request.growth;
   options.around = around;
   if (!max_error.empty()) options.max_error = parse_error_limit(max_error);
   options.blend = blend;
@@ -19,8 +19,8 @@ GrowthRequest request_of(int around, const std::string& max_error, double blend,
   options.growth = parse_growth_method(growth);
   if (overlap != "separate" && overlap != "keep")
     throw InvalidInput("overlap: \"" + overlap + "\" is not known; there are separate and keep");
-  request.separate = overlap == "separate";
-  request.gap = gap;
+  request.preparation.separate = overlap == "separate";
+  request.preparation.gap = gap;
   request.ends = parse_end_shape(ends);
   options.open_ends.nodes = to_indices(open_ends, "open_ends");
   request.extension = flow_extension;
@@ -43,7 +43,7 @@ void bind_generation(py::module_& module) {
          double blend, const std::string& placement, const std::string& growth, const std::string& overlap, double gap,
          const std::string& ends, const py::object& open_ends, double flow_extension, double simplification,
          double elongation, std::size_t least_vertices, bool deformable, int sweeps, int max_vertices, int threads) {
-        const GrowthRequest request =
+        const ProductionOptions request =
             request_of(around, max_error, blend, placement, growth, overlap, gap, ends, open_ends, flow_extension,
                        simplification, elongation, least_vertices, deformable, sweeps, max_vertices, threads);
         return result_of(progress, [&](const Progress& report) { return grow(centerline, request, report); });

@@ -2,42 +2,12 @@
 
 #include <algorithm>
 
-#include "vmesh/volume/contacts.h"
-#include "vmesh/volume/vessel_field.h"
-
 #include "text.h"
 
 namespace vmesh::python {
 namespace {
 
 constexpr std::size_t kNamed = 5;  // places, in a warning
-
-/// With flat or open ends, all are grown open; those in `left_open` stay open.
-struct SettledEnds {
-  GenerateOptions options;
-  EndShape shape;
-  std::vector<Index> left_open;
-};
-
-SettledEnds settle(const GrowthRequest& request) {
-  SettledEnds ends{request.options, request.ends, {}};
-  OpenEnds& open = ends.options.open_ends;
-  if (request.extension > 0 && ends.shape == EndShape::round && !open.all && open.nodes.empty())
-    throw InvalidInput("flow_extension needs ends that are not round: ends=\"flat\" or \"open\"");
-  if (ends.shape == EndShape::round) return ends;
-  if (open.all) ends.shape = EndShape::open;
-  ends.left_open = std::move(open.nodes);
-  open = {true, {}};
-  return ends;
-}
-
-void check_open_ends(const GrowthRequest& request, const Centerline& centerline) {
-  for (const Index n : request.options.open_ends.nodes) {
-    if (n >= centerline.nodes().size() || centerline.degree(n) != 1)
-      throw InvalidInput("open_ends: node " + std::to_string(n) +
-                         " cannot be left open: it is not an end of the centerline");
-  }
-}
 
 void warn_of_contacts_left(const std::vector<Contact>& left, std::vector<std::string>& warnings) {
   for (std::size_t c = 0; c < std::min(kNamed, left.size()); ++c)
@@ -47,8 +17,7 @@ void warn_of_contacts_left(const std::vector<Contact>& left, std::vector<std::st
   if (left.size() > kNamed) warnings.push_back("vessels still touch in " + counted(left.size(), "place"));
 }
 
-void warn_of_contacts(const Centerline& centerline, const GrowthRequest& request, std::vector<std::string>& warnings) {
-  const std::vector<Contact> contacts = find_contacts(ConeRelations(centerline, request.options.blend), request.gap);
+void warn_of_contacts(const std::vector<Contact>& contacts, std::vector<std::string>& warnings) {
   if (contacts.empty()) return;
   warnings.push_back("vessels that are not neighbours touch in " + counted(contacts.size(), "place") +
                      ", the deepest " + describe(contacts.front()) +
@@ -63,36 +32,6 @@ void warn_of_error(const ErrorSummary& error, const ErrorLimit& limit, std::vect
                      ": triangles are already as small as allowed; allow a larger error there, or check the radii");
 }
 
-std::optional<SimplifiedCenterline> simplify(const Centerline& centerline, const GenerateOptions& options) {
-  if (options.growth == GrowthMethod::paper || options.simplification == 0) return std::nullopt;
-  std::optional<SimplifiedCenterline> simplified = simplify_for_growth(centerline, options);
-  if (!simplified->is_simpler()) return std::nullopt;
-  return simplified;
-}
-
-/// Grows a surface around the centerline, or around the nodes kept by `simplified`.
-GenerateResult grow_around(const Centerline& centerline, const std::optional<SimplifiedCenterline>& simplified,
-                           const GenerateOptions& wanted, const GrowthRequest& request, const Progress& progress,
-                           std::vector<std::string>& warnings) {
-  const Centerline& steering = simplified ? simplified->centerline : centerline;
-  const GenerateOptions options = simplified ? after_simplification(wanted, *simplified) : wanted;
-  GenerateResult result;
-  if (request.separate) {
-    SeparationOptions separation;
-    separation.gap = request.gap;
-    separation.blend = options.blend;
-    const SeparatedCenterline separated = separate_contacts(steering, separation, progress);
-    warn_of_contacts_left(separated.report.left, warnings);
-    result = generate_surface(separated.centerline, options, progress);
-    refer_to_original(separated, steering, result);
-  } else {
-    warn_of_contacts(steering, request, warnings);
-    result = generate_surface(steering, options, progress);
-  }
-  if (simplified) refer_to_original(*simplified, result);
-  return result;
-}
-
 void name_nodes(const CenterlineObject& centerline, std::vector<Defect>& defects) {
   for (Defect& defect : defects) {
     if (defect.node < centerline.place_of_node.size())
@@ -103,41 +42,28 @@ void name_nodes(const CenterlineObject& centerline, std::vector<Defect>& defects
 
 }  // namespace
 
-EndShape parse_end_shape(const std::string& text) {
-  if (text == "round") return EndShape::round;
-  if (text == "flat") return EndShape::flat;
-  if (text == "open") return EndShape::open;
-  throw InvalidInput("ends: \"" + text + "\" is not known; there are round, flat and open");
-}
-
-SurfacePtr grow(const CenterlinePtr& centerline, const GrowthRequest& request, const Progress& progress) {
-  const Centerline& c = centerline->centerline;
-  check_open_ends(request, c);
-  auto [options, shape, left_open] = settle(request);
+SurfacePtr grow(const CenterlinePtr& centerline, const ProductionOptions& options, const Progress& progress) {
   auto surface = std::make_shared<SurfaceObject>();
+  std::vector<std::string>& warnings = surface->warnings;
   surface->centerline = centerline;
-  const auto simplified = simplify(c, options);
-  surface->result = grow_around(c, simplified, options, request, progress, surface->warnings);
-  if (simplified && !surface->result.is_sound()) {
-    surface->warnings.clear();
-    options.simplification = 0;
-    surface->result = grow_around(c, std::nullopt, options, request, progress, surface->warnings);
-  }
+  ProductionSteps steps;
+  steps.prepared = [&](const PreparedCenterline& prepared) {
+    warnings.clear();
+    if (prepared.separated) {
+      warn_of_contacts_left(prepared.separated->report.left, warnings);
+    } else {
+      warn_of_contacts(prepared.contacts, warnings);
+    }
+  };
+  Production production = produce(centerline->centerline, centerline->end_sections, options, progress, steps);
+  surface->result = std::move(production.result);
+  surface->ends = std::move(production.ends);
   GenerateResult& result = surface->result;
-  for (const GrowthWarning& warning : result.warnings) surface->warnings.push_back(warning.message);
-  warn_of_error(result.error, request.options.max_error, surface->warnings);
-  if (shape != EndShape::round || !result.openings.empty()) {
-    FlatEndOptions finish;
-    finish.cap = shape == EndShape::flat;
-    finish.left_open = left_open;
-    finish.extension = request.extension;
-    finish.keep_area = options.placement == Placement::balanced;
-    finish.sections = centerline->end_sections;
-    surface->ends = finish_ends(result, c, finish);
-    for (const SectionNotKept& end : surface->ends.not_kept)
-      surface->warnings.push_back("the flat end at node " + std::to_string(end.node) + " is not kept: " + end.reason +
-                                  "; the vessel is cut across its axis there");
-  }
+  for (const GrowthWarning& warning : result.warnings) warnings.push_back(warning.message);
+  warn_of_error(result.error, options.growth.max_error, warnings);
+  for (const SectionNotKept& end : surface->ends.not_kept)
+    warnings.push_back("the flat end at node " + std::to_string(end.node) + " is not kept: " + end.reason +
+                       "; the vessel is cut across its axis there");
   name_nodes(*centerline, result.defects);
   return surface;
 }

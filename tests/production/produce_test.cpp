@@ -1,0 +1,111 @@
+#include "vmesh/production/produce.h"
+
+#include <gtest/gtest.h>
+
+#include "vmesh/core/error.h"
+
+namespace vmesh {
+namespace {
+
+/// A trunk with more nodes than its surface needs, and two branches.
+Centerline fork() {
+  std::vector<CenterlineNode> nodes;
+  std::vector<CenterlineSegment> segments;
+  for (Index n = 0; n <= 40; ++n) {
+    nodes.push_back({Vec3(0, 0, n), 2});
+    if (n > 0) segments.push_back({n - 1, n});
+  }
+  nodes.push_back({Vec3(12, 0, 55), 1.5});
+  nodes.push_back({Vec3(-12, 0, 55), 1.4});
+  segments.push_back({40, 41});
+  segments.push_back({40, 42});
+  return {nodes, segments};
+}
+
+/// Two vessels, not joined, less than their radii apart.
+Centerline crossing() {
+  return {{{{-20, 0, 0}, 2}, {{20, 0, 0}, 2}, {{0, -20, 3}, 2}, {{0, 20, 3}, 2}}, {{0, 1}, {2, 3}}};
+}
+
+TEST(Produce, RefersToTheOriginal) {
+  const Centerline centerline = fork();
+  const Production production = produce(centerline, {});
+  EXPECT_TRUE(production.result.is_sound());
+  ASSERT_TRUE(production.prepared.simplified);
+  EXPECT_LT(production.prepared.grown().nodes().size(), centerline.nodes().size());
+  EXPECT_GT(production.result.simplification.nodes_left_out, 20u);
+  Index last = 0;
+  for (const auto& [segment, t] : production.result.binding) {
+    ASSERT_LT(segment, centerline.segments().size());
+    last = std::max(last, segment);
+  }
+  EXPECT_EQ(last, 41u);
+  EXPECT_TRUE(production.ends.ends.empty());
+}
+
+TEST(Produce, SeparatesVesselsUnlessTheyAreToBeKept) {
+  const Centerline centerline = crossing();
+  const Production apart = produce(centerline, {});
+  EXPECT_TRUE(apart.result.is_sound());
+  ASSERT_TRUE(apart.prepared.separated);
+  EXPECT_EQ(apart.prepared.contacts.size(), 1u);
+  ProductionOptions options;
+  options.preparation.separate = false;
+  const Production kept = produce(centerline, {}, options);
+  EXPECT_FALSE(kept.result.is_sound());
+  EXPECT_FALSE(kept.prepared.separated);
+  EXPECT_EQ(kept.prepared.contacts.size(), 1u);
+}
+
+TEST(Produce, EndsAsWanted) {
+  const Centerline centerline = fork();
+  ProductionOptions options;
+  options.ends = EndShape::flat;
+  options.growth.open_ends.nodes = {41};
+  const Production production = produce(centerline, {}, options);
+  ASSERT_EQ(production.ends.ends.size(), 3u);
+  for (const FlatEnd& end : production.ends.ends) EXPECT_EQ(end.capped, end.node != 41u);
+  ASSERT_EQ(production.result.openings.size(), 1u);
+  EXPECT_EQ(production.result.openings[0].node, 41u);
+  options.growth.open_ends = {true, {}};
+  EXPECT_EQ(produce(centerline, {}, options).result.openings.size(), 3u);
+  options.growth.open_ends = {false, {20}};
+  EXPECT_THROW(produce(centerline, {}, options), InvalidInput);
+  options = {};
+  options.extension = 2;
+  EXPECT_THROW(produce(centerline, {}, options), InvalidInput);
+}
+
+TEST(Produce, GrowsOnceMoreAroundAllNodesIfTheFirstSurfaceIsNotSound) {
+  const Centerline centerline = fork();
+  std::vector<std::size_t> nodes;
+  std::size_t prepared = 0, refined = 0;
+  ProductionSteps steps;
+  steps.prepared = [&](const PreparedCenterline&) { ++prepared; };
+  steps.grow = [&](const Centerline& around, const GenerateOptions& options) {
+    nodes.push_back(around.nodes().size());
+    GenerateResult result = generate_surface(around, options);
+    if (nodes.size() == 1) result.defects.emplace_back();
+    return result;
+  };
+  steps.refine = [&](GenerateResult&, const PreparedCenterline&) {
+    ++refined;
+    return false;
+  };
+  const Production production = produce(centerline, {}, {}, {}, steps);
+  EXPECT_TRUE(production.result.is_sound());
+  ASSERT_EQ(nodes.size(), 2u);
+  EXPECT_LT(nodes[0], nodes[1]);
+  EXPECT_GE(nodes[1], centerline.nodes().size());
+  EXPECT_EQ(prepared, 2u);
+  EXPECT_EQ(refined, 1u);  // only what is kept
+}
+
+TEST(Produce, KnowsShapesOfEndsByTheirNames) {
+  for (const EndShape shape : {EndShape::round, EndShape::flat, EndShape::open})
+    EXPECT_EQ(parse_end_shape(to_string(shape)), shape);
+  EXPECT_THROW(parse_end_shape("pointed"), InvalidInput);
+}
+
+}  // namespace
+}  // namespace vmesh
