@@ -28,7 +28,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)  # static libraries tell nothing
 # Every module needs the first; the others are needed only by some modules.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libgmp-dev, libmpfr-dev, libtbb-dev")
-set(recommended libembree-dev libpng-dev libpugixml-dev libssl-dev zlib1g-dev)
+set(recommended libembree-dev libpng-dev libpugixml-dev zlib1g-dev)
 if(VMESH_WITH_VTK)
   list(APPEND recommended libvtk9-dev)
 endif()

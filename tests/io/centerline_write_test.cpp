@@ -28,7 +28,7 @@ Centerline sample(bool with_loop) {
 
 std::vector<std::string> extensions() {
   std::vector<std::string> result = {".swc", ".json", ".csv"};
-  if (VMESH_WITH_VTK) result.push_back(".vtp");
+  result.push_back(".vtp");
   return result;
 }
 

@@ -31,7 +31,7 @@ std::vector<EndSection> sections() {
 
 std::vector<std::string> extensions() {
   std::vector<std::string> result = {".json"};
-  if (VMESH_WITH_VTK) result.push_back(".vtp");
+  result.push_back(".vtp");
   return result;
 }
 

@@ -32,7 +32,7 @@ void expect_same(const MeshAttribute& a, const MeshAttribute& b) {
 
 std::vector<std::string> extensions() {
   std::vector<std::string> result = {".off", ".obj", ".stl", ".ply"};
-  if (VMESH_WITH_VTK) result.push_back(".vtp");
+  result.push_back(".vtp");
   return result;
 }
 

@@ -156,8 +156,6 @@ TEST(ReadVtp, RefusesWhatItCannotUnpack) {
       "overlap");
 }
 
-#if VMESH_WITH_VTK
-
 TEST(ReadVtp, CutsOfACompressedFileAreRefused) {
   const TemporaryFolder folder;
   std::vector<CenterlineNode> nodes;
@@ -197,18 +195,25 @@ TEST(WriteVtp, NamesItsArraysLikeVmtkDoes) {
   }
 }
 
-#else
-
-TEST(WriteVtp, IsRefusedWithAdviceInABuildWithoutVtk) {
+TEST(WriteVtp, PacksInBlocks) {
   const TemporaryFolder folder;
-  expect_contains(message_of<Unsupported>([&] {
-                    write_surface(folder / "a.vtp", {{{0, 0, 0}}, {}});
-                  }),
-                  "VMESH_WITH_VTK");
-  EXPECT_EQ(folder.file_count(), 0u);
+  TriMesh mesh;  // more than three blocks of points
+  for (Index i = 0; i < 40'000; ++i) mesh.vertices.emplace_back(i, 0.5 * i * i, std::sqrt(i));
+  for (Index i = 0; i + 2 < mesh.vertices.size(); ++i) mesh.faces.push_back({i, i + 1, i + 2});
+  write_surface(folder / "t.vtp", mesh);
+  const TriMesh again = read_surface(folder / "t.vtp").mesh;
+  EXPECT_EQ(again.vertices, mesh.vertices);
+  EXPECT_EQ(again.faces, mesh.faces);
 }
 
-#endif
+TEST(WriteVtp, NamesMayHaveAnyCharacter) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  const std::string name = "a<b> & \"c\"";
+  write_surface(folder / "t.vtp", mesh, {{{name, {1, 2, 3}, false}}, {}});
+  const MeshAttributes read = read_surface(folder / "t.vtp").attributes;
+  EXPECT_TRUE(std::any_of(read.vertex.begin(), read.vertex.end(), [&](const auto& a) { return a.name == name; }));
+}
 
 }  // namespace
 }  // namespace vmesh

@@ -1,22 +1,9 @@
-#include <mutex>
+// VTK's XML files of polygonal data (VTK File Formats, "XML File Formats"), written: arrays appended, packed by zlib.
 #include <ostream>
-#include <thread>
 
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkDoubleArray.h>
-#include <vtkFieldData.h>
-#include <vtkFloatArray.h>
-#include <vtkIntArray.h>
-#include <vtkLogger.h>
-#include <vtkNew.h>
-#include <vtkOutputWindow.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkStringArray.h>
-#include <vtkXMLPolyDataWriter.h>
+#include <zlib.h>
 
+#include "bytes.h"
 #include "end_section_arrays.h"
 #include "formats.h"
 #include "text.h"
@@ -25,174 +12,235 @@
 namespace vmesh::io {
 namespace {
 
-/// Collects VTK's error and warning messages.
-class MessageWindow : public vtkOutputWindow {
- public:
-  static MessageWindow* New() { return new MessageWindow; }
-  void DisplayText(const char* message) override {
-    if (std::this_thread::get_id() == owner_) text.append(message ? message : "").append(" ");
-  }
-  void DisplayDebugText(const char*) override {}
+constexpr std::size_t kBlock = std::size_t{1} << 18;  // bytes that are packed together
 
-  std::string text;
+/// One array as it follows the XML: the number of blocks, their size, that of the last if it is smaller, the sizes of
+/// the packed blocks (all as 64-bit integers), and these.
+class PackedArray {
+ public:
+  template <class T>
+  void add(T value) {
+    store(block_, value);
+    if (block_.size() == kBlock) pack();
+  }
+
+  std::string bytes() {
+    const std::size_t rest = block_.size();
+    if (rest > 0) pack();
+    std::string result;
+    store(result, static_cast<std::uint64_t>(sizes_.size()));
+    store(result, static_cast<std::uint64_t>(kBlock));
+    store(result, static_cast<std::uint64_t>(rest));
+    for (const std::uint64_t size : sizes_) store(result, size);
+    return result + packed_;
+  }
 
  private:
-  std::thread::id owner_ = std::this_thread::get_id();
+  void pack() {
+    uLongf size = compressBound(static_cast<uLong>(block_.size()));
+    const std::size_t before = packed_.size();
+    packed_.resize(before + size);
+    if (compress2(reinterpret_cast<Bytef*>(packed_.data() + before), &size,
+                  reinterpret_cast<const Bytef*>(block_.data()), static_cast<uLong>(block_.size()),
+                  Z_DEFAULT_COMPRESSION) != Z_OK)
+      throw WriteError("zlib cannot pack the data; is there enough free memory?");
+    packed_.resize(before + size);
+    sizes_.push_back(size);
+    block_.clear();
+  }
+
+  std::string block_, packed_;
+  std::vector<std::uint64_t> sizes_;
 };
 
-/// During its lifetime, VTK's messages go to text() instead of the terminal. VTK's output window and log level are
-/// process-wide, so only one may exist at a time; both are restored at the end.
-class VtkMessages {
- public:
-  VtkMessages()
-      : lock_(mutex()), before_(vtkOutputWindow::GetInstance()), level_(vtkLogger::GetCurrentVerbosityCutoff()) {
-    vtkOutputWindow::SetInstance(window_);
-    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
   }
-  ~VtkMessages() {
-    vtkLogger::SetStderrVerbosity(level_);
-    vtkOutputWindow::SetInstance(before_);
-  }
-  VtkMessages(const VtkMessages&) = delete;
-  VtkMessages& operator=(const VtkMessages&) = delete;
+  return result;
+}
 
-  const std::string& text() const { return window_->text; }
+/// The XML, in the order in which it is built, and the arrays that follow it.
+class VtpFile {
+ public:
+  void open(const std::string& tag) {
+    xml_ += std::string(2 * tags_.size(), ' ') + "<" + tag + ">\n", tags_.push_back(tag);
+  }
+  void close() {
+    const std::string name = tags_.back().substr(0, tags_.back().find(' '));
+    tags_.pop_back();
+    xml_ += std::string(2 * tags_.size(), ' ') + "</" + name + ">\n";
+  }
+
+  /// `values`: called with a function that takes the numbers, which are of type T.
+  template <class T, class Values>
+  void add_array(const char* type, const std::string& name, int components, std::size_t tuples, Values&& values) {
+    PackedArray array;
+    values([&](auto value) { array.add(static_cast<T>(value)); });
+    xml_ += std::string(2 * tags_.size(), ' ') + "<DataArray type=\"" + type + "\" Name=\"" + escaped(name) + "\"";
+    if (components != 1) xml_ += " NumberOfComponents=\"" + std::to_string(components) + "\"";
+    if (tags_.back() == "FieldData") xml_ += " NumberOfTuples=\"" + std::to_string(tuples) + "\"";
+    xml_ += " format=\"appended\" offset=\"" + std::to_string(appended_.size()) + "\"/>\n";
+    appended_ += array.bytes();
+  }
+
+  void add_numbers(const std::string& name, const std::vector<double>& values, bool integer, int components = 1) {
+    const auto all = [&](const auto& take) {
+      for (const double value : values) take(value);
+    };
+    const std::size_t tuples = values.size() / static_cast<std::size_t>(components);
+    if (integer) {
+      add_array<std::int32_t>("Int32", name, components, tuples, all);
+    } else {
+      add_array<double>("Float64", name, components, tuples, all);
+    }
+  }
+
+  /// Codes of the bytes, and a zero.
+  void add_text(const char* name, const std::string& text) {
+    if (text.empty()) return;
+    const std::string indent(2 * tags_.size(), ' ');
+    xml_ += indent + "<Array type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"1\" format=\"ascii\">\n" + indent;
+    for (const char c : one_line(text)) xml_ += std::to_string(static_cast<unsigned char>(c)) + " ";
+    xml_ += "0\n" + indent + "</Array>\n";
+  }
+
+  /// `element`: Verts, Lines or Polys. `corners`: called with a function that takes the numbers of points, so many to
+  /// a cell.
+  template <class Corners>
+  void add_cells(const char* element, std::size_t cells, std::size_t to_a_cell, Corners&& corners) {
+    open(element);
+    add_array<std::int64_t>("Int64", "connectivity", 1, cells, corners);
+    add_array<std::int64_t>("Int64", "offsets", 1, cells, [&](const auto& take) {
+      for (std::size_t c = 1; c <= cells; ++c) take(c * to_a_cell);
+    });
+    close();
+  }
+
+  template <class Position>
+  void add_points(std::size_t count, const Position& position) {
+    open("Points");
+    add_array<double>("Float64", "Points", 3, count, [&](const auto& take) {
+      for (std::size_t i = 0; i < count; ++i)
+        for (const double x : position(i)) take(x);
+    });
+    close();
+  }
+
+  void write(std::ostream& out) const {
+    out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+           "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
+        << xml_ << "<AppendedData encoding=\"raw\">\n_" << appended_ << "\n</AppendedData>\n</VTKFile>\n";
+  }
 
  private:
-  static std::mutex& mutex() {
-    static std::mutex instance;
-    return instance;
-  }
-
-  std::lock_guard<std::mutex> lock_;
-  vtkSmartPointer<vtkOutputWindow> before_;
-  vtkLogger::Verbosity level_;
-  vtkNew<MessageWindow> window_;
+  std::vector<std::string> tags_;  // open
+  std::string xml_, appended_;
 };
-
-/// The first of VTK's messages without file, line and address of the object.
-std::string first_message(std::string_view text) {
-  const std::size_t address = text.find("): ");
-  if (address != std::string_view::npos) text.remove_prefix(address + 3);
-  return one_line(trim(text.substr(0, text.find('\n'))));
-}
-
-void add_text(vtkPolyData& data, const char* name, const std::string& value) {
-  if (value.empty()) return;
-  vtkNew<vtkStringArray> array;
-  array->SetName(name);
-  array->InsertNextValue(one_line(value));
-  data.GetFieldData()->AddArray(array);
-}
 
 template <class Metadata>
-void add_metadata(vtkPolyData& data, const Metadata& metadata) {
-  add_text(data, "SPACE", std::string(to_string(metadata.space)));
-  add_text(data, "UNIT", std::string(to_string(metadata.unit)));
-  add_text(data, "Generator", metadata.generator);
-  add_text(data, "Options", metadata.options);
-  add_text(data, "Input", metadata.input_name);
-  add_text(data, "InputSHA256", metadata.input_sha256);
+void add_metadata(VtpFile& file, const Metadata& metadata) {
+  file.add_text("SPACE", std::string(to_string(metadata.space)));
+  file.add_text("UNIT", std::string(to_string(metadata.unit)));
+  file.add_text("Generator", metadata.generator);
+  file.add_text("Options", metadata.options);
+  file.add_text("Input", metadata.input_name);
+  file.add_text("InputSHA256", metadata.input_sha256);
 }
 
-void add_points(vtkPolyData& data, std::size_t count, const auto& position) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(count));
-  for (std::size_t i = 0; i < count; ++i) points->SetPoint(static_cast<vtkIdType>(i), position(i).data());
-  data.SetPoints(points);
+std::string piece(std::size_t points, std::size_t verts, std::size_t lines, std::size_t polys) {
+  return "Piece NumberOfPoints=\"" + std::to_string(points) + "\" NumberOfVerts=\"" + std::to_string(verts) +
+         "\" NumberOfLines=\"" + std::to_string(lines) + "\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+         std::to_string(polys) + "\"";
 }
 
-void add_numbers(vtkFieldData& target, const std::string& name, const std::vector<double>& values, bool integer,
-                 int components = 1) {
-  const auto fill = [&](auto& array, auto convert) {
-    array.SetName(name.c_str());
-    array.SetNumberOfComponents(components);
-    array.SetNumberOfValues(static_cast<vtkIdType>(values.size()));
-    for (std::size_t i = 0; i < values.size(); ++i) array.SetValue(static_cast<vtkIdType>(i), convert(values[i]));
-    target.AddArray(&array);
-  };
-  if (integer) {
-    vtkNew<vtkIntArray> array;
-    fill(*array, [](double x) { return static_cast<int>(x); });
-  } else {
-    vtkNew<vtkDoubleArray> array;
-    fill(*array, [](double x) { return x; });
-  }
-}
-
-void write_poly_data(std::ostream& out, vtkPolyData& data) {
-  const VtkMessages messages;
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetInputData(&data);
-  writer->SetDataModeToBinary();
-  writer->WriteToOutputStringOn();
-  if (writer->Write() != 1 || !messages.text().empty()) {
-    throw WriteError("VTK cannot write the file: " + first_message(messages.text()));
-  }
-  out << writer->GetOutputString();
+/// The attribute by which a viewer colours initially.
+std::string scalars(const std::vector<MeshAttribute>& attributes, const auto& names) {
+  return attributes.empty() ? "" : " Scalars=\"" + escaped(to_vtk(names, attributes.front().name)) + "\"";
 }
 
 }  // namespace
 
 void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,
                           const std::vector<EndSection>& sections) {
-  vtkNew<vtkPolyData> data;
   const auto& nodes = centerline.nodes();
-  add_points(*data, nodes.size(), [&](std::size_t i) { return nodes[i].position; });
-  std::vector<double> radius;
-  for (const auto& node : nodes) radius.push_back(node.radius);
-  add_numbers(*data->GetPointData(), "MaximumInscribedSphereRadius", radius, false);
-  vtkNew<vtkCellArray> lines;
-  for (const auto& [a, b] : centerline.segments()) {
-    const vtkIdType ids[2] = {a, b};
-    lines->InsertNextCell(2, ids);
-  }
-  data->SetLines(lines);
-  vtkNew<vtkCellArray> spheres;
-  for (Index n = 0; n < nodes.size(); ++n) {
-    const vtkIdType id = n;
-    if (centerline.degree(n) == 0) spheres->InsertNextCell(1, &id);
-  }
-  if (spheres->GetNumberOfCells() > 0) data->SetVerts(spheres);
+  std::vector<Index> isolated;
+  for (Index n = 0; n < nodes.size(); ++n)
+    if (centerline.degree(n) == 0) isolated.push_back(n);
+  VtpFile file;
+  file.open("PolyData");
+  file.open("FieldData");
   for (const FieldArray& array : end_section_arrays(sections))
-    add_numbers(*data->GetFieldData(), array.name, array.values, array.integer, array.components);
+    file.add_numbers(array.name, array.values, array.integer, array.components);
+  add_metadata(file, metadata);
+  file.close();
+  file.open(piece(nodes.size(), isolated.size(), centerline.segments().size(), 0));
+  file.open("PointData");
+  std::vector<double> radius;
+  for (const CenterlineNode& node : nodes) radius.push_back(node.radius);
+  file.add_numbers("MaximumInscribedSphereRadius", radius, false);
+  file.close();
+  file.open("CellData");
   if (!metadata.segment_labels.empty()) {
-    std::vector<double> labels(static_cast<std::size_t>(spheres->GetNumberOfCells()), -1);  // cells before the lines
+    std::vector<double> labels(isolated.size(), -1);  // cells before the lines
     labels.insert(labels.end(), metadata.segment_labels.begin(), metadata.segment_labels.end());
-    add_numbers(*data->GetCellData(), "Label", labels, false);
+    file.add_numbers("Label", labels, false);
   }
-  add_metadata(*data, metadata);
-  write_poly_data(out, *data);
+  file.close();
+  file.add_points(nodes.size(), [&](std::size_t i) -> const Vec3& { return nodes[i].position; });
+  file.add_cells("Verts", isolated.size(), 1, [&](const auto& take) {
+    for (const Index n : isolated) take(n);
+  });
+  file.add_cells("Lines", centerline.segments().size(), 2, [&](const auto& take) {
+    for (const auto& [a, b] : centerline.segments()) take(a), take(b);
+  });
+  file.close();
+  file.close();
+  file.write(out);
 }
 
 void write_surface_vtp(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
                        const SurfaceMetadata& metadata) {
-  vtkNew<vtkPolyData> data;
-  add_points(*data, mesh.vertices.size(), [&](std::size_t i) { return mesh.vertices[i]; });
-  vtkNew<vtkCellArray> polygons;
-  for (const auto& [a, b, c] : mesh.faces) {
-    const vtkIdType ids[3] = {a, b, c};
-    polygons->InsertNextCell(3, ids);
-  }
-  data->SetPolys(polygons);
-  vtkNew<vtkFloatArray> normals;
-  normals->SetName("Normals");
-  normals->SetNumberOfComponents(3);
-  for (const Vec3& n : vertex_normals(mesh)) normals->InsertNextTuple(n.data());
-  data->GetPointData()->SetNormals(normals);
-  for (const auto& a : attributes.vertex) {
-    add_numbers(*data->GetPointData(), to_vtk(kPointNames, a.name), a.values, a.integer);
-  }
-  for (const auto& a : attributes.face)
-    add_numbers(*data->GetCellData(), to_vtk(kCellNames, a.name), a.values, a.integer);
-  // The attribute by which a viewer colours initially.
-  if (!attributes.vertex.empty())
-    data->GetPointData()->SetActiveScalars(to_vtk(kPointNames, attributes.vertex.front().name).c_str());
-  if (!attributes.face.empty())
-    data->GetCellData()->SetActiveScalars(to_vtk(kCellNames, attributes.face.front().name).c_str());
-  add_metadata(*data, metadata);
-  write_poly_data(out, *data);
+  VtpFile file;
+  file.open("PolyData");
+  file.open("FieldData");
+  add_metadata(file, metadata);
+  file.close();
+  file.open(piece(mesh.vertices.size(), 0, 0, mesh.faces.size()));
+  file.open("PointData" + scalars(attributes.vertex, kPointNames) + " Normals=\"Normals\"");
+  file.add_array<float>("Float32", "Normals", 3, mesh.vertices.size(), [&](const auto& take) {
+    for (const Vec3& normal : vertex_normals(mesh))
+      for (const double x : normal) take(x);
+  });
+  for (const MeshAttribute& a : attributes.vertex) file.add_numbers(to_vtk(kPointNames, a.name), a.values, a.integer);
+  file.close();
+  file.open("CellData" + scalars(attributes.face, kCellNames));
+  for (const MeshAttribute& a : attributes.face) file.add_numbers(to_vtk(kCellNames, a.name), a.values, a.integer);
+  file.close();
+  file.add_points(mesh.vertices.size(), [&](std::size_t i) -> const Vec3& { return mesh.vertices[i]; });
+  file.add_cells("Polys", mesh.faces.size(), 3, [&](const auto& take) {
+    for (const Triangle& face : mesh.faces)
+      for (const Index v : face) take(v);
+  });
+  file.close();
+  file.close();
+  file.write(out);
 }
 
 }  // namespace vmesh::io
