@@ -4,7 +4,7 @@
 
 #include "fit/correspondence.h"
 #include "fit/fit_mesh.h"
-#include "fit/rounds.h"
+#include "fit/fit_steps.h"
 
 namespace vmesh {
 

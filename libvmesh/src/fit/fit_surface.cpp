@@ -14,9 +14,9 @@
 
 #include "fit/correspondence.h"
 #include "fit/farthest.h"
+#include "fit/fit_steps.h"
 #include "fit/reshaping.h"
 #include "fit/resizing.h"
-#include "fit/rounds.h"
 #include "fit/spikes.h"
 #include "fit/unmatched.h"
 #include "surface/proof/defects.h"
@@ -35,7 +35,15 @@ constexpr double kAim = 0.92;       // of the error, while resizing: few samples
 constexpr int kFirstRounds = 3, kLastRounds = 4;
 constexpr int kMoreRounds = 12;           // at most, to find the size that gives an error
 constexpr double kOfMostVertices = 0.98;  // target: the exact count cannot be controlled
+constexpr double kMore = 1.05;            // vertices that a fit may add without a budget
 constexpr int kCorrections = 5;
+// SizeLimits. For an error the count is not known beforehand: sizes may change by more, and by more at once.
+constexpr double kFinest = 0.5, kCoarsest = 1.5;  // without an error, relative to sizes for the count wanted
+constexpr double kErrorStep = 1.4, kErrorRefinement = 8, kErrorCoarsest = 4;
+// The error is kept where 95 % of the distances are between these shares of it.
+constexpr double kNearlyError = 0.88, kKeptError = 0.95;
+constexpr double kSettled = 0.05;  // change of the number of vertices in a round, below which it has settled
+constexpr double kAimPower = 0.7, kAimStep = 1.25;  // how strongly and how far the aim follows what came out
 // Memory, measured.
 constexpr double kBytesPerVertex = 12000, kBytesPerReferenceFace = 350;
 constexpr double kCorrection = 0.93;  // factor on the even error when the 95 % miss theirs
@@ -96,7 +104,7 @@ class Fit {
         surface_(surface.mesh, vertices_of(surface)),
         openings_(surface.openings.empty() ? find_openings(surface.mesh) : surface.openings) {
     setting_.guard.max_skewness = options.max_skewness;
-    if (options.error > 0) limits_.step = 1.4;
+    if (options.error > 0) limits_.step = kErrorStep;
     const double count = kSamplesPerFace * static_cast<double>(surface_.faces.size());
     samples_ = reference_.samples(field, static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < samples_.size(); i += kFewer) {
@@ -106,14 +114,15 @@ class Fit {
     samples_and_rims_ = samples_;
     for (const ReferenceSample& sample : reference_.rim_samples()) samples_and_rims_.push_back(sample);
     most_vertices_ = options.max_vertices;
-    if (most_vertices_ == 0) most_vertices_ = surface.mesh.vertices.size() * 21 / 20;
+    if (most_vertices_ == 0)
+      most_vertices_ = static_cast<std::size_t>(kMore * static_cast<double>(surface.mesh.vertices.size()));
     wanted_vertices_ = static_cast<std::size_t>(kOfMostVertices * static_cast<double>(most_vertices_));
     const double refinement =
         options.error > 0
-            ? 8
+            ? kErrorRefinement
             : std::sqrt(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()));
-    limits_.finest = std::min(limits_.finest, 0.5 / refinement);
-    limits_.coarsest = std::max(limits_.coarsest, options.error > 0 ? 4 : 1.5 / refinement);
+    limits_.finest = std::min(limits_.finest, kFinest / refinement);
+    limits_.coarsest = std::max(limits_.coarsest, options.error > 0 ? kErrorCoarsest : kCoarsest / refinement);
     for (Index i = 0; i < openings_.size(); ++i) {
       setting_.opening_normals.push_back(openings_[i].normal.normalized());
       for (const Index v : openings_[i].ring) surface_.vertices[v].opening = i;
@@ -245,11 +254,13 @@ class Fit {
       const Matches matches = matches_after_step();
       const std::size_t before = surface_.vertices.size();
       const double p95 = to_error_ ? matched_distance(matches, 0.95) : 0;
-      if (to_error_ && settled_ && i >= rounds && p95 <= 0.95 * options_.error && p95 > 0.88 * options_.error) return;
+      if (to_error_ && settled_ && i >= rounds && p95 <= kKeptError * options_.error &&
+          p95 > kNearlyError * options_.error)
+        return;
       if (to_error_) aim_at_error(p95);
       resize_once(matches);
       const double change = static_cast<double>(surface_.vertices.size()) / static_cast<double>(before);
-      settled_ = change > 0.95 && change < 1.05;
+      settled_ = std::abs(change - 1) < kSettled;
     }
   }
 
@@ -280,8 +291,9 @@ class Fit {
     if (options_.max_vertices > 0 && surface_.vertices.size() > most_vertices_) to_error_ = false;
     // Edge lengths differ a little from the intended sizes; corrects for that.
     aim_ = std::clamp(
-        aim_ * std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()), 0.7),
-        0.8, 1.25);
+        aim_ *
+            std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()), kAimPower),
+        1 / kAimStep, kAimStep);
     find_cones(surface_, field_);
     step(matches_now(true));
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
@@ -292,7 +304,7 @@ class Fit {
   // Adapts the error wanted around vertices so that 95 % of the distances are below options.error.
   void aim_at_error(double p95) {
     if (even_error_ == 0) even_error_ = kEvenShare * options_.error;
-    if (settled_ && p95 > 0) even_error_ *= std::clamp(std::sqrt(kAim * options_.error / p95), 0.8, 1.25);
+    if (settled_ && p95 > 0) even_error_ *= std::clamp(std::sqrt(kAim * options_.error / p95), 1 / kAimStep, kAimStep);
   }
 
   void pack() {
@@ -342,12 +354,7 @@ std::vector<Opening> find_openings(const TriMesh& mesh) {
       v = std::exchange(next[v], kNone);
     }
     for (const Index v : opening.ring) opening.center += mesh.vertices[v] / static_cast<double>(opening.ring.size());
-    for (std::size_t i = 0; i < opening.ring.size(); ++i) {
-      const Vec3 a = mesh.vertices[opening.ring[i]] - opening.center;
-      const Vec3 b = mesh.vertices[opening.ring[(i + 1) % opening.ring.size()]] - opening.center;
-      opening.normal += a.cross(b);
-    }
-    opening.normal.normalize();
+    opening.normal = normal_of(opening, mesh);
     openings.push_back(std::move(opening));
   }
   return openings;

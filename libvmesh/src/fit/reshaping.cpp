@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/LU>
 
@@ -91,26 +92,45 @@ int deviation(std::size_t valence) {
   return d * d;
 }
 
-bool should_flip(const FitMesh& surface, Index a, Index b, const StepGuard& guard) {
+/// What flipping the edge between a and b changes.
+struct Flip {
+  Index c, d;                        // the ends of the new edge
+  std::size_t fewest_faces;          // around a and b, before
+  int less_even;                     // increase of the squared valence defects
+  double worst_before, worst_after;  // skewness of the two faces
+  double turn;                       // least cosine between normals before and after
+  double bend;                       // cosine between the normals after
+};
+
+/// nullopt at the border, and where the new edge is there already.
+std::optional<Flip> flip_of(const FitMesh& surface, Index a, Index b) {
   const Index f = surface.face_of(a, b), g = surface.face_of(b, a);
-  if (f == kNone || g == kNone) return false;
+  if (f == kNone || g == kNone) return std::nullopt;
   const Index c = FitMesh::apex(surface.faces[f], a, b), d = FitMesh::apex(surface.faces[g], a, b);
-  if (c == d || surface.are_neighbours(c, d)) return false;
+  if (c == d || surface.are_neighbours(c, d)) return std::nullopt;
   const auto valence = [&](Index v) { return surface.faces_around(v).size() + (surface.on_border(v) ? 3 : 0); };
-  if (surface.faces_around(a).size() <= 3 || surface.faces_around(b).size() <= 3) return false;
   const int before = deviation(valence(a)) + deviation(valence(b)) + deviation(valence(c)) + deviation(valence(d));
   const int after =
       deviation(valence(a) - 1) + deviation(valence(b) - 1) + deviation(valence(c) + 1) + deviation(valence(d) + 1);
   const Vec3 &pa = surface.position(a), &pb = surface.position(b), &pc = surface.position(c), &pd = surface.position(d);
-  const double worst_before = std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd));
-  const double worst_after = std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc));
-  const bool more_even = after < before && worst_after <= std::max(kFlippedSkewness, worst_before);
-  const bool better =
-      after <= before + 2 && worst_after < worst_before - kGain && worst_before > guard.max_skewness / 2;
-  if (!more_even && !better) return false;
   const Vec3 n1 = unit_normal(pa, pb, pc), n2 = unit_normal(pb, pa, pd);
   const Vec3 m1 = unit_normal(pc, pa, pd), m2 = unit_normal(pd, pb, pc);
-  return std::min({m1.dot(n1), m1.dot(n2), m2.dot(n1), m2.dot(n2)}) > kBent && m1.dot(m2) > kBent;
+  return Flip{c,
+              d,
+              std::min(surface.faces_around(a).size(), surface.faces_around(b).size()),
+              after - before,
+              std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd)),
+              std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc)),
+              std::min({m1.dot(n1), m1.dot(n2), m2.dot(n1), m2.dot(n2)}),
+              m1.dot(m2)};
+}
+
+bool should_flip(const Flip& flip, const StepGuard& guard) {
+  if (flip.fewest_faces <= 3) return false;
+  const bool more_even = flip.less_even < 0 && flip.worst_after <= std::max(kFlippedSkewness, flip.worst_before);
+  const bool better =
+      flip.less_even <= 2 && flip.worst_after < flip.worst_before - kGain && flip.worst_before > guard.max_skewness / 2;
+  return (more_even || better) && flip.turn > kBent && flip.bend > kBent;
 }
 
 }  // namespace
@@ -147,7 +167,7 @@ void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const st
 void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard) {
   for (const auto& [a, b] : surface.edges()) {
     if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
-    if (should_flip(surface, a, b, guard)) surface.flip(a, b);
+    if (const auto flip = flip_of(surface, a, b); flip && should_flip(*flip, guard)) surface.flip(a, b);
   }
 }
 
@@ -155,28 +175,16 @@ void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen, bool h
                        const std::function<double(Index, Index, const Vec3&)>& distance) {
   for (const auto& [a, b] : surface.edges()) {
     if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
-    const Index f = surface.face_of(a, b), g = surface.face_of(b, a);
-    if (f == kNone || g == kNone) continue;
-    const Index c = FitMesh::apex(surface.faces[f], a, b), d = FitMesh::apex(surface.faces[g], a, b);
-    if (c == d || surface.are_neighbours(c, d)) continue;
-    const auto valence = [&](Index v) { return surface.faces_around(v).size() + (surface.on_border(v) ? 3 : 0); };
-    if (surface.faces_around(a).size() <= 4 || surface.faces_around(b).size() <= 4) continue;
-    const int before = deviation(valence(a)) + deviation(valence(b)) + deviation(valence(c)) + deviation(valence(d));
-    const int after =
-        deviation(valence(a) - 1) + deviation(valence(b) - 1) + deviation(valence(c) + 1) + deviation(valence(d) + 1);
-    if (after > before + kLessEven) continue;
-    const Vec3 &pa = surface.position(a), &pb = surface.position(b), &pc = surface.position(c),
-               &pd = surface.position(d);
-    const double worst_before = std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd));
-    const double worst_after = std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc));
-    if (worst_after > std::max(harsh ? kWrongSkewness : kCloserSkewness, worst_before)) continue;
-    const Vec3 n1 = unit_normal(pa, pb, pc), n2 = unit_normal(pb, pa, pd);
-    const Vec3 m1 = unit_normal(pc, pa, pd), m2 = unit_normal(pd, pb, pc);
-    const double turn = std::min({m1.dot(n1), m1.dot(n2), m2.dot(n1), m2.dot(n2), m1.dot(m2)});
+    const auto flip = flip_of(surface, a, b);
+    if (!flip || flip->fewest_faces <= 4 || flip->less_even > kLessEven) continue;
+    if (flip->worst_after > std::max(harsh ? kWrongSkewness : kCloserSkewness, flip->worst_before)) continue;
+    const double turn = std::min(flip->turn, flip->bend);
     if (turn < (harsh ? kWrongTurn : kOverRim)) continue;
-    const double now = distance(a, b, 0.5 * (pa + pb)), then = distance(c, d, 0.5 * (pc + pd));
+    const Vec3 &pa = surface.position(a), &pb = surface.position(b);
+    const Vec3 &pc = surface.position(flip->c), &pd = surface.position(flip->d);
+    const double now = distance(a, b, 0.5 * (pa + pb)), then = distance(flip->c, flip->d, 0.5 * (pc + pd));
     if (now < 0 || then < 0) continue;
-    const bool is_harsh = turn < kOverRim || worst_after > std::max(kCloserSkewness, worst_before);
+    const bool is_harsh = turn < kOverRim || flip->worst_after > std::max(kCloserSkewness, flip->worst_before);
     if (now - then < (is_harsh ? kMuchCloser : kCloser) * (pa - pb).norm()) continue;
     surface.flip(a, b);
   }

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "fit/fit_mesh.h"
-#include "fit/rounds.h"
+#include "fit/fit_steps.h"
 
 namespace vmesh {
 

@@ -143,12 +143,7 @@ void renumber(const GrowthCenterline& growth, const Centerline& full, GenerateRe
             [](const Opening& a, const Opening& b) { return a.node < b.node; });
   for (Opening& opening : result.openings) {
     opening.node = growth.node[opening.node];
-    for (std::size_t j = 0; j < opening.ring.size(); ++j) {
-      const Vec3 a = result.mesh.vertices[opening.ring[j]] - opening.center;
-      const Vec3 b = result.mesh.vertices[opening.ring[(j + 1) % opening.ring.size()]] - opening.center;
-      opening.normal += a.cross(b);
-    }
-    opening.normal.normalize();
+    opening.normal = normal_of(opening, result.mesh);
   }
   if (growth.buried.empty()) return;
   for (CenterlineBinding& binding : result.binding) binding.segment = growth.cone[binding.segment];
@@ -207,6 +202,16 @@ GenerateResult generate_guided(const Centerline& centerline, const GenerateOptio
 }
 
 }  // namespace
+
+Vec3 normal_of(const Opening& opening, const TriMesh& mesh) {
+  Vec3 normal = Vec3::Zero();
+  for (std::size_t j = 0; j < opening.ring.size(); ++j) {
+    const Vec3 a = mesh.vertices[opening.ring[j]] - opening.center;
+    const Vec3 b = mesh.vertices[opening.ring[(j + 1) % opening.ring.size()]] - opening.center;
+    normal += a.cross(b);
+  }
+  return normal.normalized();
+}
 
 TriMesh with_lids(const GenerateResult& result) {
   TriMesh mesh = result.mesh;

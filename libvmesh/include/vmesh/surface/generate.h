@@ -157,6 +157,9 @@ struct Opening {
   std::vector<Index> ring;     ///< vertices, counter-clockwise about `normal`
 };
 
+/// Unit normal of the area of an opening's ring as seen from its centre.
+Vec3 normal_of(const Opening& opening, const TriMesh& mesh);
+
 /// Connected faces for which the error limit is not proven.
 struct UnprovenPlace {
   Vec3 position = Vec3::Zero();  ///< of one of them, mm

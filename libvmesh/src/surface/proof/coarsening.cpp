@@ -17,9 +17,9 @@ namespace vmesh {
 namespace {
 
 // Not in the surveys of libvmesh/README.md, but changed as those of coarsening_steps.cpp, with the same outcome.
-constexpr double kWorstSkewness = 0.75;  // with a limit; 0.85: as many vertices
+constexpr double kSkewest = 0.75;  // with a limit; 0.85: as many vertices
 // With so many vertices. Faces above 0.9 count as defects. Nine trees with 0.75: 1.5 % more mean error.
-constexpr double kWorstSkewnessOfFew = 0.86;
+constexpr double kSkewestOfFew = 0.86;
 constexpr double kOutdated = 1.05;  // a step whose cost has grown by so much waits for its turn
 constexpr double kMany = 2;         // times the vertices that are to be left
 constexpr int kRounds = 5;
@@ -41,8 +41,7 @@ class Coarsener {
         mesh_(surface.mesh),
         state_(surface),
         proof_(goal.proven.is_set() ? std::make_optional<KeptProof>(state_, goal.proven) : std::nullopt),
-        steps_(state_, goal.proven, longest, proof_ ? kWorstSkewness : kWorstSkewnessOfFew,
-               [this](Face f) { return is_fixed(f); }),
+        steps_(state_, goal.proven, longest, proof_ ? kSkewest : kSkewestOfFew, [this](Face f) { return is_fixed(f); }),
         least_vertices_(goal.least_vertices),
         progress_(progress),
         changed_(mesh_.num_vertices(), 1) {

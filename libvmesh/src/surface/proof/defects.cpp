@@ -79,12 +79,14 @@ class DefectSearch {
     defects.push_back(std::move(defect));
   }
 
-  Index branch_of(Index segment) const {
-    const std::vector<Branch> branches = find_branches(centerline_);
-    for (Index b = 0; b < branches.size(); ++b) {
-      if (std::count(branches[b].segments.begin(), branches[b].segments.end(), segment)) return b;
+  Index branch_of(Index segment) {
+    if (branch_of_.empty()) {
+      branch_of_.resize(centerline_.segments().size(), kNone);
+      const std::vector<Branch> branches = find_branches(centerline_);
+      for (Index b = 0; b < branches.size(); ++b)
+        for (const Index s : branches[b].segments) branch_of_[s] = b;
     }
-    return kNone;
+    return segment < branch_of_.size() ? branch_of_[segment] : kNone;  // none of an isolated node
   }
 
   void topology() {
@@ -187,6 +189,7 @@ class DefectSearch {
   const GenerateResult& result_;
   const TriMesh& mesh_;
   TriMesh closed_;
+  std::vector<Index> branch_of_;  // of every segment, once that is needed
 };
 
 }  // namespace

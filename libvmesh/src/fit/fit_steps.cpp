@@ -1,4 +1,4 @@
-#include "fit/rounds.h"
+#include "fit/fit_steps.h"
 
 #include <algorithm>
 
