@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/core/avx2_build.h"
 #include "vmesh/core/error.h"
 
 #include "chains.h"
-#include "core/avx2_build.h"
 #include "deform/implicit_rods.h"
 #include "draw.h"
 

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/core/avx2_build.h"
 #include "vmesh/core/error.h"
 #include "vmesh/deform/linear_skin.h"
 
 #include "chains.h"
-#include "core/avx2_build.h"
 #include "deform/synchronise.h"
 #include "draw.h"
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "vmesh/core/error.h"
-#include "vmesh/fit/flat_reference.h"
+#include "vmesh/surface/flat_reference.h"
 #include "vmesh/mesh/components.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"

@@ -8,7 +8,7 @@
 #include "vmesh/centerline/branches.h"
 #include "vmesh/centerline/round_ends.h"
 #include "vmesh/fit/fit_surface.h"
-#include "vmesh/fit/flat_reference.h"
+#include "vmesh/surface/flat_reference.h"
 #include "vmesh/image/image_io.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"

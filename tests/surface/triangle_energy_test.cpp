@@ -1,4 +1,4 @@
-#include "surface/remesh/triangle_energy.h"
+#include "vmesh/mesh/triangle_energy.h"
 
 #include <gtest/gtest.h>
 

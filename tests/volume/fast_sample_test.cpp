@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "vmesh/core/avx2_build.h"
 #include "vmesh/volume/vessel_field.h"
 
-#include "core/avx2_build.h"
 #include "random_centerline.h"
 #include "volume/cone_lanes.h"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "vmesh/fit/fit_surface.h"
-#include "vmesh/fit/flat_reference.h"
+#include "vmesh/surface/flat_reference.h"
 #include "vmesh/mesh/topology.h"
 
 #include "arrays.h"

@@ -1,4 +1,4 @@
-#include "child_process.h"
+#include "vmesh/core/child_process.h"
 
 #include <algorithm>
 #include <cerrno>

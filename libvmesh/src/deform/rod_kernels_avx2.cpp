@@ -1,4 +1,5 @@
-#include "core/avx2_build.h"
+#include "vmesh/core/avx2_build.h"
+
 #include "deform/rod_kernels.h"
 
 #if VMESH_AVX2_BUILD

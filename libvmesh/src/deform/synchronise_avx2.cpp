@@ -1,6 +1,7 @@
 #include <cmath>
 
-#include "core/avx2_build.h"
+#include "vmesh/core/avx2_build.h"
+
 #include "deform/synchronise.h"
 
 #if VMESH_AVX2_BUILD

@@ -11,6 +11,7 @@
 #include "vmesh/core/memory.h"
 #include "vmesh/mesh/components.h"
 #include "vmesh/mesh/topology.h"
+#include "vmesh/surface/defects.h"
 
 #include "fit/correspondence.h"
 #include "fit/farthest.h"
@@ -19,7 +20,6 @@
 #include "fit/resizing.h"
 #include "fit/spikes.h"
 #include "fit/unmatched.h"
-#include "surface/proof/defects.h"
 
 namespace vmesh {
 namespace {

@@ -7,9 +7,8 @@
 #include <Eigen/LU>
 
 #include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_energy.h"
 #include "vmesh/mesh/triangle_quality.h"
-
-#include "surface/remesh/triangle_energy.h"
 
 namespace vmesh {
 namespace {

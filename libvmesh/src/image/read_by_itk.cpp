@@ -6,11 +6,11 @@
 
 #include <sys/mman.h>
 
+#include "vmesh/core/child_process.h"
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 #include "vmesh/core/memory.h"
 
-#include "core/child_process.h"
 #include "dicom_files.h"
 #include "foreign_image.h"
 #include "image_header.h"

@@ -5,12 +5,12 @@
 
 #include <hdf5.h>
 
+#include "vmesh/core/child_process.h"
 #include "vmesh/core/disjoint_sets.h"
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 
 #include "bytes.h"
-#include "core/child_process.h"
 #include "formats.h"
 #include "poly_lines.h"
 

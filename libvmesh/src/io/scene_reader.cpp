@@ -9,10 +9,10 @@
 #include <minizip/unzip.h>
 #include <pugixml.hpp>
 
+#include "vmesh/core/child_process.h"
 #include "vmesh/core/input_file.h"
 
 #include "bytes.h"
-#include "core/child_process.h"
 #include "formats.h"
 #include "text.h"
 #include "triangulation.h"

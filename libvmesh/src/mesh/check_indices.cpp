@@ -1,4 +1,4 @@
-#include "mesh/check_indices.h"
+#include "vmesh/mesh/check_indices.h"
 
 #include <string>
 

@@ -1,8 +1,7 @@
 #include "vmesh/mesh/components.h"
 
 #include "vmesh/core/disjoint_sets.h"
-
-#include "mesh/check_indices.h"
+#include "vmesh/mesh/check_indices.h"
 
 namespace vmesh {
 namespace {

@@ -3,10 +3,9 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
+#include "vmesh/mesh/check_indices.h"
+#include "vmesh/mesh/sorted_by_vertex.h"
 #include "vmesh/mesh/topology.h"
-
-#include "mesh/check_indices.h"
-#include "mesh/sorted_by_vertex.h"
 
 namespace vmesh {
 

@@ -1,4 +1,4 @@
-#include "mesh/face_pair.h"
+#include "vmesh/mesh/face_pair.h"
 
 #include <algorithm>
 

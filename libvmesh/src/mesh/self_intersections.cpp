@@ -4,10 +4,10 @@
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/box_tree.h"
+#include "vmesh/mesh/face_pair.h"
 #include "vmesh/mesh/topology.h"
 
 #include "mesh/close_faces.h"
-#include "mesh/face_pair.h"
 
 namespace vmesh {
 namespace {

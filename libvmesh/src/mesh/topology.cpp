@@ -4,9 +4,8 @@
 #include <tuple>
 
 #include "vmesh/core/disjoint_sets.h"
-
-#include "mesh/check_indices.h"
-#include "mesh/sorted_by_vertex.h"
+#include "vmesh/mesh/check_indices.h"
+#include "vmesh/mesh/sorted_by_vertex.h"
 
 namespace vmesh {
 namespace {

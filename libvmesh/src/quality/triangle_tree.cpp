@@ -4,9 +4,10 @@
 #include <limits>
 #include <string>
 
-#include "vmesh/core/error.h"
+#include <embree3/rtcore.h>
 
-#include "mesh/embree_device.h"
+#include "vmesh/core/error.h"
+#include "vmesh/mesh/embree_device.h"
 
 namespace vmesh {
 namespace {
@@ -90,7 +91,7 @@ struct TriangleTree::Embree {
 
   void build(const TriMesh& mesh, const Vec3& center) {
     device = rtcNewDevice(kEmbreeConfig);
-    if (!device) fail_with_embree(nullptr);
+    if (!device) fail_with_embree(rtcGetDeviceError(nullptr));
     scene = rtcNewScene(device);
     // Builds three times as fast and searches hardly slower.
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_LOW);
@@ -101,7 +102,7 @@ struct TriangleTree::Embree {
                                                                    3 * sizeof(unsigned), mesh.faces.size()));
     if (!positions || !indices) {
       rtcReleaseGeometry(geometry);
-      fail_with_embree(device);
+      fail_with_embree(rtcGetDeviceError(device));
     }
     for (const Vec3& p : mesh.vertices) {
       const bool used = within_reach(p);  // a loose vertex may be anything
@@ -113,7 +114,7 @@ struct TriangleTree::Embree {
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(scene);
-    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) fail_with_embree(device);
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) fail_with_embree(error);
   }
 };
 

@@ -2,9 +2,10 @@
 
 #include <string>
 
-#include "vmesh/core/error.h"
+#include <embree3/rtcore.h>
 
-#include "mesh/embree_device.h"
+#include "vmesh/core/error.h"
+#include "vmesh/mesh/embree_device.h"
 
 namespace vmesh {
 
@@ -21,7 +22,7 @@ struct RayScene::Embree {
 
 RayScene::RayScene(const TriMesh& mesh) : embree_(std::make_unique<Embree>()) {
   embree_->device = rtcNewDevice(kEmbreeConfig);
-  if (!embree_->device) fail_with_embree(nullptr);
+  if (!embree_->device) fail_with_embree(rtcGetDeviceError(nullptr));
   const RTCDevice device = embree_->device;
   embree_->scene = rtcNewScene(device);
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
@@ -34,7 +35,7 @@ RayScene::RayScene(const TriMesh& mesh) : embree_(std::make_unique<Embree>()) {
                                                                  3 * sizeof(unsigned), mesh.faces.size()));
   if (!positions || !indices) {
     rtcReleaseGeometry(geometry);
-    fail_with_embree(device);
+    fail_with_embree(rtcGetDeviceError(device));
   }
   for (const Vec3& p : mesh.vertices) {
     for (int d = 0; d < 3; ++d) *positions++ = static_cast<float>(p[d] - embree_->origin[d]);
@@ -46,7 +47,7 @@ RayScene::RayScene(const TriMesh& mesh) : embree_(std::make_unique<Embree>()) {
   rtcAttachGeometry(embree_->scene, geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(embree_->scene);
-  if (rtcGetDeviceError(device) != RTC_ERROR_NONE) fail_with_embree(device);
+  if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) fail_with_embree(error);
 }
 
 RayScene::~RayScene() = default;

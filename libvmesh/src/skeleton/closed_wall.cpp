@@ -6,10 +6,10 @@
 
 #include "vmesh/core/error.h"
 #include "vmesh/core/memory.h"
+#include "vmesh/mesh/check_indices.h"
 #include "vmesh/mesh/topology.h"
 
 #include "flat_caps.h"
-#include "mesh/check_indices.h"
 #include "nested_shells.h"
 #include "openings.h"
 #include "wall_shells.h"

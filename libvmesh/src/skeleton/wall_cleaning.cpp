@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "vmesh/core/disjoint_sets.h"
+#include "vmesh/mesh/sorted_by_vertex.h"
 #include "vmesh/mesh/topology.h"
 
-#include "mesh/sorted_by_vertex.h"
 #include "wall_text.h"
 
 namespace vmesh::skeleton {

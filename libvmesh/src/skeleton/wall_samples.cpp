@@ -6,8 +6,7 @@
 #include <numeric>
 
 #include "vmesh/core/memory.h"
-
-#include "mesh/check_indices.h"
+#include "vmesh/mesh/check_indices.h"
 
 namespace vmesh::skeleton {
 namespace {

@@ -9,16 +9,16 @@
 
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/topology.h"
+#include "vmesh/surface/defects.h"
 #include "vmesh/surface/error_bound.h"
 
+#include "surface/finish/optimize.h"
 #include "surface/input/buried_branches.h"
 #include "surface/input/size_check.h"
 #include "surface/paper/paper_growth.h"
 #include "surface/pieces/grow_pieces.h"
-#include "surface/proof/defects.h"
 #include "surface/proof/error_limit.h"
 #include "surface/remesh/bound_surface.h"
-#include "surface/remesh/optimize.h"
 
 namespace vmesh {
 namespace {

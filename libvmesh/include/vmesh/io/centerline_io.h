@@ -14,7 +14,7 @@ namespace vmesh {
 
 enum class CenterlineFormat {
   swc,      ///< .swc; rows `id type x y z radius parent`
-  vtp,      ///< .vtp; lines with a radius per point; writing needs a build with VTK
+  vtp,      ///< .vtp; lines with a radius per point
   json,     ///< .json; schema "vmesh.centerline/1"; read also curves of 3D Slicer, .mrk.json
   csv,      ///< .csv; a pair of files, see csv_segments_path()
   vmv,      ///< .vmv; VessMorphoVis: vertices `id x y z radius`, strands `id vertex vertex ...`; read only
@@ -107,7 +107,7 @@ struct CenterlineMetadata {
 /// are recorded: JSON, SWC, VTP, CSV pair. Numbers round-trip exactly, the bytes depend on the arguments alone, and the
 /// file appears complete or not at all. Node order is kept. Flat ends are written to JSON and VTP; other formats cannot
 /// hold them (keeps_end_sections()). Throws InvalidInput for a flat end that is wrong or at no end; Unsupported for a
-/// centerline with loops in SWC (a tree format), see centerline_output_format(), and for VTP without VTK; WriteError
+/// centerline with loops in SWC (a tree format), see centerline_output_format(); WriteError
 /// when the file cannot be written.
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
                       const CenterlineMetadata& metadata = {}, const std::vector<EndSection>& end_sections = {});

@@ -37,7 +37,7 @@ struct SurfaceMetadata {
 ///   PLY  binary little-endian; positions and normals in double, so that they come back to the bit; every attribute;
 ///        the face attribute EquiangleSkewness is named "quality", which MeshLab shows; attributes named red, green and
 ///        blue are bytes, which all programs take for a colour
-///   VTP  through VTK; every attribute; "radius" is named MaximumInscribedSphereRadius, "distance" Distance,
+///   VTP  packed by zlib; every attribute; "radius" is named MaximumInscribedSphereRadius, "distance" Distance,
 ///        "group" GroupIds, face "quality" Quality; point array Normals; the first attributes are the active ones
 ///   OBJ, OFF  positions with the digits they need to come back to the bit; no attributes
 ///   STL  binary; float; no attributes
@@ -45,7 +45,7 @@ struct SurfaceMetadata {
 ///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; with
 ///        `skin`, bones
 /// Throws InvalidInput when an attribute or the skin has a wrong length or a face names a vertex that does not exist,
-/// Unsupported (extension, VTP without VTK, a skin in another format than GLB or of more than 65,535 joints),
+/// Unsupported (extension, a skin in another format than GLB or of more than 65,535 joints),
 /// WriteError.
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes = {},
                    const SurfaceMetadata& metadata = {}, const SurfaceSkin* skin = nullptr);

@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "vmesh/core/error.h"
+#include "vmesh/surface/defects.h"
 
 #include "surface/ends/disc.h"
 #include "surface/ends/opening_extension.h"
 #include "surface/ends/ring_moves.h"
-#include "surface/proof/defects.h"
 
 namespace vmesh {
 namespace {

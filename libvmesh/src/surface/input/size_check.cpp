@@ -6,8 +6,8 @@
 #include "vmesh/core/error.h"
 #include "vmesh/core/memory.h"
 
+#include "surface/finish/optimize.h"
 #include "surface/input/scale_check.h"
-#include "surface/remesh/optimize.h"
 
 namespace vmesh {
 namespace {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <span>
 
+#include "surface/finish/optimize.h"
 #include "surface/junction/junction_growth.h"
-#include "surface/remesh/optimize.h"
 #include "surface/remesh/untangle.h"
 #include "surface/tubes/stitch.h"
 

@@ -2,9 +2,9 @@
 
 #include <numbers>
 
+#include "surface/finish/optimize.h"
 #include "surface/junction/node_frame.h"
 #include "surface/junction/thinning.h"
-#include "surface/remesh/optimize.h"
 #include "surface/remesh/sweep_state.h"
 
 namespace vmesh {

@@ -5,12 +5,12 @@
 #include <optional>
 #include <sstream>
 
+#include "surface/finish/optimize.h"
 #include "surface/junction/docked_junction.h"
 #include "surface/pieces/assembly.h"
 #include "surface/pieces/piece_check.h"
 #include "surface/pieces/whole_tasks.h"
 #include "surface/remesh/mend.h"
-#include "surface/remesh/optimize.h"
 
 namespace vmesh {
 namespace {

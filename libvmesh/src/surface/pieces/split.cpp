@@ -13,10 +13,10 @@
 #include "vmesh/surface/part.h"
 #include "vmesh/volume/vessel_field.h"
 
+#include "surface/finish/optimize.h"
 #include "surface/input/buried_branches.h"
 #include "surface/input/size_check.h"
 #include "surface/pieces/division.h"
-#include "surface/remesh/optimize.h"
 
 namespace vmesh {
 namespace {

@@ -1,4 +1,4 @@
-#include "surface/proof/defects.h"
+#include "vmesh/surface/defects.h"
 
 #include <algorithm>
 #include <sstream>

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "vmesh/core/box_tree.h"
+#include "vmesh/mesh/face_pair.h"
 #include "vmesh/surface/generate.h"
 
-#include "mesh/face_pair.h"
 #include "surface/remesh/bound_surface.h"
 
 namespace vmesh {

@@ -8,9 +8,8 @@
 
 #include "vmesh/core/box_tree.h"
 #include "vmesh/core/types.h"
+#include "vmesh/mesh/face_pair.h"
 #include "vmesh/mesh/tri_mesh.h"
-
-#include "mesh/face_pair.h"
 
 namespace vmesh {
 

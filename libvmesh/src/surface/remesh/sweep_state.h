@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmesh/mesh/triangle_energy.h"
+
 #include "surface/remesh/bound_surface.h"
-#include "surface/remesh/triangle_energy.h"
 
 namespace vmesh {
 

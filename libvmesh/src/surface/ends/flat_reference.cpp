@@ -1,4 +1,4 @@
-#include "vmesh/fit/flat_reference.h"
+#include "vmesh/surface/flat_reference.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,11 @@
 #include <numbers>
 #include <optional>
 
+#include "vmesh/surface/defects.h"
+
 #include "surface/ends/disc.h"
 #include "surface/ends/opening_extension.h"
 #include "surface/ends/ring_moves.h"
-#include "surface/proof/defects.h"
 
 namespace vmesh {
 namespace {

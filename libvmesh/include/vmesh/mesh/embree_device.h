@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include <embree3/rtcore.h>
-
 #include "vmesh/core/error.h"
 
 namespace vmesh {
@@ -16,8 +14,9 @@ constexpr const char* kEmbreeConfig = "threads=1,set_affinity=0,isa=sse4.2";
 constexpr const char* kEmbreeConfig = "threads=1,set_affinity=0";
 #endif
 
-[[noreturn]] inline void fail_with_embree(RTCDevice device) {
-  throw Error("Embree failed (error " + std::to_string(static_cast<int>(rtcGetDeviceError(device))) + ")");
+/// `error`: of rtcGetDeviceError().
+[[noreturn]] inline void fail_with_embree(int error) {
+  throw Error("Embree failed (error " + std::to_string(error) + ")");
 }
 
 }  // namespace vmesh

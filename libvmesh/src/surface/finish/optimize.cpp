@@ -1,4 +1,4 @@
-#include "surface/remesh/optimize.h"
+#include "surface/finish/optimize.h"
 
 #include "surface/proof/error_limit.h"
 #include "surface/remesh/balance.h"
