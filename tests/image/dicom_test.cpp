@@ -71,7 +71,6 @@ TEST_F(Dicom, SlicesStoredFromTheTopLieUpright) {
   expect_same(read_image(folder()).image, as_nifti(values));
 }
 
-#if VMESH_WITH_VTK
 TEST_F(Dicom, ItsContourIsThatOfTheSameVolumeAsNifti) {
   const std::vector<double> values = scan_of_vessels(image_);
   write_series(values);
@@ -80,7 +79,6 @@ TEST_F(Dicom, ItsContourIsThatOfTheSameVolumeAsNifti) {
   for (std::size_t v = 0; v < dicom.vertices.size(); ++v)
     EXPECT_LT((dicom.vertices[v] - nifti.vertices[v]).norm(), 1e-4);
 }
-#endif
 
 TEST_F(Dicom, ValuesAreRescaled) {
   const SampleImage image;

@@ -1,19 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "vmesh/core/error.h"
-#include "vmesh/image/contour.h"
 #include "vmesh/image/image_io.h"
 
 #include "../io/io_support.h"
 
 namespace vmesh::testing {
 namespace {
-
-#if !VMESH_WITH_VTK
-TEST(WithoutVtk, ContouringSaysWhatIsMissing) {
-  expect_contains(message_of<Unsupported>([] { contour(VoxelImage(), 0.5); }), "VMESH_WITH_VTK");
-}
-#endif
 
 #if !VMESH_WITH_ITK
 TEST(WithoutItk, ReadingSaysWhatIsMissing) {

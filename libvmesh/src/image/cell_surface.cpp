@@ -7,6 +7,7 @@
 
 #include "vmesh/core/disjoint_sets.h"
 #include "vmesh/core/types.h"
+#include "vmesh/mesh/triangle_quality.h"
 
 namespace vmesh {
 namespace {
@@ -75,17 +76,22 @@ bool connects_inside(CellPattern pattern, FaceChoice choice, int face) {
   return at != faces.end() && (choice >> (at - faces.begin()) & 1) != 0;
 }
 
-/// The asymptotic decider. Products of floats are exact in double, so the two cells of a face decide alike.
-FaceChoice choice_by_values(CellPattern pattern, const CellValues& values) {
+struct FaceDecision {
   FaceChoice choice = 0;
-  const std::vector<int> faces = ambiguous_faces(pattern);
+  bool tie = false;  ///< on some face
+};
+
+/// The asymptotic decider. Products of floats are exact in double, so the two cells of a face decide alike.
+FaceDecision decided_by_values(CellPattern pattern, const std::vector<int>& faces, const CellValues& values) {
+  FaceDecision decision;
   for (std::size_t n = 0; n < faces.size(); ++n) {
     const std::array<int, 4> face = corners_of_face(faces[n]);
     double inside = values[face[0]] * values[face[2]], outside = values[face[1]] * values[face[3]];
     if (!is_inside(pattern, face[0])) std::swap(inside, outside);
-    if (inside > outside) choice |= 1u << n;
+    if (inside > outside) decision.choice |= 1u << n;
+    if (inside == outside) decision.tie = true;
   }
-  return choice;
+  return decision;
 }
 
 /// For every edge with a vertex, the next one on its loop: the surface leaves a face at an edge that goes out of the
@@ -121,29 +127,30 @@ std::vector<Loop> loops_of(CellPattern pattern, FaceChoice choice) {
   return loops;
 }
 
-/// Sum of the cotangents of a triangle's angles: the better the shape, the less.
-double cotangents(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double doubled_area = (b - a).cross(c - a).norm();
-  if (doubled_area < 1e-9) return kNever;
-  return ((b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm()) / (2 * doubled_area);
+/// Equiangle skewness, without bound where there is no area.
+double badness(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 side = b - a, other = c - a;
+  if (side.cross(other).norm() < 1e-9 * side.norm() * other.norm()) return kNever;
+  return equiangle_skewness(a, b, c);
 }
 
-/// The best triangles for a loop without inner vertices, judged with vertices in the middle of edges. Chords within a
-/// face are left to what the face itself has. Empty if there are none.
-std::vector<std::array<std::uint8_t, 3>> triangulation(const Loop& loop) {
+/// The triangles of the least sum of skewness for a loop without inner vertices, judged with vertices in the middle of
+/// edges. Chords within a face are left to what the face itself has. Empty if there are none.
+std::vector<std::array<std::uint8_t, 3>> triangulation(const Loop& loop, const Eigen::Matrix3d& steps) {
   const int count = static_cast<int>(loop.size());
   std::array<std::array<double, kCellEdges>, kCellEdges> cost{};
   std::array<std::array<int, kCellEdges>, kCellEdges> third{};
   const auto allowed = [&](int i, int j) {
     return j == i + 1 || (i == 0 && j == count - 1) || !in_one_face(loop[i], loop[j]);
   };
+  std::vector<Vec3> middles;
+  for (const int edge : loop) middles.emplace_back(steps * middle_of_edge(edge));
   for (int span = 2; span < count; ++span) {
     for (int i = 0; i + span < count; ++i) {
       const int j = i + span;
       cost[i][j] = kNever;
       for (int k = i + 1; allowed(i, j) && k < j; ++k) {
-        const double with = cost[i][k] + cost[k][j] +
-                            cotangents(middle_of_edge(loop[i]), middle_of_edge(loop[k]), middle_of_edge(loop[j]));
+        const double with = cost[i][k] + cost[k][j] + badness(middles[i], middles[k], middles[j]);
         if (with >= cost[i][j] - 1e-9) continue;
         cost[i][j] = with;
         third[i][j] = k;
@@ -182,8 +189,8 @@ void add_mean(const Loop& loop, double share, std::array<double, kCellEdges>& we
 }
 
 /// A disk within the loop: triangles between its vertices, or around their mean.
-void add_disk(CellSurface& surface, const Loop& loop) {
-  const auto triangles = triangulation(loop);
+void add_disk(CellSurface& surface, const Loop& loop, const Eigen::Matrix3d& steps) {
+  const auto triangles = triangulation(loop, steps);
   surface.triangles.insert(surface.triangles.end(), triangles.begin(), triangles.end());
   if (!triangles.empty()) return;
   std::array<double, kCellEdges> mean{};
@@ -192,71 +199,83 @@ void add_disk(CellSurface& surface, const Loop& loop) {
   for (std::size_t n = 0; n < loop.size(); ++n) add_triangle(surface, loop[n], loop[(n + 1) % loop.size()], middle);
 }
 
-/// The corners in the order in which a tube between loops passes them: position in `first`, in `second`.
-using Stitches = std::vector<std::array<int, 2>>;
+/// The larger loop of a tube, the smaller one, and for every position in the larger one that in the smaller one which
+/// lies across.
+struct TubeEnds {
+  Loop larger, smaller;
+  std::vector<int> across;
+};
 
-/// The shortest way around both loops, the second backwards, that begins at (0, start); with its length.
-std::pair<double, Stitches> stitches_from(const Loop& first, const Loop& second, int start) {
-  const int rows = static_cast<int>(first.size()), columns = static_cast<int>(second.size());
-  const auto second_at = [&](int j) { return (start + columns - j % columns) % columns; };
-  std::vector<std::vector<double>> length(rows + 1, std::vector<double>(columns + 1, 0.0));
-  for (int i = 0; i <= rows; ++i)
-    for (int j = 0; j <= columns; ++j) {
-      if (i + j == 0) continue;
-      const double before = std::min(i > 0 ? length[i - 1][j] : kNever, j > 0 ? length[i][j - 1] : kNever);
-      length[i][j] = before + (middle_of_edge(first[i % rows]) - middle_of_edge(second[second_at(j)])).squaredNorm();
+/// Goes around both loops, the smaller one backwards, at an even pace.
+TubeEnds opposed(const Loop& larger, const Loop& smaller, int start) {
+  const int rows = static_cast<int>(larger.size()), columns = static_cast<int>(smaller.size());
+  TubeEnds ends{larger, smaller, {}};
+  for (int i = 0; i < rows; ++i) ends.across.push_back((start + columns - i * columns / rows) % columns);
+  return ends;
+}
+
+double squared_length(const TubeEnds& ends) {
+  double sum = 0;
+  for (std::size_t i = 0; i < ends.larger.size(); ++i)
+    sum += (middle_of_edge(ends.larger[i]) - middle_of_edge(ends.smaller[ends.across[i]])).squaredNorm();
+  return sum;
+}
+
+/// The shortest tube, judged with vertices in the middle of edges.
+TubeEnds shortest_tube(Loop larger, Loop smaller) {
+  if (larger.size() < smaller.size()) std::swap(larger, smaller);
+  TubeEnds best = opposed(larger, smaller, 0);
+  for (std::size_t turn = 0; turn < larger.size(); ++turn) {
+    for (int start = 0; start < static_cast<int>(smaller.size()); ++start) {
+      TubeEnds tried = opposed(larger, smaller, start);
+      if (squared_length(tried) < squared_length(best) + 1e-9) best = std::move(tried);
     }
-  Stitches stitches;
-  for (int i = rows, j = columns; i + j > 0;) {
-    stitches.push_back({i % rows, second_at(j)});
-    if (j == 0 || (i > 0 && length[i - 1][j] <= length[i][j - 1]))
-      --i;
-    else
-      --j;
+    std::rotate(larger.begin(), larger.begin() + 1, larger.end());
   }
-  stitches.push_back({0, start});
-  std::reverse(stitches.begin(), stitches.end());
-  return {length[rows][columns], stitches};
+  return best;
 }
 
-Stitches shortest_stitches(const Loop& first, const Loop& second) {
-  std::pair<double, Stitches> best{kNever, {}};
-  for (int start = 0; start < static_cast<int>(second.size()); ++start) {
-    auto tried = stitches_from(first, second, start);
-    if (tried.first < best.first - 1e-9) best = std::move(tried);
+/// Triangles between a closed line with the positions of the tube's larger loop and its smaller loop.
+void add_band(CellSurface& surface, const std::vector<int>& line, const TubeEnds& ends) {
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const std::size_t next = (i + 1) % line.size();
+    const int here = ends.smaller[ends.across[i]], there = ends.smaller[ends.across[next]];
+    add_triangle(surface, line[i], line[next], here);
+    if (here != there) add_triangle(surface, there, here, line[next]);
   }
-  return best.second;
 }
 
-/// A tube between two loops. Its neck has an inner vertex for every one of the larger loop, so that no edge of it lies
-/// in a face of the cell.
-void add_tube(CellSurface& surface, Loop first, Loop second) {
-  if (first.size() < second.size()) std::swap(first, second);
-  const Stitches stitches = shortest_stitches(first, second);
-  const int rows = static_cast<int>(first.size());
-  std::vector<int> neck(first.size(), -1);
-  for (const auto& [i, j] : stitches) {
-    if (neck[i] >= 0) continue;
+/// Whether some edge of the band between the loops themselves would lie in a face.
+bool band_touches_face(const TubeEnds& ends) {
+  const std::size_t count = ends.larger.size();
+  for (std::size_t i = 0; i < count; ++i)
+    for (const std::size_t at : {i, (i + 1) % count})
+      if (in_one_face(ends.larger[at], ends.smaller[ends.across[i]])) return true;
+  return false;
+}
+
+/// A tube between two loops. Where some edge of it would lie in a face, it gets a neck of inner vertices.
+void add_tube(CellSurface& surface, const TubeEnds& ends) {
+  const auto& [larger, smaller, across] = ends;
+  if (!band_touches_face(ends)) {
+    add_band(surface, larger, ends);
+    return;
+  }
+  std::vector<int> neck;
+  for (std::size_t i = 0; i < larger.size(); ++i) {
     std::array<double, kCellEdges> weights{};
-    weights[first[i]] += 0.25;
-    weights[second[j]] += 0.25;
-    add_mean(first, 0.25, weights);
-    add_mean(second, 0.25, weights);
-    neck[i] = add_inner(surface, weights);
+    weights[larger[i]] += 0.15;
+    weights[smaller[across[i]]] += 0.15;
+    add_mean(larger, 0.35, weights);
+    add_mean(smaller, 0.35, weights);
+    neck.push_back(add_inner(surface, weights));
   }
-  for (int i = 0; i < rows; ++i) {
-    const int after = (i + 1) % rows;
-    add_triangle(surface, first[i], first[after], neck[after]);
-    add_triangle(surface, first[i], neck[after], neck[i]);
+  for (std::size_t i = 0; i < larger.size(); ++i) {
+    const std::size_t next = (i + 1) % larger.size();
+    add_triangle(surface, larger[i], larger[next], neck[next]);
+    add_triangle(surface, larger[i], neck[next], neck[i]);
   }
-  for (std::size_t n = 0; n + 1 < stitches.size(); ++n) {
-    const auto [i, j] = stitches[n];
-    const auto [next_i, next_j] = stitches[n + 1];
-    if (next_i != i)
-      add_triangle(surface, neck[i], neck[next_i], second[j]);
-    else
-      add_triangle(surface, second[next_j], second[j], neck[i]);
-  }
+  add_band(surface, neck, ends);
 }
 
 /// The corners of a cell, in sets of which each is connected.
@@ -340,34 +359,39 @@ std::array<std::size_t, 2> loops_of_tube(const std::vector<Loop>& loops, CellPat
   return {0, 0};
 }
 
-CellSurface disks(const std::vector<Loop>& loops) {
+CellSurface disks(const std::vector<Loop>& loops, const Eigen::Matrix3d& steps) {
   CellSurface surface;
-  for (const Loop& loop : loops) add_disk(surface, loop);
+  for (const Loop& loop : loops) add_disk(surface, loop, steps);
   return surface;
 }
 
 }  // namespace
 
-CellSurfaces::CellSurfaces() {
-  for (unsigned pattern = 0; pattern < 256; ++pattern) {
-    const auto as_pattern = static_cast<CellPattern>(pattern);
-    const FaceChoice choices = 1u << ambiguous_faces(as_pattern).size();
-    for (FaceChoice choice = 0; choice < choices; ++choice)
-      surfaces_[pattern].push_back(disks(loops_of(as_pattern, choice)));
-    if (choices == 1 && loops_of(as_pattern, 0).size() < 2) only_[pattern] = &surfaces_[pattern][0];
+CellSurfaces::CellSurfaces(const Eigen::Matrix3d& steps) : steps_(steps / steps.colwise().norm().maxCoeff()) {
+  for (unsigned number = 0; number < 256; ++number) {
+    const auto pattern = static_cast<CellPattern>(number);
+    Possibilities& possible = possible_[number];
+    possible.ambiguous_faces = ambiguous_faces(pattern);
+    const FaceChoice choices = 1u << possible.ambiguous_faces.size();
+    for (FaceChoice choice = 0; choice < choices; ++choice) {
+      possible.loops.push_back(loops_of(pattern, choice));
+      possible.disks.push_back(disks(possible.loops.back(), steps_));
+    }
+    if (choices == 1 && possible.loops[0].size() < 2) only_[number] = &possible.disks[0];
   }
 }
 
 const CellSurface& CellSurfaces::with_values(CellPattern pattern, const CellValues& values, CellSurface& room) const {
-  const FaceChoice choice = choice_by_values(pattern, values);
-  const std::vector<Loop> loops = loops_of(pattern, choice);
-  if (loops.size() < 2) return surfaces_[pattern][choice];
+  const Possibilities& possible = possible_[pattern];
+  const auto [choice, tie] = decided_by_values(pattern, possible.ambiguous_faces, values);
+  const std::vector<Loop>& loops = possible.loops[choice];
+  if (tie || loops.size() < 2) return possible.disks[choice];
   const auto [first, second] = loops_of_tube(loops, pattern, connected_by_faces(pattern, choice), values);
-  if (first == second) return surfaces_[pattern][choice];
+  if (first == second) return possible.disks[choice];
   room = {};
   for (std::size_t n = 0; n < loops.size(); ++n)
-    if (n != first && n != second) add_disk(room, loops[n]);
-  add_tube(room, loops[first], loops[second]);
+    if (n != first && n != second) add_disk(room, loops[n], steps_);
+  add_tube(room, shortest_tube(loops[first], loops[second]));
   return room;
 }
 

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "vmesh/core/types.h"
+
 namespace vmesh {
 
 /// The surface where the trilinear interpolant of the 8 values at a cell's corners is zero, as triangles.
@@ -28,14 +30,20 @@ struct CellSurface {
 /// vertices of a face lies anywhere else, so that what cells make together is closed and manifold.
 ///
 /// What the interpolant does on a face with opposite corners inside is decided by the asymptotic decider (G. M.
-/// Nielson, B. Hamann, *The asymptotic decider*, Visualization 1991), ties towards outside; what it does within the
-/// cell by following it over all slices of the cell, which answers what the tests by E. V. Chernyaev (*Marching Cubes
-/// 33*, CERN CN/95-17, 1995) and T. Lewiner et al. (*Efficient implementation of Marching Cubes' cases with topological
-/// guarantees*, Journal of Graphics Tools 8, 2003) ask, without tables of cases. Between parts of the surface there are
-/// tubes where the interpolant has them.
+/// Nielson, B. Hamann, *The asymptotic decider*, Visualization 1991); what it does within the cell by following it over
+/// all slices of the cell, which answers what the tests by E. V. Chernyaev (*Marching Cubes 33*, CERN CN/95-17, 1995)
+/// and T. Lewiner et al. (*Efficient implementation of Marching Cubes' cases with topological guarantees*, Journal of
+/// Graphics Tools 8, 2003) ask, without tables of cases. Where parts of the inside or the outside are connected through
+/// the cell only, there is a tube between parts of the surface. Inner vertices keep edges of triangles out of faces.
+///
+/// Ties, as masks have them, are decided towards outside, and a cell with a tie on a face has no tube. So the parts of
+/// a mask's inside are those of voxels with common faces, and those of its outside of voxels with common corners.
 class CellSurfaces {
  public:
-  CellSurfaces();
+  /// Column a of `steps`: the cell's extent along axis a (mm). It decides between triangles for the same surface.
+  explicit CellSurfaces(const Eigen::Matrix3d& steps);
+  CellSurfaces(const CellSurfaces&) = delete;
+  CellSurfaces& operator=(const CellSurfaces&) = delete;
 
   /// The surface of a cell whose pattern leaves one possibility, nullptr otherwise.
   const CellSurface* without_values(CellPattern pattern) const { return only_[pattern]; }
@@ -45,7 +53,15 @@ class CellSurfaces {
   const CellSurface& with_values(CellPattern pattern, const CellValues& values, CellSurface& room) const;
 
  private:
-  std::array<std::vector<CellSurface>, 256> surfaces_;  // by the ambiguous faces on which the inside is connected
+  /// Of one pattern. A choice has bit n set if the inside is connected on the n-th ambiguous face.
+  struct Possibilities {
+    std::vector<int> ambiguous_faces;
+    std::vector<std::vector<std::vector<int>>> loops;  ///< by the choice: edges around every part of the surface
+    std::vector<CellSurface> disks;                    ///< by the choice: the surface without tubes
+  };
+
+  Eigen::Matrix3d steps_;
+  std::array<Possibilities, 256> possible_;
   std::array<const CellSurface*, 256> only_{};
 };
 

@@ -119,7 +119,12 @@ class LayerMaker {
  public:
   LayerMaker(const LevelSamples& samples, const CellSurfaces& surfaces, const VertexNumbers& numbers,
              const std::vector<Vec3>& vertices, std::size_t k)
-      : samples_(samples), surfaces_(surfaces), numbers_(numbers), vertices_(vertices), k_(k) {}
+      : samples_(samples),
+        surfaces_(surfaces),
+        numbers_(numbers),
+        vertices_(vertices),
+        mirrored_(samples.steps().determinant() < 0),
+        k_(k) {}
 
   Layer made() && {
     for (std::size_t j = 0; j + 1 < samples_.size()[1]; ++j) add_row(j);
@@ -192,7 +197,7 @@ class LayerMaker {
   }
 
   void add_face(Index a, Index b, Index c) {
-    if (samples_.mirrored()) std::swap(b, c);
+    if (mirrored_) std::swap(b, c);
     layer_.faces.push_back({a, b, c});
   }
 
@@ -213,6 +218,7 @@ class LayerMaker {
   const CellSurfaces& surfaces_;
   const VertexNumbers& numbers_;
   const std::vector<Vec3>& vertices_;
+  bool mirrored_;
   std::size_t k_;
   Layer layer_;
   CellSurface room_;
@@ -227,7 +233,7 @@ class LayerMaker {
 
 std::vector<Layer> make_layers(const LevelSamples& samples, const VertexNumbers& numbers,
                                const std::vector<Vec3>& vertices) {
-  static const CellSurfaces surfaces;
+  const CellSurfaces surfaces(samples.steps());
   std::vector<Layer> layers(samples.size()[2] - 1);
   tbb::parallel_for(std::size_t{0}, layers.size(),
                     [&](std::size_t k) { layers[k] = LayerMaker(samples, surfaces, numbers, vertices, k).made(); });

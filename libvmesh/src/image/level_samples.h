@@ -29,7 +29,7 @@ class LevelSamples {
 
   /// Position in space (LPS, mm) of sample coordinates, which need not be integers.
   Vec3 position(const Vec3& sample) const { return origin_ + image_.steps * sample; }
-  bool mirrored() const { return image_.steps.determinant() < 0; }
+  const Eigen::Matrix3d& steps() const { return image_.steps; }
 
  private:
   bool is_border(std::size_t i, std::size_t j, std::size_t k) const {
