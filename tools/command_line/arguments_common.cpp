@@ -25,15 +25,13 @@ void add_output_after_several(CLI::App& verb, std::filesystem::path& output, con
 }
 
 void add_writing(CLI::App& verb, WritingArguments& writing) {
-  verb.add_option_function<std::string>(
-          "--output-unit", [&writing](const std::string& text) { writing.unit = *parse_length_unit(text); },
-          "unit of the output")
-      ->check(CLI::IsMember({"um", "mm", "cm", "m"}))
+  add_choice(
+      verb, "--output-unit", {"um", "mm", "cm", "m"},
+      [&writing](const std::string& text) { writing.unit = *parse_length_unit(text); }, "unit of the output")
       ->default_str("mm");
-  verb.add_option_function<std::string>(
-          "--output-space", [&writing](const std::string& text) { writing.space = *parse_space(text); },
-          "patient frame of the output")
-      ->check(CLI::IsMember({"LPS", "RAS"}))
+  add_choice(
+      verb, "--output-space", {"LPS", "RAS"},
+      [&writing](const std::string& text) { writing.space = *parse_space(text); }, "patient frame of the output")
       ->default_str("LPS");
   verb.add_option("--attributes", writing.attributes,
                   "of a surface: all; vertex: none of faces, which some PLY readers reject; or none")
@@ -44,14 +42,13 @@ void add_writing(CLI::App& verb, WritingArguments& writing) {
 
 void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
   input.options_of = of;
-  verb.add_option_function<std::string>(
-          "--" + of + "unit", [&input](const std::string& text) { input.unit = parse_length_unit(text); },
-          "unit of the numbers in the file; overrides what the file says")
-      ->check(CLI::IsMember({"um", "mm", "cm", "m"}));
-  verb.add_option_function<std::string>(
-          "--" + of + "space", [&input](const std::string& text) { input.space = parse_space(text); },
-          "patient frame of the file; overrides what the file says")
-      ->check(CLI::IsMember({"LPS", "RAS"}));
+  add_choice(
+      verb, "--" + of + "unit", {"um", "mm", "cm", "m"},
+      [&input](const std::string& text) { input.unit = parse_length_unit(text); },
+      "unit of the numbers in the file; overrides what the file says");
+  add_choice(
+      verb, "--" + of + "space", {"LPS", "RAS"}, [&input](const std::string& text) { input.space = parse_space(text); },
+      "patient frame of the file; overrides what the file says");
 }
 
 void add_input(CLI::App& verb, InputArguments& input, const std::string& help) {
@@ -63,17 +60,31 @@ void group(CLI::App& verb, const std::string& heading, std::initializer_list<con
   for (const char* option : options) verb.get_option(option)->group(heading);
 }
 
-CLI::Option& add_budget(CLI::App& verb, std::optional<Budget>& budget, const std::string& help) {
+CLI::Option* add_choice(CLI::App& verb, const std::string& option, const std::vector<std::string>& choices,
+                        const TakeText& take, const std::string& help) {
+  return verb.add_option_function<std::string>(option, take, help)->check(CLI::IsMember(choices));
+}
+
+CLI::Option& add_read_option(CLI::App& verb, const std::string& option, const TakeText& take, const std::string& help) {
   return *verb.add_option_function<std::string>(
-      "--budget",
-      [&budget](const std::string& text) {
+      option,
+      [option, take](const std::string& text) {
         try {
-          budget = parse_budget(text);
+          take(text);
         } catch (const InvalidInput& error) {
-          throw CLI::ValidationError("--budget", error.what());
+          throw CLI::ValidationError(option, error.what());
         }
       },
       help);
+}
+
+void add_threads(CLI::App& verb, int& threads) {
+  add_number(verb, "--threads", threads, 0, 4096, "to work on; 0: all; the result does not depend on it");
+}
+
+CLI::Option& add_budget(CLI::App& verb, std::optional<Budget>& budget, const std::string& help) {
+  return add_read_option(
+      verb, "--budget", [&budget](const std::string& text) { budget = parse_budget(text); }, help);
 }
 
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {
@@ -127,20 +138,18 @@ void add_centerline_input(CLI::App& verb, InputArguments& input, const std::stri
   group(verb, "How to read the input", {"--unit", "--space", "--radius-array", "--radius", "--voxel-size"});
 }
 
-void add_report(CLI::App& verb, std::filesystem::path& report, std::string& format) {
-  verb.add_option("--report", report, "also write the report to this file (.txt, .md, .csv, .json)");
-  verb.add_option("--format", format, "of the report on stdout")
+void add_report(CLI::App& verb, ReportArguments& report) {
+  verb.add_option("--report", report.file, "also write the report to this file (.txt, .md, .csv, .json)");
+  verb.add_option("--format", report.format, "of the report on stdout")
       ->check(CLI::IsMember({"text", "markdown", "csv"}))
       ->capture_default_str();
 }
 
 void add_measuring(CLI::App& verb, double& tolerance_mm, std::size_t& samples) {
-  verb.add_option("--tolerance", tolerance_mm, "width of the interval that contains a Hausdorff distance, mm")
-      ->check(in_range(1e-12, 1e6))
-      ->capture_default_str();
-  verb.add_option("--samples", samples, "points on each surface for mean, RMS and percentiles")
-      ->check(in_range<std::size_t>(1, 10'000'000))
-      ->capture_default_str();
+  add_number(verb, "--tolerance", tolerance_mm, 1e-12, 1e6,
+             "width of the interval that contains a Hausdorff distance, mm");
+  add_number(verb, "--samples", samples, std::size_t{1}, std::size_t{10'000'000},
+             "points on each surface for mean, RMS and percentiles");
 }
 
 }  // namespace vmesh::tool

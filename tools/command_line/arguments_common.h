@@ -1,8 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
+
+#include "vmesh/tuning/budget.h"
 
 #include "command_line/arguments.h"
 #include "command_line/usage_error.h"
@@ -22,7 +25,14 @@ CLI::Validator in_range(Number low, Number high) {
   return {check, name.str()};
 }
 
-void add_common(CLI::App& verb, CommonArguments& common, bool with_json = true);
+/// Adds an option for a number within limits; the help shows its default.
+template <class Number, class Limit>
+CLI::Option* add_number(CLI::App& verb, const std::string& option, Number& number, Limit low, Limit high,
+                        const std::string& help) {
+  return verb.add_option(option, number, help)->check(in_range(low, high))->capture_default_str();
+}
+
+void add_common(CLI::App& verb, CommonArguments& common, bool with_json);
 
 /// Adds --html, for verbs that can make a page.
 void add_html(CLI::App& verb, CommonArguments& common);
@@ -65,41 +75,24 @@ void group(CLI::App& verb, const std::string& heading, std::initializer_list<con
 /// `count` finite numbers, separated by commas. Throws CLI::ValidationError for `option`.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
 
-/// Adds options for a report's file, and its format on stdout.
-void add_report(CLI::App& verb, std::filesystem::path& report, std::string& format);
+void add_report(CLI::App& verb, ReportArguments& report);
+
+using TakeText = std::function<void(const std::string&)>;
+
+/// Adds an option that takes one of these words.
+CLI::Option* add_choice(CLI::App& verb, const std::string& option, const std::vector<std::string>& choices,
+                        const TakeText& take, const std::string& help);
+
+/// Adds an option whose text `take` reads; an InvalidInput of it names the option, and is an error of usage.
+CLI::Option& add_read_option(CLI::App& verb, const std::string& option, const TakeText& take, const std::string& help);
+
+/// Adds --threads; the result must not depend on it.
+void add_threads(CLI::App& verb, int& threads);
 
 /// Adds --budget, see parse_budget().
 CLI::Option& add_budget(CLI::App& verb, std::optional<Budget>& budget, const std::string& help);
 
 /// Adds options for measuring a surface against another one.
 void add_measuring(CLI::App& verb, double& tolerance_mm, std::size_t& samples);
-
-/// Adds the verbs about surfaces to compare with.
-void add_reference(CLI::App& app, ReferenceArguments& arguments);
-void add_cones(CLI::App& app, ConesArguments& arguments);
-void add_centerline(CLI::App& app, CenterlineArguments& arguments);
-void add_table2(CLI::App& app, Table2Arguments& arguments);
-void add_tradeoff(CLI::App& app, TradeoffArguments& arguments);
-void add_fit(CLI::App& app, FitArguments& arguments);
-
-/// Adds the options of growth that generate and split have in common.
-void add_growth(CLI::App& verb, GenerateArguments& arguments);
-
-/// Adds the verbs for surfaces in parts.
-void add_split(CLI::App& app, SplitArguments& arguments);
-void add_join(CLI::App& app, JoinArguments& arguments);
-
-/// Adds options for making a surface from an image.
-void add_image_options(CLI::App& verb, ReferenceOptions& options);
-/// Adds options for extracting a centerline.
-void add_extraction(CLI::App& verb, ExtractOptions& options);
-/// Adds --require for what extraction has to cover.
-void add_required_coverage(CLI::App& verb, RequiredCoverage& required);
-/// Adds options for the target and the parameters of a fit.
-void add_fitting(CLI::App& verb, FittingArguments& arguments);
-
-/// Adds the verbs about motion.
-void add_deform(CLI::App& app, DeformArguments& arguments);
-void add_table1(CLI::App& app, Table1Arguments& arguments);
 
 }  // namespace vmesh::tool

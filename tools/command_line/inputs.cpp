@@ -300,6 +300,15 @@ std::vector<std::filesystem::path> files_of(const InputArguments& input) {
   return files;
 }
 
+std::vector<std::filesystem::path> files_of(std::initializer_list<const InputArguments*> inputs) {
+  std::vector<std::filesystem::path> files;
+  for (const InputArguments* input : inputs) {
+    if (input->path.empty()) continue;
+    for (std::filesystem::path& file : files_of(*input)) files.push_back(std::move(file));
+  }
+  return files;
+}
+
 std::string file_name_of(const InputArguments& input) {
   std::string names = input.path.filename().string();
   for (const std::filesystem::path& path : input.more) names += ", " + path.filename().string();

@@ -81,6 +81,8 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& input);
 /// The same for an input, which may be a folder of DICOM files.
 std::vector<std::filesystem::path> files_of_input(const std::filesystem::path& input);
 std::vector<std::filesystem::path> files_of(const InputArguments& input);
+/// The same for all of several inputs that are given.
+std::vector<std::filesystem::path> files_of(std::initializer_list<const InputArguments*> inputs);
 
 /// For metadata: the name of the file, or of all files; its SHA-256, or the SHA-256 of their concatenated SHA-256s.
 std::string file_name_of(const InputArguments& input);

@@ -11,7 +11,6 @@
 #include "vmesh/render/render.h"
 
 #include "command_line/usage_error.h"
-#include "page/page.h"
 
 namespace vmesh::tool {
 namespace {
@@ -65,7 +64,9 @@ void check_format(const PlannedOutput& output) {
   if (output.kind == Kind::page) {
     if (extension != ".html" && extension != ".htm")
       throw Unsupported(output.path.string() + ": pages are written as .html or .htm");
-    check_can_make_pages();
+    if (!VMESH_TOOL_WITH_HTML)
+      throw Unsupported(
+          "--html: this vmesh was built without pages; install libjs-three and build it with -DVMESH_WITH_HTML=ON");
   }
   if (output.kind == Kind::picture && extension != ".png")
     throw Unsupported(output.path.string() + ": pictures are written as .png only");
@@ -109,16 +110,16 @@ void write_text(const fs::path& path, const std::string& text) {
   file.commit();
 }
 
-namespace {
-
-const MeshAttribute* find(const std::vector<MeshAttribute>& attributes, const std::string& name) {
+const MeshAttribute* find_attribute(const std::vector<MeshAttribute>& attributes, const std::string& name) {
   const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
   return found == attributes.end() ? nullptr : &*found;
 }
 
+namespace {
+
 void add_colors(std::vector<MeshAttribute>& attributes) {
-  const MeshAttribute* branch = find(attributes, "branch");
-  if (!branch || find(attributes, "red")) return;
+  const MeshAttribute* branch = find_attribute(attributes, "branch");
+  if (!branch || find_attribute(attributes, "red")) return;
   std::vector<MeshAttribute> color = {{"red", {}, true}, {"green", {}, true}, {"blue", {}, true}};
   for (const double label : branch->values) {
     const Color of_label = label_color(label);
@@ -129,7 +130,7 @@ void add_colors(std::vector<MeshAttribute>& attributes) {
 
 void add_quality(std::vector<MeshAttribute>& attributes) {
   for (const char* name : {"displacement", "volume_distance", "distance", "radius"}) {
-    const MeshAttribute* source = find(attributes, name);
+    const MeshAttribute* source = find_attribute(attributes, name);
     if (!source) continue;
     MeshAttribute quality{"quality", source->values};
     std::erase_if(attributes, [](const MeshAttribute& a) { return a.name == "quality"; });

@@ -39,6 +39,9 @@ void write_surface(const std::filesystem::path& path, const TriMesh& mesh, MeshA
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
                       const CenterlineMetadata& metadata, const std::vector<EndSection>& sections, Console& console);
 
+/// Null if there is none of that name.
+const MeshAttribute* find_attribute(const std::vector<MeshAttribute>& attributes, const std::string& name);
+
 /// Adds what write_surface() adds to the attributes of vertices for this extension: colours, and in PLY the quality.
 void add_for_viewers(const std::string& extension, std::vector<MeshAttribute>& attributes);
 

@@ -63,14 +63,7 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
 
 }  // namespace
 
-void check_can_make_pages() {
-  if (page_parts().three.empty() || page_parts().controls.empty())
-    throw Unsupported(
-        "--html: this vmesh was built without pages; install libjs-three and build it with -DVMESH_WITH_HTML=ON");
-}
-
 std::string to_html(const Page& page) {
-  check_can_make_pages();
   const PageParts& parts = page_parts();
   const Json json = to_json(page);
   const std::string title = escaped(json["title"].get<std::string>() + " \u2013 vmesh " + page.verb);

@@ -75,10 +75,7 @@ struct Page {
   std::optional<PageFrames> frames;
 };
 
-/// Throws Unsupported if this build cannot make pages.
-void check_can_make_pages();
-
-/// The whole page, UTF-8. Deterministic. Throws Unsupported likewise.
+/// The whole page, UTF-8. Deterministic. A build without three.js makes no pages: check_outputs() refuses them.
 std::string to_html(const Page& page);
 
 /// Writes the page, completely or not at all, and reports its name and size. Throws WriteError.

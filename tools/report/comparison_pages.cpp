@@ -97,9 +97,9 @@ void add_farthest(Page& page, const MethodRow& row) {
 
 }  // namespace
 
-Page page_of(const EvaluateArguments& arguments, const EvaluationReport& report, const TriMesh& mesh,
+Page page_of(const CommonArguments& common, const EvaluationReport& report, const TriMesh& mesh,
              MeshAttributes attributes, const TriMesh* reference, const Centerline* centerline) {
-  Page page = make_page("evaluate", arguments.input.path, arguments.common);
+  Page page = make_page("evaluate", report.file, common);
   page.surfaces.push_back({"surface", mesh, std::move(attributes)});
   if (reference) page.surfaces.push_back({"reference", *reference, {}, true});
   if (centerline) page.centerline = *centerline;
@@ -111,9 +111,9 @@ Page page_of(const EvaluateArguments& arguments, const EvaluationReport& report,
   return page;
 }
 
-Page page_of(const Table2Arguments& arguments, const Table2Report& report) {
+Page page_of(const CommonArguments& common, const Table2Report& report) {
   const MethodComparison& comparison = report.comparison;
-  Page page = make_page("table2", report.source.vessels, arguments.common);
+  Page page = make_page("table2", report.source.vessels, common);
   page.title = report.source.vessels;
   add_surfaces(page, comparison);
   page.centerline = report.centerline;
@@ -131,9 +131,9 @@ Page page_of(const Table2Arguments& arguments, const Table2Report& report) {
   return page;
 }
 
-Page page_of(const TradeoffArguments& arguments, const Centerline& centerline, const std::vector<TradeoffPoint>& points,
-             std::vector<ReportTable> tables) {
-  Page page = make_page("tradeoff", arguments.input.path, arguments.common);
+Page page_of(const CommonArguments& common, const std::filesystem::path& input, const Centerline& centerline,
+             const std::vector<TradeoffPoint>& points, std::vector<ReportTable> tables) {
+  Page page = make_page("tradeoff", input, common);
   page.centerline = centerline;
   page.facts = {{"Surfaces", std::to_string(points.size())},
                 {"Centerline", std::to_string(centerline.nodes().size()) + " nodes"}};
@@ -142,9 +142,10 @@ Page page_of(const TradeoffArguments& arguments, const Centerline& centerline, c
   return page;
 }
 
-Page page_of(const DeformArguments& arguments, const Json& summary, const TriMesh& rest, const TriMesh& moved,
-             MeshAttributes attributes, const Centerline& centerline, PageFrames frames) {
-  Page page = make_page("deform", arguments.script, arguments.common);
+Page page_of(const CommonArguments& common, const std::filesystem::path& script, const Json& summary,
+             const TriMesh& rest, const TriMesh& moved, MeshAttributes attributes, const Centerline& centerline,
+             PageFrames frames) {
+  Page page = make_page("deform", script, common);
   page.facts = {{"Frames", std::to_string(summary["frames"].get<std::size_t>())},
                 {"Vertices", std::to_string(rest.vertices.size())},
                 {"Largest displacement, mm", short_number(summary["largest_displacement_mm"].get<double>())},

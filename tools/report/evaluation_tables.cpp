@@ -9,10 +9,6 @@ const std::vector<std::string> kDistributionColumns = {"mean", "rms", "min", "5 
 
 std::string yes_no(bool value) { return value ? "yes" : "no"; }
 
-std::string point(const Vec3& p) {
-  return "(" + format_number(p.x()) + ", " + format_number(p.y()) + ", " + format_number(p.z()) + ")";
-}
-
 Row distribution_row(const std::string& name, const Distribution& d) {
   Row row = {name};
   for (const double value : {d.mean, d.rms, d.min, d.p5, d.median, d.p95, d.p99, d.max}) {
@@ -72,8 +68,8 @@ ReportTable measures_table(const FaceMeasures& measures) {
 }
 
 Row hausdorff_row(const std::string& name, const OneSidedHausdorff& side) {
-  return {name, format_lower_bound(side.lower), format_upper_bound(side.upper), point(side.witness.from),
-          point(side.witness.to)};
+  return {name, format_lower_bound(side.lower), format_upper_bound(side.upper), format_point(side.witness.from),
+          format_point(side.witness.to)};
 }
 
 void add_tables(const ReferenceComparison& reference, std::vector<ReportTable>& tables) {
@@ -105,8 +101,9 @@ void add_tables(const VolumeComparison& volume, std::vector<ReportTable>& tables
       "volume_farthest",
       "Where the surface and the volume are farthest apart",
       {"direction", "in mm, at", "in local radii, at"},
-      {{"surface to volume", point(distance.from_mesh.max_at), point(distance.from_mesh.max_relative_at)},
-       {"volume to surface", point(distance.from_volume.max_at), point(distance.from_volume.max_relative_at)}}};
+      {{"surface to volume", format_point(distance.from_mesh.max_at), format_point(distance.from_mesh.max_relative_at)},
+       {"volume to surface", format_point(distance.from_volume.max_at),
+        format_point(distance.from_volume.max_relative_at)}}};
   for (ReportTable* table : {&mm, &relative, &places}) tables.push_back(std::move(*table));
 }
 

@@ -116,9 +116,9 @@ Page page_of(const GenerateReport& report, const Centerline& grown, MeshAttribut
   return page;
 }
 
-Page page_of(const FitArguments& arguments, const FitReport& report, const Json& summary, const TriMesh& mesh,
+Page page_of(const CommonArguments& common, const FitReport& report, const Json& summary, const TriMesh& mesh,
              MeshAttributes attributes, const TriMesh& reference, const Centerline& centerline) {
-  Page page = make_page("fit", arguments.output, arguments.common);
+  Page page = make_page("fit", summary["output"].get<std::string>(), common);
   page.options = summary["options"].get<std::string>();
   attributes.vertex.push_back({"distance", vertex_distances(mesh, ClosestPointIndex(reference))});
   page.surfaces = {{"surface", mesh, std::move(attributes)}, reference_surface(reference)};

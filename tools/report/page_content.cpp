@@ -109,10 +109,6 @@ std::string short_number(double value) {
 
 std::string mean_and_max(double mean, double max) { return short_number(mean) + " / " + short_number(max); }
 
-std::string point_text(const Vec3& p) {
-  return "(" + format_number(p.x()) + ", " + format_number(p.y()) + ", " + format_number(p.z()) + ")";
-}
-
 PlacesApart::PlacesApart(const TriMesh& mesh) : distance_(kApart * diagonal(mesh)) {}
 
 bool PlacesApart::take(const Vec3& place) {

@@ -17,7 +17,6 @@ Page make_page(const char* verb, const std::filesystem::path& title, const Commo
 std::string short_number(double value);
 /// "0.072 / 0.256"
 std::string mean_and_max(double mean, double max);
-std::string point_text(const Vec3& p);
 
 /// Selects places of a surface that are apart from each other.
 class PlacesApart {

@@ -17,20 +17,23 @@ Page page_of(const GenerateReport& report, const Centerline& grown, MeshAttribut
              const TriMesh* reference);
 
 /// Page of a measured surface. `attributes` include distances.
-Page page_of(const EvaluateArguments& arguments, const EvaluationReport& report, const TriMesh& mesh,
+Page page_of(const CommonArguments& common, const EvaluationReport& report, const TriMesh& mesh,
              MeshAttributes attributes, const TriMesh* reference, const Centerline* centerline);
 
 /// Page of a fitted surface; `summary` is what --json writes.
-Page page_of(const FitArguments& arguments, const FitReport& report, const Json& summary, const TriMesh& mesh,
+Page page_of(const CommonArguments& common, const FitReport& report, const Json& summary, const TriMesh& mesh,
              MeshAttributes attributes, const TriMesh& reference, const Centerline& centerline);
 
-Page page_of(const Table2Arguments& arguments, const Table2Report& report);
+Page page_of(const CommonArguments& common, const Table2Report& report);
 
-Page page_of(const TradeoffArguments& arguments, const Centerline& centerline, const std::vector<TradeoffPoint>& points,
-             std::vector<ReportTable> tables);
+/// Page of a comparison of settings around the centerline of the file `input`.
+Page page_of(const CommonArguments& common, const std::filesystem::path& input, const Centerline& centerline,
+             const std::vector<TradeoffPoint>& points, std::vector<ReportTable> tables);
 
-/// Page of a motion from `rest` to `moved`, which has the `attributes`; `summary` is what --json writes.
-Page page_of(const DeformArguments& arguments, const Json& summary, const TriMesh& rest, const TriMesh& moved,
-             MeshAttributes attributes, const Centerline& centerline, PageFrames frames);
+/// Page of the motion of the scene `script`, from `rest` to `moved`, which has the `attributes`; `summary` is what
+/// --json writes.
+Page page_of(const CommonArguments& common, const std::filesystem::path& script, const Json& summary,
+             const TriMesh& rest, const TriMesh& moved, MeshAttributes attributes, const Centerline& centerline,
+             PageFrames frames);
 
 }  // namespace vmesh::tool

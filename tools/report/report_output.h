@@ -1,21 +1,16 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
+#include "command_line/arguments.h"
 #include "report/report_table.h"
 #include "report/summary.h"
 
 namespace vmesh::tool {
 
-/// The outputs of a report.
-struct ReportOutputs {
-  std::string format;          ///< of stdout: text, markdown or csv
-  std::filesystem::path json;  ///< "-": stdout gets JSON instead; empty: none
-  std::filesystem::path file;  ///< by its extension .txt, .md, .csv or .json; empty: none
-};
-
-void write_report(const std::vector<ReportTable>& tables, const Json& json, const ReportOutputs& outputs);
+/// Writes to stdout, to the report's file, and to `json` unless empty; "-": stdout gets JSON instead.
+void write_report(const std::vector<ReportTable>& tables, const Json& content, const ReportArguments& report,
+                  const std::filesystem::path& json);
 
 }  // namespace vmesh::tool

@@ -96,6 +96,10 @@ std::string format_number(double value) {
   return text;
 }
 
+std::string format_point(const Vec3& p) {
+  return "(" + format_number(p.x()) + ", " + format_number(p.y()) + ", " + format_number(p.z()) + ")";
+}
+
 std::string format_lower_bound(double value) {
   const std::string text = format_number(value);
   return std::stod(text) <= value ? text : format_number(value - last_digit(value));

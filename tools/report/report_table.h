@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "vmesh/core/types.h"
+
 namespace vmesh::tool {
 
 /// A titled table of a report. Every row has as many cells as there are columns; the first one names it.
@@ -25,6 +27,8 @@ std::string format_report(const std::vector<ReportTable>& tables, ReportFormat f
 
 /// A number with six significant digits.
 std::string format_number(double value);
+
+std::string format_point(const Vec3& p);
 
 /// The same for a bound, rounded so that it remains one.
 std::string format_lower_bound(double value);

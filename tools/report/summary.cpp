@@ -9,6 +9,7 @@
 #include "vmesh/centerline/branches.h"
 #include "vmesh/core/version.h"
 
+#include "command_line/arguments_growth.h"
 #include "command_line/outputs.h"
 #include "report/exact_text.h"
 #include "report/extraction_report.h"
@@ -395,6 +396,7 @@ Json to_json(const GrowthSummary& growth) {
 }
 
 void write_json(const std::filesystem::path& path, const Json& json) {
+  if (path.empty()) return;
   write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

@@ -10,8 +10,8 @@
 #include "vmesh/surface/flat_ends.h"
 #include "vmesh/volume/contacts.h"
 
-#include "command_line/arguments.h"
 #include "report/measure.h"
+#include "verbs/generate_arguments.h"
 
 namespace vmesh::tool {
 
@@ -55,7 +55,8 @@ Json to_json(const std::vector<EndSection>& sections);
 Json to_json(const SurfaceMeasurement& measurement);
 Json generator_json();
 
-/// Writes the JSON with a newline at its end, as write_text() does. Text that is not UTF-8 is repaired.
+/// Writes the JSON with a newline at its end, as write_text() does; nothing if the path is empty. Text that is not
+/// UTF-8 is repaired.
 void write_json(const std::filesystem::path& path, const Json& json);
 
 /// "--beta 0.3 --blend 0.5 ...": how a surface was made.

@@ -11,10 +11,6 @@ using Row = std::vector<std::string>;
 
 std::string yes_no(bool value) { return value ? "yes" : "no"; }
 
-std::string point(const Vec3& p) {
-  return "(" + format_number(p.x()) + ", " + format_number(p.y()) + ", " + format_number(p.z()) + ")";
-}
-
 std::string interval(double lower, double upper) {
   return format_lower_bound(lower) + " to " + format_upper_bound(upper);
 }
@@ -92,7 +88,7 @@ Row direction_row(const std::string& name, const OneSidedHausdorff& side, const 
   for (const double value : {sampled.distance.mean, sampled.distance.rms, sampled.distance.p95}) {
     row.push_back(format_number(value));
   }
-  row.push_back(point(side.witness.from));
+  row.push_back(format_point(side.witness.from));
   return row;
 }
 

@@ -1,16 +1,35 @@
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
+#include "command_line/arguments_segmentation.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
-#include "command_line/usage_error.h"
+#include "command_line/verb.h"
 #include "report/exact_text.h"
 #include "report/extraction_report.h"
 #include "report/summary.h"
 #include "verbs/extraction.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
+
+struct CenterlineArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+  ExtractOptions options;
+  ReferenceOptions image;   ///< which voxels of an image are inside
+  bool each_label = false;  ///< a centerline of each label on its own
+  RequiredCoverage required_coverage;
+};
+
+void add_options(CLI::App& verb, CenterlineArguments& arguments) {
+  add_input(verb, arguments.input, "surface, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files)");
+  add_output(verb, arguments.output, "centerline");
+  add_image_options(verb, arguments.image);
+  verb.add_flag("--each-label", arguments.each_label,
+                "image: a centerline of each label on its own, in one file; segments carry the label (.json, .vtp)");
+  add_extraction(verb, arguments.options);
+  add_required_coverage(verb, arguments.required_coverage);
+  group(verb, "What of an image is inside", {"--label", "--each-label", "--threshold", "--spacing", "--smooth"});
+}
 
 std::string describe(const CenterlineArguments& arguments) {
   return "centerline" + tool::describe(arguments.options) + tool::describe(arguments.image) +
@@ -84,8 +103,6 @@ Result extract_each_label(const CenterlineArguments& arguments, Console& console
   return result;
 }
 
-}  // namespace
-
 int run(const CenterlineArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
@@ -101,16 +118,30 @@ int run(const CenterlineArguments& arguments, Console& console) {
   metadata.segment_labels = result.labels;
   write_centerline(arguments.output, centerline, metadata, result.sections, console);
   console.log("wrote " + arguments.output.string());
-  if (!arguments.common.json.empty())
-    write_json(arguments.common.json, {{"schema", "vmesh.extraction/2"},
-                                       {"generator", generator_json()},
-                                       {"input", {{"file", path.string()}, {"sha256", metadata.input_sha256}}},
-                                       {"options", describe(arguments)},
-                                       {"centerline", to_json(centerline)},
-                                       {"end_sections", to_json(result.sections)},
-                                       {"extraction", result.extraction},
-                                       {"seconds", stages_json(result.stages)}});
+  write_json(arguments.common.json, {{"schema", "vmesh.extraction/2"},
+                                     {"generator", generator_json()},
+                                     {"input", {{"file", path.string()}, {"sha256", metadata.input_sha256}}},
+                                     {"options", describe(arguments)},
+                                     {"centerline", to_json(centerline)},
+                                     {"end_sections", to_json(result.sections)},
+                                     {"extraction", result.extraction},
+                                     {"seconds", stages_json(result.stages)}});
   return result.covered ? kOk : kCheckFailed;
 }
 
+const VerbRegistration<CenterlineArguments> kRegistration({
+    .rank = 90,
+    .name = "centerline",
+    .help = "Extract the centerline with radii from a surface, open or closed, or an image",
+    .examples = R"(Examples:
+  vmesh centerline portal.ply -o portal.json
+  vmesh centerline liver.nii.gz --label 2 -o portal.swc --tree
+  vmesh centerline aorta-open.stl --unit mm -o aorta.vtp --require coverage=.98
+  vmesh centerline circle.nii.gz --each-label -o circle.json)",
+    .add_options = add_options,
+    .settle = settle_output,
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

@@ -2,22 +2,31 @@
 
 #include "vmesh/io/sha256.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
 #include "command_line/outputs.h"
+#include "command_line/verb.h"
 #include "report/summary.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
+
+struct ConesArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+  int sides = 18;
+};
+
+void add_options(CLI::App& verb, ConesArguments& arguments) {
+  add_centerline_input(verb, arguments.input, "centerline");
+  add_output_after_several(verb, arguments.output, "surface");
+  add_number(verb, "--sides", arguments.sides, 3, 1000, "of a cone");
+}
 
 MeshAttributes attributes_of(const TruncatedCones& cones) {
   MeshAttributes attributes;
   attributes.vertex = {{"radius", cones.radius}, {"segment", {cones.segment.begin(), cones.segment.end()}, true}};
   return attributes;
 }
-
-}  // namespace
 
 int run(const ConesArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
@@ -30,16 +39,28 @@ int run(const ConesArguments& arguments, Console& console) {
                 {generator_name(), how, file_name_of(arguments.input), sha256});
   console.log("wrote " + arguments.output.string() + ": " + std::to_string(centerline.segments().size()) + " cones, " +
               std::to_string(cones.mesh.vertices.size()) + " vertices");
-  if (!arguments.common.json.empty())
-    write_json(arguments.common.json, {{"schema", "vmesh.cones/1"},
-                                       {"generator", generator_json()},
-                                       {"input", {{"file", path.string()}, {"sha256", sha256}}},
-                                       {"centerline", to_json(centerline)},
-                                       {"sides", arguments.sides},
-                                       {"cones", centerline.segments().size()},
-                                       {"vertices", cones.mesh.vertices.size()},
-                                       {"faces", cones.mesh.faces.size()}});
+  write_json(arguments.common.json, {{"schema", "vmesh.cones/1"},
+                                     {"generator", generator_json()},
+                                     {"input", {{"file", path.string()}, {"sha256", sha256}}},
+                                     {"centerline", to_json(centerline)},
+                                     {"sides", arguments.sides},
+                                     {"cones", centerline.segments().size()},
+                                     {"vertices", cones.mesh.vertices.size()},
+                                     {"faces", cones.mesh.faces.size()}});
   return kOk;
 }
 
+const VerbRegistration<ConesArguments> kRegistration({
+    .rank = 80,
+    .name = "cones",
+    .help = "Make a separate truncated cone around every segment of a centerline",
+    .examples = R"(Examples:
+  vmesh cones tree.swc -o cones.ply
+  vmesh cones tree.swc -o cones.stl --sides 12)",
+    .add_options = add_options,
+    .settle = settle_output,
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

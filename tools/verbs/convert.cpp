@@ -1,16 +1,26 @@
 #include "vmesh/io/sha256.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
-#include "command_line/usage_error.h"
-#include "verbs/verbs.h"
+#include "command_line/verb.h"
 
 namespace vmesh::tool {
 namespace {
 
 using Kind = PlannedOutput::Kind;
+
+struct ConvertArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+  WritingArguments writing;
+};
+
+void add_options(CLI::App& verb, ConvertArguments& arguments) {
+  add_centerline_input(verb, arguments.input, "centerline or surface");
+  add_output_after_several(verb, arguments.output, "file of the same kind");
+  add_writing(verb, arguments.writing);
+}
 
 /// What a file of that name contains; nullopt for VTK's, which may contain either.
 std::optional<Kind> kind_of(const std::filesystem::path& path) {
@@ -54,8 +64,6 @@ void convert(const LoadedSurface& surface, const ConvertArguments& arguments, Co
                 arguments.writing);
 }
 
-}  // namespace
-
 int run(const ConvertArguments& arguments, Console& console) {
   check_kinds(arguments);
   check_writing(arguments.output, arguments.writing);
@@ -73,4 +81,20 @@ int run(const ConvertArguments& arguments, Console& console) {
   return kOk;
 }
 
+const VerbRegistration<ConvertArguments> kRegistration({
+    .rank = 40,
+    .name = "convert",
+    .help = "Convert between centerline formats or between surface formats",
+    .examples = R"(Examples:
+  vmesh convert tree.swc -o tree.vtp
+  vmesh convert tree.swc -o tree.json --unit um
+  vmesh convert tree.ply -o tree.stl
+  vmesh convert tree.ply tree.obj --output-unit cm --output-space RAS)",
+    .with_json = false,
+    .add_options = add_options,
+    .settle = settle_output,
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

@@ -7,28 +7,42 @@
 #include "vmesh/deform/surface_binding.h"
 #include "vmesh/io/sha256.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
-#include "command_line/usage_error.h"
+#include "command_line/verb.h"
 #include "report/pages.h"
-#include "report/summary.h"
 #include "verbs/scene.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
 
 namespace fs = std::filesystem;
 
+struct DeformArguments {
+  CommonArguments common;
+  InputArguments input;
+  InputArguments surface;
+  std::filesystem::path script;
+  std::filesystem::path output;  ///< folder
+  std::string format = "vtp";    ///< extension of the frames
+};
+
+void add_options(CLI::App& verb, DeformArguments& arguments) {
+  add_input(verb, arguments.input, "centerline");
+  add_centerline_reading(verb, arguments.input, "");
+  verb.add_option("SURFACE", arguments.surface.path, "surface around it, grown by vmesh or not")->required();
+  add_reading(verb, arguments.surface, "surface-");
+  verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (tools/README.md, Scenes)")
+      ->required();
+  add_output(verb, arguments.output, "new or empty folder for the frames");
+  verb.add_option("--format", arguments.format, "of the frames")
+      ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off", "glb"}))
+      ->capture_default_str();
+  add_html(verb, arguments.common);
+}
+
 /// A vertex farther from its place than this many local radii must be bound to another centerline.
 constexpr double kFarthestPlace = 4;
-
-const MeshAttribute* find(const std::vector<MeshAttribute>& attributes, const std::string& name) {
-  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
-  return found == attributes.end() ? nullptr : &*found;
-}
 
 bool is_place(const Centerline& centerline, double segment, double t, const Vec3& vertex) {
   if (!(segment >= 0 && segment < static_cast<double>(centerline.segments().size()) && t >= 0 && t <= 1)) return false;
@@ -38,8 +52,8 @@ bool is_place(const Centerline& centerline, double segment, double t, const Vec3
 
 /// The places on the centerline stored in the surface's file, if they belong to this centerline.
 std::optional<std::vector<SurfacePlace>> places_in_file(const Centerline& centerline, const LoadedSurface& surface) {
-  const MeshAttribute* segment = find(surface.attributes.vertex, "segment");
-  const MeshAttribute* t = find(surface.attributes.vertex, "parameter");
+  const MeshAttribute* segment = find_attribute(surface.attributes.vertex, "segment");
+  const MeshAttribute* t = find_attribute(surface.attributes.vertex, "parameter");
   if (!segment || !t) return std::nullopt;
   std::vector<SurfacePlace> places;
   for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
@@ -247,8 +261,6 @@ void check_files(const DeformArguments& arguments) {
     throw Unsupported("this vmesh was built without VTK and cannot write .vtp; choose --format obj");
 }
 
-}  // namespace
-
 int run(const DeformArguments& arguments, Console& console) {
   check_files(arguments);
   const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
@@ -283,13 +295,26 @@ int run(const DeformArguments& arguments, Console& console) {
                         {"elastic_energy_J", stage.simulation().elastic_energy_J()},
                         {"simulate_s", timing.simulate_s},
                         {"synchronise_s", timing.synchronise_s}};
-  if (!arguments.common.json.empty()) write_json(arguments.common.json, summary);
+  write_json(arguments.common.json, summary);
   if (frames)
-    write_page(
-        arguments.common.html,
-        page_of(arguments, summary, rest.mesh, writer.mesh(), writer.attributes(), centerline, std::move(*frames)),
-        console);
+    write_page(arguments.common.html,
+               page_of(arguments.common, arguments.script, summary, rest.mesh, writer.mesh(), writer.attributes(),
+                       centerline, std::move(*frames)),
+               console);
   return kOk;
 }
 
+const VerbRegistration<DeformArguments> kRegistration({
+    .rank = 120,
+    .name = "deform",
+    .help = "Move a centerline under forces, and its surface with it",
+    .examples = R"(Examples:
+  vmesh deform tree.json tree.ply --script scene.json -o frames/
+  vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj --html moved.html)",
+    .add_options = add_options,
+    .settle = settle_output,
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

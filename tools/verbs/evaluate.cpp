@@ -2,18 +2,51 @@
 
 #include "vmesh/io/sha256.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
+#include "command_line/verb.h"
 #include "report/evaluation_report.h"
 #include "report/pages.h"
 #include "report/report_output.h"
 #include "report/requirements.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
+
+struct EvaluateArguments {
+  CommonArguments common;
+  InputArguments input;
+  InputArguments reference;      ///< surface to compare with; empty path: none
+  InputArguments centerline;     ///< whose volume to compare with; empty path: none
+  std::filesystem::path output;  ///< the surface with distances and skewness; empty: none
+  ReportArguments report;
+  std::string require;         ///< see parse_requirements()
+  double tolerance_mm = 1e-4;  ///< of the Hausdorff distance
+  std::size_t samples = 100'000;
+  int threads = 0;  ///< 0: as many as there are
+};
+
+void add_options(CLI::App& verb, EvaluateArguments& arguments) {
+  add_input(verb, arguments.input, "surface");
+  verb.add_option(
+      "--reference", arguments.reference.path,
+      "surface to compare with: guaranteed Hausdorff distance, mean, RMS and percentiles, in both directions");
+  add_reading(verb, arguments.reference, "reference-");
+  verb.add_option("--centerline", arguments.centerline.path,
+                  "compare with the exact volume of its round cones, in both directions, in mm and in local radii");
+  add_reading(verb, arguments.centerline, "centerline-");
+  add_centerline_reading(verb, arguments.centerline, "centerline-");
+  verb.add_option("-o,--output", arguments.output,
+                  "the surface with the skewness of its faces, and its vertices' distance to the reference and "
+                  "volume_distance (.ply, .vtp)");
+  add_report(verb, arguments.report);
+  add_measuring(verb, arguments.tolerance_mm, arguments.samples);
+  add_threads(verb, arguments.threads);
+  verb.add_option("--require", arguments.require,
+                  "exit with 1 unless all of these hold, separated by commas: " + describe_requirements())
+      ->type_name("LIST");
+  add_html(verb, arguments.common);
+}
 
 /// The inputs of a comparison, loaded.
 struct Comparison {
@@ -77,13 +110,8 @@ SurfaceMetadata metadata_of(const EvaluateArguments& arguments, const std::strin
   return {generator_name(), options, arguments.input.path.filename().string(), sha256};
 }
 
-/// Adds the file's name to errors about the surface.
 ClosestPointIndex index_of(const TriMesh& mesh, const std::filesystem::path& path) {
-  try {
-    return ClosestPointIndex(mesh);
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(path.string() + ": " + error.what());
-  }
+  return naming(path, [&] { return ClosestPointIndex(mesh); });
 }
 
 /// The reference and the volume, each with its search structure.
@@ -131,16 +159,11 @@ class Evaluation {
 };
 
 void check_files(const EvaluateArguments& arguments) {
-  std::vector<std::filesystem::path> inputs;
-  for (const InputArguments* input : {&arguments.input, &arguments.reference, &arguments.centerline}) {
-    if (input->path.empty()) continue;
-    for (const std::filesystem::path& file : files_of(input->path)) inputs.push_back(file);
-  }
   check_outputs({{arguments.output, PlannedOutput::Kind::surface},
                  {arguments.common.json, PlannedOutput::Kind::summary},
                  {arguments.common.html, PlannedOutput::Kind::page},
-                 {arguments.report, PlannedOutput::Kind::report}},
-                inputs);
+                 {arguments.report.file, PlannedOutput::Kind::report}},
+                files_of({&arguments.input, &arguments.reference, &arguments.centerline}));
 }
 
 int check(const EvaluationReport& report, Console& console) {
@@ -181,19 +204,32 @@ int evaluate(const EvaluateArguments& arguments, Console& console) {
     const TriMesh* reference = comparison.reference ? &comparison.reference->mesh : nullptr;
     const Centerline* centerline = comparison.centerline ? &*comparison.centerline : nullptr;
     write_page(arguments.common.html,
-               page_of(arguments, report, comparison.surface.mesh, evaluation.attributes(report.measures), reference,
-                       centerline),
+               page_of(arguments.common, report, comparison.surface.mesh, evaluation.attributes(report.measures),
+                       reference, centerline),
                console);
   }
-  write_report(to_tables(report), to_json(report), {arguments.format, arguments.common.json, arguments.report});
+  write_report(to_tables(report), to_json(report), arguments.report, arguments.common.json);
   return check(report, console);
 }
-
-}  // namespace
 
 int run(const EvaluateArguments& arguments, Console& console) {
   tbb::task_arena arena(arguments.threads > 0 ? arguments.threads : tbb::task_arena::automatic);
   return arena.execute([&] { return evaluate(arguments, console); });
 }
 
+const VerbRegistration<EvaluateArguments> kRegistration({
+    .rank = 60,
+    .name = "evaluate",
+    .help = "Measure a surface: faces, defects, distance to a reference surface or to a centerline's vessels",
+    .examples = R"(Examples:
+  vmesh evaluate tree.ply
+  vmesh evaluate tree.ply --reference scan.stl --report report.md --json report.json -o colored.ply
+  vmesh evaluate tree.ply --reference scan.stl --centerline tree.swc --html tree.html
+  vmesh evaluate tree.ply --centerline tree.swc --require closed,max-skewness=0.9,relative-volume-distance=0.5)",
+    .add_options = add_options,
+    .threads = [](const EvaluateArguments& arguments) { return arguments.threads; },
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

@@ -11,9 +11,7 @@
 namespace vmesh::tool {
 
 void check_extraction(const InputArguments& input, const ReferenceOptions& image, const ExtractOptions& options) {
-  if (!is_image(input.path) && has_options(image))
-    throw UsageError(input.path.string() +
-                     ": --label, --threshold, --spacing and --smooth are for images; this is taken for a surface");
+  check_options_of_image(input.path, image);
   if (is_image(input.path) && options.balanced_wall)
     throw UsageError(input.path.string() + ": --balanced-wall is for surfaces; this is taken for an image");
 }

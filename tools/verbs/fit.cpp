@@ -4,56 +4,76 @@
 #include "vmesh/io/sha256.h"
 #include "vmesh/surface/surface_attributes.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
+#include "command_line/arguments_segmentation.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
+#include "command_line/verb.h"
 #include "report/fit_report.h"
 #include "report/pages.h"
 #include "verbs/fitting.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
 
-const std::vector<double>* find(const std::vector<MeshAttribute>& attributes, const std::string& name) {
-  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
-  return found == attributes.end() ? nullptr : &found->values;
+struct FitArguments {
+  CommonArguments common;
+  InputArguments input;       ///< surface
+  InputArguments centerline;  ///< around which the surface was grown
+  std::filesystem::path output;
+  WritingArguments writing;
+  FittingArguments fitting;
+  std::optional<Budget> budget;  ///< sets the fit's max_vertices or its error
+};
+
+void add_options(CLI::App& verb, FitArguments& arguments) {
+  add_input(verb, arguments.input, "surface, with places on the centerline (.ply, .vtp)");
+  verb.add_option("REFERENCE", arguments.fitting.reference.path,
+                  "surface, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files)")
+      ->required();
+  add_output(verb, arguments.output, "surface");
+  add_writing(verb, arguments.writing);
+  verb.add_option("--centerline", arguments.centerline.path, "around which the surface was grown")->required();
+  add_reading(verb, arguments.centerline, "centerline-");
+  add_fitting(verb, arguments.fitting);
+  verb.add_option("--max-vertices", arguments.fitting.options.max_vertices,
+                  "0: a twentieth more than the surface has, or as many as --fit-error needs")
+      ->capture_default_str();
+  add_budget(verb, arguments.budget, "vertices=N: as --max-vertices N; error=Xmm: as --fit-error Xmm")
+      .type_name("vertices=N|error=Xmm")
+      ->excludes("--max-vertices")
+      ->excludes("--fit-error");
+  add_threads(verb, arguments.fitting.options.threads);
+  add_html(verb, arguments.common);
 }
 
 std::vector<CenterlineBinding> binding_of(const LoadedSurface& surface, const Centerline& centerline) {
-  const std::vector<double>* segment = find(surface.attributes.vertex, "segment");
-  const std::vector<double>* t = find(surface.attributes.vertex, "parameter");
+  const MeshAttribute* segment = find_attribute(surface.attributes.vertex, "segment");
+  const MeshAttribute* t = find_attribute(surface.attributes.vertex, "parameter");
   if (!segment || !t)
     throw InvalidInput(
         "the surface has no places on a centerline (vertex attributes segment and parameter); take one "
         "that vmesh generate wrote as .ply or .vtp");
   std::vector<CenterlineBinding> binding;
   for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
-    const double s = (*segment)[v];
+    const double s = segment->values[v];
     if (!(s >= 0 && s < static_cast<double>(centerline.segments().size() + centerline.nodes().size())))
       throw InvalidInput("vertex " + std::to_string(v) +
                          " is bound to a segment that the centerline does not have; is "
                          "it the one around which the surface was grown?");
-    binding.push_back({static_cast<Index>(s), std::clamp((*t)[v], 0.0, 1.0)});
+    binding.push_back({static_cast<Index>(s), std::clamp(t->values[v], 0.0, 1.0)});
   }
   return binding;
 }
-
-}  // namespace
 
 int run(const FitArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
   FittingArguments fitting = arguments.fitting;
   if (arguments.budget) set_budget(*arguments.budget, fitting.options);
-  std::vector<std::filesystem::path> inputs = files_of(arguments.centerline.path);
-  inputs.push_back(path);
-  for (const std::filesystem::path& file : files_of_input(fitting.reference.path)) inputs.push_back(file);
   check_writing(arguments.output, arguments.writing);
   check_outputs(
       {{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}, {arguments.common.html, Kind::page}},
-      inputs);
+      files_of({&arguments.input, &arguments.centerline, &fitting.reference}));
   LoadedSurface loaded = load_surface(arguments.input);
   console.warn(loaded.warnings);
   const Centerline centerline = load_clean_centerline(arguments.centerline, console).cleaned.centerline;
@@ -98,11 +118,25 @@ int run(const FitArguments& arguments, Console& console) {
                {"fit", to_json(result.report)},
                {"warnings", warnings}};
   json.update(to_json(measurement));
-  if (!arguments.common.json.empty()) write_json(arguments.common.json, json);
+  write_json(arguments.common.json, json);
   if (!arguments.common.html.empty())
     write_page(arguments.common.html,
-               page_of(arguments, result.report, json, fitted.mesh, attributes, reference, centerline), console);
+               page_of(arguments.common, result.report, json, fitted.mesh, attributes, reference, centerline), console);
   return near ? kOk : kNotConverged;
 }
 
+const VerbRegistration<FitArguments> kRegistration({
+    .rank = 140,
+    .name = "fit",
+    .help = "Fit a surface grown by vmesh to a segmentation: a surface or an image",
+    .examples = R"(Examples:
+  vmesh fit tree.ply scan.stl --centerline tree.swc -o fitted.ply
+  vmesh fit portal.ply liver.nii.gz --label 2 --spacing 1 --smooth 1 --centerline portal.swc -o fitted.ply \
+    --html fitted.html)",
+    .add_options = add_options,
+    .settle = settle_output,
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

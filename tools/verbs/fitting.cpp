@@ -11,6 +11,12 @@ bool has_options(const ReferenceOptions& image) {
   return !image.labels.empty() || image.threshold || image.spacing > 0 || image.smooth > 0;
 }
 
+void check_options_of_image(const std::filesystem::path& input, const ReferenceOptions& image) {
+  if (!is_image(input) && has_options(image))
+    throw UsageError(input.string() +
+                     ": --label, --threshold, --spacing and --smooth are for images; this is taken for a surface");
+}
+
 void set_budget(const Budget& budget, FitOptions& options) {
   if (budget.kind == Budget::Kind::vertices) {
     options.max_vertices = budget.vertices;
@@ -31,9 +37,7 @@ TriMesh load_fit_reference(const FittingArguments& arguments, Console& console) 
       return reference_surface(load_image(arguments.reference, console), options).mesh;
     });
   }
-  if (has_options(image))
-    throw UsageError(path.string() +
-                     ": --label, --threshold, --spacing and --smooth are for images; this is taken for a surface");
+  check_options_of_image(path, image);
   LoadedSurface surface = load_surface(arguments.reference);
   console.warn(surface.warnings);
   return std::move(surface.mesh);

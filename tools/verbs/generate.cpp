@@ -1,23 +1,137 @@
+#include <charconv>
+#include <sstream>
+
 #include "vmesh/deform/linear_skin.h"
-#include "vmesh/fit/flat_reference.h"
+#include "vmesh/parts/part_files.h"
+#include "vmesh/surface/flat_reference.h"
 #include "vmesh/surface/surface_attributes.h"
 #include "vmesh/volume/vessel_field.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
+#include "command_line/arguments_growth.h"
+#include "command_line/arguments_segmentation.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
-#include "command_line/usage_error.h"
+#include "command_line/verb.h"
 #include "report/fit_report.h"
 #include "report/generate_log.h"
 #include "report/pages.h"
-#include "report/summary.h"
 #include "verbs/extraction.h"
 #include "verbs/generate_input.h"
-#include "verbs/verbs.h"
+#include "verbs/part.h"
 
 namespace vmesh::tool {
 namespace {
+
+OpenEnds parse_open_ends(const std::string& text) {
+  OpenEnds ends;
+  ends.all = text == "all";
+  if (ends.all) return ends;
+  std::istringstream list(text);
+  for (std::string item; std::getline(list, item, ',');) {
+    Index node = 0;
+    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), node);
+    if (error != std::errc() || end != item.data() + item.size())
+      throw CLI::ValidationError("--open-ends",
+                                 "\"" + item + "\" is not a node number; give all, or numbers such as 3,17");
+    ends.nodes.push_back(node);
+  }
+  return ends;
+}
+
+void add_ends(CLI::App& verb, ProductionOptions& options) {
+  add_choice(
+      verb, "--ends", {"round", "flat", "open"},
+      [&options](const std::string& text) { options.ends = parse_end_shape(text); },
+      "how vessels end: round; flat: closed by flat caps, numbered for flow solvers (ModelFaceID, CapID in .vtp "
+      "and .ply); open: not closed")
+      ->default_str("round");
+  verb.add_option_function<std::string>(
+          "--open-ends", [&options](const std::string& text) { options.growth.open_ends = parse_open_ends(text); },
+          "leave the surface open at these ends of the centerline, regardless of --ends: all, or node numbers as in "
+          "the summary, separated by commas")
+      ->type_name("all|N,N,...");
+  add_number(verb, "--flow-extensions", options.extension, 0.0, 1000.0,
+             "length of straight extensions at ends that are not round, in radii; 0: none");
+}
+
+/// With --ends, --open-ends all means that all are open.
+void settle_ends(ProductionOptions& options) {
+  OpenEnds& open = options.growth.open_ends;
+  if (options.extension > 0 && options.ends == EndShape::round && !open.all && open.nodes.empty())
+    throw UsageError("--flow-extensions needs ends that are not round: --ends flat, or --ends open");
+  if (options.ends == EndShape::round || !open.all) return;
+  options.ends = EndShape::open;
+  open = {};
+}
+
+void add_options(CLI::App& verb, GenerateArguments& arguments) {
+  add_centerline_input(
+      verb, arguments.input,
+      "centerline, or segmentation to extract it from and to fit to: an image (.nii, .nii.gz, .nrrd, .mha, or a folder "
+      "of DICOM files) or a wall (.stl, .ply, .obj, .vtp ...), open or closed");
+  add_output_after_several(verb, arguments.output, "surface (.ply, .vtp, .stl, .obj, .off, .glb)");
+  add_writing(verb, arguments.writing);
+  verb.add_flag("--bones", arguments.bones, "add bones along the centerline to a .glb, for bending it");
+  add_growth(verb, arguments.production);
+  add_choice(
+      verb, "--growth", {"guided", "paper"},
+      [&arguments](const std::string& text) { arguments.production.growth.growth = parse_growth_method(text); },
+      "guided: with the topology of the centerline; paper: a single seed, as published")
+      ->default_str("guided");
+  add_read_option(
+      verb, "--max-error",
+      [&arguments](const std::string& text) { arguments.production.growth.max_error = parse_error_limit(text); },
+      "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
+      "0.3mm, 10% (of the local radius), or both, separated by a comma")
+      .type_name("Xmm|X%");
+  verb.add_option("--least-vertices", arguments.production.growth.least_vertices,
+                  "with --elongation: leave out vertices until there are so few; those that are left are where they "
+                  "reduce the mean error most; with --max-error, only as long as that stays proven; 0: as few as "
+                  "--max-error allows")
+      ->capture_default_str();
+  verb.add_flag("--deformable", arguments.production.growth.deformable,
+                "for a centerline that is to move: a ring of vertices at every node, whatever the elongation");
+  add_budget(verb, arguments.budget,
+             "choose the resolution: the finest surface with vertices=N at most, or grown within time=Xms, or the one "
+             "with the fewest vertices that keeps error=Xmm or error=X% everywhere; with --elongation, vertices=N are "
+             "where they reduce the mean error most")
+      .type_name("vertices=N|time=Xms|error=X")
+      ->excludes("--around")
+      ->excludes("--preset")
+      ->excludes("--max-error")
+      ->excludes("--least-vertices");
+  add_ends(verb, arguments.production);
+  verb.add_flag("--check", arguments.check,
+                "exit with 1 unless the surface is closed, manifold, free of "
+                "self-intersections, of the expected topology, and contains every centerline node");
+  verb.add_flag("--allow-defects", arguments.allow_defects,
+                "write the surface even if it is not sound; the summary lists its defects with their positions");
+  verb.add_option("--fit", arguments.fitting.reference.path,
+                  "fit to this surface or image: the vessels' own walls instead of round cones");
+  add_fitting(verb, arguments.fitting);
+  verb.add_option("--centerline-output", arguments.centerline_output,
+                  "with an image or a wall as input: where to save the extracted centerline");
+  add_extraction(verb, arguments.extraction);
+  add_required_coverage(verb, arguments.required_coverage);
+  add_html(verb, arguments.common);
+  group(verb, "Resolution",
+        {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification", "--elongation",
+         "--least-vertices", "--deformable"});
+  group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
+  group(verb, "Ends", {"--ends", "--open-ends", "--flow-extensions"});
+  group(verb, "How it is made", {"--growth", "--beta", "--max-center-distance", "--sweeps", "--threads"});
+  group(verb, "Checks", {"--check", "--allow-defects"});
+}
+
+/// By default, a part's surface is written beside it.
+void settle(GenerateArguments& arguments) {
+  if (is_part(arguments.input.path) && arguments.output.empty() && arguments.input.more.empty()) {
+    arguments.output = arguments.input.path;
+    arguments.output.replace_extension(kPartSurfaceExtension);
+  }
+  settle_output(arguments);
+  settle_ends(arguments.production);
+}
 
 /// The surface with the options that make the best use of the budget; `kept`: whether they keep within it.
 GenerateResult grow_within_budget(GenerateReport& report, const Centerline& centerline, const GenerateOptions& options,
@@ -147,14 +261,8 @@ void check_arguments(const GenerateArguments& arguments) {
     for (const std::filesystem::path& file : files_of(arguments.centerline_output))
       outputs.push_back({file, Kind::centerline});
   }
-  std::vector<std::filesystem::path> inputs = files_of(arguments.input);
-  if (!arguments.fitting.reference.path.empty()) {
-    for (const std::filesystem::path& file : files_of_input(arguments.fitting.reference.path)) inputs.push_back(file);
-  }
-  check_outputs(outputs, inputs);
+  check_outputs(outputs, files_of({&arguments.input, &arguments.fitting.reference}));
 }
-
-}  // namespace
 
 int run(const GenerateArguments& given, Console& console) {
   if (is_part(given.input.path)) return run_part(given, console);
@@ -235,4 +343,31 @@ int run(const GenerateArguments& given, Console& console) {
   return result.error.unproven_faces > 0 || !kept_limits ? kNotConverged : kOk;
 }
 
+const VerbRegistration<GenerateArguments> kRegistration({
+    .rank = 10,
+    .name = "generate",
+    .help = "Grow a surface around a centerline",
+    .examples = R"(Examples:
+  vmesh generate tree.swc -o tree.ply
+  vmesh generate tree.vtp -o tree.vtp --around 8 --blend 0.8 --json summary.json
+  vmesh generate network.csv -o network.stl --unit um --check
+  vmesh generate branch-*.mrk.json -o tree.ply
+  vmesh generate tree.vtk -o tree.ply --radius-array Thickness
+  vmesh generate aorta.pth -o aorta.ply --unit cm --radius 9
+  vmesh generate tree.swc -o fine.ply --preset high
+  vmesh generate tree.swc -o exact.ply --max-error 5%
+  vmesh generate tree.swc -o game.obj --budget vertices=5000
+  vmesh generate portal.swc -o portal.ply --fit liver.nii.gz --label 2 --spacing 1 --smooth 1
+  vmesh generate liver.nii.gz --label 2 --spacing 1 --smooth 1 --tree -o portal.ply --centerline-output portal.swc
+  vmesh generate aorta.vtp -o aorta-flow.vtp --ends flat --flow-extensions 5 --json caps.json
+  vmesh generate tree.swc tree.glb --bones
+  vmesh generate tree.swc -o tree.ply --html tree.html
+  vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)",
+    .add_options = add_options,
+    .settle = settle,
+    .threads = [](const GenerateArguments& arguments) { return arguments.production.growth.threads; },
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

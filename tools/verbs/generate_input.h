@@ -1,8 +1,8 @@
 #pragma once
 
-#include "command_line/arguments.h"
 #include "command_line/console.h"
 #include "command_line/inputs.h"
+#include "verbs/generate_arguments.h"
 
 namespace vmesh::tool {
 

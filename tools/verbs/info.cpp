@@ -5,17 +5,26 @@
 #include "vmesh/io/sha256.h"
 #include "vmesh/quality/sampled_distance.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
+#include "command_line/verb.h"
 #include "report/openings.h"
 #include "report/summary.h"
 #include "verbs/info_image.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
+
+struct InfoArguments {
+  CommonArguments common;
+  InputArguments input;
+  bool check = false;  ///< exit code 1 when the file has problems
+};
+
+void add_options(CLI::App& verb, InfoArguments& arguments) {
+  add_centerline_input(verb, arguments.input, "centerline, surface or image");
+  verb.add_flag("--check", arguments.check, "exit with 1 when there is a problem");
+}
 
 std::string text_of(const Json& value) {
   return value.is_string() ? printable(value.get<std::string>()) : value.dump();
@@ -106,8 +115,6 @@ Json description(const InputArguments& input, Console& console) {
   return json;
 }
 
-}  // namespace
-
 int run(const InfoArguments& arguments, Console& console) {
   check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, files_of(arguments.input));
   const Json content = description(arguments.input, console);
@@ -123,9 +130,23 @@ int run(const InfoArguments& arguments, Console& console) {
     print(text, json);
     write_text("-", text.str());
   }
-  if (!arguments.common.json.empty()) write_json(arguments.common.json, json);
+  write_json(arguments.common.json, json);
   if (json.contains("error")) throw InvalidInput(json["error"].get<std::string>());
   return arguments.check && !json["problems"].empty() ? kCheckFailed : kOk;
 }
 
+const VerbRegistration<InfoArguments> kRegistration({
+    .rank = 20,
+    .name = "info",
+    .help = "Show what a centerline, surface or image contains, and what is wrong with it",
+    .examples = R"(Examples:
+  vmesh info tree.swc
+  vmesh info tree.ply --json -
+  vmesh info liver.nii.gz
+  vmesh info tree.ply --check && echo flawless)",
+    .add_options = add_options,
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

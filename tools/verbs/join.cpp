@@ -7,18 +7,29 @@
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/branch_labels.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
 #include "command_line/outputs.h"
-#include "command_line/usage_error.h"
+#include "command_line/verb.h"
 #include "report/generate_log.h"
-#include "report/summary.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct JoinArguments {
+  CommonArguments common;
+  std::filesystem::path folder;
+  std::filesystem::path output;
+  int threads = 0;  ///< 0: as many as there are
+};
+
+void add_options(CLI::App& verb, JoinArguments& arguments) {
+  verb.add_option("DIR", arguments.folder, "folder of the parts")->required();
+  add_output(verb, arguments.output,
+             "surface (.ply is written part by part; .vtm lists the parts, each a .vtp file; others need memory for "
+             "the whole)");
+  add_threads(verb, arguments.threads);
+}
 
 /// The attributes of surface_attributes().
 std::vector<MeshAttribute> attributes_of(const SurfaceSink::Vertices& vertices) {
@@ -183,8 +194,6 @@ void check_arguments(const JoinArguments& arguments) {
   }
 }
 
-}  // namespace
-
 int run(const JoinArguments& arguments, Console& console) {
   check_arguments(arguments);
   const std::string extension = extension_of(arguments.output);
@@ -209,8 +218,22 @@ int run(const JoinArguments& arguments, Console& console) {
        << " faces, skewness " << std::setprecision(3) << summary.mean_skewness << " mean, " << summary.max_skewness
        << " max";
   console.log(line.str());
-  if (!arguments.common.json.empty()) write_summary(arguments.common.json, arguments.output, summary);
+  write_summary(arguments.common.json, arguments.output, summary);
   return kOk;
 }
 
+const VerbRegistration<JoinArguments> kRegistration({
+    .rank = 160,
+    .name = "join",
+    .help = "Join the surfaces of parts into the whole",
+    .examples = R"(Examples:
+  vmesh join parts -o brain.ply
+  vmesh join parts -o brain.vtm --json summary.json)",
+    .add_options = add_options,
+    .settle = settle_output,
+    .threads = [](const JoinArguments& arguments) { return arguments.threads; },
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

@@ -1,4 +1,5 @@
-// Growing one part of a surface: vmesh generate part_00001.vpart
+#include "verbs/part.h"
+
 #include <sstream>
 
 #include "vmesh/core/atomic_file.h"
@@ -11,7 +12,6 @@
 #include "command_line/usage_error.h"
 #include "report/generate_log.h"
 #include "report/summary.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
@@ -81,6 +81,8 @@ void write_summary(const GenerateArguments& arguments, const PartSurface& surfac
 
 }  // namespace
 
+bool is_part(const std::filesystem::path& path) { return extension_of(path) == kPartExtension; }
+
 int run_part(const GenerateArguments& arguments, Console& console) {
   check_arguments(arguments);
   Stopwatch watch;
@@ -88,8 +90,9 @@ int run_part(const GenerateArguments& arguments, Console& console) {
   const StoredPart part = read_part(arguments.input.path);
   stages.push_back({"read", watch.lap()});
   stop_if_interrupted();
-  PartSurface surface =
-      naming(arguments.input.path, [&] { return grow_part(part.part, arguments.production.growth.threads, console.progress()); });
+  PartSurface surface = naming(arguments.input.path, [&] {
+    return grow_part(part.part, arguments.production.growth.threads, console.progress());
+  });
   stages.push_back({"grow", watch.lap()});
   if (const std::vector<std::string> faults = faults_of(surface); !faults.empty()) {
     log_refusal(faults,
@@ -104,7 +107,7 @@ int run_part(const GenerateArguments& arguments, Console& console) {
   stages.push_back({"write", watch.lap()});
   console.log("wrote " + arguments.output.string() + ": " + std::to_string(stored.surface.mesh.faces.size()) +
               " faces");
-  if (!arguments.common.json.empty()) write_summary(arguments, stored.surface, stages);
+  write_summary(arguments, stored.surface, stages);
   return kOk;
 }
 

@@ -1,16 +1,33 @@
 #include <sstream>
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
+#include "command_line/arguments_segmentation.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
-#include "command_line/usage_error.h"
+#include "command_line/verb.h"
 #include "report/extraction_report.h"
 #include "report/summary.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
+
+struct ReferenceArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+  ReferenceOptions options;
+  double voxel = 0;  ///< of a sampled centerline, mm; 0: not given
+};
+
+void add_options(CLI::App& verb, ReferenceArguments& arguments) {
+  add_input(verb, arguments.input, "image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files) or centerline");
+  add_output(verb, arguments.output, "surface");
+  add_image_options(verb, arguments.options);
+  verb.add_option("--voxel", arguments.voxel, "centerline: side of the voxels, mm")->check(in_range(1e-6, 1e6));
+  verb.add_flag("--binary", arguments.options.binary,
+                "contour only inside and outside instead of grey values: a staircase, with better triangles");
+  verb.add_flag("--all-components", arguments.options.all_components,
+                "keep all components and cavities, not only the component of the largest volume");
+}
 
 void check(const ReferenceArguments& arguments) {
   const ReferenceOptions& options = arguments.options;
@@ -48,8 +65,6 @@ ReferenceSurface contoured(const ReferenceArguments& arguments, Console& console
   });
 }
 
-}  // namespace
-
 int run(const ReferenceArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
@@ -66,17 +81,30 @@ int run(const ReferenceArguments& arguments, Console& console) {
   console.log("wrote " + arguments.output.string() + ": marching cubes of " + kind + ", " +
               std::to_string(surface.mesh.vertices.size()) + " vertices, " + std::to_string(surface.mesh.faces.size()) +
               " faces");
-  if (!arguments.common.json.empty())
-    write_json(arguments.common.json, {{"schema", "vmesh.reference/1"},
-                                       {"generator", generator_json()},
-                                       {"input", {{"file", path.string()}, {"sha256", sha256}}},
-                                       {"options", describe(arguments)},
-                                       {"contour_of", surface.binary ? "binary" : "grey"},
-                                       {"spacing_mm", {surface.spacing.x(), surface.spacing.y(), surface.spacing.z()}},
-                                       {"components", surface.components},
-                                       {"vertices", surface.mesh.vertices.size()},
-                                       {"faces", surface.mesh.faces.size()}});
+  write_json(arguments.common.json, {{"schema", "vmesh.reference/1"},
+                                     {"generator", generator_json()},
+                                     {"input", {{"file", path.string()}, {"sha256", sha256}}},
+                                     {"options", describe(arguments)},
+                                     {"contour_of", surface.binary ? "binary" : "grey"},
+                                     {"spacing_mm", {surface.spacing.x(), surface.spacing.y(), surface.spacing.z()}},
+                                     {"components", surface.components},
+                                     {"vertices", surface.mesh.vertices.size()},
+                                     {"faces", surface.mesh.faces.size()}});
   return kOk;
 }
 
+const VerbRegistration<ReferenceArguments> kRegistration({
+    .rank = 70,
+    .name = "reference",
+    .help = "Contour an image by marching cubes, or the vessel volume of a centerline sampled on voxels",
+    .examples = R"(Examples:
+  vmesh reference liver.nii.gz --label 2 --spacing 0.8 --smooth 0.8 -o portal.ply
+  vmesh reference ct.nrrd --threshold 150 --all-components -o bright.stl
+  vmesh reference tree.swc --voxel 0.5 -o tree_reference.ply)",
+    .add_options = add_options,
+    .settle = settle_output,
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

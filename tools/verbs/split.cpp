@@ -6,20 +6,36 @@
 #include "vmesh/io/sha256.h"
 #include "vmesh/parts/part_files.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
+#include "command_line/arguments_growth.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
-#include "command_line/usage_error.h"
+#include "command_line/verb.h"
 #include "report/generate_log.h"
-#include "report/summary.h"
+#include "verbs/generate_arguments.h"
 #include "verbs/part_origins.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct SplitArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;  ///< folder
+  double vertices = 1'000'000;   ///< approximate, of a part's surface
+  GenerateArguments generate;    ///< its options of growth
+};
+
+void add_options(CLI::App& verb, SplitArguments& arguments) {
+  add_centerline_input(verb, arguments.input, "centerline");
+  add_output_after_several(verb, arguments.output, "folder for the parts");
+  add_number(verb, "--vertices", arguments.vertices, 1.0, 1e9, "of a part's surface, approximately");
+  add_growth(verb, arguments.generate.production);
+  group(verb, "Resolution", {"--around", "--preset", "--max-vertices", "--simplification", "--elongation"});
+  group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
+  group(verb, "How it is made", {"--beta", "--max-center-distance", "--sweeps", "--threads"});
+}
 
 bool is_ours(const fs::path& path) {
   const std::string name = path.filename().string(), extension = extension_of(path);
@@ -89,8 +105,6 @@ void write_summary(const fs::path& path, const PartsManifest& manifest, const st
   write_json(path, json);
 }
 
-}  // namespace
-
 int run(const SplitArguments& given, Console& console) {
   GenerateArguments arguments = given.generate;
   arguments.input = given.input;
@@ -137,8 +151,23 @@ int run(const SplitArguments& given, Console& console) {
   stages.push_back({"split", watch.lap()});
   console.log("wrote " + std::to_string(manifest.parts) + " parts, " + std::to_string(manifest.pieces) +
               " pieces, to " + given.output.string());
-  if (!given.common.json.empty()) write_summary(given.common.json, manifest, stages);
+  write_summary(given.common.json, manifest, stages);
   return kOk;
 }
 
+const VerbRegistration<SplitArguments> kRegistration({
+    .rank = 150,
+    .name = "split",
+    .help = "Divide a surface into self-contained parts before it is grown, for many machines",
+    .examples = R"(Examples:
+  vmesh split brain.swc -o parts --vertices 1000000
+  for part in parts/part_*.vpart; do vmesh generate $part; done
+  vmesh join parts -o brain.ply)",
+    .add_options = add_options,
+    .settle = settle_output,
+    .threads = [](const SplitArguments& arguments) { return arguments.generate.production.growth.threads; },
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

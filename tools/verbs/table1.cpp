@@ -5,16 +5,25 @@
 #include "vmesh/deform/surface_binding.h"
 #include "vmesh/surface/generate.h"
 
-#include "command_line/exit_code.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
+#include "command_line/verb.h"
 #include "report/deform_trade.h"
 #include "report/report_output.h"
-#include "report/summary.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
+
+struct Table1Arguments {
+  CommonArguments common;
+  ReportArguments report;
+  std::filesystem::path plot;  ///< .svg; empty: none
+};
+
+void add_options(CLI::App& verb, Table1Arguments& arguments) {
+  add_report(verb, arguments.report);
+  verb.add_option("--plot", arguments.plot, "accuracy against time, as a picture (.svg)");
+}
 
 /// A column of the paper's Table 1.
 struct PaperCase {
@@ -151,12 +160,11 @@ Json to_json(const std::vector<Cost>& costs, const std::vector<DeformTrade>& tra
   return json;
 }
 
-}  // namespace
-
 int run(const Table1Arguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   check_outputs(
-      {{arguments.common.json, Kind::summary}, {arguments.report, Kind::report}, {arguments.plot, Kind::plot}}, {});
+      {{arguments.common.json, Kind::summary}, {arguments.report.file, Kind::report}, {arguments.plot, Kind::plot}},
+      {});
   std::vector<Cost> costs;
   for (const PaperCase& paper : kPaper) {
     console.log("measuring " + std::to_string(paper.segments) + " segments, " + std::to_string(paper.vertices) +
@@ -165,10 +173,22 @@ int run(const Table1Arguments& arguments, Console& console) {
   }
   console.log("measuring accuracy against cost");
   const std::vector<DeformTrade> trades = measure_deform_trades(kPaper.back().segments);
-  write_report({cost_table(costs), trade_table(trades)}, to_json(costs, trades),
-               {arguments.format, arguments.common.json, arguments.report});
+  write_report({cost_table(costs), trade_table(trades)}, to_json(costs, trades), arguments.report,
+               arguments.common.json);
   if (!arguments.plot.empty()) write_text(arguments.plot, plot_deform_trades(trades));
   return kOk;
 }
 
+const VerbRegistration<Table1Arguments> kRegistration({
+    .rank = 130,
+    .name = "table1",
+    .help = "Measure deformation and synchronisation as in the paper's Table 1, on synthetic trees of its sizes",
+    .examples = R"(Examples:
+  vmesh table1
+  vmesh table1 --format markdown --report table1.md --plot trade.svg)",
+    .add_options = add_options,
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

@@ -1,18 +1,58 @@
+#include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/comparison/method_comparison.h"
 #include "vmesh/comparison/paper_table.h"
 #include "vmesh/io/sha256.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
+#include "command_line/arguments_segmentation.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
-#include "command_line/usage_error.h"
+#include "command_line/verb.h"
 #include "report/pages.h"
 #include "report/report_output.h"
 #include "report/table2_report.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
+
+struct Table2Arguments {
+  CommonArguments common;
+  InputArguments reference;     ///< image or surface; empty path: the sampled volume of the centerline
+  InputArguments centerline;    ///< empty path: extracted from the reference; without one, the synthetic tree
+  ReferenceOptions image;       ///< how an image becomes the reference
+  bool all_components = false;  ///< of the reference
+  std::optional<double> voxel;  ///< of the sampled volume, mm; not given: as many vertices as the paper has
+  ExtractOptions extraction;
+  MethodOptions methods;
+  std::filesystem::path surfaces;  ///< folder for them; empty: none
+  ReportArguments report;
+  bool check = false;  ///< exit code 1 unless all demands are met
+};
+
+void add_options(CLI::App& verb, Table2Arguments& arguments) {
+  verb.add_option("--reference", arguments.reference.path,
+                  "image or closed surface to compare with; centerline and surfaces are made from it");
+  add_reading(verb, arguments.reference, "reference-");
+  verb.add_option("--centerline", arguments.centerline.path,
+                  "centerline to start from; without a reference, its sampled volume is the reference");
+  add_reading(verb, arguments.centerline, "centerline-");
+  add_image_options(verb, arguments.image);
+  verb.add_flag("--binary", arguments.image.binary, "contour only inside and outside instead of grey values");
+  verb.add_flag("--all-components", arguments.all_components,
+                "keep all components of the reference, not only that of the largest volume");
+  verb.add_option("--voxel", arguments.voxel,
+                  "without a reference: side of the voxels on which the centerline's volume is sampled, mm")
+      ->check(in_range(1e-6, 1e6))
+      ->default_str("0.665");
+  add_extraction(verb, arguments.extraction);
+  add_number(verb, "--sides", arguments.methods.sides, 3, 1000, "of a cone");
+  add_measuring(verb, arguments.methods.tolerance, arguments.methods.samples);
+  add_report(verb, arguments.report);
+  verb.add_option("--surfaces", arguments.surfaces,
+                  "folder for reference.ply, cones.ply, low.ply and high.ply with distances (the reference's: to low), "
+                  "and centerline.json");
+  verb.add_flag("--check", arguments.check, "exit with 1 unless the low resolution meets all requirements");
+  add_html(verb, arguments.common);
+}
 
 // With it, marching cubes of the synthetic tree has about as many vertices as in the paper.
 constexpr double kVoxel = 0.665;
@@ -49,18 +89,14 @@ void check_options(const Table2Arguments& arguments) {
 
 void check_files(const Table2Arguments& arguments) {
   using Kind = PlannedOutput::Kind;
-  std::vector<std::filesystem::path> inputs;
-  for (const InputArguments* input : {&arguments.reference, &arguments.centerline}) {
-    if (input->path.empty()) continue;
-    for (const std::filesystem::path& file : files_of_input(input->path)) inputs.push_back(file);
-  }
-  std::vector<PlannedOutput> outputs = {
-      {arguments.common.json, Kind::summary}, {arguments.report, Kind::report}, {arguments.common.html, Kind::page}};
+  std::vector<PlannedOutput> outputs = {{arguments.common.json, Kind::summary},
+                                        {arguments.report.file, Kind::report},
+                                        {arguments.common.html, Kind::page}};
   if (!arguments.surfaces.empty()) {
     for (const SurfaceFile& file : kSurfaceFiles) outputs.push_back({arguments.surfaces / file.name, Kind::surface});
     outputs.push_back({arguments.surfaces / kCenterlineFile, Kind::centerline});
   }
-  check_outputs(outputs, inputs);
+  check_outputs(outputs, files_of({&arguments.reference, &arguments.centerline}));
 }
 
 SourceFile source_file(const std::filesystem::path& path) {
@@ -192,8 +228,6 @@ int check_demands_of(const Table2Report& report, Console& console) {
   return all_met ? kOk : kCheckFailed;
 }
 
-}  // namespace
-
 int run(const Table2Arguments& arguments, Console& console) {
   check_options(arguments);
   check_files(arguments);
@@ -201,9 +235,24 @@ int run(const Table2Arguments& arguments, Console& console) {
   console.warn(report.warnings);
   stop_if_interrupted();
   if (!arguments.surfaces.empty()) write_surfaces(arguments, report);
-  if (!arguments.common.html.empty()) write_page(arguments.common.html, page_of(arguments, report), console);
-  write_report(to_tables(report), to_json(report), {arguments.format, arguments.common.json, arguments.report});
+  if (!arguments.common.html.empty()) write_page(arguments.common.html, page_of(arguments.common, report), console);
+  write_report(to_tables(report), to_json(report), arguments.report, arguments.common.json);
   return arguments.check ? check_demands_of(report, console) : kOk;
 }
 
+const VerbRegistration<Table2Arguments> kRegistration({
+    .rank = 100,
+    .name = "table2",
+    .help = "Compare marching cubes, truncated cones and both presets as in the paper's Table 2; without a file, on a "
+            "synthetic portal vein",
+    .examples = R"(Examples:
+  vmesh table2
+  vmesh table2 --centerline tree.swc --voxel 0.5 --format markdown
+  vmesh table2 --reference liver.nii.gz --label 2 --spacing 1 --smooth 0.8 --report table.md --surfaces folder
+  vmesh table2 --reference portal.ply --tree)",
+    .add_options = add_options,
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

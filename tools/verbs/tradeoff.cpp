@@ -2,16 +2,31 @@
 
 #include "vmesh/io/sha256.h"
 
-#include "command_line/exit_code.h"
-#include "command_line/inputs.h"
 #include "command_line/outputs.h"
+#include "command_line/verb.h"
 #include "report/pages.h"
 #include "report/report_output.h"
-#include "report/summary.h"
-#include "verbs/verbs.h"
 
 namespace vmesh::tool {
 namespace {
+
+struct TradeoffArguments {
+  CommonArguments common;
+  InputArguments input;
+  TradeoffOptions options;
+  ReportArguments report;
+  std::filesystem::path plot;  ///< SVG; empty: none
+};
+
+void add_options(CLI::App& verb, TradeoffArguments& arguments) {
+  add_centerline_input(verb, arguments.input, "centerline");
+  add_report(verb, arguments.report);
+  verb.add_option("--plot", arguments.plot, "error against time and against vertices, as a picture (.svg)");
+  add_number(verb, "--samples", arguments.options.samples, std::size_t{1}, std::size_t{10'000'000},
+             "points on each surface and on the vessels");
+  add_number(verb, "--threads", arguments.options.generate.threads, 0, 4096, "to work on; 0: all");
+  add_html(verb, arguments.common);
+}
 
 constexpr const char* kPeers[] = {"marching cubes, decimated", "marching cubes, quadric decimation", "marching cubes"};
 constexpr const char* kOurs[] = {"max-error", "around, blend 0", "vertices, elongation 16"};
@@ -83,11 +98,9 @@ Json report_json(const TradeoffArguments& arguments, const Centerline& centerlin
           {"points", std::move(list)}};
 }
 
-}  // namespace
-
 int run(const TradeoffArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
-  check_outputs({{arguments.report, Kind::report},
+  check_outputs({{arguments.report.file, Kind::report},
                  {arguments.plot, Kind::plot},
                  {arguments.common.json, Kind::summary},
                  {arguments.common.html, Kind::page}},
@@ -96,11 +109,22 @@ int run(const TradeoffArguments& arguments, Console& console) {
   const std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, arguments.options, console.progress());
   const std::vector<ReportTable> tables = {points_table(points), peers_table(points)};
   if (!arguments.common.html.empty())
-    write_page(arguments.common.html, page_of(arguments, centerline, points, tables), console);
-  write_report(tables, report_json(arguments, centerline, points),
-               {arguments.format, arguments.common.json, arguments.report});
+    write_page(arguments.common.html, page_of(arguments.common, arguments.input.path, centerline, points, tables),
+               console);
+  write_report(tables, report_json(arguments, centerline, points), arguments.report, arguments.common.json);
   if (!arguments.plot.empty()) write_text(arguments.plot, plot_tradeoff(points));
   return kOk;
 }
 
+const VerbRegistration<TradeoffArguments> kRegistration({
+    .rank = 110,
+    .name = "tradeoff",
+    .help = "Grow a centerline's surface with many settings, and compare accuracy against time and vertices",
+    .examples = R"(Examples:
+  vmesh tradeoff tree.swc --report tradeoff.md --plot tradeoff.svg --json tradeoff.json)",
+    .add_options = add_options,
+    .run = run,
+});
+
+}  // namespace
 }  // namespace vmesh::tool

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+
+#include "vmesh/production/produce.h"
+#include "vmesh/skeleton/extract_centerline.h"
+#include "vmesh/tuning/budget.h"
+
+#include "command_line/arguments.h"
+
+namespace vmesh::tool {
+
+struct GenerateArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+  WritingArguments writing;
+  ProductionOptions production;
+  std::optional<Budget> budget;  ///< chooses growth.around, and max_error for a budget of error
+  bool bones = false;            ///< add bones along the centerline to a .glb
+  bool check = false;            ///< exit code 1 unless the surface is flawless
+  bool allow_defects = false;    ///< write a surface even if it is not sound
+  FittingArguments fitting;      ///< of the grown surface; without a reference, the image options apply to the input
+  bool segmentation = false;     ///< the input is an image or a wall, from which a centerline is extracted
+  ExtractOptions extraction;     ///< of that centerline
+  RequiredCoverage required_coverage;
+  std::filesystem::path centerline_output;  ///< file for it; empty: none
+};
+
+}  // namespace vmesh::tool
