@@ -14,6 +14,11 @@ namespace {
 
 constexpr int kFaces = 6;
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kEqualLength = 1e-9;  // squared lengths in cells that are equal but for rounding
+
+// A tube's neck lies around the middle of both loops, drawn towards the two vertices that each of its own is between.
+// Drawn further, more of the tubes between a corner and an edge cross themselves.
+constexpr double kDrawn = 0.3;
 
 /// Edges whose vertices are joined one after the other; the surface is to the left.
 using Loop = std::vector<int>;
@@ -221,14 +226,14 @@ double squared_length(const TubeEnds& ends) {
   return sum;
 }
 
-/// The shortest tube, judged with vertices in the middle of edges.
+/// The shortest tube, judged with vertices in the middle of edges; the last of equally short ones.
 TubeEnds shortest_tube(Loop larger, Loop smaller) {
   if (larger.size() < smaller.size()) std::swap(larger, smaller);
   TubeEnds best = opposed(larger, smaller, 0);
   for (std::size_t turn = 0; turn < larger.size(); ++turn) {
     for (int start = 0; start < static_cast<int>(smaller.size()); ++start) {
       TubeEnds tried = opposed(larger, smaller, start);
-      if (squared_length(tried) < squared_length(best) + 1e-9) best = std::move(tried);
+      if (squared_length(tried) < squared_length(best) + kEqualLength) best = std::move(tried);
     }
     std::rotate(larger.begin(), larger.begin() + 1, larger.end());
   }
@@ -264,10 +269,10 @@ void add_tube(CellSurface& surface, const TubeEnds& ends) {
   std::vector<int> neck;
   for (std::size_t i = 0; i < larger.size(); ++i) {
     std::array<double, kCellEdges> weights{};
-    weights[larger[i]] += 0.15;
-    weights[smaller[across[i]]] += 0.15;
-    add_mean(larger, 0.35, weights);
-    add_mean(smaller, 0.35, weights);
+    weights[larger[i]] += kDrawn / 2;
+    weights[smaller[across[i]]] += kDrawn / 2;
+    add_mean(larger, (1 - kDrawn) / 2, weights);
+    add_mean(smaller, (1 - kDrawn) / 2, weights);
     neck.push_back(add_inner(surface, weights));
   }
   for (std::size_t i = 0; i < larger.size(); ++i) {
