@@ -5,9 +5,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/deform/simulation.h"
 #include "vmesh/deform/surface_binding.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 namespace {
 

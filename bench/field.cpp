@@ -1,7 +1,7 @@
 // The cost of queries of the vessel field, on synthetic trees.
 #include <benchmark/benchmark.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/synth/synthetic_tree.h"
 #include "vmesh/volume/vessel_field.h"
 
 namespace {

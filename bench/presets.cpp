@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/mesh/topology.h"
@@ -15,6 +14,7 @@
 #include "vmesh/quality/quality_report.h"
 #include "vmesh/surface/deviation.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/synth/synthetic_tree.h"
 #include "vmesh/volume/vessel_field.h"
 
 namespace {

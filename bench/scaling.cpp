@@ -20,10 +20,10 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/evaluation/vessel_distance.h"
 #include "vmesh/quality/quality_report.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/synth/synthetic_tree.h"
 #include "vmesh/volume/contacts.h"
 
 #include "hard_vessels.h"

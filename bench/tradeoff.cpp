@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <fstream>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/io/centerline_io.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include "mesh_3.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include "chains.h"
 #include "draw.h"

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/avx2_build.h"
 #include "vmesh/core/error.h"
 #include "vmesh/deform/linear_skin.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include "chains.h"
 #include "deform/synchronise.h"

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/parts/join.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 namespace vmesh {
 namespace {

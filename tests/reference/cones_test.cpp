@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/topology.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 namespace vmesh {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/reference/sampled_field.h"
+#include "vmesh/synth/synthetic_tree.h"
 #include "vmesh/volume/vessel_field.h"
 
 namespace vmesh {

@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "vmesh/centerline/branches.h"
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/components.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/synth/synthetic_tree.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "../mesh/shapes.h"

@@ -1,12 +1,12 @@
 // Triangles longer along vessels than around them.
 #include <gtest/gtest.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/deviation.h"
 #include "vmesh/surface/error_bound.h"
 #include "vmesh/surface/metric_skewness.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include "centerlines.h"
 #include "surface/tubes/growth_skeleton.h"

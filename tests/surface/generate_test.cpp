@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/deviation.h"
+#include "vmesh/synth/synthetic_tree.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "centerlines.h"

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/part.h"
+#include "vmesh/synth/synthetic_tree.h"
 #include "vmesh/volume/contacts.h"
 #include "vmesh/volume/vessel_field.h"
 

@@ -1,4 +1,4 @@
-#include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include <algorithm>
 #include <cmath>

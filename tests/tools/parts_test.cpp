@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/io/centerline_io.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include "random_vessels.h"
 #include "run_vmesh.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/synth/synthetic_tree.h"
 #include "vmesh/tuning/plot.h"
 
 #include "command_line/interrupt.h"

@@ -1,5 +1,5 @@
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/io/centerline_io.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"

@@ -1,7 +1,7 @@
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/comparison/method_comparison.h"
 #include "vmesh/comparison/paper_table.h"
 #include "vmesh/io/sha256.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include "command_line/arguments_segmentation.h"
 #include "command_line/interrupt.h"

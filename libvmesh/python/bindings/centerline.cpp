@@ -3,8 +3,8 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "vmesh/centerline/branches.h"
-#include "vmesh/centerline/synthetic_tree.h"
 #include "vmesh/io/centerline_io.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include "arrays.h"
 #include "module.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "centerline/portable_math.h"
+#include "synth/portable_math.h"
 
 namespace vmesh {
 

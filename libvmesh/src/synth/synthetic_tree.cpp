@@ -1,4 +1,4 @@
-#include "vmesh/centerline/synthetic_tree.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -10,11 +10,11 @@
 
 #include "vmesh/core/error.h"
 
-#include "centerline/liver_region.h"
-#include "centerline/portable_math.h"
-#include "centerline/segment_distance.h"
-#include "centerline/sphere_grid.h"
-#include "centerline/tree_growth.h"
+#include "synth/liver_region.h"
+#include "synth/portable_math.h"
+#include "synth/segment_distance.h"
+#include "synth/sphere_grid.h"
+#include "synth/tree_growth.h"
 
 namespace vmesh {
 namespace {

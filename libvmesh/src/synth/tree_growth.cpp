@@ -1,4 +1,4 @@
-#include "centerline/tree_growth.h"
+#include "synth/tree_growth.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 
 #include <Eigen/Geometry>
 
-#include "centerline/liver_region.h"
-#include "centerline/portable_math.h"
-#include "centerline/sphere_grid.h"
+#include "synth/liver_region.h"
+#include "synth/portable_math.h"
+#include "synth/sphere_grid.h"
 
 namespace vmesh::growth {
 namespace {
