@@ -202,9 +202,9 @@ TEST_F(Outputs, ImagesThatTheMemoryDoesNotHoldAreRefusedBeforeTheyAreMade) {
             voxels);
   rlimit before = {};
   getrlimit(RLIMIT_AS, &before);
-  const rlimit limit = {20'000'000'000, before.rlim_max};
+  const rlimit limit = {8'000'000'000, before.rlim_max};
   setrlimit(RLIMIT_AS, &limit);
-  // 2.0e9 voxels of 12 bytes; 2^31 would be too many whatever the memory.
+  // 2.0e9 voxels of 8 bytes; 2^31 would be too many whatever the memory.
   for (const std::vector<std::string>& verb : {std::vector<std::string>{"generate"}, {"centerline"}, {"reference"}}) {
     std::vector<std::string> arguments = verb;
     arguments.insert(arguments.end(), {"@box.nrrd", "--spacing", "0.0079"});
