@@ -29,9 +29,6 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)  # static libraries tell not
 # Every module needs the first; the others are needed only by some modules.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libgmp-dev, libmpfr-dev, libtbb-dev")
 set(recommended libembree-dev libpng-dev libpugixml-dev zlib1g-dev)
-if(VMESH_WITH_VTK)
-  list(APPEND recommended libvtk9-dev)
-endif()
 if(VMESH_WITH_ASSIMP)
   list(APPEND recommended libassimp-dev)
 endif()

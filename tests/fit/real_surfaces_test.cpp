@@ -131,7 +131,6 @@ TEST(FitRealSurfaces, EndInTheCapsOfTheModelsThatFlowIsComputedIn) {
   expect_caps("project-node-onto-centerline_c++_demo-centerlines.vtp", "sv-paths_python_demo.vtp", 3);
 }
 
-#if VMESH_WITH_VTK  // the image is resampled
 
 TriMesh portal_vein() {
   ReferenceOptions options;
@@ -220,7 +219,6 @@ TEST(FitRealSurfaces, TellsTwigsThatTheCenterlineDoesNotHave) {
   }
 }
 
-#endif
 
 }  // namespace
 }  // namespace vmesh

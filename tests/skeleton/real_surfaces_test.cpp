@@ -14,7 +14,6 @@ namespace {
 
 const std::filesystem::path kData = VMESH_SHARED_DATA;
 
-#if VMESH_WITH_VTK
 void expect_whole_path(const std::string& name) {
   const std::filesystem::path file = kData / "liver_segmentations" / name;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
@@ -42,7 +41,6 @@ void expect_whole_path(const std::string& name) {
 
 TEST(RealSegmentations, PatientTwoGoesTheWholePath) { expect_whole_path("hepaticvessel_002_vsnet.nii.gz"); }
 TEST(RealSegmentations, PatientEightGoesTheWholePath) { expect_whole_path("hepaticvessel_008_vsnet.nii.gz"); }
-#endif
 
 TEST(RealSurfaces, AnAtlasInPiecesBecomesOneTree) {
   const std::filesystem::path file = kData / "liver_spl_atlas" / "spl_portal_vein_combined.ply";

@@ -26,8 +26,7 @@ void expect_near(const Centerline& a, const Centerline& b) {
 }
 
 TEST_F(Convert, CenterlinesGoThroughEveryFormatUnchanged) {
-  std::vector<std::string> names = {"a.json", "a.csv", "a.swc"};
-  if (VMESH_TEST_WITH_VTK) names.insert(names.begin(), "a.vtp");
+  std::vector<std::string> names = {"a.vtp", "a.json", "a.csv", "a.swc"};
   std::string from = "y.swc";
   for (const std::string& name : names) {
     const Outcome run = vmesh({"convert", "@" + from, "-o", "@" + name});
@@ -51,7 +50,6 @@ TEST_F(Convert, FlatEndsAreKeptInJsonAndVtp) {
                       "ring": [[9, 2, 0], [9, -1, 2], [9, -1, -2]]}]})");
   std::string from = "cut.json";
   for (const std::string name : {"a.vtp", "b.json"}) {
-    if (name == "a.vtp" && !VMESH_TEST_WITH_VTK) continue;
     const Outcome run = vmesh({"convert", "@" + from, "@" + name, "--output-unit", "cm", "--output-space", "RAS"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run.err.find("flat end"), std::string::npos) << run.err;
@@ -117,8 +115,7 @@ TEST_F(Convert, SurfaceUnitsScaleLengthsToo) {
 
 TEST_F(Convert, WritesTheUnitAndFrameAskedFor) {
   ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.ply"}).exit_code, 0);
-  std::vector<std::string> names = {"c.ply", "c.obj", "c.off", "c.stl"};
-  if (VMESH_TEST_WITH_VTK) names.push_back("c.vtp");
+  std::vector<std::string> names = {"c.ply", "c.obj", "c.off", "c.stl", "c.vtp"};
   const LoadedSurface before = read_surface(path("y.ply"));
   for (const std::string& name : names) {
     SCOPED_TRACE(name);
@@ -177,13 +174,10 @@ TEST_F(Convert, TheOutputMayComeLastForEveryVerb) {
   }
   for (const char* name : {"s.json", "y.json", "y.ply", "cones.ply", "again.json", "fitted.ply", "y.png", "frames"})
     EXPECT_TRUE(exists(name)) << name;
-  if (VMESH_TEST_WITH_VTK) {
-    EXPECT_EQ(vmesh({"reference", "@y.swc", "@reference.ply", "--voxel", "1"}).exit_code, 0);
-    EXPECT_TRUE(exists("reference.ply"));
-  }
+  EXPECT_EQ(vmesh({"reference", "@y.swc", "@reference.ply", "--voxel", "1"}).exit_code, 0);
+  EXPECT_TRUE(exists("reference.ply"));
 }
 
-#if VMESH_TEST_WITH_VTK
 TEST_F(Convert, AVtpIsTakenForWhatItHolds) {
   ASSERT_EQ(vmesh({"convert", "@y.swc", "-o", "@lines.vtp"}).exit_code, 0);
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@faces.vtp"}).exit_code, 0);
@@ -193,7 +187,6 @@ TEST_F(Convert, AVtpIsTakenForWhatItHolds) {
   EXPECT_EQ(vmesh({"convert", "@faces.vtp", "-o", "@wrong.swc"}).exit_code, 2);
   EXPECT_FALSE(exists("wrong.ply") || exists("wrong.swc"));
 }
-#endif
 
 }  // namespace
 }  // namespace vmesh::testing

@@ -122,8 +122,7 @@ TEST_F(Evaluate, RequirementsThatMakeNoSenseAreUsageErrors) {
 
 TEST_F(Evaluate, WritesTheSurfaceWithWhatToColourItBy) {
   write_y("y.swc");
-  std::vector<std::string> names = {"colored.ply"};
-  if (VMESH_TEST_WITH_VTK) names.push_back("colored.vtp");
+  std::vector<std::string> names = {"colored.ply", "colored.vtp"};
   for (const std::string& name : names) {
     ASSERT_EQ(vmesh({"evaluate", "@box.off", "--reference", "@tall.off", "--centerline", "@y.swc", "-o", "@" + name})
                   .exit_code,

@@ -35,8 +35,7 @@ class Generate : public CommandTest {
 };
 
 TEST_F(Generate, WritesEverySurfaceFormat) {
-  std::vector<std::string> names = {"y.ply", "y.stl", "y.obj", "y.off"};
-  if (VMESH_TEST_WITH_VTK) names.push_back("y.vtp");
+  std::vector<std::string> names = {"y.ply", "y.stl", "y.obj", "y.off", "y.vtp"};
   for (const std::string& name : names) {
     const Outcome run = vmesh({"generate", "@y.swc", "-o", "@" + name});
     EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -70,8 +69,7 @@ TEST_F(Generate, VerticesKeepTheirPlaceOnTheCenterline) {
 }
 
 TEST_F(Generate, FacesKnowTheirBranch) {
-  std::vector<std::string> names = {"y.ply"};
-  if (VMESH_TEST_WITH_VTK) names.push_back("y.vtp");
+  std::vector<std::string> names = {"y.ply", "y.vtp"};
   for (const std::string& name : names) {
     SCOPED_TRACE(name);
     ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@" + name}).exit_code, 0);
@@ -129,7 +127,7 @@ TEST_F(Generate, WritesGlbWithColorsAndBones) {
 }
 
 TEST_F(Generate, CapsEndsForFlow) {
-  const std::string name = VMESH_TEST_WITH_VTK ? "y.vtp" : "y.ply";
+  const std::string name = "y.vtp";
   const Outcome run = vmesh({"generate", "@y.swc", "-o", "@" + name, "--ends", "flat", "--flow-extensions", "3",
                              "--json", "@y.json", "--check"});
   ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -67,12 +67,10 @@ TEST_F(Messages, AFileOfTheWrongKindIsAnsweredWithTheVerbThatTakesIt) {
   }
   expect_says({"convert", "@tube.off", "@y.swc"}, 2, "see vmesh centerline");
   expect_says({"convert", "@y.swc", "@y.ply"}, 2, "see vmesh generate");
-#if VMESH_TEST_WITH_VTK
   ASSERT_EQ(vmesh({"convert", "@y.swc", "-o", "@line.vtp"}).exit_code, 0);
   ASSERT_EQ(vmesh({"convert", "@tube.off", "-o", "@wall.vtp"}).exit_code, 0);
   expect_says({"render", "@line.vtp", "-o", "@y.png"}, 3, "vmesh generate");
   expect_says({"cones", "@wall.vtp", "-o", "@y.ply"}, 3, "vmesh centerline");
-#endif
 }
 
 TEST_F(Messages, AnUnknownVerbIsAnsweredWithTheNearestAndAll) {

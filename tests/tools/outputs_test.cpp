@@ -45,13 +45,6 @@ TEST_F(Outputs, UnknownFormatsAreUnsupported) {
   expect_refused({"convert", "@y.swc", "-o", "@y.xyz"}, 4, "y.xyz");
 }
 
-#if !VMESH_TEST_WITH_VTK
-TEST_F(Outputs, WithoutVtkItsFormatIsUnsupported) {
-  expect_refused({"generate", "@y.swc", "-o", "@y.vtp"}, 4, "VTK");
-  expect_refused({"convert", "@y.swc", "-o", "@y.vtp"}, 4, "VTK");
-}
-#endif
-
 TEST_F(Outputs, FoldersThatCannotTakeTheFileAreRefused) {
   fs::create_directory(path("folder.ply"));
   expect_refused({"generate", "@y.swc", "-o", "@none/y.ply"}, 5, "none");

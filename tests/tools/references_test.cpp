@@ -63,7 +63,6 @@ TEST_F(References, ASheetHasNoCenterline) {
   EXPECT_FALSE(exists("sheet.json"));
 }
 
-#if VMESH_TEST_WITH_VTK
 TEST_F(References, AnImageIsContouredWhereItLies) {
   write_ball("ball.nii.gz");
   const Outcome run = vmesh({"reference", "@ball.nii.gz", "--label", "2", "-o", "@ball.ply", "--json", "@ball.json",
@@ -103,13 +102,6 @@ TEST_F(References, ACenterlineComesFromAnImageToo) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(centerline("ball.json").component_count(), 1u);
 }
-#else
-TEST_F(References, WithoutVtkContoursAreUnsupported) {
-  const Outcome run = vmesh({"reference", "@y.swc", "--voxel", "0.5", "-o", "@y.ply"});
-  EXPECT_EQ(run.exit_code, 4);
-  EXPECT_NE(run.err.find("VMESH_WITH_VTK"), std::string::npos) << run.err;
-}
-#endif
 
 }  // namespace
 }  // namespace vmesh::testing

@@ -151,7 +151,6 @@ TEST_F(Table2, RefusesASheetWithoutCenterlineAndNeverOverwritesAnInput) {
   EXPECT_EQ(read("low.ply"), before);
 }
 
-#if VMESH_TEST_WITH_VTK
 TEST_F(Table2, ComesFromACenterlineAlone) {
   const json report = table({"--centerline", "@y.swc", "--voxel", "0.6"});
   expect_rows(report, {"preset low", "preset high"});
@@ -200,9 +199,6 @@ TEST_F(Table2, TellsWhatIsWrongWithAMask) {
   write("broken.nii.gz", read("fork.nii.gz").substr(0, 200));
   expect_failure({"--reference", "@broken.nii.gz", "--label", "2"}, 3, "broken.nii.gz");
 }
-#else
-TEST_F(Table2, WithoutVtkNeedsASurface) { expect_failure({"--centerline", "@y.swc"}, 4, "VMESH_WITH_VTK"); }
-#endif
 
 }  // namespace
 }  // namespace vmesh::testing

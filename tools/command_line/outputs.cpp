@@ -70,8 +70,6 @@ void check_format(const PlannedOutput& output) {
   }
   if (output.kind == Kind::picture && extension != ".png")
     throw Unsupported(output.path.string() + ": pictures are written as .png only");
-  if (extension == ".vtp" && !VMESH_TOOL_WITH_VTK)
-    throw Unsupported(output.path.string() + ": this vmesh was built without VTK and cannot write .vtp");
 }
 
 }  // namespace

@@ -257,8 +257,6 @@ void check_files(const DeformArguments& arguments) {
       {{arguments.common.json, PlannedOutput::Kind::summary}, {arguments.common.html, PlannedOutput::Kind::page}},
       inputs);
   surface_output_format("frame." + arguments.format);
-  if (arguments.format == "vtp" && !VMESH_TOOL_WITH_VTK)
-    throw Unsupported("this vmesh was built without VTK and cannot write .vtp; choose --format obj");
 }
 
 int run(const DeformArguments& arguments, Console& console) {

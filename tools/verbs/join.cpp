@@ -186,8 +186,6 @@ void check_arguments(const JoinArguments& arguments) {
   const fs::path manifest = arguments.folder / kManifestName;
   check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, {manifest});
   if (extension_of(arguments.output) == ".vtm") {
-    if (!VMESH_TOOL_WITH_VTK)
-      throw Unsupported(arguments.output.string() + ": this vmesh was built without VTK and cannot write .vtp");
     check_can_be_written(arguments.output);
   } else {
     check_outputs({{arguments.output, PlannedOutput::Kind::surface}}, {manifest});
