@@ -1,12 +1,12 @@
 #include <vtkCellArray.h>
 #include <vtkFlyingEdges3D.h>
-#include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkImplicitPolyDataDistance.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 #include <vtkQuadricDecimation.h>
 
+#include "from_vtk.h"
 #include "peers.h"
 
 namespace vmesh::bench {
@@ -22,18 +22,6 @@ vtkNew<vtkPolyData> to_poly_data(const TriMesh& mesh) {
   data->SetPoints(points);
   data->SetPolys(faces);
   return data;
-}
-
-TriMesh to_tri_mesh(vtkPolyData& surface) {
-  TriMesh mesh;
-  for (vtkIdType v = 0; v < surface.GetNumberOfPoints(); ++v) mesh.vertices.emplace_back(surface.GetPoint(v));
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType f = 0; f < surface.GetNumberOfPolys(); ++f) {
-    surface.GetPolys()->GetCellAtId(f, corners);
-    mesh.faces.push_back({static_cast<Index>(corners->GetId(0)), static_cast<Index>(corners->GetId(1)),
-                          static_cast<Index>(corners->GetId(2))});
-  }
-  return mesh;
 }
 
 }  // namespace
@@ -56,7 +44,7 @@ TriMesh vtk_quadric_decimated(const TriMesh& mesh, double share) {
   decimation->SetInputData(data);
   decimation->SetTargetReduction(1 - share);
   decimation->Update();
-  return to_tri_mesh(*decimation->GetOutput());
+  return testing::from_vtk(*decimation->GetOutput());
 }
 
 TriMesh vtk_isosurface(const Vec3& low, const Vec3& high, double spacing, double (*value)(const Vec3&, const void*),
@@ -79,7 +67,7 @@ TriMesh vtk_isosurface(const Vec3& low, const Vec3& high, double spacing, double
   contour->ComputeGradientsOff();
   contour->ComputeScalarsOff();
   contour->Update();
-  return to_tri_mesh(*contour->GetOutput());
+  return testing::from_vtk(*contour->GetOutput());
 }
 
 }  // namespace vmesh::bench

@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 
 #include "vmesh/core/error.h"
-#include "vmesh/surface/flat_reference.h"
 #include "vmesh/mesh/components.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/flat_ends.h"
+#include "vmesh/surface/flat_reference.h"
 
 namespace vmesh {
 namespace {

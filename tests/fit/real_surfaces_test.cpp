@@ -8,7 +8,6 @@
 #include "vmesh/centerline/branches.h"
 #include "vmesh/centerline/round_ends.h"
 #include "vmesh/fit/fit_surface.h"
-#include "vmesh/surface/flat_reference.h"
 #include "vmesh/image/image_io.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
@@ -17,6 +16,7 @@
 #include "vmesh/reference/reference_surface.h"
 #include "vmesh/skeleton/extract_centerline.h"
 #include "vmesh/surface/flat_ends.h"
+#include "vmesh/surface/flat_reference.h"
 #include "vmesh/volume/contacts.h"
 #include "vmesh/volume/vessel_field.h"
 
@@ -131,7 +131,6 @@ TEST(FitRealSurfaces, EndInTheCapsOfTheModelsThatFlowIsComputedIn) {
   expect_caps("project-node-onto-centerline_c++_demo-centerlines.vtp", "sv-paths_python_demo.vtp", 3);
 }
 
-
 TriMesh portal_vein() {
   ReferenceOptions options;
   options.labels = {2};
@@ -218,7 +217,6 @@ TEST(FitRealSurfaces, TellsTwigsThatTheCenterlineDoesNotHave) {
     EXPECT_TRUE(told) << end.position.transpose();
   }
 }
-
 
 }  // namespace
 }  // namespace vmesh

@@ -2,20 +2,18 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <vtkCellArray.h>
 #include <vtkFloatArray.h>
 #include <vtkFlyingEdges3D.h>
-#include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPolyData.h>
 
 #include "vmesh/image/contour.h"
 #include "vmesh/image/image_filters.h"
 #include "vmesh/image/image_io.h"
 #include "vmesh/mesh/topology.h"
 
+#include "from_vtk.h"
 #include "shared_data.h"
 
 namespace vmesh::testing {
@@ -34,16 +32,8 @@ TriMesh contour_by_vtk(VoxelImage image) {
   filter->SetValue(0, 0.0);
   filter->ComputeNormalsOff();
   filter->Update();
-  vtkPolyData& surface = *filter->GetOutput();
-  TriMesh mesh;
-  for (vtkIdType v = 0; v < surface.GetNumberOfPoints(); ++v)
-    mesh.vertices.push_back(image.position(Vec3(surface.GetPoint(v))));
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType f = 0; f < surface.GetNumberOfPolys(); ++f) {
-    surface.GetPolys()->GetCellAtId(f, corners);
-    mesh.faces.push_back({static_cast<Index>(corners->GetId(0)), static_cast<Index>(corners->GetId(1)),
-                          static_cast<Index>(corners->GetId(2))});
-  }
+  TriMesh mesh = from_vtk(*filter->GetOutput());
+  for (Vec3& v : mesh.vertices) v = image.position(v);
   return mesh;
 }
 

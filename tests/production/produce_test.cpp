@@ -48,13 +48,13 @@ TEST(Produce, SeparatesVesselsUnlessTheyAreToBeKept) {
   const Production apart = produce(centerline, {});
   EXPECT_TRUE(apart.result.is_sound());
   ASSERT_TRUE(apart.prepared.separated);
-  EXPECT_EQ(apart.prepared.contacts.size(), 1u);
+  EXPECT_EQ(apart.prepared.contacts().size(), 1u);
   ProductionOptions options;
   options.preparation.separate = false;
   const Production kept = produce(centerline, {}, options);
   EXPECT_FALSE(kept.result.is_sound());
   EXPECT_FALSE(kept.prepared.separated);
-  EXPECT_EQ(kept.prepared.contacts.size(), 1u);
+  EXPECT_EQ(kept.prepared.contacts().size(), 1u);
 }
 
 TEST(Produce, EndsAsWanted) {

@@ -74,7 +74,7 @@ void warn_of_contacts_left(GenerateReport& report, const std::vector<Contact>& l
 
 void log_preparation(const PreparedCenterline& prepared, GenerateReport& report, Console& console) {
   if (prepared.simplified) log_simplification(*prepared.simplified, console);
-  report.contacts = prepared.contacts;
+  report.contacts = prepared.contacts();
   if (!prepared.separated) {
     if (!report.contacts.empty()) warn_of_contacts(report, console);
     return;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "vmesh/parts/part_files.h"
-
 #include "vmesh/production/prepared_centerline.h"
 
 namespace vmesh::tool {

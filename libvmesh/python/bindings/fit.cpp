@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "vmesh/fit/fit_surface.h"
-#include "vmesh/surface/flat_reference.h"
 #include "vmesh/mesh/topology.h"
+#include "vmesh/surface/flat_reference.h"
 
 #include "arrays.h"
 #include "module.h"

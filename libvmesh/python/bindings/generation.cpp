@@ -7,9 +7,10 @@ namespace vmesh::python {
 namespace {
 
 ProductionOptions request_of(int around, const std::string& max_error, double blend, const std::string& placement,
-                         const std::string& growth, const std::string& overlap, double gap, const std::string& ends,
-                         const py::object& open_ends, double flow_extension, double simplification, double elongation,
-                         std::size_t least_vertices, bool deformable, int sweeps, int max_vertices, int threads) {
+                             const std::string& growth, const std::string& overlap, double gap, const std::string& ends,
+                             const py::object& open_ends, double flow_extension, double simplification,
+                             double elongation, std::size_t least_vertices, bool deformable, int sweeps,
+                             int max_vertices, int threads) {
   ProductionOptions request;
   GenerateOptions& options = request.growth;
   options.around = around;

@@ -52,7 +52,7 @@ SurfacePtr grow(const CenterlinePtr& centerline, const ProductionOptions& option
     if (prepared.separated) {
       warn_of_contacts_left(prepared.separated->report.left, warnings);
     } else {
-      warn_of_contacts(prepared.contacts, warnings);
+      warn_of_contacts(prepared.contacts(), warnings);
     }
   };
   Production production = produce(centerline->centerline, centerline->end_sections, options, progress, steps);

@@ -90,7 +90,8 @@ class FarPlaces {
     Match cut = there;  // where to add a vertex
     if (is_tip(worst)) {
       for (const double share : kShares)
-        try_change([&](FitPatch& changed, PatchMatches&) { move_tip(changed, there, share); });
+        try_change(
+            [&](FitPatch& changed, PatchMatches&) { move_corner(changed, there, nearest_corner(there), share); });
       cut = farthest_beside(patch, before.matches, tip_of(patch, there));
     }
     if (!best && may_add && cut.face != kNone) {
@@ -99,7 +100,7 @@ class FarPlaces {
     }
     if (!best)
       try_change([&](FitPatch& changed, PatchMatches& matches) { refit(changed, matches, {.emphasis = kEmphasis}); });
-    for (int corner = 0; corner < 3 && !best; ++corner)
+    for (std::size_t corner = 0; corner < 3 && !best; ++corner)
       for (const double share : kShares)
         try_change([&](FitPatch& changed, PatchMatches&) { move_corner(changed, there, corner, share); });
     if (best) put_back(best->first, best->second);
@@ -108,10 +109,14 @@ class FarPlaces {
 
   static bool is_tip(const Match& match) { return match.weights.maxCoeff() > 1 - kAtVertex; }
 
-  static Index tip_of(const FitPatch& patch, const Match& match) {
+  static std::size_t nearest_corner(const Match& match) {
     Eigen::Index corner = 0;
     match.weights.maxCoeff(&corner);
-    return patch.surface.faces[match.face][static_cast<std::size_t>(corner)];
+    return static_cast<std::size_t>(corner);
+  }
+
+  static Index tip_of(const FitPatch& patch, const Match& match) {
+    return patch.surface.faces[match.face][nearest_corner(match)];
   }
 
   // The farthest match on the faces around a tip, which they cut off and it compensates for.
@@ -127,15 +132,9 @@ class FarPlaces {
     return farthest;
   }
 
-  void move_tip(FitPatch& patch, const Match& match, double share) const {
-    Eigen::Index corner = 0;
-    match.weights.maxCoeff(&corner);
-    move_corner(patch, match, static_cast<int>(corner), share);
-  }
-
-  void move_corner(FitPatch& patch, const Match& match, int corner, double share) const {
+  void move_corner(FitPatch& patch, const Match& match, std::size_t corner, double share) const {
     std::vector<Vec3> steps(patch.surface.vertices.size(), Vec3::Zero());
-    const Index v = patch.surface.faces[match.face][static_cast<std::size_t>(corner)];
+    const Index v = patch.surface.faces[match.face][corner];
     steps[v] = -share * match.distance * match.direction;
     keep_in_opening(patch.surface, v, setting_.opening_normals, steps[v]);
     take_steps(patch.surface, steps, setting_.guard);

@@ -31,14 +31,13 @@ PreparedCenterline prepare_centerline(const Centerline& original, const Generate
   if (options.simplify) prepared.simplified = simplified(original, growth);
   release_freed_memory();
   if (!options.separate) {
-    prepared.contacts = find_contacts(ConeRelations(prepared.unseparated(), growth.blend), options.gap);
+    prepared.kept_contacts = find_contacts(ConeRelations(prepared.unseparated(), growth.blend), options.gap);
     return prepared;
   }
   SeparationOptions separation;
   separation.gap = options.gap;
   separation.blend = growth.blend;
   prepared.separated = separate_contacts(prepared.unseparated(), separation, progress);
-  prepared.contacts = prepared.separated->report.before;
   return prepared;
 }
 

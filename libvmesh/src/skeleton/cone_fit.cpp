@@ -78,12 +78,12 @@ struct ConeSums {
   std::array<double, 2> weight = {0, 0};
 };
 
-/// What a sample asks of the distance of the vessels' boundary at its place: to change by -pull / weight.
-struct Wish {
+/// A sample in the normal equations: its weight, and the weight times how far the boundary is from where it should be.
+struct SampleTerm {
   double weight = 0, pull = 0;
 };
 
-Wish wish_of(const FitSamples& samples, std::size_t i, double distance, double radius) {
+SampleTerm term_of(const FitSamples& samples, std::size_t i, double distance, double radius) {
   const double slack = samples.slack[i], near = std::max(kNear * radius, slack), off = std::abs(distance);
   const double weight = samples.areas[i] * std::min(1.0, near / std::max(off, 1e-12));
   // Beyond the slack, the distance beyond it; within, a little of the distance.
@@ -92,33 +92,34 @@ Wish wish_of(const FitSamples& samples, std::size_t i, double distance, double r
   return {weight * (beyond + kWithinSlack), weight * pull};
 }
 
-Wish wish_of(const FitVoxels& voxels, std::size_t i, double distance, double radius) {
+SampleTerm term_of(const FitVoxels& voxels, std::size_t i, double distance, double radius) {
   constexpr double kSure = 12, kSmall = 1e-3;  // in blurs: beyond the first, exp() is nothing; below, tanh(x) is x
   const double x = distance / voxels.blur;
   const bool is_inside = voxels.inside[i];
   if (is_inside ? x < -kSure : x > kSure) return {};
   const double likely_inside = 1 / (1 + std::exp(std::clamp(x, -kSure, kSure)));
-  const double nearness = std::min(1.0, std::max(kNear * radius, 3 * voxels.blur) / std::max(std::abs(distance), 1e-12));
+  const double nearness =
+      std::min(1.0, std::max(kNear * radius, 3 * voxels.blur) / std::max(std::abs(distance), 1e-12));
   const double bound = std::abs(x) < kSmall ? 0.25 : std::tanh(0.5 * std::abs(x)) / (2 * std::abs(x));
   const double weight = nearness * voxels.volume;
   return {weight * bound / voxels.blur, weight * ((is_inside ? 1 : 0) - likely_inside)};
 }
 
-void add_wish(ConeSums& sum, const RoundCone& cone, const Place& place, const Vec3& point, const Wish& wish) {
+void add_sample(ConeSums& sum, const RoundCone& cone, const Place& place, const Vec3& point, const SampleTerm& term) {
   // The distance is stationary in the touching sphere's position along the axis, so the derivatives are those of that
   // sphere.
   Vector4 derivative;
   derivative << cone.gradient(point, place.t), 1;
-  const Matrix4 block = wish.weight * derivative * derivative.transpose();
-  const Vector4 side = wish.pull * derivative;
+  const Matrix4 block = term.weight * derivative * derivative.transpose();
+  const Vector4 side = term.pull * derivative;
   const double t = place.t;
   sum.blocks[0] += (1 - t) * (1 - t) * block;
   sum.blocks[1] += t * (1 - t) * block;
   sum.blocks[2] += t * t * block;
   sum.sides[0] += (1 - t) * side;
   sum.sides[1] += t * side;
-  sum.weight[0] += (1 - t) * wish.weight;
-  sum.weight[1] += t * wish.weight;
+  sum.weight[0] += (1 - t) * term.weight;
+  sum.weight[1] += t * term.weight;
 }
 
 template <class Samples>
@@ -127,8 +128,8 @@ void add_samples(Equations& equations, const GraphCones& cones, const Samples& s
   std::vector<ConeSums> sums(cones.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Place& place = places[i];
-    const Wish wish = wish_of(samples, i, place.distance, cones.radius_at(place));
-    if (wish.weight > 0) add_wish(sums[place.cone], cones.cone(place.cone), place, samples.points[i], wish);
+    const SampleTerm term = term_of(samples, i, place.distance, cones.radius_at(place));
+    if (term.weight > 0) add_sample(sums[place.cone], cones.cone(place.cone), place, samples.points[i], term);
   }
   for (Index cone = 0; cone < sums.size(); ++cone) {
     const Index a = cones.first_node(cone), b = cones.last_node(cone);

@@ -41,8 +41,8 @@ constexpr double kVoxelNoise = 6, kVoxelShare = 0.5, kLeastBlur = 0.1;
 constexpr int kFirstRounds = 6, kVoxelRounds = 10;
 constexpr double kVoxelSmoothPosition = 0.003, kVoxelRough = 20;
 constexpr double kLeastRadius = 1.5;  // voxels; thinner vessels have nodes as far apart as ones of that radius
-// Measured: 70 to 230; several times that in vessels of a voxel, which have few.
-constexpr double kBytesPerVoxel = 250;
+// Measured: 70 to 230, and for every face of a voxel at the wall up to 450, of which vessels of a voxel have four.
+constexpr double kBytesPerVoxel = 250, kBytesPerFace = 450;
 
 void check(const ExtractOptions& options) {
   if (!(options.spacing >= 0.1 && options.spacing <= 10)) throw InvalidInput("the spacing of nodes is 0.1 to 10 radii");
@@ -219,7 +219,9 @@ void fit(Work& work, const ExtractOptions& options, const Progress& progress) {
     work.report.spurs += skeleton::prune_spurs(work.graph) + skeleton::prune_contained(work.graph);
   };
   resample(kSpacing);
-  const double noise = skeleton::fit_cones(work.graph, samples, {.voxel = work.wall_voxel, .most = voxels.size() > 0 ? kFirstRounds : 20}, progress);
+  FitRounds first{.voxel = work.wall_voxel};
+  if (voxels.size() > 0) first.most = kFirstRounds;
+  const double noise = skeleton::fit_cones(work.graph, samples, first, progress);
   prune();
   voxels.blur = std::max(kLeastBlur * work.mean_voxel, noise);
   const auto refit = [&](double spacing) {
@@ -338,7 +340,7 @@ void add_samples(const skeleton::WallPart& part, const std::vector<double>& radi
                  Index component, Work::Wall& wall) {
   const auto is_wall = [&](Index f) { return part.is_wall(f); };
   skeleton::WallSamples samples =
-      skeleton::samples_by_area(part.mesh, [&](Index f) { return part.is_wall(f) ? spacing * radius[f] : 0.0; });
+      skeleton::samples_by_area(part.mesh, [&](Index f) { return is_wall(f) ? spacing * radius[f] : 0.0; });
   if (smooth) skeleton::move_onto_smooth_wall(samples, part.mesh, is_wall);
   wall.samples.points.insert(wall.samples.points.end(), samples.points.begin(), samples.points.end());
   wall.samples.areas.insert(wall.samples.areas.end(), samples.areas.begin(), samples.areas.end());
@@ -437,6 +439,9 @@ ExtractedCenterline extract_centerline(VesselMask vessels, const ExtractOptions&
   for (const skeleton::BorderEnd& end : ends) known.push_back(end.end);
   VoxelSkeleton skeleton = skeleton::skeleton_of(mask.voxels, mask.frame, known, progress);
   work.wall.samples = skeleton::wall_of(mask, ends, skeleton.component_of_voxel, work.wall.component);
+  require_memory(kBytesPerFace * static_cast<double>(work.wall.samples.size()),
+                 "fitting cones to " + std::to_string(work.wall.samples.size()) + " faces of voxels",
+                 "use larger voxels");
   if (!mask.options.threshold)
     work.voxels.beside_wall = skeleton::voxels_beside_wall(mask, skeleton.component_of_voxel, work.voxels.component);
   mask = {};

@@ -171,10 +171,9 @@ namespace {
 /// Out of the vessels, by the voxels around.
 Vec3 normal_at(const VoxelSet& voxels, const Voxel& v, const Vec3& spacing) {
   Vec3 normal = Vec3::Zero();
-  for (int k = -1; k <= 1; ++k)
-    for (int j = -1; j <= 1; ++j)
-      for (int i = -1; i <= 1; ++i)
-        if (!voxels.contains({v[0] + i, v[1] + j, v[2] + k})) normal += Vec3(i, j, k).cwiseProduct(spacing);
+  visit_around(v, [&](const Voxel& near) {
+    if (!voxels.contains(near)) normal += Vec3(near[0] - v[0], near[1] - v[1], near[2] - v[2]).cwiseProduct(spacing);
+  });
   return normal;
 }
 
@@ -263,16 +262,13 @@ FitVoxels voxels_beside_wall(const MaskContent& mask, const std::vector<Index>& 
   for (const Voxel& v : set.voxels()) {
     const Index c = component[mask.voxels.number(v)];
     bool has_neighbour_outside = false;
-    for (int k = -1; k <= 1; ++k)
-      for (int j = -1; j <= 1; ++j)
-        for (int i = -1; i <= 1; ++i) {
-          const Voxel neighbour = {v[0] + i, v[1] + j, v[2] + k};
-          if (set.contains(neighbour) || is_beyond(set, neighbour)) continue;
-          has_neighbour_outside = true;
-          if (listed.contains(neighbour)) continue;
-          listed.insert(neighbour);
-          add(neighbour, false, c);
-        }
+    visit_around(v, [&](const Voxel& neighbour) {
+      if (set.contains(neighbour) || is_beyond(set, neighbour)) return;
+      has_neighbour_outside = true;
+      if (listed.contains(neighbour)) return;
+      listed.insert(neighbour);
+      add(neighbour, false, c);
+    });
     if (has_neighbour_outside) add(v, true, c);
   }
   return beside;

@@ -137,9 +137,7 @@ std::size_t fill_cavities(VoxelSet& voxels) {
 
 int neighbours_inside(const VoxelSet& voxels, const Voxel& v) {
   int count = 0;
-  for (int k = -1; k <= 1; ++k)
-    for (int j = -1; j <= 1; ++j)
-      for (int i = -1; i <= 1; ++i) count += voxels.contains({v[0] + i, v[1] + j, v[2] + k});
+  visit_around(v, [&](const Voxel& near) { count += voxels.contains(near); });
   return count;
 }
 

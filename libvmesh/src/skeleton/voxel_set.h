@@ -80,4 +80,12 @@ class VoxelSet {
   std::size_t voxels_ = 0;
 };
 
+/// Calls visit(neighbour) for a voxel and the 26 around it.
+template <class Visit>
+void visit_around(const Voxel& v, Visit&& visit) {
+  for (int k = -1; k <= 1; ++k)
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i) visit(Voxel{v[0] + i, v[1] + j, v[2] + k});
+}
+
 }  // namespace vmesh::skeleton

@@ -107,8 +107,8 @@ struct CenterlineMetadata {
 /// are recorded: JSON, SWC, VTP, CSV pair. Numbers round-trip exactly, the bytes depend on the arguments alone, and the
 /// file appears complete or not at all. Node order is kept. Flat ends are written to JSON and VTP; other formats cannot
 /// hold them (keeps_end_sections()). Throws InvalidInput for a flat end that is wrong or at no end; Unsupported for a
-/// centerline with loops in SWC (a tree format), see centerline_output_format(); WriteError
-/// when the file cannot be written.
+/// centerline with loops in SWC (a tree format), see centerline_output_format(); WriteError when the file cannot be
+/// written.
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
                       const CenterlineMetadata& metadata = {}, const std::vector<EndSection>& end_sections = {});
 

@@ -45,8 +45,7 @@ struct SurfaceMetadata {
 ///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; with
 ///        `skin`, bones
 /// Throws InvalidInput when an attribute or the skin has a wrong length or a face names a vertex that does not exist,
-/// Unsupported (extension, a skin in another format than GLB or of more than 65,535 joints),
-/// WriteError.
+/// Unsupported (extension, a skin in another format than GLB or of more than 65,535 joints), WriteError.
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes = {},
                    const SurfaceMetadata& metadata = {}, const SurfaceSkin* skin = nullptr);
 

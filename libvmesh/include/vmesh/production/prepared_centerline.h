@@ -15,10 +15,12 @@ struct PreparedCenterline {
   const Centerline* original = nullptr;
   std::optional<SimplifiedCenterline> simplified;
   std::optional<SeparatedCenterline> separated;  ///< of the simplified one
-  std::vector<Contact> contacts;                 ///< before any were separated, of the simplified one
+  std::vector<Contact> kept_contacts;            ///< of the simplified one, where vessels are not separated
 
   const Centerline& unseparated() const { return simplified ? simplified->centerline : *original; }
   const Centerline& grown() const { return separated ? separated->centerline : unseparated(); }
+  /// Before any were separated.
+  const std::vector<Contact>& contacts() const { return separated ? separated->report.before : kept_contacts; }
 };
 
 struct PreparationOptions {
@@ -28,8 +30,7 @@ struct PreparationOptions {
 };
 
 /// Leaves nodes out as simplify_for_growth() does, unless growth.simplification is 0 or it is paper growth, and
-/// separates vessels. Throws
-/// InvalidInput for options out of range, Cancelled.
+/// separates vessels. Throws InvalidInput for options out of range, Cancelled.
 PreparedCenterline prepare_centerline(const Centerline& original, const GenerateOptions& growth,
                                       const PreparationOptions& options, const Progress& progress = {});
 

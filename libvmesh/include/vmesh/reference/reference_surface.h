@@ -55,7 +55,7 @@ struct PreparedImage {
 PreparedImage prepared_image(const LoadedImage& image, const ReferenceOptions& options);
 
 /// Throws InvalidInput for options out of range, an image with several labels and no choice, and if nothing is inside
-/// (listing the labels); Unsupported without VTK, and if there is not enough free memory for the image to be contoured.
+/// (listing the labels); Unsupported if there is not enough free memory for the image to be contoured.
 ReferenceSurface reference_surface(const LoadedImage& image, const ReferenceOptions& options = {});
 
 /// The vessel volume of a centerline (plain union of round cones), sampled on voxels of `voxel` mm and contoured the

@@ -25,9 +25,9 @@ struct ExtractOptions {
   double least_length = 0;
   /// Open all loops, each at its neck.
   bool tree = false;
-  /// A wall's vertices lie off the vessels' boundary, so that its faces lie on it in the mean, as in surfaces that vmesh
-  /// grows (Placement::balanced). false: the vertices lie on it, as in marching cubes and scans. Matters for walls with
-  /// few faces around a vessel: an octagon of the same vertices is 5 % thinner.
+  /// A wall's vertices lie off the vessels' boundary, so that its faces lie on it in the mean, as in surfaces that
+  /// vmesh grows (Placement::balanced). false: the vertices lie on it, as in marching cubes and scans. Matters for
+  /// walls with few faces around a vessel: an octagon of the same vertices is 5 % thinner.
   bool balanced_wall = false;
 };
 

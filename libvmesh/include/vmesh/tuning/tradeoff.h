@@ -28,7 +28,7 @@ struct TradeoffPoint {
 struct TradeoffOptions {
   GenerateOptions generate;  ///< options that do not vary on a curve
   bool beta = true, resolution = true, max_error = true, blend = true, effort = true;  ///< curves of vmesh
-  bool marching_cubes = true;     ///< at several voxel sizes, and decimated; left out without VTK
+  bool marching_cubes = true;     ///< at several voxel sizes, and decimated
   bool cones = true;              ///< truncated cones
   std::size_t samples = 100'000;  ///< on each surface
 };
