@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Feeds the command with damaged files of the formats that libraries read in a process of their own (assimp, HDF5,
-ITK), one after another, for a time each. Every file must be read or refused with its name, within a minute: exit code
+GDCM), and with damaged headers of images in two files, one after another, for a time each. Every file must be read or refused with its name, within a minute: exit code
 0, 3 or 4, or 2 for what looks like DICOM no more. What is not so answered is kept. Exit code 1 if anything was found, 77
 if nothing could be tried."""
 import argparse

@@ -133,7 +133,7 @@ TEST_F(Dicom, WhatIsNoRegularStackIsRefused) {
   other.direction.col(0) = image_.direction.col(1);
   other.direction.col(1) = image_.direction.col(2);
   folder_.write("IM99", dicom_slice(other, values, 0));
-  expect_contains(refusal(), "turned");
+  expect_contains(refusal(), "rotated relative to the first");
   other = image_;
   other.size = {40, 48, 36};
   folder_.write("IM99", dicom_slice(other, values, 0));

@@ -35,6 +35,10 @@ TEST(ItkComparison, ImagesLieWhereItkPutsThem) {
     expect_same_place(folder.write("lps.nrrd", nrrd_header(sample, "short") + voxels));
     expect_same_place(folder.write("ras.nrrd", nrrd_header(sample, "short", "encoding: raw\n", true) + voxels));
     expect_same_place(folder.write("a.mha", mha_header(sample, "MET_SHORT") + voxels));
+    folder.write("two.raw", voxels);
+    std::string header = mha_header(sample, "MET_SHORT");
+    expect_same_place(folder.write("two.mhd", header.replace(header.find("LOCAL"), 5, "two.raw")));
+    expect_same_place(folder.write("two.nhdr", nrrd_header(sample, "short", "encoding: raw\ndata file: two.raw\n")));
   }
 }
 
@@ -44,6 +48,12 @@ TEST(ItkComparison, NiftiWithoutAPlaceLiesWhereItkPutsIt) {
   std::string bytes = nifti_file<std::int16_t>(sample, sample.values());
   bytes.replace(254, 2, bytes_of(std::int16_t{0}, false));
   expect_same_place(folder.write("a.nii", bytes));
+  folder.write("a.img", bytes.substr(352));
+  bytes.replace(108, 4, bytes_of(0.0f, false)).replace(344, 4, std::string("ni1\0", 4));
+  expect_same_place(folder.write("a.hdr", bytes.substr(0, 348)));
+  // As Analyze, with an orientation.
+  bytes.replace(344, 4, std::string(4, '\0'))[252] = 2;
+  expect_same_place(folder.write("a.hdr", bytes.substr(0, 348)));
 }
 
 TEST(ItkComparison, RealSegmentationsLieWhereItkPutsThem) {

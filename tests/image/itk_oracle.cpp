@@ -8,8 +8,8 @@ namespace vmesh::testing {
 namespace {
 
 itk::ImageIOBase::Pointer reader_for(const std::string& path) {
-  if (path.ends_with(".nrrd")) return itk::NrrdImageIO::New().GetPointer();
-  if (path.ends_with(".mha")) return itk::MetaImageIO::New().GetPointer();
+  if (path.ends_with(".nrrd") || path.ends_with(".nhdr")) return itk::NrrdImageIO::New().GetPointer();
+  if (path.ends_with(".mha") || path.ends_with(".mhd")) return itk::MetaImageIO::New().GetPointer();
   return itk::NiftiImageIO::New().GetPointer();
 }
 

@@ -65,8 +65,8 @@ TEST_F(CenterlineInputs, AnotherFolderIsRefusedWithWhatIsInIt) {
   EXPECT_FALSE(exists("out.ply"));
 }
 
-#if !VMESH_TEST_WITH_ITK
-TEST_F(CenterlineInputs, AFolderOfDicomFilesNeedsItk) {
+#if !VMESH_HAS_DICOM
+TEST_F(CenterlineInputs, AFolderOfDicomFilesNeedsGdcm) {
   std::filesystem::create_directory(path("ct"));
   write("ct/IM0001", std::string(128, '\0') + "DICM");
   for (const char* input : {"@ct", "@ct/IM0001"}) {
@@ -75,7 +75,7 @@ TEST_F(CenterlineInputs, AFolderOfDicomFilesNeedsItk) {
       EXPECT_EQ(run.exit_code, 4) << run.err;
     }
     const Outcome run = vmesh({"generate", input, "--threshold", "200", "-o", "@out.ply"});
-    EXPECT_NE(run.err.find("built without ITK (CMake option VMESH_WITH_ITK)"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("built without GDCM (CMake option VMESH_WITH_DICOM)"), std::string::npos) << run.err;
     EXPECT_NE(run.err.find("convert the image"), std::string::npos) << run.err;
   }
 }

@@ -1,4 +1,5 @@
-// A DICOM series as an image, through GDCM.
+#include "dicom_image.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,7 +11,6 @@
 
 #include "dicom_files.h"
 #include "dicom_stack.h"
-#include "foreign_image.h"
 #include "number_type.h"
 
 namespace vmesh::image {
@@ -175,14 +175,9 @@ std::size_t label(std::span<const float> frame, int segment, std::span<float> la
 
 }  // namespace
 
-ForeignHeader dicom_header(const std::filesystem::path& path, Warnings&) {
+DicomHeader dicom_header(const std::filesystem::path& path) {
   const auto [stack, voxels] = read_series(path);
-  ForeignHeader header;
-  for (int a = 0; a < 3; ++a) {
-    header.size[a] = stack.size[a];
-    header.origin[a] = stack.origin[a];
-    for (int b = 0; b < 3; ++b) header.steps[a][b] = stack.steps(b, a);
-  }
+  DicomHeader header{stack.size, stack.origin, stack.steps};
   header.bytes = std::max<std::size_t>(1, voxels.bits / 8);
   header.integer = std::all_of(stack.slices.begin(), stack.slices.end(), [](const DicomSlice& slice) {
     return slice.slope == std::floor(slice.slope) && slice.intercept == std::floor(slice.intercept);
@@ -190,7 +185,7 @@ ForeignHeader dicom_header(const std::filesystem::path& path, Warnings&) {
   return header;
 }
 
-Warnings dicom_voxels(const std::filesystem::path& path, std::span<float> values) {
+std::string dicom_voxels(const std::filesystem::path& path, std::span<float> values) {
   const auto [stack, voxels] = read_series(path);
   const std::size_t area = stack.size[0] * stack.size[1];
   if (values.size() != area * stack.size[2]) throw InvalidInput(path.string() + ": has changed while it was read");

@@ -9,11 +9,15 @@
 
 namespace vmesh::image {
 
-bool has_own_format(const std::filesystem::path& path) {
+std::optional<ImageFormat> find_image_format(const std::filesystem::path& path) {
   const std::string name = folded(path.filename().string());
-  for (const char* ending : {".nii", ".nii.gz", ".nrrd", ".mha"})
-    if (name.ends_with(ending)) return true;
-  return false;
+  const auto ends_with = [&](std::initializer_list<const char*> endings) {
+    return std::ranges::any_of(endings, [&](const char* ending) { return name.ends_with(ending); });
+  };
+  if (ends_with({".nii", ".nii.gz", ".hdr", ".img"})) return ImageFormat::nifti;
+  if (ends_with({".nrrd", ".nhdr"})) return ImageFormat::nrrd;
+  if (ends_with({".mha", ".mhd"})) return ImageFormat::meta;
+  return std::nullopt;
 }
 
 void set_size(ImageHeader& header, const std::vector<double>& sizes, const std::string& name) {
@@ -31,12 +35,38 @@ void set_size(ImageHeader& header, const std::vector<double>& sizes, const std::
   if (product > 1e17) throw InvalidInput(name + ": the header claims more than 10^17 voxels; it is broken");
 }
 
-void check_place(const ImageHeader& header, const std::string& name) {
+void check_place(const Vec3& origin, const Eigen::Matrix3d& steps, const std::string& name) {
   // An image whose axes lie in a plane has no volume; 1e-9 is far above the effect of rounding.
-  const double box = header.steps.colwise().norm().prod();
-  const double volume = std::abs(header.steps.determinant());
-  if (!header.origin.allFinite() || !header.steps.allFinite() || !std::isnormal(volume) || !(volume > 1e-9 * box))
+  const double box = steps.colwise().norm().prod();
+  const double volume = std::abs(steps.determinant());
+  if (!origin.allFinite() || !steps.allFinite() || !std::isnormal(volume) || !(volume > 1e-9 * box))
     throw InvalidInput(name + ": the header gives axes or an origin that are not finite, or axes that span no volume");
+}
+
+std::string one_data_file(std::string_view given, const std::string& name) {
+  if (given.empty()) throw InvalidInput(name + ": the header does not name the file of its voxels");
+  if (given.starts_with("LIST") || given.find('%') != std::string_view::npos)
+    throw Unsupported(name + ": voxels in many files, " + cited(given) + ", are not supported; store them in one");
+  return std::string(given);
+}
+
+void set_data_begin(ImageHeader& header, std::uint64_t from, std::string_view skipped, const std::string& name,
+                    std::string_view key) {
+  header.data_begin = from;
+  const std::vector<double> numbers = numbers_in(skipped, name, key);
+  const double bytes = numbers.empty() ? 0 : numbers.front();
+  if (numbers.size() > 1 || !(bytes >= -1 && bytes <= 1e15) || bytes != std::floor(bytes))
+    throw InvalidInput(name + ": the header's \"" + std::string(key) + "\" is not a number of bytes");
+  if (header.packed && bytes != 0)
+    throw Unsupported(name + ": the header's \"" + std::string(key) +
+                      "\" is not supported for compressed voxels; store the image anew");
+  header.data_at_end = bytes < 0;
+  if (bytes > 0) header.data_begin += static_cast<std::uint64_t>(bytes);
+}
+
+std::filesystem::path other_of_pair(std::filesystem::path path, const char* lower, const char* upper) {
+  const std::string extension = path.extension().string();
+  return path.replace_extension(extension == folded(extension) ? lower : upper);
 }
 
 std::vector<double> numbers_in(std::string_view text, const std::string& name, std::string_view key) {
@@ -57,11 +87,15 @@ std::vector<double> numbers_in(std::string_view text, const std::string& name, s
   return numbers;
 }
 
-std::string folded(std::string_view text) {
+std::string_view trimmed(std::string_view text) {
   const auto is_blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  std::string result(text);
+  return text;
+}
+
+std::string folded(std::string_view text) {
+  std::string result(trimmed(text));
   std::transform(result.begin(), result.end(), result.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return result;
@@ -77,11 +111,11 @@ std::string cited(std::string_view text) {
 }
 
 bool take_line(std::string_view& text, std::string_view& line) {
-  const std::size_t end = text.find('\n');
-  if (end == std::string_view::npos) return false;
+  if (text.empty()) return false;
+  const std::size_t end = std::min(text.find('\n'), text.size());
   line = text.substr(0, end);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  text.remove_prefix(end + 1);
+  text.remove_prefix(std::min(end + 1, text.size()));
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,15 +23,19 @@ struct ImageHeader {
   NumberType type = NumberType::u8;
   bool big_endian = false;
   double slope = 1, intercept = 0;  ///< value = slope * stored + intercept
+  std::string data_file;            ///< with the voxels, as the header names it; empty: they follow the header
   std::uint64_t data_begin = 0;     ///< bytes before the voxels
+  bool data_at_end = false;         ///< instead, the voxels are the last bytes of the file
   bool packed = false;              ///< compressed by zlib or gzip from there on
   std::vector<std::string> warnings;
 
   std::uint64_t voxels() const { return size[0] * size[1] * size[2]; }
 };
 
-/// Whether the name has the extension of a format that is parsed here; other formats are read through ITK.
-bool has_own_format(const std::filesystem::path& path);
+enum class ImageFormat { nifti, nrrd, meta };
+
+/// By the extension; nullopt for what is none of these formats, DICOM for example.
+std::optional<ImageFormat> find_image_format(const std::filesystem::path& path);
 
 ImageHeader parse_nifti_header(std::string_view bytes, const std::string& name);
 ImageHeader parse_nrrd_header(std::string_view bytes, const std::string& name);
@@ -40,18 +45,32 @@ ImageHeader parse_meta_header(std::string_view bytes, const std::string& name);
 void set_size(ImageHeader& header, const std::vector<double>& sizes, const std::string& name);
 
 /// Throws InvalidInput if the axes are not finite or span no volume.
-void check_place(const ImageHeader& header, const std::string& name);
+void check_place(const Vec3& origin, const Eigen::Matrix3d& steps, const std::string& name);
+
+/// `given`, the name of the file with the voxels. Throws Unsupported if it is a list or a pattern of many.
+std::string one_data_file(std::string_view given, const std::string& name);
+
+/// Sets where the voxels begin: `skipped` bytes after `from`, or, if that is -1, as many before the end as they need.
+/// Throws InvalidInput citing `key` if it is no such number, Unsupported if the voxels are compressed.
+void set_data_begin(ImageHeader& header, std::uint64_t from, std::string_view skipped, const std::string& name,
+                    std::string_view key);
+
+/// The other file of a NIfTI or Analyze pair: with this extension, in upper case if that of `path` is.
+std::filesystem::path other_of_pair(std::filesystem::path path, const char* lower, const char* upper);
 
 /// Numbers separated by blanks, commas and brackets. Throws InvalidInput citing `key`.
 std::vector<double> numbers_in(std::string_view text, const std::string& name, std::string_view key);
 
-/// `text` trimmed and in lower case.
+/// `text` without blanks at its ends.
+std::string_view trimmed(std::string_view text);
+
+/// The same in lower case.
 std::string folded(std::string_view text);
 
 /// `text` in quotes, on one line and shortened for a message.
 std::string cited(std::string_view text);
 
-/// Removes the next line from `text`, without its end. False if there is no complete line.
+/// Removes the next line from `text`, without its end. False if nothing is left. The last line need not have an end.
 bool take_line(std::string_view& text, std::string_view& line);
 
 }  // namespace vmesh::image

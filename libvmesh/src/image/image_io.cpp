@@ -45,10 +45,7 @@ LoadedImage collected(const std::string& name, Read read) {
 }  // namespace
 
 bool is_image_path(const std::filesystem::path& path) {
-  const std::string name = image::folded(path.filename().string());
-  for (const char* ending : {".mhd", ".nhdr", ".hdr", ".img", ".dcm"})
-    if (name.ends_with(ending)) return true;
-  return image::has_own_format(path);
+  return image::find_image_format(path) || image::folded(path.extension().string()) == ".dcm";
 }
 
 bool is_image(const std::filesystem::path& path) { return is_image_path(path) || image::is_dicom(path); }

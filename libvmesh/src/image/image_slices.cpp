@@ -10,29 +10,36 @@
 
 #include "byte_source.h"
 #include "image_header.h"
-#include "read_by_itk.h"
+#include "read_dicom.h"
 
 namespace vmesh {
 namespace {
 
 using image::ByteSource;
+using image::ImageFormat;
 using image::ImageHeader;
 using image::PeekedBytes;
 
-/// Whether all of a NIfTI file is compressed. Throws InvalidInput if its name says otherwise.
-bool is_packed(PeekedBytes& file, const std::string& file_name, const std::string& name) {
-  if (file_name.ends_with(".nrrd") || file_name.ends_with(".mha")) return false;
+/// Whether all of a file is compressed, as only NIfTI may be. Throws InvalidInput if its name says otherwise.
+bool is_packed(PeekedBytes& file, ImageFormat format, const std::string& name) {
+  if (format != ImageFormat::nifti) return false;
   const bool packed = file.peek(2) == "\x1f\x8b";
-  if (packed != file_name.ends_with(".gz"))
+  if (packed != image::folded(name).ends_with(".gz"))
     throw InvalidInput(name +
                        (packed ? ": is compressed with gzip; name it .nii.gz" : ": is not compressed with gzip"));
   return packed;
 }
 
-ImageHeader parse_header(PeekedBytes& content, const std::string& file_name, const std::string& name) {
+ImageHeader parse_header(PeekedBytes& content, ImageFormat format, const std::string& name) {
   constexpr std::size_t kLongestText = std::size_t{1} << 20, kLongestNifti = 540;
-  if (file_name.ends_with(".nrrd")) return image::parse_nrrd_header(content.peek(kLongestText), name);
-  if (file_name.ends_with(".mha")) return image::parse_meta_header(content.peek(kLongestText), name);
+  switch (format) {
+    case ImageFormat::nrrd:
+      return image::parse_nrrd_header(content.peek(kLongestText), name);
+    case ImageFormat::meta:
+      return image::parse_meta_header(content.peek(kLongestText), name);
+    case ImageFormat::nifti:
+      break;
+  }
   return image::parse_nifti_header(content.peek(kLongestNifti), name);
 }
 
@@ -119,24 +126,43 @@ void visit_voxels(ByteSource& bytes, const ImageHeader& header, const std::strin
   }
 }
 
-/// `file_size`: of all bytes that `file` will give; `source` names it.
-void parse(ByteSource& file, std::uint64_t file_size, const std::string& source, const ImageBegin& begin,
-           const SliceVisitor& visit) {
-  if (!image::has_own_format(source))
-    throw Unsupported(source + ": images are .nii, .nii.gz, .nrrd or .mha, or a folder of DICOM files");
-  const std::string file_name = image::folded(std::filesystem::path(source).filename().string());
-  PeekedBytes stored(file);
-  std::optional<image::UnpackedBytes> unpacked;  // from the first byte, or from the first voxel
-  const bool all_packed = is_packed(stored, file_name, source);
-  if (all_packed) unpacked.emplace(stored);
-  PeekedBytes content(all_packed ? static_cast<ByteSource&>(*unpacked) : stored);
-  const ImageHeader header = parse_header(content, file_name, source);
-  check_place(header, source);
-  check_size(file_size, header, all_packed || header.packed, source);
+/// Reads the voxels from `content`, the bytes of a file of that size, unpacked if all of it is compressed.
+void parse_voxels(ByteSource& content, std::uint64_t file_size, bool all_packed, ImageHeader header,
+                  const std::string& name, const ImageBegin& begin, const SliceVisitor& visit) {
+  if (header.data_at_end) header.data_begin = file_size - std::min(file_size, bytes_needed(header));
+  check_size(file_size, header, all_packed || header.packed, name);
   begin(frame_of(header));
   skip(content, header.data_begin);
-  if (header.packed) unpacked.emplace(content);
-  visit_voxels(header.packed ? static_cast<ByteSource&>(*unpacked) : content, header, source, visit);
+  if (!header.packed) return visit_voxels(content, header, name, visit);
+  image::UnpackedBytes unpacked(content);
+  visit_voxels(unpacked, header, name, visit);
+}
+
+/// Opens a file that belongs to the one that was given, to hold its `what`. Throws ReadError naming both.
+InputFile open_second(const std::string& given, const std::filesystem::path& path, const char* what) try {
+  return InputFile(path);
+} catch (const ReadError& error) {
+  throw ReadError(given + ": its " + what + " in another file: " + error.what());
+}
+
+/// `file_size`: of all bytes that `file` will give; `source` names it. `in_memory`: no other file belongs to it.
+void parse(ByteSource& file, std::uint64_t file_size, const std::string& source, bool in_memory,
+           const ImageBegin& begin, const SliceVisitor& visit) {
+  const std::optional<ImageFormat> format = image::find_image_format(source);
+  if (!format) throw Unsupported(source + ": images are .nii, .nii.gz, .nrrd or .mha, or a folder of DICOM files");
+  PeekedBytes stored(file);
+  const bool all_packed = is_packed(stored, *format, source);
+  std::optional<image::UnpackedBytes> unpacked;
+  if (all_packed) unpacked.emplace(stored);
+  PeekedBytes content(all_packed ? static_cast<ByteSource&>(*unpacked) : stored);
+  const ImageHeader header = parse_header(content, *format, source);
+  image::check_place(header.origin, header.steps, source);
+  if (header.data_file.empty()) return parse_voxels(content, file_size, all_packed, header, source, begin, visit);
+  if (in_memory) throw Unsupported(source + ": its voxels are in another file; store header and voxels in one");
+  const std::filesystem::path path = std::filesystem::path(source).parent_path() / header.data_file;
+  InputFile data = open_second(source, path, "voxels are");
+  image::BytesOfFile voxels(data);
+  parse_voxels(voxels, data.size(), false, header, path.string(), begin, visit);
 }
 
 }  // namespace
@@ -144,18 +170,23 @@ void parse(ByteSource& file, std::uint64_t file_size, const std::string& source,
 void parse_image_slices(std::string_view content, const std::string& source, const ImageBegin& begin,
                         const SliceVisitor& visit) {
   image::BytesInMemory bytes(content);
-  parse(bytes, content.size(), source, begin, visit);
+  parse(bytes, content.size(), source, true, begin, visit);
 }
 
 void read_image_slices(const std::filesystem::path& path, const ImageBegin& begin, const SliceVisitor& visit) {
   std::error_code error;
-  const bool own = image::has_own_format(path) && !std::filesystem::is_directory(path, error);
-  if (!own && is_image(path)) return image::read_by_itk(path, begin, visit);
+  const bool is_dicom = !image::find_image_format(path) || std::filesystem::is_directory(path, error);
+  if (is_dicom && is_image(path)) return image::read_dicom(path, begin, visit);
+  if (image::folded(path.extension().string()) == ".img") {
+    const std::filesystem::path header = image::other_of_pair(path, ".hdr", ".HDR");
+    const InputFile there = open_second(path.string(), header, "header is");
+    return read_image_slices(header, begin, visit);
+  }
   InputFile file(path);
   // Files that the system generates do not tell their size; an empty one is refused.
   if (file.size() == 0) return parse_image_slices(read_file(path), path.string(), begin, visit);
   image::BytesOfFile bytes(file);
-  parse(bytes, file.size(), path.string(), begin, visit);
+  parse(bytes, file.size(), path.string(), false, begin, visit);
 }
 
 void visit_slices(const VoxelImage& image, const SliceVisitor& visit) {

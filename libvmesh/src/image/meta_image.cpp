@@ -1,4 +1,4 @@
-// MetaImage (https://itk.org/Wiki/ITK/MetaIO/Documentation), header and voxels in one file. Its frame is LPS.
+// MetaImage (https://itk.org/Wiki/ITK/MetaIO/Documentation), in one file or two. Its frame is LPS.
 #include <map>
 
 #include "vmesh/core/error.h"
@@ -21,17 +21,20 @@ NumberType number_type(const std::string& word, const std::string& name) {
   return found->second;
 }
 
-/// The lines up to ElementDataFile, the last one; keys and values in lower case.
-Entries entries_of(std::string_view bytes, const std::string& name, std::uint64_t& data_begin) {
+constexpr const char* kDataFile = "elementdatafile";
+
+/// The lines up to ElementDataFile, the last one; keys in lower case, and values but for names of files.
+Entries entries_of(std::string_view bytes, const std::string& name, std::uint64_t& header_end) {
   Entries entries;
   std::string_view rest = bytes, line;
   while (take_line(rest, line)) {
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos) break;
     const std::string key = folded(line.substr(0, equals));
-    entries[key] = folded(line.substr(equals + 1));
-    if (key != "elementdatafile") continue;
-    data_begin = bytes.size() - rest.size();
+    const std::string_view value = line.substr(equals + 1);
+    entries[key] = key == kDataFile ? std::string(trimmed(value)) : folded(value);
+    if (key != kDataFile) continue;
+    header_end = bytes.size() - rest.size();
     return entries;
   }
   throw InvalidInput(name + ": this is not a MetaImage file: its header does not end with a line ElementDataFile");
@@ -54,6 +57,15 @@ std::vector<double> three(const Entries& entries, std::initializer_list<const ch
   return numbers;
 }
 
+/// HeaderSize counts from the beginning of the file, even if the voxels are in that of the header.
+void set_data(ImageHeader& header, const Entries& entries, std::uint64_t header_end, const std::string& name) {
+  header.packed = is_true(value_of(entries, {"compresseddata"}));
+  const std::string& file = entries.at(kDataFile);
+  if (folded(file) != "local") header.data_file = one_data_file(file, name);
+  set_data_begin(header, 0, value_of(entries, {"headersize"}), name, "HeaderSize");
+  if (header.data_file.empty() && header.data_begin == 0) header.data_begin = header_end;
+}
+
 void set_place(ImageHeader& header, const Entries& entries, const std::string& name) {
   std::vector<double> axes =
       numbers_in(value_of(entries, {"transformmatrix", "rotation", "orientation"}), name, "TransformMatrix");
@@ -71,9 +83,8 @@ void set_place(ImageHeader& header, const Entries& entries, const std::string& n
 
 ImageHeader parse_meta_header(std::string_view bytes, const std::string& name) {
   ImageHeader header;
-  const Entries entries = entries_of(bytes, name, header.data_begin);
-  if (value_of(entries, {"elementdatafile"}) != "local")
-    throw Unsupported(name + ": its voxels are in another file; store header and voxels in one");
+  std::uint64_t header_end = 0;
+  const Entries entries = entries_of(bytes, name, header_end);
   const std::vector<double> sizes = numbers_in(value_of(entries, {"dimsize"}), name, "DimSize");
   const std::vector<double> dimensions = numbers_in(value_of(entries, {"ndims"}), name, "NDims");
   if (dimensions.size() != 1 || dimensions[0] != static_cast<double>(sizes.size()))
@@ -82,13 +93,10 @@ ImageHeader parse_meta_header(std::string_view bytes, const std::string& name) {
   const std::string channels = value_of(entries, {"elementnumberofchannels"});
   if (!channels.empty() && channels != "1")
     throw Unsupported(name + ": has " + cited(channels) + " numbers per voxel; give an image of one");
-  const std::string skipped = value_of(entries, {"headersize"});
-  if (!skipped.empty() && skipped != "0")
-    throw Unsupported(name + ": HeaderSize is not supported; store the image anew");
   if (value_of(entries, {"binarydata"}) == "false")
     throw Unsupported(name + ": voxels as text are not supported; store them as binary");
   header.type = number_type(value_of(entries, {"elementtype"}), name);
-  header.packed = is_true(value_of(entries, {"compresseddata"}));
+  set_data(header, entries, header_end, name);
   header.big_endian = is_true(value_of(entries, {"binarydatabyteordermsb", "elementbyteordermsb"}));
   set_place(header, entries, name);
   return header;

@@ -1,5 +1,5 @@
-// NIfTI-1 and NIfTI-2 (fields as in the NIfTI project's nifti1.h and nifti2.h), header and voxels in one file. Their
-// frame is RAS.
+// NIfTI-1 and NIfTI-2 (fields as in the NIfTI project's nifti1.h and nifti2.h), in one file or two, and Analyze 7.5,
+// from which they came. Their frame is RAS.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -135,17 +135,47 @@ bool is_skewed(const Place& place) {
   return !((unit.transpose() * unit).isIdentity(1e-3));
 }
 
-/// As in 3D Slicer: the sform, unless it is skewed and there is a qform.
-Place place_of(const Fields& fields, ImageHeader& header, const std::string& name) {
-  const bool has_qform = fields.code(fields.layout.qform) > 0, has_sform = fields.code(fields.layout.sform) > 0;
+enum class Kind { one_file, two_files, analyze };
+
+Kind kind_of(const Fields& fields, const std::string& name) {
+  const std::string_view magic = fields.magic();
+  if (magic == "n+1" || magic == "n+2") return Kind::one_file;
+  if (magic == "ni1" || magic == "ni2") return Kind::two_files;
+  const std::string extension = folded(std::filesystem::path(name).extension().string());
+  if (!fields.layout.wide && extension == ".hdr") return Kind::analyze;  // has no magic number
+  throw InvalidInput(name + ": this is not a NIfTI file: it has no magic number");
+}
+
+/// As in 3D Slicer: the sform, unless it is skewed and there is a qform. Analyze has neither.
+Place place_of(const Fields& fields, Kind kind, ImageHeader& header, const std::string& name) {
+  const bool is_nifti = kind != Kind::analyze;
+  const bool has_qform = is_nifti && fields.code(fields.layout.qform) > 0;
+  const bool has_sform = is_nifti && fields.code(fields.layout.sform) > 0;
   if (has_sform && !(has_qform && is_skewed(sform_of(fields)))) return sform_of(fields);
   if (has_qform) return qform_of(fields);
-  header.warnings.push_back(
-      name +
-      ": gives no position in space (neither qform nor sform); its axes are assumed to run to the "
-      "left, back and top, as in ITK");
+  header.warnings.push_back(name +
+                            (is_nifti ? ": gives no position in space (neither qform nor sform)"
+                                      : ": Analyze files do not say which side is left and where they lie") +
+                            "; its axes are assumed to run to the left, back and top, as in ITK");
   const Vec3 spacing = spacing_of(fields);
   return {Vec3(-spacing.x(), -spacing.y(), spacing.z()).asDiagonal(), Vec3::Zero()};
+}
+
+void set_data(ImageHeader& header, const Fields& fields, Kind kind, const std::string& name) {
+  header.type = number_type(fields.code(fields.layout.datatype), name);
+  const double begin = fields.data_begin();
+  const double header_size = static_cast<double>(fields.layout.wide ? kHeader2 : kHeader1);
+  if (!(begin >= (kind == Kind::one_file ? header_size : 0) && begin <= 1e9))
+    throw InvalidInput(name + ": the header does not say where the voxels begin");
+  header.data_begin = static_cast<std::uint64_t>(begin);
+  if (kind != Kind::one_file)
+    header.data_file = other_of_pair(std::filesystem::path(name).filename(), ".img", ".IMG").string();
+  if (kind == Kind::analyze) return;
+  const double slope = fields.real(fields.layout.slope), intercept = fields.real(fields.layout.intercept);
+  if (slope != 0 && std::isfinite(slope) && std::isfinite(intercept)) {
+    header.slope = slope;
+    header.intercept = intercept;
+  }
 }
 
 Fields fields_of(std::string_view bytes, const std::string& name, bool& big_endian) {
@@ -165,30 +195,17 @@ Fields fields_of(std::string_view bytes, const std::string& name, bool& big_endi
 ImageHeader parse_nifti_header(std::string_view bytes, const std::string& name) {
   ImageHeader header;
   const Fields fields = fields_of(bytes, name, header.big_endian);
-  const std::string_view magic = fields.magic();
-  if (magic == "ni1" || magic == "ni2")
-    throw Unsupported(name + ": its voxels are in another file (.img); store header and voxels in one");
-  if (magic != "n+1" && magic != "n+2") throw InvalidInput(name + ": this is not a NIfTI file: it has no magic number");
-
+  const Kind kind = kind_of(fields, name);
   const double dimensions = fields.size(0);
   if (!(dimensions >= 1 && dimensions <= 7)) throw InvalidInput(name + ": the header gives no number of dimensions");
   std::vector<double> sizes;
   for (int a = 1; a <= static_cast<int>(dimensions); ++a) sizes.push_back(fields.size(a));
   set_size(header, sizes, name);
 
-  header.type = number_type(fields.code(fields.layout.datatype), name);
-  const double begin = fields.data_begin();
-  const double least = static_cast<double>(fields.layout.wide ? kHeader2 : kHeader1);
-  if (!(begin >= least && begin <= 1e9)) throw InvalidInput(name + ": the header does not say where the voxels begin");
-  header.data_begin = static_cast<std::uint64_t>(begin);
-  const double slope = fields.real(fields.layout.slope), intercept = fields.real(fields.layout.intercept);
-  if (slope != 0 && std::isfinite(slope) && std::isfinite(intercept)) {
-    header.slope = slope;
-    header.intercept = intercept;
-  }
+  set_data(header, fields, kind, name);
   const Eigen::DiagonalMatrix<double, 3> to_lps(-1, -1, 1);
-  const Place place = place_of(fields, header, name);
-  const double scale = millimetres(fields.units(), name);
+  const Place place = place_of(fields, kind, header, name);
+  const double scale = kind == Kind::analyze ? 1 : millimetres(fields.units(), name);
   header.steps = scale * (to_lps * place.steps);
   header.origin = scale * (to_lps * place.origin);
   return header;

@@ -1,4 +1,4 @@
-// NRRD (https://teem.sourceforge.net/nrrd/format.html), header and voxels in one file, raw or gzip.
+// NRRD (https://teem.sourceforge.net/nrrd/format.html), in one file or two, raw or gzip.
 #include <map>
 
 #include "vmesh/core/error.h"
@@ -56,22 +56,30 @@ NumberType number_type(const std::string& word, const std::string& name) {
   return found->second;
 }
 
-/// Lines up to the empty one; keys and values in lower case.
-Entries entries_of(std::string_view bytes, const std::string& name, std::uint64_t& data_begin) {
+constexpr const char* kDataFile = "data file";
+
+/// Lines up to the empty one, or, if the voxels are in another file, to the end; keys in lower case, and values but for
+/// names of files.
+Entries entries_of(std::string_view bytes, const std::string& name, std::uint64_t& header_end) {
   Entries entries;
   std::string_view rest = bytes, line;
   if (!bytes.starts_with("NRRD000") || !take_line(rest, line))
     throw InvalidInput(name + ": this is not an NRRD file: it does not begin with a line such as NRRD0004");
-  while (take_line(rest, line)) {
-    if (line.empty()) {
-      data_begin = bytes.size() - rest.size();
-      return entries;
-    }
+  while (take_line(rest, line) && !line.empty()) {
     const std::size_t colon = line.find(':');
     if (line.front() == '#' || colon == std::string_view::npos || line.substr(colon).starts_with(":=")) continue;
-    entries[folded(line.substr(0, colon))] = folded(line.substr(colon + 1));
+    const std::string key = folded(line.substr(0, colon));
+    const std::string_view value = line.substr(colon + 1);
+    if (key == kDataFile || key == "datafile") {
+      entries[kDataFile] = trimmed(value);
+    } else {
+      entries[key] = folded(value);
+    }
   }
-  throw InvalidInput(name + ": the header has no end (an empty line)");
+  if (!line.empty() && !entries.contains(kDataFile))
+    throw InvalidInput(name + ": the header has no end (an empty line)");
+  header_end = bytes.size() - rest.size();
+  return entries;
 }
 
 const std::string& required(const Entries& entries, const char* key, const std::string& name) {
@@ -85,17 +93,17 @@ std::string optional(const Entries& entries, const char* key) {
   return found == entries.end() ? std::string() : found->second;
 }
 
-void set_encoding(ImageHeader& header, const Entries& entries, const std::string& name) {
-  for (const char* key : {"data file", "datafile"})
-    if (entries.contains(key))
-      throw Unsupported(name + ": its voxels are in another file; store header and voxels in one");
-  for (const char* key : {"line skip", "lineskip", "byte skip", "byteskip"})
+void set_data(ImageHeader& header, const Entries& entries, std::uint64_t header_end, const std::string& name) {
+  for (const char* key : {"line skip", "lineskip"})
     if (!optional(entries, key).empty() && optional(entries, key) != "0")
       throw Unsupported(name + ": the header's \"" + key + "\" is not supported; store the image anew");
   const std::string& encoding = required(entries, "encoding", name);
   header.packed = encoding == "gzip" || encoding == "gz";
   if (!header.packed && encoding != "raw")
     throw Unsupported(name + ": encoding " + cited(encoding) + " is not supported; store the image raw or with gzip");
+  if (entries.contains(kDataFile)) header.data_file = one_data_file(optional(entries, kDataFile), name);
+  set_data_begin(header, header.data_file.empty() ? header_end : 0,
+                 optional(entries, entries.contains("byteskip") ? "byteskip" : "byte skip"), name, "byte skip");
   const std::string endian = optional(entries, "endian");
   header.big_endian = endian == "big";
   if (endian.empty() && bytes_of(header.type) > 1) throw InvalidInput(name + ": the header has no line \"endian\"");
@@ -142,14 +150,15 @@ void set_place(ImageHeader& header, const Entries& entries, const std::string& n
 
 ImageHeader parse_nrrd_header(std::string_view bytes, const std::string& name) {
   ImageHeader header;
-  const Entries entries = entries_of(bytes, name, header.data_begin);
+  std::uint64_t header_end = 0;
+  const Entries entries = entries_of(bytes, name, header_end);
   const std::vector<double> sizes = numbers_in(required(entries, "sizes", name), name, "sizes");
   const std::vector<double> dimension = numbers_in(required(entries, "dimension", name), name, "dimension");
   if (dimension.size() != 1 || dimension[0] != static_cast<double>(sizes.size()))
     throw InvalidInput(name + ": the header's \"dimension\" and \"sizes\" contradict each other");
   set_size(header, sizes, name);
   header.type = number_type(required(entries, "type", name), name);
-  set_encoding(header, entries, name);
+  set_data(header, entries, header_end, name);
   set_place(header, entries, name);
   return header;
 }

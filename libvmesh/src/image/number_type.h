@@ -1,4 +1,4 @@
-// How voxels are stored, internal to the module. Without Eigen, as ITK brings its own.
+// How voxels are stored, internal to the module.
 #pragma once
 
 #include <cstddef>

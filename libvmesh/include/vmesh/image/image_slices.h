@@ -27,8 +27,8 @@ using ImageBegin = std::function<void(const ImageFrame& image)>;
 using SliceVisitor = std::function<void(std::size_t k, std::span<const float> values)>;
 
 /// Reads an image like read_image(), but hands it over slice by slice, in the memory of two slices and two megabytes,
-/// however large it is and whether or not it is compressed. What is read by ITK is first read as a whole. Passes on
-/// what `begin` and `visit` throw; nothing more is read then.
+/// however large it is and whether or not it is compressed. DICOM is first read as a whole. Passes on what `begin` and
+/// `visit` throw; nothing more is read then.
 ///
 /// Throws like read_image(). What can be told from the header and the size of the file is thrown before `begin` is
 /// called; that a compressed file holds less than it claims, or values that are not finite, only on reaching the place.
