@@ -4,7 +4,11 @@
 #include <limits>
 #include <string>
 
+#if VMESH_EMBREE == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/embree_device.h"

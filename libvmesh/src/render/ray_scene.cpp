@@ -2,12 +2,34 @@
 
 #include <string>
 
+#if VMESH_EMBREE == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/embree_device.h"
 
 namespace vmesh {
+namespace {
+
+/// Four rays that take about the same way.
+void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit4& packet) {
+#if VMESH_EMBREE == 3
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect4(valid, scene, &context, &packet);
+#else
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect4(valid, scene, &packet, &arguments);
+#endif
+}
+
+}  // namespace
 
 struct RayScene::Embree {
   RTCDevice device = nullptr;
@@ -72,10 +94,7 @@ std::array<RayHit, 4> RayScene::cast(const Packet& rays, double reach) const {
     packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
   alignas(16) const int all[4] = {-1, -1, -1, -1};
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect4(all, embree_->scene, &context, &packet);
+  intersect_coherent(all, embree_->scene, packet);
 
   std::array<RayHit, 4> hits;
   for (std::size_t i = 0; i < 4; ++i) {
