@@ -32,9 +32,9 @@ TriMesh sheet(int count, double x_end, double y_end) {
 /// Two triangles on the saddle, with an edge of 5 mm along the ridge, .75 mm above its middle.
 FitMesh with_an_edge_along_the_ridge() {
   const std::vector<Vec3> points = {saddle(-2.5, 0), saddle(2.5, 0), saddle(0, 4), saddle(0, -4)};
-  std::vector<FitMesh::Vertex> vertices;
+  std::vector<FitVertex> vertices;
   for (const Vec3& p : points) vertices.push_back({p, 0, 0, 5, 5});
-  return {{points, {{0, 1, 2}, {1, 0, 3}}}, vertices};
+  return {{{0, 1, 2}, {1, 0, 3}}, vertices};
 }
 
 class Ridge : public ::testing::Test {
@@ -57,8 +57,8 @@ TEST_F(Ridge, IsSeenByTheMiddleOfTheEdgeAlongIt) {
 }
 
 TEST_F(Ridge, IsSeenByItsTips) {
-  for (const Index v : {0u, 1u}) surface_.vertices[v].position.z() += 1;
-  surface_.vertices[0].position.z() += 2;
+  for (const Index v : {0u, 1u}) surface_.edit(v).position.z() += 1;
+  surface_.vertices()[0].position.z() += 2;
   Matches matches;
   matches.from_edges = match_edges(surface_, reference_, field_);
   const auto is_tip = [&](const Match& match) {
@@ -72,8 +72,8 @@ TEST_F(Ridge, IsSeenByItsTips) {
 TEST_F(Ridge, GetsAVertex) {
   setting_.guard.max_skewness = 0.9;  // halves of them are slim
   bring_farthest_nearer(surface_, samples_, setting_, 5);
-  ASSERT_EQ(surface_.vertices.size(), 5u);
-  EXPECT_LT((surface_.vertices[4].position - saddle(0, 0)).norm(), 0.4);
+  ASSERT_EQ(surface_.vertices().size(), 5u);
+  EXPECT_LT((surface_.vertices()[4].position - saddle(0, 0)).norm(), 0.4);
   EXPECT_TRUE(self_intersections(surface_.tri_mesh()).empty());
 }
 

@@ -25,9 +25,9 @@ TriMesh tube(const Centerline& centerline, int around) {
 class Spike : public ::testing::Test {
  protected:
   Spike() {
-    std::vector<FitMesh::Vertex> vertices;
+    std::vector<FitVertex> vertices;
     for (const Vec3& p : mesh_.vertices) vertices.push_back({p, 0, kNone, 1, 1});
-    surface_ = FitMesh(mesh_, vertices);
+    surface_ = FitMesh(mesh_.faces, vertices);
     for (Index v = 0; v < mesh_.vertices.size(); ++v) {
       if (std::abs(mesh_.vertices[v].x() - 6) < std::abs(mesh_.vertices[spike_].x() - 6)) spike_ = v;
     }
@@ -35,7 +35,7 @@ class Spike : public ::testing::Test {
     normal_ = surface_.vertex_normal(spike_);
   }
 
-  void pull(double height) { surface_.vertices[spike_].position = foot_ + height * normal_; }
+  void pull(double height) { surface_.edit(spike_).position = foot_ + height * normal_; }
 
   void collapse(const TriMesh& reference, const std::vector<char>& frozen = {}) {
     const FitReference target(reference, field_);
@@ -45,7 +45,7 @@ class Spike : public ::testing::Test {
   Centerline centerline_{{{{0, 0, 0}, 2}, {{12, 0, 0}, 2}}, {{0, 1}}};
   VesselField field_{centerline_};
   TriMesh mesh_ = tube(centerline_, 6);
-  FitMesh surface_{{}, {}};
+  FitMesh surface_;
   Index spike_ = 0;
   Vec3 foot_, normal_;
 };

@@ -31,7 +31,7 @@ TEST_F(BoundSurfaceTest, AGeodesicSphereHas42VerticesAnd80Faces) {
   EXPECT_TRUE(topology.closed && topology.manifold && topology.outward);
   for (const Vertex v : vertices) {
     EXPECT_NEAR((surface_.position(v) - Vec3(1, 2, 3)).norm(), 1.5, 1e-14);
-    EXPECT_NEAR(surface_.distance[v], -0.5, 1e-14);
+    EXPECT_NEAR(surface_[v].distance, -0.5, 1e-14);
   }
 }
 

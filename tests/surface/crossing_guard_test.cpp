@@ -1,5 +1,5 @@
 // Remeshing steps after which faces would cross are refused, others allowed.
-#include "surface/remesh/crossing_guard.h"
+#include "vmesh/edit/crossing_guard.h"
 
 #include <algorithm>
 
@@ -46,9 +46,9 @@ TEST(CrossingGuard, AllowsExactlyTheMovesAfterWhichNothingCrosses) {
     const Vertex v(draw.below(static_cast<Index>(spheres.surface.mesh.num_vertices())));
     const Vec3 before = spheres.surface.position(v), after = before + 0.5 * draw.in_cube(1);
     const bool may = spheres.surface.may_place(v, after);
-    spheres.surface.place(v, after, spheres.field.sample(after, spheres.surface.cone[v]));
+    spheres.surface.place(v, after, spheres.field.sample(after, spheres.surface[v].cone));
     EXPECT_EQ(may, spheres.crossings() == 0);
-    if (!may) spheres.surface.place(v, before, spheres.field.sample(before, spheres.surface.cone[v]));
+    if (!may) spheres.surface.place(v, before, spheres.field.sample(before, spheres.surface[v].cone));
     ++(may ? allowed : refused);
   }
   EXPECT_GT(allowed, 50);
@@ -66,7 +66,7 @@ TEST(Mend, TakesNeedlesOutWithoutACrossing) {
     const Vertex w = spheres.surface.mesh.source(spheres.surface.mesh.halfedge(v));
     const Vec3 near = 0.97 * spheres.surface.position(w) + 0.03 * spheres.surface.position(v);
     if (spheres.surface.may_place(v, near))
-      spheres.surface.place(v, near, spheres.field.sample(near, spheres.surface.cone[v]));
+      spheres.surface.place(v, near, spheres.field.sample(near, spheres.surface[v].cone));
   }
   ASSERT_GT(spheres.worst_skewness(), 0.8);
   EXPECT_TRUE(mend_worst_faces(spheres.surface, 0.5));
@@ -81,15 +81,15 @@ TEST(ImproveWorstFaces, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
   TwoSpheres spheres(2.3);
   BoundSurface& surface = spheres.surface;
   for (const Vertex v : surface.mesh.vertices()) {
-    surface.lift[v] = kLift;
-    surface.place_on_boundary(v, surface.position(v), surface.cone[v]);
+    surface[v].lift = kLift;
+    surface.place_on_boundary(v, surface.position(v), surface[v].cone);
   }
   const double even = spheres.worst_skewness();
   Draw draw(7);
   for (int i = 0; i < 8; ++i) {
     const Vertex v(draw.below(static_cast<Index>(surface.mesh.num_vertices())));
     const Vertex w = surface.mesh.source(surface.mesh.halfedge(v));
-    surface.place_on_boundary(v, 0.67 * surface.position(v) + 0.33 * surface.position(w), surface.cone[v]);
+    surface.place_on_boundary(v, 0.67 * surface.position(v) + 0.33 * surface.position(w), surface[v].cone);
   }
   const auto vertices = surface.mesh.number_of_vertices();
   ASSERT_LT(even, 0.24);
@@ -99,7 +99,7 @@ TEST(ImproveWorstFaces, LowersTheWorstSkewnessOnTheBoundaryWithoutACrossing) {
   EXPECT_LE(surface.mesh.number_of_vertices(), vertices);
   EXPECT_EQ(spheres.crossings(), 0u);
   // The vertices are at their lift above the boundary, to twice the tolerance of improving, 1e-3 radii.
-  for (const Vertex v : surface.mesh.vertices()) EXPECT_NEAR(surface.distance[v], kLift, 2e-3) << v.idx();
+  for (const Vertex v : surface.mesh.vertices()) EXPECT_NEAR(surface[v].distance, kLift, 2e-3) << v.idx();
 }
 
 }  // namespace

@@ -51,8 +51,8 @@ class Matcher {
  public:
   Matcher(const FitMesh& surface, const FitReference& reference, const VesselField& field)
       : surface_(surface), reference_(reference), field_(field), index_(surface.tri_mesh()) {
-    normals_.reserve(surface.faces.size());
-    for (Index f = 0; f < surface.faces.size(); ++f) normals_.push_back(surface.unit_normal(f));
+    normals_.reserve(surface.faces().size());
+    for (Index f = 0; f < surface.faces().size(); ++f) normals_.push_back(surface.unit_normal(f));
   }
 
   Match from_surface(Index f, const Vec3& weights, double area, Index& near) const {
@@ -62,7 +62,7 @@ class Matcher {
   // Match of a point on the side opposite to corner i, at the fraction `part` along it, with the mean normal of both
   // faces.
   Match from_edge(Index f, int i, double part) const {
-    const Triangle& face = surface_.faces[f];
+    const Triangle& face = surface_.faces()[f];
     const Index a = face[(i + 1) % 3], b = face[(i + 2) % 3], g = surface_.face_of(b, a);
     if (g == kNone || g < f) return {};
     const Vec3 normal = (normals_[f] + normals_[g]).normalized();
@@ -82,9 +82,9 @@ class Matcher {
     if (!found) return {};
     near = found->face;
     const Vec3 weights = weights_at(surface_.corners(found->face), found->point);
-    if (on_border(found->face, weights)) return {};
+    if (is_on_border(found->face, weights)) return {};
     if (found->distance > kNear * radius) {
-      const Index there = surface_.vertices[surface_.faces[found->face][0]].cone;
+      const Index there = surface_.vertices()[surface_.faces()[found->face][0]].cone;
       const double limit = kMutual * found->distance;
       if (on_reference(found->point, normals_[found->face], there, limit, sample.face)) return {};
     }
@@ -97,7 +97,7 @@ class Matcher {
     const Vec3 p = weights[0] * a + weights[1] * b + weights[2] * c;
     int corner = 0;
     weights.maxCoeff(&corner);
-    const Index cone = surface_.vertices[surface_.faces[f][corner]].cone;
+    const Index cone = surface_.vertices()[surface_.faces()[f][corner]].cone;
     const double radius = widest_radius(field_, cone);
     const auto found = on_reference(p, normal, cone, kFarthest * radius, near);
     if (!found) return {};
@@ -124,17 +124,17 @@ class Matcher {
                                          Index near) const {
     const auto accepts = [&](Index f) {
       if (!(normal.dot(normals_[f]) > kSameWay)) return false;
-      const Triangle& face = surface_.faces[f];
+      const Triangle& face = surface_.faces()[f];
       return std::any_of(face.begin(), face.end(),
-                         [&](Index v) { return same_vessel(field_, cone, surface_.vertices[v].cone); });
+                         [&](Index v) { return same_vessel(field_, cone, surface_.vertices()[v].cone); });
     };
     return index_.closest_among(p, limit, accepts, near);
   }
 
-  bool on_border(Index f, const Vec3& weights) const {
+  bool is_on_border(Index f, const Vec3& weights) const {
     for (int i = 0; i < 3; ++i) {
-      const Index a = surface_.faces[f][(i + 1) % 3], b = surface_.faces[f][(i + 2) % 3];
-      if (weights[i] < kOnEdge && surface_.on_border(a) && surface_.on_border(b)) return true;
+      const Index a = surface_.faces()[f][(i + 1) % 3], b = surface_.faces()[f][(i + 2) % 3];
+      if (weights[i] < kOnEdge && on_border(surface_, a) && on_border(surface_, b)) return true;
     }
     return false;
   }
@@ -162,8 +162,8 @@ Matches find_matches(const FitMesh& surface, const FitReference& reference, cons
   const std::vector<Vec3> points = pattern(division);
   Matches matches;
   matches.per_face = static_cast<int>(points.size());
-  matches.from_surface.resize(surface.faces.size() * points.size());
-  const auto face_count = static_cast<Index>(surface.faces.size());
+  matches.from_surface.resize(surface.faces().size() * points.size());
+  const auto face_count = static_cast<Index>(surface.faces().size());
   tbb::parallel_for(Index{0}, (face_count + kFaces - 1) / kFaces, [&](Index block) {
     Index near = kNone;
     for (Index f = block * kFaces; f < std::min(face_count, (block + 1) * kFaces); ++f) {
@@ -184,8 +184,8 @@ Matches find_matches(const FitMesh& surface, const FitReference& reference, cons
 std::vector<Match> match_edges(const FitMesh& surface, const FitReference& reference, const VesselField& field) {
   const Matcher matcher(surface, reference, field);
   constexpr int kPoints = 3 * kPerEdge;
-  std::vector<Match> matches(kPoints * surface.faces.size());
-  tbb::parallel_for(Index{0}, static_cast<Index>(surface.faces.size()), [&](Index f) {
+  std::vector<Match> matches(kPoints * surface.faces().size());
+  tbb::parallel_for(Index{0}, static_cast<Index>(surface.faces().size()), [&](Index f) {
     for (int i = 0; i < kPoints; ++i)
       matches[kPoints * f + static_cast<Index>(i)] =
           matcher.from_edge(f, i / kPerEdge, i % kPerEdge / (kPerEdge - 1.0));
@@ -193,12 +193,12 @@ std::vector<Match> match_edges(const FitMesh& surface, const FitReference& refer
   return matches;
 }
 
-void follow(Matches& matches, const std::vector<FitMesh::Vertex>& before, const FitMesh& surface) {
+void follow(Matches& matches, const std::vector<FitVertex>& before, const FitMesh& surface) {
   for (auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
     for (Match& match : *list) {
       if (match.face == kNone) continue;
       for (std::size_t i = 0; i < 3; ++i) {
-        const Index v = surface.faces[match.face][i];
+        const Index v = surface.faces()[match.face][i];
         match.distance +=
             match.weights[static_cast<Eigen::Index>(i)] * match.direction.dot(surface.position(v) - before[v].position);
       }

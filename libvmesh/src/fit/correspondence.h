@@ -39,7 +39,7 @@ inline constexpr int kPerEdge = 5;
 std::vector<Match> match_edges(const FitMesh& surface, const FitReference& reference, const VesselField& field);
 
 /// Updates the distances, along the same directions, after vertices have moved a little from `before`.
-void follow(Matches& matches, const std::vector<FitMesh::Vertex>& before, const FitMesh& surface);
+void follow(Matches& matches, const std::vector<FitVertex>& before, const FitMesh& surface);
 
 /// The distance below which a share of the matches' area lies, mm, the larger of both ways; 0 without matches.
 double matched_distance(const Matches& matches, double share);

@@ -58,7 +58,7 @@ class FarPlaces {
       const Match worst = farthest_match(surface_, matches_, left_alone);
       if (worst.face == kNone || std::abs(worst.distance) <= near) return;
       const Place place = place_of(surface_, worst);
-      if (!bring_nearer(worst, surface_.vertices.size() < most_vertices)) left_alone.push_back(place);
+      if (!bring_nearer(worst, surface_.vertices().size() < most_vertices)) left_alone.push_back(place);
     }
   }
 
@@ -66,7 +66,7 @@ class FarPlaces {
   // Returns whether that brought its surroundings nearer.
   bool bring_nearer(const Match& worst, bool may_add) {
     double edge = 0;
-    for (const Index v : surface_.faces[worst.face]) edge = std::max(edge, surface_.mean_edge(v));
+    for (const Index v : surface_.faces()[worst.face]) edge = std::max(edge, surface_.mean_edge(v));
     if (std::abs(worst.distance) > kNotOfReach * edge) return false;
     const FitPatch patch = patch_around(surface_, worst.face, kReach * edge);
     const PatchMatches before = matches_of(patch);
@@ -116,7 +116,7 @@ class FarPlaces {
   }
 
   static Index tip_of(const FitPatch& patch, const Match& match) {
-    return patch.surface.faces[match.face][nearest_corner(match)];
+    return patch.surface.faces()[match.face][nearest_corner(match)];
   }
 
   // The farthest match on the faces around a tip, which they cut off and it compensates for.
@@ -125,7 +125,7 @@ class FarPlaces {
     for (const auto* list : {&matches.from_surface, &matches.from_reference, &matches.from_edges}) {
       for (const Match& match : *list) {
         if (match.face == kNone || is_tip(match) || std::abs(match.distance) <= std::abs(farthest.distance)) continue;
-        const Triangle& face = patch.surface.faces[match.face];
+        const Triangle& face = patch.surface.faces()[match.face];
         if (std::find(face.begin(), face.end(), tip) != face.end()) farthest = match;
       }
     }
@@ -133,8 +133,8 @@ class FarPlaces {
   }
 
   void move_corner(FitPatch& patch, const Match& match, std::size_t corner, double share) const {
-    std::vector<Vec3> steps(patch.surface.vertices.size(), Vec3::Zero());
-    const Index v = patch.surface.faces[match.face][corner];
+    std::vector<Vec3> steps(patch.surface.vertices().size(), Vec3::Zero());
+    const Index v = patch.surface.faces()[match.face][corner];
     steps[v] = -share * match.distance * match.direction;
     keep_in_opening(patch.surface, v, setting_.opening_normals, steps[v]);
     take_steps(patch.surface, steps, setting_.guard);
@@ -179,7 +179,7 @@ class FarPlaces {
 
   // The patch's matches, taken from those of the whole.
   PatchMatches matches_of(const FitPatch& patch) const {
-    std::vector<Index> number(surface_.faces.size(), kNone);
+    std::vector<Index> number(surface_.faces().size(), kNone);
     PatchMatches result;
     const auto per_face = static_cast<std::size_t>(matches_.per_face);
     for (Index f = 0; f < patch.faces.size(); ++f) {
@@ -206,8 +206,8 @@ class FarPlaces {
   void put_back(const FitPatch& patch, const PatchMatches& matches) {
     const std::vector<Index> faces = vmesh::put_back(surface_, patch);
     const auto per_face = static_cast<std::size_t>(matches_.per_face);
-    matches_.from_surface.resize(surface_.faces.size() * per_face);
-    matches_.from_edges.resize(surface_.faces.size() * kEdgePoints);
+    matches_.from_surface.resize(surface_.faces().size() * per_face);
+    matches_.from_edges.resize(surface_.faces().size() * kEdgePoints);
     const auto place = [&](const Match& match, Match& all) {
       all = match;
       if (match.face != kNone) all.face = faces[match.face];
@@ -235,7 +235,7 @@ class FarPlaces {
 
   static double worst_skewness(const FitPatch& patch) {
     double worst = 0;
-    for (Index f = 0; f < patch.surface.faces.size(); ++f) {
+    for (Index f = 0; f < patch.surface.faces().size(); ++f) {
       if (patch.moves(f)) worst = std::max(worst, skewness_of(patch.surface, f));
     }
     return worst;
@@ -250,7 +250,7 @@ class FarPlaces {
 }  // namespace
 
 Place place_of(const FitMesh& surface, const Match& match) {
-  return {point_of(surface, match), surface.mean_edge(surface.faces[match.face][0])};
+  return {point_of(surface, match), surface.mean_edge(surface.faces()[match.face][0])};
 }
 
 Match farthest_match(const FitMesh& surface, const Matches& matches, const std::vector<Place>& left_alone) {
@@ -267,14 +267,11 @@ Match farthest_match(const FitMesh& surface, const Matches& matches, const std::
 }
 
 void split_at(FitMesh& surface, const Match& match, int side) {
-  const Triangle face = surface.faces[match.face];
+  const Triangle face = surface.faces()[match.face];
   const Index a = face[(side + 1) % 3], b = face[(side + 2) % 3];
-  if (surface.face_of(a, b) == kNone || surface.face_of(b, a) == kNone) return;
+  if (!surface.is_inner(MeshEdge{a, b})) return;
   const Vec3 p = point_of(surface, match) - match.distance * match.direction;
-  const FitMesh::Vertex &first = surface.vertices[a], &second = surface.vertices[b];
-  surface.split(a, b,
-                {p, std::min(first.cone, second.cone), kNone, 0.5 * (first.size + second.size),
-                 0.5 * (first.base_size + second.base_size)});
+  surface.take(surface.splitting({a, b}, FitVertex::between(surface.vertex(a), surface.vertex(b), p)));
 }
 
 void bring_farthest_nearer(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting,

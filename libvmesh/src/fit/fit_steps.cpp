@@ -24,7 +24,7 @@ std::vector<ShapePull> shape_pulls(const FitMesh& surface, const VesselField& fi
   const std::vector<Vec3> steps = shape_steps(surface, kShapePower);
   std::vector<ShapePull> pulls(steps.size());
   for (Index v = 0; v < pulls.size(); ++v) {
-    const double share = surface.mean_edge(v) / widest_radius(field, surface.vertices[v].cone);
+    const double share = surface.mean_edge(v) / widest_radius(field, surface.vertices()[v].cone);
     pulls[v] = {steps[v], std::clamp(share * share, kLeastPull, 1.0)};
   }
   return pulls;
@@ -55,15 +55,15 @@ double distance_from_reference(const Vec3& p, Index cone, const Vec3& normal, co
 }
 
 void find_cones(FitMesh& surface, const VesselField& field) {
-  tbb::parallel_for(std::size_t{0}, surface.vertices.size(), [&](std::size_t v) {
-    surface.vertices[v].cone = field.sample(surface.vertices[v].position, surface.vertices[v].cone).cone;
+  tbb::parallel_for(std::size_t{0}, surface.vertices().size(), [&](std::size_t v) {
+    surface.edit(v).cone = field.sample(surface.vertices()[v].position, surface.vertices()[v].cone).cone;
   });
 }
 
 void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh, const FitSetting& setting) {
   flip_edges_closer(surface, frozen, harsh, [&](Index a, Index b, const Vec3& p) {
     const Vec3 normal = surface.vertex_normal(a) + surface.vertex_normal(b);
-    return distance_from_reference(p, surface.vertices[a].cone, normal, setting);
+    return distance_from_reference(p, surface.vertices()[a].cone, normal, setting);
   });
 }
 

@@ -16,7 +16,7 @@ namespace vmesh {
 struct FitSetting {
   const FitReference& reference;
   const VesselField& field;
-  std::vector<Vec3> opening_normals;  ///< unit, by FitMesh::Vertex::opening
+  std::vector<Vec3> opening_normals;  ///< unit, by FitVertex::opening
   StepGuard guard;
 };
 

@@ -101,11 +101,11 @@ class Fit {
         to_error_(options.error > 0),
         reference_(reference, field),
         setting_{reference_, field, {}, {}},
-        surface_(surface.mesh, vertices_of(surface)),
+        surface_(surface.mesh.faces, vertices_of(surface)),
         openings_(surface.openings.empty() ? find_openings(surface.mesh) : surface.openings) {
     setting_.guard.max_skewness = options.max_skewness;
     if (options.error > 0) limits_.step = kErrorStep;
-    const double count = kSamplesPerFace * static_cast<double>(surface_.faces.size());
+    const double count = kSamplesPerFace * static_cast<double>(surface_.faces().size());
     samples_ = reference_.samples(field, static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < samples_.size(); i += kFewer) {
       few_samples_.push_back(samples_[i]);
@@ -120,14 +120,14 @@ class Fit {
     const double refinement =
         options.error > 0
             ? kErrorRefinement
-            : std::sqrt(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()));
+            : std::sqrt(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices().size()));
     limits_.finest = std::min(limits_.finest, kFinest / refinement);
     limits_.coarsest = std::max(limits_.coarsest, options.error > 0 ? kErrorCoarsest : kCoarsest / refinement);
     for (Index i = 0; i < openings_.size(); ++i) {
       setting_.opening_normals.push_back(openings_[i].normal.normalized());
-      for (const Index v : openings_[i].ring) surface_.vertices[v].opening = i;
+      for (const Index v : openings_[i].ring) surface_.edit(v).opening = i;
     }
-    for (Index v = 0; v < surface_.vertices.size(); ++v) surface_.vertices[v].base_size = surface_.mean_edge(v);
+    for (Index v = 0; v < surface_.vertices().size(); ++v) surface_.edit(v).base_size = surface_.mean_edge(v);
   }
 
   const FitReference& reference() const { return reference_; }
@@ -165,7 +165,7 @@ class Fit {
 
   FitResult result() {
     FitResult result;
-    for (const FitMesh::Vertex& v : surface_.vertices) {
+    for (const FitVertex& v : surface_.vertices()) {
       const FieldSample sample = field_.sample(v.position, v.cone);
       result.surface.binding.push_back({sample.cone, sample.t});
       result.radius.push_back(field_.radius_at(sample.cone, sample.t));
@@ -176,8 +176,8 @@ class Fit {
   }
 
  private:
-  static std::vector<FitMesh::Vertex> vertices_of(const VesselSurface& surface) {
-    std::vector<FitMesh::Vertex> vertices;
+  static std::vector<FitVertex> vertices_of(const VesselSurface& surface) {
+    std::vector<FitVertex> vertices;
     for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v)
       vertices.push_back({surface.mesh.vertices[v], surface.binding[v].segment, kNone, 0, 0});
     return vertices;
@@ -204,7 +204,7 @@ class Fit {
   // Takes a step; returns the matches with the distances after it.
   Matches matches_after_step() {
     Matches matches = next_matches(!to_error_);
-    const std::vector<FitMesh::Vertex> before = surface_.vertices;
+    const std::vector<FitVertex> before = surface_.vertices();
     step(matches);
     follow(matches, before, surface_);
     return matches;
@@ -244,7 +244,7 @@ class Fit {
       for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, setting_.guard, power);
       repair(surface, frozen, setting_.guard);
     });
-    if (surface_.vertex_count() < surface_.vertices.size()) pack();
+    if (surface_.vertex_count() < surface_.vertices().size()) pack();
   }
 
   // Resizes triangles; for an error, until the number of vertices has settled.
@@ -252,21 +252,21 @@ class Fit {
     const int rounds = std::max(1, options_.rounds - kFirstRounds - kLastRounds);
     for (int i = 0; i < (to_error_ ? rounds + kMoreRounds : rounds); ++i) {
       const Matches matches = matches_after_step();
-      const std::size_t before = surface_.vertices.size();
+      const std::size_t before = surface_.vertices().size();
       const double p95 = to_error_ ? matched_distance(matches, 0.95) : 0;
       if (to_error_ && settled_ && i >= rounds && p95 <= kKeptError * options_.error &&
           p95 > kNearlyError * options_.error)
         return;
       if (to_error_) aim_at_error(p95);
       resize_once(matches);
-      const double change = static_cast<double>(surface_.vertices.size()) / static_cast<double>(before);
+      const double change = static_cast<double>(surface_.vertices().size()) / static_cast<double>(before);
       settled_ = std::abs(change - 1) < kSettled;
     }
   }
 
   // Leaves some of them for bring_farthest_nearer().
   void keep_to_wanted_vertices() {
-    for (int i = 0; i < kCorrections && surface_.vertices.size() > wanted_vertices_; ++i) {
+    for (int i = 0; i < kCorrections && surface_.vertices().size() > wanted_vertices_; ++i) {
       aim_ *= kCorrection;
       resize_once(matches_after_step());
     }
@@ -288,11 +288,11 @@ class Fit {
       repair(surface, frozen, setting_.guard);
     });
     pack();
-    if (options_.max_vertices > 0 && surface_.vertices.size() > most_vertices_) to_error_ = false;
+    if (options_.max_vertices > 0 && surface_.vertices().size() > most_vertices_) to_error_ = false;
     // Edge lengths differ a little from the intended sizes; corrects for that.
     aim_ = std::clamp(
         aim_ *
-            std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices.size()), kAimPower),
+            std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices().size()), kAimPower),
         1 / kAimStep, kAimStep);
     find_cones(surface_, field_);
     step(matches_now(true));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "vmesh/core/box_tree.h"
+#include "vmesh/edit/crossing_guard.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
 
@@ -18,12 +18,12 @@ Vec3 normal_of(const std::array<Vec3, 3>& corners) {
   return norm > 0 ? Vec3(normal / norm) : Vec3(Vec3::Zero());
 }
 
-class Step {
+class CommonStep {
  public:
-  Step(FitMesh& surface, const std::vector<Vec3>& steps, const StepGuard& guard)
+  CommonStep(FitMesh& surface, const std::vector<Vec3>& steps, const StepGuard& guard)
       : surface_(surface), steps_(steps), guard_(guard), halvings_(steps.size(), 0) {
-    for (const FitMesh::Vertex& v : surface.vertices) before_.push_back(v.position);
-    for (Index f = 0; f < surface.faces.size(); ++f) {
+    for (const FitVertex& v : surface.vertices()) before_.push_back(v.position);
+    for (Index f = 0; f < surface.faces().size(); ++f) {
       normals_.push_back(surface.unit_normal(f));
       skewness_.push_back(skewness_of(surface, f));
     }
@@ -31,13 +31,13 @@ class Step {
   }
 
   void keep_shapes() {
-    std::vector<Index> faces(surface_.faces.size());
+    std::vector<Index> faces(surface_.faces().size());
     for (Index f = 0; f < faces.size(); ++f) faces[f] = f;
     while (!faces.empty()) {
       std::vector<Index> moved;
       for (const Index f : faces) {
         if (is_good(f)) continue;
-        for (const Index v : surface_.faces[f]) moved.push_back(v);
+        for (const Index v : surface_.faces()[f]) moved.push_back(v);
       }
       faces = shorten(std::move(moved));
     }
@@ -50,7 +50,7 @@ class Step {
       std::vector<Index> moved;
       for (const auto& [f, g] : crossing) {
         for (const Index face : {f, g}) {
-          for (const Index v : surface_.faces[face]) moved.push_back(v);
+          for (const Index v : surface_.faces()[face]) moved.push_back(v);
         }
       }
       if (shorten(std::move(moved)).empty()) return;
@@ -71,7 +71,7 @@ class Step {
  private:
   void place(Index v) {
     const double share = halvings_[v] > kHalvings ? 0 : 1.0 / (1 << halvings_[v]);
-    surface_.vertices[v].position = before_[v] + share * steps_[v];
+    surface_.edit(v).position = before_[v] + share * steps_[v];
   }
 
   // Returns the faces that changed, and those beside them.
@@ -85,7 +85,7 @@ class Step {
       place(v);
       moved_.push_back(v);
       for (const Index f : surface_.faces_around(v)) {
-        for (const Index w : surface_.faces[f])
+        for (const Index w : surface_.faces()[f])
           faces.insert(faces.end(), surface_.faces_around(w).begin(), surface_.faces_around(w).end());
       }
     }
@@ -98,7 +98,7 @@ class Step {
     const Vec3 normal = normal_of(surface_.corners(f));
     if (!(normal.dot(normals_[f]) >= guard_.turn)) return false;
     if (skewness_of(surface_, f) > std::max(guard_.max_skewness, skewness_[f] + 1e-9)) return false;
-    const Triangle& face = surface_.faces[f];
+    const Triangle& face = surface_.faces()[f];
     for (int i = 0; i < 3; ++i) {
       const Index g = surface_.face_of(face[(i + 1) % 3], face[i]);
       if (g == kNone) continue;
@@ -110,29 +110,10 @@ class Step {
 
   // Pairs of crossing faces of which one has a moved vertex: other pairs are unchanged.
   std::vector<std::pair<Index, Index>> crossing_around(const std::vector<Index>& vertices) const {
-    std::vector<Vec3> low, high;
-    for (const Index v : vertices) {
-      for (const Index f : surface_.faces_around(v)) {
-        const auto [a, b, c] = surface_.corners(f);
-        low.push_back(a.cwiseMin(b).cwiseMin(c));
-        high.push_back(a.cwiseMax(b).cwiseMax(c));
-      }
-    }
-    const BoxTree moved(low, high);
-    TriMesh near;
-    for (const FitMesh::Vertex& v : surface_.vertices) near.vertices.push_back(v.position);
-    std::vector<Index> number;
-    for (Index f = 0; f < surface_.faces.size(); ++f) {
-      const auto [a, b, c] = surface_.corners(f);
-      bool meets = false;
-      moved.visit_overlapping(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), [&](Index) { meets = true; });
-      if (!meets) continue;
-      near.faces.push_back(surface_.faces[f]);
-      number.push_back(f);
-    }
-    std::vector<std::pair<Index, Index>> crossing = self_intersections(near);
-    for (auto& [f, g] : crossing) f = number[f], g = number[g];
-    return crossing;
+    std::vector<Index> moved;
+    for (const Index v : vertices)
+      moved.insert(moved.end(), surface_.faces_around(v).begin(), surface_.faces_around(v).end());
+    return crossing_pairs(surface_.positions(), surface_.faces(), moved);
   }
 
   FitMesh& surface_;
@@ -149,7 +130,7 @@ class Step {
 double skewness_with(const FitMesh& surface, Index face, Index vertex, const Vec3& p) {
   std::array<Vec3, 3> corners = surface.corners(face);
   for (int i = 0; i < 3; ++i) {
-    if (surface.faces[face][i] == vertex) corners[i] = p;
+    if (surface.faces()[face][i] == vertex) corners[i] = p;
   }
   return equiangle_skewness(corners[0], corners[1], corners[2]);
 }
@@ -160,7 +141,7 @@ double skewness_of(const FitMesh& surface, Index face) {
 }
 
 double take_steps(FitMesh& surface, const std::vector<Vec3>& steps, const StepGuard& guard) {
-  Step step(surface, steps, guard);
+  CommonStep step(surface, steps, guard);
   step.keep_shapes();
   step.keep_apart();
   return step.taken();

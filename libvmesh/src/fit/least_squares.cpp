@@ -21,12 +21,12 @@ constexpr int kMostIterations = 200;
 class Equations {
  public:
   explicit Equations(const FitMesh& surface)
-      : surface_(surface), faces_(surface.faces.size()), right_(surface.vertices.size(), Vec3::Zero()) {
-    diagonal_.assign(surface.vertices.size(), Mat3::Zero());
+      : surface_(surface), faces_(surface.faces().size()), right_(surface.vertices().size(), Vec3::Zero()) {
+    diagonal_.assign(surface.vertices().size(), Mat3::Zero());
   }
 
   void add(const Match& match, double weight) {
-    const Triangle& face = surface_.faces[match.face];
+    const Triangle& face = surface_.faces()[match.face];
     const Mat3 square = weight * match.direction * match.direction.transpose();
     const Vec3 pull = -weight * match.distance * match.direction;
     for (int i = 0; i < 3; ++i) {
@@ -44,7 +44,7 @@ class Equations {
 
   // Adds a term for the difference of the steps at the ends of the side of face f opposite to corner i.
   void add_difference(Index f, int i, const Mat3& square) {
-    const Triangle& face = surface_.faces[f];
+    const Triangle& face = surface_.faces()[f];
     diagonal_[face[(i + 1) % 3]] += square;
     diagonal_[face[(i + 2) % 3]] += square;
     faces_[f][i] -= square;
@@ -87,7 +87,7 @@ class Equations {
     for (Index v = 0; v < x.size(); ++v) product[v] = diagonal_[v] * x[v];
     for (Index f = 0; f < faces_.size(); ++f) {
       for (std::size_t i = 0; i < 3; ++i) {
-        const Index v = surface_.faces[f][(i + 1) % 3], w = surface_.faces[f][(i + 2) % 3];
+        const Index v = surface_.faces()[f][(i + 1) % 3], w = surface_.faces()[f][(i + 2) % 3];
         product[v] += faces_[f][i] * x[w];  // blocks are symmetric
         product[w] += faces_[f][i] * x[v];
       }
@@ -115,8 +115,8 @@ void for_each_match(const Matches& matches, Visit&& visit) {
 }  // namespace
 
 void keep_in_opening(const FitMesh& surface, Index v, const std::vector<Vec3>& opening_normals, Vec3& step) {
-  if (!surface.on_border(v)) return;
-  const Vec3& across = opening_normals[surface.vertices[v].opening];
+  if (!on_border(surface, v)) return;
+  const Vec3& across = opening_normals[surface.vertices()[v].opening];
   step -= across.dot(step) * across;
 }
 
@@ -138,34 +138,34 @@ std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& mat
     const double emphasis = 1 + weights.emphasis * std::min(kMostEmphasized, std::abs(match.distance) / rms);
     equations.add(match, match.area * emphasis);
   });
-  std::vector<double> area(surface.vertices.size(), 0);
-  std::vector<Vec3> normal(surface.vertices.size(), Vec3::Zero());
-  for (Index f = 0; f < surface.faces.size(); ++f) {
+  std::vector<double> area(surface.vertices().size(), 0);
+  std::vector<Vec3> normal(surface.vertices().size(), Vec3::Zero());
+  for (Index f = 0; f < surface.faces().size(); ++f) {
     const Vec3 face_normal = surface.area_normal(f);
-    for (const Index v : surface.faces[f]) {
+    for (const Index v : surface.faces()[f]) {
       normal[v] += face_normal;
       area[v] += face_normal.norm() / 3;  // both ways: twice a third of the area
     }
   }
   for (Vec3& n : normal) n.normalize();
-  for (Index v = 0; v < surface.vertices.size(); ++v) {
+  for (Index v = 0; v < surface.vertices().size(); ++v) {
     const Mat3 along = normal[v] * normal[v].transpose();
     const double tangential = weights.tangential * pulls[v].weight;
     equations.add(v, tangential * area[v] * (Mat3::Identity() - along), pulls[v].step);
     const double hold = is_frozen(frozen, v) ? kFrozen : kHold;
     equations.add(v, hold * area[v] * Mat3::Identity(), Vec3::Zero());
-    if (surface.on_border(v)) {
-      const Vec3& across = opening_normals[surface.vertices[v].opening];
+    if (on_border(surface, v)) {
+      const Vec3& across = opening_normals[surface.vertices()[v].opening];
       equations.add(v, kInPlane * area[v] * across * across.transpose(), Vec3::Zero());
     }
   }
-  for (Index f = 0; f < surface.faces.size(); ++f) {
+  for (Index f = 0; f < surface.faces().size(); ++f) {
     const Vec3 n = surface.unit_normal(f);
     const Mat3 square = weights.smooth * surface.area_normal(f).norm() / 3 * n * n.transpose();
     for (int i = 0; i < 3; ++i) equations.add_difference(f, i, square);
   }
   std::vector<Vec3> steps = equations.solve();
-  for (Index v = 0; v < surface.vertices.size(); ++v) {
+  for (Index v = 0; v < surface.vertices().size(); ++v) {
     if (is_frozen(frozen, v)) steps[v].setZero();
     keep_in_opening(surface, v, opening_normals, steps[v]);
   }

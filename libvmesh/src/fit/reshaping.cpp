@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-#include "vmesh/mesh/topology.h"
+#include "vmesh/edit/crossing_guard.h"
 #include "vmesh/mesh/triangle_energy.h"
 #include "vmesh/mesh/triangle_quality.h"
 
@@ -44,7 +44,7 @@ Vec3 shape_step(const FitMesh& surface, Index v, int power) {
   energy.power = power;
   double shortest = std::numeric_limits<double>::infinity();
   for (const Index f : surface.faces_around(v)) {
-    const Triangle& face = surface.faces[f];
+    const Triangle& face = surface.faces()[f];
     const int i = face[0] == v ? 0 : face[1] == v ? 1 : 2;
     const Vec3 &b = surface.position(face[(i + 1) % 3]), &c = surface.position(face[(i + 2) % 3]);
     energy.add(x, b, c, u, w);
@@ -68,13 +68,13 @@ bool may_place(const FitMesh& surface, Index v, const Vec3& p, const std::vector
     std::array<Vec3, 3> corners = surface.corners(f);
     const Vec3 before = unit_normal(corners[0], corners[1], corners[2]);
     for (int i = 0; i < 3; ++i) {
-      if (surface.faces[f][i] == v) corners[i] = p;
+      if (surface.faces()[f][i] == v) corners[i] = p;
     }
     const Vec3 after = unit_normal(corners[0], corners[1], corners[2]);
     if (!(after.dot(before) >= guard.turn)) return false;
     if (equiangle_skewness(corners[0], corners[1], corners[2]) > worst) return false;
     for (int i = 0; i < 3; ++i) {
-      const Index a = surface.faces[f][i], b = surface.faces[f][(i + 1) % 3];
+      const Index a = surface.faces()[f][i], b = surface.faces()[f][(i + 1) % 3];
       const Index g = surface.face_of(b, a);
       if (g == kNone) continue;
       const auto& around = surface.faces_around(v);
@@ -103,11 +103,10 @@ struct Flip {
 
 /// nullopt at the border, and where the new edge is there already.
 std::optional<Flip> flip_of(const FitMesh& surface, Index a, Index b) {
-  const Index f = surface.face_of(a, b), g = surface.face_of(b, a);
-  if (f == kNone || g == kNone) return std::nullopt;
-  const Index c = FitMesh::apex(surface.faces[f], a, b), d = FitMesh::apex(surface.faces[g], a, b);
-  if (c == d || surface.are_neighbours(c, d)) return std::nullopt;
-  const auto valence = [&](Index v) { return surface.faces_around(v).size() + (surface.on_border(v) ? 3 : 0); };
+  const MeshEdge e{a, b};
+  if (!surface.is_inner(e) || !surface.may_flip(e)) return std::nullopt;
+  const auto [c, d] = surface.opposite(e);
+  const auto valence = [&](Index v) { return surface.faces_around(v).size() + (on_border(surface, v) ? 3 : 0); };
   const int before = deviation(valence(a)) + deviation(valence(b)) + deviation(valence(c)) + deviation(valence(d));
   const int after =
       deviation(valence(a) - 1) + deviation(valence(b) - 1) + deviation(valence(c) + 1) + deviation(valence(d) + 1);
@@ -135,30 +134,26 @@ bool should_flip(const Flip& flip, const StepGuard& guard) {
 }  // namespace
 
 void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const std::vector<char>&)>& change) {
-  const FitMesh before = surface;
-  std::vector<char> frozen(surface.vertices.size(), 0);
+  std::vector<char> frozen(surface.vertices().size(), 0);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    FitMesh::Transaction transaction(surface);
     change(surface, frozen);
-    FitMesh packed = surface;
-    packed.pack();
-    const TriMesh mesh = packed.tri_mesh();
-    const auto crossing = self_intersections(mesh);
-    if (crossing.empty()) return;
-    // By position, as numbers have changed.
-    std::vector<Vec3> places;
+    const auto crossing = crossing_pairs(surface.positions(), surface.faces(), transaction.changed_faces());
+    if (crossing.empty()) return transaction.keep();
+    std::vector<Vec3> places;  // some of them of new vertices
     std::vector<double> reach;
     for (const auto& [f, g] : crossing) {
       for (const Index face : {f, g}) {
-        for (const Index v : mesh.faces[face]) {
-          places.push_back(mesh.vertices[v]);
-          reach.push_back((2 + attempt) * packed.mean_edge(v));
+        for (const Index v : surface.faces()[face]) {
+          places.push_back(surface.position(v));
+          reach.push_back((2 + attempt) * surface.mean_edge(v));
         }
       }
     }
-    surface = before;
+    transaction.undo();
     for (Index v = 0; v < frozen.size(); ++v) {
       for (std::size_t i = 0; i < places.size() && !frozen[v]; ++i)
-        frozen[v] = (places[i] - before.position(v)).squaredNorm() <= reach[i] * reach[i];
+        frozen[v] = (places[i] - surface.position(v)).squaredNorm() <= reach[i] * reach[i];
     }
   }
 }
@@ -166,7 +161,7 @@ void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const st
 void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard) {
   for (const auto& [a, b] : surface.edges()) {
     if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
-    if (const auto flip = flip_of(surface, a, b); flip && should_flip(*flip, guard)) surface.flip(a, b);
+    if (const auto flip = flip_of(surface, a, b); flip && should_flip(*flip, guard)) surface.take(surface.flipping({a, b}));
   }
 }
 
@@ -185,32 +180,32 @@ void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen, bool h
     if (now < 0 || then < 0) continue;
     const bool is_harsh = turn < kOverRim || flip->worst_after > std::max(kCloserSkewness, flip->worst_before);
     if (now - then < (is_harsh ? kMuchCloser : kCloser) * (pa - pb).norm()) continue;
-    surface.flip(a, b);
+    surface.take(surface.flipping({a, b}));
   }
 }
 
 std::vector<Vec3> shape_steps(const FitMesh& surface, int power) {
-  std::vector<Vec3> steps(surface.vertices.size(), Vec3::Zero());
+  std::vector<Vec3> steps(surface.vertices().size(), Vec3::Zero());
   for (Index v = 0; v < steps.size(); ++v) {
-    if (surface.has_vertex(v) && !surface.on_border(v)) steps[v] = shape_step(surface, v, power);
+    if (surface.has_vertex(v) && !on_border(surface, v)) steps[v] = shape_step(surface, v, power);
   }
   return steps;
 }
 
 bool relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above) {
-  std::vector<double> skewness(surface.faces.size(), 0);
+  std::vector<double> skewness(surface.faces().size(), 0);
   for (Index f = 0; f < skewness.size(); ++f) {
     if (surface.has_face(f)) skewness[f] = skewness_of(surface, f);
   }
   bool moved = false;
-  for (Index v = 0; v < surface.vertices.size(); ++v) {
-    if (!surface.has_vertex(v) || surface.on_border(v) || is_frozen(frozen, v)) continue;
+  for (Index v = 0; v < surface.vertices().size(); ++v) {
+    if (!surface.has_vertex(v) || on_border(surface, v) || is_frozen(frozen, v)) continue;
     const auto& around = surface.faces_around(v);
     if (std::none_of(around.begin(), around.end(), [&](Index f) { return skewness[f] > above; })) continue;
     Vec3 step = shape_step(surface, v, power);
     for (int halving = 0; halving < 3; ++halving, step /= 2) {
       if (!may_place(surface, v, surface.position(v) + step, skewness, guard)) continue;
-      surface.vertices[v].position += step;
+      surface.edit(v).position += step;
       for (const Index f : around) skewness[f] = skewness_of(surface, f);
       moved = true;
       break;

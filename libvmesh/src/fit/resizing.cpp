@@ -20,7 +20,7 @@ constexpr double kBent = 0.5;  // least cosine between a triangle's normals befo
 using Neighbours = std::vector<std::vector<Index>>;
 
 Neighbours all_neighbours(const FitMesh& surface) {
-  Neighbours neighbours(surface.vertices.size());
+  Neighbours neighbours(surface.vertices().size());
   for (Index v = 0; v < neighbours.size(); ++v) surface.neighbours(v, neighbours[v]);
   return neighbours;
 }
@@ -47,14 +47,14 @@ double length_of(const FitMesh& surface, Index a, Index b) {
   return (surface.position(a) - surface.position(b)).norm();
 }
 double size_of(const FitMesh& surface, Index a, Index b) {
-  return 0.5 * (surface.vertices[a].size + surface.vertices[b].size);
+  return 0.5 * (surface.vertices()[a].size + surface.vertices()[b].size);
 }
 
 // How many triangles of the given sizes cover the surface.
 double face_count(const FitMesh& surface, const std::vector<double>& size) {
   double count = 0;
-  for (Index f = 0; f < surface.faces.size(); ++f) {
-    const auto& [a, b, c] = surface.faces[f];
+  for (Index f = 0; f < surface.faces().size(); ++f) {
+    const auto& [a, b, c] = surface.faces()[f];
     const double h = (size[a] + size[b] + size[c]) / 3;
     count += surface.area_normal(f).norm() / (h * h);
   }
@@ -81,7 +81,7 @@ bool may_collapse_to(const FitMesh& surface, Index a, Index b, const Vec3& p, co
   double worst_before = 0, worst = 0;
   for (const Index end : {a, b}) {
     for (const Index f : surface.faces_around(end)) {
-      const Triangle& face = surface.faces[f];
+      const Triangle& face = surface.faces()[f];
       std::array<Vec3, 3> corners = surface.corners(f);
       const bool both =
           std::find(face.begin(), face.end(), a) != face.end() && std::find(face.begin(), face.end(), b) != face.end();
@@ -96,17 +96,12 @@ bool may_collapse_to(const FitMesh& surface, Index a, Index b, const Vec3& p, co
       worst = std::max(worst, equiangle_skewness(corners[0], corners[1], corners[2]));
       for (int i = 0; i < 3; ++i) {  // must not create an edge that would be split again
         if (face[i] == end) continue;
-        const double h = 0.5 * (surface.vertices[face[i]].size + size_of(surface, a, b));
+        const double h = 0.5 * (surface.vertices()[face[i]].size + size_of(surface, a, b));
         if ((p - surface.position(face[i])).norm() > kLong * h) return false;
       }
     }
   }
   return worst <= std::max({kCollapsedSkewness, guard.max_skewness, worst_before});
-}
-
-FitMesh::Vertex middle_of(const FitMesh::Vertex& a, const FitMesh::Vertex& b) {
-  return {0.5 * (a.position + b.position), std::min(a.cone, b.cone), kNone, 0.5 * (a.size + b.size),
-          0.5 * (a.base_size + b.base_size)};
 }
 
 struct LengthOfEdge {
@@ -131,13 +126,13 @@ std::vector<LengthOfEdge> edge_lengths(const FitMesh& surface, const std::vector
 }  // namespace
 
 std::vector<double> errors_around(const FitMesh& surface, const Matches& matches) {
-  std::vector<double> sum(surface.vertices.size(), 0), area(surface.vertices.size(), 0);
+  std::vector<double> sum(surface.vertices().size(), 0), area(surface.vertices().size(), 0);
   const auto add = [&](const Match& match) {
     if (match.face == kNone) return;
     for (int i = 0; i < 3; ++i) {
       const double weight = match.area * match.weights[i];
-      sum[surface.faces[match.face][i]] += weight * std::abs(match.distance * match.distance * match.distance);
-      area[surface.faces[match.face][i]] += weight;
+      sum[surface.faces()[match.face][i]] += weight * std::abs(match.distance * match.distance * match.distance);
+      area[surface.faces()[match.face][i]] += weight;
     }
   };
   for (const Match& match : matches.from_surface) add(match);
@@ -150,12 +145,12 @@ std::vector<double> errors_around(const FitMesh& surface, const Matches& matches
 
 double set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_t vertices, double error,
                  const SizeLimits& limits) {
-  const std::size_t count = surface.vertices.size();
+  const std::size_t count = surface.vertices().size();
   std::vector<double> now(count), size(count);
   for (Index v = 0; v < count; ++v) now[v] = surface.mean_edge(v);
   const Neighbours neighbours = all_neighbours(surface);
   smooth(neighbours, now);
-  const double faces_per_unit = static_cast<double>(surface.faces.size()) / face_count(surface, now);
+  const double faces_per_unit = static_cast<double>(surface.faces().size()) / face_count(surface, now);
   // A number of triangles gives the least sum of squares where errors times sizes are even (squared error e^2 ~ h^4 and
   // count ~ 1 / h^2 per area: the gain by one more triangle is e^2 h^2).
   const auto factor = [&](double target, Index v) {
@@ -164,7 +159,7 @@ double set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_
   };
   const auto sizes_for = [&](double target) {
     for (Index v = 0; v < count; ++v) {
-      const double base = surface.vertices[v].base_size;
+      const double base = surface.vertices()[v].base_size;
       double wanted = factor(target, v);
       if (errors[v] > kNotOfSize * now[v]) wanted = std::max(wanted, 1.0);  // refinement would not help
       const double lowest = limits.finest * base, highest = limits.coarsest * base;
@@ -178,7 +173,7 @@ double set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_
     double largest = 0;
     for (Index v = 0; v < count; ++v) largest = std::max(largest, 10 * errors[v] * now[v]);
     faces =
-        static_cast<double>(surface.faces.size()) + 2 * (static_cast<double>(vertices) - static_cast<double>(count));
+        static_cast<double>(surface.faces().size()) + 2 * (static_cast<double>(vertices) - static_cast<double>(count));
     double low = 1e-6 * largest, high = largest;
     for (int i = 0; i < kBisections; ++i) {
       const double middle = std::sqrt(low * high);
@@ -190,7 +185,7 @@ double set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_
   } else {
     faces = sizes_for(error);
   }
-  for (Index v = 0; v < count; ++v) surface.vertices[v].size = size[v];
+  for (Index v = 0; v < count; ++v) surface.edit(v).size = size[v];
   return faces;
 }
 
@@ -198,8 +193,9 @@ void split_edges(FitMesh& surface, const std::vector<char>& frozen) {
   const std::vector<LengthOfEdge> edges = edge_lengths(surface, frozen);
   for (auto edge = edges.rbegin(); edge != edges.rend() && edge->ratio > kLong; ++edge) {
     const auto [ratio, a, b] = *edge;
-    if (surface.face_of(a, b) == kNone || surface.face_of(b, a) == kNone) continue;
-    surface.split(a, b, middle_of(surface.vertices[a], surface.vertices[b]));
+    if (!surface.is_inner(MeshEdge{a, b})) continue;
+    const Vec3 middle = 0.5 * (surface.position(a) + surface.position(b));
+    surface.take(surface.splitting({a, b}, FitVertex::between(surface.vertex(a), surface.vertex(b), middle)));
   }
 }
 
@@ -207,13 +203,13 @@ void collapse_edges(FitMesh& surface, const std::vector<char>& frozen, const Ste
   for (const auto& [old_ratio, a, b] : edge_lengths(surface, frozen)) {
     if (old_ratio > kShort) break;
     if (!surface.has_vertex(a) || !surface.has_vertex(b) || surface.face_of(a, b) == kNone) continue;
-    if (length_of(surface, a, b) > kShort * size_of(surface, a, b) || !surface.may_collapse(a, b)) continue;
+    if (length_of(surface, a, b) > kShort * size_of(surface, a, b) || !surface.may_collapse({a, b})) continue;
     const Vec3 p = 0.5 * (surface.position(a) + surface.position(b));
     if (!may_collapse_to(surface, a, b, p, guard)) continue;
-    const double size = size_of(surface, a, b);
-    surface.collapse(a, b);
-    surface.vertices[a].position = p;
-    surface.vertices[a].size = size;
+    FitVertex one = surface.vertex(a);
+    one.position = p;
+    one.size = size_of(surface, a, b);
+    surface.take(surface.collapsing(b, a, one));
   }
 }
 

@@ -22,8 +22,8 @@ class Spikes {
       : surface_(surface), frozen_(frozen), setting_(setting) {}
 
   void collapse_all() {
-    for (Index v = 0; v < surface_.vertices.size(); ++v) {
-      if (!surface_.has_vertex(v) || surface_.on_border(v) || is_frozen(frozen_, v) || !is_pointed(v)) continue;
+    for (Index v = 0; v < surface_.vertices().size(); ++v) {
+      if (!surface_.has_vertex(v) || on_border(surface_, v) || is_frozen(frozen_, v) || !is_pointed(v)) continue;
       const double distance = distance_from(v, surface_.position(v));
       if (distance < kFar * surface_.mean_edge(v)) continue;
       const Index end = nearest_end(v, kNearer * distance);
@@ -34,10 +34,10 @@ class Spikes {
  private:
   void collapse(Index v, Index end) {
     const double limit = std::max(setting_.guard.max_skewness, worst_around(v));
-    FitMesh before = surface_;
-    surface_.collapse(end, v);
+    FitMesh::Transaction transaction(surface_);
+    surface_.take(surface_.collapsing(v, end, surface_.vertex(end)));
     repair(surface_, frozen_, setting_.guard);
-    if (worst_around(end) > limit) surface_ = std::move(before);
+    if (worst_around(end) <= limit) transaction.keep();
   }
 
   // Of all faces around a vertex and its neighbours.
@@ -64,7 +64,7 @@ class Spikes {
 
   // Whichever way the reference faces, as a spike's normal tells nothing. Negative: unknown.
   double distance_from(Index v, const Vec3& p) const {
-    return distance_from_reference(p, surface_.vertices[v].cone, Vec3::Zero(), setting_);
+    return distance_from_reference(p, surface_.vertices()[v].cone, Vec3::Zero(), setting_);
   }
 
   // The neighbour into which v can be collapsed so that the triangles that remain are nearest, and nearer than `limit`.
@@ -73,7 +73,7 @@ class Spikes {
     surface_.neighbours(v, neighbours);
     Index nearest = kNone;
     for (const Index w : neighbours) {
-      if (is_frozen(frozen_, w) || !surface_.may_collapse(w, v)) continue;
+      if (is_frozen(frozen_, w) || !surface_.may_collapse({w, v})) continue;
       const double distance = distance_after_collapse(w, v);
       if (distance >= limit) continue;
       limit = distance;
@@ -87,7 +87,7 @@ class Spikes {
   double distance_after_collapse(Index w, Index v) const {
     double farthest = 0;
     for (const Index f : surface_.faces_around(v)) {
-      const Triangle& face = surface_.faces[f];
+      const Triangle& face = surface_.faces()[f];
       if (std::find(face.begin(), face.end(), w) != face.end()) continue;
       if (skewness_with(surface_, f, v, surface_.position(w)) > kSkewness) return kInfinite;
       Vec3 center = Vec3::Zero();

@@ -18,11 +18,11 @@ constexpr double kInTriangle = 1e-9;  // of its area: what rounding adds to the 
 struct FittedFaces {
   const FitMesh& surface;
 
-  std::size_t count() const { return surface.faces.size(); }
+  std::size_t count() const { return surface.faces().size(); }
   std::array<Vec3, 3> corners(Index f) const { return surface.corners(f); }
   Vec3 normal(Index f) const { return surface.unit_normal(f); }
   Triangle across(Index f) const {
-    const Triangle& face = surface.faces[f];
+    const Triangle& face = surface.faces()[f];
     return {surface.face_of(face[1], face[0]), surface.face_of(face[2], face[1]), surface.face_of(face[0], face[2])};
   }
 };
@@ -153,7 +153,7 @@ std::vector<UnmatchedPart> unsupported_parts(const FitMesh& surface, const FitRe
   std::vector<FarFace> faces(own.count());
   tbb::parallel_for(Index{0}, static_cast<Index>(faces.size()), [&](Index f) {
     const auto [a, b, c] = surface.corners(f);
-    faces[f] = far_face((a + b + c) / 3, surface.area_normal(f).norm() / 2, surface.vertices[surface.faces[f][0]].cone,
+    faces[f] = far_face((a + b + c) / 3, surface.area_normal(f).norm() / 2, surface.vertices()[surface.faces()[f][0]].cone,
                         reference.index(), others, field);
   });
   return parts_of(faces, own);

@@ -17,7 +17,7 @@
 #include "surface/input/size_check.h"
 #include "surface/paper/paper_growth.h"
 #include "surface/pieces/grow_pieces.h"
-#include "surface/proof/error_limit.h"
+#include "surface/check/error_limit.h"
 #include "surface/remesh/bound_surface.h"
 
 namespace vmesh {

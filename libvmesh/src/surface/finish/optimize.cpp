@@ -1,6 +1,6 @@
 #include "surface/finish/optimize.h"
 
-#include "surface/proof/error_limit.h"
+#include "surface/check/error_limit.h"
 #include "surface/remesh/balance.h"
 #include "surface/remesh/polish.h"
 #include "surface/remesh/relocation.h"
@@ -194,9 +194,9 @@ class Optimizer {
     bool any = false;
     for (const Vertex v : vertices) {
       if (is_calm(v)) continue;
-      double& fineness = state_.surface.fineness[v];
-      double& share = state_.surface.elongation_share[v];
-      if (state_.surface.elongation[v] != Vec3::Zero() && share > kLeastShare) {
+      double& fineness = state_.surface[v].fineness;
+      double& share = state_.surface[v].elongation_share;
+      if (state_.surface[v].elongation != Vec3::Zero() && share > kLeastShare) {
         share = kShorter * share > kLeastShare ? kShorter * share : 0;
         state_.stir(v);
         any = true;

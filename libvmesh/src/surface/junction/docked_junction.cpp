@@ -48,7 +48,7 @@ class JunctionDocker {
   DockedJunction make(const Variant& variant) {
     const JunctionSurface junction = growth_.make(variant.finer, variant.smooth_rims, variant.guarded);
     add(junction.patch);
-    for (const Vertex v : surface_.mesh.vertices()) surface_.fineness[v] = variant.fineness;
+    for (const Vertex v : surface_.mesh.vertices()) surface_[v].fineness = variant.fineness;
     for (Index i = 0; i < docks_.size(); ++i) dock(i, junction.rims[i]);
     if (variant.guarded) surface_.guard_crossings();
     DockedJunction docked;
@@ -82,7 +82,7 @@ class JunctionDocker {
       std::vector<Vertex> ring;
       for (const BoundaryPoint& p : tube.rings[number].points) {
         ring.push_back(add_vertex(p.position, p.sample.cone));
-        if (is_seam(tube, number)) surface_.lift[ring.back()] = surface_.distance[ring.back()];
+        if (is_seam(tube, number)) surface_[ring.back()].lift = surface_[ring.back()].distance;
       }
       if (k + 1 == count) kept_.push_back({number_of_dock, ring});
       if (dock.at_end) std::reverse(ring.begin(), ring.end());
@@ -132,10 +132,10 @@ class JunctionDocker {
     const SurfaceMesh& mesh = surface_.mesh;
     std::vector<Index> number(mesh.num_vertices() + mesh.number_of_removed_vertices(), kNone);
     for (const Vertex v : mesh.vertices()) {
-      if (surface_.role[v] == BoundSurface::Role::lid) continue;
+      if (surface_[v].role == BoundSurface::Role::lid) continue;
       number[v.idx()] = static_cast<Index>(docked.vertices.size());
-      docked.vertices.push_back({surface_.position(v), surface_.cone[v], surface_.fineness[v], surface_.lift[v], kNone,
-                                 0, surface_.elongation_share[v]});
+      docked.vertices.push_back({surface_.position(v), surface_[v].cone, surface_[v].fineness, surface_[v].lift, kNone,
+                                 0, surface_[v].elongation_share});
     }
     for (const auto& [dock, vertices] : kept_) {
       for (Index j = 0; j < vertices.size(); ++j) {

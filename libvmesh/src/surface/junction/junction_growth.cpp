@@ -112,9 +112,10 @@ JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarde
         result.rims.push_back(cut_at_dock(cutter, closed, g, at_end, smooth_rims));
     }
   }
-  result.patch.faces = cutter.rest();
+  result.patch.faces = cutter.rest().faces;
   for (Index v = 0; v < cutter.vertices().size(); ++v) {
-    result.patch.vertices.push_back({cutter.vertices()[v], original_cone(closed.binding[cutter.source(v)].segment)});
+    const auto& [position, source] = cutter.vertices()[v];
+    result.patch.vertices.push_back({position, original_cone(closed.binding[source].segment)});
   }
   return result;
 }
@@ -158,8 +159,8 @@ std::vector<Index> JunctionGrowth::cut_at_dock(DiscCutter& cutter, const Generat
 void JunctionGrowth::move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& closed,
                                         double longest) const {
   for (const Index v : rim) {
-    const Vec3 p = cutter.vertices()[v];
-    const Vec3 target = project_to_boundary(local_field_, p, closed.binding[cutter.source(v)].segment).position;
+    const auto [p, source] = cutter.vertices()[v];
+    const Vec3 target = project_to_boundary(local_field_, p, closed.binding[source].segment).position;
     if ((target - p).norm() < longest) cutter.move(v, target);
   }
 }

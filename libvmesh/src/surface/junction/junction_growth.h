@@ -1,6 +1,6 @@
 #pragma once
 
-#include "surface/junction/docking.h"
+#include "surface/junction/disc_cutter.h"
 #include "surface/junction/junction_centerline.h"
 #include "surface/junction/lattice_growth.h"
 

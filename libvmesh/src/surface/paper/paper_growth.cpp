@@ -77,7 +77,7 @@ class Growth {
     std::vector<Vertex> still_moving;
     settled_.clear();
     for (const Vertex v : moving_) {
-      const FieldSample here = field_.sample(surface_.position(v), surface_.cone[v]);
+      const FieldSample here = field_.sample(surface_.position(v), surface_[v].cone);
       const double radius = field_.radius_at(here.cone, here.t);
       const bool forced = ++steps_[v] > kMaxSteps;
       if (forced || here.distance >= -kSettledTolerance * radius) {  // outside: the midpoint of an edge over a crotch
@@ -130,7 +130,7 @@ class Growth {
     int i = 0;
     for (const Vertex v : mesh_.vertices_around_face(h)) {
       triangle[i++] = surface_.position(v);
-      const auto local = field_.local_cones(surface_.cone[v]);
+      const auto local = field_.local_cones(surface_[v].cone);
       candidates_.insert(candidates_.end(), local.begin(), local.end());
     }
     std::sort(candidates_.begin(), candidates_.end());

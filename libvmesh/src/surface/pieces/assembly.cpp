@@ -78,9 +78,9 @@ std::vector<PieceLoop> Assembly::build(BoundSurface& surface) const {
       const SurfacePoint& p = vertices_[v];
       vertex[v] = surface.mesh.add_vertex(p.position);
       surface.place(vertex[v], p.position, surface.field.sample_fast(p.position, p.cone));
-      surface.fineness[vertex[v]] = p.fineness;
-      surface.elongation_share[vertex[v]] = p.elongation_share;
-      surface.lift[vertex[v]] = p.lift == kAsLaid ? surface.distance[vertex[v]] : p.lift;
+      surface[vertex[v]].fineness = p.fineness;
+      surface[vertex[v]].elongation_share = p.elongation_share;
+      surface[vertex[v]].lift = p.lift == kAsLaid ? surface[vertex[v]].distance : p.lift;
     }
   }
   for (const auto& [a, b, c] : faces_) {

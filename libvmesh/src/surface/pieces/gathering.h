@@ -1,15 +1,12 @@
 #pragma once
 
 #include "surface/pieces/piece.h"
+#include "surface/proof/finished_surface.h"
 
 namespace vmesh {
 
 /// A surface put together from its pieces: vertices of the seams first, then those of the pieces in their order.
-struct GatheredSurface {
-  TriMesh mesh;
-  std::vector<CenterlineBinding> binding;
-  std::vector<double> radius;
-  std::vector<Opening> openings;  ///< node, centre, radius and ring
+struct GatheredSurface : FinishedSurface {
   std::vector<Index> first_face;  ///< of every piece, then the total
 
   Index piece_of(Index face) const;

@@ -12,7 +12,7 @@
 #include "surface/pieces/parting.h"
 #include "surface/pieces/whole_tasks.h"
 #include "surface/proof/coarsening.h"
-#include "surface/proof/error_limit.h"
+#include "surface/check/error_limit.h"
 #include "surface/proof/notches.h"
 
 namespace vmesh {
@@ -90,7 +90,7 @@ class PieceGrower {
       return false;
     for (const auto& [f, g] : crossings_) {
       if (vessels_overlap(f, g)) return false;
-      part(gathered_.piece_of(f), gathered_.piece_of(g), dissolved, joined);
+      put_together(gathered_.piece_of(f), gathered_.piece_of(g), dissolved, joined);
     }
     for_seams_of_faulty_pieces([&](const PieceSurface& piece, const RingPlace& seam) {
       if (has_fault_near(piece, seam)) dissolved.push_back(seam);
@@ -116,13 +116,7 @@ class PieceGrower {
   }
 
   void close_notches_left(ErrorSummary& summary) {
-    FinishedSurface surface{std::move(gathered_.mesh), std::move(gathered_.binding), std::move(gathered_.radius),
-                            std::move(gathered_.openings)};
-    summary = close_notches(surface, tubes_.field(), options_.max_error);
-    gathered_.mesh = std::move(surface.mesh);
-    gathered_.binding = std::move(surface.binding);
-    gathered_.radius = std::move(surface.radius);
-    gathered_.openings = std::move(surface.openings);
+    summary = close_notches(gathered_, tubes_.field(), options_.max_error);
     crossings_ = self_intersections(gathered_.mesh);
   }
 
@@ -133,7 +127,7 @@ class PieceGrower {
   }
 
   void leave_out_vertices(ErrorSummary& summary) {
-    FinishedSurface surface{gathered_.mesh, gathered_.binding, gathered_.radius, gathered_.openings};
+    FinishedSurface surface = gathered_;
     const auto longest = [&](const CenterlineBinding& at) {
       return tubes_.longest_at(at.segment, at.t, options_.elongation);
     };
@@ -146,10 +140,7 @@ class PieceGrower {
       summary.unproven_faces = unproven.size();
       summary.unproven_places = places_of(surface.mesh, unproven);
     }
-    gathered_.mesh = std::move(surface.mesh);
-    gathered_.binding = std::move(surface.binding);
-    gathered_.radius = std::move(surface.radius);
-    gathered_.openings = std::move(surface.openings);
+    static_cast<FinishedSurface&>(gathered_) = std::move(surface);
     crossings_ = self_intersections(gathered_.mesh);
     coarsened_ = true;
   }
@@ -168,7 +159,9 @@ class PieceGrower {
     return false;
   }
 
-  void part(Index p, Index q, std::vector<RingPlace>& dissolved, std::vector<std::pair<Anchor, Anchor>>& joined) const {
+  // Notes what makes one piece of two: the seams between neighbours dissolve, others are joined.
+  void put_together(Index p, Index q, std::vector<RingPlace>& dissolved,
+                    std::vector<std::pair<Anchor, Anchor>>& joined) const {
     if (p == q) return;
     const std::vector<RingPlace> of_p = seams_of(rings_, division_.plans[p]);
     bool neighbours = false;

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "vmesh/core/box_tree.h"
+#include "vmesh/edit/guarded_edit.h"
 
-#include "surface/proof/patch.h"
 
 namespace vmesh {
 namespace {
@@ -28,14 +28,9 @@ struct Box {
   bool holds(const Vec3& p) const { return (p.array() >= low.array()).all() && (p.array() <= high.array()).all(); }
 };
 
-PlacedFace placed(const TriMesh& mesh, Index f) {
-  const Triangle& face = mesh.faces[f];
-  return {face, {mesh.vertices[face[0]], mesh.vertices[face[1]], mesh.vertices[face[2]]}};
-}
-
 // The neighbourhood of crossing faces as a surface of its own, with its numbers in the whole surface.
 struct Neighbourhood {
-  FinishedSurface surface;
+  FinishedMesh mesh;
   std::vector<Index> vertex, face;
   std::vector<Box> box;  // bounds what one step at a pair of crossing faces may change
 };
@@ -61,6 +56,7 @@ class NeighbourhoodMaker {
       tree.visit_overlapping(box.low, box.high, [&](Index) { near = true; });
       if (near) add(f, number);
     }
+    around_.mesh = FinishedMesh(std::move(faces_), std::move(vertices_));
     return std::move(around_);
   }
 
@@ -91,92 +87,92 @@ class NeighbourhoodMaker {
       if (number[v] == kNone) {
         number[v] = static_cast<Index>(around_.vertex.size());
         around_.vertex.push_back(v);
-        around_.surface.mesh.vertices.push_back(whole_.mesh.vertices[v]);
-        around_.surface.binding.push_back(whole_.binding[v]);
-        around_.surface.radius.push_back(whole_.radius[v]);
+        vertices_.push_back({whole_.mesh.vertices[v], whole_.binding[v], whole_.radius[v]});
       }
       v = number[v];
     }
     around_.face.push_back(f);
-    around_.surface.mesh.faces.push_back(face);
+    faces_.push_back(face);
   }
 
   const GatheredSurface& whole_;
   const std::vector<FacePair>& crossings_;
   Neighbourhood around_;
+  std::vector<Triangle> faces_;
+  std::vector<FinishedVertex> vertices_;
 };
 
 class Parting {
  public:
-  Parting(Neighbourhood& around, const VesselField& field)
-      : surface_(around.surface), field_(field), patch_(surface_, field) {}
+  Parting(FinishedMesh& mesh, const VesselField& field) : mesh_(mesh), field_(field), edit_(mesh) {}
 
   // Takes the best step at a face that crosses another, if any helps.
   bool part(Index f, const Box& box) {
-    std::vector<Patch::Step> steps;
-    const Triangle face = surface_.mesh.faces[f];
+    std::vector<Step> steps;
+    const Triangle face = mesh_.faces()[f];
     for (std::size_t k = 0; k < 3; ++k) {
       add_steps(MeshEdge{face[k], face[(k + 1) % 3]}, steps);
       add_move(face[k], steps);
     }
-    std::erase_if(steps, [&](const Patch::Step& step) { return !is_offered(step, box); });
-    return patch_.take_best(steps, kWorstLeft) != kNone;
+    std::erase_if(steps, [&](const Step& step) { return !is_offered(step, box); });
+    return edit_.take_best(steps, kWorstLeft) != kNone;
   }
 
  private:
-  void add_steps(const MeshEdge& e, std::vector<Patch::Step>& steps) const {
-    if (!patch_.is_inner(e)) return;
-    if (patch_.may_flip(e)) steps.push_back(patch_.flipping(e));
-    const std::vector<Vec3>& points = surface_.mesh.vertices;
+  using Step = FinishedMesh::Step;
+
+  void add_steps(const MeshEdge& e, std::vector<Step>& steps) const {
+    if (!mesh_.is_inner(e)) return;
+    if (mesh_.may_flip(e)) steps.push_back(mesh_.flipping(e));
     for (const double slide : kSlides) {
-      const Vec3 p = (0.5 - slide) * points[e.a] + (0.5 + slide) * points[e.b];
-      steps.push_back(patch_.splitting(e, on_boundary(p, e.a)));
+      const Vec3 p = (0.5 - slide) * mesh_.position(e.a) + (0.5 + slide) * mesh_.position(e.b);
+      steps.push_back(mesh_.splitting(e, on_boundary(p, e.a)));
     }
   }
 
-  void add_move(Index v, std::vector<Patch::Step>& steps) const {
-    if (patch_.is_inner(v)) steps.push_back(patch_.moving(v, on_boundary(surface_.mesh.vertices[v], v)));
+  void add_move(Index v, std::vector<Step>& steps) const {
+    if (mesh_.is_inner(v)) steps.push_back(mesh_.moving(v, on_boundary(mesh_.position(v), v)));
   }
 
-  BoundaryPoint on_boundary(const Vec3& p, Index at) const {
-    return project_to_boundary(field_, p, surface_.binding[at].segment);
+  FinishedVertex on_boundary(const Vec3& p, Index at) const {
+    return finished_vertex(project_to_boundary(field_, p, mesh_.vertex(at).binding.segment), field_);
   }
 
-  bool is_offered(const Patch::Step& step, const Box& box) const {
-    if (step.vertex != kNone && !box.holds(step.at.position)) return false;
+  bool is_offered(const Step& step, const Box& box) const {
+    if (step.vertex != kNone && !box.holds(step.target.position)) return false;
     return std::all_of(step.faces.begin(), step.faces.end(), [&](const Triangle& f) { return is_upright(f, step); });
   }
 
-  bool is_upright(const Triangle& f, const Patch::Step& step) const {
-    std::array<Vec3, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) p[k] = f[k] == step.vertex ? step.at.position : surface_.mesh.vertices[f[k]];
-    const Index hint = f[0] == step.vertex ? step.at.sample.cone : surface_.binding[f[0]].segment;
+  bool is_upright(const Triangle& f, const Step& step) const {
+    const std::array<Vec3, 3> p = mesh_.placed(f, step).points;
+    const FinishedVertex& first = f[0] == step.vertex ? step.target : mesh_.vertex(f[0]);
+    const Index hint = first.binding.segment;
     const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
     const Vec3 outwards = field_.sample((p[0] + p[1] + p[2]) / 3, hint).gradient;
     return normal.dot(outwards) >= kUpright * normal.norm() * outwards.norm();
   }
 
-  FinishedSurface& surface_;
+  FinishedMesh& mesh_;
   const VesselField& field_;
-  Patch patch_;
+  GuardedEdit<FinishedVertex> edit_;
 };
 
 void put_back(const Neighbourhood& around, GatheredSurface& whole) {
-  const FinishedSurface& surface = around.surface;
   std::vector<Index> number = around.vertex;
-  for (Index v = 0; v < surface.mesh.vertices.size(); ++v) {
+  for (Index v = 0; v < around.mesh.vertices().size(); ++v) {
     if (v == number.size()) {
       number.push_back(static_cast<Index>(whole.mesh.vertices.size()));
       whole.mesh.vertices.emplace_back();
       whole.binding.emplace_back();
       whole.radius.emplace_back();
     }
-    whole.mesh.vertices[number[v]] = surface.mesh.vertices[v];
-    whole.binding[number[v]] = surface.binding[v];
-    whole.radius[number[v]] = surface.radius[v];
+    const FinishedVertex& vertex = around.mesh.vertex(v);
+    whole.mesh.vertices[number[v]] = vertex.position;
+    whole.binding[number[v]] = vertex.binding;
+    whole.radius[number[v]] = vertex.radius;
   }
-  for (Index f = 0; f < surface.mesh.faces.size(); ++f) {
-    const auto [a, b, c] = surface.mesh.faces[f];
+  for (Index f = 0; f < around.mesh.faces().size(); ++f) {
+    const auto [a, b, c] = around.mesh.faces()[f];
     const Triangle face = {number[a], number[b], number[c]};
     if (f < around.face.size()) {
       whole.mesh.faces[around.face[f]] = face;
@@ -195,18 +191,18 @@ std::vector<FacePair> part_walls(GatheredSurface& surface, const VesselField& fi
   const auto local = [&](Index f) {
     return static_cast<Index>(std::lower_bound(around.face.begin(), around.face.end(), f) - around.face.begin());
   };
-  Parting parting(around, field);
+  Parting parting(around.mesh, field);
+  const auto cross = [&](const FacePair& pair) {
+    return intersect(around.mesh.placed(local(pair.first)), around.mesh.placed(local(pair.second)));
+  };
   std::vector<FacePair> left;
   for (Index i = 0; i < crossings.size(); ++i) {
     const Index f = local(crossings[i].first), g = local(crossings[i].second);
-    const TriMesh& mesh = around.surface.mesh;
-    if (!intersect(placed(mesh, f), placed(mesh, g))) continue;
+    if (!cross(crossings[i])) continue;
     if (!parting.part(f, around.box[i]) && !parting.part(g, around.box[i])) left.push_back(crossings[i]);
   }
   // A step at a later pair may also have parted an earlier one.
-  std::erase_if(left, [&](const FacePair& pair) {
-    return !intersect(placed(around.surface.mesh, local(pair.first)), placed(around.surface.mesh, local(pair.second)));
-  });
+  std::erase_if(left, [&](const FacePair& pair) { return !cross(pair); });
   put_back(around, surface);
   return left;
 }

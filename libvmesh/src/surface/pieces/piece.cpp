@@ -286,10 +286,10 @@ class PieceMaker {
     piece.radius.reserve(mesh.number_of_vertices());
     piece.faces.reserve(mesh.number_of_faces());
     for (const Vertex v : mesh.vertices()) {
-      if (surface.role[v] == BoundSurface::Role::lid || at_seam.contains(v)) continue;
+      if (surface[v].role == BoundSurface::Role::lid || at_seam.contains(v)) continue;
       number[v.idx()] = static_cast<Index>(piece.vertices.size());
       piece.vertices.push_back(surface.position(v));
-      piece.binding.push_back({surface.cone[v], surface.t[v]});
+      piece.binding.push_back({surface[v].cone, surface[v].t});
       piece.radius.push_back(surface.radius(v));
     }
     for (const auto& [v, seam] : at_seam) {

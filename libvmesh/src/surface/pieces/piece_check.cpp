@@ -24,7 +24,7 @@ void find_crossings(const BoundSurface& surface, const TriMesh& mesh, std::vecto
     double radius = std::numeric_limits<double>::infinity();
     for (const Index face : {f, g}) {
       for (const Index v : mesh.faces[face]) {
-        overlap = overlap || is_covered(surface.field, mesh.vertices[v], surface.cone[Vertex(v)]);
+        overlap = overlap || is_covered(surface.field, mesh.vertices[v], surface[Vertex(v)].cone);
         radius = std::min(radius, surface.radius(Vertex(v)));
       }
     }

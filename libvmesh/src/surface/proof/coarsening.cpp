@@ -7,7 +7,6 @@
 #include <optional>
 #include <queue>
 
-#include <CGAL/boost/graph/Euler_operations.h>
 #include <tbb/parallel_for.h>
 
 #include "surface/proof/coarsening_steps.h"
@@ -46,7 +45,7 @@ class Coarsener {
         progress_(progress),
         changed_(mesh_.num_vertices(), 1) {
     for (const Vertex v : mesh_.vertices()) {
-      if (surface_.role[v] == BoundSurface::Role::lid) ++lids_;
+      if (surface_[v].role == BoundSurface::Role::lid) ++lids_;
     }
   }
 
@@ -78,7 +77,7 @@ class Coarsener {
   }
 
   // What the step would change in the proof, if there is one; nothing if the step must not be taken.
-  std::optional<KeptProof::Outlook> after(const Replacement& step) const {
+  std::optional<KeptProof::Outlook> after(const SurfaceStep& step) const {
     return proof_ ? proof_->after(step) : KeptProof::Outlook{};
   }
 
@@ -193,18 +192,17 @@ class Coarsener {
     for (const Edge e : mesh_.edges()) {
       poll();
       const std::optional<CoarseningStep> step = steps_.flip(e);
-      if (!step || !surface_.may_flip(mesh_.halfedge(e))) continue;
+      if (!step || !surface_.allows(*step)) continue;
       const std::optional<KeptProof::Outlook> outlook = after(*step);
       if (!outlook) continue;
-      CGAL::Euler::flip_edge(mesh_.halfedge(e), mesh_);
-      surface_.touch_faces(step->at);
-      note(*step, *outlook, step->at);
+      surface_.flip_edge(mesh_.halfedge(e));
+      note(*step, *outlook, step->vertex);
       ++count;
     }
     for (const Vertex v : mesh_.vertices()) {
       poll();
       const std::optional<CoarseningStep> step = steps_.move(v);
-      if (!step || !surface_.may_place(v, step->target.position)) continue;
+      if (!step || !surface_.allows(*step)) continue;
       const std::optional<KeptProof::Outlook> outlook = after(*step);
       if (!outlook) continue;
       surface_.place(v, step->target.position, step->target.sample);
@@ -222,11 +220,10 @@ class Coarsener {
 
   // Returns the vertex that is left; nothing if the edge cannot be collapsed.
   std::optional<Vertex> collapse(Edge e, const CoarseningStep& step) {
-    if (!surface_.may_collapse(mesh_.vertex(e, 0), mesh_.vertex(e, 1), step.target.position)) return std::nullopt;
+    if (!surface_.allows(step)) return std::nullopt;
     const std::optional<KeptProof::Outlook> outlook = after(step);
     if (!outlook) return std::nullopt;
-    const Vertex v = CGAL::Euler::collapse_edge(e, mesh_);
-    surface_.place(v, step.target.position, step.target.sample);
+    const Vertex v = surface_.collapse_edge(e, step.target);
     note(step, *outlook, v);
     return v;
   }
@@ -234,19 +231,12 @@ class Coarsener {
   // Not with a proof. Returns whether the edge was split.
   bool split(Edge e) {
     const CoarseningStep step = *steps_.split(e);
-    const Vertex a = mesh_.vertex(e, 0);
-    const BoundaryPoint end{state_.point(a), surface_.sample(a)};
-    Vertex v = surface_.split_edge(e);
-    const bool is_safe = surface_.may_place(v, step.target.position);
-    if (is_safe) {
-      surface_.place(v, step.target.position, step.target.sample);
-    } else {  // as it was
-      v = CGAL::Euler::collapse_edge(mesh_.edge(mesh_.halfedge(v, a)), mesh_);
-      surface_.place(v, end.position, end.sample);
-    }
+    if (!surface_.allows(step)) return false;
+    const Vertex v = surface_.split_edge(e);
+    surface_.place(v, step.target.position, step.target.sample);
     changed_.resize(mesh_.num_vertices());
     note_around(v);
-    return is_safe;
+    return true;
   }
 
   // After a step. `at`: its vertex, as it is called now.

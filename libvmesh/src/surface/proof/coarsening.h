@@ -3,7 +3,7 @@
 #include "vmesh/core/progress.h"
 
 #include "surface/proof/coarsening_steps.h"
-#include "surface/proof/patch.h"
+#include "surface/proof/finished_surface.h"
 
 namespace vmesh {
 

@@ -41,7 +41,7 @@ CoarseningSteps::CoarseningSteps(const SweepState& state, const ErrorLimit& limi
 std::optional<CoarseningStep> CoarseningSteps::collapse(Edge e) const {
   const Vertex a = mesh_.vertex(e, 0), b = mesh_.vertex(e, 1);
   CoarseningStep step;
-  step.at = a;
+  step.vertex = a;
   for (const Vertex v : {a, b}) {
     for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
       if (is_fixed_(f)) return std::nullopt;
@@ -58,7 +58,7 @@ std::optional<CoarseningStep> CoarseningSteps::collapse(Edge e) const {
   if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return std::nullopt;
   std::optional<CoarseningStep> best;
   const auto attempt = [&](const Vec3& p, Vertex near) {
-    if (place(step, p, surface_.cone[near]) && (!best || step.cost < best->cost)) best.emplace(step);
+    if (place(step, p, surface_[near].cone) && (!best || step.cost < best->cost)) best.emplace(step);
   };
   attempt(0.5 * (state_.point(a) + state_.point(b)), a);
   attempt(state_.point(a), a);
@@ -72,10 +72,10 @@ std::optional<CoarseningStep> CoarseningSteps::split(Edge e) const {
   const Vertex a = mesh_.source(h), b = mesh_.target(h), v = SurfaceMesh::null_vertex();
   const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
   CoarseningStep step;
-  step.at = v;
+  step.vertex = v;
   step.gone = {mesh_.face(h), mesh_.face(o)};
   step.faces = {{v, b, c}, {v, c, a}, {v, a, d}, {v, d, b}};
-  if (!place(step, 0.5 * (state_.point(a) + state_.point(b)), surface_.cone[a])) return std::nullopt;
+  if (!place(step, 0.5 * (state_.point(a) + state_.point(b)), surface_[a].cone)) return std::nullopt;
   return step;
 }
 
@@ -106,7 +106,7 @@ std::optional<CoarseningStep> CoarseningSteps::move(Vertex v) const {
   best.cost = enough_gain(step);
   const double least = best.cost;
   const auto attempt = [&](const Vec3& p) {
-    if (place(step, p, surface_.cone[v]) && step.cost < best.cost) best = step;
+    if (place(step, p, surface_[v].cone) && step.cost < best.cost) best = step;
   };
   for (const Vertex w : mesh_.vertices_around_target(mesh_.halfedge(v))) {
     attempt(here + kToNeighbour * (state_.point(w) - here));
@@ -148,7 +148,7 @@ bool CoarseningSteps::is_well_shaped(const CoarseningStep& step) const {
   double worst = worst_skewness_;
   bool known = false;  // how bad the faces are that are replaced
   for (const FaceCorners& f : step.faces) {
-    const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), step.at) - f.begin());
+    const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), step.vertex) - f.begin());
     const Vertex b = f[(at + 1) % 3], c = f[(at + 2) % 3];
     if (state_.agreement(landing, b, c) < SweepState::kMinAgreement) return false;
     const double skewness = least_skewness({step.target.position, state_.point(b), state_.point(c)},

@@ -12,7 +12,7 @@ namespace vmesh {
 /// How many times longer than wide triangles may be at a place of the vessels.
 using LongestAt = std::function<Elongation(const CenterlineBinding&)>;
 
-struct CoarseningStep : Replacement {
+struct CoarseningStep : SurfaceStep {
   double cost = 0;  ///< by how much the deviation grows (StepDeviation::Measured)
 };
 
@@ -47,7 +47,7 @@ class CoarseningSteps {
   double enough_gain(const CoarseningStep& step) const;
   double deviation_before(const CoarseningStep& step) const;
   double skewness_of(Face f) const;
-  Elongation longest_at(Vertex v) const { return longest_({surface_.cone[v], surface_.t[v]}); }
+  Elongation longest_at(Vertex v) const { return longest_({surface_[v].cone, surface_[v].t}); }
 
   const SweepState& state_;
   const BoundSurface& surface_;

@@ -15,7 +15,7 @@ using Shares = ErrorProof::Shares;
 
 bool is_proven(const Shares& shares) { return shares.inner > 0 && shares.outer > 0; }
 
-bool is_gone(const Replacement& step, Face f) {
+bool is_gone(const SurfaceStep& step, Face f) {
   return std::find(step.gone.begin(), step.gone.end(), f) != step.gone.end();
 }
 
@@ -75,10 +75,10 @@ void KeptProof::fix_neighbours() {
 }
 
 Corner KeptProof::corner_of(Vertex v) const {
-  return {state_.point(v), surface_.vertex_normal(v), limit_.at(surface_.radius(v)), surface_.cone[v]};
+  return {state_.point(v), surface_.vertex_normal(v), limit_.at(surface_.radius(v)), surface_[v].cone};
 }
 
-std::optional<KeptProof::Outlook> KeptProof::after(const Replacement& step) const {
+std::optional<KeptProof::Outlook> KeptProof::after(const SurfaceStep& step) const {
   Outlook outlook;
   for (const FaceCorners& f : step.faces) {
     for (const Vertex v : f) {
@@ -107,8 +107,8 @@ std::optional<KeptProof::Outlook> KeptProof::after(const Replacement& step) cons
   return outlook;
 }
 
-Corner KeptProof::corner_after(const Replacement& step, Vertex v) const {
-  const auto position = [&](Vertex x) -> const Vec3& { return x == step.at ? step.target.position : state_.point(x); };
+Corner KeptProof::corner_after(const SurfaceStep& step, Vertex v) const {
+  const auto position = [&](Vertex x) -> const Vec3& { return x == step.vertex ? step.target.position : state_.point(x); };
   Vec3 normal = Vec3::Zero();
   for (const FaceCorners& f : step.faces) {
     if (!has(f, v)) continue;
@@ -118,7 +118,7 @@ Corner KeptProof::corner_after(const Replacement& step, Vertex v) const {
     if (!is_gone(step, f)) normal += surface_.face_area_normal(f);
   }
   normal.normalize();
-  if (v != step.at) return {state_.point(v), normal, corner_[v.idx()].limit, corner_[v.idx()].cone};
+  if (v != step.vertex) return {state_.point(v), normal, corner_[v.idx()].limit, corner_[v.idx()].cone};
   const FieldSample& s = step.target.sample;
   return {step.target.position, normal, limit_.at(state_.field.radius_at(s.cone, s.t)), s.cone};
 }
@@ -136,7 +136,7 @@ std::vector<Vertex> KeptProof::Surroundings::vertices() const {
   return all;
 }
 
-void KeptProof::add_around(Vertex v, const Replacement& step, const Outlook& outlook, Surroundings& to) const {
+void KeptProof::add_around(Vertex v, const SurfaceStep& step, const Outlook& outlook, Surroundings& to) const {
   for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
     if (is_gone(step, f) || std::find(to.known.begin(), to.known.end(), f) != to.known.end()) continue;
     const Shares* changed = find(outlook.kept, f);
@@ -148,7 +148,7 @@ void KeptProof::add_around(Vertex v, const Replacement& step, const Outlook& out
 
 // Where faces need shells of different heights at a corner, the lowest counts (ErrorProof::unproven). Whether all faces
 // whose heights the step may change hold with them.
-bool KeptProof::heights_hold(const Replacement& step, const Outlook& outlook) const {
+bool KeptProof::heights_hold(const SurfaceStep& step, const Outlook& outlook) const {
   Surroundings changed{outlook.made, {}};
   for (const auto& [f, shares] : outlook.kept) changed.faces.emplace_back(state_.corners(f), shares);
   Surroundings near{outlook.made, {}};
@@ -176,14 +176,14 @@ bool KeptProof::heights_hold(const Replacement& step, const Outlook& outlook) co
   });
 }
 
-void KeptProof::note(const Replacement& step, const Outlook& outlook, Vertex at) {
-  for (const auto& [x, corner] : outlook.corners) corner_[(x == step.at ? at : x).idx()] = corner;
+void KeptProof::note(const SurfaceStep& step, const Outlook& outlook, Vertex at) {
+  for (const auto& [x, corner] : outlook.corners) corner_[(x == step.vertex ? at : x).idx()] = corner;
   for (const auto& [f, shares] : outlook.kept) shares_[f.idx()] = shares;
   for (const Face f : mesh_.faces_around_target(mesh_.halfedge(at))) {
     const FaceCorners corners = state_.corners(f);
     for (const auto& [made, shares] : outlook.made) {
       const bool same =
-          std::all_of(made.begin(), made.end(), [&](Vertex x) { return has(corners, x == step.at ? at : x); });
+          std::all_of(made.begin(), made.end(), [&](Vertex x) { return has(corners, x == step.vertex ? at : x); });
       if (same) shares_[f.idx()] = shares;
     }
   }

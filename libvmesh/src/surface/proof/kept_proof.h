@@ -7,7 +7,7 @@
 
 #include "vmesh/surface/error_bound.h"
 
-#include "surface/proof/error_limit.h"
+#include "surface/check/error_limit.h"
 #include "surface/remesh/sweep_state.h"
 
 namespace vmesh {
@@ -15,14 +15,6 @@ namespace vmesh {
 using FaceCorners = std::array<Vertex, 3>;
 
 inline bool has(const FaceCorners& f, Vertex v) { return f[0] == v || f[1] == v || f[2] == v; }
-
-/// A step on a surface: faces replaced by others around a vertex, which may move.
-struct Replacement {
-  Vertex at;
-  BoundaryPoint target;            ///< where `at` goes
-  std::vector<Face> gone;          ///< faces that are replaced
-  std::vector<FaceCorners> faces;  ///< by which; each has `at` as a corner
-};
 
 /// The proof of a surface's error limit, kept while the surface changes step by step (ErrorProof). Faces that were not
 /// proven at first, those around them, and faces at held vertices are fixed: no step may replace them or change what
@@ -42,10 +34,10 @@ class KeptProof {
   bool is_fixed(Face f) const { return fixed_[f.idx()]; }
 
   /// What the step would change; nothing if the surface would not be proven any more.
-  std::optional<Outlook> after(const Replacement& step) const;
+  std::optional<Outlook> after(const SurfaceStep& step) const;
 
-  /// Tells that the step has been taken. `at`: its vertex, as it is called now.
-  void note(const Replacement& step, const Outlook& outlook, Vertex at);
+  /// Tells that the step has been taken. `v`: its vertex, as it is called now.
+  void note(const SurfaceStep& step, const Outlook& outlook, Vertex v);
 
  private:
   // Faces as they will be after a step, with the shares of their shells.
@@ -60,9 +52,9 @@ class KeptProof {
 
   void fix_neighbours();
   ErrorProof::Corner corner_of(Vertex v) const;
-  ErrorProof::Corner corner_after(const Replacement& step, Vertex v) const;
-  void add_around(Vertex v, const Replacement& step, const Outlook& outlook, Surroundings& to) const;
-  bool heights_hold(const Replacement& step, const Outlook& outlook) const;
+  ErrorProof::Corner corner_after(const SurfaceStep& step, Vertex v) const;
+  void add_around(Vertex v, const SurfaceStep& step, const Outlook& outlook, Surroundings& to) const;
+  bool heights_hold(const SurfaceStep& step, const Outlook& outlook) const;
 
   const SweepState& state_;
   const BoundSurface& surface_;

@@ -5,11 +5,12 @@
 #include <optional>
 
 #include "vmesh/core/disjoint_sets.h"
+#include "vmesh/edit/guarded_edit.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/error_bound.h"
 #include "vmesh/surface/soundness.h"
 
-#include "surface/proof/error_limit.h"
+#include "surface/check/error_limit.h"
 
 namespace vmesh {
 namespace {
@@ -94,17 +95,19 @@ class Closing {
 
   // Works at the unproven faces. Returns whether anything was done.
   bool improve(const std::vector<Index>& unproven) {
-    patch_.emplace(surface_, field_);
+    mesh_ = finished_mesh(surface_);
+    edit_.emplace(mesh_);
     const std::vector<MeshEdge> edges = edges_of(unproven);
     bool any = close_all(edges, kWorstSkewness);
     if (!any) {
       any = close_all(edges, kBadForNow);
-      patch_->mend(kWorstSkewness);
+      edit_->mend(kWorstSkewness);
     }
     if (!any) {
       for (const MeshEdge& e : edges) any = halve(e) || any;
     }
-    renumber(patch_->remove_dead());
+    edit_.reset();
+    renumber(put_back(std::move(mesh_), surface_));
     return any;
   }
 
@@ -134,18 +137,19 @@ class Closing {
   }
 
  private:
-  const Vec3& point(Index v) const { return surface_.mesh.vertices[v]; }
+  using Step = FinishedMesh::Step;
+
+  const Vec3& point(Index v) const { return mesh_.position(v); }
   Vec3 middle_of(const MeshEdge& e) const { return 0.5 * (point(e.a) + point(e.b)); }
   double length(const MeshEdge& e) const { return (point(e.a) - point(e.b)).norm(); }
-  double limit_at(const MeshEdge& e) const { return limit_.at(std::min(surface_.radius[e.a], surface_.radius[e.b])); }
-  double limit_at(Index v) const { return limit_.at(surface_.radius[v]); }
+  double limit_at(const MeshEdge& e) const { return limit_.at(std::min(mesh_.vertex(e.a).radius, mesh_.vertex(e.b).radius)); }
 
   // Longest first.
   std::vector<MeshEdge> edges_of(const std::vector<Index>& faces) const {
     std::vector<MeshEdge> edges;
     for (const Index f : faces) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const Index a = surface_.mesh.faces[f][k], b = surface_.mesh.faces[f][(k + 1) % 3];
+        const Index a = mesh_.faces()[f][k], b = mesh_.faces()[f][(k + 1) % 3];
         edges.push_back({std::min(a, b), std::max(a, b)});
       }
     }
@@ -158,7 +162,7 @@ class Closing {
 
   bool close_all(const std::vector<MeshEdge>& edges, double worst) {
     bool any = false;
-    for (const MeshEdge& e : edges) any = (patch_->is_inner(e) && close(e, worst)) || any;
+    for (const MeshEdge& e : edges) any = (mesh_.is_inner(e) && close(e, worst)) || any;
     return any;
   }
 
@@ -171,8 +175,8 @@ class Closing {
   };
 
   std::optional<Crossing> crossing_at(const MeshEdge& e) const {
-    const FieldSample a = field_.sample(point(e.a), surface_.binding[e.a].segment),
-                      b = field_.sample(point(e.b), surface_.binding[e.b].segment);
+    const FieldSample a = field_.sample(point(e.a), mesh_.vertex(e.a).binding.segment),
+                      b = field_.sample(point(e.b), mesh_.vertex(e.b).binding.segment);
     if (a.gradient.dot(b.gradient) > kFacing) return std::nullopt;
     const Crossing crossing{e, a.gradient - b.gradient, (a.gradient + b.gradient).normalized(), limit_at(e), a.cone};
     const Walls walls = gaps_.walls_at(middle_of(e), crossing.across, a.cone);
@@ -194,36 +198,38 @@ class Closing {
   bool close(const MeshEdge& e, double worst) {
     const std::optional<Crossing> crossing = crossing_at(e);
     if (!crossing) return false;
-    if (lies_low(*crossing) && patch_->take_best({patch_->flipping(e)}, worst) != kNone) return true;
-    std::vector<Patch::Step> steps = splits(*crossing);
+    if (lies_low(*crossing) && edit_->take_best({mesh_.flipping(e)}, worst) != kNone) return true;
+    std::vector<Step> steps = splits(*crossing);
     for (const Index v : {e.a, e.b}) {
       const auto end = end_from(point(v), *crossing, kFilled);
       if (!end) continue;
       const double way = (end->position - point(v)).norm();
-      if (way > way_.least_move * crossing->limit && way < crossing->limit) steps.push_back(patch_->moving(v, *end));
+      if (way > way_.least_move * crossing->limit && way < crossing->limit) steps.push_back(mesh_.moving(v, finished_vertex(*end, field_)));
     }
-    if (patch_->may_collapse(e)) steps.push_back(patch_->collapsing(e, *end_from(middle_of(e), *crossing, kFilled)));
-    const Index placed = patch_->take_best(steps, worst);
+    if (mesh_.may_collapse(e))
+      steps.push_back(
+          mesh_.collapsing(e.a, e.b, finished_vertex(*end_from(middle_of(e), *crossing, kFilled), field_)));
+    const Index placed = edit_->take_best(steps, worst);
     if (placed != kNone) across_[placed] = crossing->across;
     return placed != kNone;
   }
 
   // Whether the other diagonal of the edge's faces is at the end of the gap already.
   bool lies_low(const Crossing& crossing) const {
-    if (!patch_->may_flip(crossing.edge)) return false;
-    const auto [c, d] = patch_->opposite(crossing.edge);
+    if (!mesh_.may_flip(crossing.edge)) return false;
+    const auto [c, d] = mesh_.opposite(crossing.edge);
     const auto end = end_from(middle_of({c, d}), crossing, kFilled);
     return end && !is_above(middle_of({c, d}), end, crossing);
   }
 
-  std::vector<Patch::Step> splits(const Crossing& crossing) const {
-    std::vector<Patch::Step> steps;
+  std::vector<Step> splits(const Crossing& crossing) const {
+    std::vector<Step> steps;
     const Vec3 along = crossing.across.cross(crossing.up).normalized();
     for (const double slide : kSlides) {
       const Vec3 p = middle_of(crossing.edge) + slide * length(crossing.edge) * along;
       for (const double filled : way_.filled) {
         const auto end = end_from(p, crossing, filled);
-        if (is_above(p, end, crossing)) steps.push_back(patch_->splitting(crossing.edge, *end));
+        if (is_above(p, end, crossing)) steps.push_back(mesh_.splitting(crossing.edge, finished_vertex(*end, field_)));
       }
     }
     return steps;
@@ -231,13 +237,14 @@ class Closing {
 
   // Splits an edge along a wall if it is longer than the limit.
   bool halve(const MeshEdge& e) {
-    if (!patch_->is_inner(e) || length(e) < limit_at(e)) return false;
-    std::vector<Patch::Step> steps;
+    if (!mesh_.is_inner(e) || length(e) < limit_at(e)) return false;
+    std::vector<Step> steps;
     for (const double slide : kSlides) {
       const Vec3 p = middle_of(e) + slide * (point(e.b) - point(e.a));
-      steps.push_back(patch_->splitting(e, project_to_boundary(field_, p, surface_.binding[e.a].segment)));
+      const BoundaryPoint at = project_to_boundary(field_, p, mesh_.vertex(e.a).binding.segment);
+      steps.push_back(mesh_.splitting(e, finished_vertex(at, field_)));
     }
-    return patch_->take_best(steps, kWorstSkewness) != kNone;
+    return edit_->take_best(steps, kWorstSkewness) != kNone;
   }
 
   void renumber(const std::vector<Index>& number) {
@@ -249,8 +256,10 @@ class Closing {
   }
 
   double depth_at(Index v, const Vec3& across) const {
-    const auto end = gaps_.end_from(point(v), across, surface_.binding[v].segment, 0, 0.01 * limit_at(v));
-    return end ? (end->position - point(v)).norm() : 0;
+    const Vec3& p = surface_.mesh.vertices[v];
+    const double tolerance = 0.01 * limit_.at(surface_.radius[v]);
+    const auto end = gaps_.end_from(p, across, surface_.binding[v].segment, 0, tolerance);
+    return end ? (end->position - p).norm() : 0;
   }
 
   FinishedSurface& surface_;
@@ -258,7 +267,8 @@ class Closing {
   Gaps gaps_;
   const ErrorLimit& limit_;
   const Way& way_;
-  std::optional<Patch> patch_;
+  FinishedMesh mesh_;  // while improve() works on it
+  std::optional<GuardedEdit<FinishedVertex>> edit_;
   std::map<Index, Vec3> across_;  // vertices at the ends of gaps, with the direction across
 };
 

@@ -5,7 +5,7 @@
 #include "vmesh/surface/generate.h"
 #include "vmesh/volume/vessel_field.h"
 
-#include "surface/proof/patch.h"
+#include "surface/proof/finished_surface.h"
 
 namespace vmesh {
 

@@ -38,7 +38,7 @@ double StepDeviation::most(double radius) const { return std::min(limit_.at(radi
 
 // Calls visit(sample, share of the step's vertex in the point, weight, limit) for samples of the new faces.
 template <class Visit>
-void StepDeviation::visit_samples(Samples which, const Replacement& step, Visit&& visit) const {
+void StepDeviation::visit_samples(Samples which, const SurfaceStep& step, Visit&& visit) const {
   const BoundSurface& surface = state_.surface;
   const VesselField& field = state_.field;
   const Vec3& p = step.target.position;
@@ -46,7 +46,7 @@ void StepDeviation::visit_samples(Samples which, const Replacement& step, Visit&
   std::vector<Sector> sectors;
   double area = 0;
   for (const FaceCorners& f : step.faces) {
-    const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), step.at) - f.begin());
+    const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), step.vertex) - f.begin());
     const Vertex b = f[(at + 1) % 3], c = f[(at + 2) % 3];
     sectors.push_back({b, c, 0.5 * (state_.point(b) - p).cross(state_.point(c) - p).norm()});
     area += sectors.back().area;
@@ -56,7 +56,7 @@ void StepDeviation::visit_samples(Samples which, const Replacement& step, Visit&
     const Vec3 &b = state_.point(s.b), &c = state_.point(s.c);
     const double limit = most(std::min({radius, surface.radius(s.b), surface.radius(s.c)}));
     const auto offer = [&](const Vec3& q, Vertex near, double share, double weight) {
-      visit(field.sample_fast(q, surface.cone[near]), share, weight, limit);
+      visit(field.sample_fast(q, surface[near].cone), share, weight, limit);
     };
     const auto before = std::find_if(sectors.begin(), sectors.end(), [&](const Sector& o) { return o.c == s.b; });
     const double both = s.area + (before == sectors.end() ? 0 : before->area);
@@ -72,7 +72,7 @@ void StepDeviation::visit_samples(Samples which, const Replacement& step, Visit&
   visit(step.target.sample, 1, kAtCorner * area, most(radius));
 }
 
-StepDeviation::Measured StepDeviation::measure(const Replacement& step) const {
+StepDeviation::Measured StepDeviation::measure(const SurfaceStep& step) const {
   Measured result;
   visit_samples(Samples::all, step, [&](const FieldSample& sample, double, double weight, double limit) {
     result.largest = std::max(result.largest, std::abs(sample.distance) / limit);
@@ -87,7 +87,7 @@ StepDeviation::Measured StepDeviation::measure(Face f) const {
   return measure({a, {state_.point(a), state_.surface.sample(a)}, {}, {corners}});
 }
 
-void StepDeviation::place(Replacement& step, const Vec3& p, Index hint, double share) const {
+void StepDeviation::place(SurfaceStep& step, const Vec3& p, Index hint, double share) const {
   step.target = project_to_boundary(state_.field, p, hint, kTolerance, 0);
   const auto move_by = [&](const Vec3& move) {
     step.target.position += move;
@@ -103,7 +103,7 @@ void StepDeviation::place(Replacement& step, const Vec3& p, Index hint, double s
 }
 
 // A step of Gauss and Newton.
-Vec3 StepDeviation::least_squares_move(const Replacement& step) const {
+Vec3 StepDeviation::least_squares_move(const SurfaceStep& step) const {
   const double radius = state_.field.radius_at(step.target.sample.cone, step.target.sample.t);
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Vec3 product = Vec3::Zero();
@@ -121,11 +121,11 @@ Vec3 StepDeviation::least_squares_move(const Replacement& step) const {
 }
 
 // The longest edge at the step's vertex.
-double StepDeviation::reach_of(const Replacement& step) const {
+double StepDeviation::reach_of(const SurfaceStep& step) const {
   double squared = 0;
   for (const FaceCorners& f : step.faces) {
     for (const Vertex v : f) {
-      if (v != step.at) squared = std::max(squared, (state_.point(v) - step.target.position).squaredNorm());
+      if (v != step.vertex) squared = std::max(squared, (state_.point(v) - step.target.position).squaredNorm());
     }
   }
   return std::sqrt(squared);

@@ -26,7 +26,7 @@ FaceErrors face_errors(const SweepState& state) {
     if (surface.is_lid(f)) continue;
     const auto [a, b, c] = state.corners(f);
     const Vec3 center = (state.point(a) + state.point(b) + state.point(c)) / 3;
-    errors.at_center[f.idx()] = state.field.sample_fast(center, surface.cone[a]).distance;
+    errors.at_center[f.idx()] = state.field.sample_fast(center, surface[a].cone).distance;
     errors.area[f.idx()] = surface.face_area_normal(f).norm();
   }
   return errors;
@@ -35,8 +35,8 @@ FaceErrors face_errors(const SweepState& state) {
 // Walls that come close must not meet.
 double most_outwards(const SweepState& state, Vertex v, double most) {
   const BoundSurface& surface = state.surface;
-  const Vec3 on_boundary = state.point(v) - surface.distance[v] * surface.gradient[v];
-  const double gap = state.field.distance_to_others(on_boundary, surface.cone[v], most / kShareOfGap);
+  const Vec3 on_boundary = state.point(v) - surface[v].distance * surface[v].gradient;
+  const double gap = state.field.distance_to_others(on_boundary, surface[v].cone, most / kShareOfGap);
   return kShareOfGap * std::max(0.0, gap);
 }
 
@@ -47,17 +47,17 @@ void update_lifts(SweepState& state, const ErrorLimit& limit) {
     double area = 0, sum = 0;
     for (const Face f : state.mesh.faces_around_target(state.mesh.halfedge(v))) {
       area += errors.area[f.idx()];
-      sum += errors.area[f.idx()] * (0.75 * errors.at_center[f.idx()] + 0.25 * state.surface.distance[v]);
+      sum += errors.area[f.idx()] * (0.75 * errors.at_center[f.idx()] + 0.25 * state.surface[v].distance);
     }
     if (std::abs(sum) <= kBalanced * state.surface.radius(v) * area) continue;
-    const double radius = state.surface.radius(v), size = state.size[v];
+    const double radius = state.surface.radius(v), size = state.size(v);
     const double most = std::min(kMostLift * size * std::min(1.0, size / radius), kShareOfLimit * limit.at(radius));
-    state.surface.lift[v] = std::clamp(state.surface.lift[v] - sum / area, -most, most_outwards(state, v, most));
+    state.surface[v].lift = std::clamp(state.surface[v].lift - sum / area, -most, most_outwards(state, v, most));
   }
 }
 
 bool may_move(const SweepState& state, Vertex v, const BoundaryPoint& target) {
-  if ((target.position - state.point(v)).norm() > state.size[v]) return false;
+  if ((target.position - state.point(v)).norm() > state.size(v)) return false;
   const Landing landing(target);
   for (const Halfedge h : state.mesh.halfedges_around_target(state.mesh.halfedge(v))) {
     if (!state.stays_upright(v, state.mesh.target(state.mesh.next(h)), state.mesh.source(h), landing)) return false;
@@ -75,14 +75,14 @@ void balance(SweepState& state, const ErrorLimit& limit) {
     if (state.surface.held(v) || strays[v.idx()]) continue;
     const BoundaryPoint target = state.project(v);
     if (may_move(state, v, target)) state.surface.place(v, target.position, target.sample);
-    state.surface.lift[v] = state.surface.distance[v];
+    state.surface[v].lift = state.surface[v].distance;
   }
 }
 
 void drop_lifts(SweepState& state, const std::vector<Vertex>& vertices) {
   const auto drop_lift = [&state](Vertex v) {
-    if (state.surface.held(v) || state.surface.lift[v] <= 0) return;
-    state.surface.lift[v] = 0;
+    if (state.surface.held(v) || state.surface[v].lift <= 0) return;
+    state.surface[v].lift = 0;
     const BoundaryPoint target = state.project(v);
     if (may_move(state, v, target)) state.surface.place(v, target.position, target.sample);
   };

@@ -38,42 +38,55 @@ BoundaryPoint project_to_boundary(const VesselField& field, BoundaryPoint point,
   return point;
 }
 
+BoundVertex BoundVertex::between(const BoundVertex& a, const BoundVertex& b) {
+  BoundVertex middle;
+  middle.cone = a.cone;
+  middle.t = a.t;
+  middle.gradient = (a.gradient + b.gradient).normalized();
+  middle.lift = 0.5 * (a.lift + b.lift);
+  middle.fineness = 0.5 * (a.fineness + b.fineness);
+  middle.size = 0.5 * (a.size + b.size);
+  middle.elongation = 0.5 * (a.elongation + b.elongation);
+  middle.elongation_share = 0.5 * (a.elongation_share + b.elongation_share);
+  return middle;
+}
+
+BoundVertex BoundVertex::merged(const BoundVertex& a, const BoundVertex& b) {
+  BoundVertex one = between(a, b);
+  one.fineness = std::min(a.fineness, b.fineness);
+  one.size = std::min(a.size, b.size);
+  one.elongation_share = std::min(a.elongation_share, b.elongation_share);
+  return one;
+}
+
 BoundSurface::BoundSurface(const VesselField& vessel_field)
-    : field(vessel_field),
-      cone(mesh.add_property_map<Vertex, Index>("v:cone", kNone).first),
-      t(mesh.add_property_map<Vertex, double>("v:t", 0.0).first),
-      gradient(mesh.add_property_map<Vertex, Vec3>("v:gradient", Vec3::Zero()).first),
-      distance(mesh.add_property_map<Vertex, double>("v:distance", 0.0).first),
-      lift(mesh.add_property_map<Vertex, double>("v:lift", 0.0).first),
-      fineness(mesh.add_property_map<Vertex, double>("v:fineness", 1.0).first),
-      elongation(mesh.add_property_map<Vertex, Vec3>("v:elongation", Vec3::Zero()).first),
-      elongation_share(mesh.add_property_map<Vertex, double>("v:elongation_share", 1.0).first),
-      role(mesh.add_property_map<Vertex, Role>("v:role", Role::free).first) {}
+    : field(vessel_field), vertex_(mesh.add_property_map<Vertex, BoundVertex>("v:bound").first) {}
 
 bool BoundSurface::is_lid(Face f) const {
   for (const Vertex v : mesh.vertices_around_face(mesh.halfedge(f))) {
-    if (role[v] == Role::lid) return true;
+    if (vertex_[v].role == Role::lid) return true;
   }
   return false;
 }
 
 void BoundSurface::close_with_lid(const std::vector<Vertex>& loop, const Vec3& center) {
   const Vertex middle = mesh.add_vertex(center);
-  place(middle, center, field.sample(center, cone[loop.front()]));
-  role[middle] = Role::lid;
+  place(middle, center, field.sample(center, vertex_[loop.front()].cone));
+  vertex_[middle].role = Role::lid;
   for (std::size_t j = 0; j < loop.size(); ++j) {
-    role[loop[j]] = Role::held;
+    vertex_[loop[j]].role = Role::held;
     mesh.add_face(loop[j], loop[(j + 1) % loop.size()], middle);
   }
 }
 
 void BoundSurface::place(Vertex v, const Vec3& p, const FieldSample& sample) {
   mesh.point(v) = p;
-  cone[v] = sample.cone;
-  t[v] = sample.t;
-  gradient[v] = sample.gradient.normalized();
-  distance[v] = sample.distance;
-  if (guard_) guard_->touch(v);
+  BoundVertex& at = vertex_[v];
+  at.cone = sample.cone;
+  at.t = sample.t;
+  at.gradient = sample.gradient.normalized();
+  at.distance = sample.distance;
+  touch_faces(v);
 }
 
 void BoundSurface::update_elongation() {
@@ -81,10 +94,11 @@ void BoundSurface::update_elongation() {
   std::vector<double> times(mesh.num_vertices(), 1.0);
   bool shortened = false;
   for (const Vertex v : mesh.vertices()) {
-    const Elongation full = elongation_field->elongation_at(cone[v], t[v]);
-    times[v.idx()] = 1 + elongation_share[v] * (full.times - 1);
-    elongation[v] = full.direction;
-    shortened = shortened || elongation_share[v] < 1;
+    BoundVertex& at = vertex_[v];
+    const Elongation full = elongation_field->elongation_at(at.cone, at.t);
+    times[v.idx()] = 1 + at.elongation_share * (full.times - 1);
+    at.elongation = full.direction;
+    shortened = shortened || at.elongation_share < 1;
   }
   // The field is graded by itself.
   for (int pass = 0; shortened && pass < kElongationPasses; ++pass) {
@@ -97,7 +111,8 @@ void BoundSurface::update_elongation() {
       of_b = std::min(of_b, of_a + most);
     }
   }
-  for (const Vertex v : mesh.vertices()) elongation[v] = ElongatedMetric::vector(elongation[v], times[v.idx()]);
+  for (const Vertex v : mesh.vertices())
+    vertex_[v].elongation = ElongatedMetric::vector(vertex_[v].elongation, times[v.idx()]);
 }
 
 void BoundSurface::guard_crossings(Axes kept) {
@@ -106,7 +121,7 @@ void BoundSurface::guard_crossings(Axes kept) {
     cones.resize(field.centerline().segments().size());
     std::iota(cones.begin(), cones.end(), Index{0});
   } else {
-    for (const Vertex v : mesh.vertices()) cones.push_back(cone[v]);
+    for (const Vertex v : mesh.vertices()) cones.push_back(vertex_[v].cone);
     std::sort(cones.begin(), cones.end());
     cones.erase(std::unique(cones.begin(), cones.end()), cones.end());
   }
@@ -116,11 +131,71 @@ void BoundSurface::guard_crossings(Axes kept) {
     if (from != to) axes.push_back({from, to});
   }
   guard_ = std::make_unique<CrossingGuard>(
-      mesh, [this](Vertex v) { return role[v] == Role::lid; }, std::move(axes));
+      mesh.num_faces(), [this](Index f) { return placed(Face(f)); }, std::move(axes));
+}
+
+// Nothing for removed faces and those of lids.
+std::optional<PlacedFace> BoundSurface::placed(Face f) const {
+  if (f.idx() >= mesh.num_faces() || mesh.is_removed(f) || is_lid(f)) return std::nullopt;
+  const Halfedge h = mesh.halfedge(f);
+  const Vertex a = mesh.source(h), b = mesh.target(h), c = mesh.target(mesh.next(h));
+  return PlacedFace{{a.idx(), b.idx(), c.idx()}, {mesh.point(a), mesh.point(b), mesh.point(c)}};
+}
+
+void BoundSurface::touch_faces(Vertex v) {
+  if (!guard_) return;
+  for (const Face f : mesh.faces_around_target(mesh.halfedge(v))) {
+    if (f != SurfaceMesh::null_face()) guard_->touch(f.idx());
+  }
+}
+
+bool BoundSurface::allows(const SurfaceStep& step) const {
+  if (!guard_) return true;
+  std::vector<PlacedFace> faces;
+  for (const std::array<Vertex, 3>& f : step.faces) {
+    PlacedFace& face = faces.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      face.vertices[k] = f[k].idx();
+      face.points[k] = f[k] == step.vertex ? step.target.position : mesh.point(f[k]);
+    }
+  }
+  return guard_->allows(faces, {step.gone.begin(), step.gone.end()});
+}
+
+bool BoundSurface::may_place(Vertex v, const Vec3& p) const {
+  if (!guard_) return true;
+  SurfaceStep step{v, {p, {}}, {}, {}};
+  for (const Face f : mesh.faces_around_target(mesh.halfedge(v))) {
+    step.gone.push_back(f);
+    if (!is_lid(f)) step.faces.push_back(corners(f));
+  }
+  return allows(step);
+}
+
+bool BoundSurface::may_collapse(Vertex a, Vertex b, const Vec3& p) const {
+  if (!guard_) return true;
+  SurfaceStep step{a, {p, {}}, {}, {}};
+  for (const Vertex end : {a, b}) {
+    for (const Face f : mesh.faces_around_target(mesh.halfedge(end))) {
+      step.gone.push_back(f);
+      std::array<Vertex, 3> face = corners(f);
+      const auto ends = std::count_if(face.begin(), face.end(), [&](Vertex v) { return v == a || v == b; });
+      std::replace(face.begin(), face.end(), b, a);
+      if (ends == 1 && !is_lid(f)) step.faces.push_back(face);
+    }
+  }
+  return allows(step);
+}
+
+bool BoundSurface::may_flip(Halfedge h) const {
+  const Halfedge o = mesh.opposite(h);
+  const Vertex a = mesh.source(h), b = mesh.target(h);
+  const Vertex c = mesh.target(mesh.next(h)), d = mesh.target(mesh.next(o));
+  return allows({c, {position(c), {}}, {mesh.face(h), mesh.face(o)}, {{c, d, b}, {d, c, a}}});
 }
 
 void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {
-  const BoundaryPoint point = project_to_boundary(field, p, hint, 1e-6, lift[v]);
+  const BoundaryPoint point = project_to_boundary(field, p, hint, 1e-6, vertex_[v].lift);
   place(v, point.position, point.sample);
 }
 
@@ -142,13 +217,7 @@ Vertex BoundSurface::halve(Halfedge h) {
   const Vec3 middle = 0.5 * (mesh.point(a) + mesh.point(b));
   const Vertex v = mesh.target(CGAL::Euler::split_edge(h, mesh));
   mesh.point(v) = middle;
-  cone[v] = cone[a];
-  t[v] = t[a];
-  fineness[v] = 0.5 * (fineness[a] + fineness[b]);
-  elongation[v] = 0.5 * (elongation[a] + elongation[b]);
-  elongation_share[v] = 0.5 * (elongation_share[a] + elongation_share[b]);
-  lift[v] = 0.5 * (lift[a] + lift[b]);
-  gradient[v] = (gradient[a] + gradient[b]).normalized();
+  vertex_[v] = BoundVertex::between(vertex_[a], vertex_[b]);
   return v;
 }
 
@@ -162,6 +231,19 @@ Vertex BoundSurface::split_edge(Edge e) {
   CGAL::Euler::split_face(opposite_in, mesh.next(mesh.opposite(in)), mesh);
   touch_faces(v);
   return v;
+}
+
+Vertex BoundSurface::collapse_edge(Edge e, const BoundaryPoint& target) {
+  const BoundVertex one = BoundVertex::merged(vertex_[mesh.vertex(e, 0)], vertex_[mesh.vertex(e, 1)]);
+  const Vertex v = CGAL::Euler::collapse_edge(e, mesh);
+  vertex_[v] = one;
+  place(v, target.position, target.sample);
+  return v;
+}
+
+void BoundSurface::flip_edge(Halfedge h) {
+  CGAL::Euler::flip_edge(h, mesh);
+  touch_faces(mesh.target(h));
 }
 
 std::array<Vertex, 3> BoundSurface::split_edge_centric(Face f) {
@@ -186,10 +268,10 @@ std::vector<Index> BoundSurface::export_to(GenerateResult& result) const {
   std::vector<Index> number(mesh.num_vertices() + mesh.number_of_removed_vertices(), kNone);
   Index next = 0;
   for (const Vertex v : mesh.vertices()) {
-    if (role[v] == Role::lid) continue;
+    if (vertex_[v].role == Role::lid) continue;
     number[v.idx()] = next++;
     result.mesh.vertices.push_back(mesh.point(v));
-    result.binding.push_back({cone[v], t[v]});
+    result.binding.push_back({vertex_[v].cone, vertex_[v].t});
     result.radius.push_back(radius(v));
   }
   for (const Face f : mesh.faces()) {

@@ -1,15 +1,17 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <CGAL/Surface_mesh.h>
 
 #include "vmesh/core/types.h"
+#include "vmesh/edit/crossing_guard.h"
+#include "vmesh/edit/step.h"
 #include "vmesh/mesh/tri_mesh.h"
 #include "vmesh/surface/generate.h"
 #include "vmesh/volume/vessel_field.h"
 
-#include "surface/remesh/crossing_guard.h"
 #include "surface/remesh/elongated_metric.h"
 
 namespace vmesh {
@@ -20,38 +22,66 @@ using Halfedge = SurfaceMesh::Halfedge_index;
 using Edge = SurfaceMesh::Edge_index;
 using Face = SurfaceMesh::Face_index;
 
+/// A point and what the field says about it.
+struct BoundaryPoint {
+  Vec3 position;
+  FieldSample sample;
+};
+
+/// What belongs to a vertex beside its position. When vertices are added or merged, this follows by itself.
+struct BoundVertex {
+  /// What may happen to it. Edges between two held vertices are kept as well. A lid is the centre of the faces that
+  /// close a hole while the surface is worked on; it is never exported.
+  enum class Role : char { free, held, lid };
+
+  Vec3 gradient = Vec3::Zero();  ///< outward unit normal of the boundary
+  double t = 0;                  ///< parameter on the axis of its cone
+  double distance = 0;           ///< signed, to the boundary, mm
+  /// Signed distance to the boundary at which the vertex belongs, mm. 0 except in balanced placement.
+  double lift = 0;
+  /// Factor on the target edge length: 1, or less in narrow places where full-size triangles do not fit.
+  double fineness = 1;
+  double size = 0;  ///< target edge length, mm, see SweepState
+  /// Vector of the metric in which triangles are to be equilateral, see ElongatedMetric; zero where they are even.
+  Vec3 elongation = Vec3::Zero();
+  /// Share of what the elongation exceeds 1 by that is left to a vertex: less where the limit on the error asks for it.
+  double elongation_share = 1;
+  Index cone = kNone;  ///< closest round cone; the hint for the next query
+  Role role = Role::free;
+
+  /// Of a vertex added between two, bound like `a`.
+  static BoundVertex between(const BoundVertex& a, const BoundVertex& b);
+  /// Of the vertex that two become, bound like `a`.
+  static BoundVertex merged(const BoundVertex& a, const BoundVertex& b);
+};
+
+/// A step on a halfedge mesh; the vertex is null_vertex() where one is to be added.
+using SurfaceStep = Step<Vertex, Face, BoundaryPoint>;
+
 /// A surface under construction: a halfedge mesh whose vertices know their place on the centerline.
 class BoundSurface {
  public:
+  using Role = BoundVertex::Role;
+
   explicit BoundSurface(const VesselField& vessel_field);
   BoundSurface(const BoundSurface&) = delete;
   BoundSurface& operator=(const BoundSurface&) = delete;
 
   const VesselField& field;
   SurfaceMesh mesh;
-  SurfaceMesh::Property_map<Vertex, Index> cone;     ///< closest round cone; the hint for the next query
-  SurfaceMesh::Property_map<Vertex, double> t;       ///< parameter on its axis
-  SurfaceMesh::Property_map<Vertex, Vec3> gradient;  ///< outward normal of the boundary
 
-  SurfaceMesh::Property_map<Vertex, double> distance;  ///< signed distance to the boundary, mm
-
-  /// Signed distance to the boundary at which the vertex belongs, mm. 0 except in balanced placement.
-  SurfaceMesh::Property_map<Vertex, double> lift;
-
-  /// Factor on the target edge length: 1, or less in narrow places where full-size triangles do not fit.
-  SurfaceMesh::Property_map<Vertex, double> fineness;
+  BoundVertex& operator[](Vertex v) { return vertex_[v]; }
+  const BoundVertex& operator[](Vertex v) const { return vertex_[v]; }
 
   /// Where triangles may be longer than wide. Without (nullptr) they are not. To be set before vertices are placed.
   const ElongationField* elongation_field = nullptr;
-  /// Vector of the metric in which triangles are to be equilateral, see ElongatedMetric; zero where they are even.
-  SurfaceMesh::Property_map<Vertex, Vec3> elongation;
-  /// Share of what the elongation exceeds 1 by that is left to a vertex: less where the limit on the error asks for it.
-  SurfaceMesh::Property_map<Vertex, double> elongation_share;
 
   /// The metric of an edge, and of a triangle.
-  ElongatedMetric metric(Vertex a, Vertex b) const { return ElongatedMetric(0.5 * (elongation[a] + elongation[b])); }
+  ElongatedMetric metric(Vertex a, Vertex b) const {
+    return ElongatedMetric(0.5 * (vertex_[a].elongation + vertex_[b].elongation));
+  }
   ElongatedMetric metric(Vertex a, Vertex b, Vertex c) const {
-    return ElongatedMetric((elongation[a] + elongation[b] + elongation[c]) / 3);
+    return ElongatedMetric((vertex_[a].elongation + vertex_[b].elongation + vertex_[c].elongation) / 3);
   }
   /// Sets the elongation of all vertices to what is allowed where they are bound; graded along the surface.
   void update_elongation();
@@ -65,11 +95,7 @@ class BoundSurface {
   /// Balls in which nothing is refined for the error limit.
   std::vector<Spot> calm_spots;
 
-  /// What may happen to a vertex. Edges between two held vertices are kept as well. A lid is the centre of the faces
-  /// that close a hole while the surface is worked on; it is never exported.
-  enum class Role : char { free, held, lid };
-  SurfaceMesh::Property_map<Vertex, Role> role;
-  bool held(Vertex v) const { return role[v] != Role::free; }
+  bool held(Vertex v) const { return vertex_[v].role != Role::free; }
   bool is_lid(Face f) const;
 
   /// Closes the loop of vertices (counter-clockwise about the outward direction) with a lid at `center`, and holds
@@ -82,19 +108,25 @@ class BoundSurface {
   };
   /// From now on only guarded steps are taken (CrossingGuard), which keep these axes inside.
   void guard_crossings(Axes kept = Axes::bound);
-  /// Whether the steps are allowed: always, unless guarded.
-  bool may_place(Vertex v, const Vec3& p) const { return !guard_ || guard_->may_move(v, p); }
-  bool may_collapse(Vertex a, Vertex b, const Vec3& p) const { return !guard_ || guard_->may_collapse(a, b, p); }
-  bool may_flip(Halfedge h) const { return !guard_ || guard_->may_flip(h); }
-  /// Tells the guard that the faces around `v` are new.
-  void touch_faces(Vertex v) {
-    if (guard_) guard_->touch(v);
-  }
+  /// Whether a step is allowed: always, unless guarded.
+  bool allows(const SurfaceStep& step) const;
+  bool may_place(Vertex v, const Vec3& p) const;
+  bool may_collapse(Vertex a, Vertex b, const Vec3& p) const;
+  bool may_flip(Halfedge h) const;
+  /// The steps that were not, and why.
+  CrossingGuard::Refused refused() const { return guard_ ? guard_->refused() : CrossingGuard::Refused{}; }
 
   const Vec3& position(Vertex v) const { return mesh.point(v); }
+  std::array<Vertex, 3> corners(Face f) const {
+    const Halfedge h = mesh.halfedge(f);
+    return {mesh.source(h), mesh.target(h), mesh.target(mesh.next(h))};
+  }
   /// The field at the vertex, as of its last placement. The gradient is a unit vector.
-  FieldSample sample(Vertex v) const { return {distance[v], gradient[v], cone[v], t[v]}; }
-  double radius(Vertex v) const { return field.radius_at(cone[v], t[v]); }
+  FieldSample sample(Vertex v) const {
+    const BoundVertex& at = vertex_[v];
+    return {at.distance, at.gradient, at.cone, at.t};
+  }
+  double radius(Vertex v) const { return field.radius_at(vertex_[v].cone, vertex_[v].t); }
 
   /// Places `v` at `p`, bound as `sample` says.
   void place(Vertex v, const Vec3& p, const FieldSample& sample);
@@ -106,12 +138,16 @@ class BoundSurface {
   Vec3 vertex_normal(Vertex v) const;
 
   /// Edge-centric split of a face: its edges are halved, it becomes four faces and each neighbour two.
-  /// The three new vertices are bound like one of their edge's ends and stay at the edges' midpoints.
+  /// The three new vertices stay at the edges' midpoints.
   std::array<Vertex, 3> split_edge_centric(Face f);
 
-  /// Splits an edge at its midpoint, and both its faces. The new vertex lies at the midpoint, bound like an end of the
-  /// edge.
+  /// Splits an edge at its midpoint, and both its faces. The new vertex stays there.
   Vertex split_edge(Edge e);
+
+  /// Collapses an edge to a vertex placed at `target`; returns that. Requires the link condition.
+  Vertex collapse_edge(Edge e, const BoundaryPoint& target);
+
+  void flip_edge(Halfedge h);
 
   /// The finished mesh with its binding, without lids. Vertices and faces in the order of the halfedge mesh. Returns
   /// the new number of every vertex by its old index; kNone for removed ones.
@@ -119,14 +155,11 @@ class BoundSurface {
 
  private:
   Vertex halve(Halfedge h);
+  void touch_faces(Vertex v);
+  std::optional<PlacedFace> placed(Face f) const;
 
+  SurfaceMesh::Property_map<Vertex, BoundVertex> vertex_;
   std::unique_ptr<CrossingGuard> guard_;
-};
-
-/// A point and what the field says about it.
-struct BoundaryPoint {
-  Vec3 position;
-  FieldSample sample;
 };
 
 /// Follows the gradient from `p` by Newton steps to the signed distance `lift`, until it is within `tolerance` local

@@ -61,7 +61,7 @@ class Mender {
 
  private:
   enum class Kind { flip, collapse, split, move };
-  struct Step {
+  struct Repair {
     Kind kind;
     Halfedge edge;  // of a flip, collapse or split
     Vertex vertex;  // of a move
@@ -97,29 +97,29 @@ class Mender {
   }
 
   bool mend(Face f) {
-    std::vector<Step> steps;
+    std::vector<Repair> steps;
     for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
       add_flip(h, steps);
       add_collapses(h, steps);
       if (keeps_ == Keeps::nothing) add_split(h, steps);
       add_moves(mesh_.target(h), steps);
     }
-    std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.worst < b.worst; });
+    std::stable_sort(steps.begin(), steps.end(), [](const Repair& a, const Repair& b) { return a.worst < b.worst; });
     if (keeps_ == Keeps::to_boundary && steps.size() > kTries) steps.resize(kTries);
-    return std::any_of(steps.begin(), steps.end(), [&](const Step& step) { return take(step); });
+    return std::any_of(steps.begin(), steps.end(), [&](const Repair& step) { return take(step); });
   }
 
   bool any_is_lid(std::initializer_list<Vertex> vertices) const {
     return std::any_of(vertices.begin(), vertices.end(),
-                       [&](Vertex v) { return surface_.role[v] == BoundSurface::Role::lid; });
+                       [&](Vertex v) { return surface_[v].role == BoundSurface::Role::lid; });
   }
 
   // Offers a step if it lowers the worst skewness of the faces it changes.
-  void offer(const Step& step, std::vector<Step>& steps) const {
+  void offer(const Repair& step, std::vector<Repair>& steps) const {
     if (step.worst < kPaysOff * step.before) steps.push_back(step);
   }
 
-  void add_flip(Halfedge h, std::vector<Step>& steps) const {
+  void add_flip(Halfedge h, std::vector<Repair>& steps) const {
     const Halfedge o = mesh_.opposite(h);
     const Vertex a = mesh_.source(h), b = mesh_.target(h);
     const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
@@ -132,7 +132,7 @@ class Mender {
     offer({Kind::flip, h, {}, Vec3::Zero(), before, worst}, steps);
   }
 
-  void add_collapses(Halfedge h, std::vector<Step>& steps) const {
+  void add_collapses(Halfedge h, std::vector<Repair>& steps) const {
     const Vertex a = mesh_.source(h), b = mesh_.target(h);
     if (surface_.held(a) || surface_.held(b)) return;
     if (!CGAL::Euler::does_satisfy_link_condition(mesh_.edge(h), mesh_)) return;
@@ -144,7 +144,7 @@ class Mender {
   }
 
   // A split at the midpoint, which does not move the surface.
-  void add_split(Halfedge h, std::vector<Step>& steps) const {
+  void add_split(Halfedge h, std::vector<Repair>& steps) const {
     const Halfedge o = mesh_.opposite(h);
     const Vertex a = mesh_.source(h), b = mesh_.target(h);
     const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
@@ -161,11 +161,11 @@ class Mender {
   }
 
   // Moves to the neighbours' centroid and to points around the vertex, at ever smaller distances.
-  void add_moves(Vertex v, std::vector<Step>& steps) const {
+  void add_moves(Vertex v, std::vector<Repair>& steps) const {
     if (surface_.held(v)) return;
     Vec3 center = Vec3::Zero();
     double length = 0;
-    const ElongatedMetric metric(surface_.elongation[v]);
+    const ElongatedMetric metric(surface_[v].elongation);
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       center += mesh_.point(mesh_.source(h));
       length += metric.shrunk(mesh_.point(mesh_.source(h)) - mesh_.point(v)).norm();
@@ -176,7 +176,7 @@ class Mender {
     const auto offer_place = [&](const Vec3& place) {
       offer({Kind::move, {}, v, place, before, worst_with(v, v, place, kPaysOff * before)}, steps);
     };
-    const Vec3 normal = surface_.gradient[v], side = towards_neighbour(v, normal), across = normal.cross(side);
+    const Vec3 normal = surface_[v].gradient, side = towards_neighbour(v, normal), across = normal.cross(side);
     if (keeps_ == Keeps::to_boundary) center -= normal.dot(center - mesh_.point(v)) * normal;
     for (const double share : {0.25, 0.5, 1.0}) offer_place(mesh_.point(v) + share * (center - mesh_.point(v)));
     for (const double share : {0.6, 0.4, 0.2, 0.1, 0.05, 0.02}) {
@@ -230,7 +230,7 @@ class Mender {
       const Vec3 &b = mesh_.point(mesh_.target(mesh_.next(h))), &c = mesh_.point(mesh_.source(h));
       const double a = (b - place).cross(c - place).norm();
       area += a;
-      sum += a * std::abs(surface_.field.sample_fast((place + b + c) / 3, surface_.cone[v]).distance);
+      sum += a * std::abs(surface_.field.sample_fast((place + b + c) / 3, surface_[v].cone).distance);
     }
     return sum / area;
   }
@@ -249,7 +249,7 @@ class Mender {
 
   void put(Vertex v, const BoundaryPoint& target) {
     surface_.place(v, target.position, target.sample);
-    if (keeps_ == Keeps::nothing) surface_.lift[v] = surface_.distance[v];
+    if (keeps_ == Keeps::nothing) surface_[v].lift = surface_[v].distance;
     note_changed(v);
   }
 
@@ -261,35 +261,32 @@ class Mender {
   }
 
   // Takes the step unless faces would cross.
-  bool take(const Step& step) {
+  bool take(const Repair& step) {
     switch (step.kind) {
       case Kind::flip:
         if (!surface_.may_flip(step.edge)) return false;
-        CGAL::Euler::flip_edge(step.edge, mesh_);
-        surface_.touch_faces(mesh_.target(step.edge));
+        surface_.flip_edge(step.edge);
         note_changed(mesh_.target(step.edge));
         note_changed(mesh_.source(step.edge));
         return true;
       case Kind::collapse: {
         const Vertex a = mesh_.source(step.edge), b = mesh_.target(step.edge);
-        const double lift = 0.5 * (surface_.lift[a] + surface_.lift[b]);
-        const BoundaryPoint target = belongs(step.place, surface_.cone[a], lift);
+        const double lift = 0.5 * (surface_[a].lift + surface_[b].lift);
+        const BoundaryPoint target = belongs(step.place, surface_[a].cone, lift);
         if (worst_with_both(a, b, target.position) >= step.before) return false;
         if (!surface_.may_collapse(a, b, target.position)) return false;
-        const Vertex v = CGAL::Euler::collapse_edge(mesh_.edge(step.edge), mesh_);
-        surface_.lift[v] = lift;
-        put(v, target);
+        put(surface_.collapse_edge(mesh_.edge(step.edge), target), target);
         return true;
       }
       case Kind::split: {
-        const Index hint = surface_.cone[mesh_.target(step.edge)];
+        const Index hint = surface_[mesh_.target(step.edge)].cone;
         put(surface_.split_edge(mesh_.edge(step.edge)), belongs(step.place, hint, 0));
         return true;
       }
       case Kind::move:
         break;
     }
-    const BoundaryPoint target = belongs(step.place, surface_.cone[step.vertex], surface_.lift[step.vertex]);
+    const BoundaryPoint target = belongs(step.place, surface_[step.vertex].cone, surface_[step.vertex].lift);
     if (worst_with(step.vertex, step.vertex, target.position, step.before) >= step.before) return false;
     if (keeps_ == Keeps::to_boundary && !stays_near(step.vertex, target.position)) return false;
     if (!surface_.may_place(step.vertex, target.position)) return false;

@@ -107,7 +107,7 @@ class Polisher {
     std::vector<Place> places;
     for (const Vertex v : vertices)
       places.push_back(
-          {v, state_.point(v), {surface_.distance[v], surface_.gradient[v], surface_.cone[v], surface_.t[v]}});
+          {v, state_.point(v), {surface_[v].distance, surface_[v].gradient, surface_[v].cone, surface_[v].t}});
     return places;
   }
 

@@ -24,14 +24,14 @@ class Relocator {
         step += state_.point(mesh_.source(h)) - x;
       step /= static_cast<double>(mesh_.degree(v));
     }
-    const double longest = kLongestMove * state_.size[v], norm = length_of(v, step);
+    const double longest = kLongestMove * state_.size(v), norm = length_of(v, step);
     if (!std::isfinite(norm)) return;
     if (norm > longest) step *= longest / norm;
     for (int attempt = 0; attempt < kAttempts; ++attempt, step *= 0.5) {
       const BoundaryPoint target = state_.project(v, x + step);
       const double way = state_.away(v, target.position);
-      if (way > state_.size[v] || !improves(v, target, before) || !surface_.may_place(v, target.position)) continue;
-      if (state_.off_boundary(v) || way > options_.noticeable * state_.size[v]) state_.stir(v);
+      if (way > state_.size(v) || !improves(v, target, before) || !surface_.may_place(v, target.position)) continue;
+      if (state_.off_boundary(v) || way > options_.noticeable * state_.size(v)) state_.stir(v);
       surface_.place(v, target.position, target.sample);
       return;
     }
@@ -40,7 +40,7 @@ class Relocator {
  private:
   // Of a way of `v`, in the metric.
   double length_of(Vertex v, const Vec3& way) const {
-    return surface_.elongation_field ? ElongatedMetric(surface_.elongation[v]).length(way) : way.norm();
+    return surface_.elongation_field ? ElongatedMetric(surface_[v].elongation).length(way) : way.norm();
   }
 
   // In the metric of each face.
@@ -54,7 +54,7 @@ class Relocator {
   // Adds the faces around `v` to the energy. Nothing where that is not finite.
   Vec3 newton_step(Vertex v, PlanarEnergy& energy) const {
     const Vec3 x = state_.point(v);
-    const Vec3 n = surface_.gradient[v];
+    const Vec3 n = surface_[v].gradient;
     const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       energy.add(x, state_.point(mesh_.target(mesh_.next(h))), state_.point(mesh_.source(h)), u, w);
@@ -65,9 +65,9 @@ class Relocator {
   // The same where the metric of the surface at `v` is that of space. Planes with normal n become such with a normal
   // along n stretched.
   Vec3 elongated_step(Vertex v, PlanarEnergy& energy) const {
-    const ElongatedMetric metric(surface_.elongation[v]);
+    const ElongatedMetric metric(surface_[v].elongation);
     const Vec3 x = state_.point(v);
-    const Vec3 n = metric.stretched(surface_.gradient[v]).normalized();
+    const Vec3 n = metric.stretched(surface_[v].gradient).normalized();
     const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
       energy.add(Vec3::Zero(), metric.shrunk(state_.point(mesh_.target(mesh_.next(h))) - x),

@@ -57,9 +57,7 @@ bool Remesher::upright(Edge e) const {
 }
 
 Vertex Remesher::split(Edge e) {
-  const double size = state_.target_length(e);
   const Vertex v = surface_.split_edge(e);
-  state_.size[v] = size;
   state_.activate(v);
   state_.stir(v);
   move_to_boundary(v);
@@ -69,18 +67,18 @@ Vertex Remesher::split(Edge e) {
 void Remesher::move_to_boundary(Vertex v) {
   const BoundaryPoint target = state_.project(v, state_.point(v));
   const Landing landing(target);
-  const bool far = (target.position - state_.point(v)).norm() > state_.size[v];
+  const bool far = (target.position - state_.point(v)).norm() > state_.size(v);
   for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
     const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
     if (far || state_.agreement(landing, b, c) < std::min(SweepState::kMinAgreement, state_.agreement(v, b, c))) {
-      surface_.place(v, state_.point(v), field_.sample_fast(state_.point(v), surface_.cone[v]));
+      surface_.place(v, state_.point(v), field_.sample_fast(state_.point(v), surface_[v].cone));
       return;
     }
   }
   if (surface_.may_place(v, target.position)) {
     surface_.place(v, target.position, target.sample);
   } else {
-    surface_.place(v, state_.point(v), field_.sample_fast(state_.point(v), surface_.cone[v]));
+    surface_.place(v, state_.point(v), field_.sample_fast(state_.point(v), surface_[v].cone));
   }
 }
 
@@ -101,18 +99,7 @@ bool Remesher::collapse(Edge e) {
   if (!collapsible_to(a, b, target) || !collapsible_to(b, a, target)) return false;
   if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return false;
   if (!surface_.may_collapse(a, b, target.position)) return false;
-  const double size = std::min(state_.size[a], state_.size[b]);
-  const double fineness = std::min(surface_.fineness[a], surface_.fineness[b]);
-  const double lift = 0.5 * (surface_.lift[a] + surface_.lift[b]);
-  const double elongation_share = std::min(surface_.elongation_share[a], surface_.elongation_share[b]);
-  const Vec3 elongation = 0.5 * (surface_.elongation[a] + surface_.elongation[b]);
-  const Vertex v = CGAL::Euler::collapse_edge(e, mesh_);
-  surface_.fineness[v] = fineness;
-  surface_.elongation_share[v] = elongation_share;
-  surface_.elongation[v] = elongation;
-  surface_.lift[v] = lift;
-  surface_.place(v, target.position, target.sample);
-  state_.size[v] = size;
+  const Vertex v = surface_.collapse_edge(e, target);
   state_.stir(v);
   return true;
 }
@@ -150,7 +137,7 @@ bool Remesher::collapsible_to(Vertex v, Vertex other, const BoundaryPoint& targe
     const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
     if (b == other || c == other) continue;
     const double reach = state_.length(v, c, target.position);
-    const double size = 0.5 * (state_.size[c] + state_.size[v]);
+    const double size = 0.5 * (state_.size(c) + state_.size(v));
     if (reach > kSplitLength * size || !state_.stays_upright(v, b, c, landing)) return false;
     if (reach > kCannotStray * size &&
         std::abs(field_.sample_fast(0.5 * (state_.point(c) + target.position), target.sample.cone).distance) >
@@ -169,7 +156,7 @@ void Remesher::split_far_faces(double max_distance) {
     const std::array<Vertex, 3> corner = state_.corners(f);
     if (std::count_if(corner.begin(), corner.end(), [&](Vertex v) { return surface_.held(v); }) > 1) continue;
     const Vec3 center = (state_.point(corner[0]) + state_.point(corner[1]) + state_.point(corner[2])) / 3;
-    const FieldSample s = field_.sample_fast(center, surface_.cone[corner[0]]);
+    const FieldSample s = field_.sample_fast(center, surface_[corner[0]].cone);
     if (std::abs(s.distance) <= max_distance * field_.radius_at(s.cone, s.t)) continue;
     double longest = 0, target = 0;
     for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
@@ -179,7 +166,7 @@ void Remesher::split_far_faces(double max_distance) {
     if (longest < kSplitFar * target) continue;  // a web over a crotch: refinement would not bring it closer
     if (full()) break;
     for (const Vertex v : surface_.split_edge_centric(f)) {
-      state_.size[v] = std::min({state_.size[corner[0]], state_.size[corner[1]], state_.size[corner[2]]}) / 2;
+      surface_[v].size = std::min({state_.size(corner[0]), state_.size(corner[1]), state_.size(corner[2])}) / 2;
       state_.activate(v);
       state_.stir(v);
       move_to_boundary(v);
@@ -189,7 +176,7 @@ void Remesher::split_far_faces(double max_distance) {
 
 double Remesher::bulge(Vertex a, Vertex b) const {
   const Vec3 middle = 0.5 * (state_.point(a) + state_.point(b));
-  return std::abs(field_.sample_fast(middle, surface_.cone[a]).distance) / state_.length(a, b, state_.point(a));
+  return std::abs(field_.sample_fast(middle, surface_[a].cone).distance) / state_.length(a, b, state_.point(a));
 }
 
 void Remesher::repair_strays() {
@@ -237,8 +224,7 @@ void Remesher::flip(Halfedge h) {
     state_.touch(mesh_.target(side));
     state_.touch(mesh_.target(mesh_.next(side)));
   }
-  CGAL::Euler::flip_edge(h, mesh_);
-  surface_.touch_faces(mesh_.target(h));
+  surface_.flip_edge(h);
 }
 
 bool Remesher::try_flip(Edge e, double regularity) {

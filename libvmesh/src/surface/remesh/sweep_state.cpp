@@ -33,13 +33,11 @@ SweepState::SweepState(BoundSurface& bound_surface)
     : surface(bound_surface),
       mesh(surface.mesh),
       field(surface.field),
-      size(mesh.add_property_map<Vertex, double>("v:size", 0.0).first),
-      stirred_(mesh.add_property_map<Vertex, char>("v:stirred", 0).first) {}
-
-SweepState::~SweepState() {
-  mesh.remove_property_map(size);
-  mesh.remove_property_map(stirred_);
+      stirred_(mesh.add_property_map<Vertex, char>("v:stirred", 0).first) {
+  for (const Vertex v : mesh.vertices()) surface[v].size = 0;
 }
+
+SweepState::~SweepState() { mesh.remove_property_map(stirred_); }
 
 void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
   surface.update_elongation();
@@ -47,16 +45,18 @@ void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
     const double radius = surface.radius(v);
     double edge = edge_per_radius * radius;
     if (limit.is_set()) edge = std::min(edge, edge_length_for(limit.at(radius), radius));
-    size[v] = edge * surface.fineness[v];
+    double& size = surface[v].size;
+    size = edge * surface[v].fineness;
     for (const auto& [spot, spot_radius] : surface.fine_spots)
-      size[v] = std::min(size[v], edge_per_radius * spot_radius + kGradation * (point(v) - spot).norm());
+      size = std::min(size, edge_per_radius * spot_radius + kGradation * (point(v) - spot).norm());
   }
   for (int pass = 0; pass < kGradationPasses; ++pass) {
     for (const Edge e : mesh.edges()) {
       const Vertex a = mesh.vertex(e, 0), b = mesh.vertex(e, 1);
       const double slack = kGradation * (point(a) - point(b)).norm();
-      size[a] = std::min(size[a], size[b] + slack);
-      size[b] = std::min(size[b], size[a] + slack);
+      double &at_a = surface[a].size, &at_b = surface[b].size;
+      at_a = std::min(at_a, at_b + slack);
+      at_b = std::min(at_b, at_a + slack);
     }
   }
 }

@@ -40,7 +40,6 @@ class SweepState {
   BoundSurface& surface;
   SurfaceMesh& mesh;
   const VesselField& field;
-  SurfaceMesh::Property_map<Vertex, double> size;  ///< target edge length, mm
 
   const Vec3& point(Vertex v) const { return mesh.point(v); }
   /// Length in the surface's metric.
@@ -56,13 +55,12 @@ class SweepState {
   /// How far `v` would go to `p`, in the metric.
   double away(Vertex v, const Vec3& p) const {
     const Vec3 way = p - point(v);
-    return surface.elongation_field ? ElongatedMetric(surface.elongation[v]).length(way) : way.norm();
+    return surface.elongation_field ? ElongatedMetric(surface[v].elongation).length(way) : way.norm();
   }
-  double target_length(Edge e) const { return 0.5 * (size[mesh.vertex(e, 0)] + size[mesh.vertex(e, 1)]); }
-  std::array<Vertex, 3> corners(Face f) const {
-    const Halfedge h = mesh.halfedge(f);
-    return {mesh.source(h), mesh.target(h), mesh.target(mesh.next(h))};
-  }
+  /// Target edge length at a vertex, mm; 0 before update_sizes().
+  double size(Vertex v) const { return surface[v].size; }
+  double target_length(Edge e) const { return 0.5 * (size(mesh.vertex(e, 0)) + size(mesh.vertex(e, 1))); }
+  std::array<Vertex, 3> corners(Face f) const { return surface.corners(f); }
 
   /// Sets the size field: `edge_per_radius` times the local radius but no more than `limit` allows on a vessel, times
   /// the vertex's fineness, its slope along the surface bounded.
@@ -88,11 +86,11 @@ class SweepState {
   /// Cosine between the normal of the face abc and the boundary's mean normal at its corners: whether it lies the
   /// right way up. -1 for a degenerate face.
   double agreement(Vertex a, Vertex b, Vertex c) const {
-    return agreement(point(a), point(b), point(c), surface.gradient[a] + surface.gradient[b] + surface.gradient[c]);
+    return agreement(point(a), point(b), point(c), surface[a].gradient + surface[b].gradient + surface[c].gradient);
   }
   /// The same once `v` has moved to `target`.
   double agreement(const Landing& target, Vertex b, Vertex c) const {
-    return agreement(target.position, point(b), point(c), target.normal + surface.gradient[b] + surface.gradient[c]);
+    return agreement(target.position, point(b), point(c), target.normal + surface[b].gradient + surface[c].gradient);
   }
   /// Least agreement at which a face counts as upright.
   static constexpr double kMinAgreement = 0.2;  // safe 0.14 to 0.28
@@ -114,21 +112,21 @@ class SweepState {
 
   /// Whether `v` is not yet where it belongs, at its lift from the boundary.
   bool off_boundary(Vertex v) const {
-    return std::abs(surface.distance[v] - surface.lift[v]) > kOffBoundary * surface.radius(v);
+    return std::abs(surface[v].distance - surface[v].lift) > kOffBoundary * surface.radius(v);
   }
 
   /// Where `v` belongs when it is moved to `p`.
   BoundaryPoint project(Vertex v, const Vec3& p, double tolerance = kProjectionTolerance) const {
-    return project_to_boundary(field, p, surface.cone[v], tolerance, surface.lift[v]);
+    return project_to_boundary(field, p, surface[v].cone, tolerance, surface[v].lift);
   }
   /// Where `v` belongs near its present position.
   BoundaryPoint project(Vertex v) const {
-    return project_to_boundary(field, {point(v), surface.sample(v)}, kProjectionTolerance, surface.lift[v]);
+    return project_to_boundary(field, {point(v), surface.sample(v)}, kProjectionTolerance, surface[v].lift);
   }
   /// Where the vertex belongs to which `a` and `b` would collapse.
   BoundaryPoint project_middle(Vertex a, Vertex b) const {
-    return project_to_boundary(field, 0.5 * (point(a) + point(b)), surface.cone[a], kProjectionTolerance,
-                               0.5 * (surface.lift[a] + surface.lift[b]));
+    return project_to_boundary(field, 0.5 * (point(a) + point(b)), surface[a].cone, kProjectionTolerance,
+                               0.5 * (surface[a].lift + surface[b].lift));
   }
 
  private:

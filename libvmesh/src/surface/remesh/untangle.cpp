@@ -11,9 +11,9 @@ constexpr int kPasses = 5;          // safe 4 to 7
 
 bool neighbours(const BoundSurface& surface, const Triangle& f, const Triangle& g) {
   for (const Index v : f) {
-    const auto local = surface.field.local_cones(surface.cone[Vertex(v)]);
+    const auto local = surface.field.local_cones(surface[Vertex(v)].cone);
     for (const Index w : g) {
-      if (std::binary_search(local.begin(), local.end(), surface.cone[Vertex(w)])) return true;
+      if (std::binary_search(local.begin(), local.end(), surface[Vertex(w)].cone)) return true;
     }
   }
   return false;
@@ -79,7 +79,7 @@ std::vector<Vertex> loosen(SweepState& state, const std::vector<Vertex>& tangles
       for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) center += state.point(mesh.source(h));
       center /= static_cast<double>(mesh.degree(v));
       const BoundaryPoint target = state.project(v, center);
-      const bool near = (target.position - center).norm() < state.size[v];
+      const bool near = (target.position - center).norm() < state.size(v);
       if (near && state.surface.may_place(v, target.position)) state.surface.place(v, target.position, target.sample);
     }
   }

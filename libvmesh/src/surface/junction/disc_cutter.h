@@ -3,15 +3,20 @@
 #include <functional>
 #include <vector>
 
-#include "vmesh/core/types.h"
-#include "vmesh/mesh/tri_mesh.h"
+#include "vmesh/edit/edit_mesh.h"
 
 namespace vmesh {
 
 /// A closed surface from which discs are cut.
 class DiscCutter {
  public:
-  DiscCutter(std::vector<Vec3> vertices, std::vector<Triangle> faces);
+  /// A vertex, and the original one that it is or was added next to.
+  struct Vertex {
+    Vec3 position = Vec3::Zero();
+    Index source = kNone;
+  };
+
+  DiscCutter(const std::vector<Vec3>& positions, std::vector<Triangle> faces);
 
   /// Cuts off the tip of a vessel: the region beyond the plane through `center` that is connected to the vertex of
   /// `own` farthest along `normal`. Only vertices of `own` are removed; faces that cross the plane are cut. If the
@@ -20,13 +25,11 @@ class DiscCutter {
   /// are collapsed where that keeps the topology.
   std::vector<Index> cut(const Vec3& center, const Vec3& normal, const std::vector<Index>& own, double shortest);
 
-  void move(Index v, const Vec3& position) { vertices_[v] = position; }
+  void move(Index v, const Vec3& position) { mesh_.edit(v).position = position; }
 
-  const std::vector<Vec3>& vertices() const { return vertices_; }
-  /// The original vertex that `v` is a copy of or was created next to.
-  Index source(Index v) const { return source_[v]; }
-  /// The remaining faces.
-  std::vector<Triangle> rest() const;
+  const std::vector<Vertex>& vertices() const { return mesh_.vertices(); }
+  /// All vertices and the remaining faces.
+  TriMesh rest() const { return mesh_.tri_mesh(); }
 
  private:
   using Height = std::function<double(const Vec3&)>;  // above the cutting surface
@@ -37,19 +40,11 @@ class DiscCutter {
   std::vector<Index> cut_off(const std::vector<Index>& region, const Height& height);
   std::vector<Index> open_window(const Vec3& near);
   void collapse_short_edges(std::vector<Index>& rim, double shortest);
-  bool collapsible(Index v, Index into) const;
-  void collapse(Index v, Index into);
-  std::vector<Index> neighbours(Index v) const;
-  Index add_vertex(const Vec3& position, Index source);
-  void add_face(const Triangle& face);
+  bool may_collapse(Index v, Index into) const;
   void add_quad(Index a, Index b, Index c, Index d);
   std::vector<Index> faces_around(const std::vector<Index>& region) const;
 
-  std::vector<Vec3> vertices_;
-  std::vector<Triangle> faces_;
-  std::vector<Index> source_;
-  std::vector<std::vector<Index>> faces_of_;
-  std::vector<char> removed_face_, removed_vertex_;
+  EditMesh<Vertex> mesh_;
 };
 
 }  // namespace vmesh

@@ -1,4 +1,4 @@
-#include "surface/junction/docking.h"
+#include "surface/junction/disc_cutter.h"
 
 #include <algorithm>
 #include <map>
@@ -85,14 +85,14 @@ TEST(DiscCutter, CutsATipOffAtThePlane) {
   DiscCutter cutter(mesh.vertices, mesh.faces);
   const auto rim = cutter.cut({0, 0, 2.6}, Vec3::UnitZ(), all_vertices(mesh), 0);
   ASSERT_GE(rim.size(), 8u);
+  const TriMesh rest = cutter.rest();
   double turn = 0;
   for (std::size_t i = 0; i < rim.size(); ++i) {
-    const Vec3 &p = cutter.vertices()[rim[i]], &q = cutter.vertices()[rim[(i + 1) % rim.size()]];
+    const Vec3 &p = rest.vertices[rim[i]], &q = rest.vertices[rim[(i + 1) % rim.size()]];
     EXPECT_NEAR(p.z(), 2.6, 1e-12);
     turn += std::atan2(p.x() * q.y() - p.y() * q.x(), p.x() * q.x() + p.y() * q.y());
   }
   EXPECT_NEAR(turn, 2 * M_PI, 1e-9);  // once, counter-clockwise about the normal
-  const TriMesh rest{cutter.vertices(), cutter.rest()};
   const Topology topology = measure_topology(rest);
   EXPECT_TRUE(topology.manifold && topology.oriented);
   EXPECT_EQ(topology.boundary_edges, rim.size());
@@ -110,7 +110,7 @@ TEST(DiscCutter, CollapsesShortEdgesOfTheRim) {
   // more than one neighbour in common, their edge stays.
   EXPECT_LE(rim.size(), 24u);
   EXPECT_GE(rim.size(), 12u);  // 2 pi / 0.5: none longer than needed on average
-  const Topology topology = measure_topology({cutter.vertices(), cutter.rest()});
+  const Topology topology = measure_topology(cutter.rest());
   EXPECT_TRUE(topology.manifold && topology.oriented);
   EXPECT_EQ(topology.boundary_edges, rim.size());
   EXPECT_EQ(topology.euler_characteristic, 1);
@@ -124,7 +124,7 @@ TEST(DiscCutter, CutsBothEndsWithoutTheRimsTouching) {
   const auto first = cutter.cut({0, 0, 0.1}, Vec3::UnitZ(), upper, 0);
   const auto second = cutter.cut({0, 0, -0.1}, -Vec3::UnitZ(), lower, 0);
   for (const Index v : second) EXPECT_EQ(std::count(first.begin(), first.end(), v), 0);
-  const Topology topology = measure_topology({cutter.vertices(), cutter.rest()});
+  const Topology topology = measure_topology(cutter.rest());
   EXPECT_TRUE(topology.manifold && topology.oriented);
   EXPECT_EQ(topology.boundary_edges, first.size() + second.size());
   EXPECT_EQ(topology.euler_characteristic, 0);
@@ -135,7 +135,7 @@ TEST(DiscCutter, OpensAWindowWhereTheTipHasNoVertex) {
   DiscCutter cutter(mesh.vertices, mesh.faces);
   const auto rim = cutter.cut({1, 0, 0.3}, Vec3::UnitX(), {}, 0);
   EXPECT_EQ(rim.size(), 3u);
-  const Topology topology = measure_topology({cutter.vertices(), cutter.rest()});
+  const Topology topology = measure_topology(cutter.rest());
   EXPECT_TRUE(topology.manifold && topology.oriented);
   EXPECT_EQ(topology.boundary_edges, 3u);
 }

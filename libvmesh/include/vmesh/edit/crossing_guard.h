@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "vmesh/core/box_tree.h"
+#include "vmesh/mesh/face_pair.h"
+
+namespace vmesh {
+
+/// Tells whether a step would make faces of a surface cross each other, or cross an axis line that they did not cross
+/// before. Keeps the boxes of all faces in trees; faces that are new or have changed must be announced (touch).
+class CrossingGuard {
+ public:
+  using AxisLine = std::array<Vec3, 2>;
+  /// A face as it is now; nothing if it has been removed or does not count.
+  using FaceLookup = std::function<std::optional<PlacedFace>(Index)>;
+
+  /// `faces`: numbers so far. `axes`: the axis lines, which belong inside.
+  CrossingGuard(std::size_t faces, FaceLookup face_at, std::vector<AxisLine> axes = {});
+
+  /// Whether faces may be replaced by others.
+  bool allows(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const;
+
+  /// The face is new or has changed.
+  void touch(Index f);
+
+  /// How many steps were not allowed so far, by the first reason.
+  struct Refused {
+    std::size_t degenerate = 0, axis = 0, crossing = 0;
+  };
+  const Refused& refused() const { return refused_; }
+
+ private:
+  // A face keeps its box until it leaves it; then it gets a new one.
+  struct Box {
+    Vec3 low = Vec3::Ones(), high = -Vec3::Ones();
+    Index number = kNone;  // boxes are numbered in the order in which they were needed
+  };
+  struct Entry {
+    Index face;
+    Index number;  // of the box; outdated if it is not the face's current one
+  };
+  struct Layer {
+    std::vector<Entry> entries;
+    BoxTree tree;
+  };
+
+  bool renew_box(Index f);
+  void add_layer(std::vector<Entry> entries);
+  bool has_box(const Entry& entry) const { return box_[entry.face].number == entry.number; }
+  bool cross_others(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const;
+  // Whether one of `faces` meets an axis line that none of `gone` meets.
+  bool cross_axes(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const;
+
+  FaceLookup face_at_;
+  std::vector<Box> box_;  // of every face
+  Index next_number_ = 0;
+  std::vector<Layer> layers_;  // each less than half as large as the one before
+  std::vector<Entry> latest_;  // not yet in a layer
+  std::vector<AxisLine> axes_;
+  BoxTree axis_tree_;  // of the parts of axis lines
+  mutable Refused refused_;
+};
+
+/// Pairs of faces that cross, of which at least one is among `changed`; for a surface in which no others do, such as an
+/// EditMesh's. The smaller number first.
+std::vector<std::pair<Index, Index>> crossing_pairs(const std::vector<Vec3>& positions,
+                                                    const std::vector<Triangle>& faces,
+                                                    const std::vector<Index>& changed);
+
+}  // namespace vmesh
