@@ -55,8 +55,8 @@ double distance_from_reference(const Vec3& p, Index cone, const Vec3& normal, co
 }
 
 void find_cones(FitMesh& surface, const VesselField& field) {
-  tbb::parallel_for(std::size_t{0}, surface.vertices().size(), [&](std::size_t v) {
-    surface.edit(v).cone = field.sample(surface.vertices()[v].position, surface.vertices()[v].cone).cone;
+  tbb::parallel_for(Index{0}, static_cast<Index>(surface.vertices().size()), [&](Index v) {
+    surface.edit(v).cone = field.sample(surface.position(v), surface.vertex(v).cone).cone;
   });
 }
 

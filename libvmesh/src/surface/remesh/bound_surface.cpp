@@ -164,7 +164,7 @@ bool BoundSurface::allows(const SurfaceStep& step) const {
 
 bool BoundSurface::may_place(Vertex v, const Vec3& p) const {
   if (!guard_) return true;
-  SurfaceStep step{v, {p, {}}, {}, {}};
+  SurfaceStep step{v, {p}, {}, {}};
   for (const Face f : mesh.faces_around_target(mesh.halfedge(v))) {
     step.gone.push_back(f);
     if (!is_lid(f)) step.faces.push_back(corners(f));
@@ -174,7 +174,7 @@ bool BoundSurface::may_place(Vertex v, const Vec3& p) const {
 
 bool BoundSurface::may_collapse(Vertex a, Vertex b, const Vec3& p) const {
   if (!guard_) return true;
-  SurfaceStep step{a, {p, {}}, {}, {}};
+  SurfaceStep step{a, {p}, {}, {}};
   for (const Vertex end : {a, b}) {
     for (const Face f : mesh.faces_around_target(mesh.halfedge(end))) {
       step.gone.push_back(f);
@@ -191,7 +191,7 @@ bool BoundSurface::may_flip(Halfedge h) const {
   const Halfedge o = mesh.opposite(h);
   const Vertex a = mesh.source(h), b = mesh.target(h);
   const Vertex c = mesh.target(mesh.next(h)), d = mesh.target(mesh.next(o));
-  return allows({c, {position(c), {}}, {mesh.face(h), mesh.face(o)}, {{c, d, b}, {d, c, a}}});
+  return allows({c, {position(c)}, {mesh.face(h), mesh.face(o)}, {{c, d, b}, {d, c, a}}});
 }
 
 void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {

@@ -25,7 +25,7 @@ using Face = SurfaceMesh::Face_index;
 /// A point and what the field says about it.
 struct BoundaryPoint {
   Vec3 position;
-  FieldSample sample;
+  FieldSample sample = {};
 };
 
 /// What belongs to a vertex beside its position. When vertices are added or merged, this follows by itself.
