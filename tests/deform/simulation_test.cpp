@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "vmesh/core/avx2_build.h"
 #include "vmesh/core/error.h"
 #include "vmesh/synth/synthetic_tree.h"
 
@@ -100,9 +99,9 @@ TEST(Simulation, SameBytesAgain) {
 }
 
 /// A tree of all sorts, held, dragged and pushed, some of it at rest.
-Pose played(const Centerline& vessels, const SimulationOptions& options, const RodKernels& kernels) {
+Pose played(const Centerline& vessels, const SimulationOptions& options, InstructionSet set) {
   RodScene scene = make_rod_scene(vessels, segment_properties(vessels, {.young_Pa = 1e7}), options);
-  ImplicitRods rods(scene, kernels);
+  ImplicitRods rods(scene, set);
   const Index last = static_cast<Index>(scene.size() - 1);
   scene.hold[0] = Hold::clamped;
   scene.hold[last] = Hold::fixed;
@@ -116,17 +115,13 @@ Pose played(const Centerline& vessels, const SimulationOptions& options, const R
 }
 
 TEST(Simulation, SameBytesOnEveryMachine) {
-  ASSERT_EQ(avx2_rod_kernels() != nullptr, has_avx2());
   SimulationOptions options;
   options.rest_tolerance = 1e-5;
   for (const Centerline& vessels : {tree_of(300), ring_of(24, 20), straight_rod(30, 100, 2)}) {
-    const Pose plain = played(vessels, options, *plain_rod_kernels());
-    for (const RodKernels* kernels : {&best_rod_kernels(), avx2_rod_kernels()}) {
-      if (!kernels) continue;
-      const Pose fast = played(vessels, options, *kernels);
-      EXPECT_EQ(plain.position, fast.position);
-      EXPECT_EQ(plain.frame, fast.frame);
-    }
+    const Pose plain = played(vessels, options, InstructionSet::plain);
+    const Pose best = played(vessels, options, best_instruction_set());
+    EXPECT_EQ(plain.position, best.position);
+    EXPECT_EQ(plain.frame, best.frame);
     EXPECT_NE(plain.position, make_rod_tree(vessels).position);
   }
 }

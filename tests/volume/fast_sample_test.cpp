@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "vmesh/core/avx2_build.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "random_centerline.h"
@@ -105,8 +104,10 @@ TEST(FastSample, IsDoubleWhereSinglePrecisionWillNotDo) {
 
 // Any numbers are possible there.
 TEST(FastSample, IsTheSameOnEveryMachine) {
-  ASSERT_EQ(avx2_lane_sampler() != nullptr, has_avx2());
-  const LaneSampler plain = plain_lane_sampler(), best = best_lane_sampler();
+#ifdef __x86_64__
+  ASSERT_EQ(best_instruction_set() == InstructionSet::avx2, static_cast<bool>(__builtin_cpu_supports("avx2")));
+#endif
+  LaneSampler &plain = lane_sampler(InstructionSet::plain), &best = lane_sampler(best_instruction_set());
   Draw draw(83);
   const auto number = [&] { return static_cast<float>(draw.in_cube(1).x()); };
   for (int trial = 0; trial < 500; ++trial) {

@@ -24,8 +24,7 @@ void ImplicitRods::finish(RodScene& scene, StepReport& report) {
   FinishSums sums;
   FourFlags quiet{};
   for (const Index batch : visited_batches_) {
-    kernels_->finish(batches_.batches.data(), batch, batches_.children.data(), &visited_[batch * kLanes], pose_,
-                     sharpens, scene, quiet.data(), sums);
+    kernels_->finish(batches_, batch, &visited_[batch * kLanes], {pose_, sharpens, quiet.data()}, scene, sums);
     for (std::size_t i = 0; i < kLanes; ++i)
       if (awake_[batch * kLanes + i]) settle(scene, static_cast<Index>(batch * kLanes + i), quiet[i]);
   }

@@ -26,8 +26,8 @@ double largest(const Lanes& lanes) {
 
 }  // namespace
 
-ImplicitRods::ImplicitRods(const RodScene& scene, const RodKernels& kernels)
-    : kernels_(&kernels), batches_(make_rod_batches(scene)), slot_count_(scene.size()) {
+ImplicitRods::ImplicitRods(const RodScene& scene, InstructionSet set)
+    : kernels_(&VMESH_VARIANT(set, kRodKernels)), batches_(make_rod_batches(scene)), slot_count_(scene.size()) {
   visited_.assign(batches_.size() * kLanes, 0);
   fresh_ = awake_ = quiet_steps_ = visited_;
   listed_.assign(batches_.size(), 0);
@@ -195,7 +195,7 @@ void ImplicitRods::move(const RodMove& by) {
   move_sums_ = {};
   for (std::size_t i = visited_batches_.size(); i-- > 0;) {
     const Index batch = visited_batches_[i];
-    kernels_->move(batches_.batches.data(), batch, &visited_[batch * kLanes], by, move_sums_);
+    kernels_->move(batches_, batch, &visited_[batch * kLanes], by, move_sums_);
   }
 }
 

@@ -17,7 +17,7 @@ namespace vmesh {
 /// those towards the root are visited.
 class ImplicitRods {
  public:
-  explicit ImplicitRods(const RodScene& scene, const RodKernels& kernels = best_rod_kernels());
+  explicit ImplicitRods(const RodScene& scene, InstructionSet set = best_instruction_set());
 
   void wake(Index slot);
   void wake_all();

@@ -35,9 +35,7 @@ void ImplicitRods::solve(const RodScene& scene, const RodMove* then) {
     solve_ties(scene, then);
 }
 
-void ImplicitRods::eliminate(Index batch) {
-  kernels_->eliminate(batches_.batches.data(), batch, batches_.children.data(), pose_, &visited_[batch * kLanes]);
-}
+void ImplicitRods::eliminate(Index batch) { kernels_->eliminate(batches_, batch, pose_, &visited_[batch * kLanes]); }
 
 void ImplicitRods::solve_tree(const RodScene& scene, const RodMove* then) {
   if (!eliminated_)
@@ -77,8 +75,8 @@ void ImplicitRods::solve_growing(const RodScene& scene, const RodMove* then) {
 void ImplicitRods::solve_batch(const RodScene& scene, Index batch, const RodMove* then) {
   const char* active = &visited_[batch * kLanes];
   const FourFlags rests = resting(scene, batch);
-  kernels_->substitute(batches_.batches.data(), batch, pose_, active, rests.data(), scene.options.rest_tolerance);
-  if (then) kernels_->move(batches_.batches.data(), batch, active, *then, move_sums_);
+  kernels_->substitute(batches_, batch, pose_, active, rests.data(), scene.options.rest_tolerance);
+  if (then) kernels_->move(batches_, batch, active, *then, move_sums_);
 }
 
 /// Which slots of a batch are at rest; they remain so unless they move by more than the tolerance.

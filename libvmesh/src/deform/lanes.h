@@ -1,5 +1,10 @@
-// Arithmetic on lanes. Included by rod_kernels.h once for each instruction set, inside a namespace of its own, because
-// how vector code is compiled depends on the translation unit, before inlining.
+// Arithmetic on lanes, for sources that are compiled once for every instruction set.
+#pragma once
+
+#include "deform/rod_batch.h"
+
+namespace vmesh::VMESH_INSTRUCTION_SET {
+namespace {
 
 using LaneMask = decltype(Lanes{} < Lanes{});  ///< all bits of a lane, or none
 
@@ -75,3 +80,6 @@ VMESH_INLINE LaneMask mask_of(const char* flags) {
   for (std::size_t i = 0; i < kLanes; ++i) m[i] = flags[i] ? -1 : 0;
   return m;
 }
+
+}  // namespace
+}  // namespace vmesh::VMESH_INSTRUCTION_SET

@@ -1,4 +1,10 @@
-// Symmetric 6x6 matrices, four at a time. Included by rod_kernels.h, see lanes.h.
+// Symmetric 6x6 matrices, four at a time, like lanes.h.
+#pragma once
+
+#include "deform/lanes.h"
+
+namespace vmesh::VMESH_INSTRUCTION_SET {
+namespace {
 
 VMESH_INLINE constexpr std::size_t at(std::size_t i, std::size_t j) {
   return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i;
@@ -150,3 +156,6 @@ VMESH_INLINE Lanes33 inverse_angular(const LanesMatrix& m) {
   const Lanes r01 = -l10 * i1 - l21 * m20 * i2, r02 = m20 * i2, r12 = -l21 * i2;
   return {{i0 + l10 * l10 * i1 + m20 * m20 * i2, r01, r02}, {r01, i1 + l21 * l21 * i2, r12}, {r02, r12, i2}};
 }
+
+}  // namespace
+}  // namespace vmesh::VMESH_INSTRUCTION_SET

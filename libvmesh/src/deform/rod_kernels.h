@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vmesh/core/instruction_set.h"
+
 #include "deform/rod_batch.h"
 
 namespace vmesh {
@@ -26,31 +28,36 @@ struct RodMove {
   bool chained = true;
 };
 
+/// The end of a step.
+struct RodFinish {
+  std::size_t pose;  ///< of RodBatch::pose, which becomes the starting pose
+  bool sharpens;     ///< makes frames orthonormal
+  char* quiet;       ///< set by lane: hardly moved
+};
+
 /// The operations on a batch of slots in a step of ImplicitRods. `active`, by lane, says for which slots; the others
 /// stay unchanged.
 struct RodKernels {
   /// Reads the scene; predicts, and evaluates inertia.
   void (*begin)(RodBatch& batch, const char* active, const RodScene& scene, BeginSums& sums);
   /// Eliminates slots whose children have been eliminated: computes `reduced`, or x for a root.
-  void (*eliminate)(RodBatch* batches, Index batch, const std::array<Index, kLanes>* children, std::size_t pose,
-                    const char* active);
+  void (*eliminate)(RodBatches& tree, Index batch, std::size_t pose, const char* active);
   /// Computes x from the parent's. Zero for lanes in `rests` where it is within the tolerance, and where it is not
   /// finite: a result spoilt by overflow is not a solution, and standing still is always allowed.
-  void (*substitute)(RodBatch* batches, Index batch, std::size_t pose, const char* active, const char* rests,
+  void (*substitute)(RodBatches& tree, Index batch, std::size_t pose, const char* active, const char* rests,
                      double tolerance);
   /// Moves and evaluates.
-  void (*move)(RodBatch* batches, Index batch, const char* active, const RodMove& by, MoveSums& sums);
-  /// Writes velocities and energies at the end of a step to the scene; `quiet`, by lane: hardly moved. Pose number
-  /// `pose` becomes the starting pose.
-  void (*finish)(RodBatch* batches, Index batch, const std::array<Index, kLanes>* children, const char* active,
-                 std::size_t pose, bool sharpens, RodScene& scene, char* quiet, FinishSums& sums);
+  void (*move)(RodBatches& tree, Index batch, const char* active, const RodMove& by, MoveSums& sums);
+  /// Writes velocities and energies at the end of a step to the scene.
+  void (*finish)(RodBatches& tree, Index batch, const char* active, const RodFinish& by, RodScene& scene,
+                 FinishSums& sums);
 };
 
-/// All do the same operations in the same order, so the results are the same to the bit. Null where the machine or the
-/// compiler does not support them.
-const RodKernels* plain_rod_kernels();
-const RodKernels* avx2_rod_kernels();
-/// The fastest available kernels.
-const RodKernels& best_rod_kernels();
+namespace plain {
+extern const RodKernels kRodKernels;
+}
+namespace avx2 {
+extern const RodKernels kRodKernels;
+}
 
 }  // namespace vmesh

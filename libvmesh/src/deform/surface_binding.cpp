@@ -137,13 +137,9 @@ DeformedSurface SurfaceBinding::make_surface(Normals normals) const {
 
 void SurfaceBinding::apply(const Pose& pose, DeformedSurface& surface) const noexcept { apply(pose, {}, surface); }
 
-void SurfaceBinding::apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface) const noexcept {
-  apply(pose, moved, surface, best_synchroniser());
-}
-
 void SurfaceBinding::apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface,
-                           Synchroniser synchroniser) const noexcept {
-  synchroniser({groups_, rest_, pose, moved}, surface);
+                           InstructionSet set) const noexcept {
+  VMESH_VARIANT(set, synchronise)({groups_, rest_, pose, moved}, surface);
 }
 
 }  // namespace vmesh

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "vmesh/core/instruction_set.h"
+
 namespace vmesh {
 
 /// Round cones in SIMD lanes, single precision, with the members of VesselField::Cone; lengths are in units of their
@@ -37,12 +39,14 @@ struct LaneSample {
   std::size_t nearest = 0;  ///< its number
 };
 
-/// VesselField's blended distance from `count` lanes. All samplers do the same operations in the same order, so their
-/// results are the same to the bit.
-using LaneSampler = LaneSample (*)(const ConeLanes* lanes, std::size_t count, const LaneQuery& query);
-LaneSampler plain_lane_sampler();
-/// Null where the machine or the compiler does not support AVX2.
-LaneSampler avx2_lane_sampler();
-LaneSampler best_lane_sampler();
+/// VesselField's blended distance from `count` lanes.
+using LaneSampler = LaneSample(const ConeLanes* lanes, std::size_t count, const LaneQuery& query);
+namespace plain {
+LaneSampler sample_lanes;
+}
+namespace avx2 {
+LaneSampler sample_lanes;
+}
+LaneSampler& lane_sampler(InstructionSet set);
 
 }  // namespace vmesh

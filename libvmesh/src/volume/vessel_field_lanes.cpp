@@ -159,9 +159,11 @@ void VesselField::fill_lanes(std::span<const Index> cones, const Vec3& center, d
   lanes.radius = static_cast<float>(radius * (1 + kMargin) + kMargin * middle.norm());
 }
 
+LaneSampler& lane_sampler(InstructionSet set) { return VMESH_VARIANT(set, sample_lanes); }
+
 FieldSample VesselField::sample_fast(const Vec3& p, Index hint) const {
   if (only_double_) return sample(p, hint);
-  static const LaneSampler run = best_lane_sampler();
+  static LaneSampler& run = lane_sampler(best_instruction_set());
   Index before = kNone;
   for (int step = 0; step < kMostSteps; ++step) {
     const Surroundings& s = surroundings(hint);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "vmesh/core/instruction_set.h"
 #include "vmesh/deform/rod_tree.h"
 
 namespace vmesh {
@@ -58,11 +59,8 @@ class SurfaceBinding {
   /// on the processor's vector width.
   void apply(const Pose& pose, DeformedSurface& surface) const noexcept;
   /// The same where `moved` (one per slot, CenterlineSimulation::moved()) says that something changed.
-  void apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface) const noexcept;
-  /// The same with a given instruction set; for tests.
-  using Synchroniser = void (*)(const struct Attachment&, DeformedSurface&) noexcept;
   void apply(const Pose& pose, std::span<const char> moved, DeformedSurface& surface,
-             Synchroniser synchroniser) const noexcept;
+             InstructionSet set = best_instruction_set()) const noexcept;
 
   /// Constants of every lane.
   struct Rest {

@@ -1,5 +1,10 @@
-// The blended distance for one instruction set; included inside a namespace by a source that has selected it, because
-// how vector code is compiled depends on the translation unit, before inlining.
+// Compiled once for every instruction set.
+#include "volume/cone_lanes.h"
+
+#include <cmath>
+
+namespace vmesh::VMESH_INSTRUCTION_SET {
+namespace {
 
 #define VMESH_INLINE [[gnu::always_inline]] inline
 
@@ -107,7 +112,9 @@ VMESH_INLINE void blend(const Candidates& c, LaneSample& sample) {
   }
 }
 
-LaneSample run(const ConeLanes* lanes, std::size_t count, const LaneQuery& query) {
+}  // namespace
+
+LaneSample sample_lanes(const ConeLanes* lanes, std::size_t count, const LaneQuery& query) {
   Distances distances;
   const std::size_t first = query.first / kLanes;
   float least = measure(lanes[first], query, first * kLanes, distances);
@@ -147,3 +154,5 @@ LaneSample run(const ConeLanes* lanes, std::size_t count, const LaneQuery& query
   blend(candidates, sample);
   return sample;
 }
+
+}  // namespace vmesh::VMESH_INSTRUCTION_SET

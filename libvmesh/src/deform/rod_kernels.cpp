@@ -1,7 +1,11 @@
-// RodKernels for one instruction set; included inside a namespace by a source that has selected it.
+// Compiled once for every instruction set.
+#include "deform/rod_kernels.h"
 
 #include "deform/lanes.h"
 #include "deform/lanes_matrix.h"
+
+namespace vmesh::VMESH_INSTRUCTION_SET {
+namespace {
 
 /// Strain up to which tension counts in full: beyond, its stiffness would swamp that of the springs in rounding.
 constexpr double kMostTautness = 10;
@@ -145,13 +149,12 @@ VMESH_INLINE LanesSpatial minimum(const RodBatch& b, const Lanes3& prescribed, c
   return r;
 }
 
-VMESH_INLINE void add_children(const RodBatch* batches, const RodBatch& b, const std::array<Index, kLanes>* children,
-                               LanesMatrix& d, LanesVector& f) {
+VMESH_INLINE void add_children(const RodBatches& tree, const RodBatch& b, LanesMatrix& d, LanesVector& f) {
   for (Index rank = 0; rank < b.child_ranks; ++rank) {
-    const std::array<Index, kLanes>& places = children[b.first_children + rank];
+    const std::array<Index, kLanes>& places = tree.children[b.first_children + rank];
     const double* from[kLanes];
     for (std::size_t i = 0; i < kLanes; ++i)
-      from[i] = reinterpret_cast<const double*>(&batches[places[i] / kLanes].reduced) + places[i] % kLanes;
+      from[i] = reinterpret_cast<const double*>(&tree.batches[places[i] / kLanes].reduced) + places[i] % kLanes;
 #pragma GCC unroll 21
     for (std::size_t k = 0; k < 21; ++k) {
       Lanes v;
@@ -168,21 +171,19 @@ VMESH_INLINE void add_children(const RodBatch* batches, const RodBatch& b, const
 }
 
 /// Adds up the slots' children and their own inertia.
-VMESH_INLINE void assemble(const RodBatch* batches, const RodBatch& b, const std::array<Index, kLanes>* children,
-                           const Lanes3& z, LanesMatrix& d, LanesVector& f) {
+VMESH_INLINE void assemble(const RodBatches& tree, const RodBatch& b, const Lanes3& z, LanesMatrix& d, LanesVector& f) {
   clear(d);
   add_diagonal(d, b.step_mass, b.step_inertia + b.taut, 2 * b.step_inertia, z);
-  add_children(batches, b, children, d, f);
+  add_children(tree, b, d, f);
 }
 
 /// For batches with held slots or roots: their reduced `d` and `f`, and x of roots.
-[[gnu::noinline]] void eliminate_special(const RodBatch* batches, RodBatch& b,
-                                         const std::array<Index, kLanes>* children, std::size_t pose, LaneMask m,
+[[gnu::noinline]] void eliminate_special(const RodBatches& tree, RodBatch& b, std::size_t pose, LaneMask m,
                                          LanesMatrix& d, LanesVector& f) {
   const Lanes3& z = b.pose[pose].frame.z;
   LanesMatrix own;
   LanesVector load(b.gradient);
-  assemble(batches, b, children, z, own, load);
+  assemble(tree, b, z, own, load);
   const Lanes3 prescribed = b.target - b.pose[pose].position;
   const LaneMask root = b.is_root != 0, held = holds(b, false);
   if (b.rooted) b.x = select(m & root, minimum(b, prescribed, own, load), b.x);
@@ -197,20 +198,19 @@ VMESH_INLINE void store(const LanesMatrix& d, const LanesVector& f, LaneMask m, 
   b.reduced_gradient = select(m, f.spatial(), b.reduced_gradient);
 }
 
-void eliminate(RodBatch* batches, Index batch, const std::array<Index, kLanes>* children, std::size_t pose,
-               const char* active) {
-  RodBatch& b = batches[batch];
+void eliminate(RodBatches& tree, Index batch, std::size_t pose, const char* active) {
+  RodBatch& b = tree.batches[batch];
   const LaneMask m = mask_of(active);
   const Lanes3& z = b.pose[pose].frame.z;
   LanesMatrix d;
   LanesVector f(b.gradient);
-  assemble(batches, b, children, z, d, f);
+  assemble(tree, b, z, d, f);
   reduce_free(b, z, d, f);
   if (b.held || b.rooted) {
     LanesMatrix special;
     copy(d, special);
     LanesVector load = f;
-    eliminate_special(batches, b, children, pose, m, special, load);
+    eliminate_special(tree, b, pose, m, special, load);
     store(special, load, m, b);
   } else {
     store(d, f, m, b);
@@ -221,11 +221,11 @@ VMESH_INLINE void take(const Lanes3& from, std::size_t lane, Lanes3& to, std::si
   to.x[i] = from.x[lane], to.y[i] = from.y[lane], to.z[i] = from.z[lane];
 }
 
-VMESH_INLINE LanesSpatial parent_solution(const RodBatch* batches, const RodBatch& b) {
+VMESH_INLINE LanesSpatial parent_solution(const RodBatches& tree, const RodBatch& b) {
   LanesSpatial x;
 #pragma GCC unroll 4
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const LanesSpatial& from = batches[b.parent[i] / kLanes].x;
+    const LanesSpatial& from = tree.batches[b.parent[i] / kLanes].x;
     const std::size_t lane = b.parent[i] % kLanes;
     take(from.linear, lane, x.linear, i), take(from.angular, lane, x.angular, i);
   }
@@ -245,12 +245,12 @@ VMESH_INLINE LanesSpatial solution(const RodBatch& b, const Lanes3& z, const Lan
   return x;
 }
 
-void substitute(RodBatch* batches, Index batch, std::size_t pose, const char* active, const char* rests,
+void substitute(RodBatches& tree, Index batch, std::size_t pose, const char* active, const char* rests,
                 double tolerance) {
-  RodBatch& b = batches[batch];
+  RodBatch& b = tree.batches[batch];
   const LaneMask m = mask_of(active);
   const Lanes zero = all(0);
-  LanesSpatial x = solution(b, b.pose[pose].frame.z, parent_solution(batches, b));
+  LanesSpatial x = solution(b, b.pose[pose].frame.z, parent_solution(tree, b));
   if (b.rooted) x = select(b.is_root != 0, b.x, x);
   if (b.held) {
     x.linear = select(holds(b, false), b.target - b.pose[pose].position, x.linear);
@@ -269,11 +269,11 @@ struct ParentPose {
   Lanes33 frame;
 };
 
-VMESH_INLINE ParentPose parent_pose(const RodBatch* batches, const RodBatch& b, std::size_t pose) {
+VMESH_INLINE ParentPose parent_pose(const RodBatches& tree, const RodBatch& b, std::size_t pose) {
   ParentPose r;
 #pragma GCC unroll 4
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const LanesPose& from = batches[b.parent[i] / kLanes].pose[pose];
+    const LanesPose& from = tree.batches[b.parent[i] / kLanes].pose[pose];
     const std::size_t lane = b.parent[i] % kLanes;
     take(from.position, lane, r.position, i), take(from.turned, lane, r.turned, i);
     take(from.frame.x, lane, r.frame.x, i), take(from.frame.y, lane, r.frame.y, i);
@@ -308,11 +308,11 @@ VMESH_INLINE Lanes evaluate_springs(RodBatch& b, const LanesPose& pose, const Pa
   return elastic + 0.5 * (dot(pull, stretched) + dot(turn, torque));
 }
 
-void move(RodBatch* batches, Index batch, const char* active, const RodMove& by, MoveSums& sums) {
-  RodBatch& b = batches[batch];
+void move(RodBatches& tree, Index batch, const char* active, const RodMove& by, MoveSums& sums) {
+  RodBatch& b = tree.batches[batch];
   const LaneMask m = mask_of(active);
   const LanesPose& from = b.pose[by.from];
-  const ParentPose parent = parent_pose(batches, b, by.to);
+  const ParentPose parent = parent_pose(tree, b, by.to);
   const Lanes part = all(by.part), zero = all(0);
   LanesPose to;
   const Lanes3 angle = part * b.x.angular;
@@ -326,7 +326,7 @@ void move(RodBatch* batches, Index batch, const char* active, const RodMove& by,
   if (by.chained) {
     // The solution's change of the segment relative to its axis, linearised: without the lengthening by finite
     // rotations.
-    const Lanes3 change = b.x.linear + b.length * cross(from.frame.z, b.x.angular) - parent_solution(batches, b).linear;
+    const Lanes3 change = b.x.linear + b.length * cross(from.frame.z, b.x.angular) - parent_solution(tree, b).linear;
     const Lanes3 hung = parent.position + b.length * to.frame.z + from.misfit + part * change;
     const LaneMask straight = (square(b.x.linear) == 0) | (b.is_root != 0);
     to.position = select(straight, to.position, hung);
@@ -344,16 +344,16 @@ void move(RodBatch* batches, Index batch, const char* active, const RodMove& by,
 }
 
 /// Work on a held lane by what drags it, uJ.
-VMESH_INLINE double work_of_hand(const RodBatch* batches, const RodBatch& b, const std::array<Index, kLanes>* children,
-                                 std::size_t lane, const Vec3& moved, const Vec3& faster, double step_s) {
+VMESH_INLINE double work_of_hand(const RodBatches& tree, const RodBatch& b, std::size_t lane, const Vec3& moved,
+                                 const Vec3& faster, double step_s) {
   const auto pull = [](const RodBatch& from, std::size_t i) -> Vec3 {
     const Lanes3& g = from.spring_gradient.linear;
     return {g.x[i], g.y[i], g.z[i]};
   };
   Vec3 hand = b.mass[lane] / step_s * faster + pull(b, lane);
   for (Index rank = 0; rank < b.child_ranks; ++rank) {
-    const Index c = children[b.first_children + rank][lane];
-    hand -= pull(batches[c / kLanes], c % kLanes);
+    const Index c = tree.children[b.first_children + rank][lane];
+    hand -= pull(tree.batches[c / kLanes], c % kLanes);
   }
   return hand.dot(moved);
 }
@@ -362,15 +362,14 @@ VMESH_INLINE void write(const Lanes3& from, std::size_t lane, double* to) {
   to[0] = from.x[lane], to[1] = from.y[lane], to[2] = from.z[lane];
 }
 
-void finish(RodBatch* batches, Index batch, const std::array<Index, kLanes>* children, const char* active,
-            std::size_t pose, bool sharpens, RodScene& scene, char* quiet, FinishSums& sums) {
-  RodBatch& b = batches[batch];
+void finish(RodBatches& tree, Index batch, const char* active, const RodFinish& by, RodScene& scene, FinishSums& sums) {
+  RodBatch& b = tree.batches[batch];
   const LaneMask m = mask_of(active);
   const Lanes zero = all(0);
   const double step = scene.options.step_s, tolerance = scene.options.rest_tolerance;
   LanesPose& start = b.pose[0];
-  LanesPose end = b.pose[pose];
-  if (sharpens) end.frame = sharpened(end.frame);
+  LanesPose end = b.pose[by.pose];
+  if (by.sharpens) end.frame = sharpened(end.frame);
   const Lanes3 moved = end.position - start.position, turned = turned_by(start.frame, end.frame);
   const Lanes3 velocity = all(1 / step) * moved, spin = all(1 / step) * turned;
   const Lanes axial = dot(spin, end.frame.z);
@@ -384,9 +383,9 @@ void finish(RodBatch* batches, Index batch, const std::array<Index, kLanes>* chi
     free = holding ? spinning : free, held = holding ? moving : zero;
     for (std::size_t i = 0; i < kLanes; ++i) {
       if (!active[i] || b.hold[i] == Hold::free) continue;
-      const Vec3 by{moved.x[i], moved.y[i], moved.z[i]}, faster{velocity.x[i], velocity.y[i], velocity.z[i]};
+      const Vec3 way{moved.x[i], moved.y[i], moved.z[i]}, faster{velocity.x[i], velocity.y[i], velocity.z[i]};
       const double hand =
-          by == Vec3::Zero() ? 0 : work_of_hand(batches, b, children, i, by, faster - scene.velocity[b.slot[i]], step);
+          way == Vec3::Zero() ? 0 : work_of_hand(tree, b, i, way, faster - scene.velocity[b.slot[i]], step);
       work[i] = turning[i] + hand;
     }
   }
@@ -403,7 +402,7 @@ void finish(RodBatch* batches, Index batch, const std::array<Index, kLanes>* chi
   for (std::size_t i = 0; i < kLanes; ++i) {
     if (!active[i]) continue;
     const Index j = b.slot[i];
-    quiet[i] = hardly[i] != 0;
+    by.quiet[i] = hardly[i] != 0;
     if (!still[i]) scene.moved[j] = 1;
     write(start.position, i, scene.pose.position[j].data());
     write(start.frame.x, i, scene.pose.frame[j].data());
@@ -414,4 +413,8 @@ void finish(RodBatch* batches, Index batch, const std::array<Index, kLanes>* chi
   }
 }
 
-constexpr RodKernels kKernels{begin, eliminate, substitute, move, finish};
+}  // namespace
+
+const RodKernels kRodKernels{begin, eliminate, substitute, move, finish};
+
+}  // namespace vmesh::VMESH_INSTRUCTION_SET

@@ -1,5 +1,10 @@
-// Synchronising for one instruction set; included inside a namespace by a source that has selected it, because how
-// vector code is compiled depends on the translation unit, before inlining.
+// Compiled once for every instruction set.
+#include "deform/synchronise.h"
+
+#include <cmath>
+
+namespace vmesh::VMESH_INSTRUCTION_SET {
+namespace {
 
 #define VMESH_INLINE [[gnu::always_inline]] inline
 
@@ -159,10 +164,14 @@ VMESH_INLINE void carry_all(const Attachment& a, DeformedSurface& s, bool scaled
   }
 }
 
-void run(const Attachment& attachment, DeformedSurface& surface) noexcept {
+}  // namespace
+
+void synchronise(const Attachment& attachment, DeformedSurface& surface) noexcept {
   const bool scaled = !attachment.pose.radial_scale.empty(), normals = !surface.normal_x.empty();
   if (scaled)
     normals ? carry_all(attachment, surface, true, true) : carry_all(attachment, surface, true, false);
   else
     normals ? carry_all(attachment, surface, false, true) : carry_all(attachment, surface, false, false);
 }
+
+}  // namespace vmesh::VMESH_INSTRUCTION_SET
