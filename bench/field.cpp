@@ -20,11 +20,11 @@ void ask(benchmark::State& state, const VesselField& field, Query&& query) {
   Index cone = 0;
   double sum = 0;
   for (auto _ : state) {
-    const double r = field.radius_at(cone, 0.5);
-    const Vec3 side = (field.axis_point(cone, 1) - field.axis_point(cone, 0)).unitOrthogonal();
-    const Vec3 p = field.axis_point(cone, 0.5) + (cone % 2 ? 0.5 : 1.5) * r * side;
+    const double r = field.relations().radius_at(cone, 0.5);
+    const Vec3 side = (field.relations().axis_point(cone, 1) - field.relations().axis_point(cone, 0)).unitOrthogonal();
+    const Vec3 p = field.relations().axis_point(cone, 0.5) + (cone % 2 ? 0.5 : 1.5) * r * side;
     sum += query(p, cone).distance;
-    cone = (cone + 1) % static_cast<Index>(field.cone_count());
+    cone = (cone + 1) % static_cast<Index>(field.relations().cone_count());
   }
   benchmark::DoNotOptimize(sum);
 }

@@ -41,7 +41,7 @@ TriMesh mesh_3(const Centerline& centerline, double around, double blend) {
   // The size follows the vessels, as in vmesh.
   const auto edge = [&](const Kernel::Point_3& p, int, const Domain::Index&) {
     const FieldSample s = field.sample_global({p.x(), p.y(), p.z()});
-    return 2 * std::sin(M_PI / around) * field.radius_at(s.cone, s.t);
+    return 2 * std::sin(M_PI / around) * field.relations().radius_at(s.cone, s.t);
   };
   struct Size {
     using FT = double;

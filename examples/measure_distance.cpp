@@ -12,6 +12,6 @@ int main() {
     const vmesh::FieldSample sample = field.sample_global(p);
     std::printf("(%g, %g, %g): %.3f mm from the wall of segment %u (%s), radius there %.3f mm\n", p.x(), p.y(), p.z(),
                 sample.distance, sample.cone, sample.distance < 0 ? "inside" : "outside",
-                field.radius_at(sample.cone, sample.t));
+                field.relations().radius_at(sample.cone, sample.t));
   }
 }

@@ -67,9 +67,10 @@ TEST(ErrorProof, HoldsOnlyWhatDensePointsConfirm) {
     const auto direction = [&] { return Vec3(uniform(random), uniform(random), uniform(random)).normalized(); };
     int proven = 0, clear = 0, clear_and_proven = 0;
     for (int trial = 0; trial < 3000; ++trial) {
-      const Index cone = static_cast<Index>(random() % field.cone_count());
-      const Vec3 on_axis = field.axis_point(cone, 0.5 * (1 + uniform(random)));
-      const Vec3 out = direction(), middle = on_axis + field.radius_at(cone, 0.5) * (1 + 0.4 * uniform(random)) * out;
+      const Index cone = static_cast<Index>(random() % field.relations().cone_count());
+      const Vec3 on_axis = field.relations().axis_point(cone, 0.5 * (1 + uniform(random)));
+      const Vec3 out = direction(),
+                 middle = on_axis + field.relations().radius_at(cone, 0.5) * (1 + 0.4 * uniform(random)) * out;
       const double size = 0.1 + 0.5 * std::abs(uniform(random));
       Face face;
       for (auto& corner : face) corner = {middle + size * direction(), out, 1, cone};

@@ -370,7 +370,7 @@ TEST(Generate, KeepsToTheLimitForTheVesselsAsTheyWere) {
                       share[2] * result.mesh.vertices[c]) /
                      share.sum();
       const FieldSample sample = field.sample(p, result.binding[a].segment);
-      EXPECT_LE(std::abs(sample.distance), options.max_error.at(field.radius_at(sample.cone, sample.t)));
+      EXPECT_LE(std::abs(sample.distance), options.max_error.at(field.relations().radius_at(sample.cone, sample.t)));
     }
   }
 }

@@ -21,10 +21,11 @@ Eigen::Matrix3d any_frame() { return Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normal
 // A lattice around all of a volume, uniform or as fine as `fineness` radii in every vessel.
 GradedLattice lattice_around(const VesselField& field, const Vec3& origin, double spacing, double fineness = 0) {
   std::vector<LatticeBall> balls;
-  for (Index cone = 0; cone < field.cone_count(); ++cone) {
+  for (Index cone = 0; cone < field.relations().cone_count(); ++cone) {
     for (double t = 0; t <= 1; t += 1.0 / 32) {
-      const double radius = field.radius_at(cone, t);
-      balls.push_back({field.axis_point(cone, t), 1.25 * radius, fineness > 0 ? fineness * radius : spacing});
+      const double radius = field.relations().radius_at(cone, t);
+      balls.push_back(
+          {field.relations().axis_point(cone, t), 1.25 * radius, fineness > 0 ? fineness * radius : spacing});
     }
   }
   return {origin, any_frame(), spacing, balls};
@@ -130,9 +131,10 @@ TEST(LatticeGrowth, EntersAVesselThinnerByAnyFactor) {
   const VesselField field(centerline);
   std::vector<LatticeBall> balls = {{Vec3::Zero(), 1.25, 1}};
   for (Index cone = 0; cone < 3; ++cone) {
-    const double length = (field.axis_point(cone, 1) - field.axis_point(cone, 0)).norm();
+    const double length = (field.relations().axis_point(cone, 1) - field.relations().axis_point(cone, 0)).norm();
     for (double t = 0; t <= 1; t += 0.5 * thin / length)
-      balls.push_back({field.axis_point(cone, t), 1.25 * thin, std::max(thin, field.radius_at(cone, t))});
+      balls.push_back(
+          {field.relations().axis_point(cone, t), 1.25 * thin, std::max(thin, field.relations().radius_at(cone, t))});
   }
   const auto surface = grow_in_lattice(field, {Vec3::Zero(), any_frame(), 1, balls}, 0, 0);
   expect_surface_of_genus(surface, 0);

@@ -119,15 +119,16 @@ void for_surface_points(const GenerateResult& result, const VesselField& field, 
 // Points of the boundary around every cone and over both its ends, mapped onto the boundary where they are next to it.
 template <class Visit>
 void for_boundary_points(const VesselField& field, Visit&& visit) {
-  for (Index cone = 0; cone < field.cone_count(); ++cone) {
-    const Vec3 axis = field.axis_point(cone, 1) - field.axis_point(cone, 0);
+  for (Index cone = 0; cone < field.relations().cone_count(); ++cone) {
+    const Vec3 axis = field.relations().axis_point(cone, 1) - field.relations().axis_point(cone, 0);
     const Vec3 along = axis.normalized(), side = along.unitOrthogonal(), up = along.cross(side);
-    const double radius = field.radius_at(cone, 0.5), reach = radius / axis.norm();
+    const double radius = field.relations().radius_at(cone, 0.5), reach = radius / axis.norm();
     for (double t = -reach; t <= 1 + reach; t += kStep * reach) {
       for (int k = 0; k < kAround; ++k) {
         const double angle = 2 * std::numbers::pi * k / kAround, beyond = std::max({0.0, -t, t - 1}) / reach;
-        const double r = field.radius_at(cone, std::clamp(t, 0.0, 1.0)) * std::sqrt(std::max(0.0, 1 - beyond * beyond));
-        Vec3 p = field.axis_point(cone, t) + r * (std::cos(angle) * side + std::sin(angle) * up);
+        const double r =
+            field.relations().radius_at(cone, std::clamp(t, 0.0, 1.0)) * std::sqrt(std::max(0.0, 1 - beyond * beyond));
+        Vec3 p = field.relations().axis_point(cone, t) + r * (std::cos(angle) * side + std::sin(angle) * up);
         FieldSample s = field.sample(p, cone);
         if (s.distance < -0.3 * radius) continue;  // within another vessel
         for (int step = 0; step < 20 && s.gradient.squaredNorm() > 0.01; ++step) {
@@ -216,7 +217,7 @@ void for_boundary_points_near(const Vec3& place, const VesselField& field, Visit
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int k = 0; k < 20000; ++k) {
     const Vec3 p = place + Vec3(uniform(random), uniform(random), uniform(random));
-    for (Index cone = 0; cone < field.cone_count(); ++cone) {
+    for (Index cone = 0; cone < field.relations().cone_count(); ++cone) {
       const FieldSample s = field.sample_cone(p, cone);
       const Vec3 on_wall = p - s.distance * s.gradient;
       if (std::abs(field.sample(on_wall, cone).distance) < 1e-9) visit(on_wall);

@@ -176,16 +176,17 @@ TEST(Parts, ExcerptsAnswerAsTheWholeFieldDoes) {
   const FieldExcerpt excerpt = FieldExcerpts(whole.relations()).take(cones, 3);
   const Centerline centerline = excerpt.centerline();
   const VesselField field(centerline, excerpt);
-  ASSERT_LT(field.cone_count(), whole.cone_count() / 2);
-  for (Index c = 0; c < field.cone_count(); ++c) {
+  ASSERT_LT(field.relations().cone_count(), whole.relations().cone_count() / 2);
+  for (Index c = 0; c < field.relations().cone_count(); ++c) {
     const Index in_whole = excerpt.cone[c];
     if (std::find(cones.begin(), cones.end(), in_whole) == cones.end()) continue;
     for (int i = 0; i < 200; ++i) {
       const double t = i / 199.0, angle = 0.7 * i;
-      const Vec3 axis = whole.axis_point(in_whole, 1) - whole.axis_point(in_whole, 0), side = axis.unitOrthogonal();
+      const Vec3 axis = whole.relations().axis_point(in_whole, 1) - whole.relations().axis_point(in_whole, 0),
+                 side = axis.unitOrthogonal();
       const Vec3 way = std::cos(angle) * side + std::sin(angle) * axis.normalized().cross(side);
-      const double radius = whole.radius_at(in_whole, t);
-      const Vec3 p = whole.axis_point(in_whole, t) + (0.8 + 0.002 * i) * radius * way;
+      const double radius = whole.relations().radius_at(in_whole, t);
+      const Vec3 p = whole.relations().axis_point(in_whole, t) + (0.8 + 0.002 * i) * radius * way;
       for (const bool fast : {false, true}) {
         const FieldSample a = fast ? whole.sample_fast(p, in_whole) : whole.sample(p, in_whole);
         const FieldSample b = fast ? field.sample_fast(p, c) : field.sample(p, c);
@@ -200,7 +201,7 @@ TEST(Parts, ExcerptsAnswerAsTheWholeFieldDoes) {
   const auto partial = std::find(excerpt.complete.begin(), excerpt.complete.end(), 0);
   ASSERT_NE(partial, excerpt.complete.end());
   const auto c = static_cast<Index>(partial - excerpt.complete.begin());
-  EXPECT_THROW(field.sample(field.axis_point(c, 0.5), c), std::logic_error);
+  EXPECT_THROW(field.sample(field.relations().axis_point(c, 0.5), c), std::logic_error);
 }
 
 }  // namespace

@@ -46,10 +46,11 @@ TEST(Blend, NeverLeavesThePlainUnionAndNeverExceedsItsWidth) {
     const VesselField plain(centerline), field(centerline, blend);
     for (int i = 0; i < 100; ++i) {
       const Vec3 p = draw.in_cube(6);
-      const auto hint = draw.below(static_cast<Index>(field.cone_count()));
+      const auto hint = draw.below(static_cast<Index>(field.relations().cone_count()));
       const FieldSample local = field.sample(p, hint);
-      for (const auto& [s, reference] : {std::pair(field.sample_global(p), plain.sample_global(p)),
-                                         {local, testing::closest_of(plain, p, field.local_cones(local.cone))}}) {
+      for (const auto& [s, reference] :
+           {std::pair(field.sample_global(p), plain.sample_global(p)),
+            {local, testing::closest_of(plain, p, field.relations().local_cones(local.cone))}}) {
         EXPECT_LE(s.distance, reference.distance);
         // The smooth minimum is lowest where two are equal: a quarter of the width, which is at most 2 blend r, r < 2.
         EXPECT_GE(s.distance, reference.distance - blend * 2 * 2 / 4);
@@ -232,13 +233,14 @@ double lipschitz(const VesselField& field, const Vec3& p, double blend, double r
   std::vector<std::pair<double, double>> radius_and_base;
   double steepest = 0;
   least_base = std::numeric_limits<double>::infinity();
-  for (Index c = 0; c < field.cone_count(); ++c) {
+  for (Index c = 0; c < field.relations().cone_count(); ++c) {
     const auto s = field.sample_cone(p, c);
-    const double base = s.distance + field.radius_at(c, s.t);
+    const double base = s.distance + field.relations().radius_at(c, s.t);
     least_base = std::min(least_base, base);
-    radius_and_base.emplace_back(std::max(field.radius_at(c, 0), field.radius_at(c, 1)), base - reach);
-    const double length = (field.axis_point(c, 1) - field.axis_point(c, 0)).norm();
-    const double sine = std::abs(field.radius_at(c, 0) - field.radius_at(c, 1)) / length;
+    radius_and_base.emplace_back(std::max(field.relations().radius_at(c, 0), field.relations().radius_at(c, 1)),
+                                 base - reach);
+    const double length = (field.relations().axis_point(c, 1) - field.relations().axis_point(c, 0)).norm();
+    const double sine = std::abs(field.relations().radius_at(c, 0) - field.relations().radius_at(c, 1)) / length;
     steepest = std::max(steepest, sine / std::sqrt(1 - sine * sine));
   }
   double worst = 0;

@@ -1,6 +1,5 @@
 // Vessels that touch without being neighbours: found, and narrowed until they do not.
 #include "vmesh/volume/contacts.h"
-#include "vmesh/volume/vessel_field.h"
 
 #include <cmath>
 
@@ -9,6 +8,7 @@
 
 #include "vmesh/centerline/branches.h"
 #include "vmesh/core/error.h"
+#include "vmesh/volume/vessel_field.h"
 
 #include "random_centerline.h"
 #include "random_vessels.h"
@@ -257,14 +257,14 @@ TEST(Contacts, NoneIsMissed) {
     const auto contacts = find_contacts(field.relations(), 0.1);
     double deepest = -1e9;
     constexpr int kSteps = 60;
-    for (Index i = 0; i < field.cone_count(); ++i) {
-      const auto local = field.local_cones(i);
-      for (Index j = i + 1; j < field.cone_count(); ++j) {
+    for (Index i = 0; i < field.relations().cone_count(); ++i) {
+      const auto local = field.relations().local_cones(i);
+      for (Index j = i + 1; j < field.relations().cone_count(); ++j) {
         if (std::binary_search(local.begin(), local.end(), j)) continue;
         for (int k = 0; k <= kSteps; ++k) {
-          const double s = static_cast<double>(k) / kSteps, r = field.radius_at(i, s);
-          const FieldSample there = field.sample_cone(field.axis_point(i, s), j);
-          const double depth = r - there.distance, smaller = std::min(r, field.radius_at(j, there.t));
+          const double s = static_cast<double>(k) / kSteps, r = field.relations().radius_at(i, s);
+          const FieldSample there = field.sample_cone(field.relations().axis_point(i, s), j);
+          const double depth = r - there.distance, smaller = std::min(r, field.relations().radius_at(j, there.t));
           if (-depth < 0.1 * smaller) deepest = std::max(deepest, depth);
         }
       }
@@ -622,7 +622,8 @@ TEST(Separation, MindsTheRoundingAtBranches) {
       for (Index s = 0; s < separated.pieces.size(); ++s) {
         if (separated.pieces[s].segment < y.segments().size()) continue;
         for (const double t : {0.0, 0.5, 1.0}) {  // the thin vessel is not local to the fork
-          EXPECT_GT(field.sample(field.axis_point(s, t), 0).distance, 1.05 * field.radius_at(s, t))
+          EXPECT_GT(field.sample(field.relations().axis_point(s, t), 0).distance,
+                    1.05 * field.relations().radius_at(s, t))
               << radius << ", " << blend;
         }
       }

@@ -30,12 +30,12 @@ TEST(Equivariance, UnderPowersOfTwoIsExact) {
         const Centerline centerline = testing::random_graph(draw, 20);
         const Centerline scaled = mapped(centerline, scale, [&](const Vec3& p) -> Vec3 { return scale * p; });
         const VesselField field(centerline, blend), other(scaled, blend);
-        for (Index c = 0; c < field.cone_count(); ++c) {
-          EXPECT_TRUE(std::ranges::equal(field.local_cones(c), other.local_cones(c)));
+        for (Index c = 0; c < field.relations().cone_count(); ++c) {
+          EXPECT_TRUE(std::ranges::equal(field.relations().local_cones(c), other.local_cones(c)));
         }
         for (int i = 0; i < 50; ++i) {
           const Vec3 p = draw.in_cube(6);
-          const auto hint = draw.below(static_cast<Index>(field.cone_count()));
+          const auto hint = draw.below(static_cast<Index>(field.relations().cone_count()));
           for (const auto& [s, t] : {std::pair(field.sample_global(p), other.sample_global(scale * p)),
                                      {field.sample(p, hint), other.sample(scale * p, hint)}}) {
             EXPECT_EQ(t.distance, scale * s.distance);
@@ -70,19 +70,19 @@ TEST(Equivariance, UnderRigidMotionsIsExactToRounding) {
     const VesselField field(centerline), other(moved);
     for (int i = 0; i < 100; ++i) {
       const Vec3 p = draw.in_cube(6);
-      for (Index c = 0; c < field.cone_count(); ++c) {
+      for (Index c = 0; c < field.relations().cone_count(); ++c) {
         EXPECT_NEAR(other.sample_cone(move(p), c).distance, field.sample_cone(p, c).distance, tolerance);
       }
       const auto s = field.sample_global(p), t = other.sample_global(move(p));
       EXPECT_NEAR(t.distance, s.distance, tolerance);
-      const auto hint = draw.below(static_cast<Index>(field.cone_count()));
+      const auto hint = draw.below(static_cast<Index>(field.relations().cone_count()));
       const auto local = field.sample(p, hint), local_moved = other.sample(move(p), hint);
       if (local.cone == local_moved.cone) {
         EXPECT_NEAR(local_moved.distance, local.distance, tolerance);
       }
       (local.cone == local_moved.cone ? same : tied) += 1;
       // A gradient is as good as its base is long.
-      const double base = s.distance + field.radius_at(s.cone, s.t);
+      const double base = s.distance + field.relations().radius_at(s.cone, s.t);
       if (s.cone == t.cone && base > 0.1 && std::abs(s.t - t.t) < 1e-9) {
         EXPECT_LT((t.gradient - rotation * s.gradient).norm(), 10 * tolerance / base);
       }

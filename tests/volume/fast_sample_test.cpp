@@ -40,9 +40,10 @@ Centerline random_vessel(Draw& draw, int nodes) {
 template <class Visit>
 void near_walls(Draw& draw, const VesselField& field, int count, Visit&& visit) {
   for (int i = 0; i < count; ++i) {
-    const auto cone = draw.below(static_cast<Index>(field.cone_count()));
+    const auto cone = draw.below(static_cast<Index>(field.relations().cone_count()));
     const double t = draw.below(101) / 100.0;
-    visit(Vec3(field.axis_point(cone, t) + 1.5 * field.radius_at(cone, t) * draw.in_cube(1)), cone);
+    visit(Vec3(field.relations().axis_point(cone, t) + 1.5 * field.relations().radius_at(cone, t) * draw.in_cube(1)),
+          cone);
   }
 }
 
@@ -58,7 +59,7 @@ TEST(FastSample, IsTheSampleToSinglePrecision) {
       const VesselField field(centerline, blend);
       near_walls(draw, field, 200, [&](const Vec3& p, Index hint) {
         const FieldSample exact = field.sample(p, hint), fast = field.sample_fast(p, hint);
-        const double radius = field.radius_at(exact.cone, exact.t);
+        const double radius = field.relations().radius_at(exact.cone, exact.t);
         ++near;
         if (fast.cone != exact.cone) return;  // of a tie, or the walk along the vessel took another way
         ++same;

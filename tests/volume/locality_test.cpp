@@ -14,14 +14,16 @@ using testing::CenterlineBuilder;
 using testing::Draw;
 
 bool is_local(const VesselField& field, Index i, Index j) {
-  const auto cones = field.local_cones(i);
+  const auto cones = field.relations().local_cones(i);
   return std::find(cones.begin(), cones.end(), j) != cones.end();
 }
 
-double max_radius(const VesselField& field, Index c) { return std::max(field.radius_at(c, 0), field.radius_at(c, 1)); }
+double max_radius(const VesselField& field, Index c) {
+  return std::max(field.relations().radius_at(c, 0), field.relations().radius_at(c, 1));
+}
 
 double distance_to_axis(const VesselField& field, const Vec3& p, Index c) {
-  const Vec3 a = field.axis_point(c, 0), axis = field.axis_point(c, 1) - a;
+  const Vec3 a = field.relations().axis_point(c, 0), axis = field.relations().axis_point(c, 1) - a;
   return (p - a - std::clamp(axis.dot(p - a) / axis.squaredNorm(), 0.0, 1.0) * axis).norm();
 }
 
@@ -30,14 +32,16 @@ double axis_distance(const VesselField& field, Index i, Index j) {
   double low = 0, high = 1;
   for (int k = 0; k < 90; ++k) {
     const double u = low + (high - low) / 3, v = high - (high - low) / 3;
-    if (distance_to_axis(field, field.axis_point(i, u), j) < distance_to_axis(field, field.axis_point(i, v), j)) {
+    if (distance_to_axis(field, field.relations().axis_point(i, u), j) <
+        distance_to_axis(field, field.relations().axis_point(i, v), j)) {
       high = v;
     } else {
       low = u;
     }
   }
-  double least = distance_to_axis(field, field.axis_point(i, low), j);
-  for (const double t : {0.0, 1.0}) least = std::min(least, distance_to_axis(field, field.axis_point(i, t), j));
+  double least = distance_to_axis(field, field.relations().axis_point(i, low), j);
+  for (const double t : {0.0, 1.0})
+    least = std::min(least, distance_to_axis(field, field.relations().axis_point(i, t), j));
   return least;
 }
 
@@ -48,8 +52,8 @@ double axis_distance(const VesselField& field, Index i, Index j) {
 class Locality {
  public:
   explicit Locality(const VesselField& field)
-      : count_(field.centerline().segments().size()), local_(count_ * count_, 0) {
-    place_spheres(field.centerline());
+      : count_(field.relations().centerline().segments().size()), local_(count_ * count_, 0) {
+    place_spheres(field.relations().centerline());
     const std::size_t n = spheres_.size();
     std::vector<char> touching(n * n, 0), reached(n * n, 0);
     for (std::size_t p = 0; p < n; ++p) {
@@ -152,10 +156,10 @@ TEST(Locality, IsTouchWithoutABreak) {
         EXPECT_EQ(is_local(field, i, j), expected(i, j)) << "trial " << trial << ", cones " << i << " and " << j;
         (expected(i, j) ? local_pairs : far_pairs) += 1;
       }
-      const auto cones = field.local_cones(i);
+      const auto cones = field.relations().local_cones(i);
       EXPECT_TRUE(std::is_sorted(cones.begin(), cones.end(), std::less_equal<>()));  // ascending, none twice
     }
-    const auto ball = field.local_cones(segments);
+    const auto ball = field.relations().local_cones(segments);
     EXPECT_EQ(std::vector<Index>(ball.begin(), ball.end()), (std::vector<Index>{segments}));
   }
   EXPECT_GT(tested, 50);
@@ -195,7 +199,7 @@ TEST(Locality, HidesVesselsOfOtherComponents) {
                               {{0, 1}, {2, 3}});
   const VesselField field(centerline, 0.5);
   for (Index c = 0; c < 3; ++c) {
-    ASSERT_EQ(field.local_cones(c).size(), 1u);
+    ASSERT_EQ(field.relations().local_cones(c).size(), 1u);
     const Vec3 p(0.2, 0.3, 1.2);
     EXPECT_EQ(field.sample(p, c).cone, c);
     EXPECT_EQ(field.sample(p, c).distance, field.sample_cone(p, c).distance);
@@ -234,8 +238,8 @@ TEST(Locality, KeepsShallowSiblingsOneUnionUntilTheyPart) {
           ++overlapping;
           EXPECT_TRUE(is_local(field, i, j)) << i << " " << j;
         }
-        if (field.axis_point(i, 0).x() > 73 && field.axis_point(j, 0).x() > 73 &&
-            field.axis_point(i, 0).y() * field.axis_point(j, 0).y() < 0) {
+        if (field.relations().axis_point(i, 0).x() > 73 && field.relations().axis_point(j, 0).x() > 73 &&
+            field.relations().axis_point(i, 0).y() * field.relations().axis_point(j, 0).y() < 0) {
           ++parted;
           EXPECT_FALSE(is_local(field, i, j)) << i << " " << j;
         }
@@ -250,8 +254,8 @@ TEST(Locality, KeepsShallowSiblingsOneUnionUntilTheyPart) {
       const auto global = field.sample_global(p);
       if (global.distance > 0.2) continue;
       for (Index c = 1; c < count; ++c) {
-        const double from = std::min(field.axis_point(c, 0).x(), field.axis_point(c, 1).x());
-        const double to = std::max(field.axis_point(c, 0).x(), field.axis_point(c, 1).x());
+        const double from = std::min(field.relations().axis_point(c, 0).x(), field.relations().axis_point(c, 1).x());
+        const double to = std::max(field.relations().axis_point(c, 0).x(), field.relations().axis_point(c, 1).x());
         if (x >= from && x <= to) {
           EXPECT_EQ(field.sample(p, c).distance, global.distance) << p.transpose();
         }
@@ -282,7 +286,7 @@ TEST(Locality, ZipsUpATightHairpinAndLeavesAWideOneOpen) {
       const Index opposite = count - 1 - i;
       EXPECT_NEAR(axis_distance(field, i, opposite), gap, 0.01);
       EXPECT_EQ(is_local(field, i, opposite), zipped) << "gap " << gap << ", cone " << i;
-      const Vec3 wall = field.axis_point(opposite, 0.5) + Vec3(0, 0, 1.01);
+      const Vec3 wall = field.relations().axis_point(opposite, 0.5) + Vec3(0, 0, 1.01);
       EXPECT_EQ(field.sample(wall, i).cone == field.sample_global(wall).cone, zipped);
     }
     EXPECT_TRUE(is_local(field, count / 2, count / 2 + 1));

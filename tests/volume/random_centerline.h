@@ -75,7 +75,7 @@ auto closest_of(const Field& field, const Vec3& p, const Cones& cones) {
 
 template <class Field>
 std::vector<Index> all_cones(const Field& field) {
-  std::vector<Index> cones(field.cone_count());
+  std::vector<Index> cones(field.relations().cone_count());
   for (Index c = 0; c < cones.size(); ++c) cones[c] = c;
   return cones;
 }

@@ -105,7 +105,8 @@ TEST(RoundCone, DistanceIsThatOfTheClosestSphereAlongTheAxis) {
         // Either side adds a dozen numbers of at most this size; an error of t counts in second order only.
         const double tolerance = 32 * kEps * cone.size(p);
         EXPECT_NEAR(s.distance, brute_force(cone, p), tolerance);
-        EXPECT_NEAR(s.distance, (p - field.axis_point(0, s.t)).norm() - field.radius_at(0, s.t), tolerance);
+        EXPECT_NEAR(s.distance, (p - field.relations().axis_point(0, s.t)).norm() - field.relations().radius_at(0, s.t),
+                    tolerance);
       }
     }
   }
@@ -130,7 +131,7 @@ TEST(RoundCone, DistanceIsTheHeightAboveTheSupportingPlane) {
       // The direction of the gradient is as good as its base is long. Errors of the direction count in second order,
       // except where the plane touches both end spheres (the lateral surface): there the extent has a kink of the
       // axis' length, and for a nearly contained sphere the base's place on the axis is lost to rounding as well.
-      const double base = s.distance + field.radius_at(0, s.t);
+      const double base = s.distance + field.relations().radius_at(0, s.t);
       if (base < 1e-3 || shape == Shape::nearly_contained || shape == Shape::just_contained) continue;
       EXPECT_NEAR(height(s.gradient), s.distance, tolerance * (1 + 20 * cone.size(p) / base));
     }
@@ -148,7 +149,7 @@ TEST(RoundCone, GradientIsAUnitVectorAndTheDerivative) {
       const auto s = field.sample_cone(p, 0);
       // The level set through p bends no more than the sphere around the axis point it belongs to: within `base` the
       // gradient turns by at most h / base over a step h. Rounding adds the distances' errors over 2 h.
-      const double base = s.distance + field.radius_at(0, s.t);
+      const double base = s.distance + field.relations().radius_at(0, s.t);
       if (base < 0.01) continue;
       EXPECT_NEAR(s.gradient.norm(), 1, 4 * kEps);
       const double h = 1e-6 * base;
@@ -171,7 +172,7 @@ TEST(RoundCone, GradientOnTheAxisIsZero) {
     const auto s = field.sample_cone({x, 2, 3}, 0);
     EXPECT_EQ(s.gradient, Vec3(0, 0, 0));
     EXPECT_EQ(s.t, (x - 1) / 4);
-    EXPECT_EQ(s.distance, -field.radius_at(0, s.t));
+    EXPECT_EQ(s.distance, -field.relations().radius_at(0, s.t));
   }
   EXPECT_EQ(field.sample_cone({0, 2, 3}, 0).gradient, Vec3(-1, 0, 0));  // beyond its end it is not
 }
@@ -197,10 +198,10 @@ TEST(RoundCone, WhereOneSphereContainsTheOtherIsTheLargerSphere) {
 TEST(RoundCone, OfAnIsolatedNodeIsItsSphere) {
   const Centerline centerline({{{0, 0, 0}, 1}, {{9, 0, 0}, 2}, {{4, 0, 0}, 1}, {{0, 9, 0}, 3}}, {{2, 0}});
   const VesselField field(centerline, 0.5);
-  ASSERT_EQ(field.cone_count(), 3u);
+  ASSERT_EQ(field.relations().cone_count(), 3u);
   for (const auto& [cone, node] : {std::pair<Index, Index>{1, 1}, {2, 3}}) {
-    EXPECT_EQ(field.first_node(cone), node);
-    EXPECT_EQ(field.last_node(cone), node);
+    EXPECT_EQ(field.relations().first_node(cone), node);
+    EXPECT_EQ(field.relations().last_node(cone), node);
     Draw draw(35);
     for (int i = 0; i < 100; ++i) {
       const Vec3 p = draw.in_cube(12), away = p - centerline.node(node).position;
@@ -210,9 +211,9 @@ TEST(RoundCone, OfAnIsolatedNodeIsItsSphere) {
       EXPECT_EQ(s.cone, cone);
     }
   }
-  EXPECT_EQ(field.first_node(0), 2u);
-  EXPECT_EQ(field.last_node(0), 0u);
-  EXPECT_EQ(field.axis_point(0, 0.25), Vec3(3, 0, 0));
+  EXPECT_EQ(field.relations().first_node(0), 2u);
+  EXPECT_EQ(field.relations().last_node(0), 0u);
+  EXPECT_EQ(field.relations().axis_point(0, 0.25), Vec3(3, 0, 0));
 }
 
 }  // namespace

@@ -16,13 +16,14 @@ using testing::CenterlineBuilder;
 using testing::Draw;
 
 bool sees(const VesselField& field, Index i, Index j) {
-  const auto cones = field.local_cones(i);
+  const auto cones = field.relations().local_cones(i);
   return std::binary_search(cones.begin(), cones.end(), j);
 }
 
 double least_rounding(const VesselField& field) {
   double least = 1;
-  for (Index c = 0; c < field.cone_count(); ++c) least = std::min(least, field.rounding_at(c, 0));
+  for (Index c = 0; c < field.relations().cone_count(); ++c)
+    least = std::min(least, field.relations().rounding_at(c, 0));
   return least;
 }
 
@@ -47,11 +48,11 @@ TEST(Sight, ReachesAsFarAsTheBlend) {
     const VesselField field(centerline, blend);
     EXPECT_EQ(least_rounding(field), 1);
     double last_seen = 0, last_one = 0;
-    for (Index i = 0; i < field.cone_count(); i += 2) {
-      const Vec3 p = field.axis_point(i, 0.5), q = field.axis_point(i + 1, 0.5);
+    for (Index i = 0; i < field.relations().cone_count(); i += 2) {
+      const Vec3 p = field.relations().axis_point(i, 0.5), q = field.relations().axis_point(i + 1, 0.5);
       const double gap = (p - q).norm() - 2;
       if (sees(field, i, i + 1)) last_seen = gap;
-      if (field.are_one_volume(i, i + 1)) last_one = gap;
+      if (field.relations().are_one_volume(i, i + 1)) last_one = gap;
       EXPECT_EQ(sees(field, i, i + 1), sees(field, i + 1, i));
     }
     // A segment is seen as a whole, from the sphere before it on: the gap grows by 0.035 along each.
@@ -82,10 +83,10 @@ struct Mouth {
 
 Mouth mouth_of(const VesselField& field) {
   Mouth mouth;
-  mouth.end = static_cast<Index>(field.cone_count() - 1);
+  mouth.end = static_cast<Index>(field.relations().cone_count() - 1);
   mouth.gap = 1e9;
   for (Index c = 0; c < 60; ++c) {
-    const Vec3 p = field.axis_point(c, 1), q = field.axis_point(mouth.end, 1);
+    const Vec3 p = field.relations().axis_point(c, 1), q = field.relations().axis_point(mouth.end, 1);
     if ((p - q).norm() - 2 >= mouth.gap) continue;
     mouth.begin = c;
     mouth.gap = (p - q).norm() - 2;
@@ -101,7 +102,7 @@ TEST(Sight, LeavesWallsApartThatMeetAgain) {
     const Mouth mouth = mouth_of(field);
     EXPECT_GT(mouth.gap, 0.4);
     EXPECT_TRUE(sees(field, mouth.begin, mouth.end));
-    EXPECT_FALSE(field.are_one_volume(mouth.begin, mouth.end));
+    EXPECT_FALSE(field.relations().are_one_volume(mouth.begin, mouth.end));
     EXPECT_LT(least_rounding(field), 1);
     EXPECT_LT(mouth.gap, 0.5);  // with all of the blend the walls would meet
     for (const Index hint : {mouth.begin, mouth.end}) EXPECT_GT(field.sample(mouth.middle, hint).distance, 0);
@@ -137,8 +138,8 @@ double steepest_way(const VesselField& field, Draw& draw) {
   constexpr double kStep = 1e-3;
   double steepest = 0;
   for (int walk = 0; walk < 6; ++walk) {
-    const auto start = static_cast<Index>(field.cone_count() - 1 - draw.below(2));
-    Vec3 p = field.axis_point(start, 0.5);
+    const auto start = static_cast<Index>(field.relations().cone_count() - 1 - draw.below(2));
+    Vec3 p = field.relations().axis_point(start, 0.5);
     p += Vec3(0, p.y() > 0 ? -1 : 1, draw.uniform(-0.4, 0.4)).normalized();
     FieldSample s = field.sample(p, start);
     for (int k = 0; k < 20000; ++k) {

@@ -47,7 +47,7 @@ TEST(Union, GlobalTiesGoToTheLowestCone) {
     for (int i = 0; i < 400; ++i) {
       const Vec3 p = pitch * Vec3(draw.below(17) / 2.0 - 2, draw.below(17) / 2.0 - 2, draw.below(17) / 2.0 - 2);
       const auto expected = closest_of(field, p, all_cones(field));
-      for (Index c = expected.cone + 1; c < field.cone_count(); ++c) {
+      for (Index c = expected.cone + 1; c < field.relations().cone_count(); ++c) {
         ties += field.sample_cone(p, c).distance == expected.distance;
       }
       expect_same(field.sample_global(p), expected);
@@ -64,10 +64,10 @@ TEST(Union, LocalDistanceIsTheLeastOverTheConesAroundTheClosest) {
     const VesselField field(centerline);
     for (int i = 0; i < 50; ++i) {
       const Vec3 p = draw.in_cube(6);
-      const auto hint = draw.below(static_cast<Index>(field.cone_count()));
+      const auto hint = draw.below(static_cast<Index>(field.relations().cone_count()));
       const auto s = field.sample(p, hint);
-      expect_same(s, closest_of(field, p, field.local_cones(s.cone)));
-      EXPECT_LE(s.distance, closest_of(field, p, field.local_cones(hint)).distance);
+      expect_same(s, closest_of(field, p, field.relations().local_cones(s.cone)));
+      EXPECT_LE(s.distance, closest_of(field, p, field.relations().local_cones(hint)).distance);
       expect_same(field.sample(p, s.cone), s);  // it is a hint that stays
     }
   }
@@ -90,9 +90,9 @@ TEST(Union, LocalDistanceIsTheLeastAroundANodeOfManyBranchesToo) {
   const VesselField field(centerline);
   for (int i = 0; i < 500; ++i) {
     const Vec3 p = draw.in_cube(6);
-    const auto s = field.sample(p, draw.below(static_cast<Index>(field.cone_count())));
-    EXPECT_GT(field.local_cones(0).size(), 512u);
-    expect_same(s, closest_of(field, p, field.local_cones(s.cone)));
+    const auto s = field.sample(p, draw.below(static_cast<Index>(field.relations().cone_count())));
+    EXPECT_GT(field.relations().local_cones(0).size(), 512u);
+    expect_same(s, closest_of(field, p, field.relations().local_cones(s.cone)));
   }
 }
 
@@ -123,8 +123,9 @@ TEST(Union, AStepOfTheDistanceNeverCrossesTheBoundary) {
       const auto s = field.sample_global(p);
       inside += s.distance < 0;
       check(s, [&](const Vec3& q) { return field.sample_global(q).distance; });
-      const auto local = field.sample(p, draw.below(static_cast<Index>(field.cone_count())));
-      check(local, [&](const Vec3& q) { return closest_of(field, q, field.local_cones(local.cone)).distance; });
+      const auto local = field.sample(p, draw.below(static_cast<Index>(field.relations().cone_count())));
+      check(local,
+            [&](const Vec3& q) { return closest_of(field, q, field.relations().local_cones(local.cone)).distance; });
     }
   }
   EXPECT_GT(inside, 500);
@@ -139,11 +140,11 @@ TEST(Union, GradientIsTheDerivativeWhereOneConeIsClosest) {
     for (int i = 0; i < 50; ++i) {
       const Vec3 p = draw.in_cube(5);
       const auto s = field.sample_global(p);
-      const double base = s.distance + field.radius_at(s.cone, s.t);
+      const double base = s.distance + field.relations().radius_at(s.cone, s.t);
       if (base < 0.1) continue;
       const double h = 1e-6 * base;
       bool alone = true;
-      for (Index c = 0; c < field.cone_count(); ++c) {
+      for (Index c = 0; c < field.relations().cone_count(); ++c) {
         if (c != s.cone && field.sample_cone(p, c).distance < s.distance + 4 * h) alone = false;
       }
       if (!alone) continue;

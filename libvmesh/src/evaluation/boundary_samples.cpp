@@ -53,7 +53,8 @@ double sphere_area(const CenterlineNode& node) { return 4 * std::numbers::pi * n
 
 class BoundarySampler {
  public:
-  BoundarySampler(const VesselField& field, std::size_t count) : field_(field), centerline_(field.centerline()) {
+  BoundarySampler(const VesselField& field, std::size_t count)
+      : field_(field), centerline_(field.relations().centerline()) {
     double area = 0;
     for (Index s = 0; s < centerline_.segments().size(); ++s) area += side(s).area();
     if (!(area > 0)) {

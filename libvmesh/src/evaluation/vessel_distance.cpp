@@ -75,7 +75,7 @@ VesselDistance measure_vessel_distance(const TriMesh& mesh, const ClosestPointIn
   SideCollector from_mesh(on_mesh.size(), progress);
   measure_in_order(on_mesh.size(), from_mesh, [&](std::size_t i, Index&) {
     const FieldSample found = field.sample_global(on_mesh[i].position);
-    return Measured{on_mesh[i].position, std::abs(found.distance), field.radius_at(found.cone, found.t)};
+    return Measured{on_mesh[i].position, std::abs(found.distance), field.relations().radius_at(found.cone, found.t)};
   });
   result.from_mesh = from_mesh.finish(on_mesh.empty() ? 0 : static_cast<double>(on_mesh.size()) / surface_area(mesh));
 

@@ -56,11 +56,11 @@ TriMesh welded(const TriMesh& mesh) {
 }  // namespace
 
 double widest_radius(const VesselField& field, Index cone) {
-  return std::max(field.radius_at(cone, 0), field.radius_at(cone, 1));
+  return std::max(field.relations().radius_at(cone, 0), field.relations().radius_at(cone, 1));
 }
 
 bool same_vessel(const VesselField& field, Index a, Index b) {
-  const auto local = field.local_cones(a);
+  const auto local = field.relations().local_cones(a);
   return std::binary_search(local.begin(), local.end(), b);
 }
 

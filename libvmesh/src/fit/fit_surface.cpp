@@ -68,7 +68,7 @@ void check(const VesselSurface& surface, const VesselField& field) {
     throw InvalidInput("the surface has " + std::to_string(surface.mesh.vertices.size()) + " vertices, but " +
                        std::to_string(surface.binding.size()) + " of them are bound to the centerline");
   for (std::size_t v = 0; v < surface.binding.size(); ++v) {
-    if (surface.binding[v].segment >= field.cone_count())
+    if (surface.binding[v].segment >= field.relations().cone_count())
       throw InvalidInput("vertex " + std::to_string(v) + " is bound to segment " +
                          std::to_string(surface.binding[v].segment) + ", which the centerline does not have");
   }
@@ -168,7 +168,7 @@ class Fit {
     for (const FitVertex& v : surface_.vertices()) {
       const FieldSample sample = field_.sample(v.position, v.cone);
       result.surface.binding.push_back({sample.cone, sample.t});
-      result.radius.push_back(field_.radius_at(sample.cone, sample.t));
+      result.radius.push_back(field_.relations().radius_at(sample.cone, sample.t));
     }
     result.surface.mesh = surface_.tri_mesh();
     result.surface.openings = openings_;
@@ -291,8 +291,8 @@ class Fit {
     if (options_.max_vertices > 0 && surface_.vertices().size() > most_vertices_) to_error_ = false;
     // Edge lengths differ a little from the intended sizes; corrects for that.
     aim_ = std::clamp(
-        aim_ *
-            std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices().size()), kAimPower),
+        aim_ * std::pow(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices().size()),
+                        kAimPower),
         1 / kAimStep, kAimStep);
     find_cones(surface_, field_);
     step(matches_now(true));

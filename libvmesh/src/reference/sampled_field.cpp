@@ -17,8 +17,8 @@ using Box = Eigen::AlignedBox3d;
 
 Box box_of(const VesselField& field, Index cone, double margin) {
   Box box;
-  for (const Index n : {field.first_node(cone), field.last_node(cone)}) {
-    const CenterlineNode& node = field.centerline().node(n);
+  for (const Index n : {field.relations().first_node(cone), field.relations().last_node(cone)}) {
+    const CenterlineNode& node = field.relations().centerline().node(n);
     box.extend(Box(node.position.array() - (node.radius + margin), node.position.array() + (node.radius + margin)));
   }
   return box;
@@ -67,9 +67,9 @@ VoxelImage sample_field(const Centerline& centerline, double voxel) {
   if (!(voxel > 0) || !std::isfinite(voxel)) throw InvalidInput("the size of a voxel must be positive");
   const VesselField field(centerline);
   Box box;
-  for (Index cone = 0; cone < field.cone_count(); ++cone) box.extend(box_of(field, cone, kBand * voxel));
+  for (Index cone = 0; cone < field.relations().cone_count(); ++cone) box.extend(box_of(field, cone, kBand * voxel));
   VoxelImage image = empty_image(box, voxel);
-  for (Index cone = 0; cone < field.cone_count(); ++cone) add_cone(image, field, cone, voxel);
+  for (Index cone = 0; cone < field.relations().cone_count(); ++cone) add_cone(image, field, cone, voxel);
   return image;
 }
 

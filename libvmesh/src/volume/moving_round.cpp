@@ -43,7 +43,7 @@ struct CloseLeaf {
 };
 
 Vec3 tangent_of(const VesselField& field, Index cone) {
-  const Vec3 axis = field.axis_point(cone, 1) - field.axis_point(cone, 0);
+  const Vec3 axis = field.relations().axis_point(cone, 1) - field.relations().axis_point(cone, 0);
   const double length = axis.norm();
   return length > 0 ? Vec3(axis / length) : Vec3(Vec3::Zero());
 }
@@ -214,7 +214,7 @@ class MovingRound {
   // How far the walls of other vessels would be from the leaf's axis after it moved, mm.
   double room(const CloseLeaf& leaf, const Vec3& direction) const {
     const double t = task_.narrowed.pieces.size() > leaf.cone ? 0.5 : 0;
-    const Vec3 place = field_.axis_point(leaf.cone, t) + distance_to_go(leaf, direction) * direction;
+    const Vec3 place = field_.relations().axis_point(leaf.cone, t) + distance_to_go(leaf, direction) * direction;
     return field_.distance_to_others(place, leaf.cone, leaf.wanted);
   }
 
@@ -223,7 +223,7 @@ class MovingRound {
     const std::map<Index, double> away = walk(anchor, kAlong * (anchor.side.radius + anchor.other_side.radius));
     const auto distance = [&](Index cone) {
       double least = std::numeric_limits<double>::infinity();
-      for (const Index n : {field_.first_node(cone), field_.last_node(cone)}) {
+      for (const Index n : {field_.relations().first_node(cone), field_.relations().last_node(cone)}) {
         const auto found = away.find(n);
         if (found != away.end()) least = std::min(least, found->second);
       }
@@ -249,8 +249,8 @@ class MovingRound {
       known->second = distance;
       open.emplace(distance, node);
     };
-    reach(field_.first_node(anchor.cone), 0);
-    reach(field_.last_node(anchor.cone), 0);
+    reach(field_.relations().first_node(anchor.cone), 0);
+    reach(field_.relations().last_node(anchor.cone), 0);
     while (!open.empty()) {
       const auto [distance, node] = open.top();
       open.pop();

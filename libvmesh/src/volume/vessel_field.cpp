@@ -33,7 +33,7 @@ void VesselField::finish() {
 void VesselField::make_cones() {
   cones_.reserve(relations_.cone_count());
   for (Index c = 0; c < relations_.cone_count(); ++c) {
-    Cone cone = make_cone(centerline(), relations_.first_node(c), relations_.last_node(c));
+    Cone cone = make_cone(relations_.centerline(), relations_.first_node(c), relations_.last_node(c));
     cone.rounding0 = relations_.rounding_of(cone.a);
     cone.rounding1 = relations_.rounding_of(cone.b);
     cones_.push_back(cone);
@@ -138,8 +138,9 @@ void VesselField::blend_candidates(const Vec3& p, std::span<Candidate> candidate
   };
   candidates = at_different_places(candidates);
   for (Candidate& c : candidates) {
-    c.reach = blend_ * radius_at(c.cone, c.t) * rounding_at(c.cone, c.t);
-    c.gradient = cones_[c.cone].gradient(p, c.t);
+    const Cone& cone = cones_[c.cone];
+    c.reach = blend_ * cone.radius_at(c.t) * cone.rounding_at(c.t);
+    c.gradient = cone.gradient(p, c.t);
   }
   Batch batch;
   for (std::size_t begin = 0; begin < candidates.size(); begin += kBatch) {

@@ -41,8 +41,8 @@ void VesselField::build_tree() {
     const int count = static_cast<int>(std::clamp(pieces, 1.0, double{kMostPieces}));
     for (int k = 0; k < count; ++k) {
       const double t0 = static_cast<double>(k) / count, t1 = static_cast<double>(k + 1) / count;
-      const Vec3 begin = axis_point(c, t0), end = axis_point(c, t1);
-      const double r0 = radius_at(c, t0), r1 = radius_at(c, t1);
+      const Vec3 begin = cone.origin + t0 * cone.axis, end = cone.origin + t1 * cone.axis;
+      const double r0 = cone.radius_at(t0), r1 = cone.radius_at(t1);
       low.push_back((begin.array() - r0).min(end.array() - r1));
       high.push_back((begin.array() + r0).max(end.array() + r1));
       const double size = low.back().cwiseAbs().cwiseMax(high.back().cwiseAbs()).maxCoeff();
@@ -55,7 +55,7 @@ void VesselField::build_tree() {
 }
 
 void VesselField::local_cones_near(const Vec3& p, Index cone, double limit, std::vector<Index>& near) const {
-  const std::span<const Index> local = local_cones(cone);
+  const std::span<const Index> local = relations_.local_cones(cone);
   near.clear();
   if (local.size() <= kFewCones) {
     near.assign(local.begin(), local.end());
@@ -68,7 +68,7 @@ void VesselField::local_cones_near(const Vec3& p, Index cone, double limit, std:
 
 // Same as blended(p, local_cones(hint), hint).
 FieldSample VesselField::blended_local(const Vec3& p, Index hint) const {
-  const std::span<const Index> local = local_cones(hint);
+  const std::span<const Index> local = relations_.local_cones(hint);
   if (local.size() <= kFewCones) return blended(p, local, hint);
   thread_local std::vector<Index> near;
   near.clear();

@@ -52,7 +52,7 @@ const VesselField::Surroundings& VesselField::surroundings(Index hint) const {
 }
 
 void VesselField::survey(Index hint, Surroundings& s) const {
-  const std::span<const Index> local = local_cones(hint);
+  const std::span<const Index> local = relations_.local_cones(hint);
   const Cone& own = cones_[hint];
   s.field = number_;
   s.hint = hint;
@@ -97,7 +97,7 @@ bool VesselField::all_are_blended(std::span<const Index> cones) const {
 bool VesselField::is_lonely(Index cone, const Vec3& low, const Vec3& high) const {
   const std::atomic_ref<char> known(lonely_[cone]);
   if (known.load(std::memory_order_relaxed) == not_asked) {
-    const std::span<const Index> local = local_cones(cone);
+    const std::span<const Index> local = relations_.local_cones(cone);
     bool alone = true;
     tree_.visit_overlapping(low, high, [&](Index item) {
       alone = alone && std::binary_search(local.begin(), local.end(), cone_of_item_[item]);
@@ -112,7 +112,7 @@ double VesselField::distance_to_others(const Vec3& p, Index cone, double limit) 
   const double reach = std::max(limit, 0.0);
   if ((p.array() - reach > s.lonely_low.array()).all() && (p.array() + reach < s.lonely_high.array()).all())
     return limit;
-  const std::span<const Index> local = local_cones(cone);
+  const std::span<const Index> local = relations_.local_cones(cone);
   visit_near(p, limit, [&](Index c) {
     if (!std::binary_search(local.begin(), local.end(), c)) limit = std::min(limit, cones_[c].distance_to(p).value);
   });
@@ -151,7 +151,8 @@ void VesselField::fill_lanes(std::span<const Index> cones, const Vec3& center, d
   for (const Index c : cones) {
     const double widest = (1 + 2 * blend_) * max_radius(c);
     for (const double t : {0.0, 1.0})
-      radius = std::max(radius, (per_unit * (axis_point(c, t) - center) - middle).norm() + per_unit * widest);
+      radius = std::max(
+          radius, (per_unit * (cones_[c].origin + t * cones_[c].axis - center) - middle).norm() + per_unit * widest);
   }
   lanes.center_x = static_cast<float>(middle.x());
   lanes.center_y = static_cast<float>(middle.y());
@@ -172,7 +173,7 @@ FieldSample VesselField::sample_fast(const Vec3& p, Index hint) const {
     const LaneSample found = run(s.lanes.data(), s.lanes.size(),
                                  {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
                                   static_cast<float>(blend_), s.first});
-    const Index nearest = local_cones(hint)[found.nearest];
+    const Index nearest = relations_.local_cones(hint)[found.nearest];
     if (nearest == hint)
       return {s.unit * found.distance, Vec3(found.gradient_x, found.gradient_y, found.gradient_z), nearest, found.t};
     // Distances are rounded differently around every hint: of two equally near cones, each may find the other nearer.

@@ -71,11 +71,6 @@ class ConeRelations {
     if (!complete_.empty() && !complete_[cone]) throw_incomplete(cone);
     return {local_.data() + local_offsets_[cone], local_.data() + local_offsets_[cone + 1]};
   }
-  /// Of local_cones(cone) those near a point: all of them here. See VesselField::local_cones_near().
-  void local_cones_near(const Vec3&, Index cone, double, std::vector<Index>& near) const {
-    const auto local = local_cones(cone);
-    near.assign(local.begin(), local.end());
-  }
 
   /// Whether two cones count as one volume: they are local to each other, and not only because, where their vessels
   /// part, the rounding between them extends farther than they touch.

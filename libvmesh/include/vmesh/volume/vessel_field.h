@@ -38,10 +38,8 @@ class VesselField {
   /// that leads to another hint throws std::logic_error. Global queries cover the excerpt only.
   VesselField(const Centerline& centerline, const FieldExcerpt& excerpt);
 
+  /// The cones themselves.
   const ConeRelations& relations() const { return relations_; }
-  const Centerline& centerline() const { return relations_.centerline(); }
-  double blend() const { return blend_; }
-  std::size_t cone_count() const { return cones_.size(); }
 
   /// Signed distance at `p` from the cones local to `hint`. The closest cone becomes the next hint until it no longer
   /// changes.
@@ -64,31 +62,12 @@ class VesselField {
   /// Exact signed distance to one cone.
   FieldSample sample_cone(const Vec3& p, Index cone) const;
 
-  /// The cones that take part in a local query with hint `cone`, `cone` included, ascending.
-  std::span<const Index> local_cones(Index cone) const { return relations_.local_cones(cone); }
-
-  /// See ConeRelations.
-  bool are_one_volume(Index i, Index j) const { return relations_.are_one_volume(i, j); }
-
   /// Whether two cones are blended where both are near: not if their vessels have parted and come near again.
   bool are_blended(Index i, Index j) const;
 
-  /// A superset of those local_cones(cone) whose distance at `p` (mm), less the widest blend, is at most `limit` (mm);
-  /// ascending. Uses a search in space where there are many, as around a node of many branches.
+  /// A superset of those ConeRelations::local_cones(cone) whose distance at `p` (mm), less the widest blend, is at most
+  /// `limit` (mm); ascending. Uses a search in space where there are many, as around a node of many branches.
   void local_cones_near(const Vec3& p, Index cone, double limit, std::vector<Index>& near) const;
-
-  /// The node a cone starts and ends at (equal for an isolated node).
-  Index first_node(Index cone) const { return cones_[cone].a; }
-  Index last_node(Index cone) const { return cones_[cone].b; }
-
-  /// Vessel radius at parameter `t` of `cone`.
-  double radius_at(Index cone, double t) const { return cones_[cone].r0 + t * (cones_[cone].r1 - cones_[cone].r0); }
-  /// How much of the blend is left to a cone at parameter `t`, in [0, 1].
-  double rounding_at(Index cone, double t) const {
-    return cones_[cone].rounding0 + t * (cones_[cone].rounding1 - cones_[cone].rounding0);
-  }
-  /// Point of the axis at parameter `t` of `cone`.
-  Vec3 axis_point(Index cone, double t) const { return cones_[cone].origin + t * cones_[cone].axis; }
 
  private:
   friend class ConeRelations;
@@ -96,6 +75,8 @@ class VesselField {
   struct Cone : RoundCone {
     Cone() = default;
     Cone(const RoundCone& cone, Index first, Index last) : RoundCone(cone), a(first), b(last) {}
+
+    double rounding_at(double t) const { return rounding0 + t * (rounding1 - rounding0); }
 
     double rounding0 = 1, rounding1 = 1;  // shares of the blend
     Index a = kNone, b = kNone;

@@ -31,7 +31,7 @@ FaceSamples samples_of(const TriMesh& mesh, Index f, Index hint, const VesselFie
     for (int i = 0; i < 3; ++i) p += kSampleWeights[k][i] * mesh.vertices[mesh.faces[f][i]];
     const FieldSample sample = distance_at(p, hint);
     const double distance = std::abs(sample.distance);
-    samples[k] = {p, distance, distance / field.radius_at(sample.cone, sample.t)};
+    samples[k] = {p, distance, distance / field.relations().radius_at(sample.cone, sample.t)};
   }
   return samples;
 }

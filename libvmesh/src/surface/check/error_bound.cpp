@@ -129,7 +129,9 @@ class TriangleTest {
       stack_.push_back(bounds_of(stack_[i].cone, q, center));
       least_high = std::min(least_high, stack_.back().high);
     }
-    const auto too_far = [&](const ConeBounds& b) { return b.low > least_high + 2 * field_.blend() * b.most_radius; };
+    const auto too_far = [&](const ConeBounds& b) {
+      return b.low > least_high + 2 * field_.relations().blend() * b.most_radius;
+    };
     stack_.erase(std::remove_if(stack_.begin() + begin, stack_.end(), too_far), stack_.end());
     return {begin, stack_.size()};
   }
@@ -142,16 +144,16 @@ class TriangleTest {
     b.gradient = s.gradient;
     for (const Vec3& p : q) b.low = std::min(b.low, s.distance + s.gradient.dot(p - center));
     b.high = highest(q, cone);
-    if (field_.blend() == 0) return b;
-    const double first = field_.radius_at(cone, 0), last = field_.radius_at(cone, 1),
-                 radius = field_.radius_at(cone, s.t);
-    const double length = (field_.axis_point(cone, 1) - field_.axis_point(cone, 0)).norm();
+    if (field_.relations().blend() == 0) return b;
+    const double first = field_.relations().radius_at(cone, 0), last = field_.relations().radius_at(cone, 1),
+                 radius = field_.relations().radius_at(cone, s.t);
+    const double length = (field_.relations().axis_point(cone, 1) - field_.relations().axis_point(cone, 0)).norm();
     const double change = std::min(radius_slope(first, last, length) * reach_, std::abs(last - first));
     b.least_radius = std::max(std::min(first, last), radius - change);
     b.most_radius = std::min(std::max(first, last), radius + change);
     const auto [least_share, most_share] = shares_of(cone, s.t, length, radius_slope(first, last, length));
-    b.least_reach = field_.blend() * b.least_radius * least_share;
-    b.most_reach = field_.blend() * b.most_radius * most_share;
+    b.least_reach = field_.relations().blend() * b.least_radius * least_share;
+    b.most_reach = field_.relations().blend() * b.most_radius * most_share;
     // The gradient turns by the distance moved divided by the distance from the touching sphere's centre.
     const double from_center = radius + s.distance - reach_ - change;
     b.turn = from_center > 0.5 * reach_ ? reach_ / from_center : 2;
@@ -161,9 +163,10 @@ class TriangleTest {
   // Least and greatest share of the blend left to a cone on the triangle. The touching sphere moves along the axis by
   // the distance moved divided by the cosine of the cone's half angle.
   std::pair<double, double> shares_of(Index cone, double t, double length, double slope) const {
-    const auto [least, most] = std::minmax({field_.rounding_at(cone, 0), field_.rounding_at(cone, 1)});
+    const auto [least, most] =
+        std::minmax({field_.relations().rounding_at(cone, 0), field_.relations().rounding_at(cone, 1)});
     if (least == most) return {least, most};
-    const double share = field_.rounding_at(cone, t);
+    const double share = field_.relations().rounding_at(cone, t);
     const double change = std::min(std::sqrt(1 + slope * slope) * reach_ / length, 1.0) * (most - least);
     return {std::max(least, share - change), std::min(most, share + change)};
   }
@@ -180,7 +183,7 @@ class TriangleTest {
     double result = std::numeric_limits<double>::infinity();
     for (std::size_t i = range.begin; i < range.end; ++i) {
       result = std::min(result, visit(stack_[i]));
-      if (field_.blend() == 0) continue;
+      if (field_.relations().blend() == 0) continue;
       for (std::size_t j = range.begin; j < i; ++j) {
         if (field_.are_blended(stack_[i].cone, stack_[j].cone))
           result = std::min(result, combine(stack_[i], stack_[j]));
@@ -234,8 +237,8 @@ void find_cones(const VesselField& field, const Vec3& center, double radius, Ind
   const double least = field.sample_cone(center, nearest).distance;
   field.local_cones_near(center, nearest, least + 2 * radius, cones);
   std::erase_if(cones, [&](Index cone) {
-    const double widest = std::max(field.radius_at(cone, 0), field.radius_at(cone, 1));
-    return field.sample_cone(center, cone).distance - least >= 2 * radius + 2 * field.blend() * widest;
+    const double widest = std::max(field.relations().radius_at(cone, 0), field.relations().radius_at(cone, 1));
+    return field.sample_cone(center, cone).distance - least >= 2 * radius + 2 * field.relations().blend() * widest;
   });
 }
 
@@ -362,7 +365,7 @@ class BentCopy {
     std::vector<Vec3> gradients;
     const FieldSample sample = field_.sample(p, hint);
     const double nearest = field_.sample_cone(p, sample.cone).distance;
-    for (const Index cone : field_.local_cones(sample.cone)) {
+    for (const Index cone : field_.relations().local_cones(sample.cone)) {
       const FieldSample s = field_.sample_cone(p, cone);
       if (s.distance < nearest + 2 * limit) gradients.push_back(s.gradient);
     }
@@ -458,7 +461,7 @@ std::vector<Index> unproven_faces(const TriMesh& mesh, const std::vector<Centerl
   std::vector<ErrorProof::Corner> vertices(mesh.vertices.size());
   for (Index v = 0; v < vertices.size(); ++v) {
     const auto& [cone, t] = binding[v];
-    vertices[v] = {mesh.vertices[v], Vec3::Zero(), limit.at(field.radius_at(cone, t)), cone};
+    vertices[v] = {mesh.vertices[v], Vec3::Zero(), limit.at(field.relations().radius_at(cone, t)), cone};
   }
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     for (const Index v : mesh.faces[f]) vertices[v].normal += area_normal(mesh, f);

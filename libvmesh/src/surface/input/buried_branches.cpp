@@ -18,12 +18,12 @@ constexpr double kNeedleSlack =
     0.25;  // of that radius: how far a needle may protrude where a branch ends; safe 0.17 to 0.35
 constexpr int kMaxPieces = 2000;  // derived: per segment; a hair that long is not buried, or not worth testing
 
-// In a VesselField, or in the relations of its cones alone.
-template <class Cones>
 class Burial {
  public:
-  explicit Burial(const Cones& cones)
+  /// `field`, which is faster, may be null.
+  Burial(const ConeRelations& cones, const VesselField* field)
       : cones_(cones),
+        field_(field),
         centerline_(cones.centerline()),
         left_(centerline_.segments().size(), 1),
         in_branch_(left_.size(), 0) {}
@@ -146,13 +146,20 @@ class Burial {
     if (pieces > kMaxPieces) return false;
     for (int k = 0; k < pieces; ++k) {
       const double begin = k / pieces, end = (k + 1) / pieces;
-      cones_.local_cones_near(centerline_.point_at(s, begin), s, depth_in_others(s, begin), near_);
-      const bool covered = std::any_of(near_.begin(), near_.end(), [&](Index cone) {
+      const std::span<const Index> near = local_cones_near(s, begin);
+      const bool covered = std::any_of(near.begin(), near.end(), [&](Index cone) {
         return is_other(cone) && holds(cone, s, begin) && holds(cone, s, end);
       });
       if (!covered) return false;
     }
     return true;
+  }
+
+  /// At least those that can hold the vessel there.
+  std::span<const Index> local_cones_near(Index s, double t) {
+    if (field_ == nullptr) return cones_.local_cones(s);
+    field_->local_cones_near(centerline_.point_at(s, t), s, depth_in_others(s, t), near_);
+    return near_;
   }
 
   bool is_other(Index cone) const { return left_[cone] && !in_branch_[cone]; }
@@ -161,10 +168,12 @@ class Burial {
   double depth_in_others(Index s, double t) const { return (kSlack - 1) * centerline_.radius_at(s, t); }
 
   bool holds(Index cone, Index s, double t) const {
-    return cones_.sample_cone(centerline_.point_at(s, t), cone).distance <= depth_in_others(s, t);
+    const Vec3 p = centerline_.point_at(s, t);
+    return (field_ ? field_->sample_cone(p, cone) : cones_.sample_cone(p, cone)).distance <= depth_in_others(s, t);
   }
 
-  const Cones& cones_;
+  const ConeRelations& cones_;
+  const VesselField* field_;
   const Centerline& centerline_;
   double widest_ = 0;
   std::vector<char> left_, in_branch_;
@@ -174,9 +183,11 @@ class Burial {
 
 }  // namespace
 
-std::vector<BuriedBranch> find_buried_branches(const VesselField& field) { return Burial(field).run(); }
+std::vector<BuriedBranch> find_buried_branches(const VesselField& field) {
+  return Burial(field.relations(), &field).run();
+}
 
-std::vector<BuriedBranch> find_buried_branches(const ConeRelations& cones) { return Burial(cones).run(); }
+std::vector<BuriedBranch> find_buried_branches(const ConeRelations& cones) { return Burial(cones, nullptr).run(); }
 
 GrowthCenterline without_buried_branches(const Centerline& full, std::vector<BuriedBranch> buried) {
   std::vector<char> left(full.segments().size(), 1);
@@ -213,7 +224,7 @@ GrowthCenterline without_buried_branches(const Centerline& full, std::vector<Bur
 }
 
 GrowthCenterline without_buried_branches(const VesselField& field) {
-  return without_buried_branches(field.centerline(), find_buried_branches(field));
+  return without_buried_branches(field.relations().centerline(), find_buried_branches(field));
 }
 
 std::vector<GrowthSimplification> notes_of_buried(const std::vector<BuriedBranch>& all_buried, const Centerline& full) {

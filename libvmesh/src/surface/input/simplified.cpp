@@ -31,9 +31,9 @@ Index end_in(const SimplifiedCenterline& simplified, Index node) {
 std::vector<char> nodes_less_rounded(const Centerline& centerline, double blend) {
   std::vector<char> result(centerline.nodes().size(), 0);
   const VesselField field(centerline, blend);
-  for (Index c = 0; c < field.cone_count(); ++c) {
-    if (field.rounding_at(c, 0) < 1 || field.rounding_at(c, 1) < 1)
-      result[field.first_node(c)] = result[field.last_node(c)] = 1;
+  for (Index c = 0; c < field.relations().cone_count(); ++c) {
+    if (field.relations().rounding_at(c, 0) < 1 || field.relations().rounding_at(c, 1) < 1)
+      result[field.relations().first_node(c)] = result[field.relations().last_node(c)] = 1;
   }
   return result;
 }

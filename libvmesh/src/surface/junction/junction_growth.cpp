@@ -37,18 +37,19 @@ Index widest_node(const Centerline& centerline) {
 // How far the axis runs below the depth under the walls of thicker vessels at which neither the vessel nor its blend
 // reaches them.
 double depth_at(const VesselField& field, const Vec3& p, Index cone, double radius) {
-  return -field.sample_fast(p, cone).distance - (1 + kBeneath + 2 * field.blend()) * radius;
+  return -field.sample_fast(p, cone).distance - (1 + kBeneath + 2 * field.relations().blend()) * radius;
 }
 
 // Balls along the vessels in which the lattice must be finer than its cubes, except where a vessel runs deep within
 // thicker ones.
 std::vector<LatticeBall> balls_along(const VesselField& field, double cube, double thinnest) {
   std::vector<LatticeBall> balls;
-  for (Index cone = 0; cone < field.cone_count(); ++cone) {
-    const double length = (field.axis_point(cone, 1) - field.axis_point(cone, 0)).norm();
+  for (Index cone = 0; cone < field.relations().cone_count(); ++cone) {
+    const double length = (field.relations().axis_point(cone, 1) - field.relations().axis_point(cone, 0)).norm();
     for (double t = 0;;) {
-      const double radius = field.radius_at(cone, t), finest = std::max(kSpacing * thinnest, kFiner * radius);
-      const Vec3 p = field.axis_point(cone, t);
+      const double radius = field.relations().radius_at(cone, t),
+                   finest = std::max(kSpacing * thinnest, kFiner * radius);
+      const Vec3 p = field.relations().axis_point(cone, t);
       const double depth = finest < cube ? depth_at(field, p, cone, radius) : 0;
       const bool known = t == 0 && !balls.empty() && balls.back().center == p;  // the end of the previous cone
       if (depth <= 0 && !known) balls.push_back({p, kReach * radius, finest});
@@ -61,7 +62,7 @@ std::vector<LatticeBall> balls_along(const VesselField& field, double cube, doub
 
 // Cubes as large as the widest vessel allows: the thinnest vessel's cubes, doubled repeatedly.
 GradedLattice lattice_around(const VesselField& field, Index start) {
-  const Centerline& centerline = field.centerline();
+  const Centerline& centerline = field.relations().centerline();
   double thinnest = std::numeric_limits<double>::infinity(), widest = 0;
   for (const auto& node : centerline.nodes()) {
     thinnest = std::min(thinnest, node.radius);
@@ -82,7 +83,7 @@ void fill(BoundSurface& surface, const LatticeSurface& lattice) {
 }
 
 LatticeSurface grow_lattice(const VesselField& field) {
-  const Centerline& centerline = field.centerline();
+  const Centerline& centerline = field.relations().centerline();
   const Index start = widest_node(centerline);
   const Index hint = centerline.degree(start) > 0 ? centerline.incident_segments(start)[0] : 0;
   return grow_in_lattice(field, lattice_around(field, start), hint, centerline.cycle_rank());
@@ -97,7 +98,7 @@ JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<Branc
       skeleton_(skeleton),
       junction_(junction),
       options_(options),
-      local_(make_junction_centerline(field.centerline(), axes, junction)),
+      local_(make_junction_centerline(field.relations().centerline(), axes, junction)),
       centerline_(local_.nodes, local_.segments),
       local_field_(centerline_, options.blend),
       lattice_(grow_lattice(local_field_)) {}
@@ -168,8 +169,8 @@ void JunctionGrowth::move_onto_boundary(DiscCutter& cutter, const std::vector<In
 // The cone of the whole field that a cone of the junction's field is part of.
 Index JunctionGrowth::original_cone(Index cone) const {
   if (local_.origins.empty()) {
-    Index ball = static_cast<Index>(field_.centerline().segments().size());
-    while (field_.first_node(ball) != junction_.nodes.front()) ++ball;
+    Index ball = static_cast<Index>(field_.relations().centerline().segments().size());
+    while (field_.relations().first_node(ball) != junction_.nodes.front()) ++ball;
     return ball;
   }
   const auto& origin = local_.origins[cone];

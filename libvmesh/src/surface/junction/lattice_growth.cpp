@@ -66,7 +66,7 @@ class LatticeGrowth {
     } else {
       const FieldSample s = field_.sample_fast(p, points_[from].cone);
       point.distance = s.distance;
-      point.radius = field_.radius_at(s.cone, s.t);
+      point.radius = field_.relations().radius_at(s.cone, s.t);
       point.cone = s.cone;
     }
   }

@@ -28,7 +28,7 @@ class Growth {
         field_(surface.field),
         beta_(beta),
         progress_(progress),
-        paths_(surface.field.centerline()),
+        paths_(surface.field.relations().centerline()),
         travelled_(mesh_.add_property_map<Vertex, double>("v:travelled", 0.0).first),
         steps_(mesh_.add_property_map<Vertex, int>("v:steps", 0).first) {}
 
@@ -49,7 +49,7 @@ class Growth {
 
   // One seed per component, at the widest branching node, or the widest node where nothing branches.
   void plant_seeds() {
-    const Centerline& centerline = field_.centerline();
+    const Centerline& centerline = field_.relations().centerline();
     std::vector<Index> widest(centerline.component_count(), kNone);
     const auto rank = [&](Index n) { return std::pair(centerline.degree(n) >= 3, centerline.node(n).radius); };
     for (Index n = 0; n < centerline.nodes().size(); ++n) {
@@ -57,8 +57,8 @@ class Growth {
       if (best == kNone || rank(n) > rank(best)) best = n;
     }
     std::vector<Index> ball_of_node(centerline.nodes().size(), kNone);
-    for (auto c = static_cast<Index>(centerline.segments().size()); c < field_.cone_count(); ++c) {
-      ball_of_node[field_.first_node(c)] = c;
+    for (auto c = static_cast<Index>(centerline.segments().size()); c < field_.relations().cone_count(); ++c) {
+      ball_of_node[field_.relations().first_node(c)] = c;
     }
     for (const Index n : widest) {
       paths_.start_at(n);
@@ -78,7 +78,7 @@ class Growth {
     settled_.clear();
     for (const Vertex v : moving_) {
       const FieldSample here = field_.sample(surface_.position(v), surface_[v].cone);
-      const double radius = field_.radius_at(here.cone, here.t);
+      const double radius = field_.relations().radius_at(here.cone, here.t);
       const bool forced = ++steps_[v] > kMaxSteps;
       if (forced || here.distance >= -kSettledTolerance * radius) {  // outside: the midpoint of an edge over a crotch
         surface_.place_on_boundary(v, surface_.position(v), here.cone);
@@ -130,7 +130,7 @@ class Growth {
     int i = 0;
     for (const Vertex v : mesh_.vertices_around_face(h)) {
       triangle[i++] = surface_.position(v);
-      const auto local = field_.local_cones(surface_[v].cone);
+      const auto local = field_.relations().local_cones(surface_[v].cone);
       candidates_.insert(candidates_.end(), local.begin(), local.end());
     }
     std::sort(candidates_.begin(), candidates_.end());
@@ -139,13 +139,14 @@ class Growth {
                                    (triangle[2] - triangle[0]).squaredNorm()});
     bool ahead = false, behind = false;
     for (const Index s : candidates_) {
-      if (s >= field_.centerline().segments().size() || paths_.direction(s) == 0) continue;
-      const auto crossing = find_crossing(field_.axis_point(s, 0), field_.axis_point(s, 1), triangle);
+      if (s >= field_.relations().centerline().segments().size() || paths_.direction(s) == 0) continue;
+      const auto crossing =
+          find_crossing(field_.relations().axis_point(s, 0), field_.relations().axis_point(s, 1), triangle);
       if (!crossing || crossing->direction != paths_.direction(s)) continue;
-      const double radius = field_.radius_at(s, crossing->t);
+      const double radius = field_.relations().radius_at(s, crossing->t);
       const double depth = paths_.depth(s, crossing->t);
       const double smallest = kSmallestFace * radius;
-      const double allowed = kMaxSplits * (1 + field_.centerline().length(s) / radius);
+      const double allowed = kMaxSplits * (1 + field_.relations().centerline().length(s) / radius);
       if (depth < paths_.reached(s) - kBehind * radius || size2 < smallest * smallest ||
           paths_.crossings(s) > allowed) {
         behind = true;

@@ -117,7 +117,7 @@ class SeamSearch {
       const std::array<Vec3, 3> p = {band.points[f[0]], band.points[f[1]], band.points[f[2]]};
       if (SweepState::elongated_energy(p[0], p[1], p[2], band.metric) >= kSeamEnergy) return false;
       const FieldSample center = field_.sample((p[0] + p[1] + p[2]) / 3, band.cones[f[0]]);
-      const double radius = field_.radius_at(center.cone, center.t);
+      const double radius = field_.relations().radius_at(center.cone, center.t);
       const double before_lift = std::abs(center.distance) + (balanced_ring_radius(options_.around) - 1) * radius;
       if (before_lift > options_.max_center_distance * radius) return false;
       return !options_.max_error.is_set() || is_proven(band, f, radius);

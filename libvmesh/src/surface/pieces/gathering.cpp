@@ -41,7 +41,7 @@ class Gatherer {
         const FieldSample sample = field.sample_fast(p.position, p.sample.cone);
         surface_.mesh.vertices.push_back(p.position);
         surface_.binding.push_back({sample.cone, sample.t});
-        surface_.radius.push_back(field.radius_at(sample.cone, sample.t));
+        surface_.radius.push_back(field.relations().radius_at(sample.cone, sample.t));
       }
     }
   }

@@ -98,7 +98,7 @@ class PartGrower {
       result_.seams.push_back(seam.number);
       for (const BoundaryPoint& p : tubes_.layer().lifted(tubes_.rings(seam.place.branch)[seam.place.ring])) {
         const FieldSample sample = field.sample_fast(p.position, p.sample.cone);
-        add_vertex(p.position, {sample.cone, sample.t}, field.radius_at(sample.cone, sample.t));
+        add_vertex(p.position, {sample.cone, sample.t}, field.relations().radius_at(sample.cone, sample.t));
       }
     }
   }
@@ -138,7 +138,7 @@ class PartGrower {
 PartSurface grow_part(const SurfacePart& part, int threads, const Progress& progress) {
   require(!part.pieces.empty(), "it has no pieces");
   check_branches(part);
-  const Centerline centerline = part.field.centerline();
+  const Centerline centerline = part.field.relations().centerline();
   const VesselField field(centerline, part.field);
   PartSurface surface;
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);

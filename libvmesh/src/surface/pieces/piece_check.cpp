@@ -49,14 +49,14 @@ void find_bad_faces(const SweepState& state, PieceFindings& findings) {
 void find_nodes_outside(const BoundSurface& surface, const TriMesh& mesh, const std::vector<Index>& nodes,
                         std::vector<PieceFault>& faults) {
   std::vector<Vec3> positions;
-  for (const Index n : nodes) positions.push_back(surface.field.centerline().node(n).position);
+  for (const Index n : nodes) positions.push_back(surface.field.relations().centerline().node(n).position);
   if (positions.empty()) return;
   const std::vector<bool> inside = points_inside(mesh, positions);
   for (std::size_t i = 0; i < inside.size(); ++i) {
     if (inside[i]) continue;
-    const auto segments = surface.field.centerline().incident_segments(nodes[i]);
+    const auto segments = surface.field.relations().centerline().incident_segments(nodes[i]);
     const bool overlap = !segments.empty() && is_covered(surface.field, positions[i], segments.front());
-    const double radius = surface.field.centerline().node(nodes[i]).radius;
+    const double radius = surface.field.relations().centerline().node(nodes[i]).radius;
     faults.push_back({DefectKind::node_outside, positions[i], radius, overlap});
   }
 }
@@ -64,7 +64,7 @@ void find_nodes_outside(const BoundSurface& surface, const TriMesh& mesh, const 
 }  // namespace
 
 bool is_covered(const VesselField& field, const Vec3& p, Index cone) {
-  return field.distance_to_others(p, cone, 0) < -kCovered * field.radius_at(cone, 0.5);
+  return field.distance_to_others(p, cone, 0) < -kCovered * field.relations().radius_at(cone, 0.5);
 }
 
 PieceFindings check_piece(BoundSurface& surface, const std::vector<Index>& nodes, const GenerateOptions& options,

@@ -27,7 +27,7 @@ using FinishedMesh = EditMesh<FinishedVertex>;
 
 inline FinishedVertex finished_vertex(const BoundaryPoint& at, const VesselField& field) {
   const FieldSample& sample = at.sample;
-  return {at.position, {sample.cone, sample.t}, field.radius_at(sample.cone, sample.t)};
+  return {at.position, {sample.cone, sample.t}, field.relations().radius_at(sample.cone, sample.t)};
 }
 
 /// To change a finished surface.

@@ -108,7 +108,9 @@ std::optional<KeptProof::Outlook> KeptProof::after(const SurfaceStep& step) cons
 }
 
 Corner KeptProof::corner_after(const SurfaceStep& step, Vertex v) const {
-  const auto position = [&](Vertex x) -> const Vec3& { return x == step.vertex ? step.target.position : state_.point(x); };
+  const auto position = [&](Vertex x) -> const Vec3& {
+    return x == step.vertex ? step.target.position : state_.point(x);
+  };
   Vec3 normal = Vec3::Zero();
   for (const FaceCorners& f : step.faces) {
     if (!has(f, v)) continue;
@@ -120,7 +122,7 @@ Corner KeptProof::corner_after(const SurfaceStep& step, Vertex v) const {
   normal.normalize();
   if (v != step.vertex) return {state_.point(v), normal, corner_[v.idx()].limit, corner_[v.idx()].cone};
   const FieldSample& s = step.target.sample;
-  return {step.target.position, normal, limit_.at(state_.field.radius_at(s.cone, s.t)), s.cone};
+  return {step.target.position, normal, limit_.at(state_.field.relations().radius_at(s.cone, s.t)), s.cone};
 }
 
 bool KeptProof::Surroundings::are_even() const {

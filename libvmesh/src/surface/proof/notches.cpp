@@ -55,7 +55,7 @@ class Gaps {
 
   Walls walls_at(const Vec3& p, const Vec3& across, Index hint) const {
     Walls walls;
-    for (const Index cone : field_.local_cones(field_.sample(p, hint).cone)) {
+    for (const Index cone : field_.relations().local_cones(field_.sample(p, hint).cone)) {
       const FieldSample s = field_.sample_cone(p, cone);
       const bool first = s.gradient.dot(across) > 0;
       double& least = first ? walls.first : walls.second;
@@ -142,7 +142,9 @@ class Closing {
   const Vec3& point(Index v) const { return mesh_.position(v); }
   Vec3 middle_of(const MeshEdge& e) const { return 0.5 * (point(e.a) + point(e.b)); }
   double length(const MeshEdge& e) const { return (point(e.a) - point(e.b)).norm(); }
-  double limit_at(const MeshEdge& e) const { return limit_.at(std::min(mesh_.vertex(e.a).radius, mesh_.vertex(e.b).radius)); }
+  double limit_at(const MeshEdge& e) const {
+    return limit_.at(std::min(mesh_.vertex(e.a).radius, mesh_.vertex(e.b).radius));
+  }
 
   // Longest first.
   std::vector<MeshEdge> edges_of(const std::vector<Index>& faces) const {
@@ -204,11 +206,11 @@ class Closing {
       const auto end = end_from(point(v), *crossing, kFilled);
       if (!end) continue;
       const double way = (end->position - point(v)).norm();
-      if (way > way_.least_move * crossing->limit && way < crossing->limit) steps.push_back(mesh_.moving(v, finished_vertex(*end, field_)));
+      if (way > way_.least_move * crossing->limit && way < crossing->limit)
+        steps.push_back(mesh_.moving(v, finished_vertex(*end, field_)));
     }
     if (mesh_.may_collapse(e))
-      steps.push_back(
-          mesh_.collapsing(e.a, e.b, finished_vertex(*end_from(middle_of(e), *crossing, kFilled), field_)));
+      steps.push_back(mesh_.collapsing(e.a, e.b, finished_vertex(*end_from(middle_of(e), *crossing, kFilled), field_)));
     const Index placed = edit_->take_best(steps, worst);
     if (placed != kNone) across_[placed] = crossing->across;
     return placed != kNone;

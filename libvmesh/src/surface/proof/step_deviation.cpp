@@ -42,7 +42,7 @@ void StepDeviation::visit_samples(Samples which, const SurfaceStep& step, Visit&
   const BoundSurface& surface = state_.surface;
   const VesselField& field = state_.field;
   const Vec3& p = step.target.position;
-  const double radius = field.radius_at(step.target.sample.cone, step.target.sample.t);
+  const double radius = field.relations().radius_at(step.target.sample.cone, step.target.sample.t);
   std::vector<Sector> sectors;
   double area = 0;
   for (const FaceCorners& f : step.faces) {
@@ -98,13 +98,14 @@ void StepDeviation::place(SurfaceStep& step, const Vec3& p, Index hint, double s
     move_by(std::min(1.0, reach_of(step) / move.norm()) * move);
   }
   const FieldSample& sample = step.target.sample;
-  const double excess = std::abs(sample.distance) - share * most(state_.field.radius_at(sample.cone, sample.t));
+  const double excess =
+      std::abs(sample.distance) - share * most(state_.field.relations().radius_at(sample.cone, sample.t));
   if (excess > 0) move_by(-std::copysign(excess, sample.distance) * sample.gradient.normalized());
 }
 
 // A step of Gauss and Newton.
 Vec3 StepDeviation::least_squares_move(const SurfaceStep& step) const {
-  const double radius = state_.field.radius_at(step.target.sample.cone, step.target.sample.t);
+  const double radius = state_.field.relations().radius_at(step.target.sample.cone, step.target.sample.t);
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Vec3 product = Vec3::Zero();
   double total = 0;

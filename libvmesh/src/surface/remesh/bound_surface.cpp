@@ -29,7 +29,7 @@ BoundaryPoint project_to_boundary(const VesselField& field, BoundaryPoint point,
   for (int step = 0; step < kMaxProjectionSteps; ++step) {
     const FieldSample& s = point.sample;
     const double off = s.distance - lift;
-    if (std::abs(off) <= tolerance * field.radius_at(s.cone, s.t)) break;
+    if (std::abs(off) <= tolerance * field.relations().radius_at(s.cone, s.t)) break;
     const double slope2 = s.gradient.squaredNorm();
     if (slope2 < 0.01) break;  // on an axis, or in the valley between two blended cones: no direction to follow
     point.position -= off / slope2 * s.gradient;
@@ -118,7 +118,7 @@ void BoundSurface::update_elongation() {
 void BoundSurface::guard_crossings(Axes kept) {
   std::vector<Index> cones;
   if (kept == Axes::all) {
-    cones.resize(field.centerline().segments().size());
+    cones.resize(field.relations().centerline().segments().size());
     std::iota(cones.begin(), cones.end(), Index{0});
   } else {
     for (const Vertex v : mesh.vertices()) cones.push_back(vertex_[v].cone);
@@ -127,7 +127,7 @@ void BoundSurface::guard_crossings(Axes kept) {
   }
   std::vector<CrossingGuard::AxisLine> axes;
   for (const Index c : cones) {
-    const Vec3 from = field.axis_point(c, 0), to = field.axis_point(c, 1);
+    const Vec3 from = field.relations().axis_point(c, 0), to = field.relations().axis_point(c, 1);
     if (from != to) axes.push_back({from, to});
   }
   guard_ = std::make_unique<CrossingGuard>(

@@ -126,7 +126,7 @@ class BoundSurface {
     const BoundVertex& at = vertex_[v];
     return {at.distance, at.gradient, at.cone, at.t};
   }
-  double radius(Vertex v) const { return field.radius_at(vertex_[v].cone, vertex_[v].t); }
+  double radius(Vertex v) const { return field.relations().radius_at(vertex_[v].cone, vertex_[v].t); }
 
   /// Places `v` at `p`, bound as `sample` says.
   void place(Vertex v, const Vec3& p, const FieldSample& sample);

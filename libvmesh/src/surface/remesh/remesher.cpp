@@ -157,7 +157,7 @@ void Remesher::split_far_faces(double max_distance) {
     if (std::count_if(corner.begin(), corner.end(), [&](Vertex v) { return surface_.held(v); }) > 1) continue;
     const Vec3 center = (state_.point(corner[0]) + state_.point(corner[1]) + state_.point(corner[2])) / 3;
     const FieldSample s = field_.sample_fast(center, surface_[corner[0]].cone);
-    if (std::abs(s.distance) <= max_distance * field_.radius_at(s.cone, s.t)) continue;
+    if (std::abs(s.distance) <= max_distance * field_.relations().radius_at(s.cone, s.t)) continue;
     double longest = 0, target = 0;
     for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
       longest = std::max(longest, state_.length(mesh_.edge(h)));

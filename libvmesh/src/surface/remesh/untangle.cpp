@@ -11,7 +11,7 @@ constexpr int kPasses = 5;          // safe 4 to 7
 
 bool neighbours(const BoundSurface& surface, const Triangle& f, const Triangle& g) {
   for (const Index v : f) {
-    const auto local = surface.field.local_cones(surface[Vertex(v)].cone);
+    const auto local = surface.field.relations().local_cones(surface[Vertex(v)].cone);
     for (const Index w : g) {
       if (std::binary_search(local.begin(), local.end(), surface[Vertex(w)].cone)) return true;
     }

@@ -243,13 +243,13 @@ class SkeletonMaker {
 }  // namespace
 
 VesselAxes::VesselAxes(const VesselField& field, const RingOptions& rings)
-    : VesselAxes(field, rings, find_branches(field.centerline())) {}
+    : VesselAxes(field, rings, find_branches(field.relations().centerline())) {}
 
 VesselAxes::VesselAxes(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches)
     : field_(field),
       branches_(std::move(branches)),
-      axes_(axes_of(field.centerline(), branches_)),
-      places_(places_of(field.centerline(), branches_)),
+      axes_(axes_of(field.relations().centerline(), branches_)),
+      places_(places_of(field.relations().centerline(), branches_)),
       layer_(field, axes_, places_, rings) {}
 
 VesselTubes::VesselTubes(const VesselField& field, const RingOptions& rings)

@@ -19,7 +19,7 @@ class VesselAxes {
   VesselAxes& operator=(const VesselAxes&) = delete;
 
   const VesselField& field() const { return field_; }
-  const Centerline& centerline() const { return field_.centerline(); }
+  const Centerline& centerline() const { return field_.relations().centerline(); }
   const std::vector<Branch>& branches() const { return branches_; }
   const std::vector<BranchAxis>& axes() const { return axes_; }
   const RingLayer& layer() const { return layer_; }

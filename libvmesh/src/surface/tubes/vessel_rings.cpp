@@ -230,7 +230,7 @@ void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings, bool loop) co
 
 // Direction from which angles are counted. It rotates with the centerline unless that is straight throughout.
 Vec3 RingLayer::reference(Index branch, const Vec3& normal) const {
-  const Centerline& centerline = field_.centerline();
+  const Centerline& centerline = field_.relations().centerline();
   const auto& nodes = axes_[branch].branch().nodes;
   Vec3 best = kStraight * normal.unitOrthogonal();
   const auto offer = [&](const Vec3& way) {
@@ -292,7 +292,7 @@ bool RingLayer::is_own(Index branch, const CrossSection& section, const FieldSam
   const SegmentPlace at = places_[sample.cone];
   if (at.branch != branch) return false;
   const BranchAxis& axis = axes_[branch];
-  const double radius = std::max(section.radius, field_.radius_at(sample.cone, sample.t));
+  const double radius = std::max(section.radius, field_.relations().radius_at(sample.cone, sample.t));
   return axis.apart(axis.place_of(at.nth, sample.t), section.place) <= kOwnReach * radius;
 }
 
