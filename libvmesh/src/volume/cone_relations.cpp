@@ -7,7 +7,7 @@
 #include "vmesh/core/error.h"
 #include "vmesh/volume/field_excerpt.h"
 
-#include "volume/sight_regions.h"
+#include "volume/segment_locality_regions.h"
 
 namespace vmesh {
 
@@ -37,11 +37,11 @@ void ConeRelations::measure_runs() {
 }
 
 void ConeRelations::find_local_cones() {
-  auto [local, parting, apart, rounding] = sight_by_regions(*centerline_, blend_);
+  auto [local, parting, apart, rounding] = segment_locality_by_regions(*centerline_, blend_);
 
   local_offsets_.assign(cone_count() + 1, 0);
   for (std::size_t c = 0; c < cone_count(); ++c) ++local_offsets_[c + 1];
-  for (const SightPairs::Pairs* pairs : {&local, &parting}) {
+  for (const LocalityPairs::Pairs* pairs : {&local, &parting}) {
     for (const auto& [i, j] : *pairs) {
       ++local_offsets_[i + 1];
       ++local_offsets_[j + 1];
@@ -49,7 +49,7 @@ void ConeRelations::find_local_cones() {
   }
   std::partial_sum(local_offsets_.begin(), local_offsets_.end(), local_offsets_.begin());
   std::vector<Index> next(local_offsets_.begin(), local_offsets_.end() - 1);
-  const auto fill = [&](const SightPairs::Pairs& pairs, std::vector<Index>& lists) {
+  const auto fill = [&](const LocalityPairs::Pairs& pairs, std::vector<Index>& lists) {
     for (const auto& [i, j] : pairs) {
       lists[next[i]++] = j;
       lists[next[j]++] = i;

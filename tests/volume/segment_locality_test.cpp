@@ -40,10 +40,10 @@ Centerline shallow_fork(double degrees, double length) {
   return tree.build();
 }
 
-TEST(Sight, ReachesAsFarAsTheBlend) {
+TEST(SegmentLocality, ReachesAsFarAsTheBlend) {
   constexpr double kAngle = 4;
   const Centerline centerline = shallow_fork(kAngle, 60);
-  // Beyond the default blend it is as without: see sight.cpp.
+  // Beyond the default blend it is as without: see segment_locality.cpp.
   for (const auto& [blend, reach] : {std::pair(0.0, 0.5), {0.2, 0.5}, {0.4, 0.8}, {0.5, 1.0}, {0.6, 0.5}, {2.0, 0.5}}) {
     const VesselField field(centerline, blend);
     EXPECT_EQ(least_rounding(field), 1);
@@ -95,7 +95,7 @@ Mouth mouth_of(const VesselField& field) {
   return mouth;
 }
 
-TEST(Sight, LeavesWallsApartThatMeetAgain) {
+TEST(SegmentLocality, LeavesWallsApartThatMeetAgain) {
   for (const double gap : {0.45, 0.5}) {
     const Centerline centerline = open_ring(gap);
     const VesselField field(centerline, 0.5);
@@ -109,7 +109,7 @@ TEST(Sight, LeavesWallsApartThatMeetAgain) {
   }
 }
 
-TEST(Sight, EndsBeforeWallsThatMeetAgainClosely) {
+TEST(SegmentLocality, EndsBeforeWallsThatMeetAgainClosely) {
   const Centerline centerline = open_ring(0.15);
   const VesselField field(centerline, 0.5);
   const Mouth mouth = mouth_of(field);
@@ -155,7 +155,7 @@ double steepest_way(const VesselField& field, Draw& draw) {
   return steepest;
 }
 
-TEST(Sight, EndsWithoutAStep) {
+TEST(SegmentLocality, EndsWithoutAStep) {
   Draw draw(6);
   for (const double degrees : {8.0, 15.0, 30.0, 45.0}) {
     const Centerline centerline = shallow_fork(degrees, 3.5 / (2 * std::sin(degrees / 2 * std::numbers::pi / 180)));
@@ -175,7 +175,7 @@ Centerline twig_between_thick_ones() {
           {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}}};
 }
 
-TEST(Sight, OfATwigDoesNotJoinWhatIsNotLocal) {
+TEST(SegmentLocality, OfATwigDoesNotJoinWhatIsNotLocal) {
   const Centerline centerline = twig_between_thick_ones();
   const VesselField field(centerline, 0.5);
   ASSERT_TRUE(sees(field, 2, 1) && sees(field, 2, 3));

@@ -10,7 +10,7 @@ namespace vmesh {
 
 /// Which segments are local to each other, and how much of the blend is left to them, so that the boundary has no step
 /// where locality ends.
-struct Sight {
+struct SegmentLocality {
   PairSet local;  ///< pairs that count as one volume
   /// Pairs that are no longer one volume, but whose blend still spans the space between their walls.
   PairSet parting;
@@ -23,11 +23,11 @@ struct Sight {
   std::vector<double> rounding;
 };
 
-Sight sight_between_segments(const Centerline& centerline, double blend);
+SegmentLocality segment_locality(const Centerline& centerline, double blend);
 
 /// The same with the shares right at gaps only, before they grow back along the graph.
-Sight sight_before_return(const Centerline& centerline, double blend);
+SegmentLocality segment_locality_at_gaps(const Centerline& centerline, double blend);
 /// Shares of nodes, grown along the graph from where they are less than 1; empty if they are 1 everywhere.
-std::vector<double> returning(const Centerline& centerline, std::vector<double> share);
+std::vector<double> grow_shares(const Centerline& centerline, std::vector<double> share);
 
 }  // namespace vmesh

@@ -1,4 +1,4 @@
-#include "volume/sight_regions.h"
+#include "volume/segment_locality_regions.h"
 
 #include <algorithm>
 
@@ -13,8 +13,8 @@ namespace {
 
 // Cosine of the angle by which a vessel may deviate from its direction at a border, and the share by which radii may
 // differ there: then spheres between two that face each other do so as well. Compared with locality found at once, the
-// same in 6,000 comparisons each (SightByRegions, 1,000 random seeds) from 0.56 to 0.95 and from 0.28 to 0.56, and with
-// both at their loosest.
+// same in 6,000 comparisons each (SegmentLocalityByRegions, 1,000 random seeds) from 0.56 to 0.95 and from 0.28 to
+// 0.56, and with both at their loosest.
 constexpr double kStraight = 0.8, kEven = 0.4;
 
 // Finds the nodes at which cells end: their spheres face only those of their own vessel right before and after. Pairs
@@ -180,12 +180,12 @@ class Cells {
   std::vector<std::vector<Index>> regions_;   // the cells of every region
 };
 
-struct RegionSight {
-  SightPairs pairs;
+struct RegionLocality {
+  LocalityPairs pairs;
   std::vector<std::pair<Index, double>> shares;  // of nodes right at gaps
 };
 
-RegionSight sight_of_region(const Centerline& centerline, double blend, const Cells& cells, std::size_t region) {
+RegionLocality locality_of_region(const Centerline& centerline, double blend, const Cells& cells, std::size_t region) {
   const std::vector<Index> segments = cells.segments_around(region);
   std::vector<Index> nodes;
   for (const Index s : segments) nodes.insert(nodes.end(), {centerline.segment(s).a, centerline.segment(s).b});
@@ -195,43 +195,47 @@ RegionSight sight_of_region(const Centerline& centerline, double blend, const Ce
   for (const Index n : nodes) part_nodes.push_back(centerline.node(n));
   for (const Index s : segments)
     part_segments.push_back({place_in(nodes, centerline.segment(s).a), place_in(nodes, centerline.segment(s).b)});
-  const Sight sight = sight_before_return({std::move(part_nodes), std::move(part_segments)}, blend);
-  RegionSight result;
-  const auto keep_own = [&](const PairSet& from, SightPairs::Pairs& to) {
+  const SegmentLocality locality = segment_locality_at_gaps({std::move(part_nodes), std::move(part_segments)}, blend);
+  RegionLocality result;
+  const auto keep_own = [&](const PairSet& from, LocalityPairs::Pairs& to) {
     for (const auto& [i, j] : from.pairs()) {
       if (cells.region_of(segments[i]) == region) to.emplace_back(segments[i], segments[j]);
     }
   };
-  keep_own(sight.local, result.pairs.local);
-  keep_own(sight.parting, result.pairs.parting);
-  for (const auto& [i, j] : sight.apart.pairs()) result.pairs.apart.emplace_back(segments[i], segments[j]);
-  for (Index n = 0; n < sight.rounding.size(); ++n) {
-    if (sight.rounding[n] < 1) result.shares.emplace_back(nodes[n], sight.rounding[n]);
+  keep_own(locality.local, result.pairs.local);
+  keep_own(locality.parting, result.pairs.parting);
+  for (const auto& [i, j] : locality.apart.pairs()) result.pairs.apart.emplace_back(segments[i], segments[j]);
+  for (Index n = 0; n < locality.rounding.size(); ++n) {
+    if (locality.rounding[n] < 1) result.shares.emplace_back(nodes[n], locality.rounding[n]);
   }
   return result;
 }
 
-SightPairs listed(const Sight& sight) {
-  const auto list = [](const PairSet& pairs) { return SightPairs::Pairs(pairs.pairs().begin(), pairs.pairs().end()); };
-  return {list(sight.local), list(sight.parting), list(sight.apart), sight.rounding};
+LocalityPairs listed(const SegmentLocality& locality) {
+  const auto list = [](const PairSet& pairs) {
+    return LocalityPairs::Pairs(pairs.pairs().begin(), pairs.pairs().end());
+  };
+  return {list(locality.local), list(locality.parting), list(locality.apart), locality.rounding};
 }
 
-void append(const SightPairs::Pairs& from, SightPairs::Pairs& to) { to.insert(to.end(), from.begin(), from.end()); }
+void append(const LocalityPairs::Pairs& from, LocalityPairs::Pairs& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
 
 }  // namespace
 
-SightPairs sight_by_regions(const Centerline& centerline, double blend, std::size_t region_size) {
-  if (centerline.segments().size() < 2 * region_size) return listed(sight_between_segments(centerline, blend));
-  std::vector<RegionSight> regions;
+LocalityPairs segment_locality_by_regions(const Centerline& centerline, double blend, std::size_t region_size) {
+  if (centerline.segments().size() < 2 * region_size) return listed(segment_locality(centerline, blend));
+  std::vector<RegionLocality> regions;
   {
     const Cells cells(centerline, blend, region_size);
     regions.resize(cells.region_count());
     tbb::parallel_for(std::size_t{0}, regions.size(),
-                      [&](std::size_t r) { regions[r] = sight_of_region(centerline, blend, cells, r); });
+                      [&](std::size_t r) { regions[r] = locality_of_region(centerline, blend, cells, r); });
   }
-  SightPairs whole;
+  LocalityPairs whole;
   std::vector<double> share(centerline.nodes().size(), 1);
-  for (RegionSight& region : regions) {
+  for (RegionLocality& region : regions) {
     append(region.pairs.local, whole.local);
     append(region.pairs.parting, whole.parting);
     append(region.pairs.apart, whole.apart);
@@ -239,7 +243,7 @@ SightPairs sight_by_regions(const Centerline& centerline, double blend, std::siz
     region = {};
   }
   sort_unique(whole.apart);  // pairs at borders are in two regions
-  whole.rounding = returning(centerline, std::move(share));
+  whole.rounding = grow_shares(centerline, std::move(share));
   return whole;
 }
 

@@ -1,4 +1,4 @@
-#include "volume/sight.h"
+#include "volume/segment_locality.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -27,13 +27,13 @@ constexpr double kMostBlend = 0.5;
 constexpr double kSpare = 0.9;
 // Growth of the blend's share per mean radius along the graph. With 1, errors at creases next to turns are harder to
 // prove.
-constexpr double kReturn = 0.25;  // safe 0.17 to 0.35
+constexpr double kShareGrowth = 0.25;  // safe 0.17 to 0.35
 
 // Pairs of spheres that face each other across a gap, around those that have come near again. Between these and the
 // place where the vessels part, the gap has a maximum, which divides the pairs between the two.
-class Meetings {
+class GapPairs {
  public:
-  Meetings(const Centerline& centerline, const SphereChain& chain, const PairSet& touching, const PairSet& local,
+  GapPairs(const Centerline& centerline, const SphereChain& chain, const PairSet& touching, const PairSet& local,
            const Touch& wide)
       : chain_(chain), touching_(touching), wide_(wide), local_of_(centerline.segments().size()) {
     for (const auto& [i, j] : local.pairs()) {
@@ -42,8 +42,8 @@ class Meetings {
     }
   }
 
-  void find(const PairSet& met_again) {
-    for (const auto& [p, q] : met_again.pairs()) note(p, q);
+  void find(const PairSet& near_again) {
+    for (const auto& [p, q] : near_again.pairs()) note(p, q);
     for (std::size_t n = 0; n < facing_.size(); ++n)
       chain_.visit_next_pairs(facing_[n].p, facing_[n].q, [this](Index p, Index q) { note(p, q); });
     divide();
@@ -188,16 +188,16 @@ class Rounding {
 
 // Pairs of spheres reached from touching ones through pairs in touch only in the wider sense, and those of them that
 // are near again.
-class Beyond {
+class WidePairs {
  public:
-  Beyond(const SphereChain& chain, const Touch& wide) : chain_(chain), wide_(wide) {}
+  WidePairs(const SphereChain& chain, const Touch& wide) : chain_(chain), wide_(wide) {}
 
   /// A pair that is not in touch, next to one that is.
   void note(Index p, Index q) {
     if (!chain_.touch(p, q, wide_)) return;
-    (chain_.touch(p, q, kNearAgain) ? met_again_ : parting_).insert(p, q);
+    (chain_.touch(p, q, kNearAgain) ? near_again_ : parting_).insert(p, q);
   }
-  void look_on(const PairSet& touching) {
+  void extend(const PairSet& touching) {
     for (std::size_t n = 0; n < parting_.pairs().size(); ++n) {
       const auto [p, q] = parting_.pairs()[n];
       chain_.visit_next_pairs(p, q, [&](Index next_p, Index next_q) {
@@ -206,12 +206,12 @@ class Beyond {
     }
   }
   const PairSet& parting() const { return parting_; }
-  const PairSet& met_again() const { return met_again_; }
+  const PairSet& near_again() const { return near_again_; }
 
  private:
   const SphereChain& chain_;
   const Touch& wide_;
-  PairSet parting_, met_again_;
+  PairSet parting_, near_again_;
 };
 
 // Calls visit(i, j) for the pairs of segments whose boxes, grown by half the widest gap of `wide`, overlap.
@@ -239,34 +239,36 @@ bool are_near(const SphereChain& chain, Index i, Index j, const Touch& wide) {
 // Segments that are not local to each other but both local to a third, as where two thick ones come close along a thin
 // one between them: in the third's queries they must not be blended either, or the boundary would have a step where
 // locality ends.
-void keep_strangers_apart(const Centerline& centerline, const SphereChain& chain, const Touch& wide, Sight& sight) {
-  std::vector<std::pair<Index, Index>> strangers;
+void part_unrelated_segments(const Centerline& centerline, const SphereChain& chain, const Touch& wide,
+                             SegmentLocality& locality) {
+  std::vector<std::pair<Index, Index>> unrelated;
   visit_near(centerline, wide, [&](Index i, Index j) {
-    const bool known = sight.local.contains(i, j) || sight.parting.contains(i, j) || sight.apart.contains(i, j);
-    if (!known && are_near(chain, i, j, wide)) strangers.emplace_back(i, j);
+    const bool known =
+        locality.local.contains(i, j) || locality.parting.contains(i, j) || locality.apart.contains(i, j);
+    if (!known && are_near(chain, i, j, wide)) unrelated.emplace_back(i, j);
   });
-  if (strangers.empty()) return;
-  std::vector<char> is_stranger(centerline.segments().size(), 0);
-  for (const auto& [i, j] : strangers) is_stranger[i] = is_stranger[j] = 1;
-  std::vector<std::vector<Index>> seen(is_stranger.size());
-  for (const PairSet* pairs : {&sight.local, &sight.parting}) {
+  if (unrelated.empty()) return;
+  std::vector<char> is_unrelated(centerline.segments().size(), 0);
+  for (const auto& [i, j] : unrelated) is_unrelated[i] = is_unrelated[j] = 1;
+  std::vector<std::vector<Index>> local(is_unrelated.size());
+  for (const PairSet* pairs : {&locality.local, &locality.parting}) {
     for (const auto& [i, j] : pairs->pairs()) {
-      if (is_stranger[i]) seen[i].push_back(j);
-      if (is_stranger[j]) seen[j].push_back(i);
+      if (is_unrelated[i]) local[i].push_back(j);
+      if (is_unrelated[j]) local[j].push_back(i);
     }
   }
-  for (auto& row : seen) std::sort(row.begin(), row.end());
-  for (const auto& [i, j] : strangers) {
-    const std::vector<Index>& others = seen[j];
+  for (auto& row : local) std::sort(row.begin(), row.end());
+  for (const auto& [i, j] : unrelated) {
+    const std::vector<Index>& others = local[j];
     const bool meet =
-        std::ranges::any_of(seen[i], [&](Index c) { return std::binary_search(others.begin(), others.end(), c); });
-    if (meet) sight.apart.insert(i, j);
+        std::ranges::any_of(local[i], [&](Index c) { return std::binary_search(others.begin(), others.end(), c); });
+    if (meet) locality.apart.insert(i, j);
   }
 }
 
 }  // namespace
 
-std::vector<double> returning(const Centerline& centerline, std::vector<double> share) {
+std::vector<double> grow_shares(const Centerline& centerline, std::vector<double> share) {
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   for (Index n = 0; n < share.size(); ++n) {
@@ -279,7 +281,7 @@ std::vector<double> returning(const Centerline& centerline, std::vector<double> 
     if (least > share[n]) continue;
     for (const Index s : centerline.incident_segments(n)) {
       const Index other = centerline.segment(s).a == n ? centerline.segment(s).b : centerline.segment(s).a;
-      const double reached = least + kReturn * centerline.length(s) / centerline.radius_at(s, 0.5);
+      const double reached = least + kShareGrowth * centerline.length(s) / centerline.radius_at(s, 0.5);
       if (reached >= share[other]) continue;
       share[other] = reached;
       open.emplace(reached, other);
@@ -288,48 +290,48 @@ std::vector<double> returning(const Centerline& centerline, std::vector<double> 
   return share;
 }
 
-Sight sight_between_segments(const Centerline& centerline, double blend) {
-  Sight sight = sight_before_return(centerline, blend);
-  sight.rounding = returning(centerline, std::move(sight.rounding));
-  return sight;
+SegmentLocality segment_locality(const Centerline& centerline, double blend) {
+  SegmentLocality locality = segment_locality_at_gaps(centerline, blend);
+  locality.rounding = grow_shares(centerline, std::move(locality.rounding));
+  return locality;
 }
 
-Sight sight_before_return(const Centerline& centerline, double blend) {
+SegmentLocality segment_locality_at_gaps(const Centerline& centerline, double blend) {
   const SphereChain chain(centerline);
   const Touch wide{kReach * blend, kOneVolume.larger};
-  const bool sees_beyond = wide.smaller > kOneVolume.smaller && blend <= kMostBlend;
-  Beyond beyond(chain, wide);
+  const bool has_wide_pairs = wide.smaller > kOneVolume.smaller && blend <= kMostBlend;
+  WidePairs wide_pairs(chain, wide);
   const PairSet touching = pairs_in_touch(chain, kOneVolume, [&](Index p, Index q) {
-    if (sees_beyond) beyond.note(p, q);
+    if (has_wide_pairs) wide_pairs.note(p, q);
   });
-  Sight sight;
-  sight.local = local_segments(chain, touching);
-  if (!sees_beyond) return sight;
+  SegmentLocality locality;
+  locality.local = local_segments(chain, touching);
+  if (!has_wide_pairs) return locality;
 
-  beyond.look_on(touching);
-  const PairSet &parting = beyond.parting(), &met_again = beyond.met_again();
-  SegmentPairs seen(chain), apart(chain);
-  seen.join_all(parting);
-  apart.join_all(met_again);
+  wide_pairs.extend(touching);
+  const PairSet &parting = wide_pairs.parting(), &near_again = wide_pairs.near_again();
+  SegmentPairs near_gaps(chain), apart(chain);
+  near_gaps.join_all(parting);
+  apart.join_all(near_again);
   Rounding rounding(centerline, chain, blend);
   for (const auto& [p, q] : parting.pairs()) {
     if (chain.touch(p, q, kOneVolume)) rounding.keep_gap_open(p, q);
   }
-  if (!met_again.pairs().empty()) {
-    Meetings meetings(centerline, chain, touching, sight.local, wide);
-    meetings.find(met_again);
-    meetings.visit_apart([&](Index p, Index q) { apart.join(p, q); });
-    meetings.visit_border([&](Index p, Index q) { rounding.end_before_gap(p, q); });
+  if (!near_again.pairs().empty()) {
+    GapPairs gap_pairs(centerline, chain, touching, locality.local, wide);
+    gap_pairs.find(near_again);
+    gap_pairs.visit_apart([&](Index p, Index q) { apart.join(p, q); });
+    gap_pairs.visit_border([&](Index p, Index q) { rounding.end_before_gap(p, q); });
   }
-  sight.rounding = rounding.take();
+  locality.rounding = rounding.take();
   for (const auto& [i, j] : apart.pairs().pairs()) {
-    if (!sight.local.contains(i, j)) sight.apart.insert(i, j);
+    if (!locality.local.contains(i, j)) locality.apart.insert(i, j);
   }
-  for (const auto& [i, j] : seen.pairs().pairs()) {
-    if (!sight.local.contains(i, j) && !sight.apart.contains(i, j)) sight.parting.insert(i, j);
+  for (const auto& [i, j] : near_gaps.pairs().pairs()) {
+    if (!locality.local.contains(i, j) && !locality.apart.contains(i, j)) locality.parting.insert(i, j);
   }
-  keep_strangers_apart(centerline, chain, wide, sight);
-  return sight;
+  part_unrelated_segments(centerline, chain, wide, locality);
+  return locality;
 }
 
 }  // namespace vmesh

@@ -1,5 +1,5 @@
 // Locality found region by region is the same as in one go.
-#include "volume/sight_regions.h"
+#include "volume/segment_locality_regions.h"
 
 #include <algorithm>
 
@@ -10,30 +10,30 @@
 namespace vmesh {
 namespace {
 
-SightPairs::Pairs sorted(const PairSet& set) {
-  SightPairs::Pairs pairs(set.pairs().begin(), set.pairs().end());
+LocalityPairs::Pairs sorted(const PairSet& set) {
+  LocalityPairs::Pairs pairs(set.pairs().begin(), set.pairs().end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
-SightPairs::Pairs sorted(SightPairs::Pairs pairs) {
+LocalityPairs::Pairs sorted(LocalityPairs::Pairs pairs) {
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
 // Returns whether there was more than one region.
 bool expect_same_by_regions(const Centerline& centerline, double blend, std::size_t region_size) {
-  const Sight whole = sight_between_segments(centerline, blend);
-  const SightPairs parts = sight_by_regions(centerline, blend, region_size);
+  const SegmentLocality whole = segment_locality(centerline, blend);
+  const LocalityPairs parts = segment_locality_by_regions(centerline, blend, region_size);
   EXPECT_TRUE(sorted(parts.local) == sorted(whole.local));
   EXPECT_TRUE(sorted(parts.parting) == sorted(whole.parting));
   EXPECT_TRUE(sorted(parts.apart) == sorted(whole.apart));
   EXPECT_EQ(parts.rounding, whole.rounding);
   // In one go, pairs come in the order in which they are found.
-  return parts.local != SightPairs::Pairs(whole.local.pairs().begin(), whole.local.pairs().end());
+  return parts.local != LocalityPairs::Pairs(whole.local.pairs().begin(), whole.local.pairs().end());
 }
 
-TEST(SightByRegions, IsThatOfTheWhole) {
+TEST(SegmentLocalityByRegions, IsThatOfTheWhole) {
   int several = 0;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -46,7 +46,7 @@ TEST(SightByRegions, IsThatOfTheWhole) {
 }
 
 // Vessels as far from each other as they are long, one component each: as many regions.
-TEST(SightByRegions, OfSeveralComponents) {
+TEST(SegmentLocalityByRegions, OfSeveralComponents) {
   std::vector<CenterlineNode> nodes;
   std::vector<CenterlineSegment> segments;
   for (std::uint32_t seed = 0; seed < 12; ++seed) {
