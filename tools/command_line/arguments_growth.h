@@ -24,7 +24,7 @@ void for_each_generate_option(Options& options, Visitor visit) {
   visit("--max-center-distance", options.max_center_distance, 0.01, 10.0,
         "split faces whose centre is farther from the wall than this, in local radii");
   visit(kElongationFlag.data(), options.elongation, 1.0, double(kMostElongation),
-        "along vessels, triangles as long as the error allows, at most so many times their even length; 1: even");
+        "along vessels, triangles as long as the error allows, at most this times their even length; 1: even");
   visit("--simplification", options.simplification, 0.0, 1.0,
         "leave out nodes where that changes the vessels by at most this share of what edges across them cut off; 0: "
         "none");

@@ -85,7 +85,7 @@ void add_options(CLI::App& verb, GenerateArguments& arguments) {
       "0.3mm, 10% (of the local radius), or both, separated by a comma")
       .type_name("Xmm|X%");
   verb.add_option("--least-vertices", arguments.production.growth.least_vertices,
-                  "with --elongation: leave out vertices until there are so few; those that are left are where they "
+                  "with --elongation: leave out vertices until this number is left, where they "
                   "reduce the mean error most; with --max-error, only as long as that stays proven; 0: as few as "
                   "--max-error allows")
       ->capture_default_str();

@@ -285,7 +285,7 @@ Raises ReadError, InvalidInput that names file and line, Unsupported.)");
         return std::make_shared<CenterlineObject>(CenterlineObject{synthetic_tree({vertices, seed}), {}, {}, {}});
       },
       py::arg("vertices") = SyntheticTreeOptions().vertices, py::arg("seed") = SyntheticTreeOptions().seed,
-      "A tree like a liver's portal vein, of exactly so many nodes, 2 to 10,000,000. A seed gives the same tree "
+      "A tree like a liver's portal vein, of exactly that number of nodes, 2 to 10,000,000. A seed gives the same tree "
       "always.");
 }
 

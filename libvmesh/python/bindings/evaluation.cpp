@@ -63,7 +63,7 @@ Evaluation evaluate(const TriMesh& mesh, const TriMesh* reference, const Centerl
   return result;
 }
 
-/// Runs `work` on so many threads; 0: all.
+/// Runs `work` on a number of threads; 0: all.
 template <class Work>
 auto on_threads(int threads, const Work& work) {
   if (threads < 0) throw InvalidInput("threads must be >= 0");

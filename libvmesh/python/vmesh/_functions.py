@@ -82,9 +82,9 @@ def generate(
     flow_extension  length of straight extensions at ends that are not round, in radii
     simplification  nodes are left out where that changes the vessels by at most this share of what edges across
                     them cut off anyway, 0 to 1
-    elongation      along vessels, triangles as long as the error allows, at most so many times their even
+    elongation      along vessels, triangles as long as the error allows, at most this times their even
                     length, 1 (even) to 16
-    least_vertices  with an elongation: leave out vertices until there are so few, those that are left where
+    least_vertices  with an elongation: leave out vertices until this number is left, where
                     they reduce the mean error most; with `max_error`, as long as that stays proven
     deformable      for a centerline that is to move: a ring of vertices at every node
     sweeps          of the final optimisation

@@ -39,7 +39,8 @@ class Grower {
       presets_.push_back(row);
       presets_.back().method = row_of(preset);
     }
-    // With so few vertices, the centres of faces are far from the wall: splitting them for that would undo the choice.
+    // With this small number of vertices, the centres of faces are far from the wall: splitting them for that would
+    // undo the choice.
     options.max_center_distance = 1;
     while (too_fine(row, most)) {
       --options.around;

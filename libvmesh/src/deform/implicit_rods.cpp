@@ -9,7 +9,7 @@ namespace {
 /// Relative rounding of the energy's sum of terms.
 constexpr double kEnergyTolerance = 1e-12;
 constexpr int kMostAttempts = 40;
-/// With more than one in so many slots awake, visiting all of them is faster than sorting.
+/// With more than one slot in this number awake, visiting all of them is faster than sorting.
 constexpr std::size_t kMuchAwake = 8;
 
 double sum(const Lanes& lanes) {

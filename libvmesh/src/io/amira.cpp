@@ -254,8 +254,8 @@ class AmiraReader {
     return bytes;
   }
 
-  /// Decodes run lengths: a byte up to 127 repeats the next one so many times; the low 7 bits of a larger one count
-  /// literal bytes.
+  /// Decodes run lengths: a byte up to 127 is the number of times that the next one is repeated; the low 7 bits of a
+  /// larger one count literal bytes.
   std::string run_lengths_undone(std::string_view packed, std::size_t size) const {
     std::string bytes;
     for (std::size_t i = 0; i < packed.size() && bytes.size() < size;) {

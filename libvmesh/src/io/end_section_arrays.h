@@ -11,7 +11,7 @@
 
 namespace vmesh::io {
 
-/// Numbers under a name, so many to a tuple.
+/// Numbers under a name, `components` to a tuple.
 struct FieldArray {
   std::string name;
   int components = 1;

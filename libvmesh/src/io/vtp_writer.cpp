@@ -121,8 +121,8 @@ class VtpFile {
     xml_ += "0\n" + indent + "</Array>\n";
   }
 
-  /// `element`: Verts, Lines or Polys. `corners`: called with a function that takes the numbers of points, so many to
-  /// a cell.
+  /// `element`: Verts, Lines or Polys. `corners`: called with a function that takes the numbers of points,
+  /// `to_a_cell` for each cell.
   template <class Corners>
   void add_cells(const char* element, std::size_t cells, std::size_t to_a_cell, Corners&& corners) {
     open(element);

@@ -11,9 +11,11 @@
 namespace vmesh::skeleton {
 namespace {
 
-// A point of the wall is covered if the vessels' boundary is nearer than this times the radius, or so many voxels.
+// A point of the wall is covered if the vessels' boundary is nearer than this times the radius, or this number of
+// voxels.
 constexpr double kReachRadii = 0.5, kReachVoxels = 1.5;
-constexpr double kCells = 3;  // missed samples in neighbouring cells of so many of their spacings are one region
+constexpr double kCells =
+    3;  // missed samples in neighbouring cells are one region; the cells' size in spacings of samples
 
 /// A point of the wall and how far it is from the vessels' boundary.
 struct Deviation {

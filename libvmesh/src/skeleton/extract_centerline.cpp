@@ -34,7 +34,7 @@ using skeleton::MaskContent;
 using skeleton::VoxelSkeleton;
 
 constexpr double kSpacing = 1;  // of nodes while they are fitted, radii
-// A wall that is rough is smoothed like one of voxels larger by so many times the distances beyond the slack.
+// A wall that is rough is smoothed like one of larger voxels: larger by this times the distances beyond the slack.
 constexpr double kNoise = 4;
 // The same for voxels beside the wall, whose size counts by a share; they err by a share of a voxel at least.
 constexpr double kVoxelNoise = 6, kVoxelShare = 0.5, kLeastBlur = 0.1;

@@ -16,7 +16,8 @@ namespace vmesh::skeleton {
 namespace {
 
 constexpr double kFlat = 0.985;  // cosine between normals of a cap's faces: 10 degrees
-// Faces at its rim lean less than the crease within so many radii from its plane, or in any way within so few.
+// Faces at its rim lean less than the crease within the first number of radii from its plane, or in any way within the
+// second.
 constexpr double kRim = 0.08, kSliver = 0.005;
 constexpr double kCrease = 0.766;           // cosine between the cap's normal and the wall's at its edge: 40 degrees
 constexpr double kSharp = 0.9;              // of the perimeter has such a crease
@@ -28,8 +29,9 @@ constexpr double kCornered = 0.5, kCorner = 1.22;
 // On contours of masks, so much of the area is parallel to a step, besides that in a few planes: other caps may be.
 constexpr double kParallel = 1 - 1e-6, kStairs = 0.02;
 constexpr std::size_t kOtherCaps = 3;
-// Behind a cap there is a tube: at these depths, so many of the directions across meet a wall at these distances, all
-// in the cap's radii. The flat top of a ball with half the cap's curvature and more passes, one of a bump does not.
+// Behind a cap there is a tube: at these depths, at least these numbers of the directions across meet a wall at these
+// distances, all in the cap's radii. The flat top of a ball with half the cap's curvature and more passes, one of a
+// bump does not.
 constexpr std::size_t kDirections = 12;
 constexpr std::array<double, 2> kDepths = {0.5, 1};
 constexpr std::array<std::size_t, 2> kLeastMet = {10, 8};

@@ -14,14 +14,14 @@ namespace {
 
 // Where two vessels kiss, the way from one to the other is thinner than this share of the thinner of them ...
 constexpr double kNeck = 0.75;
-// ... and that over no more than this times both their radii, and so many voxels.
+// ... and that over at most this times both their radii, and this number of voxels.
 constexpr double kContactRadii = 1, kContactVoxels = 4;
-// In vessels thinner than so many voxels the width changes too much from voxel to voxel to tell.
+// In vessels thinner than this number of voxels the width changes too much from voxel to voxel to tell.
 constexpr double kSeenNeck = 1.2;
-// Up to so many, a short way between vessels is opened rather than a neck.
+// Up to this number, a short way between vessels is opened rather than a neck.
 constexpr double kTrustedNeck = 2.4;
-// What is left of a stretch beside a contact goes with it if it is within the vessel that it leads to: so many radii
-// and voxels.
+// What is left of a stretch beside a contact goes with it if it is within the vessel that it leads to: at most
+// these numbers of radii and voxels.
 constexpr double kRestRadii = 1.5, kRestVoxels = 3;
 
 constexpr double kDirectionRadii = 4, kAsideRadii = 0.4, kSplitVoxels = 0.2;

@@ -20,15 +20,17 @@
 namespace vmesh::skeleton {
 namespace {
 
-// What an end of a vessel is like. Its ring has so many vertices, is so round, and so flat, in radii.
+// What an end of a vessel is like. Its ring has at least this number of vertices, and is at least this
+// round and flat, in radii.
 constexpr std::size_t kLeastRing = 5;
 constexpr double kLargestAspect = 4, kLeastCompactness = 0.4, kLargestUnevenness = 0.5;
-// Its area is so much of that of a circle with the perimeter; a jagged cut has .4 and more.
+// Its area is at least this share of that of a circle with the perimeter; a jagged cut has .4 and more.
 constexpr double kLeastRoundness = 0.25;
 // Behind an end, the wall is near at this depth; behind a hole that has a tenth of the cross-section of a tube or a
 // ball, it is 2.16 radii away. Both in the hole's radii.
 constexpr double kDepth = 2, kFarthestWall = 2.1;
-// Faces around a hole in the wall are parallel to it, by this mean cosine; one of so few vertices is no vessel's end.
+// Faces around a hole in the wall are parallel to it, by this mean cosine; one of at most this number of vertices
+// is no vessel's end.
 constexpr double kFlush = 0.7;
 constexpr std::size_t kFewInFlush = 12;
 // A ring that is flat within this many radii is triangulated in its plane.

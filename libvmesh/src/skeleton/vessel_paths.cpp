@@ -12,14 +12,15 @@ namespace vmesh::skeleton {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-// A voxel is near a path within this times the depth there, and so many voxels more, which a rough boundary needs.
+// A voxel is near a path within this times the depth there plus this number of voxels, which a rough boundary needs.
 constexpr double kNearDepths = 1.2, kNearVoxels = 2;
-// Fronts that meet again sooner are a tunnel in a rough boundary, or a notch: so many depths, and voxels.
+// Fronts that meet again sooner are a tunnel in a rough boundary, or a notch: sooner than these
+// numbers of depths, and of voxels.
 constexpr double kLoopDepths = 1, kLoopVoxels = 5, kLoopSlices = 3;
 constexpr std::size_t kBetweenReports = 1000;  // voxels
 constexpr float kOnPath = 1e-3f;               // of the cost of other voxels: a second path prefers the first one's way
 
-// A path around a loop may go so many depths, and this share of the loop, beyond where its sides meet.
+// A path around a loop may go this number of depths, and this share of the loop, beyond where its sides meet.
 constexpr double kBeyondDepths = 4, kBeyond = 0.5;
 
 using Entry = std::pair<float, Index>;

@@ -32,7 +32,7 @@ class VoxelGraph {
   const std::vector<Bridge>& bridges() const { return bridges_; }
 
   float distance(Index a, Index b) const;
-  /// The distance less so many voxels, however long these are in its direction.
+  /// The distance less that of a number of voxels, however long these are in its direction.
   float distance_beyond(Index a, Index b, double voxels) const;
 
   /// Calls visit(neighbour, length in mm) for every neighbour.

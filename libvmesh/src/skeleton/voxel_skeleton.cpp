@@ -10,7 +10,7 @@ namespace vmesh::skeleton {
 namespace {
 
 constexpr int kSmoothings = 4;
-// A component is a vessel if it is longer than this times its width, and than so many voxels, both measured from
+// A component is a vessel if it is longer than this times its width, and than this number of voxels, both measured from
 // outside to outside.
 constexpr double kLongerThanWide = 1.4, kLeastVoxels = 6;
 

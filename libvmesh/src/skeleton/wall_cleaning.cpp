@@ -26,7 +26,8 @@ constexpr double kWorthIt = 0.5;
 // A fin has at most this share of the area.
 constexpr double kLargestFin = 0.1;
 constexpr int kMostPasses = 10;
-// Edges with three faces that are cut out: in clusters of so many, with so much of the area around them.
+// Edges with three faces that are cut out: in clusters of at most this number, with at most this share of
+// the area around them.
 constexpr std::size_t kLargestCluster = 4;
 constexpr double kLargestCut = 0.01;
 

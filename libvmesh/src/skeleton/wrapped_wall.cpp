@@ -28,8 +28,8 @@ constexpr double kLargestBall = 1. / 8, kBallPerRadius = 1. / 4;
 constexpr double kFacesPerBall = 10, kMostFaces = 60'000;
 // Distance of the wrap from the faces, in balls.
 constexpr double kOffset = 1. / 20;
-// A wrap has entered the vessels where both sides of a face are outside, so many offsets from it; if that is more than
-// this share of the area, the wrap is too fine. So many faces are asked.
+// A wrap has entered the vessels where both sides of a face are outside, this number of offsets from it; if that is
+// more than this share of the area, the wrap is too fine. That number of faces is asked.
 constexpr double kBeside = 3, kEntered = 0.05;
 constexpr std::size_t kAsked = 4000;
 // Offsets by which vertices are moved back, at most.

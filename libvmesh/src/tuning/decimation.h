@@ -10,7 +10,7 @@ enum class Decimation {
   quadrics  ///< where the squared distances from the planes of the faces are least (Garland and Heckbert 1997)
 };
 
-/// `mesh` (closed and manifold) reduced to about so many vertices by collapsing edges (CGAL).
+/// `mesh` (closed and manifold) reduced to about this number of vertices by collapsing edges (CGAL).
 TriMesh decimated(const TriMesh& mesh, std::size_t vertices, Decimation order = Decimation::volume);
 
 }  // namespace vmesh

@@ -8,7 +8,7 @@
 namespace vmesh {
 namespace {
 
-// A shift fades out over at least so many radii, however small it is.
+// A shift fades out over at least this number of radii, however small it is.
 constexpr double kShortestFading = 2;  // safe 1.4 to 2.8
 
 // Largest change of the total displacement per length: less than 1, so that an axis does not fold. Measured on three

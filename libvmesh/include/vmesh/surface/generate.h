@@ -75,12 +75,12 @@ struct GenerateOptions {
   Placement placement = Placement::balanced;
   /// The surface is refined wherever it would be farther from the boundary. May raise `around`: see least_around().
   ErrorLimit max_error;
-  /// Along vessels, triangles are as long as the error allows, at most so many times what they are evenly, in
+  /// Along vessels, triangles are as long as the error allows, at most this times what they are evenly, in
   /// [1, kMostElongation]; around junctions and ends they stay even. The error: what edges across the vessel cut off,
   /// or max_error. With that, unless deformable, vertices are then left out anywhere as long as it stays proven.
   /// Guided growth only.
   double elongation = 1;
-  /// No more vertices are left out once there are so few: those that are left are where they reduce the mean error
+  /// No more vertices are left out once this number is left: those that are left are where they reduce the mean error
   /// most. Without max_error, nothing is proven then, but no vertex is farther from the boundary than half the local
   /// radius. 0: as many are left out as max_error allows. Only with an elongation above 1, and not deformable.
   std::size_t least_vertices = 0;

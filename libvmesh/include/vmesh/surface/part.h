@@ -104,7 +104,7 @@ struct SplitSummary {
 SplitSummary split_surface(Centerline centerline, const GenerateOptions& options, double vertices,
                            const std::function<void(SurfacePart)>& take, const Progress& progress = {});
 
-/// Grows the pieces of a part on so many threads (0: all); vertices and faces are those of the whole surface, to the
+/// Grows the pieces of a part on `threads` threads (0: all); vertices and faces are those of the whole surface, to the
 /// bit. Faults are reported with the pieces. Throws InvalidInput for an inconsistent part, Cancelled.
 PartSurface grow_part(const SurfacePart& part, int threads, const Progress& progress = {});
 

@@ -14,8 +14,8 @@ namespace vmesh {
 struct Budget {
   enum class Kind { vertices, time, error };
   Kind kind = Kind::vertices;
-  std::size_t vertices = 0;  ///< at most so many
-  double seconds = 0;        ///< generate_surface() takes at most so long
+  std::size_t vertices = 0;  ///< at most
+  double seconds = 0;        ///< that generate_surface() takes, at most
   ErrorLimit error;          ///< proven everywhere, as GenerateOptions::max_error
 };
 
@@ -46,7 +46,7 @@ struct BudgetedSurface {
 /// as in `options`. Neighbours of the choice are tried, too. If nothing is within the budget, the closest is chosen.
 ///
 /// With an elongation above 1 (and not deformable), a surface within a budget of vertices is a much finer one of which
-/// all but so many were left out, those that increase the mean error least (GenerateOptions::least_vertices).
+/// all but that number were left out, those that increase the mean error least (GenerateOptions::least_vertices).
 ///
 /// Repeating the chosen options gives the same surface; a time budget may choose differently each time. Throws what
 /// generate_surface() throws.

@@ -15,7 +15,7 @@ struct RingOptions;
 class ElongationProfile {
  public:
   void add(double radii, double elongation);
-  /// Adds a run; where it does not begin or end with 1, the elongation fades to that over so many radii.
+  /// Adds a run; where it does not begin or end with 1, the elongation fades to that over `fade` radii.
   void append(const ElongationProfile& next, double fade);
   double at(double radii) const;
 
