@@ -111,7 +111,7 @@ std::pair<double, double> reach_of(const Tube& tube, const BranchAxis& axis) {
 }
 
 // The graph that steers growth, along the axes of the vessels: tubes, junctions, and the seams between pieces.
-Drawing draw_skeleton(const VesselTubes& tubes, const Division& division,
+Drawing draw_skeleton(const VesselRings& tubes, const Division& division,
                       const std::vector<GrowthSkeleton>& skeletons) {
   Drawing drawing;
   for (const GrowthSkeleton& skeleton : skeletons) {
@@ -133,7 +133,7 @@ Drawing draw_skeleton(const VesselTubes& tubes, const Division& division,
 }
 
 // All rings as laid: free ones, seams among them, and those left to junctions.
-Drawing draw_rings(const VesselTubes& tubes, const Division& division) {
+Drawing draw_rings(const VesselRings& tubes, const Division& division) {
   Drawing drawing;
   for (Index b = 0; b < tubes.axes().size(); ++b) {
     const std::vector<Ring>& rings = tubes.rings(b);
@@ -158,7 +158,7 @@ void draw_tube(const Tube& tube, Drawing& drawing) {
 }
 
 // Every junction's surface as it comes out of its lattice, and the rings of the tubes, joined by bands.
-Drawing draw_lattice(const VesselTubes& tubes, const std::vector<GrowthSkeleton>& skeletons,
+Drawing draw_lattice(const VesselRings& tubes, const std::vector<GrowthSkeleton>& skeletons,
                      const GenerateOptions& options) {
   Drawing drawing;
   for (const GrowthSkeleton& skeleton : skeletons) {
@@ -176,7 +176,7 @@ void draw_stages(const std::filesystem::path& file, const std::filesystem::path&
   const Centerline separated = separate_contacts(load_centerline(file).cleaned.centerline).centerline;
   const Centerline centerline = simplify_for_growth(separated, options).centerline;
   const VesselField field(centerline, options.blend);
-  const VesselTubes tubes(field, {options.around, options.placement, options.max_error});
+  const VesselRings tubes(field, {options.around, options.placement, options.max_error});
   const Division division = divide(tubes, options);
   std::vector<GrowthSkeleton> skeletons;
   for (const PiecePlan& plan : division.plans) skeletons.push_back(make_growth_skeleton(tubes, plan));

@@ -45,7 +45,7 @@ struct Laid {
 
   Centerline centerline;
   VesselField field;
-  VesselTubes tubes;
+  VesselRings tubes;
 };
 
 RingOptions elongated(double elongation) {

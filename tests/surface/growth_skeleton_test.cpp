@@ -17,7 +17,7 @@ struct Steered {
 
   Centerline centerline;
   VesselField field;
-  VesselTubes tubes;
+  VesselRings tubes;
   const std::vector<BranchAxis>& axes = tubes.axes();
   GrowthSkeleton skeleton;
 };

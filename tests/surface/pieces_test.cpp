@@ -24,7 +24,7 @@ struct Divided {
   GenerateOptions options;
   Centerline centerline;
   VesselField field;
-  VesselTubes tubes;
+  VesselRings tubes;
   Division division;
   std::vector<char> open;
   Progress progress;

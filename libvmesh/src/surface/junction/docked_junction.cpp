@@ -34,7 +34,7 @@ std::span<const Variant> variants_of(bool guarded, bool hub) {
 
 class JunctionDocker {
  public:
-  JunctionDocker(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
+  JunctionDocker(const VesselRings& tubes, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
                  const std::vector<TubeEnd>& docks, const GenerateOptions& options, const Progress& progress)
       : skeleton_(skeleton),
         growth_(growth),
@@ -179,7 +179,7 @@ Index kept_ring(const Tube& tube, bool at_end) {
   return static_cast<Index>(at_end ? tube.rings.size() - 1 - given : given);
 }
 
-DockedJunction make_docked_junction(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
+DockedJunction make_docked_junction(const VesselRings& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
                                     const GenerateOptions& options, bool guarded, const Progress& progress) {
   const VesselField& field = tubes.field();
   const std::vector<TubeEnd> docks = docks_of(junction);

@@ -41,7 +41,7 @@ Index kept_ring(const Tube& tube, bool at_end);
 /// Grows a junction, docks its tubes and optimises the surface around the docks. Where faces intersect, other variants
 /// are tried (resolution, rims as cut) and the best is kept. `guarded`: also tries variants in which only guarded steps
 /// are taken.
-DockedJunction make_docked_junction(const VesselTubes& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
+DockedJunction make_docked_junction(const VesselRings& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
                                     const GenerateOptions& options, bool guarded, const Progress& progress);
 
 }  // namespace vmesh

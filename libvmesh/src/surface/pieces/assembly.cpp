@@ -16,7 +16,7 @@ std::vector<Index> reversed(std::vector<Index> loop) {
 
 }  // namespace
 
-Assembly::Assembly(const VesselTubes& tubes, const PiecePlan& plan, const GrowthSkeleton& skeleton,
+Assembly::Assembly(const VesselRings& tubes, const PiecePlan& plan, const GrowthSkeleton& skeleton,
                    const std::vector<char>& open)
     : tubes_(tubes), plan_(plan), skeleton_(skeleton), open_(open), first_(skeleton.tubes.size()) {
   for (Index t = 0; t < skeleton.tubes.size(); ++t) add_tube(t);

@@ -18,7 +18,7 @@ struct PieceLoop {
 class Assembly {
  public:
   /// `plan` is the one `skeleton` was made of; `open` says for every node whether the surface is to be open there.
-  Assembly(const VesselTubes& tubes, const PiecePlan& plan, const GrowthSkeleton& skeleton,
+  Assembly(const VesselRings& tubes, const PiecePlan& plan, const GrowthSkeleton& skeleton,
            const std::vector<char>& open);
 
   void add_junction(const Junction& junction, const DockedJunction& docked);
@@ -43,7 +43,7 @@ class Assembly {
   void band(const std::vector<Index>& bottom, const std::vector<Index>& top);
   void cap(const Ring& ring, double side, std::vector<Index> loop);
 
-  const VesselTubes& tubes_;
+  const VesselRings& tubes_;
   const PiecePlan& plan_;
   const GrowthSkeleton& skeleton_;
   const std::vector<char>& open_;

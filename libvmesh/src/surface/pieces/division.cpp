@@ -294,7 +294,7 @@ Anchor anchor_of(const PiecePlan& plan) {
   return {{plan.stretches.front().branch, plan.stretches.front().first}, kNone};
 }
 
-RingCounts::RingCounts(const VesselTubes& tubes) : centerline_(tubes.centerline()) {
+RingCounts::RingCounts(const VesselRings& tubes) : centerline_(tubes.centerline()) {
   for (Index b = 0; b < tubes.axes().size(); ++b) {
     const Branch& branch = tubes.branches()[b];
     ends_.push_back({branch.nodes.front(), branch.nodes.back()});
@@ -311,7 +311,7 @@ Division divide(const RingCounts& rings, std::vector<RingPlace> seams) {
   return divide_at(rings, std::move(seams), {});
 }
 
-Division divide(const VesselTubes& tubes, const GenerateOptions& options) {
+Division divide(const VesselRings& tubes, const GenerateOptions& options) {
   std::vector<std::vector<RingPlace>> found(tubes.axes().size());
   tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
     const auto b = static_cast<Index>(i);

@@ -22,7 +22,7 @@ class RingCounts {
   /// `centerline` must outlive it.
   RingCounts(const Centerline& centerline, std::vector<Ends> ends, std::vector<Index> counts)
       : centerline_(centerline), ends_(std::move(ends)), counts_(std::move(counts)) {}
-  explicit RingCounts(const VesselTubes& tubes);
+  explicit RingCounts(const VesselRings& tubes);
 
   const Centerline& centerline() const { return centerline_; }
   std::size_t branch_count() const { return ends_.size(); }
@@ -60,7 +60,7 @@ std::vector<RingPlace> find_seams(const VesselAxes& axes, const GenerateOptions&
 /// Divides a surface at these seams.
 Division divide(const RingCounts& rings, std::vector<RingPlace> seams);
 /// Divides a surface at all seams that can be found.
-Division divide(const VesselTubes& tubes, const GenerateOptions& options);
+Division divide(const VesselRings& tubes, const GenerateOptions& options);
 
 /// The division without `dissolved` seams and with the pieces at each pair of anchors merged.
 Division regrouped(const RingCounts& rings, const Division& division, const std::vector<RingPlace>& dissolved,

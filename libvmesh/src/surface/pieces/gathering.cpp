@@ -7,7 +7,7 @@ namespace {
 
 class Gatherer {
  public:
-  Gatherer(const VesselTubes& tubes, const Division& division) : tubes_(tubes), division_(division) {}
+  Gatherer(const VesselRings& tubes, const Division& division) : tubes_(tubes), division_(division) {}
 
   GatheredSurface run(const std::vector<PieceSurface>& pieces) {
     reserve(pieces);
@@ -69,7 +69,7 @@ class Gatherer {
     }
   }
 
-  const VesselTubes& tubes_;
+  const VesselRings& tubes_;
   const Division& division_;
   std::vector<Index> seam_begin_;
   GatheredSurface surface_;
@@ -81,7 +81,7 @@ Index GatheredSurface::piece_of(Index face) const {
   return static_cast<Index>(std::upper_bound(first_face.begin(), first_face.end(), face) - first_face.begin() - 1);
 }
 
-GatheredSurface gather(const VesselTubes& tubes, const Division& division, const std::vector<PieceSurface>& pieces) {
+GatheredSurface gather(const VesselRings& tubes, const Division& division, const std::vector<PieceSurface>& pieces) {
   return Gatherer(tubes, division).run(pieces);
 }
 

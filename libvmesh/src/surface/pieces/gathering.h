@@ -12,6 +12,6 @@ struct GatheredSurface : FinishedSurface {
   Index piece_of(Index face) const;
 };
 
-GatheredSurface gather(const VesselTubes& tubes, const Division& division, const std::vector<PieceSurface>& pieces);
+GatheredSurface gather(const VesselRings& tubes, const Division& division, const std::vector<PieceSurface>& pieces);
 
 }  // namespace vmesh

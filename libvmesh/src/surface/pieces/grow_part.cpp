@@ -34,7 +34,7 @@ void check_branches(const SurfacePart& part) {
   }
 }
 
-void check_places(const SurfacePart& part, const VesselTubes& tubes) {
+void check_places(const SurfacePart& part, const VesselRings& tubes) {
   const auto rings = [&](Index branch) {
     require(branch < tubes.axes().size(), "the branches of its pieces");
     return tubes.rings(branch).size();
@@ -128,7 +128,7 @@ class PartGrower {
   }
 
   const SurfacePart& part_;
-  VesselTubes tubes_;
+  VesselRings tubes_;
   std::vector<char> open_;
   PartSurface result_;
 };

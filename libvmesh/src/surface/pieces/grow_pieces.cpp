@@ -228,7 +228,7 @@ class PieceGrower {
     result.openings = std::move(gathered_.openings);
   }
 
-  VesselTubes tubes_;
+  VesselRings tubes_;
   RingCounts rings_;
   const GenerateOptions& options_;
   const Progress& progress_;

@@ -44,7 +44,7 @@ std::string at(const Vec3& p) {
 }
 
 // Notes the parts of the centerline's graph that growing this junction as a whole leaves out.
-void note_simplifications(const VesselTubes& tubes, const Junction& junction, std::size_t filled_loops,
+void note_simplifications(const VesselRings& tubes, const Junction& junction, std::size_t filled_loops,
                           std::vector<GrowthSimplification>& notes) {
   const Centerline& centerline = tubes.centerline();
   GrowthSimplification note;
@@ -311,7 +311,7 @@ class PieceMaker {
   }
 
   const PieceContext& context_;
-  const VesselTubes& tubes_;
+  const VesselRings& tubes_;
   const PiecePlan& plan_;
   std::vector<RingPlace> covered_;
   std::vector<BoundSurface::Spot> fine_spots_, calm_spots_;

@@ -41,7 +41,7 @@ struct PieceSurface {
 
 /// What all pieces of a surface have in common.
 struct PieceContext {
-  const VesselTubes& tubes;
+  const VesselRings& tubes;
   const std::vector<char>& open;  ///< for every node, whether the surface is to be open there
   const GenerateOptions& options;
   const Progress& progress;

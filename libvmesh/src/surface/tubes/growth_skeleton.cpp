@@ -28,8 +28,8 @@ std::vector<BranchAxis> axes_of(const Centerline& centerline, const std::vector<
 
 class SkeletonMaker {
  public:
-  SkeletonMaker(const VesselTubes& tubes, const PiecePlan& plan, const std::vector<RingPlace>& covered)
-      : tubes_(tubes), plan_(plan) {
+  SkeletonMaker(const VesselRings& all_rings, const PiecePlan& plan, const std::vector<RingPlace>& covered)
+      : all_rings_(all_rings), plan_(plan) {
     for (const Stretch& stretch : plan.stretches) rings_.push_back(rings_of(stretch, covered));
   }
 
@@ -43,14 +43,14 @@ class SkeletonMaker {
   }
 
  private:
-  const BranchAxis& axis_of(const Stretch& stretch) const { return tubes_.axes()[stretch.branch]; }
+  const BranchAxis& axis_of(const Stretch& stretch) const { return all_rings_.axes()[stretch.branch]; }
 
   bool is_loop(const Stretch& stretch) const {
     return axis_of(stretch).periodic() && !stretch.seam_at_first && !stretch.seam_at_last;
   }
 
   std::vector<Ring> rings_of(const Stretch& stretch, const std::vector<RingPlace>& covered) {
-    const std::vector<Ring>& all = tubes_.rings(stretch.branch);
+    const std::vector<Ring>& all = all_rings_.rings(stretch.branch);
     std::vector<Ring> rings;
     bool changed = false;
     for (Index k = 0; k < stretch.count; ++k) {
@@ -58,7 +58,7 @@ class SkeletonMaker {
       rings.push_back(all[number]);
       const bool is_seam = (k == 0 && stretch.seam_at_first) || (k + 1 == stretch.count && stretch.seam_at_last);
       if (is_seam) {
-        seam_points_.push_back(tubes_.layer().lifted(rings.back()));
+        seam_points_.push_back(all_rings_.layer().lifted(rings.back()));
         rings.back().points = seam_points_.back();
       }
       if (is_seam || !rings.back().free) continue;
@@ -67,7 +67,7 @@ class SkeletonMaker {
       changed = true;
     }
     if (changed) {
-      tubes_.layer().clear_ends(stretch.branch, rings, is_loop(stretch));
+      all_rings_.layer().clear_ends(stretch.branch, rings, is_loop(stretch));
       if (stretch.seam_at_first) rings.front().free = true;
       if (stretch.seam_at_last) rings.back().free = true;
     }
@@ -206,7 +206,7 @@ class SkeletonMaker {
       parts.join(i, part);
     };
     for (Index g = 0; g < bare_.size(); ++g) {
-      const auto& nodes = tubes_.axes()[bare_[g].branch].branch().nodes;
+      const auto& nodes = all_rings_.axes()[bare_[g].branch].branch().nodes;
       if (bare_[g].docks[0].tube == kNone) join(nodes.front(), node_count + g);
       if (bare_[g].docks[1].tube == kNone) join(nodes.back(), node_count + g);
     }
@@ -224,14 +224,14 @@ class SkeletonMaker {
     }
     for (Index g = 0; g < bare_.size(); ++g) {
       Junction& junction = junction_of(node_count + g);
-      const auto& nodes = tubes_.axes()[bare_[g].branch].branch().nodes;
+      const auto& nodes = all_rings_.axes()[bare_[g].branch].branch().nodes;
       // A loop that is a single bare stretch is attached to its own first node.
       if (junction.nodes.empty() && bare_[g].docks[0].tube == kNone) junction.nodes.push_back(nodes.front());
       junction.bare_stretches.push_back(bare_[g]);
     }
   }
 
-  const VesselTubes& tubes_;
+  const VesselRings& all_rings_;
   const PiecePlan& plan_;
   std::vector<std::vector<Ring>> rings_;  // of the stretches
   std::vector<std::vector<BoundaryPoint>> seam_points_;
@@ -252,23 +252,23 @@ VesselAxes::VesselAxes(const VesselField& field, const RingOptions& rings, std::
       places_(places_of(field.relations().centerline(), branches_)),
       layer_(field, axes_, places_, rings) {}
 
-VesselTubes::VesselTubes(const VesselField& field, const RingOptions& rings)
+VesselRings::VesselRings(const VesselField& field, const RingOptions& rings)
     : VesselAxes(field, rings), elongated_(rings.elongation > 1) {
   lay_all();
 }
 
-VesselTubes::VesselTubes(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches)
+VesselRings::VesselRings(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches)
     : VesselAxes(field, rings, std::move(branches)), elongated_(rings.elongation > 1) {
   lay_all();
 }
 
-void VesselTubes::lay_all() {
+void VesselRings::lay_all() {
   rings_.resize(axes().size());
   tbb::parallel_for(std::size_t{0}, rings_.size(),
                     [&](std::size_t b) { rings_[b] = layer().lay(static_cast<Index>(b)); });
 }
 
-Elongation VesselTubes::elongation_at(Index cone, double t) const {
+Elongation VesselRings::elongation_at(Index cone, double t) const {
   if (cone >= segment_count() || place_of(cone).branch == kNone) return {};
   const auto [branch, nth] = place_of(cone);
   const BranchAxis& axis = axes()[branch];
@@ -278,7 +278,7 @@ Elongation VesselTubes::elongation_at(Index cone, double t) const {
   return {times, layer().direction_at(branch, place)};
 }
 
-Elongation VesselTubes::longest_at(Index cone, double t, double times) const {
+Elongation VesselRings::longest_at(Index cone, double t, double times) const {
   if (cone >= segment_count() || place_of(cone).branch == kNone) return {};
   const auto [branch, nth] = place_of(cone);
   return {times, layer().direction_at(branch, axes()[branch].place_of(nth, t))};
@@ -290,14 +290,14 @@ double even_rings(const Tube& tube) {
   return count;
 }
 
-PiecePlan whole_plan(const VesselTubes& tubes) {
+PiecePlan whole_plan(const VesselRings& rings) {
   PiecePlan plan;
-  const Centerline& centerline = tubes.centerline();
+  const Centerline& centerline = rings.centerline();
   for (Index n = 0; n < centerline.nodes().size(); ++n) {
     if (centerline.degree(n) != 2) plan.nodes.push_back(n);
   }
-  for (Index b = 0; b < tubes.axes().size(); ++b)
-    plan.stretches.push_back({b, 0, static_cast<Index>(tubes.rings(b).size())});
+  for (Index b = 0; b < rings.axes().size(); ++b)
+    plan.stretches.push_back({b, 0, static_cast<Index>(rings.rings(b).size())});
   return plan;
 }
 
@@ -339,9 +339,9 @@ std::size_t GrowthSkeleton::cycle_rank() const {
   return joints + loops + component_count() - lone - junctions.size();
 }
 
-GrowthSkeleton make_growth_skeleton(const VesselTubes& tubes, const PiecePlan& plan,
+GrowthSkeleton make_growth_skeleton(const VesselRings& rings, const PiecePlan& plan,
                                     const std::vector<RingPlace>& covered) {
-  return SkeletonMaker(tubes, plan, covered).run();
+  return SkeletonMaker(rings, plan, covered).run();
 }
 
 }  // namespace vmesh

@@ -36,11 +36,11 @@ class VesselAxes {
   RingLayer layer_;
 };
 
-/// VesselAxes with the rings laid, and how far apart they may be.
-class VesselTubes : public VesselAxes, public ElongationField {
+/// The rings laid along all branches of VesselAxes, and how far apart they may be.
+class VesselRings : public VesselAxes, public ElongationField {
  public:
-  VesselTubes(const VesselField& field, const RingOptions& rings);
-  VesselTubes(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches);
+  VesselRings(const VesselField& field, const RingOptions& rings);
+  VesselRings(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches);
 
   const std::vector<Ring>& rings(Index branch) const { return rings_[branch].rings; }
   Elongation elongation_at(Index cone, double t) const override;
@@ -113,11 +113,11 @@ struct GrowthSkeleton {
 };
 
 /// The plan of the whole surface as one piece.
-PiecePlan whole_plan(const VesselTubes& tubes);
+PiecePlan whole_plan(const VesselRings& rings);
 
 /// The skeleton of a piece. Rings in `covered` (ascending) are left to junctions; seams cannot be. Isolated nodes
 /// become junctions without bare stretches.
-GrowthSkeleton make_growth_skeleton(const VesselTubes& tubes, const PiecePlan& plan,
+GrowthSkeleton make_growth_skeleton(const VesselRings& rings, const PiecePlan& plan,
                                     const std::vector<RingPlace>& covered = {});
 
 }  // namespace vmesh
