@@ -52,7 +52,7 @@ class TrunkMerger {
   /// The known node from which a polyline that begins at `n` can be followed; kNone if there is none.
   Index find_start(Index n) {
     if (home_[n] != kNone) return home_[n];
-    const Index found = tree_.nearest(work_.nodes[n].position, kNone - 1,
+    const Index found = tree_.nearest(work_.nodes[n].position,
                                       [&](Index other) { return home_[other] != kNone && coincide(n, other); });
     return found == kNone ? kNone : home_[found];
   }
@@ -202,7 +202,7 @@ class NodeMerger {
     const PointTree tree(std::move(points));
     for (Index n = 0; n < work_.nodes.size(); ++n) {
       if (work_.merged.find(n) != n || !is_end(n)) continue;
-      const Index other = tree.nearest(work_.nodes[n].position, kNone - 1, [&](Index m) {
+      const Index other = tree.nearest(work_.nodes[n].position, [&](Index m) {
         const Index into = work_.merged.find(m);
         return into != n && work_.distance(n, m) <= work_.tolerance(n, m) && may_merge(n, into);
       });

@@ -65,11 +65,11 @@ class GapJoiner {
   bool round(bool at_start, const Accept& accept) {
     std::vector<Index> component(work_.nodes.size());
     for (Index n = 0; n < component.size(); ++n) component[n] = joined_.find(n);
-    tree_.set_labels(component);
     std::vector<Candidate> candidates;
     for (Index n = 0; n < component.size(); ++n) {
       if (work_.merged.find(n) != n || !may_join(n, at_start)) continue;
-      const Index to = tree_.nearest(work_.nodes[n].position, component[n], accept);
+      const Index to =
+          tree_.nearest(work_.nodes[n].position, [&](Index p) { return component[p] != component[n] && accept(p); });
       if (to != kNone) candidates.push_back({work_.distance(n, to) / work_.nodes[to].radius, n, to});
     }
     std::sort(candidates.begin(), candidates.end());

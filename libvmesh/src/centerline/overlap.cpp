@@ -143,7 +143,7 @@ class OverlapMerger {
   /// The node of the graph at which a polyline from `n` can start to follow it: itself, or the end of an earlier one.
   Index find_start(Index n) {
     if (placed_[home(n)]) return home(n);
-    const Index end = ends_.nearest(position(n), kNone - 1, [&](Index other) {
+    const Index end = ends_.nearest(position(n), [&](Index other) {
       return placed_[home(other)] && (position(n) - position(other)).norm() <= tolerance(n, radius(other));
     });
     return end == kNone ? kNone : home(end);

@@ -4,11 +4,12 @@
 #include <utility>
 #include <vector>
 
-#include "vmesh/core/types.h"
+#include "vmesh/core/box_tree.h"
 
 namespace vmesh {
 
-/// A k-d tree over a subset of a list of points, for nearest-point queries with conditions. Deterministic.
+/// Points that are found from places within a reach of their own, for nearest-point queries with conditions.
+/// Deterministic.
 class PointTree {
  public:
   struct Point {
@@ -17,63 +18,38 @@ class PointTree {
     Index id;
   };
 
-  explicit PointTree(std::vector<Point> points);
+  explicit PointTree(std::vector<Point> points)
+      : points_(std::move(points)),
+        tree_(
+            static_cast<Index>(points_.size()),
+            [this](Index i) {
+              const auto& [position, reach, id] = points_[i];
+              return BoxTree::Box{position.array() - reach, position.array() + reach};
+            },
+            kLeafSize) {}
 
-  /// Gives every point a label (by id), so that subtrees with a single label can be skipped as a whole.
-  void set_labels(const std::vector<Index>& label_of_id);
-
-  /// The nearest point within its reach of `p` whose label is not `skip_label` and that `accept(id)` approves; kNone if
-  /// there is none. At equal distance, either.
+  /// The nearest point within its reach of `p` that `accept(id)` approves; kNone if there is none. At equal distance,
+  /// either.
   template <class Accept>
-  Index nearest(const Vec3& p, Index skip_label, Accept&& accept) const {
-    Best best;
-    if (!boxes_.empty()) search(0, p, skip_label, accept, best);
-    return best.id;
+  Index nearest(const Vec3& p, Accept&& accept) const {
+    double least = std::numeric_limits<double>::infinity(), limit = 0;
+    Index best = kNone;
+    tree_.visit(p, limit, [&](Index i) {
+      const Point& point = points_[i];
+      const double d2 = (point.position - p).squaredNorm();
+      if (d2 >= least || d2 > point.reach * point.reach || !accept(point.id)) return;
+      least = d2;
+      best = point.id;
+      if (d2 == 0) limit = -std::numeric_limits<double>::infinity();  // there is none nearer
+    });
+    return best;
   }
 
  private:
-  struct Box {
-    Vec3 low, high;
-    double reach = 0;     // largest of the points
-    Index label = kNone;  // of all points, or kNone when they differ
-    Index first = 0, last = 0;
-    Index children = 0;  // of the first child; the second follows; 0 for a leaf
-  };
-  struct Best {
-    double distance2 = std::numeric_limits<double>::infinity();
-    Index id = kNone;
-  };
-
-  void fill(Index box, Index first, Index last);
-  static double distance2(const Box& box, const Vec3& p) {
-    return (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).squaredNorm();
-  }
-
-  template <class Accept>
-  void search(Index index, const Vec3& p, Index skip_label, Accept& accept, Best& best) const {
-    const Box& box = boxes_[index];
-    const double d2 = distance2(box, p);
-    if (d2 >= best.distance2 || d2 > box.reach * box.reach) return;
-    if (box.label != kNone && box.label == skip_label) return;
-    if (box.children == 0) {
-      for (Index i = box.first; i < box.last; ++i) {
-        const Point& point = points_[i];
-        const double point_d2 = (point.position - p).squaredNorm();
-        if (point_d2 >= best.distance2 || point_d2 > point.reach * point.reach) continue;
-        if (!labels_.empty() && labels_[i] == skip_label) continue;
-        if (accept(point.id)) best = {point_d2, point.id};
-      }
-      return;
-    }
-    Index near = box.children, far = box.children + 1;
-    if (distance2(boxes_[far], p) < distance2(boxes_[near], p)) std::swap(near, far);
-    search(near, p, skip_label, accept, best);
-    search(far, p, skip_label, accept, best);
-  }
+  static constexpr Index kLeafSize = 8;
 
   std::vector<Point> points_;
-  std::vector<Box> boxes_;
-  std::vector<Index> labels_;  // by position in points_
+  BoxTree tree_;  // of the points' reaches
 };
 
 }  // namespace vmesh
