@@ -31,7 +31,7 @@ TEST(Equivariance, UnderPowersOfTwoIsExact) {
         const Centerline scaled = mapped(centerline, scale, [&](const Vec3& p) -> Vec3 { return scale * p; });
         const VesselField field(centerline, blend), other(scaled, blend);
         for (Index c = 0; c < field.relations().cone_count(); ++c) {
-          EXPECT_TRUE(std::ranges::equal(field.relations().local_cones(c), other.local_cones(c)));
+          EXPECT_TRUE(std::ranges::equal(field.relations().local_cones(c), other.relations().local_cones(c)));
         }
         for (int i = 0; i < 50; ++i) {
           const Vec3 p = draw.in_cube(6);
