@@ -138,7 +138,7 @@ class PartGrower {
 PartSurface grow_part(const SurfacePart& part, int threads, const Progress& progress) {
   require(!part.pieces.empty(), "it has no pieces");
   check_branches(part);
-  const Centerline centerline = part.field.relations().centerline();
+  const Centerline centerline = part.field.centerline();
   const VesselField field(centerline, part.field);
   PartSurface surface;
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
