@@ -18,13 +18,7 @@ import yaml
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "engine"))
 from files import Hashes, PlanError, content_key, read_json, write_changed
-from vmesh_command import arguments_of, parsed, version_of
-
-CENTERLINES = (".swc", ".vtp", ".vtk", ".mrk.json", ".json", ".csv", ".vmv", ".ctgr", ".pth", ".gxl", ".xml", ".am",
-               ".dat", ".h5")
-IMAGES = (".nii", ".nii.gz", ".nrrd", ".nhdr", ".mha", ".mhd", ".hdr")
-SUFFIXES = sorted(CENTERLINES + IMAGES, key=len, reverse=True)
-SURFACES = ("ply", "vtp", "stl", "obj", "off", "glb")
+from vmesh_command import Formats, arguments_of, parsed, version_of
 
 TOP_KEYS = {"output", "inputs", "cases", "options", "picture", "surface", "threads", "memory_mb", "minutes"}
 INPUT_KEYS = {"files", "exclude", "name", "options", "picture", "threads", "memory_mb", "minutes"}
@@ -69,19 +63,19 @@ def merged(*levels):
     return result
 
 
-def stem_of(path):
+def stem_of(path, formats):
     """The name of a file without what says its format; a folder's whole name."""
     name = path.name
     if path.is_dir():
         return name
-    for suffix in SUFFIXES:
+    for suffix in formats.inputs:
         if name.lower().endswith(suffix):
             return name[: -len(suffix)]
     return path.stem
 
 
-def is_image(path):
-    return path.is_dir() or path.name.lower().endswith(IMAGES)
+def is_image(path, formats):
+    return path.is_dir() or path.name.lower().endswith(formats.images)
 
 
 def fixed_folder(pattern):
@@ -94,9 +88,9 @@ def fixed_folder(pattern):
     return Path(*parts)
 
 
-def name_of(path, base, template):
+def name_of(path, base, template, formats):
     folder = os.path.relpath(path.parent, base)
-    fields = {"stem": stem_of(path), "parent": path.parent.name, "folder": "" if folder == "." else folder + "/"}
+    fields = {"stem": stem_of(path, formats), "parent": path.parent.name, "folder": "" if folder == "." else folder + "/"}
     try:
         name = template.format(**fields)
     except (KeyError, IndexError, ValueError) as error:
@@ -104,7 +98,7 @@ def name_of(path, base, template):
     return re.sub(r"[^\w.+=@/-]", "_", name, flags=re.ASCII).strip("/")
 
 
-def find_inputs(entry, where, folder):
+def find_inputs(entry, where, folder, formats):
     """Path and name of each case of an entry of `inputs`."""
     patterns = entry.get("files")
     patterns = [patterns] if isinstance(patterns, str) else patterns
@@ -120,31 +114,31 @@ def find_inputs(entry, where, folder):
         if not paths:
             raise PlanError(f"{where}: nothing matches {pattern} in {folder}; check the pattern")
         for path in map(Path, paths):
-            yield path, name_of(path, fixed_folder(absolute), entry.get("name", "{folder}{stem}"))
+            yield path, name_of(path, fixed_folder(absolute), entry.get("name", "{folder}{stem}"), formats)
 
 
-def fit_reference(options, name, path, folder):
+def fit_reference(options, name, path, folder, formats):
     """Replaces {case}, {stem} and {parent} in the option fit, a file that counts as an input."""
     if not options.get("fit"):
         return None
     try:
-        reference = str(options["fit"]).format(case=name, stem=stem_of(path), parent=path.parent.name)
+        reference = str(options["fit"]).format(case=name, stem=stem_of(path, formats), parent=path.parent.name)
     except (KeyError, IndexError, ValueError) as error:
         raise PlanError(f"options: fit: {error}; known are {{case}}, {{parent}} and {{stem}}") from None
     options["fit"] = os.path.join(folder, reference)
     return Path(options["fit"])
 
 
-def plan_case(path, name, settings, folder, surface, hashes):
+def plan_case(path, name, settings, folder, surface, hashes, formats):
     options = dict(settings["options"])
-    reference = fit_reference(options, name, path, folder)
+    reference = fit_reference(options, name, path, folder, formats)
     case = {
         "input": str(path),
         "sha256": hashes.of_input(path),
         "arguments": arguments_of(options),
         "surface": f"surfaces/{name}.{surface}",
         "summary": f"summaries/{name}.json",
-        "centerline": f"centerlines/{name}.json" if is_image(path) else None,
+        "centerline": f"centerlines/{name}.json" if is_image(path, formats) else None,
         "picture": None if not settings["picture"] else f"pictures/{name}.png",
         "picture_arguments": arguments_of(settings["picture"] or {}),
         "threads": settings["threads"],
@@ -166,7 +160,7 @@ def add_keys(case, version):
     case["picture_key"] = content_key(version, case["picture"], case["picture_arguments"])
 
 
-def make_cases(config, where, folder, hashes):
+def make_cases(config, where, folder, hashes, formats):
     overrides = config.get("cases") or {}
     if not isinstance(overrides, dict):
         raise PlanError(f"{where}: cases: expected names of cases with what is different for them, got {overrides!r}")
@@ -178,7 +172,7 @@ def make_cases(config, where, folder, hashes):
         place = f"{where}: inputs, entry {number}"
         check_keys(place, entry, INPUT_KEYS)
         check_settings(place, entry)
-        for path, name in find_inputs(entry, place, folder):
+        for path, name in find_inputs(entry, place, folder, formats):
             matching = [pattern for pattern in overrides if fnmatch.fnmatchcase(name, str(pattern))]
             used.update(matching)
             if any(overrides[pattern].get("skip") for pattern in matching):
@@ -187,14 +181,14 @@ def make_cases(config, where, folder, hashes):
                 raise PlanError(f"{place}: {path} and {cases[name]['input']} are both the case {name}; tell them apart "
                                 f'by name: "{{parent}}-{{stem}}" or leave one out with exclude')
             settings = merged(config, entry, *(overrides[pattern] for pattern in matching))
-            cases[name] = plan_case(path, name, settings, folder, config.get("surface", "ply"), hashes)
+            cases[name] = plan_case(path, name, settings, folder, config.get("surface", "ply"), hashes, formats)
     for pattern in overrides:
         if pattern not in used:
             raise PlanError(f"{where}: cases: {pattern} is not a case; the first are {', '.join(sorted(cases)[:3])}")
     return dict(sorted(cases.items()))
 
 
-def read_config(path):
+def read_config(path, formats):
     try:
         config = yaml.safe_load(path.read_text())
     except (yaml.YAMLError, UnicodeDecodeError) as error:
@@ -203,15 +197,15 @@ def read_config(path):
     check_settings(path, config)
     if not isinstance(config.get("inputs"), list):
         raise PlanError(f"{path}: inputs: expected a list of patterns, each - files: PATTERN")
-    if config.get("surface", "ply") not in SURFACES:
-        raise PlanError(f"{path}: surface: {config['surface']!r} is none of {', '.join(SURFACES)}")
+    if config.get("surface", "ply") not in formats.surfaces:
+        raise PlanError(f"{path}: surface: {config['surface']!r} is none of {', '.join(formats.surfaces)}")
     return config
 
 
-def config_of_folder(folder):
-    found = sorted(path.name for path in folder.iterdir() if path.name.lower().endswith(tuple(SUFFIXES)))
+def config_of_folder(folder, formats):
+    found = sorted(path.name for path in folder.iterdir() if path.name.lower().endswith(formats.inputs))
     if not found:
-        raise PlanError(f"{folder}: no centerlines or images in it ({' '.join(SUFFIXES)})")
+        raise PlanError(f"{folder}: no centerlines or images in it ({' '.join(formats.inputs)})")
     return {"inputs": [{"files": [glob.escape(name) for name in found if not name.endswith(".segments.csv")]}]}
 
 
@@ -230,11 +224,12 @@ def forget(out, cases, retry_failed):
 
 def make_plan(arguments):
     source = Path(os.path.abspath(arguments.source))
+    formats = Formats(arguments.vmesh)
     if source.is_dir():
-        folder, config = source, config_of_folder(source)
+        folder, config = source, config_of_folder(source, formats)
         out = source.with_name(source.name + ".cohort")
     elif source.exists():
-        folder, config = source.parent, read_config(source)
+        folder, config = source.parent, read_config(source, formats)
         out = folder / config.get("output", source.stem + ".cohort")
     else:
         raise PlanError(f"{arguments.source}: there is no such file or folder; check the name")
@@ -243,7 +238,7 @@ def make_plan(arguments):
     out = Path(os.path.abspath(arguments.output or out))
     out.mkdir(parents=True, exist_ok=True)
     hashes = Hashes(out / ".hashes.json")
-    cases = make_cases(config, source, folder, hashes)
+    cases = make_cases(config, source, folder, hashes, formats)
     hashes.save()
     version = version_of(arguments.vmesh)
     for case in cases.values():

@@ -1,5 +1,6 @@
 """Options of the vmesh command, from the configuration or the command line of a workflow."""
 
+import json
 import subprocess
 
 import yaml
@@ -27,8 +28,27 @@ def parsed(text):
     return name, yaml.safe_load(value)
 
 
-def version_of(vmesh):
+def output_of(vmesh, *arguments):
     try:
-        return subprocess.run([vmesh, "--version"], capture_output=True, text=True, check=True).stdout.strip()
+        return subprocess.run([vmesh, *arguments], capture_output=True, text=True, check=True).stdout
     except (OSError, subprocess.CalledProcessError) as error:
         raise PlanError(f"{vmesh} does not run: {error}") from None
+
+
+def version_of(vmesh):
+    return output_of(vmesh, "--version").strip()
+
+
+class Formats:
+    """Extensions by what vmesh does with the files: tuples, the longest first, as one may end with another."""
+
+    def __init__(self, vmesh):
+        listed = json.loads(output_of(vmesh, "formats", "--json", "-"))
+
+        def extensions(kind, wanted=lambda _: True):
+            found = [extension for entry in listed[kind] if wanted(entry) for extension in entry["extensions"]]
+            return tuple(sorted(found, key=len, reverse=True))
+
+        self.images = extensions("image")
+        self.inputs = tuple(sorted(extensions("centerline") + self.images, key=len, reverse=True))
+        self.surfaces = tuple(name[1:] for name in extensions("surface", lambda entry: entry["written"]))

@@ -45,8 +45,6 @@ std::string array(const std::string& attributes, const std::string& data) {
   return "<DataArray " + attributes + ">" + data + "</DataArray>";
 }
 
-}  // namespace
-
 std::vector<std::string> swc_seeds() {
   return {"# SPACE=RAS UNIT=um\n1 1 0 0 0 2 -1\n2 3 8 0 0 1.5 1\n3 3 12 4 0 1 2\n4 3 12.5 -4e0 0.1 0 2\n",
           "\xEF\xBB\xBF# two trees, odd roots\r\n0 0 1 2 3 4 -2\r\n7\t5\t+1\t-.5\t1e-400\t2.5\t0 extra\r\n\r\n"
@@ -219,6 +217,16 @@ std::vector<std::string> vtp_seeds() {
       "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">1</DataArray></Verts>"
       "</Piece></PolyData><AppendedData encoding=\"raw\">_" +
           std::string("\0\0\0\0\0\0\0\1\7\0\0\0\0\0\0\0\6\0\1\0\2\0\3", 23) + "</AppendedData></VTKFile>"};
+}
+
+}  // namespace
+
+std::map<std::string, MakeSeeds> centerline_seeds() {
+  return {
+      {".swc", swc_seeds}, {".vmv", vmv_seeds},  {".json", json_seeds},   {".csv", csv_seeds},
+      {".vtk", vtk_seeds}, {".vtp", vtp_seeds},  {".ctgr", ctgr_seeds},   {".pth", pth_seeds},
+      {".gxl", gxl_seeds}, {".am", amira_seeds}, {".dat", network_seeds}, {".mrk.json", markups_seeds},
+  };
 }
 
 }  // namespace vmesh::testing

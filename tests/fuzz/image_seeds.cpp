@@ -15,8 +15,6 @@ std::vector<double> small_values() { return {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 2
 /// Stored, not compressed, so that a fuzzer can change what is inside.
 std::string stored(const std::string& bytes) { return packed(bytes, true, Z_NO_COMPRESSION); }
 
-}  // namespace
-
 std::vector<std::string> nii_seeds() {
   const SampleImage image = small_image();
   return {nifti_file<std::int16_t>(image, small_values()), nifti_file<float>(image, small_values(), NiftiPlace::qform),
@@ -48,6 +46,17 @@ std::vector<std::string> mha_seeds() {
           mha_header(image, "MET_FLOAT", "CompressedData = True\n") + packed(voxels, false),
           "NDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n" +
               voxel_bytes<std::uint8_t>(small_values())};
+}
+
+}  // namespace
+
+std::map<std::string, MakeSeeds> image_seeds() {
+  return {
+      {".nii", nii_seeds},
+      {".nii.gz", nii_gz_seeds},
+      {".nrrd", nrrd_seeds},
+      {".mha", mha_seeds},
+  };
 }
 
 }  // namespace vmesh::testing

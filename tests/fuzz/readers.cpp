@@ -8,8 +8,6 @@
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 
-#include "seeds.h"
-
 namespace vmesh::testing {
 namespace {
 
@@ -50,20 +48,19 @@ void check(const RawCenterline& raw) {
   require(raw.segment_numbers.empty() || raw.segment_numbers.size() == raw.segments.size(), "segments without numbers");
 }
 
-template <CenterlineFormat Format>
-Verdict read_centerline_as(std::string_view content) {
+Verdict read_centerline_as(const CenterlineFormat& format, std::string_view content) {
   const std::string source = "input.";
   return verdict_of(source, [&] {
     std::string_view second;
-    if (Format == CenterlineFormat::csv) {
+    if (format.second_file) {
       const std::size_t end = std::min(content.find(kCsvSeparator), content.size());
       second = content.substr(std::min(end + 1, content.size()));
       content = content.substr(0, end);
     }
     CenterlineReadOptions options;
-    if (Format == CenterlineFormat::pth) options.radius = 1.5;
-    if (Format == CenterlineFormat::gxl) options.voxel_size = Vec3(1, 1, 2);
-    RawCenterline raw = parse_centerline(content, Format, source, options, second);
+    if (format.extensions.front() == ".pth") options.radius = 1.5;
+    if (format.extensions.front() == ".gxl") options.voxel_size = Vec3(1, 1, 2);
+    RawCenterline raw = parse_centerline(content, format, source, options, second);
     check(raw);
     std::vector<std::string> warnings;
     const CleanedCenterline cleaned = clean(convert_read(std::move(raw), options, {}, {}, warnings));
@@ -78,11 +75,10 @@ void check(const std::vector<MeshAttribute>& attributes, std::size_t count) {
   for (const auto& a : attributes) require(a.values.size() == count, "an attribute of the wrong length");
 }
 
-template <SurfaceFormat Format>
-Verdict read_surface_as(std::string_view content) {
+Verdict read_surface_as(const SurfaceFormat& format, std::string_view content) {
   const std::string source = "input.";
   return verdict_of(source, [&] {
-    const LoadedSurface surface = parse_surface(content, Format, source);
+    const LoadedSurface surface = parse_surface(content, format, source);
     require(!surface.mesh.faces.empty(), "a surface without a face");
     for (const Vec3& p : surface.mesh.vertices) require(p.allFinite(), "a vertex that is not finite");
     for (const Triangle& face : surface.mesh.faces) {
@@ -102,38 +98,51 @@ Verdict read_image_as(std::string_view content, std::string_view ending) {
   });
 }
 
-constexpr Reader kReaders[] = {
-    {"swc", ".swc", read_centerline_as<CenterlineFormat::swc>, swc_seeds},
-    {"vmv", ".vmv", read_centerline_as<CenterlineFormat::vmv>, vmv_seeds},
-    {"json", ".json", read_centerline_as<CenterlineFormat::json>, json_seeds},
-    {"csv", ".csv", read_centerline_as<CenterlineFormat::csv>, csv_seeds},
-    {"vtk", ".vtk", read_centerline_as<CenterlineFormat::vtk>, vtk_seeds},
-    {"vtp", ".vtp", read_centerline_as<CenterlineFormat::vtp>, vtp_seeds},
-    {"ctgr", ".ctgr", read_centerline_as<CenterlineFormat::ctgr>, ctgr_seeds},
-    {"pth", ".pth", read_centerline_as<CenterlineFormat::pth>, pth_seeds},
-    {"gxl", ".gxl", read_centerline_as<CenterlineFormat::gxl>, gxl_seeds},
-    {"amira", ".am", read_centerline_as<CenterlineFormat::amira>, amira_seeds},
-    {"network", ".dat", read_centerline_as<CenterlineFormat::network>, network_seeds},
-    {"markups", ".mrk.json", read_centerline_as<CenterlineFormat::json>, markups_seeds},
-    {"surface_vtp", ".vtp", read_surface_as<SurfaceFormat::vtp>, surface_vtp_seeds},
-    {"surface_vtk", ".vtk", read_surface_as<SurfaceFormat::vtk>, surface_vtk_seeds},
-    {"ply", ".ply", read_surface_as<SurfaceFormat::ply>, ply_seeds},
-    {"stl", ".stl", read_surface_as<SurfaceFormat::stl>, stl_seeds},
-    {"obj", ".obj", read_surface_as<SurfaceFormat::obj>, obj_seeds},
-    {"off", ".off", read_surface_as<SurfaceFormat::off>, off_seeds},
-    {"nii", ".nii", [](std::string_view content) { return read_image_as(content, ".nii"); }, nii_seeds},
-    {"nii_gz", ".nii.gz", [](std::string_view content) { return read_image_as(content, ".nii.gz"); }, nii_gz_seeds},
-    {"nrrd", ".nrrd", [](std::string_view content) { return read_image_as(content, ".nrrd"); }, nrrd_seeds},
-    {"mha", ".mha", [](std::string_view content) { return read_image_as(content, ".mha"); }, mha_seeds},
-};
+MakeSeeds seeds_of(const std::map<std::string, MakeSeeds>& seeds, const std::string& ending) {
+  const auto found = seeds.find(ending);
+  require(found != seeds.end(), "there are no seeds of " + ending);
+  return found->second;
+}
+
+/// ".nii.gz" as a word: "nii_gz".
+std::string name_of(const std::string& ending) {
+  std::string name = ending.substr(1);
+  std::ranges::replace(name, '.', '_');
+  return name;
+}
+
+std::vector<Reader> make_readers() {
+  std::vector<Reader> all;
+  for (const CenterlineFormat& format : centerline_formats()) {
+    if (!format.parse && !format.parse_pair) continue;
+    const std::string& ending = format.extensions.front();
+    all.push_back({name_of(ending), ending, [&format](auto content) { return read_centerline_as(format, content); },
+                   seeds_of(centerline_seeds(), ending)});
+  }
+  for (const SurfaceFormat& format : surface_formats()) {
+    if (!format.parse) continue;
+    const std::string& ending = format.extensions.front();
+    all.push_back({(find_centerline_format("t" + ending) ? "surface_" : "") + name_of(ending), ending,
+                   [&format](auto content) { return read_surface_as(format, content); },
+                   seeds_of(surface_seeds(), ending)});
+  }
+  for (const std::string& ending :
+       extensions_of(image_formats(), [](const auto& f) { return f.parse_header && !f.in_two_files; }))
+    all.push_back({name_of(ending), ending, [ending](auto content) { return read_image_as(content, ending); },
+                   seeds_of(image_seeds(), ending)});
+  return all;
+}
 
 }  // namespace
 
-std::span<const Reader> readers() { return kReaders; }
+const std::vector<Reader>& readers() {
+  static const std::vector<Reader> all = make_readers();
+  return all;
+}
 
 const Reader& reader_named(std::string_view name) {
-  const auto found = std::ranges::find(kReaders, name, &Reader::name);
-  if (found == std::end(kReaders)) throw std::invalid_argument("there is no reader " + std::string(name));
+  const auto found = std::ranges::find(readers(), name, &Reader::name);
+  if (found == readers().end()) throw std::invalid_argument("there is no reader " + std::string(name));
   return *found;
 }
 

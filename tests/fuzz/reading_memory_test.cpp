@@ -116,9 +116,9 @@ TEST(ReadingMemory, HeadersThatLieAreErrors) {
       {"vtk", vtk_head + "1 float\n0 0 0\nLINES " + kLie + " " + kLie + "\n"},
       {"vtk", vtk_head + "1 float\n0 0 0\nLINES 1 2\n" + kLie + " 0\n"},
       {"vtk", "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\nPOINTS " + kLie + " float\nabc\n"},
-      {"amira", amira_head(kLie) + "@1\n0 0 0\n"},
-      {"amira", amira_head("3", "(HxZip,9)", "BINARY") + "@1\nabcdefghi\n"},
-      {"network", "t\n1 1 1\n1 1 1\n1\n1\n1\n" + kLie + "\nhead\n1 5 1 2 9\n"},
+      {"am", amira_head(kLie) + "@1\n0 0 0\n"},
+      {"am", amira_head("3", "(HxZip,9)", "BINARY") + "@1\nabcdefghi\n"},
+      {"dat", "t\n1 1 1\n1 1 1\n1\n1\n1\n" + kLie + "\nhead\n1 5 1 2 9\n"},
       {"vtp",
        vtp_head + kLie + "\"><Points><DataArray NumberOfComponents=\"3\" type=\"Int8\">0</DataArray></Points>" + end},
       {"vtp", vtp_head + "1\" NumberOfLines=\"" + kLie + "\">" + cells + "<Lines>" + offsets + "</Lines>" + end},
@@ -183,11 +183,11 @@ TEST(ReadingMemory, OfOtherProgramsFilesIsAMultipleOfTheFile) {
                              "<gxl><graph><node id=\"a\">" + position + "</node><node id=\"b\">" + position + "</node>",
                              "</graph></gxl>"));
   const std::string network = "t\n1 1 1\n1 1 1\n1\n1\n1\n";
-  expect_bounded("network", many("1 5 1 2 9\n", network + "99999\nhead\n"));
-  expect_bounded("network", numbered("% 1 1 1\n", network + "0\nhead\n999999\nhead\n"));
-  expect_bounded("amira", many("0 ", amira_head("300000") + "@1\n"));
-  expect_bounded("amira", numbered("VERTEX { byte a } @%\n", "# AmiraMesh ASCII\n"));
-  expect_bounded("amira", numbered("define a% 1\n", "# AmiraMesh ASCII\n"));
+  expect_bounded("dat", many("1 5 1 2 9\n", network + "99999\nhead\n"));
+  expect_bounded("dat", numbered("% 1 1 1\n", network + "0\nhead\n999999\nhead\n"));
+  expect_bounded("am", many("0 ", amira_head("300000") + "@1\n"));
+  expect_bounded("am", numbered("VERTEX { byte a } @%\n", "# AmiraMesh ASCII\n"));
+  expect_bounded("am", numbered("define a% 1\n", "# AmiraMesh ASCII\n"));
 }
 
 TEST(ReadingMemory, OfJsonIsAMultipleOfTheFile) {

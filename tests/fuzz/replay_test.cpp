@@ -71,8 +71,8 @@ TEST_P(Replay, SharedAdversarialFilesAreReadOrRefused) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Readers, Replay, ::testing::ValuesIn(readers().begin(), readers().end()),
-                         [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Readers, Replay, ::testing::ValuesIn(readers()),
+                         [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace vmesh::testing

@@ -46,8 +46,6 @@ std::string binary_stl() {
   return text;
 }
 
-}  // namespace
-
 std::vector<std::string> ply_seeds() {
   return {"ply\nformat ascii 1.0\ncomment SPACE=RAS\n" + kPlyHead +
               "0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0.5 4\n4 0 1 2 3 0.25\n3 0 1 3 0.5\n",
@@ -118,6 +116,15 @@ std::vector<std::string> surface_vtp_seeds() {
       "format=\"appended\" offset=\"20\"/><DataArray type=\"UInt8\" Name=\"offsets\" format=\"appended\" "
       "offset=\"32\"/></Polys></Piece></PolyData><AppendedData encoding=\"base64\">_CQAAAAAAAAEAAAABAA=="
       "AwAAAAABAg==AQAAAAM=</AppendedData></VTKFile>"};
+}
+
+}  // namespace
+
+std::map<std::string, MakeSeeds> surface_seeds() {
+  return {
+      {".vtp", surface_vtp_seeds}, {".vtk", surface_vtk_seeds}, {".ply", ply_seeds},
+      {".stl", stl_seeds},         {".obj", obj_seeds},         {".off", off_seeds},
+  };
 }
 
 }  // namespace vmesh::testing

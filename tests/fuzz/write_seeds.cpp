@@ -7,7 +7,9 @@
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::cerr << "usage: write_seeds READER FOLDER\n";
+    std::cerr << "usage: write_seeds READER FOLDER; readers:";
+    for (const vmesh::testing::Reader& reader : vmesh::testing::readers()) std::cerr << ' ' << reader.name;
+    std::cerr << "\n";
     return 2;
   }
   const std::filesystem::path folder = argv[2];

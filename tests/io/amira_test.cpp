@@ -24,7 +24,7 @@ const std::string kFile = "# AmiraMesh 3D ASCII 2.0" + kHeader +
                           "@5\n5\n4\n3\n3\n2.5\n2\n3\n1\n";
 
 RawCenterline parse(const std::string& text, const CenterlineReadOptions& options = {}) {
-  return parse_centerline(text, CenterlineFormat::amira, "t.am", options);
+  return parse_centerline(text, centerline_format("t.am"), "t.am", options);
 }
 
 std::string with(const std::string& from, const std::string& to, std::string text = kFile) {

@@ -12,8 +12,8 @@ using testing::expect_contains;
 using testing::message_of;
 using testing::TemporaryFolder;
 
-RawCenterline swc(const std::string& text) { return parse_centerline(text, CenterlineFormat::swc, "t.swc"); }
-RawCenterline json(const std::string& text) { return parse_centerline(text, CenterlineFormat::json, "t.json"); }
+RawCenterline swc(const std::string& text) { return parse_centerline(text, centerline_format("t.swc"), "t.swc"); }
+RawCenterline json(const std::string& text) { return parse_centerline(text, centerline_format("t.json"), "t.json"); }
 std::string swc_error(const std::string& text) {
   return message_of<InvalidInput>([&] { swc(text); });
 }
@@ -192,9 +192,10 @@ TEST(ReadCenterline, SaysWhenThereIsNothingToRead) {
 
 TEST(ReadCenterline, ReadsFromAStream) {
   std::istringstream in("1 1 0 0 0 1 -1\n");
-  EXPECT_EQ(read_centerline(in, CenterlineFormat::swc, "stdin").nodes.size(), 1u);
+  EXPECT_EQ(read_centerline(in, centerline_format("t.swc"), "stdin").nodes.size(), 1u);
   std::istringstream empty;
-  expect_contains(message_of<InvalidInput>([&] { read_centerline(empty, CenterlineFormat::swc, "stdin"); }), "stdin");
+  expect_contains(message_of<InvalidInput>([&] { read_centerline(empty, centerline_format("t.swc"), "stdin"); }),
+                  "stdin");
 }
 
 }  // namespace

@@ -103,9 +103,9 @@ TEST(EndSections, AreLeftOutWhereTheFormatHasNoRoom) {
   for (const char* name : {"a.swc", "a.csv"}) {
     write_centerline(folder / name, bent(), {}, sections());
     EXPECT_TRUE(load_centerline(folder / name).cleaned.end_sections.empty());
-    EXPECT_FALSE(keeps_end_sections(centerline_format(folder / name)));
+    EXPECT_FALSE(centerline_format(folder / name).keeps_end_sections);
   }
-  EXPECT_TRUE(keeps_end_sections(CenterlineFormat::json) && keeps_end_sections(CenterlineFormat::vtp));
+  EXPECT_TRUE(centerline_format("t.json").keeps_end_sections && centerline_format("t.vtp").keeps_end_sections);
   write_centerline(folder / "none.json", bent());
   EXPECT_EQ(testing::content_of(folder / "none.json").find("end_sections"), std::string::npos);
 }
@@ -131,7 +131,7 @@ json document() {
                       "ring": [[9, 2, 0], [9, -1, 2], [9, -1, -2]]}]})");
 }
 
-RawCenterline parse(const json& file) { return parse_centerline(file.dump(), CenterlineFormat::json, "t.json"); }
+RawCenterline parse(const json& file) { return parse_centerline(file.dump(), centerline_format("t.json"), "t.json"); }
 
 TEST(EndSections, InJsonMayHaveNormalsOfAnyLengthAndNoRing) {
   json file = document();
@@ -185,7 +185,7 @@ TEST(EndSections, InJsonAreRefusedWithWhatIsWrong) {
   expect_contains(message_of<InvalidInput>([&] { parse(file); }), "must be an object");
   const std::string text = document().dump();
   const std::string infinite = std::string(text).replace(text.find("\"area\":12"), 9, "\"area\":1e999");
-  EXPECT_THROW(parse_centerline(infinite, CenterlineFormat::json, "t.json"), InvalidInput);
+  EXPECT_THROW(parse_centerline(infinite, centerline_format("t.json"), "t.json"), InvalidInput);
 }
 
 std::string field(const std::string& name, const std::string& type, int components, const std::string& numbers) {
@@ -211,7 +211,7 @@ std::string flat_end(const std::string& node = "3", const std::string& offsets =
 }
 
 TEST(EndSections, InVtpReferToPoints) {
-  const RawCenterline raw = parse_centerline(vtp(flat_end()), CenterlineFormat::vtp, "t.vtp");
+  const RawCenterline raw = parse_centerline(vtp(flat_end()), centerline_format("t.vtp"), "t.vtp");
   ASSERT_EQ(raw.end_sections.size(), 1u);
   const EndSection& section = raw.end_sections[0];
   EXPECT_EQ(raw.nodes[section.node].position, Vec3(9, 0, 0));
@@ -222,7 +222,7 @@ TEST(EndSections, InVtpReferToPoints) {
 
 TEST(EndSections, InVtpAreRefusedWithWhatIsWrong) {
   const auto message = [](const std::string& arrays) {
-    return message_of<InvalidInput>([&] { parse_centerline(vtp(arrays), CenterlineFormat::vtp, "t.vtp"); });
+    return message_of<InvalidInput>([&] { parse_centerline(vtp(arrays), centerline_format("t.vtp"), "t.vtp"); });
   };
   expect_contains(message(flat_end("2")), "there is no point 2 with a line");
   expect_contains(message(flat_end("-1")), "there is no point -1");
@@ -241,7 +241,7 @@ TEST(EndSections, InLegacyVtkAreReadLikewise) {
       "EndSectionCenter 3 1 double\n9 0 0\nEndSectionNormal 3 1 double\n1 0 0\nEndSectionArea 1 1 double\n3\n"
       "EndSectionOpen 1 1 int\n0\nPOINTS 3 double\n0 0 0 5 0 0 9 0 0\nLINES 1 4\n3 0 1 2\nPOINT_DATA 3\n"
       "SCALARS Radius double\nLOOKUP_TABLE default\n1 1 1\n";
-  const RawCenterline raw = parse_centerline(file, CenterlineFormat::vtk, "t.vtk");
+  const RawCenterline raw = parse_centerline(file, centerline_format("t.vtk"), "t.vtk");
   ASSERT_EQ(raw.end_sections.size(), 1u);
   EXPECT_EQ(raw.end_sections[0].node, 2u);
   EXPECT_FALSE(raw.end_sections[0].open);

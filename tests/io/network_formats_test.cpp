@@ -36,7 +36,7 @@ const std::string kNodes = node("n0", floats(0, 0, 0)) + node("n1", floats(40, 0
 RawCenterline parse(const std::string& text, const Vec3& voxel = Vec3(0.5, 0.5, 1)) {
   CenterlineReadOptions options;
   options.voxel_size = voxel;
-  return parse_centerline(text, CenterlineFormat::gxl, "t.gxl", options);
+  return parse_centerline(text, centerline_format("t.gxl"), "t.gxl", options);
 }
 
 std::string error(const std::string& text) {
@@ -79,7 +79,7 @@ TEST(ReadGxl, AShortEdgeChangesInItsMiddle) {
 
 TEST(ReadGxl, NeedsTheVoxelAndNamesWhatIsWrong) {
   const std::string good = gxl(kNodes + edge("n0", "n1", "2"));
-  expect_contains(message_of<InvalidInput>([&] { parse_centerline(good, CenterlineFormat::gxl, "t.gxl"); }),
+  expect_contains(message_of<InvalidInput>([&] { parse_centerline(good, centerline_format("t.gxl"), "t.gxl"); }),
                   "--voxel-size");
   expect_contains(error(gxl(kNodes + edge("n0", "n9", "2"))), "t.gxl: edge entry 0: there is no node \"n9\"");
   expect_contains(error(gxl(kNodes + edge("n0", "n1", "wide"))), "t.gxl: edge entry 0: its radius \"wide\"");
@@ -103,7 +103,7 @@ std::string network_with(const std::string& from, const std::string& to) {
 }
 
 TEST(ReadNetwork, HalvesDiametersAndKnowsItsUnit) {
-  const RawCenterline raw = parse_centerline(kNetwork, CenterlineFormat::network, "t.dat");
+  const RawCenterline raw = parse_centerline(kNetwork, centerline_format("t.dat"), "t.dat");
   EXPECT_EQ(raw.unit, LengthUnit::um);
   ASSERT_EQ(raw.nodes.size(), 3u);
   EXPECT_EQ(raw.nodes[2].position, Vec3(150, 60, 10));
@@ -118,7 +118,7 @@ TEST(ReadNetwork, HalvesDiametersAndKnowsItsUnit) {
 TEST(ReadNetwork, NamesTheLineThatIsWrong) {
   const auto wrong = [](const std::string& from, const std::string& to) {
     return message_of<InvalidInput>(
-        [&] { parse_centerline(network_with(from, to), CenterlineFormat::network, "t.dat"); });
+        [&] { parse_centerline(network_with(from, to), centerline_format("t.dat"), "t.dat"); });
   };
   expect_contains(wrong("2 5 12 13 12.5", "2 5 12 14 12.5"), "t.dat: line 11: there is no node 14");
   expect_contains(wrong("2 5 12 13 12.5", "2 5 12 13 wide"), "t.dat: line 11: \"wide\" is not a number");

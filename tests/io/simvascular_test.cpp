@@ -41,7 +41,7 @@ std::string path(const std::string& points) {
          "</path_points></path_element></timestep></path>";
 }
 
-RawCenterline parse(const std::string& text, CenterlineFormat format = CenterlineFormat::ctgr,
+RawCenterline parse(const std::string& text, const CenterlineFormat& format = centerline_format("t.ctgr"),
                     const CenterlineReadOptions& options = {}) {
   return parse_centerline(text, format, "t", options);
 }
@@ -89,17 +89,17 @@ TEST(ReadContours, NamesWhatIsWrong) {
 TEST(ReadPath, NeedsARadius) {
   const std::string text = path("<path_point id=\"0\">" + point("pos", {1, 2, 3}) + point("tangent", {0, 0, 1}) +
                                 "</path_point><path_point id=\"1\">" + point("pos", {1, 2, 7}) + "</path_point>");
-  expect_contains(message_of<InvalidInput>([&] { parse(text, CenterlineFormat::pth); }), "--radius");
+  expect_contains(message_of<InvalidInput>([&] { parse(text, centerline_format("t.pth")); }), "--radius");
   CenterlineReadOptions options;
   options.radius = 4;
   std::vector<std::string> warnings;
   const RawCenterline raw =
-      convert_read(parse(text, CenterlineFormat::pth, options), options, LengthUnit::cm, {}, warnings);
+      convert_read(parse(text, centerline_format("t.pth"), options), options, LengthUnit::cm, {}, warnings);
   ASSERT_EQ(raw.nodes.size(), 2u);
   EXPECT_EQ(raw.nodes[1].position, Vec3(10, 20, 70));
   EXPECT_EQ(raw.nodes[1].radius, 4);  // mm, whatever the file's unit
   EXPECT_EQ(raw.segments.size(), 1u);
-  expect_contains(message_of<InvalidInput>([&] { parse(path("<path_point/>"), CenterlineFormat::pth, options); }),
+  expect_contains(message_of<InvalidInput>([&] { parse(path("<path_point/>"), centerline_format("t.pth"), options); }),
                   "path point 0: its x=\"\" is not a number");
 }
 

@@ -18,9 +18,11 @@ using testing::message_of;
 using testing::shared_data;
 using testing::TemporaryFolder;
 
-LoadedSurface parse(SurfaceFormat format, const std::string& text) { return parse_surface(text, format, "t"); }
-std::string error(SurfaceFormat format, const std::string& text) {
-  return message_of<InvalidInput>([&] { parse(format, text); });
+LoadedSurface parse(const std::string& name, const std::string& text) {
+  return parse_surface(text, surface_format(name), "t");
+}
+std::string error(const std::string& name, const std::string& text) {
+  return message_of<InvalidInput>([&] { parse(name, text); });
 }
 
 const std::string kPlyText =
@@ -29,8 +31,7 @@ const std::string kPlyText =
     "quality\nend_header\n";
 
 TEST(ReadPly, SplitsPolygonsAndKeepsAttributes) {
-  const auto surface =
-      parse(SurfaceFormat::ply, kPlyText + "0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0.5 4\n4 0 1 2 3 0.25\n3 0 1 3 0.5\n");
+  const auto surface = parse("t.ply", kPlyText + "0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0.5 4\n4 0 1 2 3 0.25\n3 0 1 3 0.5\n");
   EXPECT_EQ(surface.mesh.vertices[3], Vec3(0, 1, 0.5));
   EXPECT_EQ(surface.mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 1, 3}}));
   ASSERT_EQ(surface.attributes.vertex.size(), 1u);
@@ -51,7 +52,7 @@ TEST(ReadPly, ReadsBigEndian) {
   for (const auto& record : records) {
     for (const int byte : record) bytes += static_cast<char>(byte);
   }
-  const auto surface = parse(SurfaceFormat::ply, bytes);
+  const auto surface = parse("t.ply", bytes);
   EXPECT_EQ(surface.mesh.vertices[0], Vec3(258, 3, -1));
   EXPECT_EQ(surface.mesh.vertices[1], Vec3(-2, 200, -1));
   EXPECT_EQ(surface.mesh.vertices[2], Vec3(256, 7, 0));
@@ -59,59 +60,51 @@ TEST(ReadPly, ReadsBigEndian) {
 
 TEST(ReadPly, BelievesNoHeaderThatTheFileCannotKeep) {
   const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex ";
-  expect_contains(error(SurfaceFormat::ply,
-                        head + "353535235358\nproperty float x\nproperty float y\nproperty float z\nend_header\n"),
-                  "353535235358");
-  expect_contains(error(SurfaceFormat::ply, head + "1\nproperty list uint float x\nend_header\n\xff\xff\xff\xff"),
-                  "x, y and z");
   expect_contains(
-      error(SurfaceFormat::ply, head + "0\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
-                                       "property list uint int vertex_indices\nend_header\n\xff\xff\xff\x7f"),
-      "length");
-  expect_contains(error(SurfaceFormat::ply, head + "-1\nend_header\n"), "line 3");
-  expect_contains(error(SurfaceFormat::ply, head + "99999999999999999\nend_header\n"), "line 3");
-  expect_contains(error(SurfaceFormat::ply, head + "4000000000\nend_header\n"), "no triangle");
+      error("t.ply", head + "353535235358\nproperty float x\nproperty float y\nproperty float z\nend_header\n"),
+      "353535235358");
+  expect_contains(error("t.ply", head + "1\nproperty list uint float x\nend_header\n\xff\xff\xff\xff"), "x, y and z");
+  expect_contains(error("t.ply", head + "0\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                                        "property list uint int vertex_indices\nend_header\n\xff\xff\xff\x7f"),
+                  "length");
+  expect_contains(error("t.ply", head + "-1\nend_header\n"), "line 3");
+  expect_contains(error("t.ply", head + "99999999999999999\nend_header\n"), "line 3");
+  expect_contains(error("t.ply", head + "4000000000\nend_header\n"), "no triangle");
 }
 
 TEST(ReadPly, NamesWhatIsWrong) {
-  expect_contains(error(SurfaceFormat::ply, "plx\n"), "line 1");
-  expect_contains(error(SurfaceFormat::ply, "ply\nformat ascii 1.0\n"), "end_header");
-  expect_contains(error(SurfaceFormat::ply, "ply\nend_header\n"), "format");
-  expect_contains(error(SurfaceFormat::ply, "ply\nformat zip 1.0\n"), "zip");
-  expect_contains(error(SurfaceFormat::ply, "ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\n"), "quad");
-  expect_contains(error(SurfaceFormat::ply, kPlyText + "0 0 0 1\n1 0 0 2\n"), "promises");
-  expect_contains(error(SurfaceFormat::ply, kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 x 4 3 0 1 2 0 3 0 1 2 0"),
-                  "vertex 3");
-  expect_contains(error(SurfaceFormat::ply, kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 nan 4 3 0 1 2 0 3 0 1 2 0"),
-                  "vertex 3");
-  expect_contains(error(SurfaceFormat::ply, kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 0 4 3 0 1 2 0 3 0 1 4 0"),
-                  "face 1");
-  expect_contains(error(SurfaceFormat::ply, kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 0 4 3 0 1 2 0 3 0 1 -1 0"),
-                  "face 1");
+  expect_contains(error("t.ply", "plx\n"), "line 1");
+  expect_contains(error("t.ply", "ply\nformat ascii 1.0\n"), "end_header");
+  expect_contains(error("t.ply", "ply\nend_header\n"), "format");
+  expect_contains(error("t.ply", "ply\nformat zip 1.0\n"), "zip");
+  expect_contains(error("t.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\n"), "quad");
+  expect_contains(error("t.ply", kPlyText + "0 0 0 1\n1 0 0 2\n"), "promises");
+  expect_contains(error("t.ply", kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 x 4 3 0 1 2 0 3 0 1 2 0"), "vertex 3");
+  expect_contains(error("t.ply", kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 nan 4 3 0 1 2 0 3 0 1 2 0"), "vertex 3");
+  expect_contains(error("t.ply", kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 0 4 3 0 1 2 0 3 0 1 4 0"), "face 1");
+  expect_contains(error("t.ply", kPlyText + "0 0 0 1 1 0 0 2 1 1 0 3 0 1 0 4 3 0 1 2 0 3 0 1 -1 0"), "face 1");
 }
 
 TEST(ReadStl, JoinsEqualCornersOfTextAndBinary) {
   const std::string facet = " facet normal 0 0 1\n  outer loop\n";
   const auto surface =
-      parse(SurfaceFormat::stl, "solid SPACE=LPS\n" + facet +
-                                    "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n" + facet +
-                                    "vertex -0 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\nendsolid\n");
+      parse("t.stl", "solid SPACE=LPS\n" + facet + "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n" +
+                         facet + "vertex -0 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\nendsolid\n");
   EXPECT_EQ(surface.mesh.vertices.size(), 4u);
   EXPECT_EQ(surface.mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_EQ(surface.space, Space::lps);
 }
 
 TEST(ReadStl, NamesWhatIsWrong) {
-  expect_contains(error(SurfaceFormat::stl, "hello"), "not an STL");
-  expect_contains(error(SurfaceFormat::stl, std::string(80, ' ') + "\xff\xff\xff\xff" + std::string(50, '\0')),
-                  "promises");
-  expect_contains(error(SurfaceFormat::stl, "solid\nvertex 0 0\n"), "line 2");
-  expect_contains(error(SurfaceFormat::stl, "solid\nvertex 0 0 nan\n"), "line 2");
+  expect_contains(error("t.stl", "hello"), "not an STL");
+  expect_contains(error("t.stl", std::string(80, ' ') + "\xff\xff\xff\xff" + std::string(50, '\0')), "promises");
+  expect_contains(error("t.stl", "solid\nvertex 0 0\n"), "line 2");
+  expect_contains(error("t.stl", "solid\nvertex 0 0 nan\n"), "line 2");
 }
 
 TEST(ReadObj, TakesAllKindsOfCorners) {
   const auto surface =
-      parse(SurfaceFormat::obj,
+      parse("t.obj",
             "# SPACE=LPS UNIT=cm\nf 1 2/5 3//7\nv 0 0 0 0.5 0.5 0.5\nv 1 0 0\nv 0 1 0\nvt 0 0\nv 0 0 1\n"
             "f -4/1/1 -1 \\\n -2\nl 1 2\nf 1 1 2\n");
   EXPECT_EQ(surface.mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 3, 2}}));
@@ -140,7 +133,7 @@ TEST(ReadObj, TriangulatesAConcavePolygonWithinIt) {
       star.push_back(Vec3(5, 6, 7) + r * (std::cos(angle) * u + std::sin(angle) * v));
     }
     for (int i = 0; i < 14; ++i) area += star[i].cross(star[(i + 1) % 14]) / 2;
-    const TriMesh mesh = parse(SurfaceFormat::obj, obj_polygon(star)).mesh;
+    const TriMesh mesh = parse("t.obj", obj_polygon(star)).mesh;
     ASSERT_EQ(mesh.faces.size(), 12u);
     double sum = 0;
     for (Index f = 0; f < 12; ++f) {
@@ -153,24 +146,24 @@ TEST(ReadObj, TriangulatesAConcavePolygonWithinIt) {
 
 TEST(ReadObj, MakesAFanOfAPolygonThatIsNotSimple) {
   const std::vector<Triangle> fan = {{0, 1, 2}, {0, 2, 3}};
-  EXPECT_EQ(parse(SurfaceFormat::obj, obj_polygon({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}})).mesh.faces, fan);
-  EXPECT_EQ(parse(SurfaceFormat::obj, obj_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}})).mesh.faces, fan);
+  EXPECT_EQ(parse("t.obj", obj_polygon({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}})).mesh.faces, fan);
+  EXPECT_EQ(parse("t.obj", obj_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}})).mesh.faces, fan);
 }
 
 TEST(ReadObj, NamesTheLineThatIsWrong) {
-  expect_contains(error(SurfaceFormat::obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"), "line 4");
-  expect_contains(error(SurfaceFormat::obj, "v 0 0 0\nf 1 0 1\n"), "line 2");
-  expect_contains(error(SurfaceFormat::obj, "v 0 0\n"), "line 1");
-  expect_contains(error(SurfaceFormat::obj, "v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n"), "vertex 2");
-  expect_contains(error(SurfaceFormat::obj, "v 0 0 0\nf -2 1 1\n"), "line 2");
+  expect_contains(error("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"), "line 4");
+  expect_contains(error("t.obj", "v 0 0 0\nf 1 0 1\n"), "line 2");
+  expect_contains(error("t.obj", "v 0 0\n"), "line 1");
+  expect_contains(error("t.obj", "v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n"), "vertex 2");
+  expect_contains(error("t.obj", "v 0 0 0\nf -2 1 1\n"), "line 2");
 }
 
 TEST(ReadOff, NamesTheLineThatIsWrong) {
-  EXPECT_EQ(parse(SurfaceFormat::off, "OFF 3 1 0\n0 0 0\n# c\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n").mesh.faces.size(), 1u);
-  expect_contains(error(SurfaceFormat::off, "OFG\n"), "line 1");
-  expect_contains(error(SurfaceFormat::off, "OFF\n999999999999 1 0\n0 0 0\n"), "999999999999");
-  expect_contains(error(SurfaceFormat::off, "OFF\n3 1 0\n0 0 0\n1 0 0\n"), "ends");
-  expect_contains(error(SurfaceFormat::off, "OFF\n1 1 0\n0 0 0\n9 0 0 0\n"), "line 4");
+  EXPECT_EQ(parse("t.off", "OFF 3 1 0\n0 0 0\n# c\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n").mesh.faces.size(), 1u);
+  expect_contains(error("t.off", "OFG\n"), "line 1");
+  expect_contains(error("t.off", "OFF\n999999999999 1 0\n0 0 0\n"), "999999999999");
+  expect_contains(error("t.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n"), "ends");
+  expect_contains(error("t.off", "OFF\n1 1 0\n0 0 0\n9 0 0 0\n"), "line 4");
 }
 
 TEST(ReadSurface, SaysWhenThereIsNothingToRead) {
@@ -187,21 +180,19 @@ TEST(ReadSurface, SaysWhenThereIsNothingToRead) {
 TEST(ReadSurface, EveryCutFileIsRefusedOrRead) {
   const TemporaryFolder folder;
   const TriMesh mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
-  for (const auto format : {SurfaceFormat::ply, SurfaceFormat::stl, SurfaceFormat::off, SurfaceFormat::obj}) {
-    const std::string name =
-        std::vector<std::string>{"t.off", "t.obj", "t.stl", "t.ply"}[static_cast<std::size_t>(format)];
+  for (const char* name : {"t.ply", "t.stl", "t.off", "t.obj"}) {
     write_surface(folder / name, mesh, {{{"radius", {1, 2, 3, 4}, false}}, {}});
     const std::string whole = testing::content_of(folder / name);
     std::size_t refused = 0;
     for (std::size_t size = 0; size < whole.size(); ++size) {
       try {
-        parse(format, whole.substr(0, size));
+        parse(name, whole.substr(0, size));
       } catch (const InvalidInput&) {
         ++refused;
       }
     }
     EXPECT_GT(refused, whole.size() / 3) << name;
-    EXPECT_NO_THROW(parse(format, whole)) << name;
+    EXPECT_NO_THROW(parse(name, whole)) << name;
   }
 }
 

@@ -32,7 +32,7 @@ const std::string kLoop =
     "3 3 5 6 \n"               // 19
     "$STRANDS_LIST_END\n";     // 20
 
-RawCenterline parse(const std::string& text) { return parse_centerline(text, CenterlineFormat::vmv, "t.vmv"); }
+RawCenterline parse(const std::string& text) { return parse_centerline(text, centerline_format("t.vmv"), "t.vmv"); }
 
 std::string error(const std::string& text) {
   const std::string message = message_of<InvalidInput>([&] { parse(text); });

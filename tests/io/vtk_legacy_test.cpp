@@ -22,7 +22,7 @@ const std::string kFile = kHeader + kPoints + kLines + kRadius;
 RawCenterline parse(const std::string& text, const std::string& radius = {}) {
   CenterlineReadOptions options;
   options.radius_array = radius;
-  return parse_centerline(text, CenterlineFormat::vtk, "t.vtk", options);
+  return parse_centerline(text, centerline_format("t.vtk"), "t.vtk", options);
 }
 
 std::string error(const std::string& text) {
@@ -133,8 +133,9 @@ TEST(ReadLegacyVtk, TakesRadiiOfLinesAndHalvesDiameters) {
   expect_contains(error(kHeader + kPoints + kLines + cells), "none of points and Diameter of lines");
   CenterlineReadOptions one_for_all;
   one_for_all.radius = 3;
-  EXPECT_EQ(parse_centerline(kHeader + kPoints + kLines, CenterlineFormat::vtk, "t.vtk", one_for_all).nodes[0].radius,
-            0);
+  EXPECT_EQ(
+      parse_centerline(kHeader + kPoints + kLines, centerline_format("t.vtk"), "t.vtk", one_for_all).nodes[0].radius,
+      0);
 }
 
 TEST(ReadLegacyVtk, ReadsCellsWithOffsets) {
@@ -226,7 +227,7 @@ TEST(SharedData, LegacyVtkIsTheSameCenterlineAsItsVtp) {
   }
 }
 
-LoadedSurface surface_of(const std::string& text) { return parse_surface(text, SurfaceFormat::vtk, "t.vtk"); }
+LoadedSurface surface_of(const std::string& text) { return parse_surface(text, surface_format("t.vtk"), "t.vtk"); }
 
 TEST(ReadLegacyVtkSurface, ReadsPolygonsAndStripsWithWhatBelongsToThem) {
   const LoadedSurface surface =

@@ -30,7 +30,7 @@ std::string vtp(const std::string& radius_name = "Radius", const std::string& po
 RawCenterline parse(const std::string& text, const std::string& radius = {}) {
   CenterlineReadOptions options;
   options.radius_array = radius;
-  return parse_centerline(text, CenterlineFormat::vtp, "t.vtp", options);
+  return parse_centerline(text, centerline_format("t.vtp"), "t.vtp", options);
 }
 
 std::string error(const std::string& text) {

@@ -64,7 +64,7 @@ TEST_F(Convert, FlatEndsAreKeptInJsonAndVtp) {
   }
   const Outcome run = vmesh({"convert", "@cut.json", "@a.swc"});
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_NE(run.err.find("1 flat end is lost, being kept only in .json and .vtp"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("1 flat end is lost, being kept only in .vtp and .json"), std::string::npos) << run.err;
 }
 
 TEST_F(Convert, VmvIsReadAndNotWritten) {

@@ -14,15 +14,12 @@ namespace {
 
 /// VTK's files may contain a surface or a centerline.
 bool may_be_both(const std::filesystem::path& path) {
-  const std::string extension = extension_of(path);
-  return extension == ".vtp" || extension == ".vtk";
+  return find_centerline_format(path) != nullptr && find_surface_format(path) != nullptr;
 }
 
+/// Whether the file can only contain a surface.
 bool has_surface_extension(const std::filesystem::path& path) {
-  const std::string extension = extension_of(path);
-  for (const char* known : {".ply", ".stl", ".obj", ".off", ".glb", ".gltf", ".3mf", ".dae", ".x3d", ".fbx"})
-    if (extension == known) return true;
-  return false;
+  return find_centerline_format(path) == nullptr && find_surface_format(path) != nullptr;
 }
 
 std::vector<std::filesystem::path> paths_of(const InputArguments& input) {
@@ -43,8 +40,7 @@ void name_options(std::vector<std::string>& warnings, const InputArguments& inpu
 
 /// Whether the file can only contain a centerline, not a surface.
 bool holds_only_a_centerline(const std::filesystem::path& path) {
-  const auto format = find_centerline_format(path);
-  return format && format != CenterlineFormat::vtp && format != CenterlineFormat::vtk;
+  return find_centerline_format(path) != nullptr && find_surface_format(path) == nullptr;
 }
 
 /// "wall.stl: this is a surface; ...": what to do with a file of the wrong kind, with the command.
@@ -101,13 +97,12 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
 
 /// ".pth", say, for files that contain one branch of a tree each; empty for others.
 std::string branch_extension(const std::filesystem::path& path) {
-  const std::string extension = extension_of(path);
-  if (extension == ".ctgr" || extension == ".pth") return extension;
-  return extension == ".json" && extension_of(path.stem()) == ".mrk" ? ".mrk.json" : "";
+  const CenterlineFormat* format = find_centerline_format(path);
+  return format != nullptr && format->one_branch ? longest_extension(path, format->extensions) : "";
 }
 
 bool is_readable(const std::filesystem::path& path) {
-  return find_centerline_format(path) || has_surface_extension(path) || is_image_path(path);
+  return find_centerline_format(path) || find_surface_format(path) || is_image_path(path);
 }
 
 /// "a.swc, b.swc and 7 more": readable files that could have been meant.
@@ -157,12 +152,28 @@ std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& 
       (names.empty() ? "it contains no file that vmesh can read" : "one of its files is needed; there are " + names));
 }
 
+/// The extensions of the formats on which an option for reading acts.
+std::string extensions_with(const std::string& option) {
+  return listed(extensions_of(centerline_formats(), [&](const CenterlineFormat& format) {
+    return option == "radius" || std::ranges::find(format.options, option) != format.options.end();
+  }));
+}
+
+/// Throws UsageError for options that act on none of these centerlines; `kind` says what the input is.
+void refuse_without_effect(const InputArguments& input, const std::vector<std::filesystem::path>& centerlines,
+                           const std::string& kind) {
+  for (const std::string& option : options_without_effect(input.read, centerlines))
+    throw UsageError(input.path.string() + ": this is " + kind + "; --" + input.options_of + option +
+                     " is for centerlines in " + extensions_with(option));
+}
+
 RawCenterline read_centerline_of(const InputArguments& input) {
   const std::vector<std::filesystem::path> paths = paths_of(input);
   for (const std::filesystem::path& path : paths) {
     if (has_surface_extension(path)) throw Unsupported(make_centerline_first(path, "a surface"));
     if (is_image(path)) throw Unsupported(make_centerline_first(path, "an image"));
   }
+  refuse_without_effect(input, paths, "a centerline in " + centerline_format(input.path).extensions.front());
   try {
     return read_centerline(paths, input.read);
   } catch (const InvalidInput&) {
@@ -174,12 +185,22 @@ RawCenterline read_centerline_of(const InputArguments& input) {
   }
 }
 
+/// Throws UsageError for options that say how to read a file that is not given.
+void refuse_without_file(const InputArguments& input) {
+  if (!input.path.empty()) return;
+  std::vector<std::string> given = options_without_effect(input.read, {});
+  if (input.unit) given.push_back("unit");
+  if (input.space) given.push_back("space");
+  if (!given.empty()) throw UsageError("--" + input.options_of + given.front() + " is for a file that is not given");
+}
+
 /// Calls `read` to read an image.
 template <class Read>
 auto reading_image(const InputArguments& input, Read read) {
   if (input.unit || input.space)
     throw UsageError(input.path.string() +
                      ": an image contains its position and unit; --unit and --space do not apply");
+  refuse_without_effect(input, {}, "an image");
   try {
     return read();
   } catch (const InvalidInput&) {
@@ -208,6 +229,7 @@ LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
     throw Unsupported(make_surface_first(input.path, "a centerline", "generate"));
   try {
     LoadedSurface surface = read_surface(input.path);
+    refuse_without_effect(input, {}, "a surface");
     if (said != nullptr) *said = {surface.unit, surface.space};
     convert_to_internal(surface, input.path.string(), input.unit, input.space);
     name_options(surface.warnings, input);
@@ -274,6 +296,7 @@ AnyInput load_any(const InputArguments& input, std::vector<std::string>& warning
 }
 
 void expand_folders(InputArguments& input) {
+  refuse_without_file(input);
   std::vector<std::filesystem::path> expanded;
   for (const std::filesystem::path& path : paths_of(input)) {
     for (std::filesystem::path& file : expanded_folder(path)) expanded.push_back(std::move(file));
@@ -283,7 +306,8 @@ void expand_folders(InputArguments& input) {
 }
 
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& input) {
-  if (extension_of(input) == ".csv") return {input, csv_segments_path(input)};
+  const CenterlineFormat* format = find_centerline_format(input);
+  if (format != nullptr && format->second_file) return {input, format->second_file(input)};
   return {input};
 }
 

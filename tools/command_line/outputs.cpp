@@ -1,7 +1,6 @@
 #include "command_line/outputs.h"
 
 #include <algorithm>
-#include <cctype>
 #include <iostream>
 
 #include "vmesh/core/atomic_file.h"
@@ -73,13 +72,6 @@ void check_format(const PlannedOutput& output) {
 }
 
 }  // namespace
-
-std::string extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<fs::path>& inputs) {
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {
@@ -158,15 +150,19 @@ void write_surface(const fs::path& path, const TriMesh& mesh, MeshAttributes att
 void write_centerline(const fs::path& path, const Centerline& centerline, const CenterlineMetadata& metadata,
                       const std::vector<EndSection>& sections, Console& console) {
   vmesh::write_centerline(path, centerline, metadata, sections);
-  if (sections.empty() || keeps_end_sections(centerline_format(path))) return;
+  if (sections.empty() || centerline_format(path).keeps_end_sections) return;
+  const auto keeping =
+      extensions_of(centerline_formats(), [](const auto& f) { return f.keeps_end_sections && f.is_written(); });
   console.log(path.string() + ": " + std::to_string(sections.size()) +
-              (sections.size() == 1 ? " flat end is" : " flat ends are") + " lost, being kept only in .json and .vtp");
+              (sections.size() == 1 ? " flat end is" : " flat ends are") + " lost, being kept only in " +
+              listed(keeping, "and"));
 }
 
 void check_writing(const fs::path& path, const WritingArguments& writing) {
-  if (extension_of(path) == ".glb" && (writing.unit != LengthUnit::mm || writing.space != Space::lps))
-    throw UsageError(path.string() +
-                     ": GLB is always in metres with y up; --output-unit and --output-space do not apply");
+  const SurfaceFormat* format = find_surface_format(path);
+  if (format != nullptr && format->has_own_frame && (writing.unit != LengthUnit::mm || writing.space != Space::lps))
+    throw UsageError(path.string() + ": " + format->name +
+                     " is always in metres with y up; --output-unit and --output-space do not apply");
 }
 
 std::string generator_name() { return "vmesh " + std::string(version()); }

@@ -12,9 +12,6 @@
 
 namespace vmesh::tool {
 
-/// Lower-case extension with its dot.
-std::string extension_of(const std::filesystem::path& path);
-
 /// A file a command is going to write.
 struct PlannedOutput {
   enum class Kind { surface, centerline, picture, summary, report, plot, page };

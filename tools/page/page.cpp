@@ -1,9 +1,9 @@
 #include "page/page.h"
 
-#include <cstdio>
 #include <string_view>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/text.h"
 
 #include "command_line/outputs.h"
 #include "page/page_json.h"
@@ -12,22 +12,7 @@
 namespace vmesh::tool {
 namespace {
 
-/// Text escaped for HTML.
-std::string escaped(std::string_view text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&') {
-      safe += "&amp;";
-    } else if (c == '<') {
-      safe += "&lt;";
-    } else if (c == '>') {
-      safe += "&gt;";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
+std::string escaped(std::string_view text) { return xml_escaped(text, "&<>"); }
 
 /// JSON for use between <script> tags: it must not contain anything like the end tag.
 std::string script_safe(const std::string& json) {
@@ -80,9 +65,8 @@ std::string to_html(const Page& page) {
 void write_page(const std::filesystem::path& path, const Page& page, Console& console) {
   const std::string html = to_html(page);
   write_text(path, html);
-  char size[32];
-  std::snprintf(size, sizeof size, "%.1f MB", static_cast<double>(html.size()) / 1e6);
-  console.log("wrote " + path.string() + ", " + size + ": open it in a browser");
+  console.log("wrote " + path.string() + formatted(", %.1f MB", static_cast<double>(html.size()) / 1e6) +
+              ": open it in a browser");
 }
 
 }  // namespace vmesh::tool

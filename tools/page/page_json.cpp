@@ -8,6 +8,8 @@
 namespace vmesh::tool {
 namespace {
 
+using tool::to_json;
+
 /// Names of attributes on a page. Others keep theirs.
 struct Naming {
   const char *name, *label, *unit;
@@ -44,8 +46,6 @@ std::string pack_corners(const TriMesh& mesh) {
   }
   return pack(numbers, 3);
 }
-
-Json to_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 Json to_json(const MeshAttribute& attribute, const char* on) {
   const auto known = std::find_if(std::begin(kNamings), std::end(kNamings),
@@ -146,25 +146,18 @@ Json to_json(const PageFrames& frames) {
 }
 
 template <class List>
-Json list_json(const List& list) {
-  Json json = Json::array();
-  for (const auto& element : list) json.push_back(to_json(element));
-  return json;
+Json all_json(const List& list) {
+  return list_json(list, [](const auto& element) { return to_json(element); });
 }
 
-Json pairs_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
-  Json json = Json::array();
-  for (const auto& [name, value] : pairs) json.push_back({name, value});
-  return json;
-}
+using Pair = std::pair<std::string, std::string>;
 
-Json pictures_json(const std::vector<std::pair<std::string, std::string>>& pictures) {
-  Json json = Json::array();
-  for (const auto& [caption, svg] : pictures) {
-    const std::vector<unsigned char> bytes(svg.begin(), svg.end());
-    json.push_back({caption, "data:image/svg+xml;base64," + base64(bytes)});
-  }
-  return json;
+Json fact_json(const Pair& fact) { return Json::array({fact.first, fact.second}); }
+
+Json picture_json(const Pair& picture) {
+  const auto& [caption, svg] = picture;
+  const std::vector<unsigned char> bytes(svg.begin(), svg.end());
+  return Json::array({caption, "data:image/svg+xml;base64," + base64(bytes)});
 }
 
 /// `text` as valid UTF-8.
@@ -181,14 +174,14 @@ Json to_json(const Page& page) {
           {"verb", page.verb},
           {"command_line", page.command_line},
           {"options", page.options},
-          {"facts", pairs_json(page.facts)},
+          {"facts", list_json(page.facts, fact_json)},
           {"warnings", page.warnings},
-          {"surfaces", list_json(page.surfaces)},
+          {"surfaces", all_json(page.surfaces)},
           {"centerline", page.centerline ? lines_json(*page.centerline) : Json()},
-          {"places", list_json(page.places)},
-          {"histograms", list_json(page.histograms)},
-          {"tables", list_json(page.tables)},
-          {"pictures", pictures_json(page.pictures)},
+          {"places", all_json(page.places)},
+          {"histograms", all_json(page.histograms)},
+          {"tables", all_json(page.tables)},
+          {"pictures", list_json(page.pictures, picture_json)},
           {"frames", page.frames ? to_json(*page.frames) : Json()}};
 }
 

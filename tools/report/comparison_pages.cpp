@@ -32,13 +32,7 @@ void add_defects(Page& page, const TriMesh& mesh, const DefectReport& defects) {
 
 void add_places(Page& page, const EvaluationReport& report, const TriMesh& mesh) {
   add_defects(page, mesh, report.defects);
-  if (report.reference) {
-    const Hausdorff& h = report.reference->hausdorff;
-    page.places.push_back(
-        {"Farthest from the reference", short_number(h.forward.upper) + " mm", h.forward.witness.from, "distance", ""});
-    page.places.push_back({"Of the reference, farthest from the surface", short_number(h.backward.upper) + " mm",
-                           h.backward.witness.from, "distance", ""});
-  }
+  if (report.reference) add_farthest(page, report.reference->hausdorff);
   if (report.volume) {
     const VesselDistance& d = report.volume->distance;
     page.places.push_back({"Farthest from the vessels", short_number(d.from_mesh.mm.max) + " mm", d.from_mesh.max_at,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "vmesh/synth/synthetic_tree.h"
 #include "vmesh/tuning/plot.h"
@@ -161,15 +160,6 @@ std::string plot_deform_trades(const std::vector<DeformTrade>& trades) {
   return svg_of({converged, motion});
 }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
-std::string fixed(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, value < 0.1 ? "%.4f" : "%.3f", value);
-  return text;
-}
+std::string fixed(double value) { return formatted(value < 0.1 ? "%.4f" : "%.3f", value); }
 
 }  // namespace vmesh::tool

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/deform/simulation.h"
 
 #include "report/report_table.h"
@@ -51,7 +52,6 @@ Json to_json(const DeformTrade& trade);
 /// An SVG image: distance against time, a curve per integrator and number of iterations.
 std::string plot_deform_trades(const std::vector<DeformTrade>& trades);
 
-double median(std::vector<double> values);
 /// `value` with a suitable number of digits for a table.
 std::string fixed(double value);
 

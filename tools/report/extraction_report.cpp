@@ -1,29 +1,18 @@
 #include "report/extraction_report.h"
 
-#include <cstdio>
 #include <sstream>
 #include <string>
+
+#include "vmesh/core/text.h"
 
 #include "report/exact_text.h"
 
 namespace vmesh::tool {
 namespace {
 
-std::string place(const Vec3& p) {
-  char text[128];
-  std::snprintf(text, sizeof text, "(%.4g, %.4g, %.4g)", p.x(), p.y(), p.z());
-  return text;
-}
+std::string place(const Vec3& p) { return formatted("(%.4g, %.4g, %.4g)", p.x(), p.y(), p.z()); }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
+std::string number(double value) { return formatted("%.3g", value); }
 
 void log_size(const ExtractedCenterline& extracted, Console& console) {
   const Centerline& centerline = extracted.centerline;
@@ -34,11 +23,10 @@ void log_size(const ExtractedCenterline& extracted, Console& console) {
               counted(centerline.component_count(), "component, ", "components, ") + counted(ends, "end", "ends") +
               (extracted.end_sections.empty() ? "" : " (" + std::to_string(extracted.end_sections.size()) + " flat)") +
               ", " + counted(centerline.cycle_rank(), "loop", "loops"));
-  char text[160];
-  std::snprintf(text, sizeof text, "coverage %.4f of the wall, %.4f of the length; wall to the vessels' boundary",
-                report.coverage, report.length_coverage);
-  console.log(text + (" " + number(report.wall.mean)) + " mm mean, " + number(report.wall.percentile_95) +
-              " at 95 %, " + number(report.wall.max) + " max at " + place(report.wall.max_at));
+  console.log(formatted("coverage %.4f of the wall, %.4f of the length; wall to the vessels' boundary ",
+                        report.coverage, report.length_coverage) +
+              number(report.wall.mean) + " mm mean, " + number(report.wall.percentile_95) + " at 95 %, " +
+              number(report.wall.max) + " max at " + place(report.wall.max_at));
 }
 
 /// One line for all of a kind, with the largest.

@@ -1,7 +1,6 @@
 #include "report/fit_report.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <sstream>
 
 #include "report/evaluation_report.h"
@@ -14,7 +13,7 @@ constexpr std::size_t kListedParts = 1000;
 constexpr std::size_t kNamed = 5;
 
 Json to_json(const FitDistance& distance) {
-  return {{"hausdorff_mm", {{"lower", distance.hausdorff.lower()}, {"upper", distance.hausdorff.upper()}}},
+  return {{"hausdorff_mm", tool::to_json(distance.hausdorff)},
           {"mean_mm", distance.mean()},
           {"rms_mm", distance.rms()},
           {"p95_mm", distance.p95()},
@@ -23,16 +22,14 @@ Json to_json(const FitDistance& distance) {
 }
 
 Json to_json(const std::vector<UnmatchedPart>& parts) {
-  Json list = Json::array();
-  for (std::size_t i = 0; i < std::min(parts.size(), kListedParts); ++i) {
-    const UnmatchedPart& part = parts[i];
-    list.push_back({{"at", {part.position.x(), part.position.y(), part.position.z()}},
-                    {"distance_mm", part.distance},
-                    {"area_mm2", part.area},
-                    {"inside", part.inside},
-                    {"segment", part.segment == kNone ? Json() : Json(part.segment)}});
-  }
-  return {{"count", parts.size()}, {"list", std::move(list)}};
+  const auto of_part = [](const UnmatchedPart& part) {
+    return Json{{"at", tool::to_json(part.position)},
+                {"distance_mm", part.distance},
+                {"area_mm2", part.area},
+                {"inside", part.inside},
+                {"segment", index_json(part.segment)}};
+  };
+  return counted_json(parts, of_part, kListedParts);
 }
 
 Json outside_json(const std::vector<Defect>& defects) {
@@ -41,15 +38,9 @@ Json outside_json(const std::vector<Defect>& defects) {
   return count;
 }
 
-std::string line(const char* format, auto... values) {
-  char text[512];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 std::string text_of(const UnmatchedPart& part) {
   const Vec3& p = part.position;
-  return line("%.1f mm^2 as far as %.2f mm at (%.3f, %.3f, %.3f)", part.area, part.distance, p.x(), p.y(), p.z());
+  return formatted("%.1f mm^2 as far as %.2f mm at (%.3f, %.3f, %.3f)", part.area, part.distance, p.x(), p.y(), p.z());
 }
 
 void name_parts(const std::vector<UnmatchedPart>& parts, const std::string& what, std::vector<std::string>& warnings,
@@ -81,12 +72,12 @@ void log_fit(const FitReport& report, std::vector<std::string>& warnings, Consol
   const FitDistance &a = report.before, &b = report.after;
   if (report.turned) console.log("the reference faced inwards and was turned over");
   console.log(
-      line("distance to the reference, larger direction, mm: mean %.3f, was %.3f; 95 %% %.3f, was %.3f; Hausdorff "
-           "%.3f, was %.3f",
-           b.mean(), a.mean(), b.p95(), a.p95(), b.hausdorff.upper(), a.hausdorff.upper()));
+      formatted("distance to the reference, larger direction, mm: mean %.3f, was %.3f; 95 %% %.3f, was %.3f; Hausdorff "
+                "%.3f, was %.3f",
+                b.mean(), a.mean(), b.p95(), a.p95(), b.hausdorff.upper(), a.hausdorff.upper()));
   if (report.parts_apart > 0)
-    console.log(line("%zu components of the reference, %.1f mm^2, belong to no vessel and were left out",
-                     report.parts_apart, report.area_apart));
+    console.log(formatted("%zu components of the reference, %.1f mm^2, belong to no vessel and were left out",
+                          report.parts_apart, report.area_apart));
   for (const Defect& defect : report.nodes_outside) {
     console.warn(defect.message);
     warnings.push_back(defect.message);
@@ -101,9 +92,9 @@ void log_fit(const FitReport& report, std::vector<std::string>& warnings, Consol
 bool keeps_error(const FitReport& report, double error, std::vector<std::string>& warnings, Console& console) {
   if (error == 0 || report.after.p95() <= error) return true;
   warnings.push_back(
-      line("95 %% of the surfaces are within %.3f mm of each other, not %.3f: regions that the other "
-           "surface lacks count as well",
-           report.after.p95(), error));
+      formatted("95 %% of the surfaces are within %.3f mm of each other, not %.3f: regions that the other "
+                "surface lacks count as well",
+                report.after.p95(), error));
   console.warn(warnings.back());
   return false;
 }

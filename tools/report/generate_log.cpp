@@ -1,27 +1,22 @@
 #include "report/generate_log.h"
 
+#include "vmesh/core/text.h"
+
 namespace vmesh::tool {
 namespace {
 
-std::string number(double value, int digits = 3) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
+std::string number(double value, int digits = 3) { return formatted("%.*f", digits, value); }
 
 std::string percent(double share) { return number(100 * share, 0) + " %"; }
 
 std::string text_of(const Vec3& p) { return "(" + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()) + ")"; }
 
-std::string places(const std::vector<Contact>& contacts) {
-  return std::to_string(contacts.size()) + (contacts.size() == 1 ? " place" : " places");
-}
+std::string places(const std::vector<Contact>& contacts) { return counted(contacts.size(), "place", "places"); }
 
 void tell_of_notches(const ErrorSummary& error, Console& console) {
   if (error.closed_notches.empty()) return;
   const ClosedNotch& deepest = error.closed_notches.front();
-  const std::size_t count = error.closed_notches.size();
-  console.log(std::to_string(count) + (count == 1 ? " notch" : " notches") +
+  console.log(counted(error.closed_notches.size(), "notch", "notches") +
               " too narrow for triangles closed, which the limit accounts for: the deepest by " +
               number(deepest.depth) + " mm at " + text_of(deepest.position));
 }
@@ -40,8 +35,7 @@ void log_separation(const SeparationReport& separation, Console& console) {
                 percent(separation.max_taken_relative) + " (" + number(separation.max_taken) + " mm) at most");
   }
   if (separation.nodes_moved > 0) {
-    const std::size_t moves = separation.moves.size();
-    console.log("vessels were moved aside in " + std::to_string(moves) + (moves == 1 ? " place" : " places") +
+    console.log("vessels were moved aside in " + counted(separation.moves.size(), "place", "places") +
                 " where they cross or nearly do: " + std::to_string(separation.nodes_moved) + " nodes, by " +
                 number(separation.max_moved) + " mm, " + number(separation.max_moved_relative, 2) +
                 " radii at most, the farthest at " + text_of(separation.max_moved_at));

@@ -21,14 +21,6 @@ void add_fit_facts(Page& page, const FitReport& fit) {
   page.facts.push_back({"Hausdorff to it, mm", short_number(fit.after.hausdorff.upper())});
 }
 
-void add_hausdorff_places(Page& page, const Hausdorff& hausdorff, const std::string& reference) {
-  const OneSidedHausdorff &forward = hausdorff.forward, &backward = hausdorff.backward;
-  page.places.push_back(
-      {"Farthest from " + reference, short_number(forward.upper) + " mm", forward.witness.from, "distance", ""});
-  page.places.push_back({"Of " + reference + ", farthest from the surface", short_number(backward.upper) + " mm",
-                         backward.witness.from, "distance", ""});
-}
-
 void add_contacts(Page& page, const std::vector<Contact>& contacts, const char* label) {
   for (const Contact& contact : std::span(contacts).first(std::min(kEach, contacts.size())))
     page.places.push_back({label, short_number(contact.depth) + " mm deep", contact.position, "", ""});
@@ -47,7 +39,7 @@ void add_places(Page& page, const GenerateReport& report, const PageSurface& sur
     page.places.push_back(
         {"Defect: " + words(to_string(defect.kind)), std::to_string(defect.count), defect.position, "", ""});
   if (report.fit) {
-    add_hausdorff_places(page, report.fit->after.hausdorff, "the reference");
+    add_farthest(page, report.fit->after.hausdorff);
     add_unmatched(page, *report.fit, kEach);
   } else {
     page.places.push_back({"Farthest from the vessels, in their radii",
@@ -128,7 +120,7 @@ Page page_of(const CommonArguments& common, const FitReport& report, const Json&
                 {"Skewness, mean / max",
                  mean_and_max(summary["skewness"]["mean"].get<double>(), summary["skewness"]["max"].get<double>())}};
   add_fit_facts(page, report);
-  add_hausdorff_places(page, report.after.hausdorff, "the reference");
+  add_farthest(page, report.after.hausdorff);
   add_unmatched(page, report, kEach);
   add_largest(page, page.surfaces.front(), "distance", "Vertex far from the reference", " mm", kEach);
   add_largest(page, page.surfaces.front(), "EquiangleSkewness", "Skew triangle", "", kEach);

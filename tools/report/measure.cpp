@@ -2,16 +2,13 @@
 
 #include <algorithm>
 
+#include "vmesh/core/text.h"
 #include "vmesh/surface/metric_skewness.h"
 
 #include "command_line/interrupt.h"
 
 namespace vmesh::tool {
 namespace {
-
-std::string count(std::size_t number, const std::string& singular, const std::string& plural) {
-  return std::to_string(number) + " " + (number == 1 ? singular : plural);
-}
 
 bool has_genus(const Topology& topology) { return topology.closed && topology.manifold && topology.oriented; }
 
@@ -47,14 +44,15 @@ std::vector<std::string> problems_of(const SurfaceMeasurement& measurement) {
   const Topology& topology = measurement.topology;
   std::vector<std::string> problems;
   if (!topology.closed)
-    problems.push_back("not closed: " + count(topology.boundary_edges, "boundary edge", "boundary edges"));
+    problems.push_back("not closed: " + counted(topology.boundary_edges, "boundary edge", "boundary edges"));
   if (!topology.manifold) problems.push_back("not a manifold: an edge has three faces or a vertex two fans");
   if (!topology.oriented) problems.push_back("not oriented: neighbouring faces disagree about the outside");
   if (topology.closed && topology.oriented && !topology.outward) problems.push_back("faces point inwards");
   if (measurement.open_elsewhere > 0)
-    problems.push_back(count(measurement.open_elsewhere, "boundary edge", "boundary edges") + " besides the openings");
+    problems.push_back(counted(measurement.open_elsewhere, "boundary edge", "boundary edges") +
+                       " besides the openings");
   if (measurement.self_intersections > 0)
-    problems.push_back(count(measurement.self_intersections, "pair of faces intersects", "pairs of faces intersect"));
+    problems.push_back(counted(measurement.self_intersections, "pair of faces intersects", "pairs of faces intersect"));
   return problems;
 }
 
@@ -63,15 +61,15 @@ std::vector<std::string> problems_of(const SurfaceMeasurement& measurement, cons
   const Topology& topology = measurement.topology;
   std::vector<std::string> problems = problems_of(measurement);
   if (topology.components != expected.components)
-    problems.push_back(count(topology.components, "component", "components") + " where the centerline has " +
+    problems.push_back(counted(topology.components, "component", "components") + " where the centerline has " +
                        std::to_string(expected.components));
   if (has_genus(topology) && topology.genus != static_cast<std::int64_t>(expected.genus))
     problems.push_back("genus " + std::to_string(topology.genus) + " where the centerline has " +
-                       count(expected.genus, "independent loop", "independent loops"));
+                       counted(expected.genus, "independent loop", "independent loops"));
   if (!nodes_inside)
     problems.push_back("whether the centerline's nodes are inside cannot be told of an open surface");
   else if (*nodes_inside != nodes)
-    problems.push_back(count(nodes - *nodes_inside, "centerline node is", "centerline nodes are") + " not inside");
+    problems.push_back(counted(nodes - *nodes_inside, "centerline node is", "centerline nodes are") + " not inside");
   return problems;
 }
 

@@ -8,6 +8,8 @@
 
 #include "vmesh/mesh/triangle_quality.h"
 
+#include "command_line/outputs.h"
+
 namespace vmesh::tool {
 namespace {
 
@@ -21,12 +23,9 @@ struct FoundAttribute {
   bool on_faces = false;
 };
 
-FoundAttribute find(const PageSurface& surface, std::string_view name) {
-  for (const MeshAttribute& a : surface.attributes.vertex)
-    if (a.name == name) return {&a, false};
-  for (const MeshAttribute& a : surface.attributes.face)
-    if (a.name == name) return {&a, true};
-  return {};
+FoundAttribute find(const PageSurface& surface, const std::string& name) {
+  if (const MeshAttribute* a = find_attribute(surface.attributes.vertex, name)) return {a, false};
+  return {find_attribute(surface.attributes.face, name), true};
 }
 
 std::vector<double> finite(std::vector<double> values) {
@@ -63,12 +62,9 @@ Vec3 position_of(const TriMesh& mesh, std::size_t element, bool is_face) {
 
 double diagonal(const TriMesh& mesh) {
   if (mesh.vertices.empty()) return 0;
-  Vec3 low = mesh.vertices.front(), high = low;
-  for (const Vec3& p : mesh.vertices) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  return (high - low).norm();
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : mesh.vertices) box.extend(p);
+  return box.diagonal().norm();
 }
 
 /// Elements in the order of their sizes, the largest first, ties by number.
@@ -101,11 +97,7 @@ Page make_page(const char* verb, const std::filesystem::path& title, const Commo
   return page;
 }
 
-std::string short_number(double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.3f", value);
-  return text;
-}
+std::string short_number(double value) { return formatted("%.3f", value); }
 
 std::string mean_and_max(double mean, double max) { return short_number(mean) + " / " + short_number(max); }
 
@@ -129,7 +121,7 @@ void add_histograms(Page& page, const PageSurface& surface) {
   add_distances(page, surface, "volume_distance", "Distance of vertices to the vessels");
 }
 
-void add_largest(Page& page, const PageSurface& surface, std::string_view name, const std::string& label,
+void add_largest(Page& page, const PageSurface& surface, const std::string& name, const std::string& label,
                  const std::string& unit, std::size_t count) {
   const auto [attribute, on_faces] = find(surface, name);
   if (!attribute) return;
@@ -144,6 +136,14 @@ void add_largest(Page& page, const PageSurface& surface, std::string_view name, 
     ++chosen;
     page.places.push_back({label, short_number(value) + unit, at, attribute->name, surface.name});
   }
+}
+
+void add_farthest(Page& page, const Hausdorff& hausdorff) {
+  const OneSidedHausdorff &forward = hausdorff.forward, &backward = hausdorff.backward;
+  page.places.push_back(
+      {"Farthest from the reference", short_number(forward.upper) + " mm", forward.witness.from, "distance", ""});
+  page.places.push_back({"Of the reference, farthest from the surface", short_number(backward.upper) + " mm",
+                         backward.witness.from, "distance", ""});
 }
 
 void add_unmatched(Page& page, const FitReport& fit, std::size_t count) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "command_line/arguments.h"
@@ -35,8 +34,11 @@ void add_histograms(Page& page, const PageSurface& surface);
 
 /// Adds at most `count` separate places where an attribute's absolute value is largest, as "LABEL" with the value and
 /// `unit`.
-void add_largest(Page& page, const PageSurface& surface, std::string_view attribute, const std::string& label,
+void add_largest(Page& page, const PageSurface& surface, const std::string& attribute, const std::string& label,
                  const std::string& unit, std::size_t count);
+
+/// Adds where the surface and the reference are farthest from each other.
+void add_farthest(Page& page, const Hausdorff& hausdorff);
 
 /// Adds the largest regions that a fit left unmatched.
 void add_unmatched(Page& page, const FitReport& fit, std::size_t count);

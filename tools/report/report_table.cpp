@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "command_line/outputs.h"
 
 namespace vmesh::tool {
 namespace {
@@ -73,28 +74,22 @@ std::string csv_lines(const ReportTable& table) {
 // One unit of the last digit that format_number() shows.
 double last_digit(double value) { return value == 0 ? 0 : std::pow(10, std::floor(std::log10(std::abs(value))) - 5); }
 
-}  // namespace
-
-ReportFormat parse_report_format(std::string_view name) {
-  return name == "csv" ? ReportFormat::csv : name == "markdown" ? ReportFormat::markdown : ReportFormat::text;
-}
-
-std::string format_report(const std::vector<ReportTable>& tables, ReportFormat format) {
-  std::string text = format == ReportFormat::csv ? "table,row,column,value\n" : "";
+// Text and Markdown: tables with aligned columns. CSV: one line `table,row,column,value` per cell, so that every number
+// has its name beside it.
+std::string format_report(const std::vector<ReportTable>& tables, std::string_view format) {
+  std::string text = format == "csv" ? "table,row,column,value\n" : "";
   for (const ReportTable& table : tables) {
-    if (format != ReportFormat::csv && !text.empty()) text += "\n";
-    text += format == ReportFormat::csv        ? csv_lines(table)
-            : format == ReportFormat::markdown ? markdown_table(table)
-                                               : text_table(table);
+    if (format != "csv" && !text.empty()) text += "\n";
+    text += format == "csv" ? csv_lines(table) : format == "markdown" ? markdown_table(table) : text_table(table);
   }
   return text;
 }
 
-std::string format_number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+}  // namespace
+
+std::string yes_no(bool value) { return value ? "yes" : "no"; }
+
+std::string format_number(double value) { return formatted("%.6g", value); }
 
 std::string format_point(const Vec3& p) {
   return "(" + format_number(p.x()) + ", " + format_number(p.y()) + ", " + format_number(p.z()) + ")";
@@ -108,6 +103,18 @@ std::string format_lower_bound(double value) {
 std::string format_upper_bound(double value) {
   const std::string text = format_number(value);
   return std::stod(text) >= value ? text : format_number(value + last_digit(value));
+}
+
+void write_report(const std::vector<ReportTable>& tables, const Json& content, const ReportArguments& report,
+                  const std::filesystem::path& json) {
+  if (json != "-") write_text("-", format_report(tables, report.format));
+  write_json(json, content);
+  if (report.file.empty()) return;
+  const std::string extension = extension_of(report.file);
+  if (extension == ".json") return write_json(report.file, content);
+  write_text(report.file, format_report(tables, extension == ".md"    ? "markdown"
+                                                : extension == ".csv" ? "csv"
+                                                                      : "text"));
 }
 
 }  // namespace vmesh::tool

@@ -4,7 +4,11 @@
 #include <string_view>
 #include <vector>
 
+#include "vmesh/core/text.h"
 #include "vmesh/core/types.h"
+
+#include "command_line/arguments.h"
+#include "report/json.h"
 
 namespace vmesh::tool {
 
@@ -16,14 +20,11 @@ struct ReportTable {
   std::vector<std::vector<std::string>> rows;
 };
 
-enum class ReportFormat { text, markdown, csv };
+std::string yes_no(bool value);
 
-/// "text", "markdown" or "csv".
-ReportFormat parse_report_format(std::string_view name);
-
-/// Text and Markdown: tables with aligned columns. CSV: one line `table,row,column,value` per cell, so that every
-/// number has its name beside it.
-std::string format_report(const std::vector<ReportTable>& tables, ReportFormat format);
+/// Writes the tables to stdout and to the report's file, the content to `json` unless empty; "-": stdout gets the JSON.
+void write_report(const std::vector<ReportTable>& tables, const Json& content, const ReportArguments& report,
+                  const std::filesystem::path& json);
 
 /// A number with six significant digits.
 std::string format_number(double value);

@@ -1,7 +1,6 @@
 #include "report/summary.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -17,6 +16,8 @@
 
 namespace vmesh::tool {
 namespace {
+
+using tool::to_json;
 
 constexpr std::size_t kListedContacts = 1000;
 
@@ -55,8 +56,6 @@ Json options_json(const GenerateArguments& arguments) {
   return json;
 }
 
-Json to_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
-
 Json to_json(const Deviation& deviation) {
   return {{"mean_mm", deviation.mean_mm},
           {"rms_mm", deviation.rms_mm},
@@ -70,25 +69,22 @@ Json to_json(const Deviation& deviation) {
 Json to_json(const ContactSide& side) {
   return {{"segment", side.segment},
           {"parameter", side.t},
-          {"branch", side.branch == kNone ? Json() : Json(side.branch)},
+          {"branch", index_json(side.branch)},
           {"radius_mm", side.radius}};
 }
 
 Json to_json(const Contact& contact) {
-  Json sides = Json::array();
-  for (const ContactSide& side : contact.sides) sides.push_back(to_json(side));
   const double smaller = std::min(contact.sides[0].radius, contact.sides[1].radius);
   return {{"at", to_json(contact.position)},
           {"depth_mm", contact.depth},
           {"depth_relative", contact.depth / smaller},
-          {"vessels", std::move(sides)}};
+          {"vessels", list_json(contact.sides, [](const ContactSide& side) { return to_json(side); })}};
 }
 
 /// The deepest contacts, and how many there are in all.
 Json to_json(const std::vector<Contact>& contacts) {
-  Json list = Json::array();
-  for (std::size_t c = 0; c < std::min(contacts.size(), kListedContacts); ++c) list.push_back(to_json(contacts[c]));
-  return {{"count", contacts.size()}, {"list", std::move(list)}};
+  return counted_json(
+      contacts, [](const Contact& contact) { return to_json(contact); }, kListedContacts);
 }
 
 Json to_json(const VesselMove& move) {
@@ -100,9 +96,8 @@ Json to_json(const VesselMove& move) {
 
 /// The farthest moves, and how many there are in all.
 Json to_json(const std::vector<VesselMove>& moves) {
-  Json list = Json::array();
-  for (std::size_t m = 0; m < std::min(moves.size(), kListedContacts); ++m) list.push_back(to_json(moves[m]));
-  return {{"count", moves.size()}, {"list", std::move(list)}};
+  return counted_json(
+      moves, [](const VesselMove& move) { return to_json(move); }, kListedContacts);
 }
 
 Json to_json(const SimplificationSummary& simplification) {
@@ -140,7 +135,7 @@ Json to_json(const OperatingPoint& point) {
           {"max_error", to_json(point.options.max_error)},
           {"vertices", point.vertices},
           {"seconds", point.seconds},
-          {"skewness", {{"mean", point.skewness.mean}, {"max", point.skewness.max}}},
+          {"skewness", tool::to_json(point.skewness)},
           {"distance", to_json(point.error)},
           {"within_budget", point.within_budget}};
 }
@@ -210,23 +205,21 @@ Json to_json(const SurfaceMeasurement& measurement) {
             {"openings", measurement.openings},
             {"boundary_edges", topology.boundary_edges},
             {"euler_characteristic", topology.euler_characteristic}}},
-          {"skewness", {{"mean", measurement.skewness.mean}, {"max", measurement.skewness.max}}},
-          {"metric_skewness", {{"mean", measurement.metric_skewness.mean}, {"max", measurement.metric_skewness.max}}},
+          {"skewness", to_json(measurement.skewness)},
+          {"metric_skewness", to_json(measurement.metric_skewness)},
           {"self_intersections", measurement.self_intersections}};
 }
 
 Json to_json(const std::vector<Defect>& defects) {
-  Json list = Json::array();
-  for (const Defect& defect : defects) {
-    list.push_back({{"kind", to_string(defect.kind)},
-                    {"at", to_json(defect.position)},
-                    {"count", defect.count},
-                    {"segment", defect.segment == kNone ? Json() : Json(defect.segment)},
-                    {"branch", defect.branch == kNone ? Json() : Json(defect.branch)},
-                    {"node", defect.node == kNone ? Json() : Json(defect.node)},
-                    {"message", defect.message}});
-  }
-  return list;
+  return list_json(defects, [](const Defect& defect) {
+    return Json{{"kind", to_string(defect.kind)},
+                {"at", to_json(defect.position)},
+                {"count", defect.count},
+                {"segment", index_json(defect.segment)},
+                {"branch", index_json(defect.branch)},
+                {"node", index_json(defect.node)},
+                {"message", defect.message}};
+  });
 }
 
 // What is proven of the distance between the surface and the boundary, both ways.
@@ -234,14 +227,12 @@ Json error_bound_json(const GenerateArguments& arguments, const GenerateResult& 
   Json json = to_json(arguments.production.growth.max_error);
   json["proven"] = result.error.unproven_faces == 0;
   json["unproven_faces"] = result.error.unproven_faces;
-  Json places = Json::array();
-  for (const UnprovenPlace& place : result.error.unproven_places)
-    places.push_back({{"at", to_json(place.position)}, {"faces", place.faces}});
-  json["unproven_places"] = std::move(places);
-  Json notches = Json::array();
-  for (const ClosedNotch& notch : result.error.closed_notches)
-    notches.push_back({{"at", to_json(notch.position)}, {"depth_mm", notch.depth}, {"vertices", notch.vertices}});
-  json["closed_notches"] = std::move(notches);
+  json["unproven_places"] = list_json(result.error.unproven_places, [](const UnprovenPlace& place) {
+    return Json{{"at", to_json(place.position)}, {"faces", place.faces}};
+  });
+  json["closed_notches"] = list_json(result.error.closed_notches, [](const ClosedNotch& notch) {
+    return Json{{"at", to_json(notch.position)}, {"depth_mm", notch.depth}, {"vertices", notch.vertices}};
+  });
   return json;
 }
 
@@ -309,28 +300,30 @@ Json to_json(const ExtractionReport& report) {
     branches.push_back(wall_json(report.branches[b]));
     branches.back()["branch"] = b;
   }
-  Json joined = Json::array(), loops = Json::array(), missed = Json::array();
-  for (const JoinedGap& gap : report.joined)
-    joined.push_back({{"from", to_json(gap.from)}, {"to", to_json(gap.to)}, {"gap_mm", gap.gap}});
-  for (const VesselLoop& loop : report.loops)
-    loops.push_back({{"neck", to_json(loop.neck)},
-                     {"neck_radius_mm", loop.neck_radius},
-                     {"vessel_radius_mm", loop.radius},
-                     {"length_mm", loop.length},
-                     {"opened", loop.opened}});
-  for (const MissedWall& region : report.missed)
-    missed.push_back({{"place", to_json(region.place)},
-                      {"area_mm2", region.area},
-                      {"distance_mm", region.distance},
-                      {"reason", region.reason}});
+  const auto of_gap = [](const JoinedGap& gap) {
+    return Json{{"from", to_json(gap.from)}, {"to", to_json(gap.to)}, {"gap_mm", gap.gap}};
+  };
+  const auto of_loop = [](const VesselLoop& loop) {
+    return Json{{"neck", to_json(loop.neck)},
+                {"neck_radius_mm", loop.neck_radius},
+                {"vessel_radius_mm", loop.radius},
+                {"length_mm", loop.length},
+                {"opened", loop.opened}};
+  };
+  const auto of_missed = [](const MissedWall& region) {
+    return Json{{"place", to_json(region.place)},
+                {"area_mm2", region.area},
+                {"distance_mm", region.distance},
+                {"reason", region.reason}};
+  };
   return {{"components", report.components},
           {"left_out", report.left_out},
           {"spurs_removed", report.spurs},
           {"coverage", report.coverage},
           {"length_coverage", report.length_coverage},
-          {"missed", missed},
-          {"joined", joined},
-          {"loops", loops},
+          {"missed", list_json(report.missed, of_missed)},
+          {"joined", list_json(report.joined, of_gap)},
+          {"loops", list_json(report.loops, of_loop)},
           {"wall", wall_json(report.wall)},
           {"branches", branches},
           {"notes", report.notes}};
@@ -342,8 +335,8 @@ Json openings_json(const GenerateResult& result) {
     const Opening& opening = result.openings[i];
     json.push_back({{"label", i + 1},
                     {"node", opening.node},
-                    {"center", {opening.center.x(), opening.center.y(), opening.center.z()}},
-                    {"normal", {opening.normal.x(), opening.normal.y(), opening.normal.z()}},
+                    {"center", to_json(opening.center)},
+                    {"normal", to_json(opening.normal)},
                     {"radius", opening.radius},
                     {"vertices", opening.ring}});
   }
@@ -351,48 +344,38 @@ Json openings_json(const GenerateResult& result) {
 }
 
 Json caps_json(const FlatEnds& ends) {
-  Json json = Json::array();
-  for (const FlatEnd& end : ends.ends) {
-    json.push_back({{"cap_id", end.label},
-                    {"model_face_id", end.label + 1},
-                    {"node", end.node},
-                    {"center", to_json(end.center)},
-                    {"normal", to_json(end.normal)},
-                    {"area_mm2", end.area},
-                    {"capped", end.capped},
-                    {"at_section", end.at_section}});
-  }
-  return json;
+  return list_json(ends.ends, [](const FlatEnd& end) {
+    return Json{{"cap_id", end.label},           {"model_face_id", end.label + 1}, {"node", end.node},
+                {"center", to_json(end.center)}, {"normal", to_json(end.normal)},  {"area_mm2", end.area},
+                {"capped", end.capped},          {"at_section", end.at_section}};
+  });
 }
 
 Json to_json(const std::vector<EndSection>& sections) {
-  Json json = Json::array();
-  for (const EndSection& section : sections) {
-    json.push_back({{"node", section.node},
-                    {"center", to_json(section.center)},
-                    {"normal", to_json(section.normal)},
-                    {"area_mm2", section.area},
-                    {"open", section.open}});
-  }
-  return json;
+  return list_json(sections, [](const EndSection& section) {
+    return Json{{"node", section.node},
+                {"center", to_json(section.center)},
+                {"normal", to_json(section.normal)},
+                {"area_mm2", section.area},
+                {"open", section.open}};
+  });
 }
 
 Json to_json(const GrowthSummary& growth) {
-  Json simplifications = Json::array();
-  for (const GrowthSimplification& s : growth.simplifications) {
-    simplifications.push_back({{"kind", to_string(s.kind)},
-                               {"position", {s.position.x(), s.position.y(), s.position.z()}},
-                               {"nodes", s.nodes},
-                               {"segments", s.segments},
-                               {"message", s.message}});
-  }
+  const auto of_simplification = [](const GrowthSimplification& s) {
+    return Json{{"kind", to_string(s.kind)},
+                {"position", to_json(s.position)},
+                {"nodes", s.nodes},
+                {"segments", s.segments},
+                {"message", s.message}};
+  };
   return {{"junctions", growth.junctions},
           {"tubes", growth.tubes},
           {"components", growth.components},
           {"cycle_rank", growth.cycle_rank},
           {"pieces", growth.pieces},
           {"pieces_by_rung", growth.rungs},
-          {"simplifications", std::move(simplifications)}};
+          {"simplifications", list_json(growth.simplifications, of_simplification)}};
 }
 
 void write_json(const std::filesystem::path& path, const Json& json) {
@@ -422,9 +405,7 @@ std::string describe(const GenerateArguments& arguments) {
   const std::filesystem::path& reference = arguments.fitting.reference.path;
   if (!reference.empty()) text << " --fit " << reference.string();
   if (!reference.empty() || arguments.segmentation) text << describe(arguments.fitting);
-  if (arguments.segmentation) {
-    text << tool::describe(arguments.extraction);
-  }
+  if (arguments.segmentation) text << tool::describe(arguments.extraction);
   if (arguments.input.unit) text << " --unit " << to_string(*arguments.input.unit);
   if (arguments.input.space) text << " --space " << to_string(*arguments.input.space);
   return text.str();

@@ -2,21 +2,17 @@
 
 #include <optional>
 
-#include <nlohmann/json.hpp>
-
 #include "vmesh/centerline/cleaning.h"
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/surface/deviation.h"
 #include "vmesh/surface/flat_ends.h"
 #include "vmesh/volume/contacts.h"
 
+#include "report/json.h"
 #include "report/measure.h"
 #include "verbs/generate_arguments.h"
 
 namespace vmesh::tool {
-
-/// JSON that keeps the order in which its members were written.
-using Json = nlohmann::ordered_json;
 
 /// Everything `vmesh generate` reports. Schema "vmesh.summary/1".
 struct GenerateReport {
@@ -54,10 +50,6 @@ Json caps_json(const FlatEnds& ends);
 Json to_json(const std::vector<EndSection>& sections);
 Json to_json(const SurfaceMeasurement& measurement);
 Json generator_json();
-
-/// Writes the JSON with a newline at its end, as write_text() does; nothing if the path is empty. Text that is not
-/// UTF-8 is repaired.
-void write_json(const std::filesystem::path& path, const Json& json);
 
 /// "--beta 0.3 --blend 0.5 ...": how a surface was made.
 std::string describe(const GenerateArguments& arguments);

@@ -1,15 +1,94 @@
 #include "report/table2_report.h"
 
-#include <algorithm>
-
 #include "vmesh/comparison/paper_table.h"
+
+#include "report/evaluation_report.h"
 
 namespace vmesh::tool {
 namespace {
 
-using Row = std::vector<std::string>;
+Json to_json(const SourceFile& file) {
+  return file.path.empty() ? Json() : Json{{"file", file.path}, {"sha256", file.sha256}};
+}
 
-std::string yes_no(bool value) { return value ? "yes" : "no"; }
+Json to_json(const Table2Source& source) {
+  Json json = {{"vessels", source.vessels},
+               {"reference", to_json(source.reference)},
+               {"centerline", to_json(source.centerline)},
+               {"contour_of", nullptr},
+               {"extraction", source.extraction ? tool::to_json(*source.extraction) : Json()}};
+  if (source.contour_of.empty()) return json;
+  json["contour_of"] = source.contour_of;
+  json["spacing_mm"] = tool::to_json(source.spacing);
+  json["components"] = source.components;
+  return json;
+}
+
+Json to_json(const PaperRow& row) {
+  return {{"vertices", row.vertices},
+          {"faces", row.faces},
+          {"skewness", {{"mean", row.skewness_mean}, {"max", row.skewness_max}}},
+          {"hausdorff_mm", row.hausdorff_mm ? Json(*row.hausdorff_mm) : Json()}};
+}
+
+Json to_json(const ReferenceDistance& distance) {
+  const Hausdorff& h = distance.hausdorff;
+  return {{"hausdorff_mm", tool::to_json(h)},
+          {"from_surface", side_json(h.forward, distance.from_surface)},
+          {"from_reference", side_json(h.backward, distance.from_reference)}};
+}
+
+Json to_json(const SurfaceSoundness& soundness) {
+  const Topology& topology = soundness.topology;
+  return {{"closed", topology.closed},     {"manifold", topology.manifold},
+          {"oriented", topology.oriented}, {"components", topology.components},
+          {"genus", topology.genus},       {"self_intersections", soundness.self_intersections}};
+}
+
+Json to_json(const MethodRow& row) {
+  return {{"surface", to_string(row.method)},
+          {"around", row.around > 0 ? Json(row.around) : Json()},
+          {"vertices", row.mesh.vertices.size()},
+          {"faces", row.mesh.faces.size()},
+          {"skewness", tool::to_json(row.skewness)},
+          {"distance", row.distance ? to_json(*row.distance) : Json()},
+          {"soundness", row.soundness ? to_json(*row.soundness) : Json()},
+          {"paper", row.method <= SurfaceMethod::high_resolution ? to_json(paper_row(row.method)) : Json()}};
+}
+
+Json to_json(const TableDemand& demand) {
+  return {{"what", demand.what},
+          {"found", demand.found},
+          {demand.below ? "below" : "at_most", demand.limit},
+          {"met", demand.met()}};
+}
+
+Json to_json(const PaperFigure& figure) {
+  return {{"surface", to_string(figure.method)},
+          {"what", figure.what},
+          {"here", figure.ours},
+          {"paper", figure.paper},
+          {"worse", figure.worse()}};
+}
+
+}  // namespace
+
+Json to_json(const Table2Report& report) {
+  const auto convert = [](const auto& element) { return to_json(element); };
+  return {{"schema", "vmesh.table2/1"},
+          {"generator", generator_json()},
+          {"source", to_json(report.source)},
+          {"centerline", to_json(report.centerline)},
+          {"tolerance_mm", report.tolerance_mm},
+          {"rows", list_json(report.comparison.rows, convert)},
+          {"demands", list_json(check_demands(report.comparison), convert)},
+          {"against_paper", list_json(compare_with_paper(report.comparison), convert)},
+          {"warnings", report.warnings}};
+}
+
+namespace {
+
+using Row = std::vector<std::string>;
 
 std::string interval(double lower, double upper) {
   return format_lower_bound(lower) + " to " + format_upper_bound(upper);

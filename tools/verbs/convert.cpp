@@ -24,11 +24,12 @@ void add_options(CLI::App& verb, ConvertArguments& arguments) {
 
 /// What a file of that name contains; nullopt for VTK's, which may contain either.
 std::optional<Kind> kind_of(const std::filesystem::path& path) {
-  const auto centerline = find_centerline_format(path);
-  if (centerline == CenterlineFormat::vtp || centerline == CenterlineFormat::vtk) return std::nullopt;
-  if (centerline) return Kind::centerline;
-  surface_format(path);  // throws Unsupported
-  return Kind::surface;
+  if (find_centerline_format(path) == nullptr) {
+    surface_format(path);  // throws Unsupported
+    return Kind::surface;
+  }
+  if (find_surface_format(path) == nullptr) return Kind::centerline;
+  return std::nullopt;
 }
 
 void check_kinds(const ConvertArguments& arguments) {

@@ -90,9 +90,7 @@ class Series {
   Series& operator=(const Series&) = delete;
 
   fs::path next() {
-    char name[32];
-    std::snprintf(name, sizeof name, "frame_%06zu", files_.size());
-    files_.push_back(folder_ / (name + extension_));
+    files_.push_back(folder_ / (formatted("frame_%06zu", files_.size()) + extension_));
     return files_.back();
   }
   std::size_t size() const { return files_.size(); }

@@ -7,7 +7,6 @@
 #include "command_line/verb.h"
 #include "report/evaluation_report.h"
 #include "report/pages.h"
-#include "report/report_output.h"
 #include "report/requirements.h"
 
 namespace vmesh::tool {

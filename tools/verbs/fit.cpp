@@ -28,7 +28,7 @@ struct FitArguments {
 void add_options(CLI::App& verb, FitArguments& arguments) {
   add_input(verb, arguments.input, "surface, with places on the centerline (.ply, .vtp)");
   verb.add_option("REFERENCE", arguments.fitting.reference.path,
-                  "surface, or image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files)")
+                  "surface, or image (" + listed_image_extensions() + ")")
       ->required();
   add_output(verb, arguments.output, "surface");
   add_writing(verb, arguments.writing);

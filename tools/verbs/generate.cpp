@@ -65,11 +65,11 @@ void settle_ends(ProductionOptions& options) {
 }
 
 void add_options(CLI::App& verb, GenerateArguments& arguments) {
-  add_centerline_input(
-      verb, arguments.input,
-      "centerline, or segmentation to extract it from and to fit to: an image (.nii, .nii.gz, .nrrd, .mha, or a folder "
-      "of DICOM files) or a wall (.stl, .ply, .obj, .vtp ...), open or closed");
-  add_output_after_several(verb, arguments.output, "surface (.ply, .vtp, .stl, .obj, .off, .glb)");
+  add_centerline_input(verb, arguments.input,
+                       "centerline, or segmentation to extract it from and to fit to: an image (" +
+                           listed_image_extensions() + ") or a wall (.stl, .ply, .obj, .vtp ...), open or closed");
+  const auto written = extensions_of(surface_formats(), [](const auto& f) { return f.is_written(); });
+  add_output_after_several(verb, arguments.output, "surface (" + listed(written) + ")");
   add_writing(verb, arguments.writing);
   verb.add_flag("--bones", arguments.bones, "add bones along the centerline to a .glb, for bending it");
   add_growth(verb, arguments.production);

@@ -44,11 +44,8 @@ void print(std::ostream& out, const Json& json, const std::string& prefix = "") 
   }
 }
 
-std::vector<std::string> messages_of(const std::vector<CenterlineProblem>& problems) {
-  std::vector<std::string> messages;
-  messages.reserve(problems.size());
-  for (const CenterlineProblem& problem : problems) messages.push_back(problem.message);
-  return messages;
+Json messages_of(const std::vector<CenterlineProblem>& problems) {
+  return list_json(problems, [](const CenterlineProblem& problem) { return problem.message; });
 }
 
 /// Describes what the file contains, its problems, and the result of cleaning. If it cannot be cleaned, the reason is
@@ -67,19 +64,17 @@ void describe(const RawCenterline& raw, Json& json) {
   json["problems"] = messages_of(validate(raw.nodes, raw.segments));
 }
 
-Json numbers(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
-
 /// The box around the surface, and its holes.
 void describe_place(const TriMesh& mesh, Json& json) {
   Eigen::AlignedBox3d box;
   for (const Vec3& p : mesh.vertices) box.extend(p);
-  json["box_mm"] = {{"from", numbers(box.min())}, {"to", numbers(box.max())}};
+  json["box_mm"] = {{"from", to_json(Vec3(box.min()))}, {"to", to_json(Vec3(box.max()))}};
   constexpr std::size_t kNamed = 100;
   const std::vector<BoundaryLoop> loops = boundary_loops(mesh);
-  json["openings"] = {{"count", loops.size()}, {"largest", Json::array()}};
-  for (std::size_t i = 0; i < std::min(loops.size(), kNamed); ++i)
-    json["openings"]["largest"].push_back(
-        {{"center_mm", numbers(loops[i].center)}, {"area_mm2", loops[i].area_mm2}, {"edges", loops[i].edges}});
+  const auto of_loop = [](const BoundaryLoop& loop) {
+    return Json{{"center_mm", to_json(loop.center)}, {"area_mm2", loop.area_mm2}, {"edges", loop.edges}};
+  };
+  json["openings"] = {{"count", loops.size()}, {"largest", list_json(loops, of_loop, kNamed)}};
 }
 
 void describe(const LoadedSurface& surface, Json& json) {
@@ -94,8 +89,7 @@ void describe(const LoadedSurface& surface, Json& json) {
     json["enclosed_volume_mm3"] = enclosed_volume(surface.mesh);
   for (const auto& [name, list] : {std::pair{"vertex_attributes", &surface.attributes.vertex},
                                    std::pair{"face_attributes", &surface.attributes.face}}) {
-    json[name] = Json::array();
-    for (const MeshAttribute& attribute : *list) json[name].push_back(attribute.name);
+    json[name] = list_json(*list, [](const MeshAttribute& attribute) { return attribute.name; });
   }
   json["problems"] = problems_of(measurement);
 }

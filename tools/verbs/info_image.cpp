@@ -1,23 +1,18 @@
 #include "verbs/info_image.h"
 
 #include <charconv>
-#include <cstdio>
 #include <cstdlib>
+
+#include "vmesh/core/text.h"
 
 #include "command_line/usage_error.h"
 
 namespace vmesh::tool {
 namespace {
 
-std::string text_of(double number, const char* format) {
-  char text[32];
-  std::snprintf(text, sizeof text, format, number);
-  return text;
-}
-
 /// To the seven digits that float has: files often store 0.7 as 0.699999988.
 double rounded(double number) {
-  return std::strtod(text_of(number + 0.0, "%.7g").c_str(), nullptr);  // -0 becomes 0
+  return std::strtod(formatted("%.7g", number + 0.0).c_str(), nullptr);  // -0 becomes 0
 }
 
 /// The shortest number that is the same float.
@@ -43,19 +38,19 @@ void describe_place(const VoxelImage& frame, Json& json) {
 }
 
 void describe_labels(const ImageSummary& summary, Json& json) {
-  json["labels"] = Json::array();
-  for (const ImageLabel& label : summary.labels)
-    json["labels"].push_back({{"value", static_cast<std::int64_t>(label.value)},
-                              {"voxels", label.voxels},
-                              {"components", label.components},
-                              {"volume_mm3", rounded(label.volume_mm3)}});
+  json["labels"] = list_json(summary.labels, [](const ImageLabel& label) {
+    return Json{{"value", static_cast<std::int64_t>(label.value)},
+                {"voxels", label.voxels},
+                {"components", label.components},
+                {"volume_mm3", rounded(label.volume_mm3)}};
+  });
 }
 
 void describe_grey(const GreyValues& grey, Json& json) {
   json["values"] = {
       {"least", shortest(grey.least)}, {"greatest", shortest(grey.greatest)}, {"mean", rounded(grey.mean)}};
   for (const Percentile& percentile : grey.percentiles)
-    json["values"]["percentiles"][text_of(percentile.percent, "%g")] = shortest(percentile.value);
+    json["values"]["percentiles"][formatted("%g", percentile.percent)] = shortest(percentile.value);
 }
 
 /// One voxel along an axis, or no boundary between inside and outside.

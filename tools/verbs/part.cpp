@@ -1,8 +1,7 @@
 #include "verbs/part.h"
 
-#include <sstream>
-
 #include "vmesh/core/atomic_file.h"
+#include "vmesh/core/text.h"
 #include "vmesh/parts/part_files.h"
 
 #include "command_line/exit_code.h"
@@ -35,11 +34,7 @@ void check_arguments(const GenerateArguments& arguments) {
   check_can_be_written(arguments.output);
 }
 
-std::string at(const Vec3& p) {
-  std::ostringstream text;
-  text << "(" << p.x() << ", " << p.y() << ", " << p.z() << ")";
-  return text.str();
-}
+std::string at(const Vec3& p) { return formatted("(%g, %g, %g)", p.x(), p.y(), p.z()); }
 
 std::string words(const PieceFault& fault) {
   const char* what = fault.vessels_overlap                      ? "vessels overlap"

@@ -19,7 +19,7 @@ struct ReferenceArguments {
 };
 
 void add_options(CLI::App& verb, ReferenceArguments& arguments) {
-  add_input(verb, arguments.input, "image (.nii, .nii.gz, .nrrd, .mha, or a folder of DICOM files) or centerline");
+  add_input(verb, arguments.input, "image (" + listed_image_extensions() + ") or centerline");
   add_output(verb, arguments.output, "surface");
   add_image_options(verb, arguments.options);
   verb.add_option("--voxel", arguments.voxel, "centerline: side of the voxels, mm")->check(in_range(1e-6, 1e6));

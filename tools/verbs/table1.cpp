@@ -9,7 +9,6 @@
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
 #include "report/deform_trade.h"
-#include "report/report_output.h"
 
 namespace vmesh::tool {
 namespace {
@@ -151,13 +150,10 @@ Json to_json(const Cost& cost) {
 }
 
 Json to_json(const std::vector<Cost>& costs, const std::vector<DeformTrade>& trades) {
-  Json json = {{"schema", "vmesh.table1/1"},
-               {"generator", generator_json()},
-               {"costs", Json::array()},
-               {"trades", Json::array()}};
-  for (const Cost& cost : costs) json["costs"].push_back(to_json(cost));
-  for (const DeformTrade& trade : trades) json["trades"].push_back(to_json(trade));
-  return json;
+  return {{"schema", "vmesh.table1/1"},
+          {"generator", generator_json()},
+          {"costs", list_json(costs, [](const Cost& cost) { return to_json(cost); })},
+          {"trades", list_json(trades, [](const DeformTrade& trade) { return tool::to_json(trade); })}};
 }
 
 int run(const Table1Arguments& arguments, Console& console) {

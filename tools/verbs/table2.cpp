@@ -8,7 +8,6 @@
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
 #include "report/pages.h"
-#include "report/report_output.h"
 #include "report/table2_report.h"
 
 namespace vmesh::tool {

@@ -5,7 +5,6 @@
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
 #include "report/pages.h"
-#include "report/report_output.h"
 
 namespace vmesh::tool {
 namespace {
@@ -46,7 +45,7 @@ ReportTable points_table(const std::vector<TradeoffPoint>& points) {
     for (const double value : {p.skewness_mean, p.skewness_max, p.error_mean_mm, p.error_rms_mm, p.error_max_mm,
                                p.error_mean_relative, p.error_rms_relative, p.error_max_relative})
       row.push_back(format_number(value));
-    for (const bool value : {p.sound, p.best_for_time, p.best_for_vertices}) row.push_back(value ? "yes" : "no");
+    for (const bool value : {p.sound, p.best_for_time, p.best_for_vertices}) row.push_back(yes_no(value));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -88,14 +87,12 @@ Json point_json(const TradeoffPoint& p) {
 
 Json report_json(const TradeoffArguments& arguments, const Centerline& centerline,
                  const std::vector<TradeoffPoint>& points) {
-  Json list = Json::array();
-  for (const TradeoffPoint& point : points) list.push_back(point_json(point));
   const std::filesystem::path& path = arguments.input.path;
   return {{"schema", "vmesh.tradeoff/1"},
           {"generator", generator_json()},
           {"input", {{"file", path.string()}, {"sha256", sha256_of(arguments.input)}}},
           {"centerline", to_json(centerline)},
-          {"points", std::move(list)}};
+          {"points", list_json(points, point_json)}};
 }
 
 int run(const TradeoffArguments& arguments, Console& console) {

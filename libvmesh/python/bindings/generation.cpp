@@ -6,32 +6,42 @@
 namespace vmesh::python {
 namespace {
 
-ProductionOptions request_of(int around, const std::string& max_error, double blend, const std::string& placement,
-                             const std::string& growth, const std::string& overlap, double gap, const std::string& ends,
-                             const py::object& open_ends, double flow_extension, double simplification,
-                             double elongation, std::size_t least_vertices, bool deformable, int sweeps,
-                             int max_vertices, int threads) {
+/// Throws TypeError, naming the option, if it is missing or of another type.
+template <class T>
+T option(const py::dict& options, const char* name) {
+  if (!options.contains(name)) throw py::type_error(std::string("generate() needs the option ") + name);
+  try {
+    return options[name].cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(std::string(name) + ": not of the type that generate() takes");
+  }
+}
+
+ProductionOptions request_of(const py::dict& given) {
+  const auto text = [&](const char* name) { return option<std::string>(given, name); };
   ProductionOptions request;
   GenerateOptions& options = request.growth;
-  options.around = around;
-  if (!max_error.empty()) options.max_error = parse_error_limit(max_error);
-  options.blend = blend;
-  options.placement = parse_placement(placement);
-  options.growth = parse_growth_method(growth);
+  options.around = option<int>(given, "around");
+  if (const std::string max_error = text("max_error"); !max_error.empty())
+    options.max_error = parse_error_limit(max_error);
+  options.blend = option<double>(given, "blend");
+  options.placement = parse_placement(text("placement"));
+  options.growth = parse_growth_method(text("growth"));
+  const std::string overlap = text("overlap");
   if (overlap != "separate" && overlap != "keep")
     throw InvalidInput("overlap: \"" + overlap + "\" is not known; there are separate and keep");
   request.preparation.separate = overlap == "separate";
-  request.preparation.gap = gap;
-  request.ends = parse_end_shape(ends);
-  options.open_ends.nodes = to_indices(open_ends, "open_ends");
-  request.extension = flow_extension;
-  options.simplification = simplification;
-  options.elongation = elongation;
-  options.least_vertices = least_vertices;
-  options.deformable = deformable;
-  options.sweeps = sweeps;
-  options.max_vertices = max_vertices;
-  options.threads = threads;
+  request.preparation.gap = option<double>(given, "gap");
+  request.ends = parse_end_shape(text("ends"));
+  options.open_ends.nodes = to_indices(option<py::object>(given, "open_ends"), "open_ends");
+  request.extension = option<double>(given, "flow_extension");
+  options.simplification = option<double>(given, "simplification");
+  options.elongation = option<double>(given, "elongation");
+  options.least_vertices = option<std::size_t>(given, "least_vertices");
+  options.deformable = option<bool>(given, "deformable");
+  options.sweeps = option<int>(given, "sweeps");
+  options.max_vertices = option<int>(given, "max_vertices");
+  options.threads = option<int>(given, "threads");
   return request;
 }
 
@@ -40,20 +50,11 @@ ProductionOptions request_of(int around, const std::string& max_error, double bl
 void bind_generation(py::module_& module) {
   module.def(
       "generate",
-      [](const CenterlinePtr& centerline, const py::object& progress, int around, const std::string& max_error,
-         double blend, const std::string& placement, const std::string& growth, const std::string& overlap, double gap,
-         const std::string& ends, const py::object& open_ends, double flow_extension, double simplification,
-         double elongation, std::size_t least_vertices, bool deformable, int sweeps, int max_vertices, int threads) {
-        const ProductionOptions request =
-            request_of(around, max_error, blend, placement, growth, overlap, gap, ends, open_ends, flow_extension,
-                       simplification, elongation, least_vertices, deformable, sweeps, max_vertices, threads);
+      [](const CenterlinePtr& centerline, const py::object& progress, const py::kwargs& options) {
+        const ProductionOptions request = request_of(options);
         return result_of(progress, [&](const Progress& report) { return grow(centerline, request, report); });
       },
-      py::arg("centerline").none(false), py::kw_only(), py::arg("progress"), py::arg("around"), py::arg("max_error"),
-      py::arg("blend"), py::arg("placement"), py::arg("growth"), py::arg("overlap"), py::arg("gap"), py::arg("ends"),
-      py::arg("open_ends"), py::arg("flow_extension"), py::arg("simplification"), py::arg("elongation"),
-      py::arg("least_vertices"), py::arg("deformable"), py::arg("sweeps"), py::arg("max_vertices"), py::arg("threads"),
-      "vmesh.generate() without its checks.");
+      py::arg("centerline").none(false), py::kw_only(), py::arg("progress"), "vmesh.generate() without its checks.");
   module.def(
       "finish_ends",
       [](const SurfaceObject& surface, bool cap, const py::object& left_open, double extension, bool keep_area) {

@@ -5,9 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/text.h"
 
 #include "cleaning_steps.h"
 
@@ -20,11 +20,7 @@ constexpr std::size_t kMaxListedProblems = 20;
 using Kind = CleaningAction::Kind;
 using Element = CleaningAction::Element;
 
-std::string number(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
+std::string number(double value) { return formatted("%g", value); }
 
 constexpr double kLargest = 1e30;  // mm; larger lengths are refused for growth, and fourth powers are finite up to here
 

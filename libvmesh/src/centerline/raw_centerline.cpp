@@ -7,18 +7,12 @@
 #include <sstream>
 #include <utility>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
+#include "vmesh/core/file_format.h"
 
 namespace vmesh {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
 
 std::string place(const std::string& word, const std::vector<std::uint64_t>& numbers, Index i) {
   const std::uint64_t number = i < numbers.size() ? numbers[i] : i;
@@ -212,12 +206,11 @@ std::optional<std::string> implausible_radii(const RawCenterline& raw) {
     if (std::isfinite(node.radius) && node.radius > 0) radii.push_back(node.radius);
   }
   if (radii.empty()) return std::nullopt;
-  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-  std::nth_element(radii.begin(), middle, radii.end());
-  if (*middle >= kThinnest && *middle <= kThickest) return std::nullopt;
+  const double middle = median(std::move(radii));
+  if (middle >= kThinnest && middle <= kThickest) return std::nullopt;
   std::ostringstream text;
   text << (raw.source.empty() ? "" : raw.source + ": ") << "half of the radii are "
-       << (*middle < kThinnest ? "below " : "above ") << *middle
+       << (middle < kThinnest ? "below " : "above ") << middle
        << " mm; if these are not millimetres, give the unit with --unit";
   return text.str();
 }

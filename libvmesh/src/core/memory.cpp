@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/text.h"
 
 namespace vmesh {
 namespace {
@@ -63,11 +64,7 @@ std::uint64_t left_by_limit(int resource, std::uint64_t used) {
   return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used);
 }
 
-std::string gigabytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g GB", bytes / 1e9);
-  return text;
-}
+std::string gigabytes(double bytes) { return formatted("%.3g GB", bytes / 1e9); }
 
 }  // namespace
 

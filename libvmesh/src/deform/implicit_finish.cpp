@@ -10,12 +10,6 @@ namespace {
 /// Steps between orthonormalisations of the frames: rounding adds up to about 1e-14 in between.
 constexpr std::size_t kSharpenEvery = 64;
 
-double sum(const Lanes& lanes) {
-  double total = 0;
-  for (std::size_t i = 0; i < kLanes; ++i) total += lanes[i];
-  return total;
-}
-
 }  // namespace
 
 void ImplicitRods::finish(RodScene& scene, StepReport& report) {

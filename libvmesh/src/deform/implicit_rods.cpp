@@ -12,12 +12,6 @@ constexpr int kMostAttempts = 40;
 /// With more than one slot in this number awake, visiting all of them is faster than sorting.
 constexpr std::size_t kMuchAwake = 8;
 
-double sum(const Lanes& lanes) {
-  double total = 0;
-  for (std::size_t i = 0; i < kLanes; ++i) total += lanes[i];
-  return total;
-}
-
 double largest(const Lanes& lanes) {
   double most = 0;
   for (std::size_t i = 0; i < kLanes; ++i) most = std::max(most, lanes[i]);

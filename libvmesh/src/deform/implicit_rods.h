@@ -8,6 +8,12 @@
 
 namespace vmesh {
 
+inline double sum(const Lanes& lanes) {
+  double total = 0;
+  for (std::size_t i = 0; i < kLanes; ++i) total += lanes[i];
+  return total;
+}
+
 /// Implicit Euler on the energy of the springs: every step minimises
 ///   sum m / (2 h^2) |p - p_predicted|^2 + elastic energy + damping,
 /// the same with the tips of the x and y axes for the frames, by Gauss-Newton plus the geometric stiffness of tension.

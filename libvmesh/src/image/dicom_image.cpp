@@ -131,7 +131,7 @@ StoredFrames frames_of(const std::filesystem::path& path, std::size_t voxels) {
   const gdcm::Image& image = reader.GetImage();
   StoredFrames frames{number_type(image.GetPixelFormat(), name), {}};
   const std::size_t bytes = image.GetBufferLength();
-  if (bytes != voxels * bytes_of(frames.type)) fail_to_read(name);
+  if (bytes != voxels * size_of(frames.type)) fail_to_read(name);
   check_not_cut_off(path, bytes);
   frames.bytes.resize(bytes);
   if (!image.GetBuffer(frames.bytes.data())) fail_to_read(name);
@@ -155,7 +155,7 @@ StoredFrames frames_of_bits(const std::filesystem::path& path, std::size_t voxel
 
 /// The values of one frame.
 void read_frame(const StoredFrames& frames, const DicomSlice& slice, std::span<float> values) {
-  const std::size_t bytes = values.size() * bytes_of(frames.type);
+  const std::size_t bytes = values.size() * size_of(frames.type);
   const bool big_endian = std::endian::native == std::endian::big;
   read_numbers(std::string_view(frames.bytes.data(), frames.bytes.size()).substr(slice.frame * bytes, bytes),
                {frames.type, big_endian, slice.slope, slice.intercept}, values, slice.path.string());

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
+#include "vmesh/core/text.h"
 
 namespace vmesh::image {
 namespace {
@@ -16,12 +17,7 @@ constexpr double kSamePlace = 1e-3;
 
 Vec3 normal_of(const DicomSlice& slice) { return slice.steps.col(0).cross(slice.steps.col(1)).normalized(); }
 
-std::string text_of(double mm) {
-  std::ostringstream text;
-  text.precision(5);
-  text << mm;
-  return text.str();
-}
+std::string text_of(double mm) { return formatted("%.5g", mm); }
 
 void check_alike(const std::vector<DicomSlice>& slices, const std::string& name) {
   const DicomSlice& first = slices.front();
@@ -62,9 +58,7 @@ void check_complete(const std::vector<DicomSlice>& slices, const std::vector<dou
     throw InvalidInput(name + ": " + std::to_string(shared) + " of the " + std::to_string(slices.size()) +
                        " slices of this series lie where another one does (several phases or echoes, or copies); put "
                        "those of one stack into a separate folder");
-  std::vector<double> sorted = gaps;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const double usual = sorted[sorted.size() / 2];
+  const double usual = median(gaps);
   for (std::size_t s = 0; s < gaps.size(); ++s) {
     if (gaps[s] <= 1.5 * usual) continue;
     throw InvalidInput(name + ": slices are missing: there are " + text_of(gaps[s]) + " mm between " +

@@ -6,19 +6,9 @@
 #include <cmath>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/file_format.h"
 
 namespace vmesh::image {
-
-std::optional<ImageFormat> find_image_format(const std::filesystem::path& path) {
-  const std::string name = folded(path.filename().string());
-  const auto ends_with = [&](std::initializer_list<const char*> endings) {
-    return std::ranges::any_of(endings, [&](const char* ending) { return name.ends_with(ending); });
-  };
-  if (ends_with({".nii", ".nii.gz", ".hdr", ".img"})) return ImageFormat::nifti;
-  if (ends_with({".nrrd", ".nhdr"})) return ImageFormat::nrrd;
-  if (ends_with({".mha", ".mhd"})) return ImageFormat::meta;
-  return std::nullopt;
-}
 
 void set_size(ImageHeader& header, const std::vector<double>& sizes, const std::string& name) {
   if (sizes.size() < 3)
@@ -66,7 +56,7 @@ void set_data_begin(ImageHeader& header, std::uint64_t from, std::string_view sk
 
 std::filesystem::path other_of_pair(std::filesystem::path path, const char* lower, const char* upper) {
   const std::string extension = path.extension().string();
-  return path.replace_extension(extension == folded(extension) ? lower : upper);
+  return path.replace_extension(extension == vmesh::lower(extension) ? lower : upper);
 }
 
 std::vector<double> numbers_in(std::string_view text, const std::string& name, std::string_view key) {
@@ -94,12 +84,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-std::string folded(std::string_view text) {
-  std::string result(trimmed(text));
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
+std::string folded(std::string_view text) { return lower(trimmed(text)); }
 
 std::string cited(std::string_view text) {
   constexpr std::size_t kMostShown = 40;

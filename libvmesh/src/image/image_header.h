@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,11 +30,6 @@ struct ImageHeader {
 
   std::uint64_t voxels() const { return size[0] * size[1] * size[2]; }
 };
-
-enum class ImageFormat { nifti, nrrd, meta };
-
-/// By the extension; nullopt for what is none of these formats, DICOM for example.
-std::optional<ImageFormat> find_image_format(const std::filesystem::path& path);
 
 ImageHeader parse_nifti_header(std::string_view bytes, const std::string& name);
 ImageHeader parse_nrrd_header(std::string_view bytes, const std::string& name);

@@ -45,7 +45,9 @@ LoadedImage collected(const std::string& name, Read read) {
 }  // namespace
 
 bool is_image_path(const std::filesystem::path& path) {
-  return image::find_image_format(path) || image::folded(path.extension().string()) == ".dcm";
+  return std::ranges::any_of(image_formats(), [&](const ImageFormat& format) {
+    return !longest_extension(path, format.extensions).empty() || !longest_extension(path, format.of_parts).empty();
+  });
 }
 
 bool is_image(const std::filesystem::path& path) { return is_image_path(path) || image::is_dicom(path); }

@@ -16,34 +16,20 @@ namespace vmesh {
 namespace {
 
 using image::ByteSource;
-using image::ImageFormat;
 using image::ImageHeader;
 using image::PeekedBytes;
 
-/// Whether all of a file is compressed, as only NIfTI may be. Throws InvalidInput if its name says otherwise.
-bool is_packed(PeekedBytes& file, ImageFormat format, const std::string& name) {
-  if (format != ImageFormat::nifti) return false;
+/// Whether all of a file is compressed. Throws InvalidInput if its name says otherwise.
+bool is_packed(PeekedBytes& file, const ImageFormat& format, const std::string& name) {
+  if (!format.compressed_whole) return false;
   const bool packed = file.peek(2) == "\x1f\x8b";
-  if (packed != image::folded(name).ends_with(".gz"))
+  if (packed != (extension_of(name) == ".gz"))
     throw InvalidInput(name +
                        (packed ? ": is compressed with gzip; name it .nii.gz" : ": is not compressed with gzip"));
   return packed;
 }
 
-ImageHeader parse_header(PeekedBytes& content, ImageFormat format, const std::string& name) {
-  constexpr std::size_t kLongestText = std::size_t{1} << 20, kLongestNifti = 540;
-  switch (format) {
-    case ImageFormat::nrrd:
-      return image::parse_nrrd_header(content.peek(kLongestText), name);
-    case ImageFormat::meta:
-      return image::parse_meta_header(content.peek(kLongestText), name);
-    case ImageFormat::nifti:
-      break;
-  }
-  return image::parse_nifti_header(content.peek(kLongestNifti), name);
-}
-
-std::uint64_t bytes_needed(const ImageHeader& header) { return header.voxels() * bytes_of(header.type); }
+std::uint64_t bytes_needed(const ImageHeader& header) { return header.voxels() * size_of(header.type); }
 
 [[noreturn]] void refuse_incomplete(const ImageHeader& header, std::uint64_t bytes, const std::string& name) {
   throw InvalidInput(name + ": the header claims " + std::to_string(header.voxels()) + " voxels, " +
@@ -87,7 +73,7 @@ class VoxelReader {
       if (begin_ == end_) fill();
       const std::size_t step = static_cast<std::size_t>(std::min<std::uint64_t>(count - done, end_ - begin_));
       if (values.size() < done + step) values.resize(done + step);
-      const std::size_t width = bytes_of(header_.type);
+      const std::size_t width = size_of(header_.type);
       image::read_numbers({block_.data() + begin_ * width, step * width},
                           {header_.type, header_.big_endian, header_.slope, header_.intercept},
                           std::span(values).subspan(done, step), name_, voxels_ - (end_ - begin_));
@@ -101,7 +87,7 @@ class VoxelReader {
 
   /// Reads the next block. Throws InvalidInput if voxels are missing.
   void fill() {
-    const std::size_t width = bytes_of(header_.type);
+    const std::size_t width = size_of(header_.type);
     begin_ = 0;
     end_ = static_cast<std::size_t>(std::min<std::uint64_t>(header_.voxels() - voxels_, kBlock / width));
     const std::size_t count = bytes_.read(std::span(block_).first(end_ * width));
@@ -148,14 +134,14 @@ InputFile open_second(const std::string& given, const std::filesystem::path& pat
 /// `file_size`: of all bytes that `file` will give; `source` names it. `in_memory`: no other file belongs to it.
 void parse(ByteSource& file, std::uint64_t file_size, const std::string& source, bool in_memory,
            const ImageBegin& begin, const SliceVisitor& visit) {
-  const std::optional<ImageFormat> format = image::find_image_format(source);
-  if (!format) throw Unsupported(source + ": images are .nii, .nii.gz, .nrrd or .mha, or a folder of DICOM files");
+  const ImageFormat* format = find_format(image_formats(), source);
+  if (!format) throw Unsupported(source + ": images are " + listed_image_extensions());
   PeekedBytes stored(file);
   const bool all_packed = is_packed(stored, *format, source);
   std::optional<image::UnpackedBytes> unpacked;
   if (all_packed) unpacked.emplace(stored);
   PeekedBytes content(all_packed ? static_cast<ByteSource&>(*unpacked) : stored);
-  const ImageHeader header = parse_header(content, *format, source);
+  const ImageHeader header = format->parse_header(content.peek(format->header_bytes), source);
   image::check_place(header.origin, header.steps, source);
   if (header.data_file.empty()) return parse_voxels(content, file_size, all_packed, header, source, begin, visit);
   if (in_memory) throw Unsupported(source + ": its voxels are in another file; store header and voxels in one");
@@ -175,9 +161,10 @@ void parse_image_slices(std::string_view content, const std::string& source, con
 
 void read_image_slices(const std::filesystem::path& path, const ImageBegin& begin, const SliceVisitor& visit) {
   std::error_code error;
-  const bool is_dicom = !image::find_image_format(path) || std::filesystem::is_directory(path, error);
+  const bool is_folder = std::filesystem::is_directory(path, error), is_img = extension_of(path) == ".img";
+  const bool is_dicom = is_folder || (!is_img && find_format(image_formats(), path) == nullptr);
   if (is_dicom && is_image(path)) return image::read_dicom(path, begin, visit);
-  if (image::folded(path.extension().string()) == ".img") {
+  if (is_img) {
     const std::filesystem::path header = image::other_of_pair(path, ".hdr", ".HDR");
     const InputFile there = open_second(path.string(), header, "header is");
     return read_image_slices(header, begin, visit);

@@ -106,7 +106,7 @@ void set_data(ImageHeader& header, const Entries& entries, std::uint64_t header_
                  optional(entries, entries.contains("byteskip") ? "byteskip" : "byte skip"), name, "byte skip");
   const std::string endian = optional(entries, "endian");
   header.big_endian = endian == "big";
-  if (endian.empty() && bytes_of(header.type) > 1) throw InvalidInput(name + ": the header has no line \"endian\"");
+  if (endian.empty() && size_of(header.type) > 1) throw InvalidInput(name + ": the header has no line \"endian\"");
 }
 
 /// From the file's frame to LPS.

@@ -6,12 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "vmesh/core/stored_number.h"
+
 namespace vmesh::image {
-
-enum class NumberType { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
-
-std::size_t bytes_of(NumberType type);
-bool is_integer(NumberType type);
 
 /// How a voxel is stored: value = slope * stored + intercept.
 struct StoredNumbers {

@@ -5,9 +5,10 @@
 
 #include <zlib.h>
 
+#include "vmesh/core/stored_number.h"
+
 #include "edge_radii.h"
 #include "formats.h"
-#include "number_types.h"
 #include "text.h"
 
 namespace vmesh::io {
@@ -115,10 +116,9 @@ class AmiraReader {
 
   void read_type(std::string_view text, Declaration& made) const {
     static const std::map<std::string, NumberType> kTypes = {
-        {"byte", NumberType::uint8},    {"char", NumberType::int8},     {"short", NumberType::int16},
-        {"ushort", NumberType::uint16}, {"int", NumberType::int32},     {"int32", NumberType::int32},
-        {"uint", NumberType::uint32},   {"long", NumberType::int64},    {"int64", NumberType::int64},
-        {"float", NumberType::float32}, {"double", NumberType::float64}};
+        {"byte", NumberType::u8},   {"char", NumberType::i8},   {"short", NumberType::i16}, {"ushort", NumberType::u16},
+        {"int", NumberType::i32},   {"int32", NumberType::i32}, {"uint", NumberType::u32},  {"long", NumberType::i64},
+        {"int64", NumberType::i64}, {"float", NumberType::f32}, {"double", NumberType::f64}};
     const std::size_t bracket = text.find('[');
     const auto known = kTypes.find(lower(text.substr(0, bracket)));
     if (known == kTypes.end()) fail("the type " + cite(text) + " is not known");

@@ -4,20 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 #include <ostream>
 #include <string>
 
-namespace vmesh::io {
+#include "vmesh/core/stored_number.h"
 
-/// The number of type T at `bytes` in little-endian (or big-endian) order.
-template <class T>
-T load(const char* bytes, bool big_endian = false) {
-  std::array<char, sizeof(T)> buffer;
-  std::memcpy(buffer.data(), bytes, sizeof(T));
-  if (big_endian != (std::endian::native == std::endian::big)) std::reverse(buffer.begin(), buffer.end());
-  return std::bit_cast<T>(buffer);
-}
+namespace vmesh::io {
 
 /// Appends `value` in little-endian order.
 template <class T>

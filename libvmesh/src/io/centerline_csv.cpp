@@ -6,7 +6,8 @@
 #include "formats.h"
 #include "text.h"
 
-namespace vmesh::io {
+namespace vmesh {
+namespace io {
 namespace {
 
 /// Rows of a CSV table whose header names the columns; '#' begins a comment.
@@ -87,6 +88,12 @@ class CsvTable {
 
 }  // namespace
 
+std::filesystem::path second_csv_file(const std::filesystem::path& path) {
+  if (extension_of(path.stem()) == ".segments")
+    throw InvalidInput(path.string() + ": this names the second file of a CSV pair; give the one with the nodes");
+  return csv_segments_path(path);
+}
+
 RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source) {
   RawCenterline raw;
   raw.source = source;
@@ -134,4 +141,12 @@ void write_centerline_csv(std::ostream& nodes, std::ostream& segments, const Cen
   for (const auto& [a, b] : centerline.segments()) segments << std::to_string(a) << "," << std::to_string(b) << "\n";
 }
 
-}  // namespace vmesh::io
+}  // namespace io
+
+std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path) {
+  std::filesystem::path stem = nodes_path.stem();
+  if (extension_of(stem) == ".nodes") stem = stem.stem();
+  return std::filesystem::path(nodes_path).replace_filename(stem.string() + ".segments.csv");
+}
+
+}  // namespace vmesh

@@ -1,5 +1,6 @@
 #include "vmesh/io/centerline_io.h"
 
+#include <algorithm>
 #include <istream>
 #include <iterator>
 
@@ -7,108 +8,64 @@
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 
-#include "formats.h"
-#include "text.h"
-
 namespace vmesh {
 
-std::optional<CenterlineFormat> find_centerline_format(const std::filesystem::path& path) {
-  const std::string extension = io::lower(path.extension().string());
-  if (extension == ".swc") return CenterlineFormat::swc;
-  if (extension == ".vtp") return CenterlineFormat::vtp;
-  if (extension == ".json") return CenterlineFormat::json;
-  if (extension == ".csv") return CenterlineFormat::csv;
-  if (extension == ".vmv") return CenterlineFormat::vmv;
-  if (extension == ".vtk") return CenterlineFormat::vtk;
-  if (extension == ".ctgr") return CenterlineFormat::ctgr;
-  if (extension == ".pth") return CenterlineFormat::pth;
-  if (extension == ".gxl" || extension == ".xml") return CenterlineFormat::gxl;
-  if (extension == ".am") return CenterlineFormat::amira;
-  if (extension == ".dat") return CenterlineFormat::network;
-  if (extension == ".h5") return CenterlineFormat::hdf5;
-  return std::nullopt;
+const CenterlineFormat* find_centerline_format(const std::filesystem::path& path) {
+  return find_format(centerline_formats(), path);
 }
 
-CenterlineFormat centerline_format(const std::filesystem::path& path) {
-  if (const auto format = find_centerline_format(path)) return *format;
-  throw Unsupported(
-      path.string() +
-      ": centerlines are .swc, .vtp, .json, .csv, .vmv, .vtk, .mrk.json, .ctgr, .pth, .gxl, .am, .dat or .h5; "
-      "\"" +
-      io::lower(path.extension().string()) + "\" is not supported");
+const CenterlineFormat& centerline_format(const std::filesystem::path& path) {
+  if (const CenterlineFormat* format = find_centerline_format(path)) return *format;
+  throw Unsupported(path.string() + ": centerlines are " +
+                    listed(extensions_of(centerline_formats(), [](const auto&) { return true; })) + "; \"" +
+                    extension_of(path) + "\" is not supported");
 }
 
-CenterlineFormat centerline_output_format(const std::filesystem::path& path) {
-  const CenterlineFormat format = centerline_format(path);
-  const bool of_slicer = io::lower(path.stem().extension().string()) == ".mrk";
-  const bool is_written = format == CenterlineFormat::swc || format == CenterlineFormat::vtp ||
-                          (format == CenterlineFormat::json && !of_slicer) || format == CenterlineFormat::csv;
-  if (!is_written) {
-    throw Unsupported(path.string() +
-                      ": files of this kind are read, not written; write the centerline as .json, .csv or .vtp");
+const CenterlineFormat& centerline_output_format(const std::filesystem::path& path) {
+  const CenterlineFormat& format = centerline_format(path);
+  if (format.is_written()) return format;
+  throw Unsupported(path.string() + ": files of this kind are read, not written; write the centerline as " +
+                    listed(extensions_of(centerline_formats(), [](const auto& f) { return f.is_written(); })));
+}
+
+std::vector<std::string> options_without_effect(const CenterlineReadOptions& options,
+                                                const std::vector<std::filesystem::path>& paths) {
+  std::vector<std::string> given;
+  if (!options.radius_array.empty()) given.push_back("radius-array");
+  if (options.voxel_size) given.push_back("voxel-size");
+  if (options.radius && paths.empty()) given.push_back("radius");  // which acts on every format
+  for (const std::filesystem::path& path : paths) {
+    for (const std::string& option : centerline_format(path).options) std::erase(given, option);
   }
-  return format;
-}
-
-std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path) {
-  std::filesystem::path stem = nodes_path.stem();
-  if (io::lower(stem.extension().string()) == ".nodes") stem = stem.stem();
-  return std::filesystem::path(nodes_path).replace_filename(stem.string() + ".segments.csv");
+  return given;
 }
 
 namespace {
 
-void check_is_nodes_file(const std::filesystem::path& path) {
-  if (io::lower(path.stem().extension().string()) != ".segments") return;
-  throw InvalidInput(path.string() + ": this names the second file of a CSV pair; give the one with the nodes");
+RawCenterline read_file_of_centerline(const std::filesystem::path& path, const CenterlineReadOptions& options) {
+  const CenterlineFormat& format = centerline_format(path);
+  if (format.read) return format.read(path);
+  if (format.parse) return format.parse(read_file(path), path.string(), options);
+  if (!format.parse_pair) refuse_without(format.needs, path);
+  const std::filesystem::path second = format.second_file(path);
+  const std::string content = read_file(path);
+  return format.parse_pair(content, read_file(second), path.string());
 }
 
 }  // namespace
 
-RawCenterline parse_centerline(std::string_view content, CenterlineFormat format, const std::string& source,
+RawCenterline parse_centerline(std::string_view content, const CenterlineFormat& format, const std::string& source,
                                const CenterlineReadOptions& options, std::string_view csv_segments) {
-  switch (format) {
-    case CenterlineFormat::swc:
-      return io::parse_swc(content, source);
-    case CenterlineFormat::vtp:
-      return io::parse_centerline_vtp(content, source, options);
-    case CenterlineFormat::json:
-      return io::parse_centerline_json(content, source, options);
-    case CenterlineFormat::csv:
-      return io::parse_centerline_csv(content, csv_segments, source);
-    case CenterlineFormat::vmv:
-      return io::parse_vmv(content, source);
-    case CenterlineFormat::vtk:
-      return io::parse_centerline_vtk(content, source, options);
-    case CenterlineFormat::ctgr:
-      return io::parse_contours(content, source);
-    case CenterlineFormat::pth:
-      return io::parse_path(content, source, options);
-    case CenterlineFormat::gxl:
-      return io::parse_gxl(content, source, options);
-    case CenterlineFormat::amira:
-      return io::parse_amira(content, source, options);
-    case CenterlineFormat::network:
-      return io::parse_network(content, source);
-    case CenterlineFormat::hdf5:
-      throw Unsupported(source + ": HDF5 is read from files only");
-  }
-  throw Unsupported(source + ": unknown centerline format");
+  if (format.parse) return format.parse(content, source, options);
+  if (format.parse_pair) return format.parse_pair(content, csv_segments, source);
+  throw Unsupported(source + ": files of this kind are read by their names only");
 }
 
 RawCenterline read_centerline(const std::filesystem::path& path, const CenterlineReadOptions& options) {
-  const CenterlineFormat format = centerline_format(path);
-  if (format == CenterlineFormat::hdf5) return io::read_hdf5_network(path);
-  const std::string content = read_file(path);
-  std::string segments;
-  if (format == CenterlineFormat::csv) {
-    check_is_nodes_file(path);
-    segments = read_file(csv_segments_path(path));
-  }
-  return parse_centerline(content, format, path.string(), options, segments);
+  return read_centerline(std::vector{path}, options);
 }
 
-RawCenterline read_centerline(std::istream& in, CenterlineFormat format, const std::string& source,
+RawCenterline read_centerline(std::istream& in, const CenterlineFormat& format, const std::string& source,
                               const CenterlineReadOptions& options) {
   const std::string content(std::istreambuf_iterator<char>(in), {});
   if (in.bad()) throw ReadError(source + ": cannot be read");
@@ -117,8 +74,10 @@ RawCenterline read_centerline(std::istream& in, CenterlineFormat format, const s
 }
 
 RawCenterline read_centerline(const std::vector<std::filesystem::path>& paths, const CenterlineReadOptions& options) {
+  if (const auto without = options_without_effect(options, paths); !without.empty())
+    throw InvalidInput(paths.front().string() + ": --" + without.front() + " has no effect on files of this kind");
   std::vector<RawCenterline> files;
-  for (const std::filesystem::path& path : paths) files.push_back(read_centerline(path, options));
+  for (const std::filesystem::path& path : paths) files.push_back(read_file_of_centerline(path, options));
   return merge(std::move(files));
 }
 
@@ -210,41 +169,27 @@ void check(const std::vector<EndSection>& sections, const Centerline& centerline
 
 }  // namespace
 
-bool keeps_end_sections(CenterlineFormat format) {
-  return format == CenterlineFormat::json || format == CenterlineFormat::vtp;
-}
-
 void write_centerline(const std::filesystem::path& path, const Centerline& given, const CenterlineMetadata& metadata,
                       const std::vector<EndSection>& given_sections) {
   const bool converts = metadata.unit != LengthUnit::mm || metadata.space != Space::lps;
   check(given_sections, given);
   const Centerline& centerline = converts ? converted(given, metadata) : given;
   const std::vector<EndSection>& sections = converts ? converted(given_sections, metadata) : given_sections;
-  const CenterlineFormat format = centerline_output_format(path);
-  if (format == CenterlineFormat::swc && centerline.cycle_rank() > 0) {
-    throw Unsupported(path.string() + ": SWC holds trees only and this centerline has " +
-                      std::to_string(centerline.cycle_rank()) + " independent loops; write it as .json, .csv or .vtp");
+  const CenterlineFormat& format = centerline_output_format(path);
+  if (format.trees_only && centerline.cycle_rank() > 0) {
+    throw Unsupported(
+        path.string() + ": " + format.name + " holds trees only and this centerline has " +
+        std::to_string(centerline.cycle_rank()) + " independent loops; write it as " +
+        listed(extensions_of(centerline_formats(), [](const auto& f) { return f.is_written() && !f.trees_only; })));
   }
-  if (format == CenterlineFormat::csv) check_is_nodes_file(path);
+  const std::filesystem::path second_path = format.second_file ? format.second_file(path) : std::filesystem::path();
   AtomicFile file(path);
-  switch (format) {
-    case CenterlineFormat::swc:
-      io::write_swc(file.stream(), centerline, metadata);
-      break;
-    case CenterlineFormat::vtp:
-      io::write_centerline_vtp(file.stream(), centerline, metadata, sections);
-      break;
-    case CenterlineFormat::json:
-      io::write_centerline_json(file.stream(), centerline, metadata, sections);
-      break;
-    case CenterlineFormat::csv: {
-      AtomicFile segments(csv_segments_path(path));
-      io::write_centerline_csv(file.stream(), segments.stream(), centerline, metadata);
-      segments.commit();
-      break;
-    }
-    default:
-      break;  // refused above
+  if (format.write) {
+    format.write(file.stream(), centerline, metadata, sections);
+  } else {
+    AtomicFile second(second_path);
+    format.write_pair(file.stream(), second.stream(), centerline, metadata);
+    second.commit();
   }
   file.commit();
 }

@@ -199,6 +199,8 @@ RawCenterline parse_centerline_json(std::string_view content, const std::string&
                        ": this is not valid JSON: " + one_line(std::string_view(error.what()).substr(0, kMostShown)));
   }
   if (document.is_object() && document.contains("markups")) return read_markups(document, source, options);
+  if (!options.radius_array.empty())
+    throw InvalidInput(source + ": radii are the fourth numbers of \"nodes\"; --radius-array does not apply");
   return JsonReader(document, source).run();
 }
 

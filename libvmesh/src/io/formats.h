@@ -1,60 +1,27 @@
-// One reader and one writer per format, internal to the module. Readers take the file's content and its name for
-// messages; writers write to a stream whose state the caller checks.
+// The readers and writers of the formats, for their tables: centerline_formats() and surface_formats(). Internal to the
+// module. Writers write to a stream whose state the caller checks.
 #pragma once
-
-#include <filesystem>
-#include <iosfwd>
-#include <string>
-#include <string_view>
 
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 
 namespace vmesh::io {
 
-RawCenterline parse_swc(std::string_view content, const std::string& source);
-RawCenterline parse_vmv(std::string_view content, const std::string& source);
-RawCenterline parse_centerline_json(std::string_view content, const std::string& source,
-                                    const CenterlineReadOptions& options);
+CenterlineFormat::Parse parse_swc, parse_vmv, parse_centerline_json, parse_centerline_vtp, parse_centerline_vtk,
+    parse_contours, parse_path, parse_gxl, parse_amira, parse_network;
 RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source);
-RawCenterline parse_centerline_vtp(std::string_view content, const std::string& source,
-                                   const CenterlineReadOptions& options);
-RawCenterline parse_centerline_vtk(std::string_view content, const std::string& source,
-                                   const CenterlineReadOptions& options);
-RawCenterline parse_contours(std::string_view content, const std::string& source);
-RawCenterline parse_path(std::string_view content, const std::string& source, const CenterlineReadOptions& options);
-RawCenterline parse_gxl(std::string_view content, const std::string& source, const CenterlineReadOptions& options);
-RawCenterline parse_amira(std::string_view content, const std::string& source, const CenterlineReadOptions& options);
-RawCenterline parse_network(std::string_view content, const std::string& source);
-/// Throws Unsupported in a build without HDF5.
 RawCenterline read_hdf5_network(const std::filesystem::path& path);
 
-void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata);
-void write_centerline_json(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,
-                           const std::vector<EndSection>& sections);
+CenterlineFormat::Write write_swc, write_centerline_json, write_centerline_vtp;
 void write_centerline_csv(std::ostream& nodes, std::ostream& segments, const Centerline& centerline,
                           const CenterlineMetadata& metadata);
-void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,
-                          const std::vector<EndSection>& sections);
+/// csv_segments_path(); throws InvalidInput if `path` names a segments file.
+std::filesystem::path second_csv_file(const std::filesystem::path& path);
 
-LoadedSurface parse_off(std::string_view content, const std::string& source);
-LoadedSurface parse_obj(std::string_view content, const std::string& source);
-LoadedSurface parse_stl(std::string_view content, const std::string& source);
-LoadedSurface parse_ply(std::string_view content, const std::string& source);
-LoadedSurface parse_surface_vtp(std::string_view content, const std::string& source);
-LoadedSurface parse_surface_vtk(std::string_view content, const std::string& source);
-/// From a file, as some refer to others: GLB, glTF, 3MF, COLLADA, X3D, FBX. Throws Unsupported in a build without
-/// assimp.
+SurfaceFormat::Parse parse_off, parse_obj, parse_stl, parse_ply, parse_surface_vtp, parse_surface_vtk;
+/// Through assimp.
 LoadedSurface read_scene(const std::filesystem::path& path);
 
-void write_off(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);
-void write_obj(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);
-void write_stl(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata);
-void write_ply(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-               const SurfaceMetadata& metadata);
-void write_glb(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-               const SurfaceMetadata& metadata, const SurfaceSkin* skin);
-void write_surface_vtp(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-                       const SurfaceMetadata& metadata);
+SurfaceFormat::Write write_off, write_obj, write_stl, write_ply, write_glb, write_surface_vtp;
 
 }  // namespace vmesh::io

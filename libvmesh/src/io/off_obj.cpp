@@ -196,7 +196,8 @@ LoadedSurface parse_obj(std::string_view content, const std::string& source) {
   return ObjReader(content, source).run();
 }
 
-void write_off(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata) {
+void write_off(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, const SurfaceMetadata& metadata,
+               const SurfaceSkin*) {
   out << "OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.faces.size()) + " 0\n";
   std::string row;
   for (const Vec3& p : mesh.vertices) {
@@ -210,7 +211,8 @@ void write_off(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& me
   out << comments(metadata, "# ");  // at the end, where readers that do not accept comments no longer read
 }
 
-void write_obj(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata) {
+void write_obj(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, const SurfaceMetadata& metadata,
+               const SurfaceSkin*) {
   out << comments(metadata, "# ");
   std::string row;
   for (const Vec3& p : mesh.vertices) {

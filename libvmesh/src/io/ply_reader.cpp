@@ -3,8 +3,9 @@
 #include <limits>
 #include <unordered_set>
 
+#include "vmesh/core/stored_number.h"
+
 #include "formats.h"
-#include "number_types.h"
 #include "ply.h"
 #include "text.h"
 #include "triangulation.h"
@@ -14,9 +15,9 @@ namespace {
 
 struct PlyProperty {
   std::string name;
-  NumberType type = NumberType::float32;
+  NumberType type = NumberType::f32;
   bool is_list = false;
-  NumberType count_type = NumberType::uint8;
+  NumberType count_type = NumberType::u8;
 };
 
 struct PlyElement {
@@ -27,22 +28,22 @@ struct PlyElement {
 
 std::optional<NumberType> type_of(std::string_view name) {
   static constexpr std::array<std::pair<std::string_view, NumberType>, 16> kNames = {{
-      {"char", NumberType::int8},
-      {"int8", NumberType::int8},
-      {"uchar", NumberType::uint8},
-      {"uint8", NumberType::uint8},
-      {"short", NumberType::int16},
-      {"int16", NumberType::int16},
-      {"ushort", NumberType::uint16},
-      {"uint16", NumberType::uint16},
-      {"int", NumberType::int32},
-      {"int32", NumberType::int32},
-      {"uint", NumberType::uint32},
-      {"uint32", NumberType::uint32},
-      {"float", NumberType::float32},
-      {"float32", NumberType::float32},
-      {"double", NumberType::float64},
-      {"float64", NumberType::float64},
+      {"char", NumberType::i8},
+      {"int8", NumberType::i8},
+      {"uchar", NumberType::u8},
+      {"uint8", NumberType::u8},
+      {"short", NumberType::i16},
+      {"int16", NumberType::i16},
+      {"ushort", NumberType::u16},
+      {"uint16", NumberType::u16},
+      {"int", NumberType::i32},
+      {"int32", NumberType::i32},
+      {"uint", NumberType::u32},
+      {"uint32", NumberType::u32},
+      {"float", NumberType::f32},
+      {"float32", NumberType::f32},
+      {"double", NumberType::f64},
+      {"float64", NumberType::f64},
   }};
   for (const auto& [key, type] : kNames) {
     if (key == name) return type;
@@ -231,7 +232,7 @@ class PlyReader {
     std::vector<MeshAttribute> attributes;
     for (const auto& p : element.properties) {
       if (!is_attribute(p)) continue;
-      attributes.push_back({p.name, {}, p.type != NumberType::float32 && p.type != NumberType::float64});
+      attributes.push_back({p.name, {}, p.type != NumberType::f32 && p.type != NumberType::f64});
       attributes.back().values.reserve(count);
     }
     return attributes;

@@ -79,7 +79,7 @@ void write_faces(std::ostream& out, std::string& bytes, std::span<const Triangle
 }  // namespace
 
 void write_ply(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-               const SurfaceMetadata& metadata) {
+               const SurfaceMetadata& metadata, const SurfaceSkin*) {
   std::string bytes = header_of(mesh.vertices.size(), mesh.faces.size(), attributes, metadata);
   write_vertices(out, bytes, mesh.vertices, vertex_normals(mesh), attributes.vertex);
   write_faces(out, bytes, mesh.faces, attributes.face);

@@ -175,7 +175,7 @@ class Answer {
 }  // namespace
 
 LoadedSurface read_scene(const std::filesystem::path& path) {
-  const std::string source = path.string(), extension = lower(path.extension().string());
+  const std::string source = path.string(), extension = extension_of(path);
   const std::string content = read_file(path);
   const std::string bytes =
       in_child_process(source, content.size(), [&] { return imported(path, content, extension); });

@@ -133,7 +133,7 @@ class NetworkReader {
 
 }  // namespace
 
-RawCenterline parse_network(std::string_view content, const std::string& source) {
+RawCenterline parse_network(std::string_view content, const std::string& source, const CenterlineReadOptions&) {
   return NetworkReader(content, source).run();
 }
 

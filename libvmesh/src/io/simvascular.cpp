@@ -85,7 +85,7 @@ RawCenterline of_kind(const std::string& source, const char* node_word) {
 
 }  // namespace
 
-RawCenterline parse_contours(std::string_view content, const std::string& source) {
+RawCenterline parse_contours(std::string_view content, const std::string& source, const CenterlineReadOptions&) {
   const XmlFile file = parse_xml(content, source);
   const pugi::xml_node group = file.document.child("contourgroup");
   if (!group) fail(source, "this is not a contour group of SimVascular: it contains no <contourgroup>");

@@ -118,7 +118,8 @@ LoadedSurface parse_stl(std::string_view content, const std::string& source) {
   return surface;
 }
 
-void write_stl(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata) {
+void write_stl(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, const SurfaceMetadata& metadata,
+               const SurfaceSkin*) {
   std::string bytes = "SPACE=" + std::string(to_string(metadata.space)) +
                       " UNIT=" + std::string(to_string(metadata.unit)) + " " + one_line(metadata.generator);
   bytes.resize(kHeaderSize, ' ');

@@ -4,9 +4,6 @@
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 
-#include "formats.h"
-#include "text.h"
-
 namespace vmesh {
 namespace {
 
@@ -35,10 +32,13 @@ void check(const std::filesystem::path& path, const TriMesh& mesh, const MeshAtt
   check_all(attributes.face, mesh.faces.size(), "face");
 }
 
-void check(const std::filesystem::path& path, SurfaceFormat format, const TriMesh& mesh, const SurfaceSkin& skin) {
+void check(const std::filesystem::path& path, const SurfaceFormat& format, const TriMesh& mesh,
+           const SurfaceSkin& skin) {
   constexpr std::size_t kMostJoints = 0xffff;  // numbers of joints have 16 bits
   const std::string name = path.string();
-  if (format != SurfaceFormat::glb) throw Unsupported(name + ": bones are written to .glb only");
+  if (!format.holds_bones)
+    throw Unsupported(name + ": bones are written to " +
+                      listed(extensions_of(surface_formats(), [](const auto& f) { return f.holds_bones; })) + " only");
   if (skin.joints.size() > kMostJoints)
     throw Unsupported(name + ": " + std::to_string(skin.joints.size()) + " bones are more than the " +
                       std::to_string(kMostJoints) + " that glTF can number; leave out nodes of the centerline");
@@ -68,41 +68,32 @@ void convert(TriMesh& mesh, MeshAttributes& attributes, double scale, Space spac
 
 }  // namespace
 
-SurfaceFormat surface_format(const std::filesystem::path& path) {
-  const std::string extension = io::lower(path.extension().string());
-  if (extension == ".off") return SurfaceFormat::off;
-  if (extension == ".obj") return SurfaceFormat::obj;
-  if (extension == ".stl") return SurfaceFormat::stl;
-  if (extension == ".ply") return SurfaceFormat::ply;
-  if (extension == ".vtp") return SurfaceFormat::vtp;
-  if (extension == ".vtk") return SurfaceFormat::vtk;
-  if (extension == ".glb") return SurfaceFormat::glb;
-  for (const char* scene : {".gltf", ".3mf", ".dae", ".x3d", ".fbx"}) {
-    if (extension == scene) return SurfaceFormat::scene;
-  }
-  throw Unsupported(path.string() +
-                    ": surfaces are .off, .obj, .stl, .ply, .vtp, .vtk, .glb, .gltf, .3mf, .dae, .x3d or .fbx; \"" +
-                    extension + "\" is not supported");
+const SurfaceFormat* find_surface_format(const std::filesystem::path& path) {
+  return find_format(surface_formats(), path);
 }
 
-SurfaceFormat surface_output_format(const std::filesystem::path& path) {
-  const SurfaceFormat format = surface_format(path);
-  if (format == SurfaceFormat::vtk)
-    throw Unsupported(path.string() + ": legacy VTK files are read, not written; write a .vtp file");
-  if (format == SurfaceFormat::scene)
-    throw Unsupported(path.string() + ": scenes of this kind are read, not written; write a .glb file");
-  return format;
+const SurfaceFormat& surface_format(const std::filesystem::path& path) {
+  if (const SurfaceFormat* format = find_surface_format(path)) return *format;
+  throw Unsupported(path.string() + ": surfaces are " +
+                    listed(extensions_of(surface_formats(), [](const auto&) { return true; })) + "; \"" +
+                    extension_of(path) + "\" is not supported");
+}
+
+const SurfaceFormat& surface_output_format(const std::filesystem::path& path) {
+  const SurfaceFormat& format = surface_format(path);
+  if (format.is_written()) return format;
+  throw Unsupported(path.string() + ": files of this kind are read, not written; write the surface as " +
+                    listed(extensions_of(surface_formats(), [](const auto& f) { return f.is_written(); })));
 }
 
 void write_surface(const std::filesystem::path& path, const TriMesh& given, const MeshAttributes& given_attributes,
                    const SurfaceMetadata& metadata, const SurfaceSkin* skin) {
-  const SurfaceFormat format = surface_output_format(path);
+  const SurfaceFormat& format = surface_output_format(path);
   check(path, given, given_attributes);
   if (skin) check(path, format, given, *skin);
   TriMesh converted;
   MeshAttributes converted_attributes;
-  const bool converts =
-      format != SurfaceFormat::glb && (metadata.unit != LengthUnit::mm || metadata.space != Space::lps);
+  const bool converts = !format.has_own_frame && (metadata.unit != LengthUnit::mm || metadata.space != Space::lps);
   if (converts) {
     converted = given;
     converted_attributes = given_attributes;
@@ -111,57 +102,20 @@ void write_surface(const std::filesystem::path& path, const TriMesh& given, cons
   const TriMesh& mesh = converts ? converted : given;
   const MeshAttributes& attributes = converts ? converted_attributes : given_attributes;
   AtomicFile file(path);
-  switch (format) {
-    case SurfaceFormat::off:
-      io::write_off(file.stream(), mesh, metadata);
-      break;
-    case SurfaceFormat::obj:
-      io::write_obj(file.stream(), mesh, metadata);
-      break;
-    case SurfaceFormat::stl:
-      io::write_stl(file.stream(), mesh, metadata);
-      break;
-    case SurfaceFormat::ply:
-      io::write_ply(file.stream(), mesh, attributes, metadata);
-      break;
-    case SurfaceFormat::vtp:
-      io::write_surface_vtp(file.stream(), mesh, attributes, metadata);
-      break;
-    case SurfaceFormat::glb:
-      io::write_glb(file.stream(), mesh, attributes, metadata, skin);
-      break;
-    case SurfaceFormat::vtk:
-    case SurfaceFormat::scene:
-      break;  // refused above
-  }
+  format.write(file.stream(), mesh, attributes, metadata, skin);
   file.commit();
 }
 
-LoadedSurface parse_surface(std::string_view content, SurfaceFormat format, const std::string& source) {
-  switch (format) {
-    case SurfaceFormat::off:
-      return io::parse_off(content, source);
-    case SurfaceFormat::obj:
-      return io::parse_obj(content, source);
-    case SurfaceFormat::stl:
-      return io::parse_stl(content, source);
-    case SurfaceFormat::ply:
-      return io::parse_ply(content, source);
-    case SurfaceFormat::vtp:
-      return io::parse_surface_vtp(content, source);
-    case SurfaceFormat::vtk:
-      return io::parse_surface_vtk(content, source);
-    case SurfaceFormat::glb:
-    case SurfaceFormat::scene:
-      throw Unsupported(source + ": scenes are read from files only");
-  }
-  throw Unsupported(source + ": unknown surface format");
+LoadedSurface parse_surface(std::string_view content, const SurfaceFormat& format, const std::string& source) {
+  if (format.parse) return format.parse(content, source);
+  throw Unsupported(source + ": files of this kind are read by their names only");
 }
 
 LoadedSurface read_surface(const std::filesystem::path& path) {
-  const SurfaceFormat format = surface_format(path);
-  if (format == SurfaceFormat::glb || format == SurfaceFormat::scene) return io::read_scene(path);
-  return parse_surface(read_file(path), format, path.string());
+  const SurfaceFormat& format = surface_format(path);
+  if (format.read) return format.read(path);
+  if (!format.parse) refuse_without(format.needs, path);
+  return format.parse(read_file(path), path.string());
 }
 
 void convert_to_internal(LoadedSurface& surface, const std::string& source, std::optional<LengthUnit> unit,

@@ -155,11 +155,12 @@ std::vector<Index> parents_in_forest(const Centerline& centerline) {
 
 }  // namespace
 
-RawCenterline parse_swc(std::string_view content, const std::string& source) {
+RawCenterline parse_swc(std::string_view content, const std::string& source, const CenterlineReadOptions&) {
   return SwcReader(content, source).run();
 }
 
-void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata) {
+void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,
+               const std::vector<EndSection>&) {
   constexpr int kSoma = 1, kBranch = 3;
   const auto parent = parents_in_forest(centerline);
   out << comments(metadata, "# ") << "# id type x y z radius parent\n";

@@ -108,13 +108,6 @@ void append(std::string& text, double value) {
 
 void append(std::string& text, std::uint64_t value) { text += std::to_string(value); }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return result;
-}
-
 void read_tags(std::string_view comment, LengthUnit& unit, Space& space) {
   if (const auto value = parse_space(value_after(comment, "space="))) space = *value;
   if (const auto value = parse_length_unit(value_after(comment, "unit="))) unit = *value;

@@ -9,6 +9,7 @@
 
 #include "vmesh/centerline/raw_centerline.h"
 #include "vmesh/core/error.h"
+#include "vmesh/core/file_format.h"
 
 namespace vmesh::io {
 
@@ -44,9 +45,6 @@ std::optional<std::int64_t> parse_integer(std::string_view text);
 /// Appends the shortest text that reads back as `value`.
 void append(std::string& text, double value);
 void append(std::string& text, std::uint64_t value);
-
-/// Lower case of ASCII letters.
-std::string lower(std::string_view text);
 
 /// Looks for SPACE=... and UNIT=... in a comment.
 void read_tags(std::string_view comment, LengthUnit& unit, Space& space);

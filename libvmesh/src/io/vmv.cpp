@@ -227,7 +227,7 @@ class VmvReader {
 
 }  // namespace
 
-RawCenterline parse_vmv(std::string_view content, const std::string& source) {
+RawCenterline parse_vmv(std::string_view content, const std::string& source, const CenterlineReadOptions&) {
   return VmvReader(content, source).run();
 }
 

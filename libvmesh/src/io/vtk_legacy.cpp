@@ -4,9 +4,10 @@
 #include <numeric>
 #include <set>
 
+#include "vmesh/core/stored_number.h"
+
 #include "end_section_arrays.h"
 #include "formats.h"
-#include "number_types.h"
 #include "poly_lines.h"
 #include "text.h"
 #include "triangulation.h"
@@ -132,20 +133,14 @@ class LegacyVtkReader {
   }
 
   NumberType number_type(const std::string& name) const {
-    static const std::map<std::string, NumberType> kTypes = {{"unsigned_char", NumberType::uint8},
-                                                             {"char", NumberType::int8},
-                                                             {"signed_char", NumberType::int8},
-                                                             {"unsigned_short", NumberType::uint16},
-                                                             {"short", NumberType::int16},
-                                                             {"unsigned_int", NumberType::uint32},
-                                                             {"int", NumberType::int32},
-                                                             {"vtkidtype", NumberType::int32},
-                                                             {"unsigned_long", NumberType::uint64},
-                                                             {"long", NumberType::int64},
-                                                             {"vtktypeint64", NumberType::int64},
-                                                             {"vtktypeuint64", NumberType::uint64},
-                                                             {"float", NumberType::float32},
-                                                             {"double", NumberType::float64}};
+    static const std::map<std::string, NumberType> kTypes = {
+        {"unsigned_char", NumberType::u8},  {"char", NumberType::i8},
+        {"signed_char", NumberType::i8},    {"unsigned_short", NumberType::u16},
+        {"short", NumberType::i16},         {"unsigned_int", NumberType::u32},
+        {"int", NumberType::i32},           {"vtkidtype", NumberType::i32},
+        {"unsigned_long", NumberType::u64}, {"long", NumberType::i64},
+        {"vtktypeint64", NumberType::i64},  {"vtktypeuint64", NumberType::u64},
+        {"float", NumberType::f32},         {"double", NumberType::f64}};
     const auto found = kTypes.find(name);
     if (found == kTypes.end()) fail("the type " + cite(name) + " is not known");
     return found->second;

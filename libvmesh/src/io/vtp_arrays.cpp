@@ -5,8 +5,9 @@
 
 #include <zlib.h>
 
+#include "vmesh/core/stored_number.h"
+
 #include "bytes.h"
-#include "number_types.h"
 #include "text.h"
 
 namespace vmesh::io {

@@ -3,6 +3,8 @@
 
 #include <zlib.h>
 
+#include "vmesh/core/text.h"
+
 #include "bytes.h"
 #include "end_section_arrays.h"
 #include "formats.h"
@@ -53,28 +55,7 @@ class PackedArray {
   std::vector<std::uint64_t> sizes_;
 };
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
+std::string escaped(std::string_view text) { return xml_escaped(text, "&<>\""); }
 
 /// The XML, in the order in which it is built, and the arrays that follow it.
 class VtpFile {
@@ -216,7 +197,7 @@ void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const
 }
 
 void write_surface_vtp(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-                       const SurfaceMetadata& metadata) {
+                       const SurfaceMetadata& metadata, const SurfaceSkin*) {
   VtpFile file;
   file.open("PolyData");
   file.open("FieldData");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/disjoint_sets.h"
 #include "vmesh/mesh/check_indices.h"
 #include "vmesh/mesh/sorted_by_vertex.h"
@@ -77,8 +78,8 @@ std::size_t count_pieces(const std::vector<std::array<Index, 2>>& edges, std::si
   for (const auto& [from, to] : edges) sets.join(from, to);
   std::vector<Index> roots;
   for (const auto& [from, to] : edges) roots.push_back(sets.find(from));
-  std::sort(roots.begin(), roots.end());
-  return static_cast<std::size_t>(std::unique(roots.begin(), roots.end()) - roots.begin());
+  sort_unique(roots);
+  return roots.size();
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
-#include <cstdio>
-
 #include "vmesh/core/atomic_file.h"
 #include "vmesh/core/input_file.h"
+#include "vmesh/core/text.h"
 #include "vmesh/parts/part_files.h"
 
 #include "parts/headers.h"
@@ -16,11 +15,7 @@ constexpr const char* kSchema = "vmesh.parts/1";
 
 }  // namespace
 
-std::string part_name(std::size_t number) {
-  char name[32];
-  std::snprintf(name, sizeof name, "part_%05zu", number + 1);
-  return name;
-}
+std::string part_name(std::size_t number) { return formatted("part_%05zu", number + 1); }
 
 void write_manifest(const std::filesystem::path& path, const PartsManifest& m) {
   json notes = json::array();

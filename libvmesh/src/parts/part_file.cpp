@@ -2,6 +2,7 @@
 
 #include "vmesh/parts/part_files.h"
 
+#include "parts/columns.h"
 #include "parts/headers.h"
 
 namespace vmesh {
@@ -71,58 +72,36 @@ GenerateOptions options_of(const json& j) {
   return o;
 }
 
-// The members of an excerpt that are not columns yet.
-struct FieldColumns {
-  explicit FieldColumns(const FieldExcerpt& f) : field(f) {
-    for (const CenterlineNode& n : f.nodes)
-      nodes.insert(nodes.end(), {n.position.x(), n.position.y(), n.position.z(), n.radius});
-    for (const auto& [a, b] : f.segments) segments.insert(segments.end(), {a, b});
-    for (const auto& [i, j] : f.apart) apart.insert(apart.end(), {i, j});
-    for (const auto& shares : f.rounding) rounding.insert(rounding.end(), shares.begin(), shares.end());
-  }
+void describe_field(auto& columns, auto& field) {
+  columns.rows("field.nodes", field.nodes,
+               [](auto& n) { return std::tie(n.position.x(), n.position.y(), n.position.z(), n.radius); });
+  columns.rows("field.segments", field.segments, kBoth);
+  columns.column("field.node", field.node);
+  columns.column("field.cone", field.cone);
+  columns.column("field.run", field.run);
+  columns.column("field.travel", field.travel);
+  columns.column("field.complete", field.complete);
+  columns.column("field.local.offsets", field.local_offsets);
+  columns.column("field.local", field.local);
+  columns.column("field.parting", field.parting);
+  columns.rows("field.apart", field.apart, kBoth);
+  columns.rows("field.rounding", field.rounding, kBoth);
+}
 
-  void add_to(ArrayWriter& file) const {
-    file.add("field.nodes", nodes);
-    file.add("field.segments", segments);
-    file.add("field.node", field.node);
-    file.add("field.cone", field.cone);
-    file.add("field.run", field.run);
-    file.add("field.travel", field.travel);
-    file.add("field.complete", std::span<const char>(field.complete));
-    file.add("field.local.offsets", field.local_offsets);
-    file.add("field.local", field.local);
-    file.add("field.parting", std::span<const char>(field.parting));
-    file.add("field.apart", apart);
-    file.add("field.rounding", rounding);
-  }
+void describe_seams(auto& columns, auto& seams) {
+  columns.rows("seams", seams, [](auto& seam) { return std::tie(seam.place.branch, seam.place.ring, seam.number); });
+}
 
-  const FieldExcerpt& field;
-  std::vector<double> nodes, rounding;
-  std::vector<Index> segments, apart;
-};
-
-FieldExcerpt read_field(ArrayFile& file) {
-  FieldExcerpt field;
-  std::vector<double> doubles;
-  std::vector<Index> pairs;
-  file.read("field.nodes", doubles);
-  for (std::size_t i = 0; i + 3 < doubles.size(); i += 4)
-    field.nodes.push_back({{doubles[i], doubles[i + 1], doubles[i + 2]}, doubles[i + 3]});
-  file.read("field.segments", pairs);
-  for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) field.segments.push_back({pairs[i], pairs[i + 1]});
-  file.read("field.apart", pairs);
-  for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) field.apart.emplace_back(pairs[i], pairs[i + 1]);
-  file.read("field.rounding", doubles);
-  for (std::size_t i = 0; i + 1 < doubles.size(); i += 2) field.rounding.push_back({doubles[i], doubles[i + 1]});
-  file.read("field.node", field.node);
-  file.read("field.cone", field.cone);
-  file.read("field.run", field.run);
-  file.read("field.travel", field.travel);
-  file.read("field.complete", field.complete);
-  file.read("field.local.offsets", field.local_offsets);
-  file.read("field.local", field.local);
-  file.read("field.parting", field.parting);
-  return field;
+void describe_origins(auto& columns, auto& origins) {
+  columns.rows("origins.stretch", origins.stretch, kBoth);
+  columns.column("origins.branch", origins.branch);
+  columns.column("origins.offsets", origins.offsets);
+  columns.rows("origins.pieces.segment", origins.pieces, [](auto& piece) { return std::tie(piece.segment); });
+  columns.rows("origins.pieces.begin", origins.pieces, [](auto& piece) { return std::tie(piece.begin); });
+  columns.rows("origins.pieces.t_first", origins.pieces, [](auto& piece) { return std::tie(piece.t_first); });
+  columns.rows("origins.pieces.t_last", origins.pieces, [](auto& piece) { return std::tie(piece.t_last); });
+  columns.rows("origins.within", origins.within, kBoth);
+  columns.column("origins.node", origins.node);
 }
 
 // The pieces' nodes and stretches, five numbers per stretch.
@@ -158,72 +137,19 @@ std::vector<PiecePlan> read_plans(ArrayFile& file) {
   return pieces;
 }
 
-std::vector<double> numbers_of(const std::vector<ConeOrigins::Stretch>& stretches) {
-  std::vector<double> numbers;
-  for (const auto& [first, last] : stretches) numbers.insert(numbers.end(), {first, last});
-  return numbers;
-}
-
-std::vector<ConeOrigins::Stretch> read_stretches(ArrayFile& file, const std::string& name) {
-  std::vector<double> numbers;
-  file.read(name, numbers);
-  std::vector<ConeOrigins::Stretch> stretches;
-  for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) stretches.push_back({numbers[i], numbers[i + 1]});
-  return stretches;
-}
-
-// The same for the cones' origins.
-struct OriginColumns {
-  explicit OriginColumns(const ConeOrigins& o)
-      : origins(o), stretch(numbers_of(o.stretch)), within(numbers_of(o.within)) {
-    for (const SimplifiedCenterline::Piece& piece : o.pieces) {
-      segment.push_back(piece.segment);
-      begin.push_back(piece.begin);
-      t_first.push_back(piece.t_first);
-      t_last.push_back(piece.t_last);
-    }
-  }
-
-  void add_to(ArrayWriter& file) const {
-    file.add("origins.stretch", stretch);
-    file.add("origins.branch", origins.branch);
-    file.add("origins.offsets", origins.offsets);
-    file.add("origins.pieces.segment", segment);
-    file.add("origins.pieces.begin", begin);
-    file.add("origins.pieces.t_first", t_first);
-    file.add("origins.pieces.t_last", t_last);
-    file.add("origins.within", within);
-    file.add("origins.node", origins.node);
-  }
-
-  const ConeOrigins& origins;
-  std::vector<double> stretch, within, begin, t_first, t_last;
-  std::vector<Index> segment;
-};
-
 ConeOrigins read_origins(ArrayFile& file, std::size_t cones, std::size_t nodes) {
   ConeOrigins origins;
-  origins.stretch = read_stretches(file, "origins.stretch");
-  origins.within = read_stretches(file, "origins.within");
-  file.read("origins.branch", origins.branch);
-  file.read("origins.node", origins.node);
-  file.read("origins.offsets", origins.offsets);
-  std::vector<Index> segment;
-  std::vector<double> begin, t_first, t_last;
-  file.read("origins.pieces.segment", segment);
-  file.read("origins.pieces.begin", begin);
-  file.read("origins.pieces.t_first", t_first);
-  file.read("origins.pieces.t_last", t_last);
-  const std::size_t count = begin.size();
-  file.require(segment.size() == count && t_first.size() == count && t_last.size() == count &&
-                   origins.within.size() == count && origins.stretch.size() == cones &&
-                   origins.branch.size() == cones && origins.offsets.size() == cones + 1 &&
-                   origins.node.size() == nodes,
+  ColumnReader columns(file);
+  describe_origins(columns, origins);
+  const std::size_t count = origins.pieces.size();
+  file.require(file.count("origins.pieces.segment") == count && file.count("origins.pieces.begin") == count &&
+                   file.count("origins.pieces.t_first") == count && origins.within.size() == count &&
+                   origins.stretch.size() == cones && origins.branch.size() == cones &&
+                   origins.offsets.size() == cones + 1 && origins.node.size() == nodes,
                "is damaged: what its cones stand for is inconsistent");
   require_offsets(file, "origins", origins.offsets, count);
   file.require(std::adjacent_find(origins.offsets.begin(), origins.offsets.end()) == origins.offsets.end(),
                "is damaged: a cone stands for nothing");
-  for (std::size_t i = 0; i < count; ++i) origins.pieces.push_back({segment[i], begin[i], t_first[i], t_last[i]});
   return origins;
 }
 
@@ -233,8 +159,8 @@ void write_part(const std::filesystem::path& path, const StoredPart& stored) {
   const SurfacePart& part = stored.part;
   ArrayWriter file(
       {{"schema", kSchema}, {"id", stored.id}, {"options", to_json(part.options)}, {"first_piece", part.first_piece}});
-  const FieldColumns field(part.field);
-  field.add_to(file);
+  ColumnWriter columns(file);
+  describe_field(columns, part.field);
   Lists branch_nodes, branch_segments;
   for (const Branch& branch : part.branches) {
     branch_nodes.add(branch.nodes);
@@ -245,12 +171,8 @@ void write_part(const std::filesystem::path& path, const StoredPart& stored) {
   const PlanLists plans = lists_of(part.pieces);
   write_lists(file, "pieces.nodes", plans.nodes);
   write_lists(file, "pieces.stretches", plans.stretches);
-  std::vector<Index> seams;
-  for (const SurfacePart::Seam& seam : part.seams)
-    seams.insert(seams.end(), {seam.place.branch, seam.place.ring, seam.number});
-  file.add("seams", seams);
-  const OriginColumns origins(stored.origins);
-  origins.add_to(file);
+  describe_seams(columns, part.seams);
+  describe_origins(columns, stored.origins);
   file.write(path);
 }
 
@@ -264,16 +186,15 @@ StoredPart read_part(const std::filesystem::path& path) {
     part.options = options_of(header.at("options"));
     part.first_piece = header.at("first_piece").get<Index>();
   });
-  part.field = read_field(file);
+  ColumnReader columns(file);
+  describe_field(columns, part.field);
   part.field.blend = part.options.blend;
   std::vector<std::vector<Index>> nodes = read_lists(file, "branches.nodes");
   std::vector<std::vector<Index>> segments = read_lists(file, "branches.segments");
   file.require(nodes.size() == segments.size(), "is damaged: the branches are inconsistent");
   for (std::size_t b = 0; b < nodes.size(); ++b) part.branches.push_back({std::move(nodes[b]), std::move(segments[b])});
   part.pieces = read_plans(file);
-  std::vector<Index> seams;
-  file.read("seams", seams);
-  for (std::size_t i = 0; i + 2 < seams.size(); i += 3) part.seams.push_back({{seams[i], seams[i + 1]}, seams[i + 2]});
+  describe_seams(columns, part.seams);
   stored.origins = read_origins(file, part.field.cone.size(), part.field.node.size());
   return stored;
 }

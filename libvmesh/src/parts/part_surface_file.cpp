@@ -2,6 +2,7 @@
 
 #include "vmesh/parts/part_files.h"
 
+#include "parts/columns.h"
 #include "parts/headers.h"
 
 namespace vmesh {
@@ -11,28 +12,33 @@ using nlohmann::json;
 
 constexpr const char* kSchema = "vmesh.part-surface/1";
 
-// Places on the centerline in columns.
-struct PlaceColumns {
-  std::vector<Index> segment;
-  std::vector<double> t;
-
-  void add(Index s, double u) {
-    segment.push_back(s);
-    t.push_back(u);
-  }
-};
+// All but the header.
+void describe(auto& columns, auto& stored) {
+  auto& surface = stored.surface;
+  const auto segment = [](auto& place) { return std::tie(place.segment); };
+  const auto parameter = [](auto& place) { return std::tie(place.t); };
+  columns.column("seams", surface.seams);
+  columns.rows("pieces", surface.pieces, [](auto& p) {
+    return std::tie(p.vertex_count, p.face_count, p.junctions, p.tubes, p.filled_loops, p.rung);
+  });
+  columns.rows("pieces.worst_skewness", surface.pieces, [](auto& piece) { return std::tie(piece.worst_skewness); });
+  columns.rows("crossings", surface.crossings, kBoth);
+  columns.column("vertices", surface.mesh.vertices);
+  columns.rows("faces", surface.mesh.faces, [](auto& face) { return std::tie(face[0], face[1], face[2]); });
+  columns.column("radius", surface.radius);
+  columns.rows("cone", surface.binding, segment);
+  columns.rows("t", surface.binding, parameter);
+  columns.rows("segment", stored.place, segment);
+  columns.rows("parameter", stored.place, parameter);
+  columns.column("branch", stored.branch);
+}
 
 }  // namespace
 
 void write_part_surface(const std::filesystem::path& path, const StoredPartSurface& stored) {
   const PartSurface& surface = stored.surface;
   json notes = json::array();
-  std::vector<Index> pieces;
-  std::vector<double> worst;
   for (const PartSurface::Piece& piece : surface.pieces) {
-    pieces.insert(pieces.end(),
-                  {piece.vertex_count, piece.face_count, piece.junctions, piece.tubes, piece.filled_loops, piece.rung});
-    worst.push_back(piece.worst_skewness);
     if (!piece.faults.empty()) throw InvalidInput(path.string() + ": a part that is not sound is not written");
   }
   for (const GrowthSimplification& note : surface.simplifications) notes.push_back(to_json(note));
@@ -41,24 +47,8 @@ void write_part_surface(const std::filesystem::path& path, const StoredPartSurfa
                     {"first_piece", surface.first_piece},
                     {"around", surface.around},
                     {"simplifications", notes}});
-  PlaceColumns binding, place;
-  for (const CenterlineBinding& b : surface.binding) binding.add(b.segment, b.t);
-  for (const SimplifiedCenterline::Place& p : stored.place) place.add(p.segment, p.t);
-  std::vector<Index> faces, crossings;
-  for (const Triangle& f : surface.mesh.faces) faces.insert(faces.end(), f.begin(), f.end());
-  for (const auto& [f, g] : surface.crossings) crossings.insert(crossings.end(), {f, g});
-  file.add("seams", surface.seams);
-  file.add("pieces", pieces);
-  file.add("pieces.worst_skewness", worst);
-  file.add("crossings", crossings);
-  file.add("vertices", surface.mesh.vertices);
-  file.add("faces", faces);
-  file.add("radius", surface.radius);
-  file.add("cone", binding.segment);
-  file.add("t", binding.t);
-  file.add("segment", place.segment);
-  file.add("parameter", place.t);
-  file.add("branch", stored.branch);
+  ColumnWriter columns(file);
+  describe(columns, stored);
   file.write(path);
 }
 
@@ -67,55 +57,32 @@ StoredPartSurface read_part_surface(const std::filesystem::path& path, bool veri
   if (verify) file.verify();
   StoredPartSurface stored;
   PartSurface& surface = stored.surface;
-  std::vector<Index> pieces, faces, crossings;
-  std::vector<double> worst;
-  file.read("pieces", pieces);
-  file.read("pieces.worst_skewness", worst);
-  file.require(pieces.size() == 6 * worst.size(), "is damaged: its pieces are inconsistent");
-  for (std::size_t p = 0; p < worst.size(); ++p) {
-    const Index* n = pieces.data() + 6 * p;
-    file.require(n[5] < kRungs, "is damaged: a piece was found on a rung that there is not");
-    surface.pieces.push_back({n[0], n[1], n[2], n[3], n[4], n[5], worst[p], {}});
-  }
+  ColumnReader columns(file);
+  describe(columns, stored);
+  file.require(file.count("pieces") == 6 * file.count("pieces.worst_skewness"),
+               "is damaged: its pieces are inconsistent");
+  for (const PartSurface::Piece& piece : surface.pieces)
+    file.require(piece.rung < kRungs, "is damaged: a piece was found on a rung that there is not");
   read_header(file, [&](const json& header) {
     stored.id = header.at("id").get<std::string>();
     surface.first_piece = header.at("first_piece").get<Index>();
     surface.around = around_of(header.at("around"));
     for (const json& note : header.at("simplifications")) surface.simplifications.push_back(note_of(note));
   });
-  file.read("seams", surface.seams);
-  file.read("vertices", surface.mesh.vertices);
-  file.read("faces", faces);
-  for (std::size_t i = 0; i + 2 < faces.size(); i += 3)
-    surface.mesh.faces.push_back({faces[i], faces[i + 1], faces[i + 2]});
-  file.read("crossings", crossings);
-  for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
-    surface.crossings.emplace_back(crossings[i], crossings[i + 1]);
-  file.read("radius", surface.radius);
-  PlaceColumns binding, place;
-  file.read("cone", binding.segment);
-  file.read("t", binding.t);
-  file.read("segment", place.segment);
-  file.read("parameter", place.t);
-  file.read("branch", stored.branch);
   const std::size_t count = surface.mesh.vertices.size();
   std::size_t own = surface.seams.size() * std::size_t{surface.around}, face_count = 0;
   for (const PartSurface::Piece& piece : surface.pieces) {
     own += piece.vertex_count;
     face_count += piece.face_count;
   }
-  const auto is_vertex = [&](Index v) { return v < count; };
+  const auto are_vertices = [&](const Triangle& face) { return std::ranges::max(face) < count; };
   const auto is_face = [&](const auto& pair) { return pair.first < pair.second && pair.second < face_count; };
-  file.require(own == count && face_count == surface.mesh.faces.size() && surface.radius.size() == count &&
-                   binding.segment.size() == count && binding.t.size() == count && place.segment.size() == count &&
-                   place.t.size() == count && stored.branch.size() == count &&
-                   std::all_of(faces.begin(), faces.end(), is_vertex) &&
-                   std::all_of(surface.crossings.begin(), surface.crossings.end(), is_face),
-               "is damaged: vertices, faces and pieces are inconsistent");
-  for (std::size_t v = 0; v < count; ++v) {
-    surface.binding.push_back({binding.segment[v], binding.t[v]});
-    stored.place.push_back({place.segment[v], place.t[v]});
-  }
+  const auto is_of_vertices = [&](const char* array) { return file.count(array) == count; };
+  const auto of_vertices = {"radius", "cone", "t", "segment", "parameter", "branch"};
+  file.require(
+      own == count && face_count == surface.mesh.faces.size() && std::ranges::all_of(of_vertices, is_of_vertices) &&
+          std::ranges::all_of(surface.mesh.faces, are_vertices) && std::ranges::all_of(surface.crossings, is_face),
+      "is damaged: vertices, faces and pieces are inconsistent");
   return stored;
 }
 

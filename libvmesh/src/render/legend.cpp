@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "vmesh/core/text.h"
 
 #include "render/color.h"
 #include "render/stroke_font.h"
@@ -92,15 +93,9 @@ std::vector<double> legend_ticks(double low, double high, bool integer, int want
 }
 
 std::string tick_label(double value, double step) {
-  char text[64];
   const double size = std::max(std::abs(value), step);
-  if (step == 0 || size >= 1e6 || step < 1e-4) {
-    std::snprintf(text, sizeof text, "%.4g", value);
-  } else {
-    const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
-    std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  }
-  return text;
+  if (step == 0 || size >= 1e6 || step < 1e-4) return formatted("%.4g", value);
+  return formatted("%.*f", std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9))), value);
 }
 
 int legend_width(const Legend& legend, int width, int height) {

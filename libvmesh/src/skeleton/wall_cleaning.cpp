@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/disjoint_sets.h"
 #include "vmesh/mesh/sorted_by_vertex.h"
 #include "vmesh/mesh/topology.h"
@@ -84,8 +85,7 @@ std::vector<std::array<Index, 2>> edges_of(const TriMesh& mesh) {
 std::vector<Index> boundary_vertices(const TriMesh& mesh) {
   std::vector<Index> vertices;
   for (const auto& [from, to] : boundary_edges(mesh)) vertices.insert(vertices.end(), {from, to});
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sort_unique(vertices);
   return vertices;
 }
 
@@ -136,10 +136,7 @@ double median_edge(const TriMesh& mesh) {
     lengths.push_back(
         std::min({(mesh.vertices[a] - mesh.vertices[b]).norm(), (mesh.vertices[b] - mesh.vertices[c]).norm(),
                   (mesh.vertices[c] - mesh.vertices[a]).norm()}));
-  if (lengths.empty()) return 0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
+  return lengths.empty() ? 0 : median(std::move(lengths));
 }
 
 double extent_of(const TriMesh& mesh) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
 
 #include "synth/liver_region.h"
@@ -225,8 +226,7 @@ bool Tree::cut_contacts() {
       return true;
     });
   }
-  std::sort(cuts.begin(), cuts.end());
-  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  sort_unique(cuts);
   // In tree order: everything below a cut is removed with it, so that its own cuts find nothing.
   for (const Index n : cuts) cut_before(n);
   return !cuts.empty();

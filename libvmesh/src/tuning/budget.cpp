@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/text.h"
 #include "vmesh/volume/vessel_field.h"
 
 namespace vmesh {
@@ -190,9 +191,7 @@ std::string to_string(const Budget& budget) {
     case Budget::Kind::time:
       break;
   }
-  char text[32];
-  std::snprintf(text, sizeof text, "time=%gms", 1000 * budget.seconds);
-  return text;
+  return formatted("time=%gms", 1000 * budget.seconds);
 }
 
 BudgetedSurface generate_within(const Budget& budget, const Centerline& centerline, GenerateOptions options,

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <sstream>
+
+#include "vmesh/core/text.h"
 
 namespace vmesh {
 namespace {
@@ -22,25 +23,9 @@ struct Style {
   bool hollow = false;
 };
 
-std::string number(double value, const char* format = "%.2f") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
+std::string number(double value, const char* format = "%.2f") { return formatted(format, value); }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
+std::string escaped(const std::string& text) { return xml_escaped(text, "&<"); }
 
 std::string dot(double x, double y, int radius, const Style& style) {
   const std::string fill = style.hollow ? "white\" stroke=\"" + style.color : style.color;

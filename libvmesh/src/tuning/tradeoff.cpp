@@ -4,7 +4,9 @@
 #include <chrono>
 #include <optional>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
+#include "vmesh/core/text.h"
 #include "vmesh/evaluation/vessel_distance.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
@@ -30,11 +32,7 @@ constexpr std::size_t kMostRuns = 5;
 constexpr double kLongEnough = 0.5;    // seconds
 constexpr int kSides[] = {6, 12, 18};  // of truncated cones
 
-std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
+std::string text_of(double value) { return formatted("%g", value); }
 
 // The mean radius along the centerline.
 double mean_radius(const Centerline& centerline) {
@@ -56,8 +54,7 @@ double median_seconds(Work&& work) {
     work();
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
-  std::nth_element(seconds.begin(), seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2), seconds.end());
-  return seconds[seconds.size() / 2];
+  return median(std::move(seconds));
 }
 
 double voxels_of_box(const Centerline& centerline, double voxel) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <tuple>
 
 #include "vmesh/centerline/branches.h"
 #include "vmesh/core/error.h"
+#include "vmesh/core/text.h"
 
 #include "volume/contact_pairs.h"
 
@@ -63,12 +63,10 @@ std::vector<Contact> find_contacts(const ConeRelations& cones, double gap) {
 
 std::string describe(const Contact& contact) {
   const auto& [first, second] = contact.sides;
-  char text[240];
-  std::snprintf(text, sizeof text, "at (%.3f, %.3f, %.3f): segments %u and %u %s %.3g mm, %.0f %% of the radius",
-                contact.position.x(), contact.position.y(), contact.position.z(), first.segment, second.segment,
-                contact.depth >= 0 ? "overlap by" : "leave a gap of", std::abs(contact.depth),
-                100 * std::abs(contact.depth) / std::min(first.radius, second.radius));
-  return text;
+  return formatted("at (%.3f, %.3f, %.3f): segments %u and %u %s %.3g mm, %.0f %% of the radius", contact.position.x(),
+                   contact.position.y(), contact.position.z(), first.segment, second.segment,
+                   contact.depth >= 0 ? "overlap by" : "leave a gap of", std::abs(contact.depth),
+                   100 * std::abs(contact.depth) / std::min(first.radius, second.radius));
 }
 
 }  // namespace vmesh

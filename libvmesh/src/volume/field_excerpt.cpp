@@ -177,8 +177,7 @@ FieldExcerpt merged(std::span<const FieldExcerpt> excerpts) {
     i = place_in(result.cone, i);
     j = place_in(result.cone, j);
   }
-  std::sort(result.apart.begin(), result.apart.end());
-  result.apart.erase(std::unique(result.apart.begin(), result.apart.end()), result.apart.end());
+  sort_unique(result.apart);
   result.local_offsets.push_back(0);
   for (const auto& [cone, e, place, complete] : sources) {
     const FieldExcerpt& from = excerpts[e];

@@ -5,6 +5,8 @@
 #include <queue>
 #include <utility>
 
+#include "vmesh/core/ascending.h"
+
 namespace vmesh {
 namespace {
 
@@ -197,10 +199,7 @@ std::map<Index, std::vector<Index>> Moving::divisions(const std::map<Index, Vec3
     divide_at(place);
     for (const Step& step : steps_from(place)) divide_at(step.place);
   }
-  for (auto& [segment, inner] : ends) {
-    std::sort(inner.begin(), inner.end());
-    inner.erase(std::unique(inner.begin(), inner.end()), inner.end());
-  }
+  for (auto& [segment, inner] : ends) sort_unique(inner);
   return ends;
 }
 

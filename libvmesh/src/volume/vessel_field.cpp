@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/volume/field_excerpt.h"
 
 namespace vmesh {
@@ -190,8 +191,7 @@ FieldSample VesselField::sample_global(const Vec3& p) const {
   if (blend_ == 0) return sample_cone(p, best);
   std::vector<Index> near;
   visit_near(p, limit, [&](Index c) { near.push_back(c); });
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
+  sort_unique(near);
   return blended(p, near, best);
 }
 

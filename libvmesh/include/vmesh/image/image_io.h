@@ -5,12 +5,37 @@
 #include <string_view>
 #include <vector>
 
+#include "vmesh/core/file_format.h"
 #include "vmesh/image/voxel_image.h"
 
 namespace vmesh {
 
-/// Whether the name has an image's extension, .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .hdr, .img or .dcm, in upper or
-/// lower case.
+namespace image {
+struct ImageHeader;
+}
+
+/// A format of images.
+struct ImageFormat {
+  std::string name;
+  std::vector<std::string> extensions;     ///< lower case, with their dots
+  std::vector<std::string> of_parts = {};  ///< of files that are only a part of an image, and lead to it
+  bool in_two_files = false;               ///< header and voxels
+  std::size_t header_bytes = 0;            ///< that `parse_header` needs at most
+  bool compressed_whole = false;           ///< by gzip, if the name ends with .gz
+  /// From the first bytes of a file that `source` names in messages; null for DICOM, which is read by GDCM.
+  image::ImageHeader (*parse_header)(std::string_view bytes, const std::string& source) = nullptr;
+
+  /// Images are only read.
+  static bool is_written() { return false; }
+};
+
+/// All formats. Adding one: see CONTRIBUTING.md.
+const std::vector<ImageFormat>& image_formats();
+
+/// ".nii, .nii.gz, ... or a folder of DICOM files", for messages.
+std::string listed_image_extensions();
+
+/// Whether the name has an image's extension, upper or lower case.
 bool is_image_path(const std::filesystem::path& path);
 
 /// The same, or a DICOM file of any name, or a folder with such files. Does not wait for pipes.

@@ -9,32 +9,52 @@
 
 #include "vmesh/centerline/cleaning.h"
 #include "vmesh/centerline/raw_centerline.h"
+#include "vmesh/core/file_format.h"
 
 namespace vmesh {
 
-enum class CenterlineFormat {
-  swc,      ///< .swc; rows `id type x y z radius parent`
-  vtp,      ///< .vtp; lines with a radius per point
-  json,     ///< .json; schema "vmesh.centerline/1"; read also curves of 3D Slicer, .mrk.json
-  csv,      ///< .csv; a pair of files, see csv_segments_path()
-  vmv,      ///< .vmv; VessMorphoVis: vertices `id x y z radius`, strands `id vertex vertex ...`; read only
-  vtk,      ///< .vtk; legacy VTK, text or binary: POLYDATA with lines and a radius per point or line; read only
-  ctgr,     ///< .ctgr; SimVascular's contours along a path, radii from their areas; read only
-  pth,      ///< .pth; SimVascular's path, without radii; read only
-  gxl,      ///< .gxl, .xml; VascuSynth: nodes in voxels, a radius per edge; read only
-  amira,    ///< .am; Amira's spatial graph, text or binary; read only
-  network,  ///< .dat; Secomb's network.dat: segments with a diameter, in um; read only
-  hdf5,     ///< .h5; network of MorphIO and VessMorphoVis: sections with diameters, in um; read only, from files
+struct CenterlineMetadata;
+struct CenterlineReadOptions;
+
+/// A format of centerlines: what it is called, what it can hold, and what reads and writes it.
+struct CenterlineFormat {
+  std::string name;
+  std::vector<std::string> extensions;    ///< lower case, with their dots
+  std::vector<std::string> options = {};  ///< of CenterlineReadOptions, those that act on it besides `radius`
+  bool one_branch = false;                ///< a file holds one branch of a tree
+  bool trees_only = false;                ///< cannot hold loops
+  bool keeps_end_sections = false;        ///< has room for flat ends
+  OptionalPart needs = {};                ///< what `read` needs
+
+  /// From the content of a file that `source` names in messages.
+  using Parse = RawCenterline(std::string_view content, const std::string& source,
+                              const CenterlineReadOptions& options);
+  using Write = void(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,
+                     const std::vector<EndSection>& end_sections);
+  // The functions of the format, null where it has none. It is read by one of the first three.
+  Parse* parse = nullptr;
+  RawCenterline (*parse_pair)(std::string_view content, std::string_view second, const std::string& source) = nullptr;
+  RawCenterline (*read)(const std::filesystem::path& path) = nullptr;
+  Write* write = nullptr;
+  void (*write_pair)(std::ostream& out, std::ostream& second, const Centerline& centerline,
+                     const CenterlineMetadata& metadata) = nullptr;
+  /// Of formats of two files: the second one. Throws InvalidInput if `path` is the second.
+  std::filesystem::path (*second_file)(const std::filesystem::path& path) = nullptr;
+
+  bool is_written() const { return write != nullptr || write_pair != nullptr; }
 };
 
-/// The format by the file's extension, upper or lower case; nullopt if it is not a centerline's.
-std::optional<CenterlineFormat> find_centerline_format(const std::filesystem::path& path);
+/// All formats. Adding one: see CONTRIBUTING.md.
+const std::vector<CenterlineFormat>& centerline_formats();
+
+/// The format by the file's extension, upper or lower case; null if it is not a centerline's.
+const CenterlineFormat* find_centerline_format(const std::filesystem::path& path);
 
 /// The same; otherwise throws Unsupported, listing the supported extensions.
-CenterlineFormat centerline_format(const std::filesystem::path& path);
+const CenterlineFormat& centerline_format(const std::filesystem::path& path);
 
 /// The same for a file to be written; also throws Unsupported for read-only formats.
-CenterlineFormat centerline_output_format(const std::filesystem::path& path);
+const CenterlineFormat& centerline_output_format(const std::filesystem::path& path);
 
 /// The second file of a CSV pair: tree.csv or tree.nodes.csv (header `id,x,y,z,radius`) goes with
 /// tree.segments.csv (header `a,b`, the ids of the nodes it joins).
@@ -50,10 +70,14 @@ struct CenterlineReadOptions {
   std::optional<Vec3> voxel_size;
 };
 
+/// The options given that act on none of the files, by their names on the command line: "voxel-size".
+std::vector<std::string> options_without_effect(const CenterlineReadOptions& options,
+                                                const std::vector<std::filesystem::path>& paths);
+
 /// Reads a centerline as it is in the file; clean() makes it a Centerline. Needs at most 128 times the size of the file
 /// (compressed VTP: of its uncompressed data) plus a megabyte of memory, whatever the file says. Throws ReadError
-/// (missing, a directory, unreadable), InvalidInput (content; names the line or element), Unsupported (format, or VTP
-/// compressed by anything but zlib).
+/// (missing, a directory, unreadable), InvalidInput (content; names the line or element; options without effect),
+/// Unsupported (format, or VTP compressed by anything but zlib).
 RawCenterline read_centerline(const std::filesystem::path& path, const CenterlineReadOptions& options = {});
 
 /// Reads several files that make up one centerline (one vessel each, say): see merge(). A single file is read as it is.
@@ -61,11 +85,11 @@ RawCenterline read_centerline(const std::vector<std::filesystem::path>& paths,
                               const CenterlineReadOptions& options = {});
 
 /// The same from memory; `source` names it in messages. `csv_segments` is the second file of a CSV pair.
-RawCenterline parse_centerline(std::string_view content, CenterlineFormat format, const std::string& source,
+RawCenterline parse_centerline(std::string_view content, const CenterlineFormat& format, const std::string& source,
                                const CenterlineReadOptions& options = {}, std::string_view csv_segments = {});
 
 /// The same from a stream.
-RawCenterline read_centerline(std::istream& in, CenterlineFormat format, const std::string& source,
+RawCenterline read_centerline(std::istream& in, const CenterlineFormat& format, const std::string& source,
                               const CenterlineReadOptions& options = {});
 
 /// convert_to_internal() after reading; nodes without a radius get the one in `options`, if any. Warns if radii are
@@ -106,13 +130,10 @@ struct CenterlineMetadata {
 /// Writes a centerline (given in mm and LPS) in the format of the extension, in the unit and frame of `metadata`, which
 /// are recorded: JSON, SWC, VTP, CSV pair. Numbers round-trip exactly, the bytes depend on the arguments alone, and the
 /// file appears complete or not at all. Node order is kept. Flat ends are written to JSON and VTP; other formats cannot
-/// hold them (keeps_end_sections()). Throws InvalidInput for a flat end that is wrong or at no end; Unsupported for a
+/// hold them. Throws InvalidInput for a flat end that is wrong or at no end; Unsupported for a
 /// centerline with loops in SWC (a tree format), see centerline_output_format(); WriteError when the file cannot be
 /// written.
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
                       const CenterlineMetadata& metadata = {}, const std::vector<EndSection>& end_sections = {});
-
-/// Whether files of the format have room for flat ends: JSON and VTP.
-bool keeps_end_sections(CenterlineFormat format);
 
 }  // namespace vmesh

@@ -1,24 +1,54 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "vmesh/centerline/raw_centerline.h"
+#include "vmesh/core/file_format.h"
 #include "vmesh/mesh/surface_skin.h"
 #include "vmesh/mesh/tri_mesh.h"
 
 namespace vmesh {
 
-enum class SurfaceFormat { off, obj, stl, ply, vtp, vtk, glb, scene };
+struct LoadedSurface;
+struct SurfaceMetadata;
 
-/// The format by the file's extension, upper or lower case; scene: glTF, 3MF, COLLADA, X3D or FBX, see read_surface().
-/// Throws Unsupported, listing the supported extensions.
-SurfaceFormat surface_format(const std::filesystem::path& path);
+/// A format of surfaces: what it is called, what it can hold, and what reads and writes it.
+struct SurfaceFormat {
+  std::string name;
+  std::vector<std::string> extensions;  ///< lower case, with their dots
+  bool has_own_frame = false;           ///< always in metres with y up, whatever SurfaceMetadata says
+  bool holds_bones = false;             ///< has room for a SurfaceSkin
+  OptionalPart needs = {};              ///< what `read` needs
 
-/// The same for a file to be written; legacy VTK files (.vtk) and scenes other than GLB are read-only.
-SurfaceFormat surface_output_format(const std::filesystem::path& path);
+  /// From the content of a file that `source` names in messages.
+  using Parse = LoadedSurface(std::string_view content, const std::string& source);
+  using Write = void(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+                     const SurfaceMetadata& metadata, const SurfaceSkin* skin);
+  // The functions of the format, null where it has none. It is read by `parse` or, as it may refer to other files, by
+  // `read`.
+  Parse* parse = nullptr;
+  LoadedSurface (*read)(const std::filesystem::path& path) = nullptr;
+  Write* write = nullptr;
+
+  bool is_written() const { return write != nullptr; }
+};
+
+/// All formats. Adding one: see CONTRIBUTING.md.
+const std::vector<SurfaceFormat>& surface_formats();
+
+/// The format by the file's extension, upper or lower case; null if it is not a surface's.
+const SurfaceFormat* find_surface_format(const std::filesystem::path& path);
+
+/// The same; otherwise throws Unsupported, listing the supported extensions.
+const SurfaceFormat& surface_format(const std::filesystem::path& path);
+
+/// The same for a file to be written; also throws Unsupported for read-only formats.
+const SurfaceFormat& surface_output_format(const std::filesystem::path& path);
 
 /// Where a surface comes from; written as comments or field data where the format has room (all but STL; STL has 80
 /// bytes for frame, unit and generator).
@@ -72,6 +102,6 @@ void convert_to_internal(LoadedSurface& surface, const std::string& source, std:
                          std::optional<Space> space);
 
 /// read_surface() from memory, without scenes; `source` names it in messages.
-LoadedSurface parse_surface(std::string_view content, SurfaceFormat format, const std::string& source);
+LoadedSurface parse_surface(std::string_view content, const SurfaceFormat& format, const std::string& source);
 
 }  // namespace vmesh

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <sstream>
 
+#include "vmesh/core/text.h"
 #include "vmesh/surface/metric_skewness.h"
 
 #include "surface/ends/disc.h"
@@ -19,12 +19,7 @@ constexpr double kFacing = 0.7;      // cosine between the normals of an opening
 constexpr double kFarthest = 0.5;    // radii from the middle of the ring to the section's centre
 constexpr double kCrossing = 1e-12;  // relative: rays through corners of a ring count as meeting both edges
 
-std::string text_of(double value, const char* unit) {
-  std::ostringstream text;
-  text.precision(2);
-  text << value << unit;
-  return text.str();
-}
+std::string text_of(double value, const char* unit) { return formatted("%.2g%s", value, unit); }
 
 /// How far from the section's centre its ring is, in a direction in its plane, where it is farthest; nullopt if the
 /// ring is not met. A ring that is not flat is projected into the plane.

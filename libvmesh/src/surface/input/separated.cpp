@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "vmesh/centerline/branches.h"
+#include "vmesh/core/ascending.h"
 #include "vmesh/surface/generate.h"
 #include "vmesh/volume/contacts.h"
 
@@ -40,8 +41,7 @@ void renumber(GrowthSummary& growth, const SeparatedCenterline& separated, const
   for (GrowthSimplification& note : growth.simplifications) {
     std::erase_if(note.nodes, [&](Index n) { return n >= original.nodes().size(); });
     for (Index& s : note.segments) s = separated.pieces[s].segment;
-    std::sort(note.segments.begin(), note.segments.end());
-    note.segments.erase(std::unique(note.segments.begin(), note.segments.end()), note.segments.end());
+    sort_unique(note.segments);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/volume/crossing.h"
 
 #include "surface/junction/node_frame.h"
@@ -133,8 +134,7 @@ class Growth {
       const auto local = field_.relations().local_cones(surface_[v].cone);
       candidates_.insert(candidates_.end(), local.begin(), local.end());
     }
-    std::sort(candidates_.begin(), candidates_.end());
-    candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+    sort_unique(candidates_);
     const double size2 = std::max({(triangle[0] - triangle[1]).squaredNorm(), (triangle[1] - triangle[2]).squaredNorm(),
                                    (triangle[2] - triangle[0]).squaredNorm()});
     bool ahead = false, behind = false;

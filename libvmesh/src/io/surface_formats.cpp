@@ -1,0 +1,42 @@
+#include "formats.h"
+
+namespace vmesh {
+namespace io {
+namespace {
+
+#if VMESH_IO_WITH_ASSIMP
+constexpr auto kReadScene = read_scene;
+#else
+constexpr decltype(&read_scene) kReadScene = nullptr;
+#endif
+
+}  // namespace
+}  // namespace io
+
+const std::vector<SurfaceFormat>& surface_formats() {
+  using namespace io;
+  const OptionalPart assimp = {"assimp", ".ply, .obj, .off or .stl"};
+  static const std::vector<SurfaceFormat> formats = {
+      {.name = "OFF", .extensions = {".off"}, .parse = parse_off, .write = write_off},
+      {.name = "OBJ", .extensions = {".obj"}, .parse = parse_obj, .write = write_obj},
+      {.name = "STL", .extensions = {".stl"}, .parse = parse_stl, .write = write_stl},
+      {.name = "PLY", .extensions = {".ply"}, .parse = parse_ply, .write = write_ply},
+      {.name = "VTP", .extensions = {".vtp"}, .parse = parse_surface_vtp, .write = write_surface_vtp},
+      {.name = "legacy VTK", .extensions = {".vtk"}, .parse = parse_surface_vtk},
+      {.name = "GLB",
+       .extensions = {".glb"},
+       .has_own_frame = true,
+       .holds_bones = true,
+       .needs = assimp,
+       .read = kReadScene,
+       .write = write_glb},
+      {.name = "glTF", .extensions = {".gltf"}, .needs = assimp, .read = kReadScene},
+      {.name = "3MF", .extensions = {".3mf"}, .needs = assimp, .read = kReadScene},
+      {.name = "COLLADA", .extensions = {".dae"}, .needs = assimp, .read = kReadScene},
+      {.name = "X3D", .extensions = {".x3d"}, .needs = assimp, .read = kReadScene},
+      {.name = "FBX", .extensions = {".fbx"}, .needs = assimp, .read = kReadScene},
+  };
+  return formats;
+}
+
+}  // namespace vmesh

@@ -1,0 +1,116 @@
+// The list of formats, and options for reading against every format.
+#include <nlohmann/json.hpp>
+
+#include "run_vmesh.h"
+
+namespace vmesh::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+class Formats : public CommandTest {
+ protected:
+  Json listed() const {
+    const Outcome run = vmesh({"formats", "--json", "-"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return Json::parse(run.out);
+  }
+
+  /// Whether `vmesh info` refuses the option for the file by its name.
+  bool refuses(const std::string& file, const std::string& option, const std::string& value) const {
+    const Outcome run = vmesh({"info", file, "--" + option, value});
+    const bool named = run.err.find("--" + option) != std::string::npos &&
+                       (run.err.find("is for centerlines in") != std::string::npos ||
+                        run.err.find("do not apply") != std::string::npos);
+    EXPECT_EQ(run.exit_code == 2, named) << file << ": " << run.err;
+    return named;
+  }
+};
+
+const std::vector<std::pair<std::string, std::string>> kOptions = {
+    {"radius-array", "R"}, {"radius", "2"}, {"voxel-size", "0.5"}, {"unit", "cm"}, {"space", "RAS"}};
+
+TEST_F(Formats, AreListedAsTextAndJson) {
+  const Json formats = listed();
+  const std::string text = vmesh({"formats"}).out;
+  EXPECT_NE(text.find("centerline .swc: SWC; read; written; --radius, --unit, --space\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("centerline .gxl .xml: VascuSynth; read; --voxel-size"), std::string::npos) << text;
+  for (const char* kind : {"centerline", "surface", "image"}) {
+    ASSERT_GE(formats.at(kind).size(), 7u);
+    for (const Json& format : formats.at(kind))
+      EXPECT_NE(text.find(format.at("name").get<std::string>()), std::string::npos) << format;
+  }
+}
+
+TEST_F(Formats, UnknownOnesAreRefusedWithAllThatAreKnown) {
+  const Json formats = listed();
+  for (const auto& [kind, output] : {std::pair{"surface", "tree.xyz"}, std::pair{"centerline", "frame.xyz"}}) {
+    write_y("y.swc");
+    const Outcome run = kind == std::string("surface") ? vmesh({"generate", "@y.swc", "-o", "@" + std::string(output)})
+                                                       : vmesh({"synth", "-o", "@" + std::string(output)});
+    EXPECT_EQ(run.exit_code, 4);
+    for (const Json& format : formats.at(kind)) {
+      for (const std::string extension : format.at("extensions"))
+        EXPECT_NE(run.err.find(extension), std::string::npos) << extension << " in " << run.err;
+    }
+  }
+}
+
+TEST_F(Formats, EveryOptionActsOnACenterlineOrIsRefusedByName) {
+  const Json formats = listed();
+  for (const Json& format : formats.at("centerline")) {
+    const std::string extension = format.at("extensions").at(0);
+    bool may_be_surface = false;
+    for (const Json& surface : formats.at("surface")) may_be_surface |= surface.at("extensions").at(0) == extension;
+    if (may_be_surface) continue;
+    const std::string name = "@tree" + extension;
+    write(name.substr(1), "nothing of use");
+    write("tree.segments.csv", "");
+    for (const auto& [option, value] : kOptions) {
+      const Json& options = format.at("options");
+      const bool acts = std::find(options.begin(), options.end(), option) != options.end();
+      EXPECT_EQ(refuses(name, option, value), !acts) << extension << " --" << option;
+    }
+  }
+}
+
+TEST_F(Formats, EveryOptionActsOnASurfaceOrIsRefusedByName) {
+  write_y("y.swc");
+  for (const Json& format : listed().at("surface")) {
+    if (!format.at("written") || !format.at("read")) continue;
+    const std::string name = "@tree" + format.at("extensions").at(0).get<std::string>();
+    ASSERT_EQ(vmesh({"cones", "@y.swc", "-o", name, "-q"}).exit_code, 0);
+    for (const auto& [option, value] : kOptions)
+      EXPECT_EQ(refuses(name, option, value), option != "unit" && option != "space") << name << " --" << option;
+  }
+}
+
+TEST_F(Formats, NoOptionForCenterlinesActsOnAnImage) {
+  for (const Json& format : listed().at("image")) {
+    if (format.at("extensions").empty()) continue;
+    const std::string name = "@liver" + format.at("extensions").at(0).get<std::string>();
+    write(name.substr(1), "nothing of use");
+    for (const auto& [option, value] : kOptions) EXPECT_TRUE(refuses(name, option, value)) << name << " --" << option;
+  }
+}
+
+TEST_F(Formats, AnOptionForAFileThatIsNotGivenIsRefused) {
+  write_y("y.swc");
+  ASSERT_EQ(vmesh({"cones", "@y.swc", "-o", "@y.ply", "-q"}).exit_code, 0);
+  for (const char* option : {"--centerline-radius", "--reference-unit"}) {
+    const Outcome run = vmesh({"evaluate", "@y.ply", option, std::string_view(option).ends_with("unit") ? "mm" : "2"});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_NE(run.err.find(option), std::string::npos) << run.err;
+  }
+}
+
+TEST_F(Formats, PlainJsonHasNoRadiusArray) {
+  write("tree.json", R"({"schema": "vmesh.centerline/1", "nodes": [[0,0,0,2], [9,0,0,2]], "segments": [[0,1]]})");
+  ASSERT_EQ(vmesh({"info", "@tree.json"}).exit_code, 0);
+  const Outcome run = vmesh({"info", "@tree.json", "--radius-array", "Radius"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("--radius-array does not apply"), std::string::npos) << run.err;
+}
+
+}  // namespace
+}  // namespace vmesh::testing
