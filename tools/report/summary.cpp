@@ -375,6 +375,10 @@ Json to_json(const GrowthSummary& growth) {
           {"cycle_rank", growth.cycle_rank},
           {"pieces", growth.pieces},
           {"pieces_by_rung", growth.rungs},
+          {"refused_steps",
+           {{"degenerate", growth.refused.degenerate},
+            {"axis", growth.refused.axis},
+            {"crossing", growth.refused.crossing}}},
           {"simplifications", list_json(growth.simplifications, of_simplification)}};
 }
 

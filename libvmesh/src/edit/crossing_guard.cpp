@@ -93,7 +93,7 @@ void CrossingGuard::add_layer(std::vector<Entry> entries) {
 }
 
 bool CrossingGuard::allows(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const {
-  const auto refuse = [](std::size_t& count) {
+  const auto refuse = [](Index& count) {
     ++count;
     return false;
   };

@@ -84,6 +84,7 @@ class Indexer {
       growth.tubes += piece.tubes;
       filled_ += piece.filled_loops;
       ++growth.rungs[piece.rung];
+      growth.refused += piece.refused;
     }
     for (const GrowthSimplification& note : surface.simplifications) index_.growth.simplifications.push_back(note);
   }

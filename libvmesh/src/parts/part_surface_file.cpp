@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kSchema = "vmesh.part-surface/1";
+constexpr const char* kSchema = "vmesh.part-surface/2";
 
 // All but the header.
 void describe(auto& columns, auto& stored) {
@@ -20,6 +20,9 @@ void describe(auto& columns, auto& stored) {
   columns.column("seams", surface.seams);
   columns.rows("pieces", surface.pieces, [](auto& p) {
     return std::tie(p.vertex_count, p.face_count, p.junctions, p.tubes, p.filled_loops, p.rung);
+  });
+  columns.rows("pieces.refused", surface.pieces, [](auto& p) {
+    return std::tie(p.refused.degenerate, p.refused.axis, p.refused.crossing);
   });
   columns.rows("pieces.worst_skewness", surface.pieces, [](auto& piece) { return std::tie(piece.worst_skewness); });
   columns.rows("crossings", surface.crossings, kBoth);
@@ -59,7 +62,8 @@ StoredPartSurface read_part_surface(const std::filesystem::path& path, bool veri
   PartSurface& surface = stored.surface;
   ColumnReader columns(file);
   describe(columns, stored);
-  file.require(file.count("pieces") == 6 * file.count("pieces.worst_skewness"),
+  const std::size_t pieces = file.count("pieces.worst_skewness");
+  file.require(file.count("pieces") == 6 * pieces && file.count("pieces.refused") == 3 * pieces,
                "is damaged: its pieces are inconsistent");
   for (const PartSurface::Piece& piece : surface.pieces)
     file.require(piece.rung < kRungs, "is damaged: a piece was found on a rung that there is not");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vmesh/core/box_tree.h"
+#include "vmesh/edit/refused_steps.h"
 #include "vmesh/mesh/face_pair.h"
 
 namespace vmesh {
@@ -27,11 +28,8 @@ class CrossingGuard {
   /// The face is new or has changed.
   void touch(Index f);
 
-  /// How many steps were not allowed so far, by the first reason.
-  struct Refused {
-    std::size_t degenerate = 0, axis = 0, crossing = 0;
-  };
-  const Refused& refused() const { return refused_; }
+  /// The steps that were not allowed so far.
+  const RefusedSteps& refused() const { return refused_; }
 
  private:
   // A face keeps its box until it leaves it; then it gets a new one.
@@ -62,7 +60,7 @@ class CrossingGuard {
   std::vector<Entry> latest_;  // not yet in a layer
   std::vector<AxisLine> axes_;
   BoxTree axis_tree_;  // of the parts of axis lines
-  mutable Refused refused_;
+  mutable RefusedSteps refused_;
 };
 
 /// Pairs of faces that cross, of which at least one is among `changed`; for a surface in which no others do, such as an

@@ -10,6 +10,7 @@
 #include "vmesh/centerline/simplification.h"
 #include "vmesh/core/progress.h"
 #include "vmesh/core/stage_time.h"
+#include "vmesh/edit/refused_steps.h"
 #include "vmesh/mesh/tri_mesh.h"
 #include "vmesh/surface/soundness.h"
 
@@ -146,6 +147,7 @@ struct GrowthSummary {
   std::vector<GrowthSimplification> simplifications;
   std::size_t pieces = 0;          ///< number of pieces in which the surface was made
   std::vector<std::size_t> rungs;  ///< number of pieces by the rung of the ladder on which they were sound or given up
+  RefusedSteps refused;            ///< of guarded steps
 };
 
 /// A requested hole in the surface at an end of a vessel: a ring in the plane across the vessel through the end's node.

@@ -69,6 +69,7 @@ struct PartSurface {
     Index vertex_count = 0, face_count = 0;
     Index junctions = 0, tubes = 0, filled_loops = 0;
     Index rung = 0;                  ///< of the ladder on which it was made
+    RefusedSteps refused;            ///< of guarded steps on that rung
     double worst_skewness = 0;       ///< equiangle
     std::vector<PieceFault> faults;  ///< none: it is sound
   };

@@ -1,3 +1,4 @@
+#include "vmesh/core/execution.h"
 #include "surface/finish/optimize.h"
 
 #include "surface/check/error_limit.h"
@@ -288,6 +289,7 @@ class Optimizer {
   void end_sweep(int sweep) {
     remesher_.flip_edges(done(sweep) < kRegularityShare ? 1 - done(sweep) : 0);
     relocate_vertices(state_);
+    if (execution_params().intermediate_checks) state_.surface.require_closed("a surface that is optimised");
   }
 
   SweepState state_;

@@ -119,7 +119,7 @@ class PartGrower {
     for (const auto& [a, b, c] : piece.faces) result_.mesh.faces.push_back({number(a), number(b), number(c)});
     result_.pieces.push_back({own, static_cast<Index>(piece.faces.size()), static_cast<Index>(piece.junctions),
                               static_cast<Index>(piece.tubes), static_cast<Index>(piece.filled_loops),
-                              static_cast<Index>(piece.rung), piece.worst_skewness, piece.faults});
+                              static_cast<Index>(piece.rung), piece.refused, piece.worst_skewness, piece.faults});
     for (GrowthSimplification note : piece.simplifications) {
       for (Index& n : note.nodes) n = part_.field.node[n];
       for (Index& s : note.segments) s = part_.field.cone[s];

@@ -10,6 +10,7 @@
 
 #include "surface/pieces/gathering.h"
 #include "surface/pieces/parting.h"
+#include "surface/pieces/piece_invariants.h"
 #include "surface/pieces/whole_tasks.h"
 #include "surface/proof/coarsening.h"
 #include "surface/check/error_limit.h"
@@ -53,6 +54,7 @@ class PieceGrower {
  private:
   // Makes the pieces that are not in `known`.
   void make_pieces(std::map<PiecePlan, PieceSurface> known) {
+    check_division(rings_, division_);
     pieces_.clear();
     pieces_.resize(division_.plans.size());
     std::vector<Index> missing;
@@ -131,7 +133,7 @@ class PieceGrower {
     const auto longest = [&](const CenterlineBinding& at) {
       return tubes_.longest_at(at.segment, at.t, options_.elongation);
     };
-    coarsen(surface, tubes_.field(), {options_.max_error, options_.least_vertices}, longest, progress_);
+    refused_ += coarsen(surface, tubes_.field(), {options_.max_error, options_.least_vertices}, longest, progress_);
     if (options_.max_error.is_set()) {
       // Faces that were proven by bending their shells are at corners that stay; neighbours may lower their shells.
       const std::vector<Index> unproven =
@@ -200,11 +202,13 @@ class PieceGrower {
     GrowthSummary& growth = result.growth;
     std::size_t filled = 0;
     growth.rungs.assign(kRungs, 0);
+    growth.refused = refused_;
     growth.pieces = pieces_.size();
     for (PieceSurface& piece : pieces_) {
       growth.junctions += piece.junctions;
       growth.tubes += piece.tubes;
       filled += piece.filled_loops;
+      growth.refused += piece.refused;
       ++growth.rungs[static_cast<std::size_t>(piece.rung)];
       for (GrowthSimplification& note : piece.simplifications) growth.simplifications.push_back(std::move(note));
     }
@@ -247,6 +251,7 @@ class PieceGrower {
   std::vector<std::pair<Index, Index>> crossings_;
   std::vector<Index> unproven_;
   bool coarsened_ = false;
+  RefusedSteps refused_;  // of steps on the whole surface
 };
 
 }  // namespace

@@ -5,10 +5,13 @@
 #include <optional>
 #include <sstream>
 
+#include "vmesh/core/execution.h"
+
 #include "surface/finish/optimize.h"
 #include "surface/junction/docked_junction.h"
 #include "surface/pieces/assembly.h"
 #include "surface/pieces/piece_check.h"
+#include "surface/pieces/piece_invariants.h"
 #include "surface/pieces/whole_tasks.h"
 #include "surface/remesh/mend.h"
 
@@ -92,6 +95,8 @@ bool vessels_overlap(const std::vector<PieceFault>& faults) {
 Badness badness(const PieceSurface& piece, double mended) {
   return {piece.faults.size(), piece.worst_skewness > mended ? piece.worst_skewness : 0};
 }
+
+constexpr std::size_t kMadeTwice = 1000;  // vertices, of smaller pieces: with intermediate checks
 
 class PieceMaker {
  public:
@@ -192,6 +197,7 @@ class PieceMaker {
     BoundSurface surface(tubes_.field());
     surface.elongation_field = tubes_.elongation_field();
     const std::vector<PieceLoop> loops = assembly.build(surface);
+    const PieceInvariants invariants(tubes_, plan_, piece.filled_loops, surface, loops);
     if (rung.guarded) surface.guard_crossings();
     if (rung.finer > 0) surface.fine_spots = fine_spots_;
     surface.calm_spots = calm_spots_;
@@ -207,7 +213,10 @@ class PieceMaker {
     const PieceFindings findings = check_piece(surface, nodes_of(skeleton), context_.options, !tested);
     piece.faults = findings.faults;
     piece.worst_skewness = findings.worst_skewness;
+    piece.refused = surface.refused();
+    invariants.check(surface);
     export_surface(surface, loops, piece);
+    check_numbers(piece);
     return piece;
   }
 
@@ -325,6 +334,11 @@ class PieceMaker {
 
 }  // namespace
 
-PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan) { return PieceMaker(context, plan).run(); }
+PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan) {
+  PieceSurface piece = PieceMaker(context, plan).run();
+  if (execution_params().intermediate_checks && piece.vertices.size() < kMadeTwice)
+    check_repeatable(piece, PieceMaker(context, plan).run());
+  return piece;
+}
 
 }  // namespace vmesh

@@ -35,6 +35,7 @@ struct PieceSurface {
   std::size_t filled_loops = 0;  ///< loops of the centerline too short to have a hole
   double worst_skewness = 0;     ///< equiangle, of its triangles
   int rung = 0;                  ///< of the ladder on which it was made
+  RefusedSteps refused;          ///< on that rung
   std::vector<PieceFault> faults;
   bool cannot_be_sound = false;  ///< some rung found overlapping vessels in it: it cannot be sound
 };

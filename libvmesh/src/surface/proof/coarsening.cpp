@@ -287,10 +287,10 @@ bool build(const FinishedSurface& from, BoundSurface& surface) {
 
 }  // namespace
 
-void coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal, const LongestAt& longest,
-             const Progress& progress) {
+RefusedSteps coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal,
+                     const LongestAt& longest, const Progress& progress) {
   BoundSurface work(field);
-  if (!build(surface, work)) return;
+  if (!build(surface, work)) return {};
   work.guard_crossings(BoundSurface::Axes::all);
   Coarsener(work, goal, longest, progress).run();
   GenerateResult result;
@@ -301,6 +301,7 @@ void coarsen(FinishedSurface& surface, const VesselField& field, const Coarsenin
   for (Opening& opening : surface.openings) {
     for (Index& v : opening.ring) v = number[v];
   }
+  return work.refused();
 }
 
 }  // namespace vmesh

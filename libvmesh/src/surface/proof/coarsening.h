@@ -26,7 +26,7 @@ struct CoarseningGoal {
 ///
 /// The result is proven like the surface before: the same faces are not. One thread but for the first look at each
 /// edge.
-void coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal, const LongestAt& longest,
+RefusedSteps coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal, const LongestAt& longest,
              const Progress& progress);
 
 }  // namespace vmesh

@@ -4,6 +4,9 @@
 #include <numeric>
 
 #include <CGAL/boost/graph/Euler_operations.h>
+#include <CGAL/boost/graph/helpers.h>
+
+#include "vmesh/core/execution.h"
 
 namespace vmesh {
 namespace {
@@ -197,6 +200,10 @@ bool BoundSurface::may_flip(Halfedge h) const {
 void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {
   const BoundaryPoint point = project_to_boundary(field, p, hint, 1e-6, vertex_[v].lift);
   place(v, point.position, point.sample);
+}
+
+void BoundSurface::require_closed(const std::string& what) const {
+  require_invariant(mesh.is_valid(false) && CGAL::is_closed(mesh), what + " is not closed and 2-manifold");
 }
 
 Vec3 BoundSurface::face_area_normal(Face f) const {

@@ -113,8 +113,11 @@ class BoundSurface {
   bool may_place(Vertex v, const Vec3& p) const;
   bool may_collapse(Vertex a, Vertex b, const Vec3& p) const;
   bool may_flip(Halfedge h) const;
-  /// The steps that were not, and why.
-  CrossingGuard::Refused refused() const { return guard_ ? guard_->refused() : CrossingGuard::Refused{}; }
+  /// The steps that were not.
+  RefusedSteps refused() const { return guard_ ? guard_->refused() : RefusedSteps{}; }
+
+  /// Throws std::logic_error unless the surface is closed and 2-manifold (see ExecutionParams). `what` it is.
+  void require_closed(const std::string& what) const;
 
   const Vec3& position(Vertex v) const { return mesh.point(v); }
   std::array<Vertex, 3> corners(Face f) const {
