@@ -7,7 +7,7 @@
 
 #include "vmesh/mesh/topology.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 /// The wall between the legs of a bifurcation: a ridge along x that sags in its middle.
@@ -78,4 +78,4 @@ TEST_F(Ridge, GetsAVertex) {
 }
 
 }  // namespace
-}  // namespace vmesh
+}  // namespace vmesh::fitting

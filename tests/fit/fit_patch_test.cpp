@@ -6,7 +6,7 @@
 
 #include "../mesh/shapes.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 TEST(FitPatch, IsChangedAndPutBack) {
@@ -33,4 +33,4 @@ TEST(FitPatch, IsChangedAndPutBack) {
 }
 
 }  // namespace
-}  // namespace vmesh
+}  // namespace vmesh::fitting

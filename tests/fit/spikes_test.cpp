@@ -11,7 +11,7 @@
 
 #include "fit/unmatched.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 TriMesh tube(const Centerline& centerline, int around) {
@@ -102,4 +102,4 @@ TEST_F(Spike, IsSeenFromOutside) {
 }
 
 }  // namespace
-}  // namespace vmesh
+}  // namespace vmesh::fitting

@@ -21,7 +21,7 @@ class WithChecks : public ::testing::Test {
 class PieceInvariantsOf : public WithChecks, public ::testing::WithParamInterface<std::uint32_t> {};
 
 TEST_P(PieceInvariantsOf, RandomVesselsHoldAndChangeNothing) {
-  const Centerline centerline = testing::random_vessels(GetParam());
+  const Centerline centerline = testing::plausible_tree(GetParam(), static_cast<int>(GetParam() % 3));
   const GenerateResult checked = generate_surface(centerline, {});
   execution_params().intermediate_checks = false;
   const GenerateResult plain = generate_surface(centerline, {});

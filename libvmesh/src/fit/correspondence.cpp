@@ -5,7 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 constexpr double kSameWay = 0.2;   // least cosine between normals
@@ -228,4 +228,4 @@ double matched_distance(const Matches& matches, double share) {
   return result;
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

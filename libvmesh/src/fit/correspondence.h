@@ -7,7 +7,7 @@
 #include "fit/fit_mesh.h"
 #include "fit/fit_reference.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// A pair of corresponding points of the surface and the reference.
 struct Match {
@@ -44,4 +44,4 @@ void follow(Matches& matches, const std::vector<FitVertex>& before, const FitMes
 /// The distance below which a share of the matches' area lies, mm, the larger of both ways; 0 without matches.
 double matched_distance(const Matches& matches, double share);
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

@@ -10,7 +10,7 @@
 #include "fit/reshaping.h"
 #include "fit/resizing.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 constexpr int kDivision = 3, kRelaxations = 2;
@@ -204,7 +204,7 @@ class FarPlaces {
   }
 
   void put_back(const FitPatch& patch, const PatchMatches& matches) {
-    const std::vector<Index> faces = vmesh::put_back(surface_, patch);
+    const std::vector<Index> faces = fitting::put_back(surface_, patch);
     const auto per_face = static_cast<std::size_t>(matches_.per_face);
     matches_.from_surface.resize(surface_.faces().size() * per_face);
     matches_.from_edges.resize(surface_.faces().size() * kEdgePoints);
@@ -279,4 +279,4 @@ void bring_farthest_nearer(FitMesh& surface, const std::vector<ReferenceSample>&
   FarPlaces(surface, samples, setting).improve(most_vertices);
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

@@ -6,7 +6,7 @@
 #include "fit/fit_mesh.h"
 #include "fit/fit_steps.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// A point of the surface and the radius of its surroundings, mm.
 struct Place {
@@ -30,4 +30,4 @@ void split_at(FitMesh& surface, const Match& match, int side);
 void bring_farthest_nearer(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting,
                            std::size_t most_vertices);
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

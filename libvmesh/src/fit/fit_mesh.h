@@ -4,7 +4,7 @@
 
 #include "vmesh/edit/edit_mesh.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// A vertex of a surface that is fitted.
 struct FitVertex {
@@ -27,4 +27,4 @@ inline bool on_border(const FitMesh& surface, Index v) { return surface.vertex(v
 /// Whether a vertex must stay as it is: one flag each; vertices newer than the flags are not frozen.
 inline bool is_frozen(const std::vector<char>& frozen, Index v) { return v < frozen.size() && frozen[v]; }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

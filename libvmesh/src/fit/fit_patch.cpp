@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 using Box = Eigen::AlignedBox3d;
@@ -95,4 +95,4 @@ std::vector<Index> put_back(FitMesh& whole, const FitPatch& patch) {
   return faces;
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

@@ -4,7 +4,7 @@
 
 #include "fit/fit_mesh.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// A patch of a surface that is changed on its own: the vertices around a place, and all faces that they could meet.
 /// Nothing is removed from it.
@@ -24,4 +24,4 @@ FitPatch patch_around(const FitMesh& whole, Index face, double reach);
 /// whole.
 std::vector<Index> put_back(FitMesh& whole, const FitPatch& patch);
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

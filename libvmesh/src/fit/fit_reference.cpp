@@ -12,7 +12,7 @@
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/topology.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 constexpr double kReach = 1;        // local radii from the round cones: as far as bulges go
@@ -211,4 +211,4 @@ std::vector<ReferenceSample> FitReference::rim_samples() const {
   return samples;
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

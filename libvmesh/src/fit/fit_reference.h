@@ -7,7 +7,7 @@
 #include "vmesh/quality/closest_point.h"
 #include "vmesh/volume/vessel_field.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// A point of the reference for which a counterpart on the surface is sought.
 struct ReferenceSample {
@@ -62,4 +62,4 @@ double widest_radius(const VesselField& field, Index cone);
 /// Whether two cones belong to one stretch of vessel.
 bool same_vessel(const VesselField& field, Index a, Index b);
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

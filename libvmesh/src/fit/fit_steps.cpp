@@ -7,7 +7,7 @@
 #include "fit/least_squares.h"
 #include "fit/reshaping.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 constexpr double kLongestStep = 0.35;  // of the edges around
@@ -73,4 +73,4 @@ void repair(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& 
   }
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

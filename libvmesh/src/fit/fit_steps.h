@@ -10,7 +10,7 @@
 #include "fit/guarded_step.h"
 #include "fit/least_squares.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// The target of a fit and its constraints.
 struct FitSetting {
@@ -36,4 +36,4 @@ void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh, 
 /// Relaxes triangles that a split, a collapse or a flip left too skew.
 void repair(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard);
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

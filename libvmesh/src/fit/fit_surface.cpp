@@ -24,6 +24,8 @@
 namespace vmesh {
 namespace {
 
+using namespace fitting;
+
 constexpr double kSamplesPerFace = 9;              // of the reference
 constexpr int kDivision = 3, kCoarseDivision = 2;  // of the surface's faces: 9 or 4 samples
 constexpr int kFewer = 2;                // one in so many samples of the reference where a coarse fit is enough

@@ -7,7 +7,7 @@
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 constexpr int kHalvings = 3;  // then the vertex stays
@@ -147,4 +147,4 @@ double take_steps(FitMesh& surface, const std::vector<Vec3>& steps, const StepGu
   return step.taken();
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

@@ -4,7 +4,7 @@
 
 #include "fit/fit_mesh.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// Limits on what a step may do to a surface.
 struct StepGuard {
@@ -25,4 +25,4 @@ double skewness_of(const FitMesh& surface, Index face);
 /// Whether the cosine between two neighbours' unit normals may change from `before` to `cosine`.
 inline bool may_fold(double cosine, double before, double limit) { return cosine >= std::min(limit, before - 1e-9); }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

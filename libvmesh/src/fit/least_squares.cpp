@@ -4,7 +4,7 @@
 
 #include <Eigen/LU>
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 using Mat3 = Eigen::Matrix3d;
@@ -172,4 +172,4 @@ std::vector<Vec3> least_squares_steps(const FitMesh& surface, const Matches& mat
   return steps;
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

@@ -4,7 +4,7 @@
 
 #include "fit/correspondence.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// The tangential step of a vertex that is best for its triangles, and the weight of the pull towards it (at most 1).
 struct ShapePull {
@@ -32,4 +32,4 @@ void keep_in_opening(const FitMesh& surface, Index v, const std::vector<Vec3>& o
 /// RMS distance of the matches both ways, mm; 1 if there are none.
 double rms_distance(const Matches& matches);
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

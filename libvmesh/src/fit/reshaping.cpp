@@ -10,7 +10,7 @@
 #include "vmesh/mesh/triangle_energy.h"
 #include "vmesh/mesh/triangle_quality.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 constexpr int kAttempts = 6;
@@ -214,4 +214,4 @@ bool relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& g
   return moved;
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

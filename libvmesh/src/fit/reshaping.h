@@ -6,7 +6,7 @@
 #include "fit/fit_mesh.h"
 #include "fit/guarded_step.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// Applies `change` to a packed surface so that no faces cross: `change(surface, frozen)` must not touch the
 /// surroundings of a frozen vertex (one flag each). Where faces cross afterwards, everything is undone and repeated
@@ -30,4 +30,4 @@ std::vector<Vec3> shape_steps(const FitMesh& surface, int power);
 /// worst. Only vertices with a triangle of skewness above `above` take part. Returns whether any moved.
 bool relax(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard, int power, double above = 0);
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

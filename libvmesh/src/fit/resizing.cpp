@@ -9,7 +9,7 @@
 
 #include "fit/reshaping.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 constexpr double kLong = 4.0 / 3, kShort = 4.0 / 5;  // of the intended length (Botsch, Kobbelt 2004)
@@ -213,4 +213,4 @@ void collapse_edges(FitMesh& surface, const std::vector<char>& frozen, const Ste
   }
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

@@ -6,7 +6,7 @@
 #include "fit/correspondence.h"
 #include "fit/guarded_step.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// Cubic mean (mm) of the distances of the matches around every vertex of a packed surface, smoothed: between a mean
 /// and a maximum. Negative where there are no matches.
@@ -32,4 +32,4 @@ double set_sizes(FitMesh& surface, const std::vector<double>& errors, std::size_
 void split_edges(FitMesh& surface, const std::vector<char>& frozen);
 void collapse_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard);
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 // Measured on the aorta and SU201, forty centerlines each whose nodes were moved by 1e-3 radii: Hausdorff distance at
@@ -110,4 +110,4 @@ void collapse_spikes(FitMesh& surface, const std::vector<char>& frozen, const Fi
   Spikes(surface, frozen, setting).collapse_all();
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

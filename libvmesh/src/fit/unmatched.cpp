@@ -8,7 +8,7 @@
 
 #include "vmesh/core/disjoint_sets.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 namespace {
 
 constexpr double kFar = 0.5;          // local radii
@@ -159,4 +159,4 @@ std::vector<UnmatchedPart> unsupported_parts(const FitMesh& surface, const FitRe
   return parts_of(faces, own);
 }
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

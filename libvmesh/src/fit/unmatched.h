@@ -6,7 +6,7 @@
 
 #include "fit/correspondence.h"
 
-namespace vmesh {
+namespace vmesh::fitting {
 
 /// For every face of the reference, whether it belongs to a component that lies apart: less than half of its samples
 /// have a match on the surface.
@@ -21,4 +21,4 @@ std::vector<UnmatchedPart> uncovered_parts(const FitMesh& surface, const FitRefe
 std::vector<UnmatchedPart> unsupported_parts(const FitMesh& surface, const FitReference& reference,
                                              const VesselField& field);
 
-}  // namespace vmesh
+}  // namespace vmesh::fitting

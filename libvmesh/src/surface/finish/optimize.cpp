@@ -1,5 +1,6 @@
-#include "vmesh/core/execution.h"
 #include "surface/finish/optimize.h"
+
+#include "vmesh/core/execution.h"
 
 #include "surface/check/error_limit.h"
 #include "surface/remesh/balance.h"
