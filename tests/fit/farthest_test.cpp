@@ -58,7 +58,7 @@ TEST_F(Ridge, IsSeenByTheMiddleOfTheEdgeAlongIt) {
 
 TEST_F(Ridge, IsSeenByItsTips) {
   for (const Index v : {0u, 1u}) surface_.edit(v).position.z() += 1;
-  surface_.vertices()[0].position.z() += 2;
+  surface_.edit(0).position.z() += 2;
   Matches matches;
   matches.from_edges = match_edges(surface_, reference_, field_);
   const auto is_tip = [&](const Match& match) {
