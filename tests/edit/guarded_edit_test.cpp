@@ -57,7 +57,8 @@ TEST(GuardedEdit, TakesTheStepThatLeavesTheBestTriangles) {
   GuardedEdit edit(mesh);
   const MeshEdge e = mesh.edges().front();
   const Vec3 a = mesh.position(e.a), b = mesh.position(e.b);
-  const std::vector<PlainMesh::Step> steps = {mesh.splitting(e, {0.9 * a + 0.1 * b}), mesh.splitting(e, {0.5 * (a + b)}),
+  const std::vector<PlainMesh::Step> steps = {mesh.splitting(e, {0.9 * a + 0.1 * b}),
+                                              mesh.splitting(e, {0.5 * (a + b)}),
                                               mesh.splitting(e, {0.2 * a + 0.8 * b})};
   EXPECT_EQ(edit.take_best(steps, 0.1), kNone);
   const Index added = edit.take_best(steps, 0.9);

@@ -21,8 +21,8 @@ TEST(FitPatch, IsChangedAndPutBack) {
   const auto [a, b, c] = patch.surface.faces()[changed];
   const Vec3 middle = 0.5 * (patch.surface.position(a) + patch.surface.position(b));
   const Index m = static_cast<Index>(patch.surface.vertices().size());
-  patch.surface.take(patch.surface.splitting(
-      {a, b}, FitVertex::between(patch.surface.vertex(a), patch.surface.vertex(b), middle)));
+  patch.surface.take(
+      patch.surface.splitting({a, b}, FitVertex::between(patch.surface.vertex(a), patch.surface.vertex(b), middle)));
   EXPECT_FALSE(is_frozen(patch.frozen, m));
   const std::vector<Index> faces = put_back(mesh, patch);
   EXPECT_EQ(faces.size(), patch.surface.faces().size());

@@ -161,7 +161,8 @@ void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const st
 void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard) {
   for (const auto& [a, b] : surface.edges()) {
     if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
-    if (const auto flip = flip_of(surface, a, b); flip && should_flip(*flip, guard)) surface.take(surface.flipping({a, b}));
+    if (const auto flip = flip_of(surface, a, b); flip && should_flip(*flip, guard))
+      surface.take(surface.flipping({a, b}));
   }
 }
 

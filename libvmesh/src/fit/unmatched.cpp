@@ -153,8 +153,8 @@ std::vector<UnmatchedPart> unsupported_parts(const FitMesh& surface, const FitRe
   std::vector<FarFace> faces(own.count());
   tbb::parallel_for(Index{0}, static_cast<Index>(faces.size()), [&](Index f) {
     const auto [a, b, c] = surface.corners(f);
-    faces[f] = far_face((a + b + c) / 3, surface.area_normal(f).norm() / 2, surface.vertices()[surface.faces()[f][0]].cone,
-                        reference.index(), others, field);
+    faces[f] = far_face((a + b + c) / 3, surface.area_normal(f).norm() / 2,
+                        surface.vertices()[surface.faces()[f][0]].cone, reference.index(), others, field);
   });
   return parts_of(faces, own);
 }

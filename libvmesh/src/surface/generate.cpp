@@ -12,12 +12,12 @@
 #include "vmesh/surface/defects.h"
 #include "vmesh/surface/error_bound.h"
 
+#include "surface/check/error_limit.h"
 #include "surface/finish/optimize.h"
 #include "surface/input/buried_branches.h"
 #include "surface/input/size_check.h"
 #include "surface/paper/paper_growth.h"
 #include "surface/pieces/grow_pieces.h"
-#include "surface/check/error_limit.h"
 #include "surface/remesh/bound_surface.h"
 
 namespace vmesh {

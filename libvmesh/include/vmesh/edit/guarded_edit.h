@@ -19,8 +19,7 @@ class GuardedEdit {
 
   /// Keeps a reference. All changes of the mesh are to be made here.
   explicit GuardedEdit(EditMesh<V>& mesh)
-      : mesh_(mesh),
-        guard_(mesh.faces().size(), [&mesh](Index f) {
+      : mesh_(mesh), guard_(mesh.faces().size(), [&mesh](Index f) {
           return mesh.has_face(f) ? std::make_optional(mesh.placed(f)) : std::nullopt;
         }) {}
 

@@ -59,8 +59,7 @@ std::vector<Index> DiscCutter::region_above(Index apex, const Height& height, co
 
 std::vector<Index> DiscCutter::faces_around(const std::vector<Index>& region) const {
   std::vector<Index> faces;
-  for (const Index v : region)
-    faces.insert(faces.end(), mesh_.faces_around(v).begin(), mesh_.faces_around(v).end());
+  for (const Index v : region) faces.insert(faces.end(), mesh_.faces_around(v).begin(), mesh_.faces_around(v).end());
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;

@@ -8,12 +8,12 @@
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/error_bound.h"
 
+#include "surface/check/error_limit.h"
 #include "surface/pieces/gathering.h"
 #include "surface/pieces/parting.h"
 #include "surface/pieces/piece_invariants.h"
 #include "surface/pieces/whole_tasks.h"
 #include "surface/proof/coarsening.h"
-#include "surface/check/error_limit.h"
 #include "surface/proof/notches.h"
 
 namespace vmesh {

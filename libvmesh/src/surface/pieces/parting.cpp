@@ -5,7 +5,6 @@
 #include "vmesh/core/box_tree.h"
 #include "vmesh/edit/guarded_edit.h"
 
-
 namespace vmesh {
 namespace {
 

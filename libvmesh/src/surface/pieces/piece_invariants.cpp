@@ -39,9 +39,9 @@ void PieceInvariants::check(const BoundSurface& surface) const {
   const auto euler = static_cast<std::int64_t>(mesh.number_of_vertices()) -
                      static_cast<std::int64_t>(mesh.number_of_edges()) +
                      static_cast<std::int64_t>(mesh.number_of_faces());
-  require_invariant(euler == euler_characteristic_,
-                    "a piece has an Euler characteristic of " + std::to_string(euler) + ", its part of the centerline " +
-                        std::to_string(euler_characteristic_));
+  require_invariant(euler == euler_characteristic_, "a piece has an Euler characteristic of " + std::to_string(euler) +
+                                                        ", its part of the centerline " +
+                                                        std::to_string(euler_characteristic_));
   for (const auto& [v, p] : at_seams_)
     require_invariant(surface.position(v) == p && surface.held(v), "a vertex of a seam has moved");
 }

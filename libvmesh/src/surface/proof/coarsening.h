@@ -26,7 +26,7 @@ struct CoarseningGoal {
 ///
 /// The result is proven like the surface before: the same faces are not. One thread but for the first look at each
 /// edge.
-RefusedSteps coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal, const LongestAt& longest,
-             const Progress& progress);
+RefusedSteps coarsen(FinishedSurface& surface, const VesselField& field, const CoarseningGoal& goal,
+                     const LongestAt& longest, const Progress& progress);
 
 }  // namespace vmesh
