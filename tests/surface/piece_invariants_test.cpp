@@ -44,7 +44,7 @@ class Ball : public WithChecks {
 
   Centerline centerline_{{{{0, 0, 0}, 1}}, {}};
   VesselField field_{centerline_};
-  VesselTubes tubes_{field_, RingOptions::of({})};
+  VesselRings tubes_{field_, RingOptions::of({})};
   BoundSurface surface_{field_};
 };
 
@@ -90,7 +90,7 @@ TEST_F(Ball, IsTheSameEachTime) {
 TEST_F(Ball, ItsSeamsLieBetweenTwoPieces) {
   const Centerline line({{{0, 0, 0}, 1}, {{100, 0, 0}, 1}}, {{0, 1}});
   const VesselField field(line);
-  const VesselTubes tubes(field, RingOptions::of({}));
+  const VesselRings tubes(field, RingOptions::of({}));
   Division division = divide(tubes, {});
   ASSERT_FALSE(division.seams.empty());
   const RingCounts rings(tubes);

@@ -20,7 +20,7 @@ std::int64_t euler_characteristic(const RingCounts& rings, const PiecePlan& plan
 
 }  // namespace
 
-PieceInvariants::PieceInvariants(const VesselTubes& tubes, const PiecePlan& plan, std::size_t filled_loops,
+PieceInvariants::PieceInvariants(const VesselRings& tubes, const PiecePlan& plan, std::size_t filled_loops,
                                  const BoundSurface& surface, const std::vector<PieceLoop>& loops)
     : on_(execution_params().intermediate_checks) {
   if (!on_) return;

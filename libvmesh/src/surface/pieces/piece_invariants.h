@@ -11,7 +11,7 @@ namespace vmesh {
 class PieceInvariants {
  public:
   /// Remembers where the seams lie. `plan` is the piece's, `filled_loops` those of its junctions.
-  PieceInvariants(const VesselTubes& tubes, const PiecePlan& plan, std::size_t filled_loops,
+  PieceInvariants(const VesselRings& tubes, const PiecePlan& plan, std::size_t filled_loops,
                   const BoundSurface& surface, const std::vector<PieceLoop>& loops);
 
   /// Closed, of the plan's topology, with its seams where they were.
