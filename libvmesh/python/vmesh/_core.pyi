@@ -427,28 +427,7 @@ def finish_ends(
     keep_area: bool = False,
 ) -> Surface: ...
 def closest_points(points: ArrayLike, surface: Surface) -> Tuple[_Floats, _Indices, _Floats]: ...
-def generate(
-    centerline: Centerline,
-    *,
-    progress: _Progress,
-    around: int,
-    max_error: str,
-    blend: float,
-    placement: str,
-    growth: str,
-    overlap: str,
-    gap: float,
-    ends: str,
-    open_ends: Sequence[int],
-    flow_extension: float,
-    simplification: float,
-    elongation: float,
-    least_vertices: int,
-    deformable: bool,
-    sweeps: int,
-    max_vertices: int,
-    threads: int,
-) -> Surface: ...
+def generate(centerline: Centerline, *, progress: _Progress, **options: object) -> Surface: ...
 def fit(
     surface: Surface,
     reference: Surface,
