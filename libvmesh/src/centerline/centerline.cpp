@@ -11,8 +11,8 @@ namespace {
 constexpr std::size_t kMaxListedProblems = 20;
 
 std::string describe(const std::vector<CenterlineProblem>& problems) {
-  std::string text = "not a valid centerline: " + std::to_string(problems.size()) +
-                     (problems.size() == 1 ? " problem" : " problems");
+  std::string text =
+      "not a valid centerline: " + std::to_string(problems.size()) + (problems.size() == 1 ? " problem" : " problems");
   for (std::size_t i = 0; i < problems.size() && i < kMaxListedProblems; ++i) text += "\n  " + problems[i].message;
   if (problems.size() > kMaxListedProblems) {
     text += "\n  ... and " + std::to_string(problems.size() - kMaxListedProblems) + " more";

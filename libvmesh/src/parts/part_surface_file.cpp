@@ -21,9 +21,8 @@ void describe(auto& columns, auto& stored) {
   columns.rows("pieces", surface.pieces, [](auto& p) {
     return std::tie(p.vertex_count, p.face_count, p.junctions, p.tubes, p.filled_loops, p.rung);
   });
-  columns.rows("pieces.refused", surface.pieces, [](auto& p) {
-    return std::tie(p.refused.degenerate, p.refused.axis, p.refused.crossing);
-  });
+  columns.rows("pieces.refused", surface.pieces,
+               [](auto& p) { return std::tie(p.refused.degenerate, p.refused.axis, p.refused.crossing); });
   columns.rows("pieces.worst_skewness", surface.pieces, [](auto& piece) { return std::tie(piece.worst_skewness); });
   columns.rows("crossings", surface.crossings, kBoth);
   columns.column("vertices", surface.mesh.vertices);
