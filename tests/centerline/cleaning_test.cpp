@@ -13,7 +13,7 @@
 namespace vmesh {
 namespace {
 
-using Kind = CleaningAction::Kind;
+using Action = CleaningAction::Kind;
 
 RawCenterline raw_of(std::vector<CenterlineNode> nodes, std::vector<CenterlineSegment> segments) {
   RawCenterline raw;
@@ -77,7 +77,7 @@ TEST(Clean, ContractsSegmentsWithoutLength) {
   const auto result = clean(raw_of({node(0, 0, 1), node(0, 0, 1), node(5, 0, 1), node(5, 1e-4, 1), node(9, 0, 1)},
                                    {{0, 1}, {1, 2}, {2, 3}, {3, 4}}));
   EXPECT_EQ(result.centerline.nodes().size(), 3u);
-  EXPECT_EQ(result.report.count(Kind::contracted_segment), 2u);
+  EXPECT_EQ(result.report.count(Action::contracted_segment), 2u);
   EXPECT_EQ(result.report.actions[0].index, 0u);
   EXPECT_EQ(result.report.actions[1].index, 2u);
 }
@@ -99,8 +99,8 @@ TEST(Clean, DoesNotCollapseALineOfManyShortSteps) {
 TEST(Clean, RemovesSelfLoopsAndDuplicateSegments) {
   const auto result = clean(raw_of({node(0, 0, 1), node(5, 0, 1)}, {{0, 0}, {0, 1}, {1, 0}, {0, 1}}));
   EXPECT_EQ(result.centerline.segments().size(), 1u);
-  EXPECT_EQ(result.report.count(Kind::removed_self_loop), 1u);
-  ASSERT_EQ(result.report.count(Kind::removed_duplicate_segment), 2u);
+  EXPECT_EQ(result.report.count(Action::removed_self_loop), 1u);
+  ASSERT_EQ(result.report.count(Action::removed_duplicate_segment), 2u);
   EXPECT_EQ(result.report.actions[1].index, 2u);
   EXPECT_EQ(result.report.actions[2].index, 3u);
 }
@@ -112,7 +112,7 @@ TEST(Clean, JoinsPiecesAtEqualEndsAndClosesRealLoops) {
                                    {{0, 1}, {2, 3}, {4, 5}, {6, 7}}));
   EXPECT_EQ(result.centerline.nodes().size(), 4u);
   EXPECT_EQ(result.centerline.cycle_rank(), 1u);
-  EXPECT_EQ(result.report.count(Kind::merged_node), 4u);
+  EXPECT_EQ(result.report.count(Action::merged_node), 4u);
 }
 
 TEST(Clean, ClosesNoLoopInATreeFormat) {
@@ -120,7 +120,7 @@ TEST(Clean, ClosesNoLoopInATreeFormat) {
   raw.tree_only = true;
   const auto result = clean(raw);
   EXPECT_EQ(result.centerline.cycle_rank(), 0u);
-  EXPECT_EQ(result.report.count(Kind::kept_crossing), 1u);
+  EXPECT_EQ(result.report.count(Action::kept_crossing), 1u);
 }
 
 TEST(Clean, MergesEndsWithinTheToleranceOnly) {
@@ -139,7 +139,7 @@ TEST(Clean, InterpolatesZeroRadiiAlongTheGraph) {
   std::vector<double> radius(6);
   for (Index n = 0; n < 6; ++n) radius[result.raw_node[n]] = result.centerline.node(n).radius;
   EXPECT_EQ(radius, (std::vector<double>{1, 2, 4, 5, 2, 2}));
-  EXPECT_EQ(result.report.count(Kind::repaired_radius), 3u);
+  EXPECT_EQ(result.report.count(Action::repaired_radius), 3u);
   EXPECT_NE(result.report.actions[0].message.find("line 1"), std::string::npos) << result.report.actions[0].message;
 }
 
@@ -164,7 +164,7 @@ TEST(Clean, MergesTheTrunkThatVmtkRepeatsForEveryTarget) {
   EXPECT_EQ(result.centerline.nodes().size(), 51u + 20 + 20 + 20);
   EXPECT_EQ(result.centerline.component_count(), 1u);
   EXPECT_EQ(result.centerline.cycle_rank(), 0u);
-  EXPECT_EQ(result.report.count(Kind::merged_trunk), 2u);
+  EXPECT_EQ(result.report.count(Action::merged_trunk), 2u);
   EXPECT_EQ(result.report.actions.size(), 2u) << "one entry per repeated trunk";
 }
 
@@ -179,7 +179,7 @@ TEST(Clean, MakesNoFalseLoopsOfPathsThatMeetAgainAfterParting) {
   const auto result = clean(polylines({first, second}));
   EXPECT_EQ(result.centerline.component_count(), 1u);
   EXPECT_LE(result.centerline.cycle_rank(), 1u) << "at most where the end of the first path meets the second";
-  EXPECT_GT(result.report.count(Kind::kept_crossing), 0u);
+  EXPECT_GT(result.report.count(Action::kept_crossing), 0u);
 }
 
 // Along the axis from x = 0 on, at an angle from x = 40 on; points `step` mm apart, and `beside` mm off the axis up to
@@ -206,7 +206,7 @@ TEST(Clean, MergesPathsFromOneInletThoughTheyDoNotShareTheirPoints) {
   const auto raw =
       polylines({inlet_to_outlet(1, 0.5, 0), inlet_to_outlet(-1, 0.37, 0.1), inlet_to_outlet(0.02, 1.3, -0.1)});
   const auto result = clean(raw);
-  EXPECT_EQ(result.report.count(Kind::merged_overlap), 2u);
+  EXPECT_EQ(result.report.count(Action::merged_overlap), 2u);
   EXPECT_EQ(result.centerline.component_count(), 1u);
   EXPECT_EQ(result.centerline.cycle_rank(), 0u);
   EXPECT_EQ(std::count_if(result.raw_segment.begin(), result.raw_segment.end(), [](Index s) { return s == kNone; }), 0);
@@ -225,7 +225,7 @@ TEST(Clean, MergesPathsToOneOutletToo) {
   std::reverse(first.begin(), first.end());
   std::reverse(second.begin(), second.end());
   const auto result = clean(polylines({first, second}));
-  EXPECT_EQ(result.report.count(Kind::merged_overlap), 1u);
+  EXPECT_EQ(result.report.count(Action::merged_overlap), 1u);
   EXPECT_EQ(result.centerline.component_count(), 1u);
   EXPECT_EQ(result.centerline.cycle_rank(), 0u);
   EXPECT_EQ(find_branches(result.centerline).size(), 3u);
@@ -237,7 +237,7 @@ TEST(Clean, MergesAPathOntoLongSegments) {
   for (int i = 0; i <= 30; ++i) second.push_back(node(2 * i, i < 10 ? 0.05 : i - 10, 2));
   second.front() = node(0, 0, 2);
   const auto result = clean(polylines({first, second}));
-  EXPECT_EQ(result.report.count(Kind::merged_overlap), 1u);
+  EXPECT_EQ(result.report.count(Action::merged_overlap), 1u);
   ASSERT_EQ(result.centerline.component_count(), 1u);
   const auto lengths = branch_lengths(result.centerline);
   ASSERT_EQ(lengths.size(), 3u);
@@ -254,7 +254,7 @@ TEST(Clean, LeavesPathsApartThatSoonPartOrDifferInRadius) {
       first.push_back(node(0.5 * i, 0, 2));
       second.push_back(node(0.5 * i, slope * i, i == 0 ? 2 : radius));
     }
-    return clean(polylines({first, second})).report.count(Kind::merged_overlap);
+    return clean(polylines({first, second})).report.count(Action::merged_overlap);
   };
   EXPECT_EQ(two(0.05, 2), 0u);  // side by side for one radius
   EXPECT_EQ(two(0.01, 1.5), 0u);
@@ -273,7 +273,7 @@ TEST(Clean, JoinsABranchThatStopsShortOfItsParent) {
   const auto result = clean(raw);
   EXPECT_EQ(result.centerline.component_count(), 2u);
   EXPECT_EQ(result.centerline.cycle_rank(), 0u);
-  ASSERT_EQ(result.report.count(Kind::joined_gap), 2u);
+  ASSERT_EQ(result.report.count(Action::joined_gap), 2u);
   for (const auto& action : result.report.actions) {
     EXPECT_TRUE(action.index == 21 || action.index == 32) << action.message;
     EXPECT_NE(action.message.find("line 10"), std::string::npos) << action.message;
@@ -299,7 +299,7 @@ TEST(Clean, RoundsSoThatTextAndBinaryGiveTheSameTree) {
   const auto text = clean(raw_of({node(0.123457, 0, 1), node(5, 0.654321, 1)}, {{0, 1}}));
   const auto binary = clean(raw_of({node(0.12345678, 0, 1.0000003), node(5.00000011, 0.65432123, 1)}, {{0, 1}}));
   expect_same(text.centerline, binary.centerline);
-  EXPECT_EQ(binary.report.count(Kind::rounded), 1u);
+  EXPECT_EQ(binary.report.count(Action::rounded), 1u);
   EXPECT_TRUE(text.report.actions.empty());
 }
 
@@ -442,7 +442,7 @@ TEST(CleanFlatEnds, FollowTheirNodes) {
   RawCenterline raw = raw_of({node(0, 0, 1), node(4, 0, 1), node(8, 0, 2), node(8, 0, 2)}, {{0, 1}, {1, 2}, {2, 3}});
   raw.end_sections = {flat_end(0, {0, 0.1, 0}), flat_end(3, {8, 0, 0})};
   const CleanedCenterline cleaned = clean(raw);
-  EXPECT_EQ(cleaned.report.count(Kind::dropped_end_section), 0u);
+  EXPECT_EQ(cleaned.report.count(Action::dropped_end_section), 0u);
   ASSERT_EQ(cleaned.end_sections.size(), 2u);
   EXPECT_EQ(cleaned.end_sections[0].node, 0u);
   EXPECT_EQ(cleaned.end_sections[0].center, Vec3(8, 0, 0));
@@ -457,7 +457,7 @@ TEST(CleanFlatEnds, AreDroppedWhereNoVesselEnds) {
   const CleanedCenterline cleaned = clean(raw);
   ASSERT_EQ(cleaned.end_sections.size(), 1u);
   EXPECT_EQ(cleaned.end_sections[0].center, Vec3(8, 0, 0));
-  ASSERT_EQ(cleaned.report.count(Kind::dropped_end_section), 3u);
+  ASSERT_EQ(cleaned.report.count(Action::dropped_end_section), 3u);
   EXPECT_EQ(cleaned.report.actions[0].message, "test.swc: line 1: its flat end was dropped: no vessel ends there");
   EXPECT_EQ(cleaned.report.actions[1].index, 2u);
   EXPECT_EQ(to_string(cleaned.report.actions[2].kind), "dropped_end_section");

@@ -12,7 +12,7 @@
 namespace vmesh::testing {
 namespace {
 
-constexpr Material kSoft{.young_Pa = 1e6, .density_kg_m3 = 1000, .poisson_ratio = 0};
+constexpr Material kSoftRod{.young_Pa = 1e6, .density_kg_m3 = 1000, .poisson_ratio = 0};
 
 Centerline tree_of(std::size_t vertices) {
   SyntheticTreeOptions shape;
@@ -73,7 +73,7 @@ TEST(Simulation, LoopsStayClosed) {
   const Centerline ring = ring_of(24, 20);
   SimulationOptions options;
   options.iterations = 5;
-  CenterlineSimulation simulation = simulate(ring, kSoft, options);
+  CenterlineSimulation simulation = simulate(ring, kSoftRod, options);
   ASSERT_EQ(simulation.tree().ties.size(), 1u);
   simulation.fix(0);
   simulation.set_gravity(Vec3(0, -9810, 0));

@@ -13,7 +13,7 @@
 namespace vmesh::testing {
 namespace {
 
-Centerline tree_of(std::size_t vertices) {
+Centerline synthetic_tree_of(std::size_t vertices) {
   SyntheticTreeOptions shape;
   shape.vertices = vertices;
   return synthetic_tree(shape);
@@ -68,7 +68,7 @@ double precision(const DeformedSurface& surface, const Vec3& arm) {
 }
 
 TEST(SurfaceBinding, IsEquation10) {
-  const Centerline tree = tree_of(300);
+  const Centerline tree = synthetic_tree_of(300);
   const RodTree rods = make_rod_tree(tree);
   const Wall wall(tree, 7);
   const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);
@@ -89,7 +89,7 @@ TEST(SurfaceBinding, IsEquation10) {
 }
 
 TEST(SurfaceBinding, FollowsARigidMotionExactly) {
-  const Centerline tree = tree_of(119);
+  const Centerline tree = synthetic_tree_of(119);
   const RodTree rods = make_rod_tree(tree);
   const Wall wall(tree, 5);
   const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);
@@ -111,7 +111,7 @@ TEST(SurfaceBinding, FollowsARigidMotionExactly) {
 }
 
 TEST(SurfaceBinding, IsAsPreciseFarFromTheOrigin) {
-  const Centerline near = tree_of(119);
+  const Centerline near = synthetic_tree_of(119);
   std::vector<CenterlineNode> nodes = near.nodes();
   for (CenterlineNode& node : nodes) node.position += Vec3(1e5, -2e5, 3e5);
   const Centerline tree(nodes, near.segments());
@@ -125,7 +125,7 @@ TEST(SurfaceBinding, IsAsPreciseFarFromTheOrigin) {
 }
 
 TEST(SurfaceBinding, NormalsAreForWhoAsks) {
-  const Centerline tree = tree_of(119);
+  const Centerline tree = synthetic_tree_of(119);
   const RodTree rods = make_rod_tree(tree);
   const Wall wall(tree, 5);
   const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);
@@ -140,7 +140,7 @@ TEST(SurfaceBinding, NormalsAreForWhoAsks) {
 }
 
 TEST(SurfaceBinding, SameBytesOnEveryMachine) {
-  const Centerline tree = tree_of(300);
+  const Centerline tree = synthetic_tree_of(300);
   const RodTree rods = make_rod_tree(tree);
   const Wall wall(tree, 7);
   const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);
@@ -168,7 +168,7 @@ TEST(SurfaceBinding, SameBytesOnEveryMachine) {
 }
 
 TEST(SurfaceBinding, NearestPlacesAreThoseOfASearchThroughAll) {
-  const Centerline tree = tree_of(119);
+  const Centerline tree = synthetic_tree_of(119);
   const Wall wall(tree, 3);
   const std::vector<SurfacePlace> found = nearest_places(tree, wall.points);
   for (std::size_t v = 0; v < wall.points.size(); ++v) {
@@ -183,7 +183,7 @@ TEST(SurfaceBinding, NearestPlacesAreThoseOfASearchThroughAll) {
 }
 
 TEST(SurfaceBinding, LeavesAloneWhatDidNotMove) {
-  const Centerline tree = tree_of(119);
+  const Centerline tree = synthetic_tree_of(119);
   const RodTree rods = make_rod_tree(tree);
   const Wall wall(tree, 5);
   const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);
@@ -229,7 +229,7 @@ TEST(SurfaceBinding, RefusesWhatIsNoPlace) {
 }
 
 TEST(LinearSkin, PutsVerticesWhereTheBindingDoes) {
-  const Centerline tree = tree_of(300);
+  const Centerline tree = synthetic_tree_of(300);
   const RodTree rods = make_rod_tree(tree);
   const Wall wall(tree, 7);
   const SurfaceBinding binding(tree, rods, wall.points, wall.normals, wall.places);

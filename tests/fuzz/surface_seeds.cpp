@@ -26,7 +26,7 @@ std::string binary_ply() {
 
 /// The most significant byte first.
 template <class T>
-std::string big(std::initializer_list<T> values) {
+std::string big_endian(std::initializer_list<T> values) {
   std::string text;
   for (const T value : values) {
     const std::string little = bytes(value);
@@ -87,10 +87,10 @@ std::vector<std::string> surface_vtk_seeds() {
               "POLYGONS 2 10\n5 0 1 2 3 4\n3 0 1 5\nTRIANGLE_STRIPS 1 5\n4 0 1 4 5\n"
               "CELL_DATA 4\nSCALARS GroupIds int 1\nLOOKUP_TABLE default\n7 8 9 10\n"
               "POINT_DATA 6\nFIELD f 1\nDistance 1 6 float\n1 2 3 4 5 6\n",
-          head + "BINARY" + kind + "POINTS 4 double\n" + big({0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., .5}) +
-              "\nPOLYGONS 3 4\nOFFSETS vtktypeint64\n" + big<std::int64_t>({0, 4, 4}) +
-              "\nCONNECTIVITY vtktypeint64\n" + big<std::int64_t>({0, 1, 2, 3}) + "\nTRIANGLE_STRIPS 1 5\n" +
-              big<std::int32_t>({4, 0, 1, 3, 2}) + "\n"};
+          head + "BINARY" + kind + "POINTS 4 double\n" + big_endian({0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., .5}) +
+              "\nPOLYGONS 3 4\nOFFSETS vtktypeint64\n" + big_endian<std::int64_t>({0, 4, 4}) +
+              "\nCONNECTIVITY vtktypeint64\n" + big_endian<std::int64_t>({0, 1, 2, 3}) + "\nTRIANGLE_STRIPS 1 5\n" +
+              big_endian<std::int32_t>({4, 0, 1, 3, 2}) + "\n"};
 }
 
 std::vector<std::string> surface_vtp_seeds() {

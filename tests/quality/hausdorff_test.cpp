@@ -17,7 +17,7 @@ using testing::Draw, testing::cube, testing::icosphere, testing::moved;
 using testing::operator+;
 
 // What is set aside for rounding is 2^-46 of coordinates and extents, below 10 here.
-constexpr double kRounding = 1e-12;
+constexpr double kDistanceRounding = 1e-12;
 
 HausdorffOptions to(double tolerance) {
   HausdorffOptions options;
@@ -27,8 +27,8 @@ HausdorffOptions to(double tolerance) {
 
 template <class Interval>
 void expect_interval(const Interval& found, double exact, double tolerance) {
-  EXPECT_LE(found.lower, exact + kRounding);
-  EXPECT_GE(found.upper, exact - kRounding);
+  EXPECT_LE(found.lower, exact + kDistanceRounding);
+  EXPECT_GE(found.upper, exact - kDistanceRounding);
   EXPECT_LE(found.upper - found.lower, tolerance);
   EXPECT_LE(found.lower, found.upper);
 }
@@ -165,11 +165,11 @@ TEST(Hausdorff, HoldsWhatSamplesFindAndProvesItsLowerBound) {
     EXPECT_GE(sampled, 0.9 * found.lower);  // 5000 points on a few faces come that close
     const DistanceWitness& witness = found.witness;
     EXPECT_GE((witness.from - witness.to).norm(), found.lower);
-    EXPECT_NEAR(index.closest(witness.from).distance, (witness.from - witness.to).norm(), kRounding);
+    EXPECT_NEAR(index.closest(witness.from).distance, (witness.from - witness.to).norm(), kDistanceRounding);
     EXPECT_LT(ClosestPointIndex({from.vertices, {from.faces[witness.from_face]}}).closest(witness.from).distance,
-              kRounding);
+              kDistanceRounding);
     EXPECT_LT(ClosestPointIndex({other.vertices, {other.faces[witness.to_face]}}).closest(witness.to).distance,
-              kRounding);
+              kDistanceRounding);
   }
 }
 
@@ -184,7 +184,7 @@ TEST(Hausdorff, SymmetricIsTheLargerDirection) {
     EXPECT_GE(found.upper, both.lower());
     EXPECT_GE((found.witness.from - found.witness.to).norm(), found.lower);
     const TriMesh& from = found.from_second ? b : a;
-    EXPECT_LT(ClosestPointIndex(from).closest(found.witness.from).distance, kRounding);
+    EXPECT_LT(ClosestPointIndex(from).closest(found.witness.from).distance, kDistanceRounding);
   }
 }
 
@@ -231,8 +231,8 @@ TEST(Hausdorff, WorksFarFromTheOriginAndAtAnySize) {
   for (const double size : {1e-9, 1e9}) {
     const OneSidedHausdorff side =
         one_sided_hausdorff(scaled(icosphere(2), 2 * size), scaled(icosphere(2), size), to(1e-5 * size));
-    EXPECT_LE(side.lower, size * (1 + kRounding));
-    EXPECT_GE(side.upper, size * (1 - kRounding));
+    EXPECT_LE(side.lower, size * (1 + kDistanceRounding));
+    EXPECT_GE(side.upper, size * (1 - kDistanceRounding));
     EXPECT_LE(side.upper - side.lower, 1e-5 * size);
   }
 }

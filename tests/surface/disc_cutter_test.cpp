@@ -12,7 +12,7 @@
 namespace vmesh {
 namespace {
 
-std::vector<Vec3> ring(int count, double radius, double height, double turn = 0) {
+std::vector<Vec3> docked_ring(int count, double radius, double height, double turn = 0) {
   std::vector<Vec3> points;
   for (int i = 0; i < count; ++i) {
     const double angle = 2 * M_PI * (i + turn) / count;
@@ -25,7 +25,7 @@ std::vector<Vec3> ring(int count, double radius, double height, double turn = 0)
 TriMesh closed_cylinder(int around, int rings) {
   TriMesh mesh;
   for (int k = 0; k < rings; ++k) {
-    const auto points = ring(around, 1, -5 + 10.0 * k / (rings - 1), 0.5 * (k % 2));
+    const auto points = docked_ring(around, 1, -5 + 10.0 * k / (rings - 1), 0.5 * (k % 2));
     mesh.vertices.insert(mesh.vertices.end(), points.begin(), points.end());
   }
   const auto at = [&](int k, int i) { return static_cast<Index>(k * around + i % around); };
@@ -54,7 +54,7 @@ std::vector<Index> all_vertices(const TriMesh& mesh) {
 TEST(Stitch, UsesEveryEdgeOfBothLoopsOnceAndNoneTwice) {
   for (const auto& [n, m] : {std::pair(3, 3), {6, 6}, {6, 9}, {15, 6}, {40, 7}, {3, 30}}) {
     SCOPED_TRACE(std::to_string(n) + " to " + std::to_string(m));
-    const auto bottom = ring(n, 1, 0), top = ring(m, 1.3, 1, 0.37);
+    const auto bottom = docked_ring(n, 1, 0), top = docked_ring(m, 1.3, 1, 0.37);
     const auto faces = stitch(bottom, top);
     EXPECT_EQ(faces.size(), bottom.size() + top.size());
     TriMesh mesh{bottom, faces};
@@ -73,7 +73,7 @@ TEST(Stitch, UsesEveryEdgeOfBothLoopsOnceAndNoneTwice) {
 }
 
 TEST(Stitch, MakesEquilateralTrianglesBetweenRingsTurnedHalfAStep) {
-  const auto bottom = ring(6, 1, 0), top = ring(6, 1, 0.9, 0.5);
+  const auto bottom = docked_ring(6, 1, 0), top = docked_ring(6, 1, 0.9, 0.5);
   for (const auto& face : stitch(bottom, top)) {
     const auto at = [&](Index i) { return i < 6 ? bottom[i] : top[i - 6]; };
     for (int i = 0; i < 3; ++i) EXPECT_LT((at(face[i]) - at(face[(i + 1) % 3])).norm(), 1.05);

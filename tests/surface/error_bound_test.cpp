@@ -12,28 +12,28 @@
 namespace vmesh {
 namespace {
 
-using Face = ErrorProof::Face;
+using ProofFace = ErrorProof::Face;
 using Side = ErrorProof::Side;
 
 // A face across a tube of radius 1 along x, at `height` above the axis: `half` to either side of the plane y = 0.
-Face face_over_tube(double height, double half) {
+ProofFace face_over_tube(double height, double half) {
   const Vec3 up(0, 0, 1);
   return {{{{3.5, -half, height}, up, 1, 0}, {{4.5, -half, height}, up, 1, 0}, {{4, half, height}, up, 1, 0}}};
 }
 
-Centerline long_tube() { return {{{{0, 0, 0}, 1}, {{8, 0, 0}, 1}}, {{0, 1}}}; }
+Centerline short_tube() { return {{{{0, 0, 0}, 1}, {{8, 0, 0}, 1}}, {{0, 1}}}; }
 
 TEST(ErrorProof, KnowsWhereACopyOfAFaceLeavesATube) {
-  const Centerline tube = long_tube();
+  const Centerline tube = short_tube();
   const VesselField field(tube);
   const ErrorProof proof(field);
-  const Face face = face_over_tube(0.9, 0.3);
+  const ProofFace face = face_over_tube(0.9, 0.3);
   // The nearest point of the copy to the axis lies at y = 0: it is outside from a height of 1 on.
   EXPECT_TRUE(proof.holds(face, {0.101, 0.101, 0.101}, Side::outer));
   EXPECT_FALSE(proof.holds(face, {0.099, 0.099, 0.099}, Side::outer));
   // The farthest points are the corners, at sqrt(0.9^2 + 0.3^2) = 0.949 < 1.
   EXPECT_TRUE(proof.holds(face, {0, 0, 0}, Side::inner));
-  const Face high = face_over_tube(0.97, 0.3);  // corners at 1.015; down by 0.021 they are at 0.9954
+  const ProofFace high = face_over_tube(0.97, 0.3);  // corners at 1.015; down by 0.021 they are at 0.9954
   EXPECT_FALSE(proof.holds(high, {0.015, 0.015, 0.015}, Side::inner));
   EXPECT_TRUE(proof.holds(high, {0.021, 0.021, 0.021}, Side::inner));
 }
@@ -47,7 +47,7 @@ TEST(ErrorProof, TriesLowerShellsWhereTheNextWallIsNear) {
   const Vec3 along = Vec3(8, 1.6, 0).normalized(), inward = Vec3(1.6, -8, 0).normalized();
   const Vec3 wall = Vec3(0, 0, 0) + 0.8 * Vec3(8, 1.6, 0) + 0.76 * inward;
   const Vec3 up(0, 0, 1);
-  const Face face = {
+  const ProofFace face = {
       {{wall - 0.1 * up, inward, 1.3, 1}, {wall + 0.1 * along, inward, 1.3, 1}, {wall + 0.1 * up, inward, 1.3, 1}}};
   EXPECT_FALSE(proof.holds(face, {1.3, 1.3, 1.3}, Side::outer));
   const ErrorProof::Shares shares = proof.shares(face);
@@ -72,7 +72,7 @@ TEST(ErrorProof, HoldsOnlyWhatDensePointsConfirm) {
       const Vec3 out = direction(),
                  middle = on_axis + field.relations().radius_at(cone, 0.5) * (1 + 0.4 * uniform(random)) * out;
       const double size = 0.1 + 0.5 * std::abs(uniform(random));
-      Face face;
+      ProofFace face;
       for (auto& corner : face) corner = {middle + size * direction(), out, 1, cone};
       for (const Side side : {Side::inner, Side::outer}) {
         const bool holds = proof.holds(face, {0, 0, 0}, side);

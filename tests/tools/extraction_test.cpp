@@ -90,12 +90,12 @@ TEST_F(Extraction, AWallIsEnoughForASurface) {
   const Outcome run = vmesh({"generate", "@open.ply", "-o", "@again.ply", "--ends", "flat", "--centerline-output",
                              "@c.json", "--json", "@out.json", "--check"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto json = summary();
-  EXPECT_EQ(json.at("extraction").at("components"), 1);
-  EXPECT_GT(json.at("extraction").at("coverage"), 0.99);
-  EXPECT_EQ(json.at("caps").size(), 3u);
+  const auto report = summary();
+  EXPECT_EQ(report.at("extraction").at("components"), 1);
+  EXPECT_GT(report.at("extraction").at("coverage"), 0.99);
+  EXPECT_EQ(report.at("caps").size(), 3u);
   for (const char* stage : {"read", "wall", "skeleton", "cones", "coverage", "contour", "fit"})
-    EXPECT_TRUE(json.at("seconds").contains(stage)) << stage;
+    EXPECT_TRUE(report.at("seconds").contains(stage)) << stage;
   EXPECT_EQ(nlohmann::json::parse(read("c.json")).at("end_sections").size(), 3u);
 }
 

@@ -13,7 +13,7 @@ namespace {
 using testing::CenterlineBuilder;
 using testing::Draw;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using testing::kEps;
 
 // Arms from the origin: every cone is local to every other, so that local and global queries agree.
 Centerline random_star(Draw& draw, int arms, double thinnest) {

@@ -13,7 +13,7 @@ namespace {
 
 using testing::Draw;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using testing::kEps;
 
 template <class Map>
 Centerline mapped(const Centerline& centerline, double scale, Map&& map) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "draw.h"
 
 namespace vmesh::testing {
+
+inline constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 /// A random graph: loops, several components, isolated nodes, spheres that contain their neighbours.
 inline Centerline random_graph(Draw& draw, Index node_count) {

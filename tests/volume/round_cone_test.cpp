@@ -6,14 +6,14 @@
 
 #include "vmesh/volume/vessel_field.h"
 
-#include "draw.h"
+#include "random_centerline.h"
 
 namespace vmesh {
 namespace {
 
 using testing::Draw;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using testing::kEps;
 
 struct RoundCone {
   CenterlineNode a, b;

@@ -15,7 +15,7 @@ using testing::all_cones;
 using testing::closest_of;
 using testing::Draw;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using testing::kEps;
 
 void expect_same(const FieldSample& actual, const FieldSample& expected) {
   EXPECT_EQ(actual.distance, expected.distance);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SurfacePtr from_arrays(const py::object& vertices, const py::object& faces, const CenterlinePtr& centerline) {
+SurfacePtr surface_from_arrays(const py::object& vertices, const py::object& faces, const CenterlinePtr& centerline) {
   auto surface = std::make_shared<SurfaceObject>();
   surface->result.mesh = {to_points(vertices, "vertices"), to_triangles(faces, "faces")};
   const TriMesh& mesh = surface->mesh();
@@ -36,8 +36,8 @@ SurfacePtr from_arrays(const py::object& vertices, const py::object& faces, cons
   return surface;
 }
 
-SurfacePtr read(const fs::path& path, const CenterlinePtr& centerline, const std::optional<std::string>& unit,
-                const std::optional<std::string>& space) {
+SurfacePtr read_surface_file(const fs::path& path, const CenterlinePtr& centerline,
+                             const std::optional<std::string>& unit, const std::optional<std::string>& space) {
   std::optional<LengthUnit> unit_given;
   std::optional<Space> space_given;
   if (unit) unit_given = unit_of(*unit);
@@ -61,8 +61,8 @@ MeshAttributes attributes_of(const SurfaceObject& self) {
   return attributes;
 }
 
-void save(const SurfaceObject& self, const fs::path& path, const std::string& unit, const std::string& space,
-          bool bones) {
+void save_surface(const SurfaceObject& self, const fs::path& path, const std::string& unit, const std::string& space,
+                  bool bones) {
   SurfaceMetadata metadata;
   metadata.generator = generator_name();
   metadata.unit = unit_of(unit);
@@ -133,7 +133,7 @@ py::array normals_of(const SurfaceObject& self) {
   return array_of(std::move(values)).attr("reshape")(-1, 3);
 }
 
-std::string describe(const SurfaceObject& self) {
+std::string describe_surface(const SurfaceObject& self) {
   std::string text = "<vmesh.Surface: " + counted(self.mesh().vertices.size(), "vertex", "vertices") + ", ";
   text += counted(self.mesh().faces.size(), "face");
   if (self.result.openings.size() > 0) text += ", " + counted(self.result.openings.size(), "opening");
@@ -229,7 +229,7 @@ arrays are views of its memory, not writable, and keep it alive.
 
 Surface(vertices, faces, centerline=None) takes arrays (copied): (n, 3) floats, mm, LPS, and (m, 3)
 whole numbers. With a centerline every vertex is bound to the nearest place on it.)");
-  surface.def(py::init(&from_arrays), py::arg("vertices"), py::arg("faces"), py::arg("centerline") = py::none())
+  surface.def(py::init(&surface_from_arrays), py::arg("vertices"), py::arg("faces"), py::arg("centerline") = py::none())
       .def_property_readonly(
           "centerline", [](const SurfaceObject& self) { return self.centerline; },
           "The centerline that it is bound to, or None.")
@@ -263,16 +263,16 @@ whole numbers. With a centerline every vertex is bound to the nearest place on i
       .def_property_readonly(
           "face_attributes", [](const SurfaceObject& self) { return as_dict(attributes_of(self).face); },
           "Arrays by name: those of a file, or EquiangleSkewness and branch.")
-      .def("save", &save, py::arg("path"), py::kw_only(), py::arg("unit") = "mm", py::arg("space") = "LPS",
+      .def("save", &save_surface, py::arg("path"), py::kw_only(), py::arg("unit") = "mm", py::arg("space") = "LPS",
            py::arg("bones") = false,
            "Writes it by extension: .ply, .vtp, .glb, .obj, .stl, .off. The file appears complete or not at all.\n"
            "bones: a .glb gets some along the centerline. Raises WriteError, Unsupported.")
       .def(
           "to_vtk", [](const py::object& self) { return py::module_::import("vmesh._vtk").attr("to_vtk")(self); },
           "A vtkPolyData with the attributes as arrays; needs python3-vtk9. pyvista.wrap(surface.to_vtk()).")
-      .def("__repr__", &describe);
+      .def("__repr__", &describe_surface);
   bind_arrays(surface);
-  module.def("read_surface", &read, py::arg("path"), py::kw_only(), py::arg("centerline") = py::none(),
+  module.def("read_surface", &read_surface_file, py::arg("path"), py::kw_only(), py::arg("centerline") = py::none(),
              py::arg("unit") = py::none(), py::arg("space") = py::none(),
              R"(Reads a surface by extension: .ply, .vtp, .vtk, .stl, .obj, .off, .glb, .gltf, .3mf, .dae, .x3d, .fbx.
 

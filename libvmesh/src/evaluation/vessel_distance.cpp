@@ -11,7 +11,7 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kReportEvery = 4096, kBatch = 16384, kTogether = 256;  // samples
+constexpr std::size_t kReportEvery = 4096, kMeasuredTogether = 16384, kPerTask = 256;  // samples
 
 // Collects the distances of samples.
 class SideCollector {
@@ -55,10 +55,10 @@ struct Measured {
 // Adds measure(i, near) for all i in order, a batch at a time; `near` is passed on from one to the next within a task.
 template <class Measure>
 void measure_in_order(std::size_t count, SideCollector& to, const Measure& measure) {
-  std::vector<Measured> batch(std::min(count, kBatch));
-  for (std::size_t first = 0; first < count; first += kBatch) {
-    const std::size_t size = std::min(kBatch, count - first);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size, kTogether), [&](const auto& range) {
+  std::vector<Measured> batch(std::min(count, kMeasuredTogether));
+  for (std::size_t first = 0; first < count; first += kMeasuredTogether) {
+    const std::size_t size = std::min(kMeasuredTogether, count - first);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size, kPerTask), [&](const auto& range) {
       Index near = kNone;
       for (std::size_t i = range.begin(); i < range.end(); ++i) batch[i] = measure(first + i, near);
     });

@@ -13,7 +13,7 @@
 namespace vmesh::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 enum ComponentType { kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
 enum Target { kVertices = 34962, kIndices = 34963, kNoTarget = 0 };
@@ -50,7 +50,7 @@ class GlbWriter {
             const SurfaceSkin* skin)
       : mesh_(mesh), attributes_(attributes), skin_(skin) {
     json_["asset"] = {{"version", "2.0"}, {"generator", one_line(metadata.generator)}};
-    Json extras = Json::object();
+    OrderedJson extras = OrderedJson::object();
     for (const auto& [key, value] : {std::pair{"options", &metadata.options},
                                      {"input", &metadata.input_name},
                                      {"inputSHA256", &metadata.input_sha256}}) {
@@ -64,7 +64,7 @@ class GlbWriter {
   }
 
   void run(std::ostream& out) {
-    Json attributes = Json::object();
+    OrderedJson attributes = OrderedJson::object();
     attributes["POSITION"] = positions();
     attributes["NORMAL"] = normals();
     if (find(attributes_.vertex, "red") && find(attributes_.vertex, "green") && find(attributes_.vertex, "blue"))
@@ -73,8 +73,8 @@ class GlbWriter {
       if (!is_color(a.name)) attributes[custom_name(a.name)] = scalars(a);
     }
     if (skin_) add_weights(attributes);
-    const Json primitive = {{"attributes", std::move(attributes)}, {"indices", indices()}, {"material", 0}};
-    json_["meshes"].push_back({{"name", "surface"}, {"primitives", Json::array({primitive})}});
+    const OrderedJson primitive = {{"attributes", std::move(attributes)}, {"indices", indices()}, {"material", 0}};
+    json_["meshes"].push_back({{"name", "surface"}, {"primitives", OrderedJson::array({primitive})}});
     json_["materials"].push_back({{"name", "vessel"},
                                   {"doubleSided", true},
                                   {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.6}}}});
@@ -85,7 +85,7 @@ class GlbWriter {
  private:
   std::size_t view(Target target) {
     bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');
-    Json& view = json_["bufferViews"].emplace_back();
+    OrderedJson& view = json_["bufferViews"].emplace_back();
     view = {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", 0}};
     if (target != kNoTarget) view["target"] = static_cast<int>(target);
     return json_["bufferViews"].size() - 1;
@@ -93,7 +93,7 @@ class GlbWriter {
 
   /// Adds an accessor for all bytes since the last view(); returns its number.
   std::size_t accessor(std::size_t view, ComponentType type, const char* kind, std::size_t count) {
-    Json& described = json_["bufferViews"][view];
+    OrderedJson& described = json_["bufferViews"][view];
     described["byteLength"] = bytes_.size() - described["byteOffset"].get<std::size_t>();
     json_["accessors"].push_back(
         {{"bufferView", view}, {"componentType", static_cast<int>(type)}, {"count", count}, {"type", kind}});
@@ -115,8 +115,8 @@ class GlbWriter {
       for (const float x : p) store(bytes_, x);
     }
     const std::size_t number = accessor(at, kFloat, "VEC3", mesh_.vertices.size());
-    json_["accessors"][number]["min"] = Json::array({low.x(), low.y(), low.z()});
-    json_["accessors"][number]["max"] = Json::array({high.x(), high.y(), high.z()});
+    json_["accessors"][number]["min"] = OrderedJson::array({low.x(), low.y(), low.z()});
+    json_["accessors"][number]["max"] = OrderedJson::array({high.x(), high.y(), high.z()});
     return number;
   }
 
@@ -154,7 +154,7 @@ class GlbWriter {
     return accessor(at, kUnsignedInt, "SCALAR", 3 * mesh_.faces.size());
   }
 
-  void add_weights(Json& attributes) {
+  void add_weights(OrderedJson& attributes) {
     const std::size_t joints = view(kVertices);
     for (const auto& of_vertex : skin_->joint_of_vertex) {
       for (const Index joint : of_vertex) store(bytes_, static_cast<std::uint16_t>(joint));
@@ -171,27 +171,27 @@ class GlbWriter {
   /// at rest.
   void add_nodes() {
     const Vec3 origin = metres(origin_);
-    const Json translation = Json::array({origin.x(), origin.y(), origin.z()});
+    const OrderedJson translation = OrderedJson::array({origin.x(), origin.y(), origin.z()});
     // Programs that do not support bones place the surface at rest by its own node.
     json_["nodes"].push_back({{"name", "surface"}, {"mesh", 0}, {"translation", translation}});
     if (!skin_) {
-      json_["scenes"].push_back({{"nodes", Json::array({0})}});
+      json_["scenes"].push_back({{"nodes", OrderedJson::array({0})}});
     } else {
       add_joints(translation);
-      json_["scenes"].push_back({{"nodes", Json::array({0, 1})}});
+      json_["scenes"].push_back({{"nodes", OrderedJson::array({0, 1})}});
     }
     json_["scene"] = 0;
   }
 
-  void add_joints(const Json& translation) {
-    Json numbers = Json::array();
+  void add_joints(const OrderedJson& translation) {
+    OrderedJson numbers = OrderedJson::array();
     const std::size_t at = view(kNoTarget);
     json_["nodes"][0]["skin"] = 0;
     json_["nodes"].push_back({{"name", "bones"}, {"translation", translation}});
     for (const SurfaceSkin::Joint& joint : skin_->joints) {
       const Vec3 p = metres(joint.position - origin_);
       numbers.push_back(json_["nodes"].size());
-      json_["nodes"].push_back({{"name", joint.name}, {"translation", Json::array({p.x(), p.y(), p.z()})}});
+      json_["nodes"].push_back({{"name", joint.name}, {"translation", OrderedJson::array({p.x(), p.y(), p.z()})}});
       for (int column = 0; column < 4; ++column) {
         for (int row = 0; row < 4; ++row)
           store(bytes_, static_cast<float>(row == column ? 1 : column == 3 ? -p[row] : 0));
@@ -207,7 +207,7 @@ class GlbWriter {
     constexpr std::size_t kLargest = std::numeric_limits<std::uint32_t>::max();
     bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');
     json_["buffers"].push_back({{"byteLength", bytes_.size()}});
-    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = json_.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     const std::size_t size = 12 + 8 + text.size() + 8 + bytes_.size();
     if (size > kLargest) throw Unsupported("the surface is too large for a GLB file (4 GB); write it as .ply");
@@ -225,7 +225,7 @@ class GlbWriter {
   const MeshAttributes& attributes_;
   const SurfaceSkin* skin_;
   Vec3 origin_ = Vec3::Zero();  ///< at the centre, for precision
-  Json json_;
+  OrderedJson json_;
   std::string bytes_;
 };
 

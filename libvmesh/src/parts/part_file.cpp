@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kSchema = "vmesh.part/2";
+constexpr const char* kPartSchema = "vmesh.part/2";
 
 // A list of lists as a flat one, and where each begins.
 struct Lists {
@@ -158,7 +158,7 @@ ConeOrigins read_origins(ArrayFile& file, std::size_t cones, std::size_t nodes) 
 void write_part(const std::filesystem::path& path, const StoredPart& stored) {
   const SurfacePart& part = stored.part;
   ArrayWriter file(
-      {{"schema", kSchema}, {"id", stored.id}, {"options", to_json(part.options)}, {"first_piece", part.first_piece}});
+      {{"schema", kPartSchema}, {"id", stored.id}, {"options", to_json(part.options)}, {"first_piece", part.first_piece}});
   ColumnWriter columns(file);
   describe_field(columns, part.field);
   Lists branch_nodes, branch_segments;
@@ -177,7 +177,7 @@ void write_part(const std::filesystem::path& path, const StoredPart& stored) {
 }
 
 StoredPart read_part(const std::filesystem::path& path) {
-  ArrayFile file(path, kSchema);
+  ArrayFile file(path, kPartSchema);
   file.verify();
   StoredPart stored;
   SurfacePart& part = stored.part;

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kSchema = "vmesh.part-surface/2";
+constexpr const char* kPartSurfaceSchema = "vmesh.part-surface/2";
 
 // All but the header.
 void describe(auto& columns, auto& stored) {
@@ -44,7 +44,7 @@ void write_part_surface(const std::filesystem::path& path, const StoredPartSurfa
     if (!piece.faults.empty()) throw InvalidInput(path.string() + ": a part that is not sound is not written");
   }
   for (const GrowthSimplification& note : surface.simplifications) notes.push_back(to_json(note));
-  ArrayWriter file({{"schema", kSchema},
+  ArrayWriter file({{"schema", kPartSurfaceSchema},
                     {"id", stored.id},
                     {"first_piece", surface.first_piece},
                     {"around", surface.around},
@@ -55,7 +55,7 @@ void write_part_surface(const std::filesystem::path& path, const StoredPartSurfa
 }
 
 StoredPartSurface read_part_surface(const std::filesystem::path& path, bool verify) {
-  ArrayFile file(path, kSchema);
+  ArrayFile file(path, kPartSurfaceSchema);
   if (verify) file.verify();
   StoredPartSurface stored;
   PartSurface& surface = stored.surface;

@@ -17,7 +17,7 @@ namespace {
 
 // The plastic number, the analogue of the golden ratio in two dimensions.
 constexpr double kPlastic = 1.32471795724474602596;
-constexpr std::size_t kReportEvery = 16384, kTogether = 256;  // samples
+constexpr std::size_t kBatch = 16384, kTogether = 256;  // samples
 
 // A point of the unit square, folded along its diagonal onto the triangle.
 Vec3 place_in(const TriMesh& mesh, Index face, double number) {
@@ -58,9 +58,9 @@ SampledDistance sample_distance(const TriMesh& from, const ClosestPointIndex& to
                                 const Progress& progress) {
   const std::vector<SurfaceSample> points = sample_surface(from, samples);
   std::vector<double> distances(points.size());
-  for (std::size_t first = 0; first < points.size(); first += kReportEvery) {
+  for (std::size_t first = 0; first < points.size(); first += kBatch) {
     report_progress(progress, "samples", static_cast<double>(first) / static_cast<double>(points.size()));
-    const std::size_t last = std::min(points.size(), first + kReportEvery);
+    const std::size_t last = std::min(points.size(), first + kBatch);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, kTogether), [&](const auto& range) {
       Index near = kNone;
       for (std::size_t i = range.begin(); i < range.end(); ++i) {

@@ -12,6 +12,7 @@
 #include "flat_caps.h"
 #include "nested_shells.h"
 #include "openings.h"
+#include "wall_cleaning.h"
 #include "wall_shells.h"
 #include "wall_text.h"
 #include "wrapped_wall.h"
@@ -27,12 +28,6 @@ constexpr double kSheet = 0.02, kDish = 0.25, kMostlyOpen = 0.6;
 constexpr std::size_t kManyPieces = 10;
 // Sheets of less than this share of the area are left out.
 constexpr double kFewSheets = 0.05;
-
-double area_of(const TriMesh& mesh) {
-  double area = 0;
-  for (Index f = 0; f < mesh.faces.size(); ++f) area += 0.5 * area_normal(mesh, f).norm();
-  return area;
-}
 
 void check(const TriMesh& surface) {
   if (surface.faces.empty()) throw InvalidInput("the surface has no face; give a surface of triangles or polygons");

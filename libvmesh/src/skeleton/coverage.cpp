@@ -14,8 +14,8 @@ namespace {
 // A point of the wall is covered if the vessels' boundary is nearer than this times the radius, or this number of
 // voxels.
 constexpr double kReachRadii = 0.5, kReachVoxels = 1.5;
-constexpr double kCells =
-    3;  // missed samples in neighbouring cells are one region; the cells' size in spacings of samples
+// Missed samples in neighbouring cells are one region; the cells' size in spacings of samples.
+constexpr double kCellSpacings = 3;
 
 /// A point of the wall and how far it is from the vessels' boundary.
 struct Deviation {
@@ -61,7 +61,7 @@ std::vector<MissedWall> regions_of(const std::vector<Missed>& missed, const FitS
   if (missed.empty()) return {};
   double area = 0;
   for (const Missed& m : missed) area += samples.areas[m.sample];
-  const double cell = kCells * std::sqrt(area / static_cast<double>(missed.size()));
+  const double cell = kCellSpacings * std::sqrt(area / static_cast<double>(missed.size()));
   using Cell = std::array<long, 3>;
   std::map<Cell, Index> first_in;  // in missed
   DisjointSets sets(missed.size());

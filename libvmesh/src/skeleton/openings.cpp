@@ -22,10 +22,10 @@ namespace {
 
 // What an end of a vessel is like. Its ring has at least this number of vertices, and is at least this
 // round and flat, in radii.
-constexpr std::size_t kLeastRing = 5;
-constexpr double kLargestAspect = 4, kLeastCompactness = 0.4, kLargestUnevenness = 0.5;
+constexpr std::size_t kLeastCorners = 5;
+constexpr double kLargestAspect = 4, kLeastCompactness = 0.4, kLargestEndUnevenness = 0.5;
 // Its area is at least this share of that of a circle with the perimeter; a jagged cut has .4 and more.
-constexpr double kLeastRoundness = 0.25;
+constexpr double kLeastEndRoundness = 0.25;
 // Behind an end, the wall is near at this depth; behind a hole that has a tenth of the cross-section of a tube or a
 // ball, it is 2.16 radii away. Both in the hole's radii.
 constexpr double kDepth = 2, kFarthestWall = 2.1;
@@ -34,7 +34,7 @@ constexpr double kDepth = 2, kFarthestWall = 2.1;
 constexpr double kFlush = 0.7;
 constexpr std::size_t kFewInFlush = 12;
 // A ring that is flat within this many radii is triangulated in its plane.
-constexpr double kFlat = 0.25;
+constexpr double kFlatWithin = 0.25;
 // Filling takes cubic time in the worst case.
 constexpr std::size_t kLongestFilled = 500;
 
@@ -142,7 +142,7 @@ double flushness_of(const TriMesh& mesh, const Ring& ring, const RingShape& shap
 /// Appends faces that close the ring.
 void fill(TriMesh& mesh, const Ring& ring, const RingShape& shape, const std::vector<Edge>& taken) {
   const std::vector<Vec3> points = positions(mesh, ring);
-  const bool is_flat = ring.size() == 3 || (shape.area > 0 && shape.unevenness <= kFlat * shape.radius);
+  const bool is_flat = ring.size() == 3 || (shape.area > 0 && shape.unevenness <= kFlatWithin * shape.radius);
   std::vector<Triangle> faces = is_flat ? triangulate_polygon(points) : fill_uneven(points);
   if (fit(faces, ring, taken)) {
     for (const auto& [a, b, c] : faces) mesh.faces.push_back({ring[a], ring[b], ring[c]});
@@ -157,13 +157,13 @@ enum class Kind { end, hole, uneven };
 
 /// `flushness`: mean cosine between the ring's normal and those of the faces around it.
 Kind kind_of(std::size_t corners, const RingShape& shape, double flushness, const WallProbe& wall) {
-  if (corners < kLeastRing || !(shape.compactness >= kLeastCompactness) || shape.aspect > kLargestAspect)
+  if (corners < kLeastCorners || !(shape.compactness >= kLeastCompactness) || shape.aspect > kLargestAspect)
     return Kind::hole;
-  if (4 * std::numbers::pi * shape.area < kLeastRoundness * shape.perimeter * shape.perimeter) return Kind::hole;
+  if (4 * std::numbers::pi * shape.area < kLeastEndRoundness * shape.perimeter * shape.perimeter) return Kind::hole;
   if (flushness > kFlush && corners < kFewInFlush) return Kind::hole;
   const Vec3 behind = shape.center - kDepth * shape.radius * shape.normal;
   if (wall.nearest(behind).distance > kFarthestWall * shape.radius) return Kind::hole;
-  return shape.unevenness > kLargestUnevenness * shape.radius ? Kind::uneven : Kind::end;
+  return shape.unevenness > kLargestEndUnevenness * shape.radius ? Kind::uneven : Kind::end;
 }
 
 void note(OpeningsClosed& closed, Kind kind, const RingShape& shape) {

@@ -69,9 +69,9 @@ constexpr int kReach = 2;  // voxels: where a Gaussian of one voxel is down to a
 constexpr int kPatch = VoxelSet::kSide + 2 * kReach;
 
 /// Whether voxels are inside, 1 or 0, in and around a block.
-using Patch = std::array<float, kPatch * kPatch * kPatch>;
+using BlockPatch = std::array<float, kPatch * kPatch * kPatch>;
 
-void fill(const VoxelSet& voxels, const VoxelSet::Block& block, Patch& patch) {
+void fill(const VoxelSet& voxels, const VoxelSet::Block& block, BlockPatch& patch) {
   std::size_t at = 0;
   for (int k = -kReach; k < VoxelSet::kSide + kReach; ++k) {
     for (int j = -kReach; j < VoxelSet::kSide + kReach; ++j) {
@@ -99,9 +99,9 @@ std::array<float, kReach + 1> gaussian() {
 }
 
 /// Smooths along the axis with this stride; the first `lines` values of every kPatch * stride are meaningful.
-void smooth(Patch& patch, int stride) {
+void smooth(BlockPatch& patch, int stride) {
   static const std::array<float, kReach + 1> weights = gaussian();
-  Patch result{};
+  BlockPatch result{};
   const int count = static_cast<int>(patch.size());
   for (int n = kReach * stride; n < count - kReach * stride; ++n)
     result[n] = weights[0] * patch[n] + weights[1] * (patch[n - stride] + patch[n + stride]) +
@@ -129,7 +129,7 @@ std::vector<float> boundary_distances(const VoxelGraph& graph) {
 
 std::vector<float> smoothed_occupancy(const VoxelSet& voxels) {
   std::vector<float> occupancy(voxels.size());
-  Patch patch;
+  BlockPatch patch;
   for (const VoxelSet::Block& block : voxels.blocks()) {
     fill(voxels, block, patch);
     smooth(patch, 1);

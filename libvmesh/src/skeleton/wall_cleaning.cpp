@@ -26,7 +26,7 @@ constexpr double kSmallestTolerance = 1e-6, kLargestTolerance = 0.1, kNextTolera
 constexpr double kWorthIt = 0.5;
 // A fin has at most this share of the area.
 constexpr double kLargestFin = 0.1;
-constexpr int kMostPasses = 10;
+constexpr int kMostFinPasses = 10;
 // Edges with three faces that are cut out: in clusters of at most this number, with at most this share of
 // the area around them.
 constexpr std::size_t kLargestCluster = 4;
@@ -35,12 +35,6 @@ constexpr double kLargestCut = 0.01;
 bool has_three(const Triangle& face) { return face[0] != face[1] && face[1] != face[2] && face[2] != face[0]; }
 
 double area_of(const TriMesh& mesh, Index f) { return 0.5 * area_normal(mesh, f).norm(); }
-
-double area_of(const TriMesh& mesh) {
-  double area = 0;
-  for (Index f = 0; f < mesh.faces.size(); ++f) area += area_of(mesh, f);
-  return area;
-}
 
 /// Vertices that have faces, those at equal positions one; faces that have three.
 TriMesh welded(const TriMesh& surface) {
@@ -137,12 +131,6 @@ double median_edge(const TriMesh& mesh) {
         std::min({(mesh.vertices[a] - mesh.vertices[b]).norm(), (mesh.vertices[b] - mesh.vertices[c]).norm(),
                   (mesh.vertices[c] - mesh.vertices[a]).norm()}));
   return lengths.empty() ? 0 : median(std::move(lengths));
-}
-
-double extent_of(const TriMesh& mesh) {
-  Vec3 low = mesh.vertices.front(), high = low;
-  for (const Vec3& p : mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  return (high - low).norm();
 }
 
 void close_cracks(TriMesh& mesh, std::vector<std::string>& notes) {
@@ -300,6 +288,18 @@ bool are_scattered(const std::vector<EdgeSide>& edges, std::size_t vertices) {
 
 }  // namespace
 
+double extent_of(const TriMesh& mesh) {
+  Vec3 low = mesh.vertices.front(), high = low;
+  for (const Vec3& p : mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  return (high - low).norm();
+}
+
+double area_of(const TriMesh& mesh) {
+  double area = 0;
+  for (Index f = 0; f < mesh.faces.size(); ++f) area += area_of(mesh, f);
+  return area;
+}
+
 std::vector<EdgeSide> sides_by_edge(const TriMesh& mesh) {
   const auto visit = [&](auto&& take) {
     for (Index f = 0; f < mesh.faces.size(); ++f) {
@@ -336,7 +336,7 @@ TriMesh cleaned_soup(const TriMesh& surface, std::vector<std::string>& notes) {
 void drop_fins(TriMesh& mesh, std::vector<std::string>& notes) {
   const double largest = kLargestFin * area_of(mesh);
   std::size_t count = 0;
-  for (int pass = 0; pass < kMostPasses && has_crowded_edge(mesh); ++pass) {
+  for (int pass = 0; pass < kMostFinPasses && has_crowded_edge(mesh); ++pass) {
     DisjointSets sets(mesh.faces.size());
     const std::map<Index, Patch> patches = patches_of(mesh, sets);
     std::vector<bool> kept(mesh.faces.size(), true);

@@ -30,6 +30,11 @@ void visit_edges(const std::vector<EdgeSide>& sides, Visit&& visit) {
   }
 }
 
+double area_of(const TriMesh& mesh);
+
+/// The diagonal of the box around the vertices.
+double extent_of(const TriMesh& mesh);
+
 /// Keeps the faces that are marked.
 void keep_faces(TriMesh& mesh, const std::vector<bool>& kept);
 

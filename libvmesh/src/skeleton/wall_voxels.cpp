@@ -12,7 +12,7 @@ namespace {
 constexpr double kPerRadius = 3;
 constexpr double kMostVoxels = 6e5;
 constexpr std::size_t kBalls = 2000;  // places where the radius is measured
-constexpr double kThinnest = 0.1;     // of the area: the rest is noise
+constexpr double kNoiseShare = 0.1;   // of the area: the rest is noise
 constexpr int kMostShrinks = 12;
 
 /// The radius of the largest ball inside the wall that touches it at `p` (Ma et al. 2012, shrinking balls).
@@ -44,7 +44,7 @@ std::vector<Index> spread_faces(const TriMesh& mesh, std::size_t count) {
 }
 
 /// A column of voxels along the first axis and where a wall crosses it.
-struct Crossing {
+struct ColumnCrossing {
   std::size_t column;
   double at;  ///< in voxels
   int way;    ///< 1: into the wall's inside, -1: out of it
@@ -87,13 +87,13 @@ class Columns {
   }
 
   VoxelSet voxels() {
-    std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
+    std::sort(crossings_.begin(), crossings_.end(), [](const ColumnCrossing& a, const ColumnCrossing& b) {
       return std::tie(a.column, a.at, a.way) < std::tie(b.column, b.at, b.way);
     });
     VoxelSet voxels(size_);
     int winding = 0;
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
-      const Crossing& from = crossings_[i];
+      const ColumnCrossing& from = crossings_[i];
       winding = (i > 0 && crossings_[i - 1].column == from.column ? winding : 0) + from.way;
       if (winding <= 0 || i + 1 == crossings_.size() || crossings_[i + 1].column != from.column) continue;
       const auto first = static_cast<int>(std::ceil(std::max(from.at, 0.0)));
@@ -107,7 +107,7 @@ class Columns {
   static bool is_left(double area, const Vec3& a, const Vec3& b) { return area > 0 || (area == 0 && owns(a, b)); }
 
   std::array<std::size_t, 3> size_;
-  std::vector<Crossing> crossings_;
+  std::vector<ColumnCrossing> crossings_;
 };
 
 }  // namespace
@@ -127,7 +127,7 @@ double voxel_size_for(const TriMesh& wall, double volume) {
   }
   std::sort(radii.begin(), radii.end());
   const double thinnest =
-      radii.empty() ? mean : radii[static_cast<std::size_t>(kThinnest * static_cast<double>(radii.size()))];
+      radii.empty() ? mean : radii[static_cast<std::size_t>(kNoiseShare * static_cast<double>(radii.size()))];
   return std::max(std::min(thinnest, mean) / kPerRadius, std::cbrt(volume / kMostVoxels));
 }
 

@@ -42,12 +42,6 @@ struct Wrap {
   double area = 0;
 };
 
-double extent_of(const TriMesh& mesh) {
-  Vec3 low = mesh.vertices.front(), high = low;
-  for (const Vec3& p : mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  return (high - low).norm();
-}
-
 TriMesh to_mesh(const CGAL::Surface_mesh<Point>& surface) {
   TriMesh mesh;
   for (const auto v : surface.vertices()) {

@@ -25,7 +25,7 @@ constexpr double kThinnest = 8;
 constexpr Touch kFork{0.5, 0.25};  // at a fork, vessels are still parting up to this gap
 // Derived: relative to lengths, more than the rounding of an axis distance at any angle.
 constexpr double kNearlyParallel = 1e-6;
-constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
+constexpr double kContactRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
 // The sphere of a cone that is closest to a point, with its radii multiplied by `weight`.
 class NearestSphere {
@@ -122,7 +122,7 @@ BoxTree::Box box_of(const AxisStretch& cone, double margin) {
   BoxTree::Box box{(cone.origin.array() - cone.r0).min(end.array() - cone.r1),
                    (cone.origin.array() + cone.r0).max(end.array() + cone.r1)};
   const double size = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
-  const double around = margin * std::max(cone.r0, cone.r1) + kRounding * size;
+  const double around = margin * std::max(cone.r0, cone.r1) + kContactRounding * size;
   box.low.array() -= around;
   box.high.array() += around;
   return box;
@@ -162,7 +162,7 @@ class PairFinder {
     const double ra = std::max(a.r0, a.r1), rb = std::max(b.r0, b.r1);
     const double reach =
         (a.axis.norm() + b.axis.norm()) / 2 + (1 + most_rounding_) * (ra + rb) + gap_ * std::min(ra, rb);
-    return (a.point(0.5) - b.point(0.5)).squaredNorm() > reach * reach * (1 + kRounding);
+    return (a.point(0.5) - b.point(0.5)).squaredNorm() > reach * reach * (1 + kContactRounding);
   }
 
   void examine(Index i, Index j) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLeaf = 0.5;  // smaller radii; safe 0.35 to 0.7
 // Ratio of the larger radius to the smaller beyond which leaves do not become shorter; safe 5.6 to 11.
-constexpr double kSteepest = 8;
+constexpr double kSteepestFactor = 8;
 constexpr Index kMostLeaves = 4096;  // per segment; idle 2867 to 5734
 
 }  // namespace
@@ -32,7 +32,7 @@ DividedCenterline composed(const DividedCenterline& outer, DividedCenterline inn
 
 Index leaf_count_of(const Centerline& centerline, Index segment) {
   const auto [smaller, larger] = std::minmax({centerline.radius_at(segment, 0), centerline.radius_at(segment, 1)});
-  const double count = std::ceil(centerline.length(segment) / (kLeaf * std::max(smaller, larger / kSteepest)));
+  const double count = std::ceil(centerline.length(segment) / (kLeaf * std::max(smaller, larger / kSteepestFactor)));
   return static_cast<Index>(std::clamp(count, 1.0, double{kMostLeaves}));
 }
 

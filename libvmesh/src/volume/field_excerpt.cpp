@@ -12,7 +12,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates: in a box
+constexpr double kExcerptRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates: in a box
 // Cones: a quarter of the memory of a tree with leaves of the usual size, and it is asked rarely.
 constexpr Index kLeafSize = 16;
 
@@ -56,7 +56,7 @@ BoxTree::Box FieldExcerpts::box_of(Index c) const {
   const double around = (1 + 2 * relations_.blend()) * relations_.max_radius(c);
   const Vec3 begin = relations_.axis_point(c, 0), end = relations_.axis_point(c, 1);
   const double size = begin.cwiseAbs().cwiseMax(end.cwiseAbs()).maxCoeff() + around;
-  const double margin = around + kRounding * size;
+  const double margin = around + kExcerptRounding * size;
   return {begin.cwiseMin(end).array() - margin, begin.cwiseMax(end).array() + margin};
 }
 

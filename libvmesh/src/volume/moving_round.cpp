@@ -17,7 +17,7 @@ namespace vmesh {
 namespace {
 
 // Of the share that may be taken: aims for a little less, so that rounds of moving end; safe 0.035 to 0.07.
-constexpr double kSpare = 0.05;
+constexpr double kSpareLength = 0.05;
 // Of the wanted distance: axes farther apart than that determine the direction; safe 0.17 to 0.35.
 constexpr double kFarApart = 0.25;
 // Sine of the angle between axes from which on they cross; idle 0.14 to 0.28.
@@ -102,7 +102,7 @@ class MovingRound {
       leaf.from_other = part.point(closest.s) - across.point(closest.t);
       const double r = leaf.side.radius, q = leaf.other_side.radius;
       const double free = r + q + gap * std::min(r, q);
-      leaf.wanted = (1 - (1 - kSpare) * task_.most_narrowed) * free;
+      leaf.wanted = (1 - (1 - kSpareLength) * task_.most_narrowed) * free;
       leaf.share = share_left(part.radius(closest.s), across.radius(closest.t), closest.distance, gap, r);
       if (leaf.share < 1 - task_.most_narrowed) leaves.push_back(leaf);
     }

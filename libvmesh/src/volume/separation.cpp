@@ -14,8 +14,8 @@ namespace vmesh {
 namespace {
 
 // Aims for a little more than the gap, so that rounds of narrowing end.
-constexpr double kSpare = 0.02;  // safe 0.014 to 0.028
-constexpr double kMoved = 1e-9;  // derived: radii, more than rounding can move a node
+constexpr double kSpareGap = 0.02;  // safe 0.014 to 0.028
+constexpr double kMoved = 1e-9;     // derived: radii, more than rounding can move a node
 // Tried in turn where moves were in vain.
 constexpr MovingChoice kAttempts[] = {{}, {false, true}, {true, false}, {true, true}};
 
@@ -58,7 +58,7 @@ class Round {
     for (const ContactPair& pair : pairs) regions = std::max(regions, pair.region + 1);
     std::vector<std::vector<Hold>> per_region(regions);
     for (const ContactPair& pair : pairs) {
-      const double gap = pair.gap + kSpare;
+      const double gap = pair.gap + kSpareGap;
       hold_cone(pair.i, pair.j, gap, per_region[pair.region]);
       hold_cone(pair.j, pair.i, gap, per_region[pair.region]);
     }

@@ -9,7 +9,7 @@ namespace vmesh {
 namespace {
 
 // Relative to coordinates: covers the rounding in a distance and in a box.
-constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+constexpr double kIndexRounding = 16 * std::numeric_limits<double>::epsilon();
 // Length of an interval of a cone, relative to the distance from its axis that counts as near; idle 1.4 to 2.8.
 constexpr double kLongPiece = 2;
 constexpr int kMostPieces = 16;         // of a cone; idle 11 to 22
@@ -46,8 +46,8 @@ void VesselField::build_tree() {
       low.push_back((begin.array() - r0).min(end.array() - r1));
       high.push_back((begin.array() + r0).max(end.array() + r1));
       const double size = low.back().cwiseAbs().cwiseMax(high.back().cwiseAbs()).maxCoeff();
-      low.back().array() -= margin + kRounding * size;
-      high.back().array() += margin + kRounding * size;
+      low.back().array() -= margin + kIndexRounding * size;
+      high.back().array() += margin + kIndexRounding * size;
       cone_of_item_.push_back(c);
     }
   }
@@ -61,7 +61,7 @@ void VesselField::local_cones_near(const Vec3& p, Index cone, double limit, std:
     near.assign(local.begin(), local.end());
     return;
   }
-  const double most = limit + kRounding * p.norm();
+  const double most = limit + kIndexRounding * p.norm();
   visit_near(p, most, [&](Index c) { near.push_back(c); });
   keep_listed(local, near);
 }
@@ -72,7 +72,7 @@ FieldSample VesselField::blended_local(const Vec3& p, Index hint) const {
   if (local.size() <= kFewCones) return blended(p, local, hint);
   thread_local std::vector<Index> near;
   near.clear();
-  const double rounding = kRounding * p.norm();
+  const double rounding = kIndexRounding * p.norm();
   double limit = cones_[hint].distance_to(p).value + rounding;
   visit_near(p, limit, [&](Index c) {
     const double value = cones_[c].distance_to(p).value;

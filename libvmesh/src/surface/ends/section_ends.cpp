@@ -15,9 +15,9 @@
 namespace vmesh {
 namespace {
 
-constexpr double kFacing = 0.7;      // cosine between the normals of an opening and its section: 45 degrees
-constexpr double kFarthest = 0.5;    // radii from the middle of the ring to the section's centre
-constexpr double kCrossing = 1e-12;  // relative: rays through corners of a ring count as meeting both edges
+constexpr double kSectionFacing = 0.7;   // cosine between the normals of an opening and its section: 45 degrees
+constexpr double kFarthestCenter = 0.5;  // radii from the middle of the ring to the section's centre
+constexpr double kCrossing = 1e-12;      // relative: rays through corners of a ring count as meeting both edges
 
 std::string text_of(double value, const char* unit) { return formatted("%.2g%s", value, unit); }
 
@@ -49,14 +49,14 @@ class RingPlacement {
 
   void run() {
     const double facing = opening_.normal.dot(section_.normal);
-    if (!(facing > kFacing)) {
+    if (!(facing > kSectionFacing)) {
       const double angle = std::acos(std::clamp(facing, -1.0, 1.0)) * 180 / M_PI;
       problem = "its plane is " + text_of(angle, " degrees") + " off the vessel's cross-section";
       return;
     }
     const double radius = radius_of(section_);
     const double off = (section_.center - area_centroid(ring_)).norm();
-    if (!(off <= kFarthest * radius)) {
+    if (!(off <= kFarthestCenter * radius)) {
       problem = "its centre is " + text_of(off / radius, " radii") + " from the middle of the vessel's end";
       return;
     }
