@@ -48,8 +48,8 @@ std::array<int, 2> corners_of_edge(int edge) {
 }
 
 Vec3 middle_of_edge(int edge) {
-  const auto [a, b] = corners_of_edge(edge);
-  const auto at = [&](int axis) { return 0.5 * ((a >> axis & 1) + (b >> axis & 1)); };
+  const std::array<int, 2> ends = corners_of_edge(edge);
+  const auto at = [&](int axis) { return 0.5 * ((ends[0] >> axis & 1) + (ends[1] >> axis & 1)); };
   return {at(0), at(1), at(2)};
 }
 

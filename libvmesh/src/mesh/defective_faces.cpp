@@ -11,12 +11,13 @@ namespace vmesh {
 
 std::vector<Index> degenerate_faces(const TriMesh& mesh) {
   check_indices(mesh);
-  using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+  using ExactPoint = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
   std::vector<Index> degenerate;
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     const Vec3 &a = mesh.vertices[mesh.faces[f][0]], &b = mesh.vertices[mesh.faces[f][1]],
                &c = mesh.vertices[mesh.faces[f][2]];
-    if (CGAL::collinear(Point(a.x(), a.y(), a.z()), Point(b.x(), b.y(), b.z()), Point(c.x(), c.y(), c.z()))) {
+    if (CGAL::collinear(ExactPoint(a.x(), a.y(), a.z()), ExactPoint(b.x(), b.y(), b.z()),
+                        ExactPoint(c.x(), c.y(), c.z()))) {
       degenerate.push_back(f);
     }
   }

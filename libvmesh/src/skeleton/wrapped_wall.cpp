@@ -13,6 +13,7 @@
 #include "vmesh/mesh/components.h"
 #include "vmesh/mesh/topology.h"
 
+#include "wall_cleaning.h"
 #include "wall_probe.h"
 #include "wall_text.h"
 
