@@ -157,8 +157,10 @@ ConeOrigins read_origins(ArrayFile& file, std::size_t cones, std::size_t nodes) 
 
 void write_part(const std::filesystem::path& path, const StoredPart& stored) {
   const SurfacePart& part = stored.part;
-  ArrayWriter file(
-      {{"schema", kPartSchema}, {"id", stored.id}, {"options", to_json(part.options)}, {"first_piece", part.first_piece}});
+  ArrayWriter file({{"schema", kPartSchema},
+                    {"id", stored.id},
+                    {"options", to_json(part.options)},
+                    {"first_piece", part.first_piece}});
   ColumnWriter columns(file);
   describe_field(columns, part.field);
   Lists branch_nodes, branch_segments;
