@@ -28,8 +28,8 @@ using namespace fitting;
 
 constexpr double kSamplesPerFace = 9;              // of the reference
 constexpr int kDivision = 3, kCoarseDivision = 2;  // of the surface's faces: 9 or 4 samples
-constexpr int kFewer = 2;                // one in so many samples of the reference where a coarse fit is enough
-constexpr std::size_t kFewerBefore = 4;  // one in so many samples of the report before the fit
+constexpr int kFewer = 2;                // one in this number of samples of the reference where a coarse fit is enough
+constexpr std::size_t kFewerBefore = 4;  // one in this number of samples of the report before the fit
 constexpr double kLeastMatched = 0.02;   // of the surface's area: with less, the reference is somewhere else
 constexpr int kRelaxations = 2;
 constexpr double kEvenShare = 0.5;  // of the error kept by 95 %: the error around most vertices
@@ -86,7 +86,7 @@ void check(const VesselSurface& surface, const VesselField& field) {
   }
 }
 
-/// Checks for the memory that a fit of so many vertices needs at most, with the reference.
+/// Checks for the memory that a fit of `vertices` vertices needs at most, with the reference.
 void check_memory(std::size_t vertices, const TriMesh& reference) {
   require_memory(
       kBytesPerVertex * static_cast<double>(vertices) +

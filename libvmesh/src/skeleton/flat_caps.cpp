@@ -24,9 +24,11 @@ constexpr double kSharp = 0.9;              // of the perimeter has such a creas
 constexpr std::size_t kLeastRing = 6;       // vertices
 constexpr double kLeastRoundness = 0.3;     // area relative to that of a circle with the perimeter
 constexpr double kLargestUnevenness = 0.1;  // radii
-// Of the turning along the ring, so much is in corners beyond this angle: 70 degrees. Rims of voxels have no other.
+// Least share of the turning along the ring that is in corners beyond this angle: 70 degrees. Rims of voxels have no
+// other.
 constexpr double kCornered = 0.5, kCorner = 1.22;
-// On contours of masks, so much of the area is parallel to a step, besides that in a few planes: other caps may be.
+// Least share of the area that is parallel to a step on contours of masks, besides that in a few planes: other caps may
+// be.
 constexpr double kParallel = 1 - 1e-6, kStairs = 0.02;
 constexpr std::size_t kOtherCaps = 3;
 // Behind a cap there is a tube: at these depths, at least these numbers of the directions across meet a wall at these

@@ -20,7 +20,7 @@ namespace {
 
 // What a rung does about the faults of the previous one.
 struct Rung {
-  double reach;  // rings within so many radii of a fault are left to a junction; 0: none
+  double reach;  // radii: rings this near to a fault are left to a junction; 0: none
   double finer;  // radius of fine spots at faults, relative to that of the thinnest vessel there; 0: none
   bool guarded;  // no step is taken after which faces cross
 };

@@ -35,7 +35,7 @@ void check_parts_suffice(const GenerateOptions& options) {
   if (options.open_ends.all || !options.open_ends.nodes.empty()) refuse("open ends are finished on the whole surface");
 }
 
-// Segments of a chunk: a field is made around so many at a time. More take more memory, fewer more time at their
+// Segments of a chunk: a field is made around that number at a time. More take more memory, fewer more time at their
 // borders.
 constexpr std::size_t kChunk = 25'000;
 

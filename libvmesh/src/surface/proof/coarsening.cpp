@@ -17,15 +17,15 @@ namespace {
 
 // Not in the surveys of libvmesh/README.md, but changed as those of coarsening_steps.cpp, with the same outcome.
 constexpr double kSkewest = 0.75;  // with a limit; 0.85: as many vertices
-// With so many vertices. Faces above 0.9 count as defects. Nine trees with 0.75: 1.5 % more mean error.
+// With a number of vertices. Faces above 0.9 count as defects. Nine trees with 0.75: 1.5 % more mean error.
 constexpr double kSkewestOfFew = 0.86;
-constexpr double kOutdated = 1.05;  // a step whose cost has grown by so much waits for its turn
+constexpr double kOutdated = 1.05;  // a step whose cost has grown by this factor waits for its turn
 constexpr double kMany = 2;         // times the vertices that are to be left
 constexpr int kRounds = 5;
 constexpr int kExchanges = 6;       // 8 and 16: at most 0.3 % less mean error
 constexpr int kRelaxations = 6;     // at the end
 constexpr double kFewSteps = 0.02;  // of the vertices: not worth another round
-// An edge is split if that gains so many times what leaving out a vertex costs: less than once, as flips and moves
+// An edge is split if that gains this multiple of what leaving out a vertex costs: less than once, as flips and moves
 // follow. 0.25 and 1: mean error within 0.7 %.
 constexpr double kPays = 0.5;
 constexpr std::size_t kEdgesPerVertex = 4;  // collapses nearby that one makes worse; the cheapest are often neighbours
@@ -55,7 +55,7 @@ class Coarsener {
       relax();
     }
     rounds_ = kRounds;
-    // With a limit, as few vertices as it allows are wanted, not so many.
+    // With a limit, as few vertices as it allows are wanted, not a number of them.
     for (int round = 0; !proof_ && round < kExchanges; ++round, ++rounds_) {
       relax();
       if (exchange() == 0) break;
@@ -83,8 +83,8 @@ class Coarsener {
 
   std::size_t vertices() const { return mesh_.number_of_vertices() - lids_; }
 
-  // So many that it matters little in which order the next ones go: steps are measured again when it is their turn, not
-  // whenever something has changed around them.
+  // A number with which it matters little in which order the next ones go: steps are measured again when it is their
+  // turn, not whenever something has changed around them.
   bool has_many_to_leave_out() const {
     return least_vertices_ > 0 && static_cast<double>(vertices()) > kMany * static_cast<double>(least_vertices_);
   }

@@ -10,7 +10,7 @@ namespace vmesh {
 /// How far vertices are left out.
 struct CoarseningGoal {
   ErrorLimit proven;               ///< what stays proven; if not set, nothing need be
-  std::size_t least_vertices = 0;  ///< no more are left out once there are so few
+  std::size_t least_vertices = 0;  ///< no more are left out once there are no more than that
 };
 
 /// Leaves out vertices of a surface as long as a limit on the error stays proven, or down to a number.

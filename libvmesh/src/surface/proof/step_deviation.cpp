@@ -17,7 +17,7 @@ constexpr double kNearZero = 0.02;   // radii: distances that need not be told f
 constexpr int kIterations = 2;       // of reweighted least squares; 3: within 1 %
 
 // Distances count to a power between that of the mean error (1), whose sum hardly tells which of many collapses is the
-// better one, and squares, which spend vertices on thick vessels. Nine trees with so many vertices, four of them
+// better one, and squares, which spend vertices on thick vessels. Nine trees with a number of vertices, four of them
 // synthetic: mean error at a power of 1.3 and 1.7 .7 and .8 % larger, at 2 with one iteration 3 %.
 double powered(double distance) { return distance * std::sqrt(distance); }
 // Its derivative, divided by the distance: the weight in least squares.

@@ -33,7 +33,7 @@ class Remesher {
   /// Undoes that flip.
   void flip_back(Edge e) { flip(mesh_.halfedge(e)); }
 
-  /// Stops all refinement once the mesh has so many vertices.
+  /// Stops all refinement once the mesh has `count` vertices.
   void limit_vertices(std::size_t count) { max_vertices_ = count; }
   /// Whether something was not refined because of that.
   bool limited() const { return limited_; }
