@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "skeleton/loop_necks.h"
+
 namespace vmesh::skeleton {
 namespace {
 
@@ -80,6 +82,32 @@ TEST(Resampled, KeepsEndsAndLoops) {
   const Graph short_line = resampled(line(2, 50), 1);
   EXPECT_EQ(short_line.nodes.size(), 2u);
   EXPECT_EQ(short_line.edges.size(), 1u);
+}
+
+// Rings of vessels that cross in nodes of four stretches, one beside the other: when one has become two nodes, the way
+// from the next one leads over the new node.
+TEST(FindLoops, OpensLoopsThroughManyCrossingsSideBySide) {
+  constexpr Index kCrossings = 200;
+  Graph graph;
+  const auto add = [&](double x, double y) {
+    graph.nodes.push_back({{x, y, 0}, 8, 8});
+    return static_cast<Index>(graph.nodes.size() - 1);
+  };
+  // Two zigzags from left to right that meet at every crossing, with a node between two crossings on either side.
+  Index last = add(0, 0);
+  for (Index i = 1; i <= kCrossings; ++i) {
+    const Index next = add(20.0 * i, 0);
+    for (const double side : {5.0, -5.0}) {
+      const Index between = add(20.0 * i - 10, side);
+      graph.edges.push_back({last, between});
+      graph.edges.push_back({between, next});
+    }
+    last = next;
+  }
+  const std::vector<VesselLoop> loops = find_loops(graph, 1, true);
+  EXPECT_GE(loops.size(), kCrossings - 2);
+  EXPECT_EQ(break_loops(graph, 0), 0u);  // none is left
+  for (const auto& [a, b] : graph.edges) EXPECT_TRUE(a < graph.nodes.size() && b < graph.nodes.size());
 }
 
 }  // namespace

@@ -193,12 +193,12 @@ bool uncross(Graph& graph, const Stretch& stretch, const Uncrossing& vessels, co
 
 /// Four stretches that meet at one node cross in a stretch of no length: makes two nodes of it, close to each other.
 void split_crossings(Graph& graph, double voxel) {
-  const auto edges_at = incidence(graph);
-  const std::size_t count = graph.nodes.size();
-  for (Index n = 0; n < count; ++n) {
+  const Graph given = graph;  // what the incidence is of
+  const auto edges_at = incidence(given);
+  for (Index n = 0; n < given.nodes.size(); ++n) {
     if (edges_at[n].size() != 4) continue;
     std::array<Vec3, 4> away;
-    for (std::size_t i = 0; i < 4; ++i) away[i] = direction_from(graph, edges_at, n, edges_at[n][i]);
+    for (std::size_t i = 0; i < 4; ++i) away[i] = direction_from(given, edges_at, n, edges_at[n][i]);
     std::size_t straight = 1;  // goes on from the first
     for (std::size_t i = 2; i < 4; ++i)
       if (away[0].dot(away[i]) < away[0].dot(away[straight])) straight = i;
@@ -259,11 +259,12 @@ std::vector<VesselLoop> pass(Graph& graph, double voxel, bool open) {
     loops.push_back({neck.position, neck.radius, stretch.width, stretch.length + around, open});
   }
   if (!open) return loops;
+  const Graph given = graph;  // what the incidence is of
   for (const std::size_t s : chosen) {
     const Stretch& stretch = stretches[s];
     const Chain& chain = stretch.chain;
     const bool is_free = !touched[chain.nodes.front()] && !touched[chain.nodes.back()];
-    const auto crossing = stretch.may_be_crossing && is_free ? uncrossing_at(graph, edges_at, stretch) : std::nullopt;
+    const auto crossing = stretch.may_be_crossing && is_free ? uncrossing_at(given, edges_at, stretch) : std::nullopt;
     if (crossing && uncross(graph, stretch, *crossing, removed)) {
       touched[chain.nodes.front()] = touched[chain.nodes.back()] = true;
     } else if (stretch.is_contact) {
