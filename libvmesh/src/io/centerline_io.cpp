@@ -74,8 +74,9 @@ RawCenterline read_centerline(std::istream& in, const CenterlineFormat& format, 
 }
 
 RawCenterline read_centerline(const std::vector<std::filesystem::path>& paths, const CenterlineReadOptions& options) {
-  if (const auto without = options_without_effect(options, paths); !without.empty())
-    throw InvalidInput(paths.front().string() + ": --" + without.front() + " has no effect on files of this kind");
+  if (const auto without = options_without_effect(options, paths); !paths.empty() && !without.empty())
+    throw InvalidInput(paths.front().string() + ": the option " + without.front() +
+                       " has no effect on files of this kind");
   std::vector<RawCenterline> files;
   for (const std::filesystem::path& path : paths) files.push_back(read_file_of_centerline(path, options));
   return merge(std::move(files));

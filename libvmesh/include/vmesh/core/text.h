@@ -1,19 +1,13 @@
 // Text for users and files.
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <string_view>
 
 namespace vmesh {
 
-/// What std::printf() would print, up to 511 letters.
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[512];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
+/// What std::printf() would print.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 
 /// "1 loop", "2 loops".
 inline std::string counted(std::size_t count, const std::string& one, const std::string& many) {

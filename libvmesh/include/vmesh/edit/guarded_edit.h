@@ -68,9 +68,10 @@ class GuardedEdit {
     mesh_.take(step);
     std::vector<Index> changed = step.gone;
     for (Index f = first_new; f < mesh_.faces().size(); ++f) changed.push_back(f);
+    is_changed_.resize(mesh_.faces().size(), 0);
     for (const Index f : changed) {
       guard_.touch(f);
-      if (std::find(changed_.begin(), changed_.end(), f) == changed_.end()) changed_.push_back(f);
+      if (!std::exchange(is_changed_[f], char{1})) changed_.push_back(f);
     }
     return true;
   }
@@ -90,7 +91,8 @@ class GuardedEdit {
 
   EditMesh<V>& mesh_;
   CrossingGuard guard_;
-  std::vector<Index> changed_;
+  std::vector<Index> changed_;    // faces, in the order in which they first were
+  std::vector<char> is_changed_;  // by face
 };
 
 }  // namespace vmesh

@@ -147,7 +147,7 @@ struct GrowthSummary {
   std::vector<GrowthSimplification> simplifications;
   std::size_t pieces = 0;          ///< number of pieces in which the surface was made
   std::vector<std::size_t> rungs;  ///< number of pieces by the rung of the ladder on which they were sound or given up
-  RefusedSteps refused;            ///< of guarded steps
+  RefusedSteps refused;            ///< of guarded steps, while pieces were made and vertices left out
 };
 
 /// A requested hole in the surface at an end of a vessel: a ring in the plane across the vessel through the end's node.

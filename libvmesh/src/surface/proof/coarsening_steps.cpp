@@ -40,21 +40,8 @@ CoarseningSteps::CoarseningSteps(const SweepState& state, const ErrorLimit& limi
 
 std::optional<CoarseningStep> CoarseningSteps::collapse(Edge e) const {
   const Vertex a = mesh_.vertex(e, 0), b = mesh_.vertex(e, 1);
-  CoarseningStep step;
-  step.vertex = a;
-  for (const Vertex v : {a, b}) {
-    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-      if (is_fixed_(f)) return std::nullopt;
-      FaceCorners corners = state_.corners(f);
-      if (has(corners, a) && has(corners, b)) {
-        if (v == a) step.gone.push_back(f);
-        continue;
-      }
-      step.gone.push_back(f);
-      std::replace(corners.begin(), corners.end(), b, a);
-      step.faces.push_back(corners);
-    }
-  }
+  CoarseningStep step{surface_.collapsing(a, b, {})};
+  if (replaces_fixed(step)) return std::nullopt;
   if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return std::nullopt;
   std::optional<CoarseningStep> best;
   const auto attempt = [&](const Vec3& p, Vertex near) {
@@ -81,26 +68,21 @@ std::optional<CoarseningStep> CoarseningSteps::split(Edge e) const {
 
 std::optional<CoarseningStep> CoarseningSteps::flip(Edge e) const {
   const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
-  if (is_fixed_(mesh_.face(h)) || is_fixed_(mesh_.face(o))) return std::nullopt;
+  CoarseningStep step{surface_.flipping(h)};
+  if (replaces_fixed(step)) return std::nullopt;
   const Vertex a = mesh_.source(h), b = mesh_.target(h);
   const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
   if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge())
     return std::nullopt;
-  CoarseningStep step{
-      {c, {state_.point(c), surface_.sample(c)}, {mesh_.face(h), mesh_.face(o)}, {{c, d, b}, {d, c, a}}}};
   if (!is_allowed(step) || step.cost >= enough_gain(step)) return std::nullopt;
   return step;
 }
 
 std::optional<CoarseningStep> CoarseningSteps::move(Vertex v) const {
-  CoarseningStep step{{v, {state_.point(v), surface_.sample(v)}, {}, {}}};
+  CoarseningStep step{surface_.moving(v, {state_.point(v), surface_.sample(v)})};
+  if (replaces_fixed(step)) return std::nullopt;
   Vec3 middle = Vec3::Zero();
   double count = 0;
-  for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-    if (is_fixed_(f)) return std::nullopt;
-    step.gone.push_back(f);
-    step.faces.push_back(state_.corners(f));
-  }
   const Vec3 here = state_.point(v);
   CoarseningStep best = step;
   best.cost = enough_gain(step);
@@ -117,6 +99,10 @@ std::optional<CoarseningStep> CoarseningSteps::move(Vertex v) const {
   attempt(here + kToMiddle * (middle / count - here));
   if (best.cost >= least) return std::nullopt;
   return best;
+}
+
+bool CoarseningSteps::replaces_fixed(const CoarseningStep& step) const {
+  return std::any_of(step.gone.begin(), step.gone.end(), is_fixed_);
 }
 
 void CoarseningSteps::note(Vertex v) {

@@ -41,6 +41,7 @@ class CoarseningSteps {
   void note(Vertex v);
 
  private:
+  bool replaces_fixed(const CoarseningStep& step) const;
   bool place(CoarseningStep& step, const Vec3& p, Index hint) const;
   bool is_allowed(CoarseningStep& step) const;
   bool is_well_shaped(const CoarseningStep& step) const;

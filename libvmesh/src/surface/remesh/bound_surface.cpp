@@ -165,36 +165,35 @@ bool BoundSurface::allows(const SurfaceStep& step) const {
   return guard_->allows(faces, {step.gone.begin(), step.gone.end()});
 }
 
-bool BoundSurface::may_place(Vertex v, const Vec3& p) const {
-  if (!guard_) return true;
-  SurfaceStep step{v, {p}, {}, {}};
+SurfaceStep BoundSurface::moving(Vertex v, const BoundaryPoint& target) const {
+  SurfaceStep step{v, target, {}, {}};
   for (const Face f : mesh.faces_around_target(mesh.halfedge(v))) {
     step.gone.push_back(f);
     if (!is_lid(f)) step.faces.push_back(corners(f));
   }
-  return allows(step);
+  return step;
 }
 
-bool BoundSurface::may_collapse(Vertex a, Vertex b, const Vec3& p) const {
-  if (!guard_) return true;
-  SurfaceStep step{a, {p}, {}, {}};
+SurfaceStep BoundSurface::collapsing(Vertex a, Vertex b, const BoundaryPoint& target) const {
+  SurfaceStep step{a, target, {}, {}};
   for (const Vertex end : {a, b}) {
     for (const Face f : mesh.faces_around_target(mesh.halfedge(end))) {
-      step.gone.push_back(f);
       std::array<Vertex, 3> face = corners(f);
-      const auto ends = std::count_if(face.begin(), face.end(), [&](Vertex v) { return v == a || v == b; });
+      const bool has_both = std::count_if(face.begin(), face.end(), [&](Vertex v) { return v == a || v == b; }) == 2;
+      if (!has_both || end == a) step.gone.push_back(f);
+      if (has_both || is_lid(f)) continue;
       std::replace(face.begin(), face.end(), b, a);
-      if (ends == 1 && !is_lid(f)) step.faces.push_back(face);
+      step.faces.push_back(face);
     }
   }
-  return allows(step);
+  return step;
 }
 
-bool BoundSurface::may_flip(Halfedge h) const {
+SurfaceStep BoundSurface::flipping(Halfedge h) const {
   const Halfedge o = mesh.opposite(h);
   const Vertex a = mesh.source(h), b = mesh.target(h);
   const Vertex c = mesh.target(mesh.next(h)), d = mesh.target(mesh.next(o));
-  return allows({c, {position(c)}, {mesh.face(h), mesh.face(o)}, {{c, d, b}, {d, c, a}}});
+  return {c, {position(c), sample(c)}, {mesh.face(h), mesh.face(o)}, {{c, d, b}, {d, c, a}}};
 }
 
 void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {

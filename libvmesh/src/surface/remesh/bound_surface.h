@@ -108,11 +108,17 @@ class BoundSurface {
   };
   /// From now on only guarded steps are taken (CrossingGuard), which keep these axes inside.
   void guard_crossings(Axes kept = Axes::bound);
+  SurfaceStep moving(Vertex v, const BoundaryPoint& target) const;
+  /// Collapses the edge ab; the vertex that is left is called a.
+  SurfaceStep collapsing(Vertex a, Vertex b, const BoundaryPoint& target) const;
+  /// Its vertex is one of those that become neighbours, and stays.
+  SurfaceStep flipping(Halfedge h) const;
+
   /// Whether a step is allowed: always, unless guarded.
   bool allows(const SurfaceStep& step) const;
-  bool may_place(Vertex v, const Vec3& p) const;
-  bool may_collapse(Vertex a, Vertex b, const Vec3& p) const;
-  bool may_flip(Halfedge h) const;
+  bool may_place(Vertex v, const Vec3& p) const { return !guard_ || allows(moving(v, {p})); }
+  bool may_collapse(Vertex a, Vertex b, const Vec3& p) const { return !guard_ || allows(collapsing(a, b, {p})); }
+  bool may_flip(Halfedge h) const { return !guard_ || allows(flipping(h)); }
   /// The steps that were not.
   RefusedSteps refused() const { return guard_ ? guard_->refused() : RefusedSteps{}; }
 
