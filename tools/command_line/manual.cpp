@@ -79,7 +79,7 @@ std::string positionals_of(const CLI::App& verb) {
 }
 
 /// A section for each group of the help.
-std::string options_of(const CLI::App& verb) {
+std::string option_paragraphs(const CLI::App& verb) {
   std::string text;
   for (const std::string& group : verb.get_groups()) {
     std::string entries;
@@ -132,7 +132,7 @@ std::string exit_status() {
 
 std::string page_of_verb(const CLI::App& verb) {
   return header("vmesh-" + verb.get_name(), verb.get_description()) + synopsis_of(verb) + ".SH DESCRIPTION\n" +
-         escaped(verb.get_description()) + ".\n" + positionals_of(verb) + options_of(verb) + examples_of(verb) +
+         escaped(verb.get_description()) + ".\n" + positionals_of(verb) + option_paragraphs(verb) + examples_of(verb) +
          exit_status() + ".SH SEE ALSO\n.BR vmesh (1)\n";
 }
 
@@ -144,7 +144,7 @@ std::string page_of_command(const CLI::App& app) {
   }
   return header("vmesh", "vessel centerlines to surfaces") + ".SH SYNOPSIS\n" + bold("vmesh") + " " + italic("VERB") +
          " [" + italic("OPTIONS") + "]\n.SH DESCRIPTION\n" + escaped(app.get_description()) + "\n.SH VERBS\n" + verbs +
-         options_of(app) + exit_status() + ".SH SEE ALSO\n" + pages + "\n";
+         option_paragraphs(app) + exit_status() + ".SH SEE ALSO\n" + pages + "\n";
 }
 
 }  // namespace

@@ -10,20 +10,18 @@
 namespace vmesh::tool {
 namespace {
 
-constexpr std::size_t kEach = 3;
-
 void add_defects(Page& page, const TriMesh& mesh, const DefectReport& defects) {
   PlacesApart apart(mesh);
   std::size_t crossings = 0;
   for (const IntersectingFaces& pair : defects.self_intersections) {
-    if (crossings == kEach) break;
+    if (crossings == kMarksOfEach) break;
     if (!apart.take(pair.position)) continue;
     ++crossings;
     page.places.push_back({"Faces " + std::to_string(pair.first) + " and " + std::to_string(pair.second) + " cross", "",
                            pair.position, "", ""});
   }
   const auto add = [&](const std::vector<Index>& faces, const char* label) {
-    for (const Index face : std::span(faces).first(std::min(kEach, faces.size())))
+    for (const Index face : std::span(faces).first(std::min(kMarksOfEach, faces.size())))
       page.places.push_back({label, "face " + std::to_string(face), mesh.vertices[mesh.faces[face][0]], "", ""});
   };
   add(defects.degenerate_faces, "Face without area");
@@ -40,7 +38,7 @@ void add_places(Page& page, const EvaluationReport& report, const TriMesh& mesh)
     page.places.push_back({"Of the vessels, farthest from the surface", short_number(d.from_volume.mm.max) + " mm",
                            d.from_volume.max_at, "volume_distance", ""});
   }
-  add_largest(page, page.surfaces.front(), "EquiangleSkewness", "Skew triangle", "", kEach);
+  add_largest(page, page.surfaces.front(), "EquiangleSkewness", "Skew triangle", "", kMarksOfEach);
 }
 
 void add_facts(Page& page, const EvaluationReport& report) {
@@ -119,7 +117,7 @@ Page page_of(const CommonArguments& common, const Table2Report& report) {
                 {"Skewness of low, mean / max", mean_and_max(low.skewness.mean, low.skewness.max)},
                 {"Hausdorff of low, mm", short_number(low.distance->hausdorff.upper())}};
   for (const MethodRow& row : comparison.rows) add_farthest(page, row);
-  add_largest(page, page.surfaces.front(), "EquiangleSkewness", "Skew triangle", "", kEach);
+  add_largest(page, page.surfaces.front(), "EquiangleSkewness", "Skew triangle", "", kMarksOfEach);
   add_histograms(page, page.surfaces.front());
   page.tables = to_tables(report);
   return page;
@@ -150,7 +148,7 @@ Page page_of(const CommonArguments& common, const std::filesystem::path& script,
   const PageSurface last{"surface", moved, attributes};
   page.surfaces.push_back({"surface", rest, std::move(attributes)});
   page.centerline = centerline;
-  add_largest(page, last, "displacement", "At the end", " mm", kEach);
+  add_largest(page, last, "displacement", "At the end", " mm", kMarksOfEach);
   add_histograms(page, last);
   page.tables = tables_of(summary);
   page.frames = std::move(frames);

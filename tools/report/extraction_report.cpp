@@ -12,7 +12,7 @@ namespace {
 
 std::string place(const Vec3& p) { return formatted("(%.4g, %.4g, %.4g)", p.x(), p.y(), p.z()); }
 
-std::string number(double value) { return formatted("%.3g", value); }
+std::string three_digits(double value) { return formatted("%.3g", value); }
 
 void log_size(const ExtractedCenterline& extracted, Console& console) {
   const Centerline& centerline = extracted.centerline;
@@ -25,8 +25,8 @@ void log_size(const ExtractedCenterline& extracted, Console& console) {
               ", " + counted(centerline.cycle_rank(), "loop", "loops"));
   console.log(formatted("coverage %.4f of the wall, %.4f of the length; wall to the vessels' boundary ",
                         report.coverage, report.length_coverage) +
-              number(report.wall.mean) + " mm mean, " + number(report.wall.percentile_95) + " at 95 %, " +
-              number(report.wall.max) + " max at " + place(report.wall.max_at));
+              three_digits(report.wall.mean) + " mm mean, " + three_digits(report.wall.percentile_95) + " at 95 %, " +
+              three_digits(report.wall.max) + " max at " + place(report.wall.max_at));
 }
 
 /// One line for all of a kind, with the largest.
@@ -36,9 +36,9 @@ void warn_of_missed(const ExtractionReport& report, Console& console) {
   for (const MissedWall& missed : report.missed) area += missed.area;
   const MissedWall& largest = report.missed.front();
   if (report.coverage > 0.999) return;
-  console.warn(counted(report.missed.size(), "region", "regions") + " of the wall, " + number(area) +
-               " mm2, beyond the vessels' reach; the largest, " + number(largest.area) + " mm2, up to " +
-               number(largest.distance) + " mm off, at " + place(largest.place) + ": " + largest.reason);
+  console.warn(counted(report.missed.size(), "region", "regions") + " of the wall, " + three_digits(area) +
+               " mm2, beyond the vessels' reach; the largest, " + three_digits(largest.area) + " mm2, up to " +
+               three_digits(largest.distance) + " mm off, at " + place(largest.place) + ": " + largest.reason);
 }
 
 void warn_of_components(const ExtractionReport& report, Console& console) {
@@ -52,7 +52,7 @@ void log_joined(const ExtractionReport& report, Console& console) {
   const JoinedGap* widest = &report.joined.front();
   for (const JoinedGap& gap : report.joined)
     if (gap.gap > widest->gap) widest = &gap;
-  console.log(counted(report.joined.size(), "gap", "gaps") + " joined, the widest of " + number(widest->gap) +
+  console.log(counted(report.joined.size(), "gap", "gaps") + " joined, the widest of " + three_digits(widest->gap) +
               " mm at " + place(widest->from));
 }
 
@@ -60,8 +60,8 @@ void log_loops(const ExtractionReport& report, Console& console) {
   if (report.loops.empty()) return;
   const VesselLoop& loop = report.loops.front();
   console.log(counted(report.loops.size(), "loop", "loops") + (loop.opened ? " opened" : "") +
-              "; the thinnest neck beside its vessels has a radius of " + number(loop.neck_radius) +
-              " mm, where they have " + number(loop.radius) + ", at " + place(loop.neck) +
+              "; the thinnest neck beside its vessels has a radius of " + three_digits(loop.neck_radius) +
+              " mm, where they have " + three_digits(loop.radius) + ", at " + place(loop.neck) +
               (loop.opened ? "" : "; --tree opens loops at their necks"));
 }
 

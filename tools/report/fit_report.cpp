@@ -10,7 +10,7 @@ namespace vmesh::tool {
 namespace {
 
 constexpr std::size_t kListedParts = 1000;
-constexpr std::size_t kNamed = 5;
+constexpr std::size_t kPartsNamed = 5;
 
 Json to_json(const FitDistance& distance) {
   return {{"hausdorff_mm", tool::to_json(distance.hausdorff)},
@@ -49,9 +49,9 @@ void name_parts(const std::vector<UnmatchedPart>& parts, const std::string& what
     console.warn(text);
     warnings.push_back(text);
   };
-  for (std::size_t i = 0; i < std::min(parts.size(), kNamed); ++i) tell(what + ": " + text_of(parts[i]));
-  if (parts.size() > kNamed)
-    tell(what + ", " + std::to_string(parts.size() - kNamed) + " more: the summary lists them");
+  for (std::size_t i = 0; i < std::min(parts.size(), kPartsNamed); ++i) tell(what + ": " + text_of(parts[i]));
+  if (parts.size() > kPartsNamed)
+    tell(what + ", " + std::to_string(parts.size() - kPartsNamed) + " more: the summary lists them");
 }
 
 }  // namespace

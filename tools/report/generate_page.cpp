@@ -11,7 +11,7 @@
 namespace vmesh::tool {
 namespace {
 
-constexpr std::size_t kEach = 3, kMostDefects = 10;
+constexpr std::size_t kMostDefects = 10;
 
 PageSurface reference_surface(const TriMesh& mesh) { return {"reference", mesh, {}, true}; }
 
@@ -22,7 +22,7 @@ void add_fit_facts(Page& page, const FitReport& fit) {
 }
 
 void add_contacts(Page& page, const std::vector<Contact>& contacts, const char* label) {
-  for (const Contact& contact : std::span(contacts).first(std::min(kEach, contacts.size())))
+  for (const Contact& contact : std::span(contacts).first(std::min(kMarksOfEach, contacts.size())))
     page.places.push_back({label, short_number(contact.depth) + " mm deep", contact.position, "", ""});
 }
 
@@ -40,21 +40,21 @@ void add_places(Page& page, const GenerateReport& report, const PageSurface& sur
         {"Defect: " + words(to_string(defect.kind)), std::to_string(defect.count), defect.position, "", ""});
   if (report.fit) {
     add_farthest(page, report.fit->after.hausdorff);
-    add_unmatched(page, *report.fit, kEach);
+    add_unmatched(page, *report.fit, kMarksOfEach);
   } else {
     page.places.push_back({"Farthest from the vessels, in their radii",
                            short_number(report.deviation.max_relative) + " radii", report.deviation.max_at,
                            "relative_distance", ""});
-    add_largest(page, surface, "volume_distance", "Vertex far from the vessels", " mm", kEach);
+    add_largest(page, surface, "volume_distance", "Vertex far from the vessels", " mm", kMarksOfEach);
   }
-  add_largest(page, surface, "EquiangleSkewness", "Skew triangle", "", kEach);
+  add_largest(page, surface, "EquiangleSkewness", "Skew triangle", "", kMarksOfEach);
   for (const UnprovenPlace& place : report.result->error.unproven_places)
     page.places.push_back({"Limit not proven", std::to_string(place.faces) + " faces", place.position, "", ""});
   add_contacts(page, report.contacts, "Vessels touched");
   if (!report.separation) return;
   add_contacts(page, report.separation->left, "Vessels still touch");
   const std::vector<VesselMove>& moves = report.separation->moves;
-  for (const VesselMove& move : std::span(moves).first(std::min(kEach, moves.size())))
+  for (const VesselMove& move : std::span(moves).first(std::min(kMarksOfEach, moves.size())))
     page.places.push_back(
         {"Vessel moved aside", short_number(move.displacement.norm()) + " mm", move.position, "", ""});
 }
@@ -121,9 +121,9 @@ Page page_of(const CommonArguments& common, const FitReport& report, const Json&
                  mean_and_max(summary["skewness"]["mean"].get<double>(), summary["skewness"]["max"].get<double>())}};
   add_fit_facts(page, report);
   add_farthest(page, report.after.hausdorff);
-  add_unmatched(page, report, kEach);
-  add_largest(page, page.surfaces.front(), "distance", "Vertex far from the reference", " mm", kEach);
-  add_largest(page, page.surfaces.front(), "EquiangleSkewness", "Skew triangle", "", kEach);
+  add_unmatched(page, report, kMarksOfEach);
+  add_largest(page, page.surfaces.front(), "distance", "Vertex far from the reference", " mm", kMarksOfEach);
+  add_largest(page, page.surfaces.front(), "EquiangleSkewness", "Skew triangle", "", kMarksOfEach);
   add_histograms(page, page.surfaces.front());
   page.tables = tables_of(summary);
   return page;

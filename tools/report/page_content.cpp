@@ -13,7 +13,7 @@
 namespace vmesh::tool {
 namespace {
 
-constexpr std::size_t kBins = 40;
+constexpr std::size_t kPageBins = 40;
 /// Places closer to each other than this share of the diagonal of the surface's box are shown as one.
 constexpr double kApart = 0.03;
 constexpr const char* kSkewness = "EquiangleSkewness";
@@ -35,7 +35,7 @@ std::vector<double> finite(std::vector<double> values) {
 
 PageHistogram histogram(const std::string& title, const std::string& unit, std::vector<double> values, double low,
                         double high) {
-  PageHistogram result{title, unit, make_histogram(values, low, high, kBins), {}};
+  PageHistogram result{title, unit, make_histogram(values, low, high, kPageBins), {}};
   result.distribution = summarize(std::move(values));
   return result;
 }

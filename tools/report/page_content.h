@@ -9,6 +9,9 @@
 
 namespace vmesh::tool {
 
+/// Marks of one kind on a page.
+constexpr std::size_t kMarksOfEach = 3;
+
 /// A page about `title` with the command line that made it.
 Page make_page(const char* verb, const std::filesystem::path& title, const CommonArguments& common);
 

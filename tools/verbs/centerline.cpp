@@ -7,7 +7,7 @@
 #include "report/summary.h"
 #include "verbs/extraction.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::centerline_verb {
 namespace {
 
 struct CenterlineArguments {
@@ -144,4 +144,4 @@ const VerbRegistration<CenterlineArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::centerline_verb

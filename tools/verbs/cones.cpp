@@ -6,7 +6,7 @@
 #include "command_line/verb.h"
 #include "report/summary.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::cones_verb {
 namespace {
 
 struct ConesArguments {
@@ -63,4 +63,4 @@ const VerbRegistration<ConesArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::cones_verb

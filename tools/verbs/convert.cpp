@@ -4,7 +4,7 @@
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::convert_verb {
 namespace {
 
 using Kind = PlannedOutput::Kind;
@@ -98,4 +98,4 @@ const VerbRegistration<ConvertArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::convert_verb

@@ -13,7 +13,7 @@
 #include "report/pages.h"
 #include "verbs/scene.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::deform_verb {
 namespace {
 
 namespace fs = std::filesystem;
@@ -313,4 +313,4 @@ const VerbRegistration<DeformArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::deform_verb

@@ -9,7 +9,7 @@
 #include "report/pages.h"
 #include "report/requirements.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::evaluate_verb {
 namespace {
 
 struct EvaluateArguments {
@@ -231,4 +231,4 @@ const VerbRegistration<EvaluateArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::evaluate_verb

@@ -12,7 +12,7 @@
 #include "report/pages.h"
 #include "verbs/fitting.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::fit_verb {
 namespace {
 
 struct FitArguments {
@@ -139,4 +139,4 @@ const VerbRegistration<FitArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::fit_verb

@@ -4,7 +4,7 @@
 #include "command_line/verb.h"
 #include "report/summary.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::formats_verb {
 namespace {
 
 struct FormatsArguments {
@@ -72,4 +72,4 @@ const VerbRegistration<FormatsArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::formats_verb

@@ -19,7 +19,7 @@
 #include "verbs/generate_input.h"
 #include "verbs/part.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::generate_verb {
 namespace {
 
 OpenEnds parse_open_ends(const std::string& text) {
@@ -370,4 +370,4 @@ const VerbRegistration<GenerateArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::generate_verb

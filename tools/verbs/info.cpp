@@ -12,7 +12,7 @@
 #include "report/summary.h"
 #include "verbs/info_image.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::info_verb {
 namespace {
 
 struct InfoArguments {
@@ -143,4 +143,4 @@ const VerbRegistration<InfoArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::info_verb

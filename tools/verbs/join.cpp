@@ -11,7 +11,7 @@
 #include "command_line/verb.h"
 #include "report/generate_log.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::join_verb {
 namespace {
 
 namespace fs = std::filesystem;
@@ -234,4 +234,4 @@ const VerbRegistration<JoinArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::join_verb

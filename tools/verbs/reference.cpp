@@ -7,7 +7,7 @@
 #include "report/extraction_report.h"
 #include "report/summary.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::reference_verb {
 namespace {
 
 struct ReferenceArguments {
@@ -107,4 +107,4 @@ const VerbRegistration<ReferenceArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::reference_verb

@@ -9,7 +9,7 @@
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::render_verb {
 namespace {
 
 struct RenderArguments {
@@ -134,4 +134,4 @@ const VerbRegistration<RenderArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::render_verb

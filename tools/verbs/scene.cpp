@@ -5,15 +5,13 @@
 #include <limits>
 #include <sstream>
 
-#include <nlohmann/json.hpp>
-
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 
+#include "report/json.h"
+
 namespace vmesh::tool {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr const char* kSchema = "vmesh.scene/1";
 /// Limit on a scene's length, so that a mistyped digit gives an error instead of an overnight run.

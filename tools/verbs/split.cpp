@@ -14,7 +14,7 @@
 #include "verbs/generate_arguments.h"
 #include "verbs/part_origins.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::split_verb {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,4 +170,4 @@ const VerbRegistration<SplitArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::split_verb

@@ -5,7 +5,7 @@
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::synth_verb {
 namespace {
 
 struct SynthArguments {
@@ -47,4 +47,4 @@ const VerbRegistration<SynthArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::synth_verb

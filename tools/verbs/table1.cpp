@@ -10,7 +10,7 @@
 #include "command_line/verb.h"
 #include "report/deform_trade.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::table1_verb {
 namespace {
 
 struct Table1Arguments {
@@ -187,4 +187,4 @@ const VerbRegistration<Table1Arguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::table1_verb

@@ -10,7 +10,7 @@
 #include "report/pages.h"
 #include "report/table2_report.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::table2_verb {
 namespace {
 
 struct Table2Arguments {
@@ -254,4 +254,4 @@ const VerbRegistration<Table2Arguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::table2_verb

@@ -6,7 +6,7 @@
 #include "command_line/verb.h"
 #include "report/pages.h"
 
-namespace vmesh::tool {
+namespace vmesh::tool::tradeoff_verb {
 namespace {
 
 struct TradeoffArguments {
@@ -124,4 +124,4 @@ const VerbRegistration<TradeoffArguments> kRegistration({
 });
 
 }  // namespace
-}  // namespace vmesh::tool
+}  // namespace vmesh::tool::tradeoff_verb
