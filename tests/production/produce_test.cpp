@@ -1,5 +1,7 @@
 #include "vmesh/production/produce.h"
 
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "vmesh/core/error.h"
@@ -55,6 +57,20 @@ TEST(Produce, SeparatesVesselsUnlessTheyAreToBeKept) {
   EXPECT_FALSE(kept.result.is_sound());
   EXPECT_FALSE(kept.prepared.separated);
   EXPECT_EQ(kept.prepared.contacts().size(), 1u);
+}
+
+// The rings of a stub as long as its radius, scaled to the area of a circle, reach into the vessel beside it.
+TEST(Produce, FlatEndsOfAStubBesideAVesselDoNotCrossIt) {
+  const Centerline centerline = {{{{0, 0, 0}, 1}, {{0, 0, 1}, 1}, {{2.2676, .139, 1}, 1.2}, {{2.27, 3.139, 2}, 1.2}},
+                                 {{0, 1}, {2, 3}}};
+  ProductionOptions options;
+  options.ends = EndShape::flat;
+  const Production production = produce(centerline, {}, options);
+  EXPECT_TRUE(production.result.is_sound());
+  EXPECT_EQ(production.ends.ends.size(), 4u);
+  EXPECT_EQ(production.ends.narrowed, (std::vector<Index>{0, 1, 2}));  // not the end that is away from the stub
+  EXPECT_EQ(problems_of(production.ends).size(), 3u);
+  EXPECT_NEAR(production.ends.ends[3].area, std::numbers::pi * 1.2 * 1.2, 1e-9);
 }
 
 TEST(Produce, EndsAsWanted) {

@@ -133,6 +133,14 @@ void settle(GenerateArguments& arguments) {
   settle_ends(arguments.production);
 }
 
+/// What to do when nothing is within the budget.
+std::string advice_beyond(const Budget& budget, const OperatingPoint& closest) {
+  const bool leaves_out = closest.options.elongation > 1 && !closest.options.deformable;
+  if (budget.kind != Budget::Kind::vertices || leaves_out) return "allow more, or check the radii";
+  return "even triangles need " + counted(closest.vertices, "vertex", "vertices") +
+         " here at the least; --elongation 4 leaves out vertices down to the budget";
+}
+
 /// The surface with the options that make the best use of the budget; `kept`: whether they keep within it.
 GenerateResult grow_within_budget(GenerateReport& report, const Centerline& centerline, const GenerateOptions& options,
                                   GenerateArguments& arguments, bool& kept, Console& console) {
@@ -146,7 +154,7 @@ GenerateResult grow_within_budget(GenerateReport& report, const Centerline& cent
   if (!kept)
     warn(report,
          "nothing is within the budget " + to_string(*arguments.budget) +
-             "; the closest surface is written: allow more, or check the radii",
+             "; the closest surface is written: " + advice_beyond(*arguments.budget, surface.choice()),
          console);
   return std::move(surface.result);
 }
@@ -180,14 +188,6 @@ void measure_distance(GenerateReport& report, const Centerline& grown) {
   if (!report.arguments->common.json.empty())  // reported there only
     report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown), options.threads);
   stop_if_interrupted();
-}
-
-void warn_of_ends(GenerateReport& report, Console& console) {
-  for (const SectionNotKept& end : report.ends.not_kept)
-    warn(report,
-         "the flat end at node " + std::to_string(end.node) + " is not kept: " + end.reason +
-             "; the vessel is cut across its axis there",
-         console);
 }
 
 /// Fills in the measurements and problems of the surface around `grown`.
@@ -321,7 +321,7 @@ int run(const GenerateArguments& given, Console& console) {
   report.wall_vertices = wall_vertices;
   refer_to_original(prepared, report.contacts);
   if (report.separation) refer_to_original(prepared, *report.separation);
-  warn_of_ends(report, console);
+  for (const std::string& problem : problems_of(report.ends)) warn(report, problem, console);
   name_nodes(result.defects, loaded);
   judge(report, prepared.grown(), console);
   report.stages.push_back({"measure", watch.lap()});

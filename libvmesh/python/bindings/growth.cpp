@@ -61,9 +61,7 @@ SurfacePtr grow(const CenterlinePtr& centerline, const ProductionOptions& option
   GenerateResult& result = surface->result;
   for (const GrowthWarning& warning : result.warnings) warnings.push_back(warning.message);
   warn_of_error(result.error, options.growth.max_error, warnings);
-  for (const SectionNotKept& end : surface->ends.not_kept)
-    warnings.push_back("the flat end at node " + std::to_string(end.node) + " is not kept: " + end.reason +
-                       "; the vessel is cut across its axis there");
+  for (const std::string& problem : problems_of(surface->ends)) warnings.push_back(problem);
   name_nodes(*centerline, result.defects);
   return surface;
 }

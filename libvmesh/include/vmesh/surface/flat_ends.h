@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "vmesh/surface/generate.h"
@@ -38,7 +39,12 @@ struct FlatEnds {
   std::vector<FlatEnd> ends;     ///< ascending in the nodes
   std::vector<Index> cap_label;  ///< of every face: the label of the end that it caps; 0: wall
   std::vector<SectionNotKept> not_kept;
+  /// Nodes whose ends have less than the vessel's area, in spite of keep_area: with all of it, faces would cross.
+  std::vector<Index> narrowed;
 };
+
+/// What a user should know of ends that are not as asked for, a sentence each.
+std::vector<std::string> problems_of(const FlatEnds& ends);
 
 /// Extends and caps the openings of `result`, whose numbers are those of `centerline`. New faces are appended. Caps are
 /// flat, with triangles about as large as those around them; closed openings are no longer listed. Check and defects

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "vmesh/core/error.h"
+#include "vmesh/edit/crossing_guard.h"
 #include "vmesh/surface/defects.h"
 
 #include "surface/ends/disc.h"
@@ -29,9 +30,12 @@ class EndFinisher {
     std::vector<Opening> open;
     SectionEnds sections = end_at_sections(result_, options_.sections, options_.keep_area);
     ends_.not_kept = std::move(sections.not_kept);
+    const auto is_at_section = [&](const Opening& opening) {
+      return std::binary_search(sections.kept.begin(), sections.kept.end(), opening.node);
+    };
+    if (options_.keep_area) scale_all_but(is_at_section);
     for (Opening& opening : result_.openings) {
-      const bool at_section = std::binary_search(sections.kept.begin(), sections.kept.end(), opening.node);
-      if (options_.keep_area && !at_section) scale(opening);
+      const bool at_section = is_at_section(opening);
       if (options_.extension > 0) extend(opening);
       const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
       const Vec3 area = area_vector(ring);
@@ -52,6 +56,49 @@ class EndFinisher {
   }
 
  private:
+  // A ring that is scaled although another vessel is close beside it gets its positions back.
+  template <class Skip>
+  void scale_all_but(Skip&& skip) {
+    std::vector<const Opening*> scaled;
+    const std::vector<Vec3> before = result_.mesh.vertices;
+    for (const Opening& opening : result_.openings) {
+      if (skip(opening)) continue;
+      scale(opening);
+      scaled.push_back(&opening);
+    }
+    for (std::size_t count = 0; count != scaled.size();) {
+      count = scaled.size();
+      const std::vector<char> crosses = vertices_of_crossing_faces(scaled);
+      std::erase_if(scaled, [&](const Opening* opening) {
+        const auto& ring = opening->ring;
+        if (std::none_of(ring.begin(), ring.end(), [&](Index v) { return crosses[v]; })) return false;
+        for (const Index v : ring) result_.mesh.vertices[v] = before[v];
+        ends_.narrowed.push_back(opening->node);
+        return true;
+      });
+    }
+    std::sort(ends_.narrowed.begin(), ends_.narrowed.end());
+  }
+
+  // For every vertex, whether it is of a face at one of the rings, or of the lid there, that crosses another.
+  std::vector<char> vertices_of_crossing_faces(const std::vector<const Opening*>& openings) const {
+    const TriMesh closed = with_lids(result_);
+    std::vector<char> is_on_ring(closed.vertices.size(), 0), crosses(closed.vertices.size(), 0);
+    for (const Opening* opening : openings) {
+      for (const Index v : opening->ring) is_on_ring[v] = 1;
+    }
+    std::vector<Index> changed;
+    for (Index f = 0; f < closed.faces.size(); ++f) {
+      const Triangle& face = closed.faces[f];
+      if (std::any_of(face.begin(), face.end(), [&](Index v) { return is_on_ring[v]; })) changed.push_back(f);
+    }
+    for (const auto& [f, g] : crossing_pairs(closed.vertices, closed.faces, changed)) {
+      for (const Index face : {f, g})
+        for (const Index v : closed.faces[face]) crosses[v] = 1;
+    }
+    return crosses;
+  }
+
   void scale(const Opening& opening) {
     const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
     const double factor = std::sqrt(std::numbers::pi / area_vector(ring).norm()) * opening.radius;
@@ -88,10 +135,21 @@ class EndFinisher {
 
 }  // namespace
 
+std::vector<std::string> problems_of(const FlatEnds& ends) {
+  std::vector<std::string> problems;
+  for (const SectionNotKept& end : ends.not_kept)
+    problems.push_back("the flat end at node " + std::to_string(end.node) + " is not kept: " + end.reason +
+                       "; the vessel is cut across its axis there");
+  for (const Index node : ends.narrowed)
+    problems.push_back("the end at node " + std::to_string(node) +
+                       " is smaller than the vessel there: with all of its area, faces would cross");
+  return problems;
+}
+
 FlatEnds finish_ends(GenerateResult& result, const Centerline& centerline, const FlatEndOptions& options) {
   if (!(options.extension >= 0 && std::isfinite(options.extension)))
     throw InvalidInput("the extension of ends must be >= 0");
-  if (result.openings.empty()) return {{}, std::vector<Index>(result.mesh.faces.size(), 0), {}};
+  if (result.openings.empty()) return {{}, std::vector<Index>(result.mesh.faces.size(), 0), {}, {}};
   FlatEnds ends = EndFinisher(result, centerline, options).run();
   find_defects_again(centerline, self_intersections(result.mesh), result);
   return ends;
