@@ -31,6 +31,7 @@ EXTRACTED = [("liver vessels 002, label 1", "liver_segmentations/hepaticvessel_0
              ("liver vessels 008, label 1", "liver_segmentations/hepaticvessel_008_vsnet.nii.gz", ["--label", "1"]),
              ("liver vessels 008, label 2", "liver_segmentations/hepaticvessel_008_vsnet.nii.gz", ["--label", "2"]),
              *((name, file, []) for name, file in (
+                 ("brain vessels 002", "brain_mra/labels-002.nii.gz"),
                  ("airways", "airway/github_demo_seg.nii.gz"),
                  ("aorta, open", "pairs_centerline_surface/aorta-surface-open-ends.stl"),
                  ("aorta, closed", "pairs_centerline_surface/aorta-surface.stl"),
@@ -181,7 +182,7 @@ def centerlines(bench: Bench) -> None:
 def masks(bench: Bench) -> None:
     rows = []
     for name, file, options in EXTRACTED:
-        summary, seconds = bench.summary("centerline", bench.data / file, "-o", "centerline.swc", *options)
+        summary, seconds = bench.summary("centerline", bench.data / file, "-o", "centerline.vtp", *options)
         found, extraction = summary["centerline"], summary["extraction"]
         rows.append([name, cpu(seconds), f"{extraction['components']}, {extraction['left_out']}",
                      f"{found['ends']}, {len(summary['end_sections'])}", str(found["loops"]),
@@ -216,8 +217,12 @@ def hausdorff(bench: Bench) -> None:
 
 def table2(bench: Bench) -> None:
     bench.run("vmesh", "table2", "--report", "table2.md", "--json", "table2.json")
-    header, *rows = rows_of((bench.folder / "table2.md").read_text().split("\n\n")[1])
-    put("bench/README.md", "table2", table(header, rows))
+    blocks = [rows_of(block) for block in (bench.folder / "table2.md").read_text().split("\n\n")]
+    rows = next(rows[1:] for rows in blocks if rows and rows[0][:2] == ["surface", "vertices"])
+    put("bench/README.md", "table2", table(
+        ["surface", "vertices", "faces", "skewness mean / max", "Hausdorff, mm"],
+        [[row[0], f"{int(row[1]):,}", f"{int(row[2]):,}", f"{number(float(row[3]))} / {number(float(row[4]))}",
+          "" if row[5] == "-" else number(float(row[5].split()[-1]), 2)] for row in rows]))
 
 
 FIGURES = {figure.__name__: figure for figure in
