@@ -85,6 +85,33 @@ TEST(ReadSwc, SaysWhatItIgnores) {
   EXPECT_TRUE(raw.segments.empty());
 }
 
+TEST(ReadSwc, IdsMayBeOf64BitsNegativeOrText) {
+  const auto raw =
+      swc("720575940590515268 0 0 0 0 3 -1\n720575940590515269 0 1 0 0 3 720575940590515268\n"
+          "18446744073709551615 0 2 0 0 3 720575940590515269\n-7 0 3 0 0 3 18446744073709551615\n"
+          "tip 0 4 0 0 3 -07\nnext 0 5 0 0 3 tip\n");
+  ASSERT_EQ(raw.segments.size(), 5u);
+  for (Index s = 0; s < 5; ++s) {
+    EXPECT_EQ(raw.segments[s].a, s);
+    EXPECT_EQ(raw.segments[s].b, s + 1);
+  }
+  EXPECT_TRUE(raw.warnings.empty());
+  expect_contains(swc_error("1 1 0 0 0 1 -1\n-1 1 0 0 1 1 1\n"), "line 2: the id -1 means \"no parent\"");
+  expect_contains(swc_error("1 1 0 0 0 1 -1\n2 1 0 0 1 1 tip\n"), "line 2: its parent tip is not in the file");
+}
+
+TEST(ReadSwc, AParent0MakesARootUnlessThereIsASample0) {
+  const auto raw = swc("1 1 0 0 0 1 0\n2 1 0 0 1 1 1\n");
+  EXPECT_EQ(raw.segments.size(), 1u);
+  ASSERT_EQ(raw.warnings.size(), 1u);
+  expect_contains(raw.warnings[0], "1 samples have the parent 0");
+  EXPECT_EQ(swc("0 1 0 0 0 1 -1\n2 1 0 0 1 1 0\n3 1 0 0 2 1 2\n").segments.size(), 2u);
+}
+
+TEST(ReadSwc, Utf16IsRefusedByName) {
+  expect_contains(swc_error(std::string("\xFF\xFE\x31\0 \0", 6)), "UTF-16; save it as UTF-8");
+}
+
 TEST(ReadSwc, AMillionNodesThatEndInALoopAreRefusedQuickly) {
   std::string text = "1 1 0 0 0 1 1000000\n";
   for (int i = 2; i <= 1000000; ++i)
@@ -158,6 +185,51 @@ TEST(ReadCsv, ReadsAPairOfFiles) {
   EXPECT_EQ(raw.unit, LengthUnit::mm);
   EXPECT_EQ(csv_segments_path("d/t.nodes.csv"), "d/t.segments.csv");
   EXPECT_EQ(csv_segments_path("d/t.csv"), "d/t.segments.csv");
+}
+
+RawCenterline csv(const std::string& nodes, const std::string& segments) {
+  return parse_centerline(nodes, centerline_format("t.csv"), "t.csv", {}, segments);
+}
+
+TEST(ReadCsv, ReadsWhatSpreadsheetsWriteWhereTheCommaIsDecimal) {
+  for (const std::string separator : {";", "\t"}) {
+    SCOPED_TRACE(separator);
+    const auto row = [&](std::string line) {
+      for (std::size_t at = 0; (at = line.find('|', at)) != std::string::npos;) line.replace(at, 1, separator);
+      return line + "\r\n";
+    };
+    const auto raw = csv("\xEF\xBB\xBF" + row("# UNIT=um||||") + row("id|x|y|\"z\"|radius|\"a note\"") +
+                             row("7|0,5|-1,25e1|3|1,5|\"has | in it\"") + row("3|1.5|0|4|\"2,5\"|") + row("|||||"),
+                         row("a|b") + row("7|3") + row("|"));
+    ASSERT_EQ(raw.nodes.size(), 2u);
+    EXPECT_EQ(raw.nodes[0].position, Vec3(0.5, -12.5, 3));
+    EXPECT_EQ(raw.nodes[0].radius, 1.5);
+    EXPECT_EQ(raw.nodes[1].position, Vec3(1.5, 0, 4));
+    EXPECT_EQ(raw.nodes[1].radius, 2.5);
+    EXPECT_EQ(raw.segments.size(), 1u);
+    EXPECT_EQ(raw.unit, LengthUnit::um);
+  }
+}
+
+TEST(ReadCsv, RefusesNumbersWithSeparatorsOfThousandsAndUtf16) {
+  const auto error = [](const std::string& nodes) { return message_of<InvalidInput>([&] { csv(nodes, "a;b\n"); }); };
+  for (const std::string number : {"1.234,5", "1,234,567"})
+    expect_contains(error("id;x;y;z;radius\n1;" + number + ";0;0;1\n"), "t.csv: line 2: \"" + number + "\"");
+  expect_contains(error(std::string("\xFF\xFEi\0d\0", 6)), "t.csv: line 1: this is text in UTF-16");
+  expect_contains(error(std::string("\0i\0d", 4)), "UTF-16; save it as UTF-8");
+}
+
+TEST(ReadCsv, IdsMayBeOf64BitsNegativeOrText) {
+  const auto raw =
+      csv("id,x,y,z,radius\n720575940590515268,0,0,0,1\n720575940590515269,1,0,0,1\n-4,2,0,0,1\nroot,3,0,0,1\n",
+          "a,b\n720575940590515268,720575940590515269\n720575940590515269,-4.0\n-4,root\n");
+  ASSERT_EQ(raw.segments.size(), 3u);
+  for (Index s = 0; s < 3; ++s) {
+    EXPECT_EQ(raw.segments[s].a, s);
+    EXPECT_EQ(raw.segments[s].b, s + 1);
+  }
+  expect_contains(message_of<InvalidInput>([] { csv("id,x,y,z,radius\n1.5,0,0,0,1\n", "a,b\n"); }),
+                  "line 2: \"1.5\" is not an id");
 }
 
 TEST(ReadCsv, NamesFileAndLineThatAreWrong) {
