@@ -108,6 +108,33 @@ TEST(ReadSwc, AParent0MakesARootUnlessThereIsASample0) {
   EXPECT_EQ(swc("0 1 0 0 0 1 -1\n2 1 0 0 1 1 0\n3 1 0 0 2 1 2\n").segments.size(), 2u);
 }
 
+TEST(ReadSwc, NumbersInVoxelsNeedTheSideOfOne) {
+  const std::string text = "1 1 0 2 4 3 -1\n2 1 0 2 6 3 1\n";
+  CenterlineReadOptions options;
+  options.voxel_size = Vec3(0.5, 0.5, 0.5);
+  const auto read = [&](const std::string& content) {
+    return parse_centerline(content, centerline_format("t.swc"), "t.swc", options);
+  };
+  for (const std::string head : {"", "# UNIT=voxels\n"}) {
+    const auto raw = read(head + text);
+    EXPECT_EQ(raw.nodes[1].position, Vec3(0, 1, 3));
+    EXPECT_EQ(raw.nodes[1].radius, 1.5);
+    EXPECT_EQ(raw.unit, LengthUnit::unknown);
+  }
+  expect_contains(swc_error("# UNIT=voxels\n" + text), "line 1: the numbers are in voxels; give the side");
+  options.voxel_size = Vec3(0.5, 0.5, 1);
+  expect_contains(message_of<InvalidInput>([&] { read(text); }), "t.swc: radii in voxels need voxels of equal sides");
+}
+
+TEST(ReadSwc, NanometresAreKnown) {
+  std::vector<std::string> warnings;
+  auto raw = convert_read(swc("# UNIT=nm SPACE=LPS\n1 1 3000000 0 0 7000 -1\n"), {}, {}, {}, warnings);
+  EXPECT_EQ(raw.nodes[0].position.x(), 3);
+  EXPECT_EQ(raw.nodes[0].radius, 0.007);
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_EQ(json(kJsonHead + R"("unit":"nm","nodes":[[0,0,0,1],[0,0,5,1]],"segments":[[0,1]]})").unit, LengthUnit::nm);
+}
+
 TEST(ReadSwc, Utf16IsRefusedByName) {
   expect_contains(swc_error(std::string("\xFF\xFE\x31\0 \0", 6)), "UTF-16; save it as UTF-8");
 }

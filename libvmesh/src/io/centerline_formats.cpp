@@ -16,7 +16,12 @@ constexpr decltype(&read_hdf5_network) kReadHdf5 = nullptr;
 const std::vector<CenterlineFormat>& centerline_formats() {
   using namespace io;
   static const std::vector<CenterlineFormat> formats = {
-      {.name = "SWC", .extensions = {".swc"}, .trees_only = true, .parse = parse_swc, .write = write_swc},
+      {.name = "SWC",
+       .extensions = {".swc"},
+       .options = {"voxel-size"},
+       .trees_only = true,
+       .parse = parse_swc,
+       .write = write_swc},
       {.name = "VTP",
        .extensions = {".vtp"},
        .options = {"radius-array"},

@@ -14,7 +14,8 @@ constexpr std::string_view kNoParent = "-1";
 
 class SwcReader {
  public:
-  SwcReader(std::string_view content, const std::string& source) : lines_(content) {
+  SwcReader(std::string_view content, const std::string& source, const CenterlineReadOptions& options)
+      : lines_(content), voxel_size_(options.voxel_size) {
     refuse_utf16(content, source);
     raw_.source = source;
     raw_.node_word = raw_.segment_word = "line";
@@ -30,6 +31,7 @@ class SwcReader {
     connect();
     check_acyclic();
     note();
+    scale();
     return std::move(raw_);
   }
 
@@ -42,6 +44,8 @@ class SwcReader {
     const std::size_t hash = line.find('#');
     if (hash != std::string_view::npos) {
       read_tags(line.substr(hash + 1), raw_.unit, raw_.space);
+      if (says_voxels(line.substr(hash + 1)) && !voxel_size_)
+        fail(lines_.number(), "the numbers are in voxels; give the side of one with --voxel-size");
       line = line.substr(0, hash);
     }
     split_blank(line, fields_);
@@ -143,7 +147,23 @@ class SwcReader {
     }
   }
 
+  /// From voxels to lengths.
+  void scale() {
+    if (!voxel_size_) return;
+    const double side = voxel_size_->x();
+    if (!(side > 0) || *voxel_size_ != Vec3::Constant(side)) {
+      throw InvalidInput(raw_.source +
+                         ": radii in voxels need voxels of equal sides, above 0; give one number with "
+                         "--voxel-size, or convert the file to lengths first");
+    }
+    for (CenterlineNode& node : raw_.nodes) {
+      node.position *= side;
+      node.radius *= side;
+    }
+  }
+
   LineReader lines_;
+  std::optional<Vec3> voxel_size_;
   RawCenterline raw_;
   std::vector<std::string_view> fields_;
   std::unordered_map<std::string, Index> index_of_;
@@ -177,8 +197,8 @@ std::vector<Index> parents_in_forest(const Centerline& centerline) {
 
 }  // namespace
 
-RawCenterline parse_swc(std::string_view content, const std::string& source, const CenterlineReadOptions&) {
-  return SwcReader(content, source).run();
+RawCenterline parse_swc(std::string_view content, const std::string& source, const CenterlineReadOptions& options) {
+  return SwcReader(content, source, options).run();
 }
 
 void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,

@@ -103,6 +103,8 @@ void read_tags(std::string_view comment, LengthUnit& unit, Space& space) {
   if (const auto value = parse_length_unit(value_after(comment, "unit="))) unit = *value;
 }
 
+bool says_voxels(std::string_view comment) { return lower(value_after(comment, "unit=")).starts_with("voxel"); }
+
 void refuse_utf16(std::string_view content, const std::string& source) {
   const std::string_view begin = content.substr(0, 2);
   if (begin != "\xFF\xFE" && begin != "\xFE\xFF" && begin.find('\0') == std::string_view::npos) return;

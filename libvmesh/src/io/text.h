@@ -47,6 +47,9 @@ void append(std::string& text, std::uint64_t value);
 /// Looks for SPACE=... and UNIT=... in a comment.
 void read_tags(std::string_view comment, LengthUnit& unit, Space& space);
 
+/// Whether a comment says UNIT=voxels.
+bool says_voxels(std::string_view comment);
+
 /// Throws InvalidInput for text of two bytes per character.
 void refuse_utf16(std::string_view content, const std::string& source);
 

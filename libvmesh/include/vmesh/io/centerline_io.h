@@ -66,7 +66,8 @@ struct CenterlineReadOptions {
   std::string radius_array;
   /// Radius (mm, > 0) of all nodes if the file has none. Files without radii are refused otherwise.
   std::optional<double> radius;
-  /// GXL: sides of a voxel, in the unit of the radii. GXL files are refused without it.
+  /// GXL: sides of a voxel, in the unit of the radii; such files are refused without it. SWC: positions and radii are
+  /// in voxels of these sides, which must be equal.
   std::optional<Vec3> voxel_size;
 };
 
