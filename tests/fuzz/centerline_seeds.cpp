@@ -222,13 +222,26 @@ std::vector<std::string> vtp_seeds() {
           std::string("\0\0\0\0\0\0\0\1\7\0\0\0\0\0\0\0\6\0\1\0\2\0\3", 23) + "</AppendedData></VTKFile>"};
 }
 
+std::vector<std::string> vtu_seeds() {
+  return {
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"3\">"
+      "<PointData>" +
+      array("type=\"Int8\" Name=\"radius\"", "1 1 2 2") + "</PointData><CellData>" +
+      array("type=\"Int8\" Name=\"mark\"", "7 8 9") + "</CellData><Points>" +
+      array("type=\"Int8\" NumberOfComponents=\"3\"", "0 0 0 3 0 0 6 0 0 9 1 0") + "</Points><Cells>" +
+      array("type=\"Int8\" Name=\"connectivity\"", "0 1 2 1 3 0 1 2") +
+      array("type=\"Int8\" Name=\"offsets\"", "3 5 8") + array("type=\"UInt8\" Name=\"types\"", "4 3 5") +
+      "</Cells></Piece></UnstructuredGrid></VTKFile>"};
+}
+
 }  // namespace
 
 std::map<std::string, MakeSeeds> centerline_seeds() {
   return {
-      {".swc", swc_seeds}, {".vmv", vmv_seeds},  {".json", json_seeds},   {".csv", csv_seeds},
-      {".vtk", vtk_seeds}, {".vtp", vtp_seeds},  {".ctgr", ctgr_seeds},   {".pth", pth_seeds},
-      {".gxl", gxl_seeds}, {".am", amira_seeds}, {".dat", network_seeds}, {".mrk.json", markups_seeds},
+      {".vtu", vtu_seeds},          {".swc", swc_seeds}, {".vmv", vmv_seeds},  {".json", json_seeds},
+      {".csv", csv_seeds},          {".vtk", vtk_seeds}, {".vtp", vtp_seeds},  {".ctgr", ctgr_seeds},
+      {".pth", pth_seeds},          {".gxl", gxl_seeds}, {".am", amira_seeds}, {".dat", network_seeds},
+      {".mrk.json", markups_seeds},
   };
 }
 

@@ -285,7 +285,7 @@ TEST(ReadCenterline, SaysWhenThereIsNothingToRead) {
     folder.write("e.segments.csv", "");
     expect_contains(message_of<InvalidInput>([&] { read_centerline(folder.write(name, "")); }), name);
   }
-  expect_contains(message_of<Unsupported>([&] { read_centerline(folder / "a.vtu"); }), ".vtp");
+  expect_contains(message_of<Unsupported>([&] { read_centerline(folder / "a.nope"); }), ".vtp");
   expect_contains(message_of<Unsupported>([&] { read_centerline(folder / "a"); }), ".swc");
 }
 

@@ -28,6 +28,7 @@ const std::vector<CenterlineFormat>& centerline_formats() {
        .keeps_end_sections = true,
        .parse = parse_centerline_vtp,
        .write = write_centerline_vtp},
+      {.name = "VTU", .extensions = {".vtu"}, .options = {"radius-array"}, .parse = parse_centerline_vtu},
       {.name = "JSON",
        .extensions = {".json"},
        .options = {"radius-array"},  // of Markups of another name

@@ -61,7 +61,7 @@ const CenterlineFormat& centerline_output_format(const std::filesystem::path& pa
 std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path);
 
 struct CenterlineReadOptions {
-  /// VTP, VTK, Amira: name of the point or line array with the radius, or with the diameter if the name contains
+  /// VTP, VTU, VTK, Amira: name of the point or line array with the radius, or with the diameter if the name contains
   /// "diam". Empty: MaximumInscribedSphereRadius, Radius or radius; for Amira also thickness.
   std::string radius_array;
   /// Radius (mm, > 0) of all nodes if the file has none. Files without radii are refused otherwise.
