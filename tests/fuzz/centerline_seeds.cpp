@@ -234,14 +234,23 @@ std::vector<std::string> vtu_seeds() {
       "</Cells></Piece></UnstructuredGrid></VTKFile>"};
 }
 
+std::vector<std::string> obj_line_seeds() { return {"v 0 0 0\nv 9 0 0\nv 9 9 0\nl 1 2 3\nv 9 -9 0\nl 2 -1\n"}; }
+
+std::vector<std::string> ply_edge_seeds() {
+  return {
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float radius\nelement edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+      "0 0 0 3\n5 0 0 2\n9 0 0 1\n0 1\n1 2\n"};
+}
+
 }  // namespace
 
 std::map<std::string, MakeSeeds> centerline_seeds() {
   return {
-      {".vtu", vtu_seeds},          {".swc", swc_seeds}, {".vmv", vmv_seeds},  {".json", json_seeds},
-      {".csv", csv_seeds},          {".vtk", vtk_seeds}, {".vtp", vtp_seeds},  {".ctgr", ctgr_seeds},
-      {".pth", pth_seeds},          {".gxl", gxl_seeds}, {".am", amira_seeds}, {".dat", network_seeds},
-      {".mrk.json", markups_seeds},
+      {".obj", obj_line_seeds}, {".ply", ply_edge_seeds}, {".vtu", vtu_seeds},          {".swc", swc_seeds},
+      {".vmv", vmv_seeds},      {".json", json_seeds},    {".csv", csv_seeds},          {".vtk", vtk_seeds},
+      {".vtp", vtp_seeds},      {".ctgr", ctgr_seeds},    {".pth", pth_seeds},          {".gxl", gxl_seeds},
+      {".am", amira_seeds},     {".dat", network_seeds},  {".mrk.json", markups_seeds},
   };
 }
 

@@ -276,6 +276,67 @@ TEST(ReadCsv, NamesFileAndLineThatAreWrong) {
   expect_contains(message_of<InvalidInput>([&] { read_centerline(folder / "t.segments.csv"); }), "nodes");
 }
 
+RawCenterline obj(const std::string& text) {
+  CenterlineReadOptions options;
+  options.radius = 1;
+  return parse_centerline(text, centerline_format("t.obj"), "t.obj", options);
+}
+
+TEST(ReadObjOfLines, ReadsPolylines) {
+  const auto raw = obj("# UNIT=um\nl 1 2 3\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 5 0\nl -3/1 -1/2\n");
+  EXPECT_EQ(raw.unit, LengthUnit::um);
+  ASSERT_EQ(raw.nodes.size(), 4u);
+  ASSERT_EQ(raw.segments.size(), 3u);
+  EXPECT_EQ(raw.nodes[raw.segments[0].b].position, Vec3(1, 0, 0));
+  EXPECT_EQ(raw.nodes[raw.segments[1].b].position, Vec3(2, 0, 0));
+  EXPECT_EQ(raw.nodes[raw.segments[2].a].position, Vec3(1, 0, 0));
+  EXPECT_EQ(raw.nodes[raw.segments[2].b].position, Vec3(2, 5, 0));
+  EXPECT_EQ(raw.name_of_segment(2), "t.obj: line cell 1");
+}
+
+TEST(ReadObjOfLines, NamesWhatIsWrong) {
+  const auto error = [](const std::string& text) { return message_of<InvalidInput>([&] { obj(text); }); };
+  expect_contains(error("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2 3\n"), "t.obj: line 5: it has faces");
+  expect_contains(error("v 0 0 0\nl 1 2\n"), "t.obj: line 2: there is no vertex 2");
+  expect_contains(error("v 0 0 0\nl 1 zero\n"), "t.obj: line 2: \"zero\" is not a vertex index");
+  expect_contains(error("v 0 0 0\n"), "contains no line");
+  expect_contains(message_of<InvalidInput>(
+                      [] { parse_centerline("v 0 0 0\nv 1 0 0\nl 1 2\n", centerline_format("t.obj"), "t.obj"); }),
+                  "--radius");
+}
+
+std::string ply_of_edges(const std::string& edges,
+                         const std::string& ends = "property int vertex1\nproperty int vertex2\n") {
+  return "ply\nformat ascii 1.0\ncomment UNIT=mm\nelement vertex 3\nproperty float x\nproperty float y\n"
+         "property float z\nproperty float radius\nelement edge 2\n" +
+         ends +
+         "end_header\n"
+         "0 0 0 3\n5 0 0 2\n9 0 0 1\n" +
+         edges;
+}
+
+RawCenterline ply(const std::string& text) { return parse_centerline(text, centerline_format("t.ply"), "t.ply"); }
+
+TEST(ReadPlyOfEdges, ReadsVerticesWithRadiiAndEdges) {
+  const auto raw = ply(ply_of_edges("0 1\n1 2\n"));
+  EXPECT_EQ(raw.unit, LengthUnit::mm);
+  ASSERT_EQ(raw.segments.size(), 2u);
+  EXPECT_EQ(raw.nodes[raw.segments[1].b].position, Vec3(9, 0, 0));
+  EXPECT_EQ(raw.nodes[raw.segments[1].b].radius, 1);
+}
+
+TEST(ReadPlyOfEdges, NamesWhatIsWrong) {
+  const auto error = [](const std::string& text) { return message_of<InvalidInput>([&] { ply(text); }); };
+  expect_contains(error(ply_of_edges("0 1\n1 3\n")), "t.ply: edge 1: it runs to a vertex that is not there");
+  expect_contains(error(ply_of_edges("0 1\n1 -1\n")), "t.ply: edge 1");
+  expect_contains(error(ply_of_edges("0 1\n2\n")), "t.ply: edge 1: the file ends here");
+  expect_contains(error(ply_of_edges("0 1\n1 2\n", "property int a\nproperty int b\n")), "vertex1 and vertex2");
+  expect_contains(error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nelement face 1\n"
+                        "property list uchar int vertex_indices\nend_header\n0 3 0 0 0\n"),
+                  "this is a surface");
+  expect_contains(error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n"), "no edges");
+}
+
 TEST(ReadCenterline, SaysWhenThereIsNothingToRead) {
   const TemporaryFolder folder;
   expect_contains(message_of<ReadError>([&] { read_centerline(folder / "none.swc"); }), "none.swc");

@@ -51,6 +51,12 @@ const std::vector<CenterlineFormat>& centerline_formats() {
       {.name = "SimVascular path", .extensions = {".pth"}, .one_branch = true, .parse = parse_path},
       {.name = "VascuSynth", .extensions = {".gxl", ".xml"}, .options = {"voxel-size"}, .parse = parse_gxl},
       {.name = "Amira", .extensions = {".am"}, .options = {"radius-array"}, .parse = parse_amira},
+      {.name = "OBJ of lines", .extensions = {".obj"}, .mostly_surfaces = true, .parse = parse_centerline_obj},
+      {.name = "PLY of edges",
+       .extensions = {".ply"},
+       .options = {"radius-array"},
+       .mostly_surfaces = true,
+       .parse = parse_centerline_ply},
       {.name = "Secomb network", .extensions = {".dat"}, .parse = parse_network},
       {.name = "MorphIO network", .extensions = {".h5"}, .needs = {"HDF5", ".vmv or .vtp"}, .read = kReadHdf5},
   };

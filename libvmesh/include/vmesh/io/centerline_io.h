@@ -22,6 +22,7 @@ struct CenterlineFormat {
   std::vector<std::string> extensions;    ///< lower case, with their dots
   std::vector<std::string> options = {};  ///< of CenterlineReadOptions, those that act on it besides `radius`
   bool one_branch = false;                ///< a file holds one branch of a tree
+  bool mostly_surfaces = false;           ///< files of these extensions are surfaces unless they have lines, no faces
   bool trees_only = false;                ///< cannot hold loops
   bool keeps_end_sections = false;        ///< has room for flat ends
   OptionalPart needs = {};                ///< what `read` needs
