@@ -48,7 +48,8 @@ std::string array(const std::string& attributes, const std::string& data) {
 std::vector<std::string> swc_seeds() {
   return {"# SPACE=RAS UNIT=um\n1 1 0 0 0 2 -1\n2 3 8 0 0 1.5 1\n3 3 12 4 0 1 2\n4 3 12.5 -4e0 0.1 0 2\n",
           "\xEF\xBB\xBF# two trees, odd roots\r\n0 0 1 2 3 4 -2\r\n7\t5\t+1\t-.5\t1e-400\t2.5\t0 extra\r\n\r\n"
-          "9 1 100 100 100 1 -1 # alone"};
+          "9 1 100 100 100 1 -1 # alone",
+          "720575940590515268 0 0 0 0 3 0\n-7 0 1 0 0 3 720575940590515268\ntip 0 4 0 0 3 -07\n"};
 }
 
 std::vector<std::string> vmv_seeds() {
@@ -83,7 +84,9 @@ std::vector<std::string> markups_seeds() {
 
 std::vector<std::string> csv_seeds() {
   return {"# SPACE=LPS\nid,x,y,z,radius\n0,0,0,0,2\n1,8,0,0,1.5\n2,12,4,0,1\n\fa,b\n0,1\n1,2\n",
-          "note, Radius ,z,y,x,id\nhello,1,2,3,4,10\r\n,1,2,3,14,11\r\n\fb,a,why\n10,11,\n"};
+          "note, Radius ,z,y,x,id\nhello,1,2,3,4,10\r\n,1,2,3,14,11\r\n\fb,a,why\n10,11,\n",
+          "id;x;y;z;\"radius\"\r\nroot;0,5;1;2;1,5\r\n720575940590515268;1;2;3;1\r\n;;;;\r\n\f"
+          "a;b\r\nroot;720575940590515268\r\n"};
 }
 
 std::vector<std::string> vtk_seeds() {
@@ -219,13 +222,35 @@ std::vector<std::string> vtp_seeds() {
           std::string("\0\0\0\0\0\0\0\1\7\0\0\0\0\0\0\0\6\0\1\0\2\0\3", 23) + "</AppendedData></VTKFile>"};
 }
 
+std::vector<std::string> vtu_seeds() {
+  return {
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"3\">"
+      "<PointData>" +
+      array("type=\"Int8\" Name=\"radius\"", "1 1 2 2") + "</PointData><CellData>" +
+      array("type=\"Int8\" Name=\"mark\"", "7 8 9") + "</CellData><Points>" +
+      array("type=\"Int8\" NumberOfComponents=\"3\"", "0 0 0 3 0 0 6 0 0 9 1 0") + "</Points><Cells>" +
+      array("type=\"Int8\" Name=\"connectivity\"", "0 1 2 1 3 0 1 2") +
+      array("type=\"Int8\" Name=\"offsets\"", "3 5 8") + array("type=\"UInt8\" Name=\"types\"", "4 3 5") +
+      "</Cells></Piece></UnstructuredGrid></VTKFile>"};
+}
+
+std::vector<std::string> obj_line_seeds() { return {"v 0 0 0\nv 9 0 0\nv 9 9 0\nl 1 2 3\nv 9 -9 0\nl 2 -1\n"}; }
+
+std::vector<std::string> ply_edge_seeds() {
+  return {
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float radius\nelement edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+      "0 0 0 3\n5 0 0 2\n9 0 0 1\n0 1\n1 2\n"};
+}
+
 }  // namespace
 
 std::map<std::string, MakeSeeds> centerline_seeds() {
   return {
-      {".swc", swc_seeds}, {".vmv", vmv_seeds},  {".json", json_seeds},   {".csv", csv_seeds},
-      {".vtk", vtk_seeds}, {".vtp", vtp_seeds},  {".ctgr", ctgr_seeds},   {".pth", pth_seeds},
-      {".gxl", gxl_seeds}, {".am", amira_seeds}, {".dat", network_seeds}, {".mrk.json", markups_seeds},
+      {".obj", obj_line_seeds}, {".ply", ply_edge_seeds}, {".vtu", vtu_seeds},          {".swc", swc_seeds},
+      {".vmv", vmv_seeds},      {".json", json_seeds},    {".csv", csv_seeds},          {".vtk", vtk_seeds},
+      {".vtp", vtp_seeds},      {".ctgr", ctgr_seeds},    {".pth", pth_seeds},          {".gxl", gxl_seeds},
+      {".am", amira_seeds},     {".dat", network_seeds},  {".mrk.json", markups_seeds},
   };
 }
 

@@ -18,7 +18,8 @@ std::string stored(const std::string& bytes) { return packed(bytes, true, Z_NO_C
 std::vector<std::string> nii_seeds() {
   const SampleImage image = small_image();
   return {nifti_file<std::int16_t>(image, small_values()), nifti_file<float>(image, small_values(), NiftiPlace::qform),
-          nifti_file<std::uint16_t>(image, small_values(), NiftiPlace::sform, true)};
+          nifti_file<std::uint16_t>(image, small_values(), NiftiPlace::sform, true),
+          nifti2_file<std::int16_t>(image, small_values())};
 }
 
 std::vector<std::string> nii_gz_seeds() {

@@ -58,7 +58,7 @@ Verdict read_centerline_as(const CenterlineFormat& format, std::string_view cont
       content = content.substr(0, end);
     }
     CenterlineReadOptions options;
-    if (format.extensions.front() == ".pth") options.radius = 1.5;
+    if (format.extensions.front() == ".pth" || format.extensions.front() == ".obj") options.radius = 1.5;
     if (format.extensions.front() == ".gxl") options.voxel_size = Vec3(1, 1, 2);
     RawCenterline raw = parse_centerline(content, format, source, options, second);
     check(raw);

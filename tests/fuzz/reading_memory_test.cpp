@@ -138,9 +138,10 @@ TEST(ReadingMemory, HeadersThatLieAreErrors) {
            end},
       {"surface_vtp",
        vtp_head + "1\" NumberOfPolys=\"" + kLie + "\">" + cells + "<Polys>" + offsets + "</Polys>" + end},
-      {"ply", "ply\nformat binary_little_endian 1.0\nelement vertex " + kLie +
-                  "\nproperty float x\nproperty float y\nproperty float z\nend_header\n"},
-      {"ply", "ply\nformat ascii 1.0\nelement face " + kLie + "\nproperty list uchar int vertex_indices\nend_header\n"},
+      {"surface_ply", "ply\nformat binary_little_endian 1.0\nelement vertex " + kLie +
+                          "\nproperty float x\nproperty float y\nproperty float z\nend_header\n"},
+      {"surface_ply",
+       "ply\nformat ascii 1.0\nelement face " + kLie + "\nproperty list uchar int vertex_indices\nend_header\n"},
       {"stl", stl_head + "\xff\xff\xff\x7f" + std::string(50, '\0')},
       {"off", "OFF\n" + kLie + " 1 0\n0 0 0\n"},
       {"off", "OFF\n3 " + kLie + " 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
@@ -249,21 +250,22 @@ TEST(ReadingMemory, OfSurfacesIsAMultipleOfTheFile) {
   const std::string points(9, '\1');
   const std::string list = "property list uchar uchar vertex_index\n";
   expect_bounded(
-      "ply", many("\1\2\3",
-                  ply + "element vertex 300000\nproperty uchar x\nproperty uchar y\nproperty uchar z\nend_header\n"));
-  expect_bounded(
-      "ply", many(std::string(1, '\0'), ply + vertices + "element face 1000000\n" + list + "end_header\n" + points));
+      "surface_ply",
+      many("\1\2\3",
+           ply + "element vertex 300000\nproperty uchar x\nproperty uchar y\nproperty uchar z\nend_header\n"));
+  expect_bounded("surface_ply", many(std::string(1, '\0'),
+                                     ply + vertices + "element face 1000000\n" + list + "end_header\n" + points));
   std::string fan = std::string(1, '\xff');
   for (int i = 0; i < 255; ++i) fan += static_cast<char>(i % 3);
-  expect_bounded("ply", many(fan, ply + vertices + "element face 4000\n" + list + "end_header\n" + points));
-  expect_bounded("ply", many("property uchar a\n", ply + vertices, "end_header\n"));
-  expect_bounded("ply", numbered("element % 0\n", ply, "end_header\n"));
+  expect_bounded("surface_ply", many(fan, ply + vertices + "element face 4000\n" + list + "end_header\n" + points));
+  expect_bounded("surface_ply", many("property uchar a\n", ply + vertices, "end_header\n"));
+  expect_bounded("surface_ply", numbered("element % 0\n", ply, "end_header\n"));
   expect_bounded("stl", many("vertex 0 0 0\n", "solid\n"));
   expect_bounded("stl", numbered("vertex % 0 0\n", "solid\nvertex 0 1 2\nvertex 0 1 1\n", "endloop\n"));
-  expect_bounded("obj", many("f\n"));
-  expect_bounded("obj", many("f 1 2 3\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"));
-  expect_bounded("obj", many("1 2 ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 3 "));
-  expect_bounded("obj", many("v 0 0 0\n"));
+  expect_bounded("surface_obj", many("f\n"));
+  expect_bounded("surface_obj", many("f 1 2 3\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"));
+  expect_bounded("surface_obj", many("1 2 ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 3 "));
+  expect_bounded("surface_obj", many("v 0 0 0\n"));
   expect_bounded("off", many("0 0 0\n", "OFF\n170000 1\n"));
   expect_bounded("off", many("1 2 ", "OFF\n3 1\n0 0 0\n1 0 0\n0 1 0\n500000 0 "));
 }

@@ -114,6 +114,36 @@ std::string nifti_file(const SampleImage& image, const std::vector<double>& valu
   return header + voxel_bytes<T>(values, big_endian);
 }
 
+/// The same as NIfTI-2 (n+2), placed by its sform.
+template <class T>
+std::string nifti2_file(const SampleImage& image, const std::vector<double>& values, bool big_endian = false) {
+  std::string header(544, '\0');
+  const auto put = [&](std::size_t at, auto value) {
+    const std::string bytes = bytes_of(value, big_endian);
+    header.replace(at, bytes.size(), bytes);
+  };
+  put(0, std::int32_t{540});
+  header.replace(4, 8, std::string("n+2\0\r\n\032\n", 8));
+  put(12, static_cast<std::int16_t>(nifti_type<T>()));
+  put(14, static_cast<std::int16_t>(8 * sizeof(T)));
+  put(16, std::int64_t{3});
+  for (int a = 0; a < 7; ++a) put(24 + 8 * a, static_cast<std::int64_t>(a < 3 ? image.size[a] : 1));
+  put(104, 1.0);
+  for (int a = 0; a < 3; ++a) put(112 + 8 * a, image.spacing[a]);
+  put(168, std::int64_t{544});
+  put(176, 1.0);
+  put(348, std::int32_t{1});
+  const Eigen::DiagonalMatrix<double, 3> to_ras(-1, -1, 1);
+  const Eigen::Matrix3d ras = to_ras * image.direction;
+  const Vec3 origin = to_ras * image.origin;
+  for (int row = 0; row < 3; ++row) {
+    for (int a = 0; a < 3; ++a) put(400 + 32 * row + 8 * a, ras(row, a) * image.spacing[a]);
+    put(400 + 32 * row + 24, origin[row]);
+  }
+  put(500, std::int32_t{2});  // millimetres
+  return header + voxel_bytes<T>(values, big_endian);
+}
+
 inline std::string text_of(const Vec3& p, const char* separator) {
   std::ostringstream text;
   text.precision(17);

@@ -51,6 +51,16 @@ TEST_F(ReadImage, AnObliqueImageLiesAtOnePlaceInEveryFormat) {
   expect_is(read("a.mha", mha_header(sample_, "MET_SHORT") + voxels), sample_);
 }
 
+TEST_F(ReadImage, ReadsNifti2) {
+  const std::vector<double> values = sample_.values();
+  expect_is(read("s.nii", nifti2_file<std::int16_t>(sample_, values)), sample_);
+  expect_is(read("big.nii", nifti2_file<float>(sample_, values, true)), sample_);
+  expect_is(read("d.nii.gz", packed(nifti2_file<double>(sample_, values), true)), sample_);
+  std::string complex_numbers = nifti2_file<float>(sample_, values);
+  complex_numbers[12] = 32;
+  expect_contains(refusal<Unsupported>("c.nii", complex_numbers), "NIfTI data type 32 is not supported");
+}
+
 TEST_F(ReadImage, AFileIsReadAsItsBytesAre) {
   const std::string bytes = nifti_file<std::int16_t>(sample_, sample_.values());
   expect_is(read_image(folder_.write("a.NII", bytes)), sample_);

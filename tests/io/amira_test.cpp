@@ -58,6 +58,38 @@ TEST(ReadAmira, ReadsVerticesEdgesAndPointsBetween) {
   EXPECT_EQ(raw.name_of_segment(3), "t.am: edge 1");
 }
 
+TEST(ReadAmira, TheTransformationMatrixOfTheGraphIsApplied) {
+  const auto placed = [](const std::string& matrix) {
+    return parse(
+        with("    ContentType \"HxSpatialGraph\"",
+             "    History {\n LoadCommand \"a } \\\" b\"\n TransformationMatrix 9 0 0 0 0 9 0 0 0 0 9 0 0 0 0 1,\n}\n"
+             "    ContentType \"HxSpatialGraph\",\n    TransformationMatrix " +
+                 matrix +
+                 ",\n"
+                 "    &TransformationMatrix \"AAAA=\""));
+  };
+  // A quarter turn about z, twice the size, and a shift.
+  const RawCenterline plain = parse(kFile), moved = placed("0 2 0 0 -2 0 0 0 0 0 2 0 -6895 -3723 7 1");
+  ASSERT_EQ(moved.nodes.size(), plain.nodes.size());
+  for (std::size_t n = 0; n < plain.nodes.size(); ++n) {
+    const Vec3 p = plain.nodes[n].position;
+    EXPECT_LT((moved.nodes[n].position - Vec3(-2 * p.y() - 6895, 2 * p.x() - 3723, 2 * p.z() + 7)).norm(), 1e-9);
+    EXPECT_NEAR(moved.nodes[n].radius, 2 * plain.nodes[n].radius, 1e-9);
+  }
+  const auto refusal = [&](const std::string& matrix) { return message_of<InvalidInput>([&] { placed(matrix); }); };
+  expect_contains(refusal("1 0 0 0 0 1 0 0 0 0 3 0 0 0 0 1"), "t.am: line 16: the TransformationMatrix skews");
+  expect_contains(refusal("1 0 0 0 1 1 0 0 0 0 1 0 0 0 0 1"), "apply the transform in Amira");
+  expect_contains(refusal("0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1"), "apply the transform in Amira");
+  expect_contains(refusal("1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1"), "apply the transform in Amira");
+  expect_contains(refusal("1 0 0 0"), "has 16 numbers");
+  expect_contains(refusal("1 0 0 0 0 one 0 0 0 0 1 0 0 0 0 1"), "\"one\" is not a number");
+}
+
+TEST(ReadAmira, UnitsMayBeNanometres) {
+  EXPECT_EQ(parse(with("\"um\"", "\"nm\"")).unit, LengthUnit::nm);
+  EXPECT_EQ(parse(with("\"um\"", "\"\xB5m\"")).unit, LengthUnit::um);
+}
+
 std::string bytes_of(const std::string& numbers, bool floats, bool big) {
   std::string all;
   std::istringstream in(numbers);

@@ -85,6 +85,60 @@ TEST(ReadSwc, SaysWhatItIgnores) {
   EXPECT_TRUE(raw.segments.empty());
 }
 
+TEST(ReadSwc, IdsMayBeOf64BitsNegativeOrText) {
+  const auto raw =
+      swc("720575940590515268 0 0 0 0 3 -1\n720575940590515269 0 1 0 0 3 720575940590515268\n"
+          "18446744073709551615 0 2 0 0 3 720575940590515269\n-7 0 3 0 0 3 18446744073709551615\n"
+          "tip 0 4 0 0 3 -07\nnext 0 5 0 0 3 tip\n");
+  ASSERT_EQ(raw.segments.size(), 5u);
+  for (Index s = 0; s < 5; ++s) {
+    EXPECT_EQ(raw.segments[s].a, s);
+    EXPECT_EQ(raw.segments[s].b, s + 1);
+  }
+  EXPECT_TRUE(raw.warnings.empty());
+  expect_contains(swc_error("1 1 0 0 0 1 -1\n-1 1 0 0 1 1 1\n"), "line 2: the id -1 means \"no parent\"");
+  expect_contains(swc_error("1 1 0 0 0 1 -1\n2 1 0 0 1 1 tip\n"), "line 2: its parent tip is not in the file");
+}
+
+TEST(ReadSwc, AParent0MakesARootUnlessThereIsASample0) {
+  const auto raw = swc("1 1 0 0 0 1 0\n2 1 0 0 1 1 1\n");
+  EXPECT_EQ(raw.segments.size(), 1u);
+  ASSERT_EQ(raw.warnings.size(), 1u);
+  expect_contains(raw.warnings[0], "1 samples have the parent 0");
+  EXPECT_EQ(swc("0 1 0 0 0 1 -1\n2 1 0 0 1 1 0\n3 1 0 0 2 1 2\n").segments.size(), 2u);
+}
+
+TEST(ReadSwc, NumbersInVoxelsNeedTheSideOfOne) {
+  const std::string text = "1 1 0 2 4 3 -1\n2 1 0 2 6 3 1\n";
+  CenterlineReadOptions options;
+  options.voxel_size = Vec3(0.5, 0.5, 0.5);
+  const auto read = [&](const std::string& content) {
+    return parse_centerline(content, centerline_format("t.swc"), "t.swc", options);
+  };
+  for (const std::string head : {"", "# UNIT=voxels\n"}) {
+    const auto raw = read(head + text);
+    EXPECT_EQ(raw.nodes[1].position, Vec3(0, 1, 3));
+    EXPECT_EQ(raw.nodes[1].radius, 1.5);
+    EXPECT_EQ(raw.unit, LengthUnit::unknown);
+  }
+  expect_contains(swc_error("# UNIT=voxels\n" + text), "line 1: the numbers are in voxels; give the side");
+  options.voxel_size = Vec3(0.5, 0.5, 1);
+  expect_contains(message_of<InvalidInput>([&] { read(text); }), "t.swc: radii in voxels need voxels of equal sides");
+}
+
+TEST(ReadSwc, NanometresAreKnown) {
+  std::vector<std::string> warnings;
+  auto raw = convert_read(swc("# UNIT=nm SPACE=LPS\n1 1 3000000 0 0 7000 -1\n"), {}, {}, {}, warnings);
+  EXPECT_EQ(raw.nodes[0].position.x(), 3);
+  EXPECT_EQ(raw.nodes[0].radius, 0.007);
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_EQ(json(kJsonHead + R"("unit":"nm","nodes":[[0,0,0,1],[0,0,5,1]],"segments":[[0,1]]})").unit, LengthUnit::nm);
+}
+
+TEST(ReadSwc, Utf16IsRefusedByName) {
+  expect_contains(swc_error(std::string("\xFF\xFE\x31\0 \0", 6)), "UTF-16; save it as UTF-8");
+}
+
 TEST(ReadSwc, AMillionNodesThatEndInALoopAreRefusedQuickly) {
   std::string text = "1 1 0 0 0 1 1000000\n";
   for (int i = 2; i <= 1000000; ++i)
@@ -160,6 +214,51 @@ TEST(ReadCsv, ReadsAPairOfFiles) {
   EXPECT_EQ(csv_segments_path("d/t.csv"), "d/t.segments.csv");
 }
 
+RawCenterline csv(const std::string& nodes, const std::string& segments) {
+  return parse_centerline(nodes, centerline_format("t.csv"), "t.csv", {}, segments);
+}
+
+TEST(ReadCsv, ReadsWhatSpreadsheetsWriteWhereTheCommaIsDecimal) {
+  for (const std::string separator : {";", "\t"}) {
+    SCOPED_TRACE(separator);
+    const auto row = [&](std::string line) {
+      for (std::size_t at = 0; (at = line.find('|', at)) != std::string::npos;) line.replace(at, 1, separator);
+      return line + "\r\n";
+    };
+    const auto raw = csv("\xEF\xBB\xBF" + row("# UNIT=um||||") + row("id|x|y|\"z\"|radius|\"a note\"") +
+                             row("7|0,5|-1,25e1|3|1,5|\"has | in it\"") + row("3|1.5|0|4|\"2,5\"|") + row("|||||"),
+                         row("a|b") + row("7|3") + row("|"));
+    ASSERT_EQ(raw.nodes.size(), 2u);
+    EXPECT_EQ(raw.nodes[0].position, Vec3(0.5, -12.5, 3));
+    EXPECT_EQ(raw.nodes[0].radius, 1.5);
+    EXPECT_EQ(raw.nodes[1].position, Vec3(1.5, 0, 4));
+    EXPECT_EQ(raw.nodes[1].radius, 2.5);
+    EXPECT_EQ(raw.segments.size(), 1u);
+    EXPECT_EQ(raw.unit, LengthUnit::um);
+  }
+}
+
+TEST(ReadCsv, RefusesNumbersWithSeparatorsOfThousandsAndUtf16) {
+  const auto error = [](const std::string& nodes) { return message_of<InvalidInput>([&] { csv(nodes, "a;b\n"); }); };
+  for (const std::string number : {"1.234,5", "1,234,567"})
+    expect_contains(error("id;x;y;z;radius\n1;" + number + ";0;0;1\n"), "t.csv: line 2: \"" + number + "\"");
+  expect_contains(error(std::string("\xFF\xFEi\0d\0", 6)), "t.csv: line 1: this is text in UTF-16");
+  expect_contains(error(std::string("\0i\0d", 4)), "UTF-16; save it as UTF-8");
+}
+
+TEST(ReadCsv, IdsMayBeOf64BitsNegativeOrText) {
+  const auto raw =
+      csv("id,x,y,z,radius\n720575940590515268,0,0,0,1\n720575940590515269,1,0,0,1\n-4,2,0,0,1\nroot,3,0,0,1\n",
+          "a,b\n720575940590515268,720575940590515269\n720575940590515269,-4.0\n-4,root\n");
+  ASSERT_EQ(raw.segments.size(), 3u);
+  for (Index s = 0; s < 3; ++s) {
+    EXPECT_EQ(raw.segments[s].a, s);
+    EXPECT_EQ(raw.segments[s].b, s + 1);
+  }
+  expect_contains(message_of<InvalidInput>([] { csv("id,x,y,z,radius\n1.5,0,0,0,1\n", "a,b\n"); }),
+                  "line 2: \"1.5\" is not an id");
+}
+
 TEST(ReadCsv, NamesFileAndLineThatAreWrong) {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& nodes, const std::string& segments) {
@@ -177,6 +276,67 @@ TEST(ReadCsv, NamesFileAndLineThatAreWrong) {
   expect_contains(message_of<InvalidInput>([&] { read_centerline(folder / "t.segments.csv"); }), "nodes");
 }
 
+RawCenterline obj(const std::string& text) {
+  CenterlineReadOptions options;
+  options.radius = 1;
+  return parse_centerline(text, centerline_format("t.obj"), "t.obj", options);
+}
+
+TEST(ReadObjOfLines, ReadsPolylines) {
+  const auto raw = obj("# UNIT=um\nl 1 2 3\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 5 0\nl -3/1 -1/2\n");
+  EXPECT_EQ(raw.unit, LengthUnit::um);
+  ASSERT_EQ(raw.nodes.size(), 4u);
+  ASSERT_EQ(raw.segments.size(), 3u);
+  EXPECT_EQ(raw.nodes[raw.segments[0].b].position, Vec3(1, 0, 0));
+  EXPECT_EQ(raw.nodes[raw.segments[1].b].position, Vec3(2, 0, 0));
+  EXPECT_EQ(raw.nodes[raw.segments[2].a].position, Vec3(1, 0, 0));
+  EXPECT_EQ(raw.nodes[raw.segments[2].b].position, Vec3(2, 5, 0));
+  EXPECT_EQ(raw.name_of_segment(2), "t.obj: line cell 1");
+}
+
+TEST(ReadObjOfLines, NamesWhatIsWrong) {
+  const auto error = [](const std::string& text) { return message_of<InvalidInput>([&] { obj(text); }); };
+  expect_contains(error("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2 3\n"), "t.obj: line 5: it has faces");
+  expect_contains(error("v 0 0 0\nl 1 2\n"), "t.obj: line 2: there is no vertex 2");
+  expect_contains(error("v 0 0 0\nl 1 zero\n"), "t.obj: line 2: \"zero\" is not a vertex index");
+  expect_contains(error("v 0 0 0\n"), "contains no line");
+  expect_contains(message_of<InvalidInput>(
+                      [] { parse_centerline("v 0 0 0\nv 1 0 0\nl 1 2\n", centerline_format("t.obj"), "t.obj"); }),
+                  "--radius");
+}
+
+std::string ply_of_edges(const std::string& edges,
+                         const std::string& ends = "property int vertex1\nproperty int vertex2\n") {
+  return "ply\nformat ascii 1.0\ncomment UNIT=mm\nelement vertex 3\nproperty float x\nproperty float y\n"
+         "property float z\nproperty float radius\nelement edge 2\n" +
+         ends +
+         "end_header\n"
+         "0 0 0 3\n5 0 0 2\n9 0 0 1\n" +
+         edges;
+}
+
+RawCenterline ply(const std::string& text) { return parse_centerline(text, centerline_format("t.ply"), "t.ply"); }
+
+TEST(ReadPlyOfEdges, ReadsVerticesWithRadiiAndEdges) {
+  const auto raw = ply(ply_of_edges("0 1\n1 2\n"));
+  EXPECT_EQ(raw.unit, LengthUnit::mm);
+  ASSERT_EQ(raw.segments.size(), 2u);
+  EXPECT_EQ(raw.nodes[raw.segments[1].b].position, Vec3(9, 0, 0));
+  EXPECT_EQ(raw.nodes[raw.segments[1].b].radius, 1);
+}
+
+TEST(ReadPlyOfEdges, NamesWhatIsWrong) {
+  const auto error = [](const std::string& text) { return message_of<InvalidInput>([&] { ply(text); }); };
+  expect_contains(error(ply_of_edges("0 1\n1 3\n")), "t.ply: edge 1: it runs to a vertex that is not there");
+  expect_contains(error(ply_of_edges("0 1\n1 -1\n")), "t.ply: edge 1");
+  expect_contains(error(ply_of_edges("0 1\n2\n")), "t.ply: edge 1: the file ends here");
+  expect_contains(error(ply_of_edges("0 1\n1 2\n", "property int a\nproperty int b\n")), "vertex1 and vertex2");
+  expect_contains(error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nelement face 1\n"
+                        "property list uchar int vertex_indices\nend_header\n0 3 0 0 0\n"),
+                  "this is a surface");
+  expect_contains(error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n"), "no edges");
+}
+
 TEST(ReadCenterline, SaysWhenThereIsNothingToRead) {
   const TemporaryFolder folder;
   expect_contains(message_of<ReadError>([&] { read_centerline(folder / "none.swc"); }), "none.swc");
@@ -186,7 +346,7 @@ TEST(ReadCenterline, SaysWhenThereIsNothingToRead) {
     folder.write("e.segments.csv", "");
     expect_contains(message_of<InvalidInput>([&] { read_centerline(folder.write(name, "")); }), name);
   }
-  expect_contains(message_of<Unsupported>([&] { read_centerline(folder / "a.vtu"); }), ".vtp");
+  expect_contains(message_of<Unsupported>([&] { read_centerline(folder / "a.nope"); }), ".vtp");
   expect_contains(message_of<Unsupported>([&] { read_centerline(folder / "a"); }), ".swc");
 }
 

@@ -2,6 +2,7 @@
 #include "vmesh/io/surface_io.h"
 
 #include "io_support.h"
+#include "shared_data.h"
 
 namespace vmesh {
 namespace {
@@ -180,6 +181,76 @@ TEST(ReadVtp, CutsOfACompressedFileAreRefused) {
       expect_contains(problem.what(), "t.vtp");
     }
   }
+}
+
+/// Cells of an unstructured grid over five points: a triangle, a line, a polyline and a vertex, numbered 10 to 40.
+std::string vtu(const std::string& types = "5 3 4 1", const std::string& ids = "0 1 2 2 3 0 1 2 4",
+                const std::string& radius = R"(<DataArray type="Int8" Name="radius">1 2 3 4 5</DataArray>)") {
+  return R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid><FieldData>
+<DataArray type="String" Name="UNIT" NumberOfTuples="1" format="ascii">117 109 0</DataArray></FieldData>
+<Piece NumberOfPoints="5" NumberOfCells="4"><PointData>)" +
+         radius + R"(</PointData><CellData><DataArray type="Int8" Name="wide">10 20 30 40</DataArray></CellData>
+<Points><DataArray type="Int8" NumberOfComponents="3">0 0 0 9 0 0 18 0 0 18 9 0 5 5 5</DataArray></Points>
+<Cells><DataArray type="Int8" Name="connectivity">)" +
+         ids + R"(</DataArray><DataArray type="Int8" Name="offsets">3 5 8 9</DataArray>
+<DataArray type="UInt8" Name="types">)" +
+         types + R"(</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)";
+}
+
+RawCenterline parse_vtu(const std::string& text, const std::string& radius = {}) {
+  CenterlineReadOptions options;
+  options.radius_array = radius;
+  return parse_centerline(text, centerline_format("t.vtu"), "t.vtu", options);
+}
+
+TEST(ReadVtu, TakesLinesAndPointsAndSaysWhatItLeavesOut) {
+  const auto raw = parse_vtu(vtu());
+  EXPECT_EQ(raw.unit, LengthUnit::um);
+  ASSERT_EQ(raw.nodes.size(), 5u);
+  ASSERT_EQ(raw.segments.size(), 3u);
+  EXPECT_EQ(raw.nodes[raw.segments[0].b].position, Vec3(18, 9, 0));
+  EXPECT_EQ(raw.nodes[raw.segments[0].b].radius, 4);
+  EXPECT_EQ(raw.nodes[raw.segments[1].a].position, Vec3(0, 0, 0));
+  EXPECT_EQ(raw.nodes[raw.segments[2].b].radius, 3);
+  ASSERT_EQ(raw.warnings.size(), 1u);
+  expect_contains(raw.warnings[0], "t.vtu: 1 cells are neither lines nor points");
+}
+
+TEST(ReadVtu, NumbersOfCellsStayWithTheirCells) {
+  const auto raw = parse_vtu(vtu(), "wide");
+  ASSERT_GE(raw.segments.size(), 3u);
+  double end = 0, alone = 0, begin = 0;
+  for (const CenterlineNode& node : raw.nodes) {
+    if (node.position == Vec3(18, 9, 0)) end = node.radius;
+    if (node.position == Vec3(0, 0, 0)) begin = node.radius;
+    if (node.position == Vec3(5, 5, 5)) alone = node.radius;
+  }
+  EXPECT_EQ(end, 20);
+  EXPECT_EQ(begin, 30);
+  EXPECT_EQ(alone, 40);
+}
+
+TEST(ReadVtu, NamesWhatIsWrong) {
+  const auto refusal = [](const std::string& text) { return message_of<InvalidInput>([&] { parse_vtu(text); }); };
+  expect_contains(refusal(vtp()), "this is not a VTU file");
+  expect_contains(error(vtu()), "this is not a VTP file");
+  expect_contains(refusal(vtu("5 3 4")), "t.vtu");
+  expect_contains(refusal(vtu("5 3 4 1", "0 1 2 2 3 0 1 7 4")), "there is no point 7");
+  expect_contains(refusal(vtu("5 5 5 5")), "t.vtu");
+  expect_contains(refusal(vtu("5 3 4 1", "0 1 2 2 3 0 1 2 4", "")), "--radius-array");
+  std::string without_types = vtu();
+  without_types.replace(without_types.find("\"types\""), 7, "\"other\"");
+  expect_contains(refusal(without_types), "needs an array \"types\"");
+  const std::string text = vtu();
+  for (std::size_t end = 0; end < text.size(); end += 7) EXPECT_THROW(parse_vtu(text.substr(0, end)), InvalidInput);
+}
+
+TEST(ReadVtu, PackedAndAppendedDataAreReadAsThoseOfVtp) {
+  VMESH_NEED_SHARED_DATA("field/lines.vtu");
+  const auto cleaned = load_centerline(testing::shared_data("field/lines.vtu")).cleaned;
+  EXPECT_EQ(cleaned.centerline.nodes().size(), 37u);
+  EXPECT_EQ(cleaned.centerline.segments().size(), 36u);
+  EXPECT_EQ(cleaned.centerline.component_count(), 1u);
 }
 
 TEST(WriteVtp, NamesItsArraysLikeVmtkDoes) {

@@ -26,7 +26,7 @@ void add_output_after_several(CLI::App& verb, std::filesystem::path& output, con
 
 void add_writing(CLI::App& verb, WritingArguments& writing) {
   add_choice(
-      verb, "--output-unit", {"um", "mm", "cm", "m"},
+      verb, "--output-unit", {"nm", "um", "mm", "cm", "m"},
       [&writing](const std::string& text) { writing.unit = *parse_length_unit(text); }, "unit of the output")
       ->default_str("mm");
   add_choice(
@@ -43,7 +43,7 @@ void add_writing(CLI::App& verb, WritingArguments& writing) {
 void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
   input.options_of = of;
   add_choice(
-      verb, "--" + of + "unit", {"um", "mm", "cm", "m"},
+      verb, "--" + of + "unit", {"nm", "um", "mm", "cm", "m"},
       [&input](const std::string& text) { input.unit = parse_length_unit(text); },
       "unit of the numbers in the file; overrides what the file says");
   add_choice(
@@ -119,7 +119,7 @@ void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::st
             if (!(input.read.voxel_size->minCoeff() > 0))
               throw CLI::ValidationError(option, "must be above 0: " + text);
           },
-          "sides of the voxels in which VascuSynth's GXL files give positions, in the unit of the radii")
+          "sides of the voxels in which the file counts, in its unit: GXL files of VascuSynth, SWC")
       ->type_name("S|SX,SY,SZ");
 }
 

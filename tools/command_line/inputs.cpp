@@ -12,14 +12,24 @@
 namespace vmesh::tool {
 namespace {
 
-/// VTK's files may contain a surface or a centerline.
+bool holds_centerline(const std::filesystem::path& path) {
+  try {
+    CenterlineReadOptions any;
+    any.radius = 1;
+    return !read_centerline(path, any).segments.empty();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// VTK's files may contain a surface or a centerline, PLY and OBJ lines.
 bool may_be_both(const std::filesystem::path& path) {
-  return find_centerline_format(path) != nullptr && find_surface_format(path) != nullptr;
+  return find_surface_format(path) != nullptr && may_be_centerline(path);
 }
 
 /// Whether the file can only contain a surface.
 bool has_surface_extension(const std::filesystem::path& path) {
-  return find_centerline_format(path) == nullptr && find_surface_format(path) != nullptr;
+  return find_surface_format(path) != nullptr && !may_be_centerline(path);
 }
 
 std::vector<std::filesystem::path> paths_of(const InputArguments& input) {
@@ -62,16 +72,6 @@ std::string make_either_first(const std::filesystem::path& path) {
          ": this is an image, and a surface or a centerline is needed; make one first: vmesh reference " +
          path.string() + " -o " + made + ".ply, or vmesh centerline " + path.string() + " -o " + made +
          ".centerline.json";
-}
-
-bool holds_centerline(const std::filesystem::path& path) {
-  try {
-    CenterlineReadOptions any;
-    any.radius = 1;
-    return !read_centerline(path, any).segments.empty();
-  } catch (const Error&) {
-    return false;
-  }
 }
 
 bool holds_surface(const std::filesystem::path& path) {
@@ -210,6 +210,11 @@ auto reading_image(const InputArguments& input, Read read) {
 }
 
 }  // namespace
+
+bool may_be_centerline(const std::filesystem::path& path) {
+  const CenterlineFormat* format = find_centerline_format(path);
+  return format != nullptr && (!format->mostly_surfaces || holds_centerline(path));
+}
 
 RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said) {
   RawCenterline raw = read_centerline_of(input);

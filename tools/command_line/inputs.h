@@ -22,6 +22,10 @@ struct FileFrame {
   Space space = Space::unknown;
 };
 
+/// Whether the file may contain a centerline: by its extension, or by its content where nearly all files with that
+/// extension contain surfaces.
+bool may_be_centerline(const std::filesystem::path& path);
+
 /// A centerline as in its file, in mm and LPS; warnings are appended, the file's unit and frame go to `said`. Files of
 /// another kind are refused with the command that makes a centerline from them.
 RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings,

@@ -24,7 +24,7 @@ void add_options(CLI::App& verb, ConvertArguments& arguments) {
 
 /// What a file of that name contains; nullopt for VTK's, which may contain either.
 std::optional<Kind> kind_of(const std::filesystem::path& path) {
-  if (find_centerline_format(path) == nullptr) {
+  if (!may_be_centerline(path)) {
     surface_format(path);  // throws Unsupported
     return Kind::surface;
   }
@@ -32,9 +32,14 @@ std::optional<Kind> kind_of(const std::filesystem::path& path) {
   return std::nullopt;
 }
 
+std::optional<Kind> kind_of_output(const std::filesystem::path& path) {
+  const CenterlineFormat* format = find_centerline_format(path);
+  return format != nullptr && format->mostly_surfaces ? Kind::surface : kind_of(path);
+}
+
 void check_kinds(const ConvertArguments& arguments) {
   check_is_no_image(arguments.input);
-  const auto from = kind_of(arguments.input.path), to = kind_of(arguments.output);
+  const auto from = kind_of(arguments.input.path), to = kind_of_output(arguments.output);
   if (from && to && *from != *to)
     throw UsageError(arguments.output.string() + ": a " + (*from == Kind::surface ? "surface" : "centerline") +
                      " cannot be converted to a " + (*to == Kind::surface ? "surface" : "centerline") + "; see vmesh " +
@@ -42,7 +47,7 @@ void check_kinds(const ConvertArguments& arguments) {
 }
 
 std::vector<PlannedOutput> planned_outputs(const std::filesystem::path& output) {
-  const Kind kind = kind_of(output).value_or(Kind::surface);
+  const Kind kind = kind_of_output(output).value_or(Kind::surface);
   std::vector<PlannedOutput> outputs;
   for (const std::filesystem::path& file : files_of(output)) outputs.push_back({file, kind});
   return outputs;
@@ -74,7 +79,7 @@ int run(const ConvertArguments& arguments, Console& console) {
   console.warn(warnings);
   stop_if_interrupted();
   const bool is_surface = std::holds_alternative<LoadedSurface>(input);
-  if (const auto to = kind_of(arguments.output); to && (*to == Kind::surface) != is_surface)
+  if (const auto to = kind_of_output(arguments.output); to && (*to == Kind::surface) != is_surface)
     throw UsageError(arguments.input.path.string() + ": contains a " + (is_surface ? "surface" : "centerline") +
                      ", which cannot be written to " + arguments.output.string());
   std::visit([&](const auto& content) { convert(content, arguments, console); }, input);

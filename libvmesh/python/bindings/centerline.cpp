@@ -238,7 +238,7 @@ void bind_centerline(py::module_& module) {
 length contracted, missing radii (0) interpolated along the graph; `Centerline.cleaning` says what
 was done.
 
-    nodes, radii, segments  as for Centerline, in `unit` (um, mm, cm, m) and `space` (LPS, RAS)
+    nodes, radii, segments  as for Centerline, in `unit` (nm, um, mm, cm, m) and `space` (LPS, RAS)
     tolerance               points closer than this times the smaller radius count as one
     overlap_tolerance       polylines that begin in one place count as one while they differ by less
                             than this times the radius
@@ -272,10 +272,10 @@ nodes.)");
       R"(Reads a centerline by extension (.swc, .vtp, .json, .csv, .vmv, .vtk, .ctgr, .gxl, .am, .dat, .h5
 ...) and cleans it. Several paths make one centerline.
 
-    unit, space   win over what the file says: um, mm, cm, m; LPS, RAS
+    unit, space   win over what the file says: nm, um, mm, cm, m; LPS, RAS
     radius_array  .vtp, .vtk, .am: the array of radii, or of diameters
     radius        mm, for files without radii
-    voxel_size    (3,), .gxl: sides of a voxel, in the unit of the radii
+    voxel_size    (3,), sides of the voxels in which the file counts: .gxl (in the unit of the radii), .swc (all equal)
     the others    as for clean()
 
 Raises ReadError, InvalidInput that names file and line, Unsupported.)");

@@ -278,7 +278,7 @@ whole numbers. With a centerline every vertex is bound to the nearest place on i
 
     centerline   what it was grown around: vertices are bound as the file says (.ply and .vtp that
                  vmesh wrote), or to the nearest place
-    unit, space  win over what the file says: um, mm, cm, m; LPS, RAS
+    unit, space  win over what the file says: nm, um, mm, cm, m; LPS, RAS
 
 Raises ReadError, InvalidInput, Unsupported.)");
 }

@@ -13,7 +13,7 @@ std::string counted(std::size_t count, const std::string& word, const std::strin
 
 LengthUnit unit_of(const std::string& text) {
   if (const auto unit = parse_length_unit(text)) return *unit;
-  throw InvalidInput("unit: \"" + text + "\" is not known; there are um, mm, cm, m");
+  throw InvalidInput("unit: \"" + text + "\" is not known; there are nm, um, mm, cm, m");
 }
 
 Space space_of(const std::string& text) {

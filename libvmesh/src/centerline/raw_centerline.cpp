@@ -83,7 +83,10 @@ struct Conversion {
   Space space;
 
   // Division by 1000 is correctly rounded, multiplication by 0.001 is not.
-  double length(double x) const { return unit == LengthUnit::um ? x / 1000 : x * millimetres_per(unit); }
+  double length(double x) const {
+    if (unit == LengthUnit::nm) return x / 1e6;
+    return unit == LengthUnit::um ? x / 1000 : x * millimetres_per(unit);
+  }
   /// Half a turn about z, so that what is counter-clockwise stays so.
   Vec3 direction(const Vec3& v) const { return space == Space::ras ? Vec3(-v.x(), -v.y(), v.z()) : v; }
   Vec3 point(const Vec3& p) const {
@@ -108,7 +111,7 @@ struct Conversion {
 }  // namespace
 
 std::string_view to_string(LengthUnit unit) {
-  constexpr std::array<std::string_view, 5> kNames = {"unknown", "um", "mm", "cm", "m"};
+  constexpr std::array<std::string_view, 6> kNames = {"unknown", "nm", "um", "mm", "cm", "m"};
   return kNames[static_cast<std::size_t>(unit)];
 }
 
@@ -118,7 +121,9 @@ std::string_view to_string(Space space) {
 }
 
 std::optional<LengthUnit> parse_length_unit(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, LengthUnit>, 21> kNames = {{
+  static constexpr std::array<std::pair<std::string_view, LengthUnit>, 27> kNames = {{
+      {"nm", LengthUnit::nm},          {"nanometer", LengthUnit::nm},   {"nanometre", LengthUnit::nm},
+      {"nanometers", LengthUnit::nm},  {"nanometres", LengthUnit::nm},  {"\xB5m", LengthUnit::um},
       {"um", LengthUnit::um},          {"\xC2\xB5m", LengthUnit::um},   {"\xCE\xBCm", LengthUnit::um},
       {"micron", LengthUnit::um},      {"microns", LengthUnit::um},     {"micrometer", LengthUnit::um},
       {"micrometre", LengthUnit::um},  {"micrometers", LengthUnit::um}, {"mm", LengthUnit::mm},
@@ -144,6 +149,8 @@ std::optional<Space> parse_space(std::string_view text) {
 
 double millimetres_per(LengthUnit unit) {
   switch (unit) {
+    case LengthUnit::nm:
+      return 1e-6;
     case LengthUnit::um:
       return 1e-3;
     case LengthUnit::mm:
@@ -155,7 +162,7 @@ double millimetres_per(LengthUnit unit) {
     case LengthUnit::unknown:
       break;
   }
-  throw InvalidInput("the unit of length is unknown; choose um, mm, cm or m");
+  throw InvalidInput("the unit of length is unknown; choose nm, um, mm, cm or m");
 }
 
 std::string RawCenterline::name_of_node(Index n) const {
@@ -217,7 +224,8 @@ std::optional<std::string> implausible_radii(const RawCenterline& raw) {
 
 RawCenterline convert_to_internal(RawCenterline raw, std::optional<LengthUnit> unit_override,
                                   std::optional<Space> space_override, std::vector<std::string>& warnings) {
-  raw.unit = choose(raw.unit, unit_override, LengthUnit::mm, raw.source, "unit", "--unit um, mm, cm or m", warnings);
+  raw.unit =
+      choose(raw.unit, unit_override, LengthUnit::mm, raw.source, "unit", "--unit nm, um, mm, cm or m", warnings);
   raw.space = choose(raw.space, space_override, Space::lps, raw.source, "frame", "--space LPS or RAS", warnings);
   if (raw.unit != LengthUnit::mm || raw.space != Space::lps) Conversion{raw.unit, raw.space}.convert(raw);
   raw.unit = LengthUnit::mm;

@@ -43,6 +43,7 @@ class Fields {
                        : get<std::int16_t>(layout.dim + 2 * i);
   }
   int code(std::size_t at) const { return layout.wide ? get<std::int32_t>(at) : get<std::int16_t>(at); }
+  int type() const { return get<std::int16_t>(layout.datatype); }  // of two bytes in both versions
   int units() const { return layout.wide ? get<std::int32_t>(layout.units) : bytes_[layout.units]; }
   double data_begin() const {
     return layout.wide ? static_cast<double>(get<std::int64_t>(layout.vox_offset)) : real(layout.vox_offset);
@@ -162,7 +163,7 @@ Place place_of(const Fields& fields, Kind kind, ImageHeader& header, const std::
 }
 
 void set_data(ImageHeader& header, const Fields& fields, Kind kind, const std::string& name) {
-  header.type = number_type(fields.code(fields.layout.datatype), name);
+  header.type = number_type(fields.type(), name);
   const double begin = fields.data_begin();
   const double header_size = static_cast<double>(fields.layout.wide ? kHeader2 : kHeader1);
   if (!(begin >= (kind == Kind::one_file ? header_size : 0) && begin <= 1e9))

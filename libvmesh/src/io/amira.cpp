@@ -1,8 +1,10 @@
 // Spatial graphs of Amira and Avizo ("AmiraMesh" format): a header of declarations, then blocks of numbers.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <unordered_map>
 
+#include <Eigen/Dense>
 #include <zlib.h>
 
 #include "vmesh/core/stored_number.h"
@@ -43,6 +45,7 @@ class AmiraReader {
       read_block();
     } while (next_block());
     build();
+    transform();
     return std::move(raw_);
   }
 
@@ -89,7 +92,55 @@ class AmiraReader {
       const std::string_view text = line_.substr(unit + std::string_view("Coordinates \"").size());
       if (const auto known = parse_length_unit(text.substr(0, text.find('"')))) raw_.unit = *known;
     }
-    for (const char c : line_) depth_ += c == '{' ? 1 : c == '}' ? -1 : 0;
+    if (depth_ == 1 && keyword == "transformationmatrix") read_transformation();
+    count_braces();
+  }
+
+  /// Those in quotes are text.
+  void count_braces() {
+    bool quoted = false;
+    for (std::size_t i = 0; i < line_.size(); ++i) {
+      const char c = line_[i];
+      if (quoted && c == '\\') {
+        ++i;
+      } else if (c == '"') {
+        quoted = !quoted;
+      } else if (!quoted) {
+        depth_ += c == '{' ? 1 : c == '}' ? -1 : 0;
+      }
+    }
+  }
+
+  /// Four numbers for what the x axis becomes, four for y and z each, and four for the origin.
+  void read_transformation() {
+    Eigen::Matrix4d matrix;
+    if (fields_.size() != 17) fail("a TransformationMatrix has 16 numbers");
+    for (int i = 0; i < 16; ++i) {
+      std::string_view field = fields_[static_cast<std::size_t>(i) + 1];
+      if (field.ends_with(',')) field.remove_suffix(1);
+      const auto value = parse_double(field);
+      if (!value || !std::isfinite(*value)) fail(cite(field) + " is not a number");
+      matrix(i % 4, i / 4) = *value;
+    }
+    axes_ = matrix.topLeftCorner<3, 3>();
+    shift_ = matrix.topRightCorner<3, 1>();
+    factor_ = std::cbrt(std::abs(axes_.determinant()));
+    constexpr double kRounding = 1e-5;
+    const bool is_affine = matrix.row(3) == Eigen::RowVector4d(0, 0, 0, 1);
+    // Written so that NaN fails.
+    if (!is_affine || !(factor_ > 0) || !(axes_ / factor_ * (axes_ / factor_).transpose()).isIdentity(kRounding)) {
+      fail(
+          "the TransformationMatrix skews, or stretches some axes more than others, so that vessels would not be round;"
+          " apply the transform in Amira and save the graph again");
+    }
+  }
+
+  /// Places the graph where Amira shows it.
+  void transform() {
+    for (CenterlineNode& node : raw_.nodes) {
+      node.position = axes_ * node.position + shift_;
+      node.radius *= factor_;
+    }
   }
 
   void read_count() {
@@ -358,7 +409,10 @@ class AmiraReader {
   std::map<std::string, std::size_t> counts_;  ///< by lower-case name
   std::map<std::int64_t, Declaration> declarations_;
   Declaration *vertices_ = nullptr, *edges_ = nullptr, *sizes_ = nullptr, *points_ = nullptr, *radii_ = nullptr;
-  double scale_ = 1;  ///< factor from radii_ to radii
+  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  ///< with shift_, the TransformationMatrix
+  Vec3 shift_ = Vec3::Zero();
+  double factor_ = 1;  ///< of lengths, under axes_
+  double scale_ = 1;   ///< factor from radii_ to radii
   std::vector<Index> vertex_node_;
   std::vector<double> segment_radii_;
 };

@@ -1,19 +1,24 @@
+#include <algorithm>
 #include <array>
 #include <ostream>
 #include <unordered_map>
 
 #include "comments.h"
 #include "formats.h"
+#include "node_id.h"
 #include "text.h"
 
 namespace vmesh {
 namespace io {
 namespace {
 
-/// Rows of a CSV table whose header names the columns; '#' begins a comment.
+/// Rows of a CSV table whose header names the columns; '#' begins a comment. Columns are separated by commas, or by
+/// semicolons or tabs if the header has more of them; numbers may then have a decimal comma.
 class CsvTable {
  public:
-  CsvTable(std::string_view content, std::string source) : lines_(content), source_(std::move(source)) {}
+  CsvTable(std::string_view content, std::string source) : lines_(content), source_(std::move(source)) {
+    refuse_utf16(content, source_);
+  }
 
   [[noreturn]] void fail(const std::string& what) const {
     throw InvalidInput(source_ + ": line " + std::to_string(lines_.number()) + ": " + what);
@@ -27,7 +32,11 @@ class CsvTable {
       if (!lines_.next(line)) throw InvalidInput(source_ + ": it contains no table; " + wanted);
       if (trim(line).starts_with('#')) read_tags(line, unit, space);
     } while (is_skipped(line));
-    split_comma(line, fields_);
+    for (const char separator : {';', '\t'}) {
+      if (std::count(line.begin(), line.end(), separator) > std::count(line.begin(), line.end(), separator_))
+        separator_ = separator;
+    }
+    split(line);
     for (const auto name : names) {
       std::size_t column = 0;
       while (column < fields_.size() && lower(fields_[column]) != name) ++column;
@@ -41,8 +50,8 @@ class CsvTable {
     std::string_view line;
     do {
       if (!lines_.next(line)) return false;
-    } while (is_skipped(line));
-    split_comma(line, fields_);
+      split(line);
+    } while (is_skipped(line) || is_empty_row());
     if (fields_.size() != width_) {
       fail("it has " + std::to_string(fields_.size()) + " columns, the header has " + std::to_string(width_));
     }
@@ -52,14 +61,17 @@ class CsvTable {
   /// The field of the i-th wanted column.
   std::string_view field(std::size_t i) const { return fields_[columns_[i]]; }
 
-  std::int64_t integer(std::size_t i) const {
-    const auto value = parse_integer(field(i));
-    if (!value) fail(cite(field(i)) + " is not an integer");
+  std::string id(std::size_t i) const {
+    const auto value = parse_id(field(i));
+    if (!value) fail(cite(field(i)) + " is not an id; ids are integers or names");
     return *value;
   }
 
   double real(std::size_t i) const {
-    const auto value = parse_double(field(i));
+    std::string text(field(i));
+    const std::size_t comma = text.find(',');
+    if (comma != std::string::npos && text.find('.') == std::string::npos) text[comma] = '.';
+    const auto value = parse_double(text);
     if (!value) fail(cite(field(i)) + " is not a number");
     return *value;
   }
@@ -67,6 +79,37 @@ class CsvTable {
   std::uint64_t line_number() const { return lines_.number(); }
 
  private:
+  /// Where the first field of `line` ends. Within quotes, a separator is text.
+  std::size_t field_end(std::string_view line) const {
+    if (!trim(line).starts_with('"')) return line.find(separator_);
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (line[i] == '"') quoted = !quoted;
+      if (line[i] == separator_ && !quoted) return i;
+    }
+    return std::string_view::npos;
+  }
+
+  static std::string_view unquoted(std::string_view field) {
+    if (field.size() < 2 || !field.starts_with('"') || !field.ends_with('"')) return field;
+    return trim(field.substr(1, field.size() - 2));
+  }
+
+  void split(std::string_view line) {
+    fields_.clear();
+    while (true) {
+      const std::size_t end = field_end(line);
+      fields_.push_back(unquoted(trim(line.substr(0, end))));
+      if (end == std::string_view::npos) return;
+      line.remove_prefix(end + 1);
+    }
+  }
+
+  /// Spreadsheets end with such rows.
+  bool is_empty_row() const {
+    return std::all_of(fields_.begin(), fields_.end(), [](std::string_view field) { return field.empty(); });
+  }
+
   static bool is_skipped(std::string_view line) {
     const auto text = trim(line);
     return text.empty() || text.front() == '#';
@@ -80,6 +123,7 @@ class CsvTable {
   }
 
   LineReader lines_;
+  char separator_ = ',';
   std::string source_;
   std::vector<std::string_view> fields_;
   std::vector<std::size_t> columns_;
@@ -101,11 +145,11 @@ RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segm
   raw.segment_word = "line of the segments file";
   CsvTable table(nodes, source);
   table.read_header(std::array<std::string_view, 5>{"id", "x", "y", "z", "radius"}, raw.unit, raw.space);
-  std::unordered_map<std::int64_t, Index> index_of;
+  std::unordered_map<std::string, Index> index_of;
   while (table.next_row()) {
-    const std::int64_t id = table.integer(0);
+    const std::string id = table.id(0);
     if (!index_of.try_emplace(id, static_cast<Index>(raw.nodes.size())).second) {
-      table.fail("the id " + std::to_string(id) + " was given before; ids must be unique");
+      table.fail("the id " + shown_id(id) + " was given before; ids must be unique");
     }
     raw.nodes.push_back({{table.real(1), table.real(2), table.real(3)}, table.real(4)});
     raw.node_numbers.push_back(table.line_number());
@@ -115,9 +159,9 @@ RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segm
   pairs.read_header(std::array<std::string_view, 2>{"a", "b"}, raw.unit, raw.space);
   while (pairs.next_row()) {
     const auto end = [&](std::size_t i) {
-      const auto found = index_of.find(pairs.integer(i));
+      const auto found = index_of.find(pairs.id(i));
       if (found == index_of.end())
-        pairs.fail("there is no node with the id " + std::string(pairs.field(i)) + " in " + source);
+        pairs.fail("there is no node with the id " + shown_id(pairs.id(i)) + " in " + source);
       return found->second;
     };
     const Index a = end(0);

@@ -16,13 +16,19 @@ constexpr decltype(&read_hdf5_network) kReadHdf5 = nullptr;
 const std::vector<CenterlineFormat>& centerline_formats() {
   using namespace io;
   static const std::vector<CenterlineFormat> formats = {
-      {.name = "SWC", .extensions = {".swc"}, .trees_only = true, .parse = parse_swc, .write = write_swc},
+      {.name = "SWC",
+       .extensions = {".swc"},
+       .options = {"voxel-size"},
+       .trees_only = true,
+       .parse = parse_swc,
+       .write = write_swc},
       {.name = "VTP",
        .extensions = {".vtp"},
        .options = {"radius-array"},
        .keeps_end_sections = true,
        .parse = parse_centerline_vtp,
        .write = write_centerline_vtp},
+      {.name = "VTU", .extensions = {".vtu"}, .options = {"radius-array"}, .parse = parse_centerline_vtu},
       {.name = "JSON",
        .extensions = {".json"},
        .options = {"radius-array"},  // of Markups of another name
@@ -45,6 +51,12 @@ const std::vector<CenterlineFormat>& centerline_formats() {
       {.name = "SimVascular path", .extensions = {".pth"}, .one_branch = true, .parse = parse_path},
       {.name = "VascuSynth", .extensions = {".gxl", ".xml"}, .options = {"voxel-size"}, .parse = parse_gxl},
       {.name = "Amira", .extensions = {".am"}, .options = {"radius-array"}, .parse = parse_amira},
+      {.name = "OBJ of lines", .extensions = {".obj"}, .mostly_surfaces = true, .parse = parse_centerline_obj},
+      {.name = "PLY of edges",
+       .extensions = {".ply"},
+       .options = {"radius-array"},
+       .mostly_surfaces = true,
+       .parse = parse_centerline_ply},
       {.name = "Secomb network", .extensions = {".dat"}, .parse = parse_network},
       {.name = "MorphIO network", .extensions = {".h5"}, .needs = {"HDF5", ".vmv or .vtp"}, .read = kReadHdf5},
   };

@@ -95,7 +95,7 @@ RawCenterline convert_read(RawCenterline raw, const CenterlineReadOptions& optio
                            std::optional<Space> space, std::vector<std::string>& warnings) {
   warnings.insert(warnings.end(), raw.warnings.begin(), raw.warnings.end());
   raw.warnings.clear();
-  const bool may_be_wrong = !unit && raw.unit != LengthUnit::um;
+  const bool may_be_wrong = !unit && raw.unit != LengthUnit::um && raw.unit != LengthUnit::nm;
   raw = convert_to_internal(std::move(raw), unit, space, warnings);
   if (may_be_wrong) {
     if (const auto hint = implausible_radii(raw)) warnings.push_back(*hint);

@@ -59,7 +59,7 @@ class JsonReader {
   void read_unit_and_space() {
     if (document_.contains("unit")) {
       const auto unit = parse_length_unit(text_of("unit"));
-      if (!unit) fail("the unit " + cite(text_of("unit")) + " is not known; use um, mm, cm or m");
+      if (!unit) fail("the unit " + cite(text_of("unit")) + " is not known; use nm, um, mm, cm or m");
       raw_.unit = *unit;
     }
     if (document_.contains("space")) {

@@ -2,6 +2,7 @@
 
 #include "comments.h"
 #include "formats.h"
+#include "poly_lines.h"
 #include "text.h"
 #include "triangulation.h"
 
@@ -112,6 +113,35 @@ class ObjReader {
       : lines_(content), source_(source), faces_(surface_, source) {}
 
   LoadedSurface run() {
+    read_lines();
+    // Faces may come before their vertices.
+    for (const auto& [begin, end, number] : polygons_) {
+      faces_.add({corners_.begin() + begin, corners_.begin() + end}, "line " + std::to_string(number));
+    }
+    faces_.finish();
+    return std::move(surface_);
+  }
+
+  RawCenterline run_as_centerline(const CenterlineReadOptions& options) {
+    for_lines_ = true;
+    read_lines();
+    PolyLines data;
+    for (const Vec3& p : surface_.mesh.vertices) data.points.push_back({p, 0});
+    for (const Polygon& path : polygons_) data.lines.push_back(points_of(path));
+    const ScalarArrays none;
+    RawCenterline raw = to_raw_centerline(std::move(data), source_, {none, none}, options);
+    raw.unit = surface_.unit;
+    raw.space = surface_.space;
+    return raw;
+  }
+
+ private:
+  struct Polygon {
+    std::ptrdiff_t begin, end;
+    std::uint64_t line;
+  };
+
+  void read_lines() {
     std::string_view line;
     std::string continued;
     while (lines_.next(line)) {
@@ -127,19 +157,20 @@ class ObjReader {
         read_line(line);
       }
     }
-    // Faces may come before their vertices.
-    for (const auto& [begin, end, number] : polygons_) {
-      faces_.add({corners_.begin() + begin, corners_.begin() + end}, "line " + std::to_string(number));
-    }
-    faces_.finish();
-    return std::move(surface_);
   }
 
- private:
-  struct Polygon {
-    std::ptrdiff_t begin, end;
-    std::uint64_t line;
-  };
+  std::vector<Index> points_of(const Polygon& path) const {
+    std::vector<Index> points;
+    for (std::ptrdiff_t i = path.begin; i < path.end; ++i) {
+      const std::int64_t point = corners_[static_cast<std::size_t>(i)];
+      if (point < 0 || static_cast<std::size_t>(point) >= surface_.mesh.vertices.size()) {
+        throw InvalidInput(source_ + ": line " + std::to_string(path.line) + ": there is no vertex " +
+                           std::to_string(point + 1) + "; there are " + std::to_string(surface_.mesh.vertices.size()));
+      }
+      points.push_back(static_cast<Index>(point));
+    }
+    return points;
+  }
 
   [[noreturn]] void fail(const std::string& what) const {
     throw InvalidInput(source_ + ": line " + std::to_string(lines_.number()) + ": " + what);
@@ -151,7 +182,8 @@ class ObjReader {
     split_blank(line.substr(0, hash), fields_);
     if (fields_.empty()) return;
     if (fields_[0] == "v") read_vertex();
-    if (fields_[0] == "f") read_face();
+    if (for_lines_ && fields_[0] == "f") fail("it has faces, so this is a surface; a centerline has lines (l) only");
+    if (fields_[0] == (for_lines_ ? "l" : "f")) read_face();
   }
 
   void read_vertex() {
@@ -165,6 +197,7 @@ class ObjReader {
     surface_.mesh.vertices.push_back(p);
   }
 
+  /// Of a face or line.
   void read_face() {
     const auto begin = static_cast<std::ptrdiff_t>(corners_.size());
     for (std::size_t i = 1; i < fields_.size(); ++i) {
@@ -183,7 +216,8 @@ class ObjReader {
   FaceCollector faces_;
   std::vector<std::string_view> fields_;
   std::vector<std::int64_t> corners_;
-  std::vector<Polygon> polygons_;
+  std::vector<Polygon> polygons_;  ///< faces, or lines
+  bool for_lines_ = false;
 };
 
 }  // namespace
@@ -194,6 +228,11 @@ LoadedSurface parse_off(std::string_view content, const std::string& source) {
 
 LoadedSurface parse_obj(std::string_view content, const std::string& source) {
   return ObjReader(content, source).run();
+}
+
+RawCenterline parse_centerline_obj(std::string_view content, const std::string& source,
+                                   const CenterlineReadOptions& options) {
+  return ObjReader(content, source).run_as_centerline(options);
 }
 
 void write_off(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, const SurfaceMetadata& metadata,

@@ -7,6 +7,7 @@
 
 #include "formats.h"
 #include "ply.h"
+#include "poly_lines.h"
 #include "text.h"
 #include "triangulation.h"
 
@@ -117,6 +118,24 @@ class PlyReader {
     return std::move(surface_);
   }
 
+  RawCenterline run_as_centerline(const CenterlineReadOptions& options) {
+    for_lines_ = true;
+    read_header();
+    check_holds_lines();
+    PlyValues values(lines_.rest(), encoding_, source_);
+    for (const auto& element : elements_) read_element(element, values);
+    PolyLines data;
+    for (const Vec3& p : surface_.mesh.vertices) data.points.push_back({p, 0});
+    for (std::size_t e = 0; e + 1 < corners_.size(); e += 2) data.lines.push_back({end_of(e), end_of(e + 1)});
+    ScalarArrays of_points;
+    for (MeshAttribute& attribute : surface_.attributes.vertex) of_points[attribute.name] = std::move(attribute.values);
+    const ScalarArrays of_lines;
+    RawCenterline raw = to_raw_centerline(std::move(data), source_, {of_points, of_lines}, options);
+    raw.unit = surface_.unit;
+    raw.space = surface_.space;
+    return raw;
+  }
+
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw InvalidInput(source_ + ": line " + std::to_string(lines_.number()) + ": " + what);
@@ -146,6 +165,27 @@ class PlyReader {
       }
     }
     if (!has_format) fail("the header does not say its format (ascii, binary_little_endian, binary_big_endian)");
+  }
+
+  void check_holds_lines() const {
+    bool has_edges = false;
+    for (const PlyElement& element : elements_) {
+      if (element.name == "face" && element.count > 0)
+        fail("it has faces, so this is a surface; a centerline has vertices and edges only");
+      has_edges = has_edges || (element.name == "edge" && element.count > 0);
+    }
+    if (!has_edges) fail("it has no edges; a centerline has an element edge with vertex1 and vertex2");
+  }
+
+  /// The point at end `i` of the edges, two each.
+  Index end_of(std::size_t i) const {
+    if (corners_[i] < 0 || static_cast<std::size_t>(corners_[i]) >= surface_.mesh.vertices.size()) {
+      throw InvalidInput(source_ + ": edge " + std::to_string(i / 2) +
+                         ": it runs to a vertex that is not there; the "
+                         "vertices are 0 to " +
+                         std::to_string(static_cast<std::ptrdiff_t>(surface_.mesh.vertices.size()) - 1));
+    }
+    return static_cast<Index>(corners_[i]);
   }
 
   void read_format() {
@@ -205,6 +245,8 @@ class PlyReader {
       read_vertices(element, values);
     } else if (element.name == "face") {
       read_faces(element, values);
+    } else if (for_lines_ && element.name == "edge") {
+      read_edges(element, values);
     } else {
       for (std::uint64_t i = 0; i < element.count; ++i) {
         for (const auto& p : element.properties) skip(p, values, element.name, i);
@@ -291,6 +333,21 @@ class PlyReader {
     }
   }
 
+  void read_edges(const PlyElement& element, PlyValues& values) {
+    int ends = 0;
+    for (const auto& p : element.properties) ends += !p.is_list && (p.name == "vertex1" || p.name == "vertex2");
+    if (ends != 2) throw InvalidInput(source_ + ": the edges must have the properties vertex1 and vertex2");
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (const auto& p : element.properties) {
+        if (!p.is_list && (p.name == "vertex1" || p.name == "vertex2")) {
+          corners_.push_back(corner(values.next(p.type, element.name, i)));
+        } else {
+          skip(p, values, element.name, i);
+        }
+      }
+    }
+  }
+
   static std::int64_t corner(double value) {
     return value >= 0 && value < 0x1p53 ? static_cast<std::int64_t>(value) : -1;
   }
@@ -314,13 +371,18 @@ class PlyReader {
   std::unordered_set<std::string> element_names_;
   std::vector<std::int64_t> corners_;
   std::vector<std::ptrdiff_t> face_offsets_ = {0};
-  bool quality_is_skewness_ = false;
+  bool quality_is_skewness_ = false, for_lines_ = false;
 };
 
 }  // namespace
 
 LoadedSurface parse_ply(std::string_view content, const std::string& source) {
   return PlyReader(content, source).run();
+}
+
+RawCenterline parse_centerline_ply(std::string_view content, const std::string& source,
+                                   const CenterlineReadOptions& options) {
+  return PlyReader(content, source).run_as_centerline(options);
 }
 
 }  // namespace vmesh::io

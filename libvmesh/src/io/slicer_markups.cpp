@@ -87,7 +87,7 @@ class MarkupsReader {
     LengthUnit unit = LengthUnit::mm;  // Slicer's default
     if (!written_unit.empty()) {
       const auto known = parse_length_unit(written_unit);
-      if (!known) fail(name(m) + ": the unit " + cite(written_unit) + " is not known; use um, mm, cm or m");
+      if (!known) fail(name(m) + ": the unit " + cite(written_unit) + " is not known; use nm, um, mm, cm or m");
       unit = *known;
     }
     if (!raw_.nodes.empty() && (raw_.space != space || raw_.unit != unit))

@@ -123,8 +123,8 @@ void convert_to_internal(LoadedSurface& surface, const std::string& source, std:
   if (unit) surface.unit = *unit;
   if (space) surface.space = *space;
   if (surface.unit == LengthUnit::unknown) {
-    surface.warnings.push_back(source +
-                               ": the file does not say its unit; taken as mm (set it with --unit um, mm, cm or m)");
+    surface.warnings.push_back(
+        source + ": the file does not say its unit; taken as mm (set it with --unit nm, um, mm, cm or m)");
     surface.unit = LengthUnit::mm;
   }
   if (surface.space == Space::unknown) {

@@ -4,14 +4,19 @@
 
 #include "comments.h"
 #include "formats.h"
+#include "node_id.h"
 #include "text.h"
 
 namespace vmesh::io {
 namespace {
 
+constexpr std::string_view kNoParent = "-1";
+
 class SwcReader {
  public:
-  SwcReader(std::string_view content, const std::string& source) : lines_(content) {
+  SwcReader(std::string_view content, const std::string& source, const CenterlineReadOptions& options)
+      : lines_(content), voxel_size_(options.voxel_size) {
+    refuse_utf16(content, source);
     raw_.source = source;
     raw_.node_word = raw_.segment_word = "line";
     raw_.tree_only = true;
@@ -26,6 +31,7 @@ class SwcReader {
     connect();
     check_acyclic();
     note();
+    scale();
     return std::move(raw_);
   }
 
@@ -38,6 +44,8 @@ class SwcReader {
     const std::size_t hash = line.find('#');
     if (hash != std::string_view::npos) {
       read_tags(line.substr(hash + 1), raw_.unit, raw_.space);
+      if (says_voxels(line.substr(hash + 1)) && !voxel_size_)
+        fail(lines_.number(), "the numbers are in voxels; give the side of one with --voxel-size");
       line = line.substr(0, hash);
     }
     split_blank(line, fields_);
@@ -52,24 +60,25 @@ class SwcReader {
 
   void read_row() {
     const std::uint64_t line = lines_.number();
-    const std::int64_t id = integer(0, "id");
-    const std::int64_t parent = integer(6, "parent");
-    if (id < 0) fail(line, "the id " + std::to_string(id) + " is negative; ids are 0 or more");
+    const std::string id = id_in(0, "id");
+    if (id == kNoParent) fail(line, "the id -1 means \"no parent\"; give this sample another one");
     const Index index = static_cast<Index>(raw_.nodes.size());
     const auto [place, is_new] = index_of_.try_emplace(id, index);
     if (!is_new) {
-      fail(line, "the id " + std::to_string(id) + " was given before, in line " +
+      fail(line, "the id " + shown_id(id) + " was given before, in line " +
                      std::to_string(raw_.node_numbers[place->second]) + "; ids must be unique");
     }
     raw_.nodes.push_back({{real(2, "x"), real(3, "y"), real(4, "z")}, real(5, "radius")});
     raw_.node_numbers.push_back(line);
-    parent_id_.push_back(parent);
-    if (parent < -1) ++odd_roots_;
+    parent_id_.push_back(id_in(6, "parent"));
   }
 
-  std::int64_t integer(std::size_t column, const char* name) const {
-    const auto value = parse_integer(fields_[column]);
-    if (!value) fail(lines_.number(), std::string("the ") + name + " " + cite(fields_[column]) + " is not an integer");
+  std::string id_in(std::size_t column, const char* name) const {
+    const auto value = parse_id(fields_[column]);
+    if (!value) {
+      fail(lines_.number(),
+           std::string("the ") + name + " " + cite(fields_[column]) + " is not an id; ids are integers or names");
+    }
     return *value;
   }
 
@@ -82,15 +91,28 @@ class SwcReader {
   void connect() {
     parent_.assign(raw_.nodes.size(), kNone);
     for (Index n = 0; n < raw_.nodes.size(); ++n) {
-      if (parent_id_[n] < 0) continue;
+      if (parent_id_[n] == kNoParent) continue;
       const auto found = index_of_.find(parent_id_[n]);
       if (found == index_of_.end()) {
-        fail(raw_.node_numbers[n], "its parent " + std::to_string(parent_id_[n]) +
-                                       " is not in the file; add that sample or make this one a root (parent -1)");
+        count_root(n);
+        continue;
       }
       parent_[n] = found->second;
       raw_.segments.push_back({parent_[n], n});
       raw_.segment_numbers.push_back(raw_.node_numbers[n]);
+    }
+  }
+
+  /// Of a sample whose parent is not in the file.
+  void count_root(Index n) {
+    const std::string& parent = parent_id_[n];
+    if (parent == "0") {
+      ++roots_of_0_;
+    } else if (parent.starts_with('-') && parse_double(parent)) {
+      ++odd_roots_;
+    } else {
+      fail(raw_.node_numbers[n], "its parent " + shown_id(parent) +
+                                     " is not in the file; add that sample or make this one a root (parent -1)");
     }
   }
 
@@ -115,19 +137,39 @@ class SwcReader {
       raw_.warnings.push_back(raw_.source + ": " + std::to_string(rows_with_more_) +
                               " rows have more than seven columns; the rest was ignored");
     }
+    if (roots_of_0_ > 0) {
+      raw_.warnings.push_back(raw_.source + ": " + std::to_string(roots_of_0_) +
+                              " samples have the parent 0, which is not in the file; taken as roots");
+    }
     if (odd_roots_ > 0) {
       raw_.warnings.push_back(raw_.source + ": " + std::to_string(odd_roots_) +
-                              " samples have a negative parent other than -1; taken as roots");
+                              " samples have a negative parent that is not in the file; taken as roots");
+    }
+  }
+
+  /// From voxels to lengths.
+  void scale() {
+    if (!voxel_size_) return;
+    const double side = voxel_size_->x();
+    if (!(side > 0) || *voxel_size_ != Vec3::Constant(side)) {
+      throw InvalidInput(raw_.source +
+                         ": radii in voxels need voxels of equal sides, above 0; give one number with "
+                         "--voxel-size, or convert the file to lengths first");
+    }
+    for (CenterlineNode& node : raw_.nodes) {
+      node.position *= side;
+      node.radius *= side;
     }
   }
 
   LineReader lines_;
+  std::optional<Vec3> voxel_size_;
   RawCenterline raw_;
   std::vector<std::string_view> fields_;
-  std::unordered_map<std::int64_t, Index> index_of_;
-  std::vector<std::int64_t> parent_id_;
+  std::unordered_map<std::string, Index> index_of_;
+  std::vector<std::string> parent_id_;
   std::vector<Index> parent_;
-  std::size_t rows_with_more_ = 0, odd_roots_ = 0;
+  std::size_t rows_with_more_ = 0, roots_of_0_ = 0, odd_roots_ = 0;
 };
 
 /// The parent of every node, away from the lowest node of its component.
@@ -155,8 +197,8 @@ std::vector<Index> parents_in_forest(const Centerline& centerline) {
 
 }  // namespace
 
-RawCenterline parse_swc(std::string_view content, const std::string& source, const CenterlineReadOptions&) {
-  return SwcReader(content, source).run();
+RawCenterline parse_swc(std::string_view content, const std::string& source, const CenterlineReadOptions& options) {
+  return SwcReader(content, source, options).run();
 }
 
 void write_swc(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,

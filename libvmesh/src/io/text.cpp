@@ -65,16 +65,6 @@ void split_blank(std::string_view line, std::vector<std::string_view>& fields) {
   }
 }
 
-void split_comma(std::string_view line, std::vector<std::string_view>& fields) {
-  fields.clear();
-  while (true) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(trim(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 std::optional<double> parse_double(std::string_view text) {
   if (text.size() > 1 && text.front() == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
   double value = 0;
@@ -111,6 +101,14 @@ void append(std::string& text, std::uint64_t value) { text += std::to_string(val
 void read_tags(std::string_view comment, LengthUnit& unit, Space& space) {
   if (const auto value = parse_space(value_after(comment, "space="))) space = *value;
   if (const auto value = parse_length_unit(value_after(comment, "unit="))) unit = *value;
+}
+
+bool says_voxels(std::string_view comment) { return lower(value_after(comment, "unit=")).starts_with("voxel"); }
+
+void refuse_utf16(std::string_view content, const std::string& source) {
+  const std::string_view begin = content.substr(0, 2);
+  if (begin != "\xFF\xFE" && begin != "\xFE\xFF" && begin.find('\0') == std::string_view::npos) return;
+  throw InvalidInput(source + ": line 1: this is text in UTF-16; save it as UTF-8 (in Excel as \"CSV UTF-8\")");
 }
 
 std::string one_line(std::string_view text) {

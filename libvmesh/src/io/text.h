@@ -32,8 +32,6 @@ std::string_view trim(std::string_view text);
 
 /// Fields between spaces and tabs; `fields` is reused.
 void split_blank(std::string_view line, std::vector<std::string_view>& fields);
-/// Trimmed fields between commas.
-void split_comma(std::string_view line, std::vector<std::string_view>& fields);
 
 /// The whole of `text` as a number (also "nan" and "inf"; a leading + is allowed). Overflow gives infinity, underflow
 /// zero.
@@ -48,6 +46,12 @@ void append(std::string& text, std::uint64_t value);
 
 /// Looks for SPACE=... and UNIT=... in a comment.
 void read_tags(std::string_view comment, LengthUnit& unit, Space& space);
+
+/// Whether a comment says UNIT=voxels.
+bool says_voxels(std::string_view comment);
+
+/// Throws InvalidInput for text of two bytes per character.
+void refuse_utf16(std::string_view content, const std::string& source);
 
 /// `text` on one line: control characters become blanks.
 std::string one_line(std::string_view text);

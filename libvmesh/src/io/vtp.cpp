@@ -1,4 +1,5 @@
-// VTK's XML files of polygonal data (VTK File Formats, "XML File Formats"), read.
+// VTK's XML files of polygonal data and of unstructured grids (VTK File Formats, "XML File Formats"), read.
+#include <array>
 #include <cmath>
 #include <span>
 #include <unordered_map>
@@ -52,6 +53,10 @@ struct VtpCells {
     for (std::size_t c = 0; c < size(); ++c) result[c].assign((*this)[c].begin(), (*this)[c].end());
     return result;
   }
+  void add(std::span<const Index> points) {
+    ids.insert(ids.end(), points.begin(), points.end());
+    offsets.push_back(ids.size());
+  }
 };
 
 struct VtpData {
@@ -66,21 +71,29 @@ struct VtpData {
   std::size_t cell_count() const { return vertices.size() + lines.size() + polygons.size() + strips.size(); }
 };
 
+enum class VtkXmlKind { poly_data, unstructured_grid };
+
 class VtpReader {
  public:
-  VtpReader(std::string_view content, const std::string& source)
-      : source_(source), file_(parse_xml(content, source)), arrays_(file_, source) {}
+  VtpReader(std::string_view content, const std::string& source, VtkXmlKind kind = VtkXmlKind::poly_data)
+      : source_(source),
+        is_grid_(kind == VtkXmlKind::unstructured_grid),
+        file_(parse_xml(content, source)),
+        arrays_(file_, source) {}
 
   VtpData run() {
     const pugi::xml_node root = file_.document.child("VTKFile");
-    if (root.attribute("type").value() != std::string_view("PolyData")) {
-      throw InvalidInput(source_ + ": this is not a VTP file: it is not a <VTKFile type=\"PolyData\">");
+    const std::string type = is_grid_ ? "UnstructuredGrid" : "PolyData";
+    if (root.attribute("type").value() != type) {
+      throw InvalidInput(source_ + ": this is not a " + (is_grid_ ? "VTU" : "VTP") +
+                         " file: it is not a <VTKFile type=\"" + type + "\">");
     }
-    const pugi::xml_node data = root.child("PolyData");
-    if (!data) throw InvalidInput(source_ + ": it contains no <PolyData>");
+    const pugi::xml_node data = root.child(type.c_str());
+    if (!data) throw InvalidInput(source_ + ": it contains no <" + type + ">");
     read_field(data.child("FieldData"));
     for (const pugi::xml_node piece : data.children("Piece")) read_piece(piece);
     if (data_.points.empty()) throw InvalidInput(source_ + ": it contains no point");
+    if (is_grid_) sort_cell_arrays();
     return std::move(data_);
   }
 
@@ -101,6 +114,7 @@ class VtpReader {
     const std::uint64_t count = count_of(piece, "NumberOfPoints");
     if (count >= kNone - first_point) throw InvalidInput(source_ + ": too many points: " + std::to_string(count));
     read_points(piece, count);
+    if (is_grid_) read_grid_cells(piece, first_point);
     read_cells(piece, "Verts", count_of(piece, "NumberOfVerts"), first_point, data_.vertices);
     read_cells(piece, "Lines", count_of(piece, "NumberOfLines"), first_point, data_.lines);
     read_cells(piece, "Polys", count_of(piece, "NumberOfPolys"), first_point, data_.polygons);
@@ -158,6 +172,42 @@ class VtpReader {
     }
   }
 
+  /// Cells of all kinds, in any order.
+  void read_grid_cells(pugi::xml_node piece, std::size_t first_point) {
+    const std::uint64_t count = count_of(piece, "NumberOfCells");
+    if (count == 0) return;
+    VtpCells cells;
+    read_cells(piece, "Cells", count, first_point, cells);
+    const pugi::xml_node array = piece.child("Cells").find_child_by_attribute("Name", "types");
+    if (!array) throw InvalidInput(source_ + ": <Cells> needs an array \"types\" for its cells");
+    const std::vector<double> types = arrays_.numbers(array, count);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      const std::size_t group = group_of(types[c]);
+      cells_of_group_[group].push_back(grid_cells_++);
+      VtpCells* const groups[] = {&data_.vertices, &data_.lines, &data_.polygons};
+      groups[group]->add(cells[c]);
+    }
+  }
+
+  /// Of VTK's types of cells: 0 for vertices, 1 for lines, 2 for the rest.
+  static std::size_t group_of(double type) {
+    if (type == 1 || type == 2) return 0;
+    return type == 3 || type == 4 ? 1 : 2;
+  }
+
+  /// Puts the numbers of cells in the order of VtpData.
+  void sort_cell_arrays() {
+    for (VtpArray& array : data_.cell_arrays.arrays) {
+      if (array.values.size() != grid_cells_) continue;
+      std::vector<double> sorted;
+      sorted.reserve(grid_cells_);
+      for (const auto& group : cells_of_group_) {
+        for (const std::size_t c : group) sorted.push_back(array.values[c]);
+      }
+      array.values = std::move(sorted);
+    }
+  }
+
   [[noreturn]] void fail_point(double id, const char* kind, std::size_t count) const {
     std::string text;
     append(text, id);
@@ -182,9 +232,12 @@ class VtpReader {
   }
 
   const std::string& source_;
+  bool is_grid_;
   XmlFile file_;
   VtpArrays arrays_;
   VtpData data_;
+  std::size_t grid_cells_ = 0;
+  std::array<std::vector<std::size_t>, 3> cells_of_group_;  ///< of a grid, by their numbers in the file
 };
 
 /// Arrays with another number of elements are empty.
@@ -210,11 +263,7 @@ std::vector<MeshAttribute> attributes_of(const VtpArrayList& list, const Names& 
   return result;
 }
 
-}  // namespace
-
-RawCenterline parse_centerline_vtp(std::string_view content, const std::string& source,
-                                   const CenterlineReadOptions& options) {
-  VtpData data = VtpReader(content, source).run();
+RawCenterline centerline_of(VtpData data, const std::string& source, const CenterlineReadOptions& options) {
   PolyLines poly_lines;
   for (const Vec3& point : data.points) poly_lines.points.push_back({point, 0});
   poly_lines.lines = data.lines.lists();
@@ -226,6 +275,23 @@ RawCenterline parse_centerline_vtp(std::string_view content, const std::string& 
   read_end_sections(data.field_arrays, raw);
   raw.unit = data.unit;
   raw.space = data.space;
+  return raw;
+}
+
+}  // namespace
+
+RawCenterline parse_centerline_vtp(std::string_view content, const std::string& source,
+                                   const CenterlineReadOptions& options) {
+  return centerline_of(VtpReader(content, source).run(), source, options);
+}
+
+RawCenterline parse_centerline_vtu(std::string_view content, const std::string& source,
+                                   const CenterlineReadOptions& options) {
+  VtpData data = VtpReader(content, source, VtkXmlKind::unstructured_grid).run();
+  const std::size_t others = data.polygons.size();
+  RawCenterline raw = centerline_of(std::move(data), source, options);
+  if (others > 0)
+    raw.warnings.push_back(source + ": " + std::to_string(others) + " cells are neither lines nor points; left out");
   return raw;
 }
 

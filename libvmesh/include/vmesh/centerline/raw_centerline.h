@@ -11,12 +11,12 @@
 
 namespace vmesh {
 
-enum class LengthUnit { unknown, um, mm, cm, m };
+enum class LengthUnit { unknown, nm, um, mm, cm, m };
 
 /// Patient frames: x to the Left, y to the Posterior, z to the Superior (LPS), or Right, Anterior, Superior (RAS).
 enum class Space { unknown, lps, ras };
 
-/// "um", "mm", "cm", "m" or "unknown"; "LPS", "RAS" or "unknown".
+/// "nm", "um", "mm", "cm", "m" or "unknown"; "LPS", "RAS" or "unknown".
 std::string_view to_string(LengthUnit unit);
 std::string_view to_string(Space space);
 

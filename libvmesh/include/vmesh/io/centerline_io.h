@@ -22,6 +22,7 @@ struct CenterlineFormat {
   std::vector<std::string> extensions;    ///< lower case, with their dots
   std::vector<std::string> options = {};  ///< of CenterlineReadOptions, those that act on it besides `radius`
   bool one_branch = false;                ///< a file holds one branch of a tree
+  bool mostly_surfaces = false;           ///< files of these extensions are surfaces unless they have lines, no faces
   bool trees_only = false;                ///< cannot hold loops
   bool keeps_end_sections = false;        ///< has room for flat ends
   OptionalPart needs = {};                ///< what `read` needs
@@ -61,12 +62,13 @@ const CenterlineFormat& centerline_output_format(const std::filesystem::path& pa
 std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path);
 
 struct CenterlineReadOptions {
-  /// VTP, VTK, Amira: name of the point or line array with the radius, or with the diameter if the name contains
+  /// VTP, VTU, VTK, Amira: name of the point or line array with the radius, or with the diameter if the name contains
   /// "diam". Empty: MaximumInscribedSphereRadius, Radius or radius; for Amira also thickness.
   std::string radius_array;
   /// Radius (mm, > 0) of all nodes if the file has none. Files without radii are refused otherwise.
   std::optional<double> radius;
-  /// GXL: sides of a voxel, in the unit of the radii. GXL files are refused without it.
+  /// GXL: sides of a voxel, in the unit of the radii; such files are refused without it. SWC: positions and radii are
+  /// in voxels of these sides, which must be equal.
   std::optional<Vec3> voxel_size;
 };
 
