@@ -33,7 +33,9 @@ const std::vector<std::pair<std::string, std::string>> kOptions = {
 TEST_F(Formats, AreListedAsTextAndJson) {
   const Json formats = listed();
   const std::string text = vmesh({"formats"}).out;
-  EXPECT_NE(text.find("centerline .swc: SWC; read; written; --radius, --unit, --space\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("centerline .swc: SWC; read; written; --voxel-size, --radius, --unit, --space\n"),
+            std::string::npos)
+      << text;
   EXPECT_NE(text.find("centerline .gxl .xml: VascuSynth; read; --voxel-size"), std::string::npos) << text;
   for (const char* kind : {"centerline", "surface", "image"}) {
     ASSERT_GE(formats.at(kind).size(), 7u);
