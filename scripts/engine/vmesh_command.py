@@ -50,5 +50,6 @@ class Formats:
             return tuple(sorted(found, key=len, reverse=True))
 
         self.images = extensions("image")
-        self.inputs = tuple(sorted(extensions("centerline") + self.images, key=len, reverse=True))
+        centerlines = extensions("centerline", lambda entry: not entry["mostly_another_kind"])
+        self.inputs = tuple(sorted(centerlines + self.images, key=len, reverse=True))
         self.surfaces = tuple(name[1:] for name in extensions("surface", lambda entry: entry["written"]))

@@ -44,6 +44,16 @@ TEST_F(Formats, AreListedAsTextAndJson) {
   }
 }
 
+// Scripts that look for centerlines in a folder leave out its surfaces.
+TEST_F(Formats, ThoseOfLinesThatMostlyHoldSurfacesSaySo) {
+  const Json formats = listed();
+  for (const Json& format : formats.at("centerline")) {
+    const bool mostly = format.at("mostly_another_kind").get<bool>();
+    const std::string extension = format.at("extensions")[0].get<std::string>();
+    EXPECT_EQ(mostly, extension == ".ply" || extension == ".obj") << extension;
+  }
+}
+
 TEST_F(Formats, UnknownOnesAreRefusedWithAllThatAreKnown) {
   const Json formats = listed();
   for (const auto& [kind, output] : {std::pair{"surface", "tree.xyz"}, std::pair{"centerline", "frame.xyz"}}) {

@@ -23,6 +23,10 @@ bool is_read(const CenterlineFormat& format) { return format.parse || format.par
 bool is_read(const SurfaceFormat& format) { return format.parse || format.read; }
 bool is_read(const ImageFormat& format) { return format.parse_header || VMESH_TOOL_WITH_DICOM; }
 
+bool is_mostly_another(const CenterlineFormat& format) { return format.mostly_surfaces; }
+bool is_mostly_another(const SurfaceFormat&) { return false; }
+bool is_mostly_another(const ImageFormat&) { return false; }
+
 template <class Format>
 Json to_json(const std::vector<Format>& formats) {
   return list_json(formats, [](const Format& format) {
@@ -30,6 +34,7 @@ Json to_json(const std::vector<Format>& formats) {
                 {"extensions", format.extensions},
                 {"read", is_read(format)},
                 {"written", format.is_written()},
+                {"mostly_another_kind", is_mostly_another(format)},
                 {"options", options_of(format)}};
   });
 }
