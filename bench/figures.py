@@ -188,7 +188,7 @@ def masks(bench: Bench) -> None:
                      f"{found['ends']}, {len(summary['end_sections'])}", str(found["loops"]),
                      number(extraction["coverage"])])
     put("bench/README.md", "masks", table(
-        ["file", "CPU, s", "components kept, left out", "ends, flat ones", "loops", "coverage of the wall"], rows))
+        ["file", "CPU, s", "components, left out", "ends, flat ones", "loops", "coverage of the wall"], rows))
 
 
 def deform(bench: Bench) -> None:

@@ -242,6 +242,7 @@ TEST(ReadCsv, RefusesNumbersWithSeparatorsOfThousandsAndUtf16) {
   const auto error = [](const std::string& nodes) { return message_of<InvalidInput>([&] { csv(nodes, "a;b\n"); }); };
   for (const std::string number : {"1.234,5", "1,234,567"})
     expect_contains(error("id;x;y;z;radius\n1;" + number + ";0;0;1\n"), "t.csv: line 2: \"" + number + "\"");
+  expect_contains(error("id,x,y,z,radius\n1,\"1,234\",0,0,1\n"), "t.csv: line 2: \"1,234\" is not a number");
   expect_contains(error(std::string("\xFF\xFEi\0d\0", 6)), "t.csv: line 1: this is text in UTF-16");
   expect_contains(error(std::string("\0i\0d", 4)), "UTF-16; save it as UTF-8");
 }

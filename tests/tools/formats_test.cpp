@@ -54,6 +54,26 @@ TEST_F(Formats, ThoseOfLinesThatMostlyHoldSurfacesSaySo) {
   }
 }
 
+TEST_F(Formats, LinesInFormatsOfSurfacesAreCenterlines) {
+  write("l.obj", "# UNIT=mm SPACE=LPS\nv 0 0 0\nv 9 0 0\nl 1 2\n");
+  write("l.ply",
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float radius\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+        "0 0 0 1\n9 0 0 1\n0 1\n");
+  EXPECT_EQ(vmesh({"generate", "@l.obj", "--radius", "1", "-o", "@o.stl"}).exit_code, 0);
+  EXPECT_EQ(vmesh({"generate", "@l.ply", "-o", "@p.stl"}).exit_code, 0);
+  EXPECT_EQ(read("o.stl"), read("p.stl"));
+  EXPECT_EQ(vmesh({"convert", "@l.ply", "@l.swc"}).exit_code, 0);
+  const Outcome as_surface = vmesh({"evaluate", "@l.ply"});
+  EXPECT_EQ(as_surface.exit_code, 3) << as_surface.err;
+  EXPECT_NE(as_surface.err.find("this is a centerline, and a surface is needed"), std::string::npos) << as_surface.err;
+  // Errors are those of lines, not of a surface without triangles.
+  write("bad.obj", "v 0 0 0\nv 9 0 0\nl 1 5\n");
+  const Outcome bad = vmesh({"generate", "@bad.obj", "--radius", "1", "-o", "@o.stl"});
+  EXPECT_EQ(bad.exit_code, 3) << bad.err;
+  EXPECT_NE(bad.err.find("bad.obj: line 3: there is no vertex 5"), std::string::npos) << bad.err;
+}
+
 TEST_F(Formats, UnknownOnesAreRefusedWithAllThatAreKnown) {
   const Json formats = listed();
   for (const auto& [kind, output] : {std::pair{"surface", "tree.xyz"}, std::pair{"centerline", "frame.xyz"}}) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "vmesh/core/input_file.h"
 #include "vmesh/io/sha256.h"
 
 #include "command_line/interrupt.h"
@@ -11,16 +12,6 @@
 
 namespace vmesh::tool {
 namespace {
-
-bool holds_centerline(const std::filesystem::path& path) {
-  try {
-    CenterlineReadOptions any;
-    any.radius = 1;
-    return !read_centerline(path, any).segments.empty();
-  } catch (const Error&) {
-    return false;
-  }
-}
 
 /// VTK's files may contain a surface or a centerline, PLY and OBJ lines.
 bool may_be_both(const std::filesystem::path& path) {
@@ -72,6 +63,16 @@ std::string make_either_first(const std::filesystem::path& path) {
          ": this is an image, and a surface or a centerline is needed; make one first: vmesh reference " +
          path.string() + " -o " + made + ".ply, or vmesh centerline " + path.string() + " -o " + made +
          ".centerline.json";
+}
+
+bool holds_centerline(const std::filesystem::path& path) {
+  try {
+    CenterlineReadOptions any;
+    any.radius = 1;
+    return !read_centerline(path, any).segments.empty();
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 bool holds_surface(const std::filesystem::path& path) {
@@ -213,7 +214,12 @@ auto reading_image(const InputArguments& input, Read read) {
 
 bool may_be_centerline(const std::filesystem::path& path) {
   const CenterlineFormat* format = find_centerline_format(path);
-  return format != nullptr && (!format->mostly_surfaces || holds_centerline(path));
+  if (format == nullptr || format->holds_lines == nullptr) return format != nullptr;
+  try {
+    return format->holds_lines(read_file(path));
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::string>& warnings, FileFrame* said) {

@@ -34,7 +34,7 @@ std::optional<Kind> kind_of(const std::filesystem::path& path) {
 
 std::optional<Kind> kind_of_output(const std::filesystem::path& path) {
   const CenterlineFormat* format = find_centerline_format(path);
-  return format != nullptr && format->mostly_surfaces ? Kind::surface : kind_of(path);
+  return format != nullptr && format->holds_lines != nullptr ? Kind::surface : kind_of(path);
 }
 
 void check_kinds(const ConvertArguments& arguments) {

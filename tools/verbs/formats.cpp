@@ -23,7 +23,7 @@ bool is_read(const CenterlineFormat& format) { return format.parse || format.par
 bool is_read(const SurfaceFormat& format) { return format.parse || format.read; }
 bool is_read(const ImageFormat& format) { return format.parse_header || VMESH_TOOL_WITH_DICOM; }
 
-bool is_mostly_another(const CenterlineFormat& format) { return format.mostly_surfaces; }
+bool is_mostly_another(const CenterlineFormat& format) { return format.holds_lines != nullptr; }
 bool is_mostly_another(const SurfaceFormat&) { return false; }
 bool is_mostly_another(const ImageFormat&) { return false; }
 

@@ -74,6 +74,7 @@ SurfacePtr with_finished_ends(const SurfaceObject& surface, const FlatEndOptions
   }
   auto result = std::make_shared<SurfaceObject>(surface);
   result->ends = finish_ends(result->result, surface.centerline->centerline, options);
+  for (const std::string& problem : problems_of(result->ends)) result->warnings.push_back(problem);
   return result;
 }
 

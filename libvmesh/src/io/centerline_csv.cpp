@@ -69,7 +69,7 @@ class CsvTable {
 
   double real(std::size_t i) const {
     std::string text(field(i));
-    const std::size_t comma = text.find(',');
+    const std::size_t comma = separator_ == ',' ? std::string::npos : text.find(',');
     if (comma != std::string::npos && text.find('.') == std::string::npos) text[comma] = '.';
     const auto value = parse_double(text);
     if (!value) fail(cite(field(i)) + " is not a number");

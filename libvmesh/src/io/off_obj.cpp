@@ -125,14 +125,9 @@ class ObjReader {
   RawCenterline run_as_centerline(const CenterlineReadOptions& options) {
     for_lines_ = true;
     read_lines();
-    PolyLines data;
-    for (const Vec3& p : surface_.mesh.vertices) data.points.push_back({p, 0});
-    for (const Polygon& path : polygons_) data.lines.push_back(points_of(path));
-    const ScalarArrays none;
-    RawCenterline raw = to_raw_centerline(std::move(data), source_, {none, none}, options);
-    raw.unit = surface_.unit;
-    raw.space = surface_.space;
-    return raw;
+    std::vector<std::vector<Index>> lines;
+    for (const Polygon& path : polygons_) lines.push_back(points_of(path));
+    return to_raw_centerline(std::move(surface_), std::move(lines), source_, options);
   }
 
  private:
@@ -228,6 +223,21 @@ LoadedSurface parse_off(std::string_view content, const std::string& source) {
 
 LoadedSurface parse_obj(std::string_view content, const std::string& source) {
   return ObjReader(content, source).run();
+}
+
+bool holds_obj_lines(std::string_view content) {
+  LineReader lines(content);
+  std::vector<std::string_view> fields;
+  std::string_view line;
+  bool has_lines = false;
+  while (lines.next(line)) {
+    if (line.starts_with('v')) continue;  // most of them
+    split_blank(line, fields);
+    if (fields.empty()) continue;
+    if (fields[0] == "f") return false;
+    has_lines = has_lines || fields[0] == "l";
+  }
+  return has_lines;
 }
 
 RawCenterline parse_centerline_obj(std::string_view content, const std::string& source,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -118,22 +119,20 @@ class PlyReader {
     return std::move(surface_);
   }
 
+  bool holds_lines() {
+    read_header();
+    return has("edge") && !has("face");
+  }
+
   RawCenterline run_as_centerline(const CenterlineReadOptions& options) {
     for_lines_ = true;
     read_header();
     check_holds_lines();
     PlyValues values(lines_.rest(), encoding_, source_);
     for (const auto& element : elements_) read_element(element, values);
-    PolyLines data;
-    for (const Vec3& p : surface_.mesh.vertices) data.points.push_back({p, 0});
-    for (std::size_t e = 0; e + 1 < corners_.size(); e += 2) data.lines.push_back({end_of(e), end_of(e + 1)});
-    ScalarArrays of_points;
-    for (MeshAttribute& attribute : surface_.attributes.vertex) of_points[attribute.name] = std::move(attribute.values);
-    const ScalarArrays of_lines;
-    RawCenterline raw = to_raw_centerline(std::move(data), source_, {of_points, of_lines}, options);
-    raw.unit = surface_.unit;
-    raw.space = surface_.space;
-    return raw;
+    std::vector<std::vector<Index>> lines;
+    for (std::size_t e = 0; e + 1 < corners_.size(); e += 2) lines.push_back({end_of(e), end_of(e + 1)});
+    return to_raw_centerline(std::move(surface_), std::move(lines), source_, options);
   }
 
  private:
@@ -167,14 +166,14 @@ class PlyReader {
     if (!has_format) fail("the header does not say its format (ascii, binary_little_endian, binary_big_endian)");
   }
 
+  bool has(std::string_view element) const {
+    return std::any_of(elements_.begin(), elements_.end(),
+                       [&](const PlyElement& e) { return e.name == element && e.count > 0; });
+  }
+
   void check_holds_lines() const {
-    bool has_edges = false;
-    for (const PlyElement& element : elements_) {
-      if (element.name == "face" && element.count > 0)
-        fail("it has faces, so this is a surface; a centerline has vertices and edges only");
-      has_edges = has_edges || (element.name == "edge" && element.count > 0);
-    }
-    if (!has_edges) fail("it has no edges; a centerline has an element edge with vertex1 and vertex2");
+    if (has("face")) fail("it has faces, so this is a surface; a centerline has vertices and edges only");
+    if (!has("edge")) fail("it has no edges; a centerline has an element edge with vertex1 and vertex2");
   }
 
   /// The point at end `i` of the edges, two each.
@@ -379,6 +378,8 @@ class PlyReader {
 LoadedSurface parse_ply(std::string_view content, const std::string& source) {
   return PlyReader(content, source).run();
 }
+
+bool holds_ply_edges(std::string_view content) { return PlyReader(content, "").holds_lines(); }
 
 RawCenterline parse_centerline_ply(std::string_view content, const std::string& source,
                                    const CenterlineReadOptions& options) {

@@ -148,4 +148,17 @@ RawCenterline to_raw_centerline(PolyLines data, const std::string& source, const
   return Converter(data, source).run();
 }
 
+RawCenterline to_raw_centerline(LoadedSurface points, std::vector<std::vector<Index>> lines, const std::string& source,
+                                const CenterlineReadOptions& options) {
+  PolyLines data;
+  for (const Vec3& p : points.mesh.vertices) data.points.push_back({p, 0});
+  data.lines = std::move(lines);
+  ScalarArrays of_points;
+  for (MeshAttribute& attribute : points.attributes.vertex) of_points[attribute.name] = std::move(attribute.values);
+  RawCenterline raw = to_raw_centerline(std::move(data), source, {of_points, {}}, options);
+  raw.unit = points.unit;
+  raw.space = points.space;
+  return raw;
+}
+
 }  // namespace vmesh::io

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
 
 namespace vmesh::io {
 
@@ -29,6 +30,10 @@ struct Attributes {
 /// else of cells, under the name in `options` or a usual one; 0 if the options give one for all instead. Throws
 /// InvalidInput if nothing remains, or if there is no radius, listing the available names.
 RawCenterline to_raw_centerline(PolyLines data, const std::string& source, const Attributes& attributes,
+                                const CenterlineReadOptions& options);
+
+/// The same of lines over the vertices of a surface without faces, with its attributes, unit and frame.
+RawCenterline to_raw_centerline(LoadedSurface points, std::vector<std::vector<Index>> lines, const std::string& source,
                                 const CenterlineReadOptions& options);
 
 }  // namespace vmesh::io

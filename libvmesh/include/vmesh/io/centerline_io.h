@@ -22,7 +22,6 @@ struct CenterlineFormat {
   std::vector<std::string> extensions;    ///< lower case, with their dots
   std::vector<std::string> options = {};  ///< of CenterlineReadOptions, those that act on it besides `radius`
   bool one_branch = false;                ///< a file holds one branch of a tree
-  bool mostly_surfaces = false;           ///< files of these extensions are surfaces unless they have lines, no faces
   bool trees_only = false;                ///< cannot hold loops
   bool keeps_end_sections = false;        ///< has room for flat ends
   OptionalPart needs = {};                ///< what `read` needs
@@ -32,6 +31,8 @@ struct CenterlineFormat {
                               const CenterlineReadOptions& options);
   using Write = void(std::ostream& out, const Centerline& centerline, const CenterlineMetadata& metadata,
                      const std::vector<EndSection>& end_sections);
+  /// Of extensions whose files mostly are surfaces: whether this one has lines and no faces. Throws InvalidInput.
+  bool (*holds_lines)(std::string_view content) = nullptr;
   // The functions of the format, null where it has none. It is read by one of the first three.
   Parse* parse = nullptr;
   RawCenterline (*parse_pair)(std::string_view content, std::string_view second, const std::string& source) = nullptr;

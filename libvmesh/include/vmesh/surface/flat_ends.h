@@ -11,7 +11,7 @@ namespace vmesh {
 /// How to finish the ends at which a surface was left open.
 struct FlatEndOptions {
   /// Scale the rings to the area of the vessel's round cross-section, in which they are inscribed: with six vertices
-  /// around, that cuts off a sixth. Not for fitted surfaces.
+  /// around, that cuts off a sixth. A ring whose faces would then cross others stays as it is. Not for fitted surfaces.
   bool keep_area = true;
   bool cap = true;               ///< close the ends by flat caps
   std::vector<Index> left_open;  ///< nodes of the centerline whose ends stay open even so

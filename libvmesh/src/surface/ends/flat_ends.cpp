@@ -30,12 +30,9 @@ class EndFinisher {
     std::vector<Opening> open;
     SectionEnds sections = end_at_sections(result_, options_.sections, options_.keep_area);
     ends_.not_kept = std::move(sections.not_kept);
-    const auto is_at_section = [&](const Opening& opening) {
-      return std::binary_search(sections.kept.begin(), sections.kept.end(), opening.node);
-    };
-    if (options_.keep_area) scale_all_but(is_at_section);
+    if (options_.keep_area) scale_rings(sections.kept);
     for (Opening& opening : result_.openings) {
-      const bool at_section = is_at_section(opening);
+      const bool at_section = std::binary_search(sections.kept.begin(), sections.kept.end(), opening.node);
       if (options_.extension > 0) extend(opening);
       const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
       const Vec3 area = area_vector(ring);
@@ -56,56 +53,56 @@ class EndFinisher {
   }
 
  private:
-  // A ring that is scaled although another vessel is close beside it gets its positions back.
-  template <class Skip>
-  void scale_all_but(Skip&& skip) {
-    std::vector<const Opening*> scaled;
-    const std::vector<Vec3> before = result_.mesh.vertices;
+  struct ScaledRing {
+    const Opening* opening;
+    std::vector<Vec3> before;
+  };
+
+  // Of rings that are not at a section. Those whose faces then cross others get their positions back.
+  void scale_rings(const std::vector<Index>& nodes_at_sections) {
+    std::vector<ScaledRing> scaled;
     for (const Opening& opening : result_.openings) {
-      if (skip(opening)) continue;
-      scale(opening);
-      scaled.push_back(&opening);
+      if (std::binary_search(nodes_at_sections.begin(), nodes_at_sections.end(), opening.node)) continue;
+      scaled.push_back({&opening, ring_positions(result_.mesh, opening)});
+      const double factor = std::sqrt(std::numbers::pi / area_vector(scaled.back().before).norm()) * opening.radius;
+      for (const Index v : opening.ring) {
+        Vec3& p = result_.mesh.vertices[v];
+        p = opening.center + factor * (p - opening.center);
+      }
     }
-    for (std::size_t count = 0; count != scaled.size();) {
-      count = scaled.size();
-      const std::vector<char> crosses = vertices_of_crossing_faces(scaled);
-      std::erase_if(scaled, [&](const Opening* opening) {
-        const auto& ring = opening->ring;
-        if (std::none_of(ring.begin(), ring.end(), [&](Index v) { return crosses[v]; })) return false;
-        for (const Index v : ring) result_.mesh.vertices[v] = before[v];
-        ends_.narrowed.push_back(opening->node);
-        return true;
-      });
+    while (!scaled.empty() && take_back_crossing(scaled)) {
     }
     std::sort(ends_.narrowed.begin(), ends_.narrowed.end());
   }
 
-  // For every vertex, whether it is of a face at one of the rings, or of the lid there, that crosses another.
-  std::vector<char> vertices_of_crossing_faces(const std::vector<const Opening*>& openings) const {
+  // Whether there were any.
+  bool take_back_crossing(std::vector<ScaledRing>& scaled) {
+    const std::vector<char> crosses = vertices_of_crossing_faces();
+    const std::size_t taken_back = std::erase_if(scaled, [&](const ScaledRing& ring) {
+      const std::vector<Index>& vertices = ring.opening->ring;
+      if (std::none_of(vertices.begin(), vertices.end(), [&](Index v) { return crosses[v]; })) return false;
+      for (std::size_t j = 0; j < vertices.size(); ++j) result_.mesh.vertices[vertices[j]] = ring.before[j];
+      ends_.narrowed.push_back(ring.opening->node);
+      return true;
+    });
+    return taken_back > 0;
+  }
+
+  // For every vertex, whether it is of a face at a ring, or of the lid there, that crosses another, or of the other.
+  std::vector<char> vertices_of_crossing_faces() const {
     const TriMesh closed = with_lids(result_);
-    std::vector<char> is_on_ring(closed.vertices.size(), 0), crosses(closed.vertices.size(), 0);
-    for (const Opening* opening : openings) {
-      for (const Index v : opening->ring) is_on_ring[v] = 1;
-    }
-    std::vector<Index> changed;
+    std::vector<char> is_on_ring = vertices_on_rings(result_), crosses(closed.vertices.size(), 0);
+    is_on_ring.resize(closed.vertices.size(), 0);
+    std::vector<Index> at_rings;
     for (Index f = 0; f < closed.faces.size(); ++f) {
       const Triangle& face = closed.faces[f];
-      if (std::any_of(face.begin(), face.end(), [&](Index v) { return is_on_ring[v]; })) changed.push_back(f);
+      if (std::any_of(face.begin(), face.end(), [&](Index v) { return is_on_ring[v]; })) at_rings.push_back(f);
     }
-    for (const auto& [f, g] : crossing_pairs(closed.vertices, closed.faces, changed)) {
+    for (const auto& [f, g] : crossing_pairs(closed.vertices, closed.faces, at_rings)) {
       for (const Index face : {f, g})
         for (const Index v : closed.faces[face]) crosses[v] = 1;
     }
     return crosses;
-  }
-
-  void scale(const Opening& opening) {
-    const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
-    const double factor = std::sqrt(std::numbers::pi / area_vector(ring).norm()) * opening.radius;
-    for (const Index v : opening.ring) {
-      Vec3& p = result_.mesh.vertices[v];
-      p = opening.center + factor * (p - opening.center);
-    }
   }
 
   void extend(Opening& opening) {
