@@ -156,6 +156,9 @@ TEST(Transaction, KnowsTheFacesThatChanged) {
   std::vector<Index> changed = transaction.changed_faces();
   EXPECT_EQ(changed, (std::vector<Index>{std::min(both[0], both[1]), std::max(both[0], both[1])}));
   mesh.edit(40).position *= 1.01;
+  std::vector<Index> replaced = mesh.replaced_faces();
+  std::sort(replaced.begin(), replaced.end());
+  EXPECT_EQ(replaced, changed);  // a moved vertex replaces none
   changed = transaction.changed_faces();
   for (const Index f : mesh.faces_around(40)) EXPECT_TRUE(std::binary_search(changed.begin(), changed.end(), f));
   transaction.keep();

@@ -33,7 +33,7 @@ TriMesh sheet(int count, double x_end, double y_end) {
 FitMesh with_an_edge_along_the_ridge() {
   const std::vector<Vec3> points = {saddle(-2.5, 0), saddle(2.5, 0), saddle(0, 4), saddle(0, -4)};
   std::vector<FitVertex> vertices;
-  for (const Vec3& p : points) vertices.push_back({p, 0, 0, 5, 5});
+  for (const Vec3& p : points) vertices.push_back({p, 0, 0, 5, 5, kNone});
   return {{{0, 1, 2}, {1, 0, 3}}, vertices};
 }
 
@@ -48,9 +48,9 @@ class Ridge : public ::testing::Test {
 };
 
 TEST_F(Ridge, IsSeenByTheMiddleOfTheEdgeAlongIt) {
-  Matches matches = find_matches(surface_, reference_, samples_, field_, 3);
+  Matches matches = find_matches(surface_, reference_, samples_, field_, {3});
   EXPECT_LT(std::abs(farthest_match(surface_, matches, {}).distance), 0.6);
-  matches.from_edges = match_edges(surface_, reference_, field_);
+  matches = find_matches(surface_, reference_, samples_, field_, {3, true});
   const Match farthest = farthest_match(surface_, matches, {});
   EXPECT_NEAR(std::abs(farthest.distance), 0.75, 0.02);
   EXPECT_LT(place_of(surface_, farthest).position.head<2>().norm(), 1e-9);
@@ -59,8 +59,7 @@ TEST_F(Ridge, IsSeenByTheMiddleOfTheEdgeAlongIt) {
 TEST_F(Ridge, IsSeenByItsTips) {
   for (const Index v : {0u, 1u}) surface_.edit(v).position.z() += 1;
   surface_.edit(0).position.z() += 2;
-  Matches matches;
-  matches.from_edges = match_edges(surface_, reference_, field_);
+  const Matches matches = find_matches(surface_, reference_, {}, field_, {3, true});
   const auto is_tip = [&](const Match& match) {
     return match.face != kNone && (place_of(surface_, match).position - surface_.position(0)).norm() < 1e-9;
   };

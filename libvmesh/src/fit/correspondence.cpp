@@ -5,11 +5,14 @@
 
 #include <tbb/parallel_for.h>
 
+#include "fit/closest_walk.h"
+
 namespace vmesh::fitting {
 namespace {
 
 constexpr double kSameWay = 0.2;   // least cosine between normals
 constexpr double kFarthest = 1.5;  // local radii
+constexpr double kWalked = 0.25;   // local radii: a locally closest point that is farther may not be the closest
 // Points farther apart than kNear local radii are counterparts only if neither has a much nearer one: nearer than
 // kMutual times their distance.
 constexpr double kNear = 0.25, kMutual = 0.2;
@@ -52,7 +55,12 @@ class Matcher {
   Matcher(const FitMesh& surface, const FitReference& reference, const VesselField& field)
       : surface_(surface), reference_(reference), field_(field), index_(surface.tri_mesh()) {
     normals_.reserve(surface.faces().size());
-    for (Index f = 0; f < surface.faces().size(); ++f) normals_.push_back(surface.unit_normal(f));
+    across_.reserve(surface.faces().size());
+    for (Index f = 0; f < surface.faces().size(); ++f) {
+      normals_.push_back(surface.unit_normal(f));
+      const auto& [a, b, c] = surface.faces()[f];
+      across_.push_back({surface.face_of(b, a), surface.face_of(c, b), surface.face_of(a, c)});
+    }
   }
 
   Match from_surface(Index f, const Vec3& weights, double area, Index& near) const {
@@ -69,7 +77,7 @@ class Matcher {
     Vec3 weights = Vec3::Zero();
     weights[(i + 1) % 3] = 1 - part;
     weights[(i + 2) % 3] = part;
-    Index near = kNone;
+    Index near = surface_.vertex(part < 0.5 ? a : b).match;
     return from_surface(f, weights, normal, 0, near);
   }
 
@@ -88,7 +96,9 @@ class Matcher {
       const double limit = kMutual * found->distance;
       if (on_reference(found->point, normals_[found->face], there, limit, sample.face)) return {};
     }
-    return match(found->face, weights, found->point, sample.position, normal, radius, sample.area);
+    Match result = match(found->face, weights, found->point, sample.position, normal, radius, sample.area);
+    result.other = sample.face;
+    return result;
   }
 
  private:
@@ -108,7 +118,9 @@ class Matcher {
       const double limit = kMutual * found->distance;
       if (on_surface(found->point, reference_.normal(found->face), there, limit, f)) return {};
     }
-    return match(f, weights, p, found->point, reference_.normal(found->face), radius, area);
+    Match result = match(f, weights, p, found->point, reference_.normal(found->face), radius, area);
+    result.other = found->face;
+    return result;
   }
 
   std::optional<ClosestPoint> on_reference(const Vec3& p, const Vec3& normal, Index cone, double limit,
@@ -117,7 +129,8 @@ class Matcher {
       return reference_.normal(g).dot(normal) > kSameWay && reference_.is_near(g) &&
              same_vessel(field_, cone, reference_.cone(g));
     };
-    return reference_.index().closest_among(p, limit, accepts, near);
+    return closest(reference_.index(), p, limit, accepts, near,
+                   [&](Index g) -> const Triangle& { return reference_.across(g); });
   }
 
   std::optional<ClosestPoint> on_surface(const Vec3& p, const Vec3& normal, Index cone, double limit,
@@ -128,7 +141,19 @@ class Matcher {
       return std::any_of(face.begin(), face.end(),
                          [&](Index v) { return same_vessel(field_, cone, surface_.vertices()[v].cone); });
     };
-    return index_.closest_among(p, limit, accepts, near);
+    return closest(index_, p, limit, accepts, near, [&](Index f) -> const Triangle& { return across_[f]; });
+  }
+
+  // The closest of the accepted faces that is nearer than the limit. From a face nearby, what is locally closest and
+  // near is taken for it.
+  template <class Accepts, class Across>
+  static std::optional<ClosestPoint> closest(const ClosestPointIndex& index, const Vec3& p, double limit,
+                                             const Accepts& accepts, Index near, const Across& across) {
+    if (near != kNone) {
+      const auto found = walk_closer(index, p, near, across);
+      if (found && found->distance <= kWalked / kFarthest * limit && accepts(found->face)) return found;
+    }
+    return index.closest_among(p, limit, accepts, near);
   }
 
   bool is_on_border(Index f, const Vec3& weights) const {
@@ -143,8 +168,8 @@ class Matcher {
                      double radius, double area) {
     const Vec3 away = on_surface - on_reference;
     const double distance = away.norm();
-    if (distance < kNoDistance * radius) return {f, weights, normal, away.dot(normal), area};
-    return {f, weights, away / distance, distance, area};
+    if (distance < kNoDistance * radius) return {f, weights, normal, away.dot(normal), area, kNone};
+    return {f, weights, away / distance, distance, area, kNone};
   }
 
   const FitMesh& surface_;
@@ -152,45 +177,63 @@ class Matcher {
   const VesselField& field_;
   ClosestPointIndex index_;
   std::vector<Vec3> normals_;
+  std::vector<Triangle> across_;
 };
 
-}  // namespace
-
-Matches find_matches(const FitMesh& surface, const FitReference& reference, const std::vector<ReferenceSample>& samples,
-                     const VesselField& field, int division) {
-  const Matcher matcher(surface, reference, field);
-  const std::vector<Vec3> points = pattern(division);
-  Matches matches;
-  matches.per_face = static_cast<int>(points.size());
-  matches.from_surface.resize(surface.faces().size() * points.size());
-  const auto face_count = static_cast<Index>(surface.faces().size());
-  tbb::parallel_for(Index{0}, (face_count + kFaces - 1) / kFaces, [&](Index block) {
-    Index near = kNone;
-    for (Index f = block * kFaces; f < std::min(face_count, (block + 1) * kFaces); ++f) {
-      const double area = surface.area_normal(f).norm() / (2 * static_cast<double>(points.size()));
-      for (std::size_t i = 0; i < points.size(); ++i)
-        matches.from_surface[f * points.size() + i] = matcher.from_surface(f, points[i], area, near);
-    }
-  });
-  matches.from_reference.resize(samples.size());
-  tbb::parallel_for(std::size_t{0}, (samples.size() + kGrain - 1) / kGrain, [&](std::size_t block) {
-    Index near = kNone;
-    for (std::size_t i = block * kGrain; i < std::min(samples.size(), (block + 1) * kGrain); ++i)
-      matches.from_reference[i] = matcher.from_reference(samples[i], near);
-  });
-  return matches;
-}
-
-std::vector<Match> match_edges(const FitMesh& surface, const FitReference& reference, const VesselField& field) {
-  const Matcher matcher(surface, reference, field);
+std::vector<Match> match_edges(const Matcher& matcher, Index face_count, const MatchScope& scope) {
   constexpr int kPoints = 3 * kPerEdge;
-  std::vector<Match> matches(kPoints * surface.faces().size());
-  tbb::parallel_for(Index{0}, static_cast<Index>(surface.faces().size()), [&](Index f) {
+  std::vector<Match> matches(kPoints * static_cast<std::size_t>(face_count));
+  tbb::parallel_for(Index{0}, face_count, [&](Index f) {
+    if (!scope.has(f)) return;
     for (int i = 0; i < kPoints; ++i)
       matches[kPoints * f + static_cast<Index>(i)] =
           matcher.from_edge(f, i / kPerEdge, i % kPerEdge / (kPerEdge - 1.0));
   });
   return matches;
+}
+
+}  // namespace
+
+Matches find_matches(const FitMesh& surface, const FitReference& reference, const std::vector<ReferenceSample>& samples,
+                     const VesselField& field, const MatchScope& scope) {
+  const Matcher matcher(surface, reference, field);
+  const std::vector<Vec3> points = pattern(scope.division);
+  Matches matches;
+  matches.per_face = static_cast<int>(points.size());
+  matches.from_surface.resize(surface.faces().size() * points.size());
+  const auto face_count = static_cast<Index>(surface.faces().size());
+  tbb::parallel_for(Index{0}, (face_count + kFaces - 1) / kFaces, [&](Index block) {
+    for (Index f = block * kFaces; f < std::min(face_count, (block + 1) * kFaces); ++f) {
+      if (!scope.has(f)) continue;
+      const double area = surface.area_normal(f).norm() / (2 * static_cast<double>(points.size()));
+      Index near = surface.vertex(surface.faces()[f][0]).match;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        matches.from_surface[f * points.size() + i] = matcher.from_surface(f, points[i], area, near);
+    }
+  });
+  std::vector<Index> matched(reference.mesh().faces.size(), kNone);  // a face of the surface for those of the reference
+  for (const Match& match : matches.from_surface) {
+    if (match.face != kNone) matched[match.other] = match.face;
+  }
+  matches.from_reference.resize(samples.size());
+  tbb::parallel_for(std::size_t{0}, (samples.size() + kGrain - 1) / kGrain, [&](std::size_t block) {
+    Index near = kNone;
+    for (std::size_t i = block * kGrain; i < std::min(samples.size(), (block + 1) * kGrain); ++i) {
+      if (const Index face = matched[samples[i].face]; face != kNone) near = face;
+      matches.from_reference[i] = matcher.from_reference(samples[i], near);
+    }
+  });
+  if (scope.edges) matches.from_edges = match_edges(matcher, face_count, scope);
+  return matches;
+}
+
+void remember(FitMesh& surface, const Matches& matches) {
+  for (const Match& match : matches.from_surface) {
+    if (match.face == kNone) continue;
+    Eigen::Index corner = 0;
+    match.weights.maxCoeff(&corner);
+    surface.edit(surface.faces()[match.face][static_cast<std::size_t>(corner)]).match = match.other;
+  }
 }
 
 void follow(Matches& matches, const std::vector<FitVertex>& before, const FitMesh& surface) {

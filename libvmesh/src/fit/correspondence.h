@@ -16,6 +16,7 @@ struct Match {
   Vec3 direction = Vec3::Zero();  ///< unit, from the reference's point to the surface's, or opposite
   double distance = 0;            ///< along the direction, mm
   double area = 0;                ///< mm^2 that it represents
+  Index other = kNone;            ///< face of the reference
 };
 
 struct Matches {
@@ -28,15 +29,25 @@ struct Matches {
   int per_face = 0;
 };
 
-/// Counterparts of division^2 points on every face of the packed surface and of all samples of the reference: the
-/// closest point that faces the same way and belongs to the same vessel, within 1.5 local radii.
-Matches find_matches(const FitMesh& surface, const FitReference& reference, const std::vector<ReferenceSample>& samples,
-                     const VesselField& field, int division);
-
 inline constexpr int kPerEdge = 5;
 
-/// The matches of points on all edges, ends included: Matches::from_edges.
-std::vector<Match> match_edges(const FitMesh& surface, const FitReference& reference, const VesselField& field);
+/// What of a surface is matched.
+struct MatchScope {
+  int division;                  ///< of the faces, for division^2 points on each
+  bool edges = false;            ///< points on edges as well, ends included
+  std::vector<char> faces = {};  ///< one flag each; empty: all
+
+  bool has(Index face) const { return faces.empty() || faces[face]; }
+};
+
+/// Counterparts of points on the faces of the packed surface and of all samples of the reference: the closest point
+/// that faces the same way and belongs to the same vessel, within 1.5 local radii; from counterparts that vertices
+/// remember, the locally closest one if it is near.
+Matches find_matches(const FitMesh& surface, const FitReference& reference, const std::vector<ReferenceSample>& samples,
+                     const VesselField& field, const MatchScope& scope);
+
+/// Notes at the vertices where their counterparts are: the next matches are sought from there.
+void remember(FitMesh& surface, const Matches& matches);
 
 /// Updates the distances, along the same directions, after vertices have moved a little from `before`.
 void follow(Matches& matches, const std::vector<FitVertex>& before, const FitMesh& surface);

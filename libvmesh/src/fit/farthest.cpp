@@ -47,8 +47,7 @@ class FarPlaces {
  public:
   FarPlaces(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting)
       : surface_(surface), samples_(samples), setting_(setting) {
-    matches_ = find_matches(surface, setting.reference, samples, setting.field, kDivision);
-    matches_.from_edges = match_edges(surface, setting.reference, setting.field);
+    matches_ = find_matches(surface, setting.reference, samples, setting.field, {kDivision, true});
   }
 
   void improve(std::size_t most_vertices) {
@@ -80,8 +79,7 @@ class FarPlaces {
       FitPatch changed = patch;
       PatchMatches after{{}, before.samples};
       change(changed, after);
-      renew(changed, after);
-      after.matches.from_edges = match_edges(changed.surface, setting_.reference, setting_.field);
+      renew(changed, after, true);
       const double left = farthest(changed, after.matches);
       if (left >= least || worst_skewness(changed) > limit) return;
       least = left;
@@ -154,7 +152,7 @@ class FarPlaces {
 
   void refit(FitPatch& patch, PatchMatches& matches, const LeastSquaresWeights& weights) const {
     for (int i = 0; i < kRounds; ++i) {
-      renew(patch, matches);
+      renew(patch, matches, false);
       step_nearer(patch.surface, matches.matches, setting_, patch.frozen, weights);
       change(patch,
              [&](FitMesh& surface, const std::vector<char>& frozen) { repair(surface, frozen, setting_.guard); });
@@ -171,10 +169,12 @@ class FarPlaces {
     });
   }
 
-  void renew(const FitPatch& patch, PatchMatches& matches) const {
+  void renew(const FitPatch& patch, PatchMatches& matches, bool edges) const {
     std::vector<ReferenceSample> samples;
     for (const Index i : matches.samples) samples.push_back(samples_[i]);
-    matches.matches = find_matches(patch.surface, setting_.reference, samples, setting_.field, kDivision);
+    MatchScope scope{kDivision, edges, {}};
+    for (Index f = 0; f < patch.surface.faces().size(); ++f) scope.faces.push_back(patch.moves(f));
+    matches.matches = find_matches(patch.surface, setting_.reference, samples, setting_.field, scope);
   }
 
   // The patch's matches, taken from those of the whole.

@@ -13,10 +13,11 @@ struct FitVertex {
   Index opening = kNone;  ///< on whose ring the vertex lies
   double size = 0;        ///< intended length of the edges, mm
   double base_size = 0;   ///< size on the surface as given
+  Index match = kNone;    ///< a face of the reference that was matched nearby
 
   /// Of a vertex at `p` added between two.
   static FitVertex between(const FitVertex& a, const FitVertex& b, const Vec3& p) {
-    return {p, std::min(a.cone, b.cone), kNone, 0.5 * (a.size + b.size), 0.5 * (a.base_size + b.base_size)};
+    return {p, std::min(a.cone, b.cone), kNone, 0.5 * (a.size + b.size), 0.5 * (a.base_size + b.base_size), a.match};
   }
 };
 

@@ -28,13 +28,15 @@ using namespace fitting;
 
 constexpr double kSamplesPerFace = 9;              // of the reference
 constexpr int kDivision = 3, kCoarseDivision = 2;  // of the surface's faces: 9 or 4 samples
-constexpr int kFewer = 2;                // one in this number of samples of the reference where a coarse fit is enough
+constexpr int kFewer = 3;                // one in this number of samples of the reference where a coarse fit is enough
 constexpr std::size_t kFewerBefore = 4;  // one in this number of samples of the report before the fit
 constexpr double kLeastMatched = 0.02;   // of the surface's area: with less, the reference is somewhere else
 constexpr int kRelaxations = 2;
+// In the last rounds only triangles that are skewer are relaxed: in the tangent plane vertices leave the reference.
+constexpr double kLeftSkewness = 0.2;
 constexpr double kEvenShare = 0.5;  // of the error kept by 95 %: the error around most vertices
 constexpr double kAim = 0.92;       // of the error, while resizing: few samples underestimate it
-constexpr int kFirstRounds = 3, kLastRounds = 4;
+constexpr int kFirstRounds = 3, kLastRounds = 3;
 constexpr int kMoreRounds = 12;           // at most, to find the size that gives an error
 constexpr double kOfMostVertices = 0.98;  // target: the exact count cannot be controlled
 constexpr double kMore = 1.05;            // vertices that a fit may add without a budget
@@ -138,7 +140,7 @@ class Fit {
 
   TriMesh reference_without_apart(FitReport& report) const {
     const std::vector<char> apart =
-        faces_apart(find_matches(surface_, reference_, samples_, field_, kCoarseDivision), samples_, reference_);
+        faces_apart(find_matches(surface_, reference_, samples_, field_, {kCoarseDivision}), samples_, reference_);
     TriMesh rest{reference_.mesh().vertices, {}}, others = rest;
     for (Index f = 0; f < apart.size(); ++f) (apart[f] ? others : rest).faces.push_back(reference_.mesh().faces[f]);
     report.parts_apart = split_components(others).size();
@@ -181,7 +183,7 @@ class Fit {
   static std::vector<FitVertex> vertices_of(const VesselSurface& surface) {
     std::vector<FitVertex> vertices;
     for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v)
-      vertices.push_back({surface.mesh.vertices[v], surface.binding[v].segment, kNone, 0, 0});
+      vertices.push_back({surface.mesh.vertices[v], surface.binding[v].segment, kNone, 0, 0, kNone});
     return vertices;
   }
 
@@ -212,9 +214,11 @@ class Fit {
     return matches;
   }
 
-  Matches matches_now(bool coarse) const {
-    if (coarse) return find_matches(surface_, reference_, few_samples_, field_, kCoarseDivision);
-    return find_matches(surface_, reference_, samples_, field_, kDivision);
+  Matches matches_now(bool coarse) {
+    Matches matches = find_matches(surface_, reference_, coarse ? few_samples_ : samples_, field_,
+                                   {coarse ? kCoarseDivision : kDivision});
+    remember(surface_, matches);
+    return matches;
   }
 
   // The last rounds: distance takes precedence over shape.
@@ -243,7 +247,7 @@ class Fit {
         flip_closer(surface, frozen, first, setting_);
         if (first) flip_edges(surface, frozen, setting_.guard);
       }
-      for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, setting_.guard, power);
+      for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, setting_.guard, power, first ? 0 : kLeftSkewness);
       repair(surface, frozen, setting_.guard);
     });
     if (surface_.vertex_count() < surface_.vertices().size()) pack();
@@ -285,7 +289,8 @@ class Fit {
       collapse_edges(surface, frozen, setting_.guard);
       for (int i = 0; i < 2; ++i) {
         flip_edges(surface, frozen, setting_.guard);
-        for (int k = 0; k < kRelaxations; ++k) relax(surface, frozen, setting_.guard, 1);
+        const std::vector<char> settled = frozen_beside(surface.replaced_faces(), surface, frozen);
+        for (int k = 0; k < kRelaxations; ++k) relax(surface, settled, setting_.guard, 1);
       }
       repair(surface, frozen, setting_.guard);
     });
@@ -297,7 +302,6 @@ class Fit {
                         kAimPower),
         1 / kAimStep, kAimStep);
     find_cones(surface_, field_);
-    step(matches_now(true));
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       flip_closer(surface, frozen, false, setting_);
     });

@@ -14,7 +14,7 @@ struct ShapePull {
 
 /// Weights relative to those of the squared distances.
 struct LeastSquaresWeights {
-  double tangential = 0.19;  ///< of the pull to where triangles are well shaped
+  double tangential = 0.22;  ///< of the pull to where triangles are well shaped
   double smooth = 0.03;      ///< of the difference of neighbours' steps along the normal
   double emphasis = 0.8;     ///< of distances, by the RMS distance: large ones count more
 };

@@ -91,44 +91,49 @@ int deviation(std::size_t valence) {
   return d * d;
 }
 
-/// What flipping the edge between a and b changes.
+/// What flipping the edge between a and b changes in the connectivity.
 struct Flip {
-  Index c, d;                        // the ends of the new edge
-  std::size_t fewest_faces;          // around a and b, before
-  int less_even;                     // increase of the squared valence defects
+  Index a, b, c, d;          // c and d are the ends of the new edge
+  std::size_t fewest_faces;  // around a and b, before
+  int less_even;             // increase of the squared valence defects
+};
+
+/// nullopt where there is no such edge or it is on the border, and where the new edge is there already.
+std::optional<Flip> flip_of(const FitMesh& surface, Index a, Index b) {
+  const Index left = surface.face_of(a, b), right = surface.face_of(b, a);
+  if (left == kNone || right == kNone) return std::nullopt;
+  const Index c = FitMesh::apex(surface.faces()[left], {a, b}), d = FitMesh::apex(surface.faces()[right], {a, b});
+  if (surface.are_neighbours(c, d)) return std::nullopt;
+  const auto valence = [&](Index v) { return surface.faces_around(v).size() + (on_border(surface, v) ? 3 : 0); };
+  const int before = deviation(valence(a)) + deviation(valence(b)) + deviation(valence(c)) + deviation(valence(d));
+  const int after =
+      deviation(valence(a) - 1) + deviation(valence(b) - 1) + deviation(valence(c) + 1) + deviation(valence(d) + 1);
+  return Flip{a, b, c, d, std::min(surface.faces_around(a).size(), surface.faces_around(b).size()), after - before};
+}
+
+/// What it changes in the shapes.
+struct FlippedShape {
   double worst_before, worst_after;  // skewness of the two faces
   double turn;                       // least cosine between normals before and after
   double bend;                       // cosine between the normals after
 };
 
-/// nullopt at the border, and where the new edge is there already.
-std::optional<Flip> flip_of(const FitMesh& surface, Index a, Index b) {
-  const MeshEdge e{a, b};
-  if (!surface.is_inner(e) || !surface.may_flip(e)) return std::nullopt;
-  const auto [c, d] = surface.opposite(e);
-  const auto valence = [&](Index v) { return surface.faces_around(v).size() + (on_border(surface, v) ? 3 : 0); };
-  const int before = deviation(valence(a)) + deviation(valence(b)) + deviation(valence(c)) + deviation(valence(d));
-  const int after =
-      deviation(valence(a) - 1) + deviation(valence(b) - 1) + deviation(valence(c) + 1) + deviation(valence(d) + 1);
-  const Vec3 &pa = surface.position(a), &pb = surface.position(b), &pc = surface.position(c), &pd = surface.position(d);
+FlippedShape shape_of(const FitMesh& surface, const Flip& flip) {
+  const Vec3 &pa = surface.position(flip.a), &pb = surface.position(flip.b);
+  const Vec3 &pc = surface.position(flip.c), &pd = surface.position(flip.d);
   const Vec3 n1 = unit_normal(pa, pb, pc), n2 = unit_normal(pb, pa, pd);
   const Vec3 m1 = unit_normal(pc, pa, pd), m2 = unit_normal(pd, pb, pc);
-  return Flip{c,
-              d,
-              std::min(surface.faces_around(a).size(), surface.faces_around(b).size()),
-              after - before,
-              std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd)),
-              std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc)),
-              std::min({m1.dot(n1), m1.dot(n2), m2.dot(n1), m2.dot(n2)}),
-              m1.dot(m2)};
+  return {std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd)),
+          std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc)),
+          std::min({m1.dot(n1), m1.dot(n2), m2.dot(n1), m2.dot(n2)}), m1.dot(m2)};
 }
 
-bool should_flip(const Flip& flip, const StepGuard& guard) {
-  if (flip.fewest_faces <= 3) return false;
-  const bool more_even = flip.less_even < 0 && flip.worst_after <= std::max(kFlippedSkewness, flip.worst_before);
-  const bool better =
-      flip.less_even <= 2 && flip.worst_after < flip.worst_before - kGain && flip.worst_before > guard.max_skewness / 2;
-  return (more_even || better) && flip.turn > kBent && flip.bend > kBent;
+bool should_flip(const FitMesh& surface, const Flip& flip, const StepGuard& guard) {
+  if (flip.fewest_faces <= 3 || flip.less_even > 2) return false;
+  const FlippedShape shape = shape_of(surface, flip);
+  const bool more_even = flip.less_even < 0 && shape.worst_after <= std::max(kFlippedSkewness, shape.worst_before);
+  const bool better = shape.worst_after < shape.worst_before - kGain && shape.worst_before > guard.max_skewness / 2;
+  return (more_even || better) && shape.turn > kBent && shape.bend > kBent;
 }
 
 }  // namespace
@@ -158,10 +163,20 @@ void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const st
   }
 }
 
+std::vector<char> frozen_beside(const std::vector<Index>& faces, const FitMesh& surface,
+                                const std::vector<char>& frozen) {
+  std::vector<char> beside(surface.vertices().size(), 1);
+  for (const Index f : faces) {
+    if (!surface.has_face(f)) continue;
+    for (const Index v : surface.faces()[f]) beside[v] = is_frozen(frozen, v);
+  }
+  return beside;
+}
+
 void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard) {
   for (const auto& [a, b] : surface.edges()) {
-    if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
-    if (const auto flip = flip_of(surface, a, b); flip && should_flip(*flip, guard))
+    if (is_frozen(frozen, a) || is_frozen(frozen, b)) continue;
+    if (const auto flip = flip_of(surface, a, b); flip && should_flip(surface, *flip, guard))
       surface.take(surface.flipping({a, b}));
   }
 }
@@ -169,17 +184,18 @@ void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGua
 void flip_edges_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh,
                        const std::function<double(Index, Index, const Vec3&)>& distance) {
   for (const auto& [a, b] : surface.edges()) {
-    if (is_frozen(frozen, a) || is_frozen(frozen, b) || !surface.are_neighbours(a, b)) continue;
+    if (is_frozen(frozen, a) || is_frozen(frozen, b)) continue;
     const auto flip = flip_of(surface, a, b);
     if (!flip || flip->fewest_faces <= 4 || flip->less_even > kLessEven) continue;
-    if (flip->worst_after > std::max(harsh ? kWrongSkewness : kCloserSkewness, flip->worst_before)) continue;
-    const double turn = std::min(flip->turn, flip->bend);
+    const FlippedShape shape = shape_of(surface, *flip);
+    if (shape.worst_after > std::max(harsh ? kWrongSkewness : kCloserSkewness, shape.worst_before)) continue;
+    const double turn = std::min(shape.turn, shape.bend);
     if (turn < (harsh ? kWrongTurn : kOverRim)) continue;
     const Vec3 &pa = surface.position(a), &pb = surface.position(b);
     const Vec3 &pc = surface.position(flip->c), &pd = surface.position(flip->d);
     const double now = distance(a, b, 0.5 * (pa + pb)), then = distance(flip->c, flip->d, 0.5 * (pc + pd));
     if (now < 0 || then < 0) continue;
-    const bool is_harsh = turn < kOverRim || flip->worst_after > std::max(kCloserSkewness, flip->worst_before);
+    const bool is_harsh = turn < kOverRim || shape.worst_after > std::max(kCloserSkewness, shape.worst_before);
     if (now - then < (is_harsh ? kMuchCloser : kCloser) * (pa - pb).norm()) continue;
     surface.take(surface.flipping({a, b}));
   }

@@ -13,6 +13,10 @@ namespace vmesh::fitting {
 /// with that place frozen; eventually not at all.
 void change_safely(FitMesh& surface, const std::function<void(FitMesh&, const std::vector<char>&)>& change);
 
+/// `frozen` and all other vertices but the corners of some faces, removed ones among them.
+std::vector<char> frozen_beside(const std::vector<Index>& faces, const FitMesh& surface,
+                                const std::vector<char>& frozen);
+
 /// Flips edges for even valences and better triangles, except edges with a frozen end.
 void flip_edges(FitMesh& surface, const std::vector<char>& frozen, const StepGuard& guard);
 

@@ -1,6 +1,7 @@
 #include "vmesh/quality/closest_point.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "vmesh/core/error.h"
 
@@ -29,6 +30,14 @@ std::optional<ClosestPoint> ClosestPointIndex::closest_among(const Vec3& p, doub
       tree_->nearest_among(p, std::min(limit, 1e15), accepts, near < tree_->face_count() ? near : kNone);
   if (found.face == kNone) return std::nullopt;
   return ClosestPoint{tree_->frame(found.face).closest(p), found.face, found.distance};
+}
+
+ClosestPoint ClosestPointIndex::closest_on(Index face, const Vec3& p) const {
+  return {tree_->frame(face).closest(p), face, std::sqrt(squared_distance(face, p))};
+}
+
+double ClosestPointIndex::squared_distance(Index face, const Vec3& p) const {
+  return tree_->frame(face).squared_distance(p);
 }
 
 }  // namespace vmesh

@@ -155,6 +155,9 @@ class EditMesh : public FaceTable {
     return mesh;
   }
 
+  /// Faces that were given other corners since the first open transaction began; some more than once, some removed.
+  std::vector<Index> replaced_faces() const { return faces_since({}); }
+
   /// While it lives, changes of the mesh are remembered; unless they are kept, they are undone with it. May be nested.
   class Transaction {
    public:

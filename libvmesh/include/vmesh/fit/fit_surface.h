@@ -35,7 +35,7 @@ struct FitOptions {
   /// Equiangle skewness beyond which no step may worsen a triangle; 0.1 to 0.9.
   double max_skewness = 0.4;
   /// Points on each surface for mean, RMS and percentiles of the report; a quarter of them before the fit.
-  std::size_t samples = 100'000;
+  std::size_t samples = 25'000;
   /// Width of the interval that contains a Hausdorff distance, mm.
   double tolerance = 1e-3;
   /// Threads to work on; 0: as many as the machine has. The result does not depend on it.

@@ -37,6 +37,10 @@ class ClosestPointIndex {
   std::optional<ClosestPoint> closest_among(const Vec3& p, double limit, const std::function<bool(Index)>& accepts,
                                             Index near = kNone) const;
 
+  /// The point of one face that is closest to `p`, which must be finite, and the square of its distance.
+  ClosestPoint closest_on(Index face, const Vec3& p) const;
+  double squared_distance(Index face, const Vec3& p) const;
+
  private:
   std::unique_ptr<class TriangleTree> tree_;
 };
