@@ -85,6 +85,7 @@ std::vector<std::string> markups_seeds() {
 std::vector<std::string> csv_seeds() {
   return {"# SPACE=LPS\nid,x,y,z,radius\n0,0,0,0,2\n1,8,0,0,1.5\n2,12,4,0,1\n\fa,b\n0,1\n1,2\n",
           "note, Radius ,z,y,x,id\nhello,1,2,3,4,10\r\n,1,2,3,14,11\r\n\fb,a,why\n10,11,\n",
+          "id,x,y,z,Section Area\n0,0,0,0,2\n1,8,0,0,1.5\n\fa,b\n0,1\n",
           "id;x;y;z;\"radius\"\r\nroot;0,5;1;2;1,5\r\n720575940590515268;1;2;3;1\r\n;;;;\r\n\f"
           "a;b\r\nroot;720575940590515268\r\n"};
 }

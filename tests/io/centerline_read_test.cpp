@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include "vmesh/io/centerline_io.h"
@@ -258,6 +259,26 @@ TEST(ReadCsv, IdsMayBeOf64BitsNegativeOrText) {
   }
   expect_contains(message_of<InvalidInput>([] { csv("id,x,y,z,radius\n1.5,0,0,0,1\n", "a,b\n"); }),
                   "line 2: \"1.5\" is not an id");
+}
+
+TEST(ReadCsv, TakesTheRadiusFromTheColumnThatIsNamed) {
+  const auto read = [](const std::string& column, const std::string& name, std::optional<double> radius = {}) {
+    CenterlineReadOptions options;
+    options.radius_array = name;
+    options.radius = radius;
+    return parse_centerline("id,x,y,z," + column + "\n1,0,0,0,4\n2,0,0,1,4\n", centerline_format("t.csv"), "t.csv",
+                            options, "a,b\n1,2\n");
+  };
+  EXPECT_EQ(read("Thick", "thick").nodes[1].radius, 4);
+  EXPECT_EQ(read("Thick", "thick").radius_arrays, std::vector<std::string>{"thick"});
+  EXPECT_EQ(read("diameter", "diameter").nodes[1].radius, 2);
+  expect_contains(read("diameter", "diameter").warnings.back(), "t.csv: radii are half of \"diameter\"");
+  EXPECT_NEAR(read("Area", "").nodes[1].radius, std::sqrt(4 / std::numbers::pi), 1e-15);
+  expect_contains(read("Area", "").warnings.back(), "circles of the area \"area\"");
+  EXPECT_EQ(read("note", "", 3).nodes[1].radius, 0);  // which convert_read() replaces
+  expect_contains(message_of<InvalidInput>([&] { read("diameter", ""); }), "t.csv: line 1: there is no column radius");
+  expect_contains(message_of<InvalidInput>([&] { read("radius", "width"); }), "there is no column width");
+  expect_contains(message_of<InvalidInput>([&] { read("radius", "width"); }), "--radius-array");
 }
 
 TEST(ReadCsv, NamesFileAndLineThatAreWrong) {

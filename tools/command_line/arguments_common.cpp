@@ -103,7 +103,8 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
 
 void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
   verb.add_option("--" + of + "radius-array", input.read.radius_array,
-                  "array of the file that holds the radius; the diameter if \"diam\" is in its name")
+                  "array or column of the file that holds the radius; the diameter if \"diam\" is in its name, the area "
+                  "of the cross-section if \"area\" is")
       ->type_name("NAME");
   verb.add_option_function<double>(
           "--" + of + "radius", [&input](const double& radius) { input.read.radius = radius; },

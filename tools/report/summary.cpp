@@ -256,7 +256,10 @@ Json to_json(const GenerateReport& report) {
   Json json = {
       {"schema", "vmesh.summary/1"},
       {"generator", generator_json()},
-      {"input", {{"file", arguments.input.path.string()}, {"sha256", report.input_sha256}}},
+      {"input",
+       {{"file", arguments.input.path.string()},
+        {"sha256", report.input_sha256},
+        {"radius_arrays", report.radius_arrays}}},
       {"output", arguments.output.string()},
       {"options", options_json(arguments)},
       {"centerline", to_json(centerline)},

@@ -74,6 +74,9 @@ void append(const RawCenterline& file, bool has_paths, RawCenterline& all) {
     section.node += first_node;
     all.end_sections.push_back(std::move(section));
   }
+  for (const std::string& name : file.radius_arrays) {
+    if (std::ranges::find(all.radius_arrays, name) == all.radius_arrays.end()) all.radius_arrays.push_back(name);
+  }
   all.warnings.insert(all.warnings.end(), file.warnings.begin(), file.warnings.end());
 }
 

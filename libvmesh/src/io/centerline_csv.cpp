@@ -1,11 +1,12 @@
 #include <algorithm>
-#include <array>
+#include <optional>
 #include <ostream>
 #include <unordered_map>
 
 #include "comments.h"
 #include "formats.h"
 #include "node_id.h"
+#include "radius_array.h"
 #include "text.h"
 
 namespace vmesh {
@@ -24,12 +25,12 @@ class CsvTable {
     throw InvalidInput(source_ + ": line " + std::to_string(lines_.number()) + ": " + what);
   }
 
-  template <std::size_t N>
-  void read_header(const std::array<std::string_view, N>& names, LengthUnit& unit, Space& space) {
-    const std::string wanted = "the header must name the columns " + join(names);
+  /// `wanted`: the columns that there should be, for messages.
+  void read_header(const std::string& wanted, LengthUnit& unit, Space& space) {
+    wanted_ = "the header must name the columns " + wanted;
     std::string_view line;
     do {
-      if (!lines_.next(line)) throw InvalidInput(source_ + ": it contains no table; " + wanted);
+      if (!lines_.next(line)) throw InvalidInput(source_ + ": it contains no table; " + wanted_);
       if (trim(line).starts_with('#')) read_tags(line, unit, space);
     } while (is_skipped(line));
     for (const char separator : {';', '\t'}) {
@@ -37,13 +38,29 @@ class CsvTable {
         separator_ = separator;
     }
     split(line);
-    for (const auto name : names) {
-      std::size_t column = 0;
-      while (column < fields_.size() && lower(fields_[column]) != name) ++column;
-      if (column == fields_.size()) fail("there is no column " + std::string(name) + "; " + wanted);
-      columns_.push_back(column);
+    names_.reserve(fields_.size());
+    for (const auto name : fields_) names_.push_back(lower(name));
+  }
+
+  /// The names of all columns, in lower case.
+  const std::vector<std::string>& names() const { return names_; }
+
+  /// Whether there is a column of that name, in any case; it becomes the next of those wanted.
+  bool find(const std::string& name) {
+    const auto found = std::ranges::find(names_, lower(name));
+    if (found == names_.end()) return false;
+    columns_.push_back(static_cast<std::size_t>(found - names_.begin()));
+    return true;
+  }
+
+  void need(const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      if (!find(name)) fail_without(name);
     }
-    width_ = fields_.size();
+  }
+
+  [[noreturn]] void fail_without(const std::string& name, const std::string& hint = {}) const {
+    fail("there is no column " + one_line(name) + "; " + wanted_ + hint);
   }
 
   bool next_row() {
@@ -52,8 +69,8 @@ class CsvTable {
       if (!lines_.next(line)) return false;
       split(line);
     } while (is_skipped(line) || is_empty_row());
-    if (fields_.size() != width_) {
-      fail("it has " + std::to_string(fields_.size()) + " columns, the header has " + std::to_string(width_));
+    if (fields_.size() != names_.size()) {
+      fail("it has " + std::to_string(fields_.size()) + " columns, the header has " + std::to_string(names_.size()));
     }
     return true;
   }
@@ -115,20 +132,28 @@ class CsvTable {
     return text.empty() || text.front() == '#';
   }
 
-  template <std::size_t N>
-  static std::string join(const std::array<std::string_view, N>& names) {
-    std::string text;
-    for (const auto name : names) text.append(text.empty() ? "" : ",").append(name);
-    return text;
-  }
-
   LineReader lines_;
   char separator_ = ',';
   std::string source_;
+  std::string wanted_;
+  std::vector<std::string> names_;
   std::vector<std::string_view> fields_;
   std::vector<std::size_t> columns_;
-  std::size_t width_ = 0;
 };
+
+/// Finds the column of radii; nullopt if there need be none.
+std::optional<RadiusArray> find_radius_column(CsvTable& table, const CenterlineReadOptions& options) {
+  std::string name = options.radius_array.empty() ? "radius" : options.radius_array;
+  if (table.find(name)) return RadiusArray(name);
+  if (options.radius && options.radius_array.empty()) return std::nullopt;
+  if (const auto area = only_area(table.names()); area && options.radius_array.empty()) {
+    table.find(*area);
+    return RadiusArray(*area);
+  }
+  table.fail_without(name,
+                     "; name the one that holds the radius with --radius-array, or give one radius for all with "
+                     "--radius");
+}
 
 }  // namespace
 
@@ -138,25 +163,30 @@ std::filesystem::path second_csv_file(const std::filesystem::path& path) {
   return csv_segments_path(path);
 }
 
-RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source) {
+RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source,
+                                   const CenterlineReadOptions& options) {
   RawCenterline raw;
   raw.source = source;
   raw.node_word = "line";
   raw.segment_word = "line of the segments file";
   CsvTable table(nodes, source);
-  table.read_header(std::array<std::string_view, 5>{"id", "x", "y", "z", "radius"}, raw.unit, raw.space);
+  table.read_header("id,x,y,z,radius", raw.unit, raw.space);
+  table.need({"id", "x", "y", "z"});
+  const std::optional<RadiusArray> radii = find_radius_column(table, options);
+  if (radii) radii->note(raw);
   std::unordered_map<std::string, Index> index_of;
   while (table.next_row()) {
     const std::string id = table.id(0);
     if (!index_of.try_emplace(id, static_cast<Index>(raw.nodes.size())).second) {
       table.fail("the id " + shown_id(id) + " was given before; ids must be unique");
     }
-    raw.nodes.push_back({{table.real(1), table.real(2), table.real(3)}, table.real(4)});
+    raw.nodes.push_back({{table.real(1), table.real(2), table.real(3)}, radii ? radii->radius(table.real(4)) : 0});
     raw.node_numbers.push_back(table.line_number());
   }
   if (trim(segments).empty()) return raw;
   CsvTable pairs(segments, csv_segments_path(source).string());
-  pairs.read_header(std::array<std::string_view, 2>{"a", "b"}, raw.unit, raw.space);
+  pairs.read_header("a,b", raw.unit, raw.space);
+  pairs.need({"a", "b"});
   while (pairs.next_row()) {
     const auto end = [&](std::size_t i) {
       const auto found = index_of.find(pairs.id(i));

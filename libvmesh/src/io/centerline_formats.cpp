@@ -37,6 +37,7 @@ const std::vector<CenterlineFormat>& centerline_formats() {
        .write = write_centerline_json},
       {.name = "CSV pair",
        .extensions = {".csv"},
+       .options = {"radius-array"},
        .parse_pair = parse_centerline_csv,
        .write_pair = write_centerline_csv,
        .second_file = second_csv_file},

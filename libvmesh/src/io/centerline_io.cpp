@@ -49,7 +49,7 @@ RawCenterline read_file_of_centerline(const std::filesystem::path& path, const C
   if (!format.parse_pair) refuse_without(format.needs, path);
   const std::filesystem::path second = format.second_file(path);
   const std::string content = read_file(path);
-  return format.parse_pair(content, read_file(second), path.string());
+  return format.parse_pair(content, read_file(second), path.string(), options);
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ RawCenterline read_file_of_centerline(const std::filesystem::path& path, const C
 RawCenterline parse_centerline(std::string_view content, const CenterlineFormat& format, const std::string& source,
                                const CenterlineReadOptions& options, std::string_view csv_segments) {
   if (format.parse) return format.parse(content, source, options);
-  if (format.parse_pair) return format.parse_pair(content, csv_segments, source);
+  if (format.parse_pair) return format.parse_pair(content, csv_segments, source, options);
   throw Unsupported(source + ": files of this kind are read by their names only");
 }
 

@@ -12,7 +12,8 @@ CenterlineFormat::Parse parse_swc, parse_vmv, parse_centerline_json, parse_cente
     parse_centerline_ply, parse_network;
 bool holds_obj_lines(std::string_view content);
 bool holds_ply_edges(std::string_view content);
-RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source);
+RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source,
+                                   const CenterlineReadOptions& options);
 RawCenterline read_hdf5_network(const std::filesystem::path& path);
 
 CenterlineFormat::Write write_swc, write_centerline_json, write_centerline_vtp;

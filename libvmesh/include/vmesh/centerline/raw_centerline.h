@@ -48,6 +48,7 @@ struct RawCenterline {
   std::string segment_word = "segment";        ///< the same for segments
   std::vector<std::uint64_t> node_numbers;     ///< number of every node under that word; empty: its index
   std::vector<std::uint64_t> segment_numbers;  ///< the same for segments
+  std::vector<std::string> radius_arrays;      ///< by name, what held the radii; empty if the format has one place
   std::vector<std::string> warnings;           ///< what the reader left out or assumed
 
   /// Where several files were merged, what each of them contributed, ascending; see merge(). Empty for a single file.

@@ -35,7 +35,8 @@ struct CenterlineFormat {
   bool (*holds_lines)(std::string_view content) = nullptr;
   // The functions of the format, null where it has none. It is read by one of the first three.
   Parse* parse = nullptr;
-  RawCenterline (*parse_pair)(std::string_view content, std::string_view second, const std::string& source) = nullptr;
+  RawCenterline (*parse_pair)(std::string_view content, std::string_view second, const std::string& source,
+                              const CenterlineReadOptions& options) = nullptr;
   RawCenterline (*read)(const std::filesystem::path& path) = nullptr;
   Write* write = nullptr;
   void (*write_pair)(std::ostream& out, std::ostream& second, const Centerline& centerline,
@@ -63,8 +64,9 @@ const CenterlineFormat& centerline_output_format(const std::filesystem::path& pa
 std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path);
 
 struct CenterlineReadOptions {
-  /// VTP, VTU, VTK, Amira: name of the point or line array with the radius, or with the diameter if the name contains
-  /// "diam". Empty: MaximumInscribedSphereRadius, Radius or radius; for Amira also thickness.
+  /// Name of the array, column, property or measurement with the radius, or with the diameter if the name contains
+  /// "diam", or with the area of the cross-section if it contains "area". Empty: MaximumInscribedSphereRadius, Radius or
+  /// radius, or the only area; for Amira also thickness.
   std::string radius_array;
   /// Radius (mm, > 0) of all nodes if the file has none. Files without radii are refused otherwise.
   std::optional<double> radius;
