@@ -77,7 +77,7 @@ std::vector<std::string> markups_seeds() {
   return {R"({"markups": [{"type": "Fiducial"}, {"type": "Curve", "coordinateSystem": "RAS", "coordinateUnits": "cm",
  "controlPoints": [{"position": [0, 0, 0]}, {"position": [0, 0, 9], "positionStatus": "defined"},
  {"positionStatus": "undefined", "position": []}],
- "measurements": [{"name": "length"}, {"name": "Radius", "controlPointValues": [2, 1.5, 0]}]},
+ "measurements": [{"name": "length"}, {"name": "Radius", "units": "mm", "controlPointValues": [2, 1.5, 0]}]},
  {"type": "Line", "coordinateSystem": "RAS", "coordinateUnits": ["cm"], "measurements": [{"name": "radius",
  "controlPointValues": [1, 1]}], "controlPoints": [{"position": [0, 0, 5]}, {"position": [5, 0, 5]}]}]})"};
 }
