@@ -37,7 +37,8 @@ std::vector<std::string> nrrd_seeds() {
   return {nrrd_header(image, "short") + voxels,
           nrrd_header(image, "int16", "encoding: gzip\n", true) + packed(voxels, true),
           "NRRD0001\ntype: uchar\ndimension: 3\nsizes: 3 2 2\nspacings: 1 2 3\nencoding: raw\nkey:=value\n\n" +
-              voxel_bytes<std::uint8_t>(small_values())};
+              voxel_bytes<std::uint8_t>(small_values()),
+          layered_nrrd({0, 1, 1, 0, 2, 2, 0, 1, 1, 0, 2, 2}, {0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 1, 0})};
 }
 
 std::vector<std::string> mha_seeds() {

@@ -92,7 +92,7 @@ Verdict read_surface_as(const SurfaceFormat& format, std::string_view content) {
 Verdict read_image_as(std::string_view content, std::string_view ending) {
   const std::string source = "input" + std::string(ending);
   return verdict_of(source, [&] {
-    const VoxelImage image = parse_image(content, source).image;
+    const VoxelImage image = parse_image(content, source, {{"tumor"}, {2}}).image;
     require(image.values.size() == image.size[0] * image.size[1] * image.size[2], "voxels that are not there");
     require(image.origin.allFinite() && image.steps.allFinite(), "an image without a place");
   });

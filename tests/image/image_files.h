@@ -56,6 +56,23 @@ std::string voxel_bytes(const std::vector<double>& values, bool big_endian = fal
   return bytes;
 }
 
+/// A segmentation of 3D Slicer of 3 x 2 x 2 voxels, with two layers of the given values.
+inline std::string layered_nrrd(const std::vector<int>& first, const std::vector<int>& second,
+                                const std::string& more = "") {
+  std::string file =
+      "NRRD0005\ntype: uchar\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 3 2 2\n"
+      "space directions: none (1,0,0) (0,1,0) (0,0,2)\nkinds: list domain domain domain\nencoding: raw\n"
+      "space origin: (5,6,7)\nSegment0_Name:=Portal\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+      "Segment1_Name:=hepatic vein\nSegment1_LabelValue:=2\nSegment1_Layer:=0\nSegment1_Color:=1 0 0\n"
+      "Segment2_Name:=tumor\nSegment2_LabelValue:=1\nSegment2_Layer:=1\n" +
+      more + "\n";
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    file += static_cast<char>(first[v]);
+    file += static_cast<char>(second[v]);
+  }
+  return file;
+}
+
 /// NIfTI-1 data types by number.
 template <class T>
 constexpr int nifti_type() {

@@ -262,8 +262,8 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
   return loaded;
 }
 
-LoadedImage load_image(const InputArguments& input, Console& console) {
-  LoadedImage loaded = reading_image(input, [&] { return read_image(input.path); });
+LoadedImage load_image(const InputArguments& input, const ReferenceOptions& options, Console& console) {
+  LoadedImage loaded = reading_image(input, [&] { return read_image(input.path, choice_of(options)); });
   console.warn(loaded.warnings);
   return loaded;
 }

@@ -41,6 +41,7 @@ void check(const CenterlineArguments& arguments) {
   if (!arguments.each_label) return;
   if (!is_image(arguments.input.path)) throw UsageError("--each-label is for images; this is taken for a surface");
   if (arguments.image.threshold) throw UsageError("--each-label and --threshold exclude each other");
+  if (!arguments.image.segments.empty()) throw UsageError("--each-label takes labels by their values, not by name");
 }
 
 /// Those given, else all in the image.

@@ -35,7 +35,7 @@ void check(const ReferenceArguments& arguments) {
   const std::string name = arguments.input.path.string();
   if (image && arguments.voxel > 0) throw UsageError(name + ": --voxel is for centerlines; see --spacing");
   if (image) return;
-  if (!options.labels.empty() || options.threshold || options.spacing > 0)
+  if (!options.labels.empty() || !options.segments.empty() || options.threshold || options.spacing > 0)
     throw UsageError(name + ": --label, --threshold and --spacing are for images; this is taken for a centerline");
   if (arguments.voxel == 0)
     throw UsageError(name + ": to contour the volume of a centerline, give the side of the voxels: --voxel MM");
@@ -55,7 +55,7 @@ std::string describe(const ReferenceArguments& arguments) {
 ReferenceSurface contoured(const ReferenceArguments& arguments, Console& console) {
   return naming(arguments.input.path, [&] {
     if (is_image(arguments.input.path)) {
-      const LoadedImage image = load_image(arguments.input, console);
+      const LoadedImage image = load_image(arguments.input, arguments.options, console);
       stop_if_interrupted();
       return reference_surface(image, arguments.options);
     }

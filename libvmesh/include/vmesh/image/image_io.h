@@ -41,10 +41,28 @@ bool is_image_path(const std::filesystem::path& path);
 /// The same, or a DICOM file of any name, or a folder with such files. Does not wait for pipes.
 bool is_image(const std::filesystem::path& path);
 
+/// A segment of a segmentation, as 3D Slicer stores them (.seg.nrrd): the voxels of a value in a layer. Segments that
+/// overlap are in layers of their own.
+struct ImageSegment {
+  std::string name;
+  double value = 1;
+  std::size_t layer = 0;
+};
+
+/// Some of the segments, by name or value.
+struct SegmentChoice {
+  std::vector<std::string> names;
+  std::vector<double> values;
+};
+
+/// The values of the segments of these names, in any case. Throws InvalidInput, listing the segments.
+std::vector<double> values_of(const std::vector<std::string>& names, const std::vector<ImageSegment>& segments);
+
 struct LoadedImage {
   VoxelImage image;
-  bool integer = false;               ///< the file stores whole numbers: labels, a mask or CT numbers
-  std::vector<std::string> warnings;  ///< what was assumed because the file does not say
+  bool integer = false;                     ///< the file stores whole numbers: labels, a mask or CT numbers
+  std::vector<std::string> warnings;        ///< what was assumed because the file does not say
+  std::vector<ImageSegment> segments = {};  ///< that the file names
 };
 
 /// Reads a scalar image of three dimensions (more if the others have one sample), placed in space as in 3D Slicer:
@@ -59,14 +77,17 @@ struct LoadedImage {
 /// Slices are sorted by position, rescaled as their headers say, and refused (InvalidInput) unless they fill a regular
 /// grid.
 ///
+/// Of a NRRD file with several layers of segments, voxels have the value of the chosen segment that they are in, or 0;
+/// without a choice it is refused.
+///
 /// Throws ReadError (missing, a directory, unreadable, the second of two files as well), InvalidInput (content: not
 /// such a file, fewer voxels in the file than its header claims, values that are not finite, axes that span no volume),
 /// Unsupported (extension, voxels in many files, DICOM in a build without GDCM, several numbers per voxel, integers
 /// that float cannot represent).
-LoadedImage read_image(const std::filesystem::path& path);
+LoadedImage read_image(const std::filesystem::path& path, const SegmentChoice& choice = {});
 
 /// The same from memory; `source` names the content in messages, and its extension gives the format. Throws Unsupported
 /// if the voxels are in another file.
-LoadedImage parse_image(std::string_view content, const std::string& source);
+LoadedImage parse_image(std::string_view content, const std::string& source, const SegmentChoice& choice = {});
 
 }  // namespace vmesh

@@ -8,15 +8,17 @@
 #include <string_view>
 #include <vector>
 
+#include "vmesh/image/image_io.h"
 #include "vmesh/image/voxel_image.h"
 
 namespace vmesh {
 
 /// What is known of an image before its voxels are read.
 struct ImageFrame {
-  VoxelImage frame;                   ///< its size and place, without values
-  bool integer = false;               ///< the file stores whole numbers: labels, a mask or CT numbers
-  std::vector<std::string> warnings;  ///< what was assumed because the file does not say
+  VoxelImage frame;                         ///< its size and place, without values
+  bool integer = false;                     ///< the file stores whole numbers: labels, a mask or CT numbers
+  std::vector<std::string> warnings;        ///< what was assumed because the file does not say
+  std::vector<ImageSegment> segments = {};  ///< that the file names
 };
 
 /// Called once, before the first slice.
@@ -32,11 +34,12 @@ using SliceVisitor = std::function<void(std::size_t k, std::span<const float> va
 ///
 /// Throws like read_image(). What can be told from the header and the size of the file is thrown before `begin` is
 /// called; that a compressed file holds less than it claims, or values that are not finite, only on reaching the place.
-void read_image_slices(const std::filesystem::path& path, const ImageBegin& begin, const SliceVisitor& visit);
+void read_image_slices(const std::filesystem::path& path, const ImageBegin& begin, const SliceVisitor& visit,
+                       const SegmentChoice& choice = {});
 
 /// The same from the content of a file; like parse_image().
 void parse_image_slices(std::string_view content, const std::string& source, const ImageBegin& begin,
-                        const SliceVisitor& visit);
+                        const SliceVisitor& visit, const SegmentChoice& choice = {});
 
 /// The same from an image in memory.
 void visit_slices(const VoxelImage& image, const SliceVisitor& visit);
