@@ -67,6 +67,8 @@ std::vector<std::string> json_seeds() {
  "segments": [[0, 1], [1, 2], [1, 3]]})",
           R"({"schema": "vmesh.centerline/1", "unit": "um", "options": "\u00e4\n", "more": {"a": [true, null, {}]},
  "nodes": [[1e3, -0.5, 1e-9, 2]], "segments": []})",
+          R"({"graph": {"unit": "um"}, "nodes": [{"id": 1, "pos": [0, 0, 0], "r": 2}, {"id": "b", "x": 0, "y": "9",
+ "z": 0, "r": 1}], "links": [{"source": 1, "target": "b", "w": [1]}]})",
           R"({"schema": "vmesh.centerline/1", "nodes": [[0, 0, 0, 2], [8, 0, 0, 2]], "segments": [[0, 1]],
  "end_sections": [{"node": 1, "center": [8, 0, 0], "normal": [1, 0, 0.1], "area": 12.5, "open": false},
  {"node": 0, "center": [0, 0, 0], "normal": [-1, 0, 0], "area": 8, "open": true,
@@ -147,6 +149,30 @@ std::vector<std::string> gxl_seeds() {
           "<edge id=\"e0\" from=\"n0\" to=\"n1\"><attr name=\" flow\"><float>9</float></attr><attr name=\" radius\">"
           "<float>2.5</float></attr></edge><edge id=\"e1\" to=\"n2\" from=\"n1\"><attr name=\" radius\">"
           "<float>1</float></attr></edge></graph></gxl>"};
+}
+
+std::vector<std::string> graphml_seeds() {
+  const auto node = [](const std::string& id, const std::string& data) {
+    return "<node id=\"" + id + "\">" + data + "</node>";
+  };
+  const std::string keys =
+      "<key id=\"d0\" for=\"node\" attr.name=\"pos\"/><key id=\"d1\" for=\"node\" attr.name=\"radius\"/>"
+      "<key id=\"d2\" for=\"edge\" attr.name=\"diameter\"/>";
+  return {"<graphml>" + keys + "<graph>" + node("a", "<data key=\"d0\">[0, 0.5, 2]</data><data key=\"d1\">2</data>") +
+              node("b", "<data key=\"x\">9</data><data key=\"y\">0</data><data key=\"z\">0</data>") +
+              "<edge source=\"a\" target=\"b\"/></graph></graphml>",
+          "<graphml>" + keys + "<graph><data key=\"unit\">um</data>" + node("1", "<data key=\"d0\">0 0 0</data>") +
+              node("2", "<data key=\"d0\">0 0 9</data>") +
+              "<edge source=\"1\" target=\"2\"><data key=\"d2\">4</data></edge></graph></graphml>"};
+}
+
+std::vector<std::string> gexf_seeds() {
+  return {
+      "<gexf><graph><attributes class=\"node\"><attribute id=\"0\" title=\"radius\"/></attributes><nodes>"
+      "<node id=\"a\"><attvalues><attvalue for=\"0\" value=\"2\"/></attvalues><viz:position x=\"0\" y=\"0\" z=\"0\"/>"
+      "</node><node id=\"b\"><attvalues><attvalue for=\"0\" value=\"1.5\"/></attvalues>"
+      "<viz:position x=\"0\" y=\"8\" z=\"0\"/></node></nodes>"
+      "<edges><edge id=\"0\" source=\"a\" target=\"b\"/></edges></graph></gexf>"};
 }
 
 std::vector<std::string> amira_seeds() {
@@ -248,10 +274,11 @@ std::vector<std::string> ply_edge_seeds() {
 
 std::map<std::string, MakeSeeds> centerline_seeds() {
   return {
-      {".obj", obj_line_seeds}, {".ply", ply_edge_seeds}, {".vtu", vtu_seeds},          {".swc", swc_seeds},
-      {".vmv", vmv_seeds},      {".json", json_seeds},    {".csv", csv_seeds},          {".vtk", vtk_seeds},
-      {".vtp", vtp_seeds},      {".ctgr", ctgr_seeds},    {".pth", pth_seeds},          {".gxl", gxl_seeds},
-      {".am", amira_seeds},     {".dat", network_seeds},  {".mrk.json", markups_seeds},
+      {".obj", obj_line_seeds},     {".ply", ply_edge_seeds}, {".vtu", vtu_seeds},  {".swc", swc_seeds},
+      {".vmv", vmv_seeds},          {".json", json_seeds},    {".csv", csv_seeds},  {".vtk", vtk_seeds},
+      {".vtp", vtp_seeds},          {".ctgr", ctgr_seeds},    {".pth", pth_seeds},  {".gxl", gxl_seeds},
+      {".graphml", graphml_seeds},  {".gexf", gexf_seeds},    {".am", amira_seeds}, {".dat", network_seeds},
+      {".mrk.json", markups_seeds},
   };
 }
 

@@ -31,7 +31,7 @@ const std::vector<CenterlineFormat>& centerline_formats() {
       {.name = "VTU", .extensions = {".vtu"}, .options = {"radius-array"}, .parse = parse_centerline_vtu},
       {.name = "JSON",
        .extensions = {".json"},
-       .options = {"radius-array"},  // of Markups of another name
+       .options = {"radius-array"},  // of Markups and graphs
        .keeps_end_sections = true,
        .parse = parse_centerline_json,
        .write = write_centerline_json},
@@ -58,6 +58,8 @@ const std::vector<CenterlineFormat>& centerline_formats() {
        .options = {"radius-array"},
        .holds_lines = holds_ply_edges,
        .parse = parse_centerline_ply},
+      {.name = "GraphML", .extensions = {".graphml"}, .options = {"radius-array"}, .parse = parse_graphml},
+      {.name = "GEXF", .extensions = {".gexf"}, .options = {"radius-array"}, .parse = parse_gexf},
       {.name = "Secomb network", .extensions = {".dat"}, .parse = parse_network},
       {.name = "MorphIO network", .extensions = {".h5"}, .needs = {"HDF5", ".vmv or .vtp"}, .read = kReadHdf5},
   };

@@ -9,7 +9,7 @@ namespace vmesh::io {
 
 CenterlineFormat::Parse parse_swc, parse_vmv, parse_centerline_json, parse_centerline_vtp, parse_centerline_vtu,
     parse_centerline_vtk, parse_contours, parse_path, parse_gxl, parse_amira, parse_centerline_obj,
-    parse_centerline_ply, parse_network;
+    parse_centerline_ply, parse_network, parse_graphml, parse_gexf;
 bool holds_obj_lines(std::string_view content);
 bool holds_ply_edges(std::string_view content);
 RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source,

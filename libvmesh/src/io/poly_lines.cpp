@@ -68,10 +68,11 @@ class Converter {
 };
 
 /// The names under which the radius is looked for.
-std::vector<std::string> radius_names(const Attributes& attributes, const CenterlineReadOptions& options) {
+std::vector<std::string> radius_names(const Attributes& attributes, const CenterlineReadOptions& options,
+                                      std::vector<std::string> usual) {
   if (!options.radius_array.empty()) return {options.radius_array};
-  std::vector<std::string> usual = {"MaximumInscribedSphereRadius", "Radius", "radius"}, present;
   if (options.radius) return usual;
+  std::vector<std::string> present;
   for (const ScalarArrays* arrays : {&attributes.point, &attributes.cell}) {
     for (const auto& [name, values] : *arrays) {
       if (!values.empty()) present.push_back(name);
@@ -91,12 +92,11 @@ void name_arrays(const ScalarArrays& arrays, std::string& names) {
 }
 
 [[noreturn]] void fail_without_radius(const std::string& source, const std::string& wanted,
-                                      const Attributes& attributes) {
+                                      const std::vector<std::string>& usual, const Attributes& attributes) {
   std::string of_points, of_cells;
   name_arrays(attributes.point, of_points);
   name_arrays(attributes.cell, of_cells);
-  throw InvalidInput(source + ": there is no array " +
-                     (wanted.empty() ? "MaximumInscribedSphereRadius, Radius or radius" : one_line(wanted)) +
+  throw InvalidInput(source + ": there is no array " + (wanted.empty() ? listed(usual) : one_line(wanted)) +
                      " of points or lines; it has " + (of_points.empty() ? "none" : of_points) + " of points and " +
                      (of_cells.empty() ? "none" : of_cells) +
                      " of lines; name the one that holds the radius with --radius-array, or give one radius for all "
@@ -128,9 +128,14 @@ std::vector<double> radii_of_segments(const RawCenterline& raw, const std::vecto
 
 }  // namespace
 
+const std::vector<std::string>& usual_radii() {
+  static const std::vector<std::string> names = {"MaximumInscribedSphereRadius", "Radius", "radius"};
+  return names;
+}
+
 RawCenterline to_raw_centerline(PolyLines data, const std::string& source, const Attributes& attributes,
-                                const CenterlineReadOptions& options) {
-  const std::vector<std::string> names = radius_names(attributes, options);
+                                const CenterlineReadOptions& options, const std::vector<std::string>& usual) {
+  const std::vector<std::string> names = radius_names(attributes, options, usual);
   if (const auto* radius = find_radius(attributes.point, names, data.points.size(), source, "point")) {
     const RadiusArray array(radius->first);
     for (std::size_t i = 0; i < data.points.size(); ++i) data.points[i].radius = array.radius(radius->second[i]);
@@ -156,7 +161,8 @@ RawCenterline to_raw_centerline(PolyLines data, const std::string& source, const
     array.note(raw);
     return raw;
   }
-  if (!options.radius || !options.radius_array.empty()) fail_without_radius(source, options.radius_array, attributes);
+  if (!options.radius || !options.radius_array.empty())
+    fail_without_radius(source, options.radius_array, usual, attributes);
   return Converter(data, source).run();
 }
 
