@@ -87,6 +87,7 @@ std::vector<std::string> markups_seeds() {
 std::vector<std::string> csv_seeds() {
   return {"# SPACE=LPS\nid,x,y,z,radius\n0,0,0,0,2\n1,8,0,0,1.5\n2,12,4,0,1\n\fa,b\n0,1\n1,2\n",
           "note, Radius ,z,y,x,id\nhello,1,2,3,4,10\r\n,1,2,3,14,11\r\n\fb,a,why\n10,11,\n",
+          "id;pos_x;pos_y;pos_z\n0;0;0;0\n1;0;0;20\n\fid;node1id;node2id;avgRadiusAvg\n0;0;1;2.5\n",
           "id,x,y,z,Section Area\n0,0,0,0,2\n1,8,0,0,1.5\n\fa,b\n0,1\n",
           "id;x;y;z;\"radius\"\r\nroot;0,5;1;2;1,5\r\n720575940590515268;1;2;3;1\r\n;;;;\r\n\f"
           "a;b\r\nroot;720575940590515268\r\n"};
@@ -164,6 +165,18 @@ std::vector<std::string> graphml_seeds() {
           "<graphml>" + keys + "<graph><data key=\"unit\">um</data>" + node("1", "<data key=\"d0\">0 0 0</data>") +
               node("2", "<data key=\"d0\">0 0 9</data>") +
               "<edge source=\"1\" target=\"2\"><data key=\"d2\">4</data></edge></graph></graphml>"};
+}
+
+std::vector<std::string> tre_seeds() {
+  const std::string head = "ObjectType = Scene\nNDims = 3\nNObjects = 2\n";
+  const auto tube = [](const std::string& more, const std::string& points) {
+    return "ObjectType = Tube\nNDims = 3\n" + more + "PointDim = x y z r\nNPoints = 2\nPoints = \n" + points;
+  };
+  return {head + "ObjectType = Group\nID = 5\nOffset = 1 2 3\nEndGroup = \n" +
+              tube("ID = 1\nParentID = 5\nElementSpacing = 0.5 0.5 2\n", "0 0 0 4\n0 0 9 3\n") +
+              tube("ID = 2\nParentID = 1\nParentPoint = 1\n", "0 0 18 2\n0 8 18 1\n"),
+          head + tube("BinaryData = True\nTransformMatrix = 0 1 0 1 0 0 0 0 1\n",
+                      bytes_of<float>({0, 0, 0, 2, 0, 0, 9, 2}, std::endian::little))};
 }
 
 std::vector<std::string> gexf_seeds() {
@@ -274,11 +287,11 @@ std::vector<std::string> ply_edge_seeds() {
 
 std::map<std::string, MakeSeeds> centerline_seeds() {
   return {
-      {".obj", obj_line_seeds},     {".ply", ply_edge_seeds}, {".vtu", vtu_seeds},  {".swc", swc_seeds},
-      {".vmv", vmv_seeds},          {".json", json_seeds},    {".csv", csv_seeds},  {".vtk", vtk_seeds},
-      {".vtp", vtp_seeds},          {".ctgr", ctgr_seeds},    {".pth", pth_seeds},  {".gxl", gxl_seeds},
-      {".graphml", graphml_seeds},  {".gexf", gexf_seeds},    {".am", amira_seeds}, {".dat", network_seeds},
-      {".mrk.json", markups_seeds},
+      {".obj", obj_line_seeds},    {".ply", ply_edge_seeds},     {".vtu", vtu_seeds}, {".swc", swc_seeds},
+      {".vmv", vmv_seeds},         {".json", json_seeds},        {".csv", csv_seeds}, {".vtk", vtk_seeds},
+      {".vtp", vtp_seeds},         {".ctgr", ctgr_seeds},        {".pth", pth_seeds}, {".gxl", gxl_seeds},
+      {".graphml", graphml_seeds}, {".gexf", gexf_seeds},        {".tre", tre_seeds}, {".am", amira_seeds},
+      {".dat", network_seeds},     {".mrk.json", markups_seeds},
   };
 }
 

@@ -298,6 +298,37 @@ TEST(ReadCsv, NamesFileAndLineThatAreWrong) {
   expect_contains(message_of<InvalidInput>([&] { read_centerline(folder / "t.segments.csv"); }), "nodes");
 }
 
+TEST(ReadCsv, ReadsNodesAndEdgesOfVoreen) {
+  const TemporaryFolder folder;
+  const std::string edges =
+      "id;node1id;node2id;length;avgRadiusAvg;num_voxels\n0;0;1;20.5;2.5;7\n1;1;2;9;1.5;7\n2;1;3;9;-1;0\n";
+  folder.write("brain_edges.csv", edges);
+  const auto path =
+      folder.write("brain_nodes.csv",
+                   "id;pos_x;pos_y;pos_z;degree;isAtSampleBorder\n0;0;0;0;1;1\n1;0;0;20;3;0\n2;9;0;20;1;0\n"
+                   "3;-9;0;20.5;1;0\n");
+  const auto raw = read_centerline(path);
+  ASSERT_GE(raw.nodes.size(), 4u);
+  EXPECT_EQ(raw.nodes[3].position, Vec3(-9, 0, 20.5));
+  EXPECT_EQ(raw.nodes[0].radius, 2.5);
+  EXPECT_EQ(raw.nodes[1].radius, 1.5);
+  EXPECT_EQ(raw.nodes[3].radius, 0);  // taken from its neighbours when it is cleaned
+  EXPECT_EQ(raw.radius_arrays, std::vector<std::string>{"avgRadiusAvg"});
+  expect_contains(raw.warnings.at(0), "1 segments have the radius -1");
+  EXPECT_EQ(load_centerline(path).cleaned.centerline.component_count(), 1u);
+  const auto error = [&](const std::string& from, const std::string& to) {
+    std::string changed = edges;
+    folder.write("brain_edges.csv", changed.replace(changed.find(from), from.size(), to));
+    return message_of<InvalidInput>([&] { read_centerline(path); });
+  };
+  expect_contains(error(";1.5;", ";-2;"), "brain_edges.csv: line 3: \"-2\" is not a radius");
+  expect_contains(error(";1;2;", ";1;7;"), "brain_edges.csv: line 3: there is no node with the id 7");
+  expect_contains(error("node2id", "other"), "there is no column");
+  expect_contains(error("avgRadiusAvg", "other"), "brain_nodes.csv: line 1: there is no column radius");
+  folder.write("brain_nodes.segments.csv", "a,b\n0,1\n");
+  expect_contains(message_of<InvalidInput>([&] { read_centerline(path); }), "no column radius");  // ours is read
+}
+
 RawCenterline obj(const std::string& text) {
   CenterlineReadOptions options;
   options.radius = 1;

@@ -324,7 +324,10 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& input) 
 
 std::vector<std::filesystem::path> files_of_input(const std::filesystem::path& input) {
   std::error_code error;
-  return std::filesystem::is_directory(input, error) ? files_in(input) : files_of(input);
+  if (std::filesystem::is_directory(input, error)) return files_in(input);
+  const CenterlineFormat* format = find_centerline_format(input);
+  if (format != nullptr && format->second_file) return {input, second_file_to_read(*format, input)};
+  return {input};
 }
 
 std::vector<std::filesystem::path> files_of(const InputArguments& input) {

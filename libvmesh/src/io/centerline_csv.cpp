@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "comments.h"
+#include "edge_radii.h"
 #include "formats.h"
 #include "node_id.h"
 #include "radius_array.h"
@@ -53,8 +54,11 @@ class CsvTable {
     return true;
   }
 
-  void need(const std::vector<std::string>& names) {
-    for (const std::string& name : names) {
+  /// The columns of the first of these lists of which the table has the second column.
+  void need_one_of(const std::vector<std::vector<std::string>>& lists) {
+    const auto has = [this](const auto& list) { return std::ranges::find(names_, list[1]) != names_.end(); };
+    const auto there = std::ranges::find_if(lists, has);
+    for (const std::string& name : there == lists.end() ? lists.front() : *there) {
       if (!find(name)) fail_without(name);
     }
   }
@@ -141,19 +145,104 @@ class CsvTable {
   std::vector<std::size_t> columns_;
 };
 
-/// Finds the column of radii; nullopt if there need be none.
-std::optional<RadiusArray> find_radius_column(CsvTable& table, const CenterlineReadOptions& options) {
-  std::string name = options.radius_array.empty() ? "radius" : options.radius_array;
-  if (table.find(name)) return RadiusArray(name);
-  if (options.radius && options.radius_array.empty()) return std::nullopt;
-  if (const auto area = only_area(table.names()); area && options.radius_array.empty()) {
-    table.find(*area);
-    return RadiusArray(*area);
+/// Reads the two tables, under our names of columns or Voreen's.
+class CsvPairReader {
+ public:
+  CsvPairReader(std::string_view nodes, std::string_view segments, const std::string& source,
+                const std::string& second_source, const CenterlineReadOptions& options)
+      : options_(options),
+        nodes_(nodes, source),
+        has_segments_(!trim(segments).empty()),
+        segments_(segments, second_source) {
+    raw_.source = source;
+    raw_.node_word = "line";
+    raw_.segment_word = "line of the segments file";
   }
-  table.fail_without(name,
-                     "; name the one that holds the radius with --radius-array, or give one radius for all with "
-                     "--radius");
-}
+
+  RawCenterline run() {
+    nodes_.read_header("id,x,y,z,radius", raw_.unit, raw_.space);
+    nodes_.need_one_of({{"id", "x", "y", "z"}, {"id", "pos_x", "pos_y", "pos_z"}});
+    if (has_segments_) {
+      segments_.read_header("a,b", raw_.unit, raw_.space);
+      segments_.need_one_of({{"a", "b"}, {"node1id", "node2id"}});
+    }
+    find_radius();
+    read_nodes();
+    if (has_segments_) read_segments();
+    if (of_segments_) set_radii_of_segments(raw_, segment_radii_);
+    return std::move(raw_);
+  }
+
+ private:
+  /// In the table of nodes, or else in that of segments.
+  void find_radius() {
+    const std::string& wanted = options_.radius_array;
+    const auto take = [&](CsvTable& table, const std::string& name) {
+      if (!table.find(name)) return false;
+      (&table == &nodes_ ? of_nodes_ : of_segments_).emplace(name).note(raw_);
+      return true;
+    };
+    if (take(nodes_, wanted.empty() ? "radius" : wanted)) return;
+    if (take(segments_, wanted.empty() ? "avgRadiusAvg" : wanted)) return;
+    if (options_.radius && wanted.empty()) return;
+    if (const auto area = only_area(nodes_.names()); area && wanted.empty()) {
+      take(nodes_, *area);
+      return;
+    }
+    nodes_.fail_without(wanted.empty() ? "radius" : wanted,
+                        "; name the one that holds the radius with --radius-array, or give one radius for all with "
+                        "--radius");
+  }
+
+  void read_nodes() {
+    while (nodes_.next_row()) {
+      const std::string id = nodes_.id(0);
+      if (!index_of_.try_emplace(id, static_cast<Index>(raw_.nodes.size())).second)
+        nodes_.fail("the id " + shown_id(id) + " was given before; ids must be unique");
+      const double radius = of_nodes_ ? of_nodes_->radius(nodes_.real(4)) : 0;
+      raw_.nodes.push_back({{nodes_.real(1), nodes_.real(2), nodes_.real(3)}, radius});
+      raw_.node_numbers.push_back(nodes_.line_number());
+    }
+  }
+
+  void read_segments() {
+    while (segments_.next_row()) {
+      const Index a = end(0);
+      raw_.segments.push_back({a, end(1)});
+      raw_.segment_numbers.push_back(segments_.line_number());
+      if (of_segments_) segment_radii_.push_back(segment_radius());
+    }
+    if (unmeasured_ > 0)
+      raw_.warnings.push_back(raw_.source + ": " + std::to_string(unmeasured_) +
+                              " segments have the radius -1, which stands for none");
+  }
+
+  double segment_radius() {
+    const double value = segments_.real(2);
+    constexpr double kUnmeasured = -1;  // by Voreen
+    if (value == kUnmeasured) ++unmeasured_;
+    if (!(value >= 0 || value == kUnmeasured))
+      segments_.fail(cite(segments_.field(2)) + " is not a radius; it must be 0 or more");
+    return of_segments_->radius(std::max(value, 0.0));
+  }
+
+  Index end(std::size_t column) const {
+    const auto found = index_of_.find(segments_.id(column));
+    if (found == index_of_.end())
+      segments_.fail("there is no node with the id " + shown_id(segments_.id(column)) + " in " + raw_.source);
+    return found->second;
+  }
+
+  const CenterlineReadOptions& options_;
+  CsvTable nodes_;
+  bool has_segments_;
+  CsvTable segments_;
+  RawCenterline raw_;
+  std::optional<RadiusArray> of_nodes_, of_segments_;
+  std::vector<double> segment_radii_;
+  std::size_t unmeasured_ = 0;
+  std::unordered_map<std::string, Index> index_of_;
+};
 
 }  // namespace
 
@@ -163,42 +252,16 @@ std::filesystem::path second_csv_file(const std::filesystem::path& path) {
   return csv_segments_path(path);
 }
 
+std::filesystem::path voreens_second_file(const std::filesystem::path& path) {
+  std::string name = path.filename().string();
+  const std::size_t at = name.rfind("nodes");
+  if (at == std::string::npos) return {};
+  return std::filesystem::path(path).replace_filename(name.replace(at, 5, "edges"));
+}
+
 RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source,
-                                   const CenterlineReadOptions& options) {
-  RawCenterline raw;
-  raw.source = source;
-  raw.node_word = "line";
-  raw.segment_word = "line of the segments file";
-  CsvTable table(nodes, source);
-  table.read_header("id,x,y,z,radius", raw.unit, raw.space);
-  table.need({"id", "x", "y", "z"});
-  const std::optional<RadiusArray> radii = find_radius_column(table, options);
-  if (radii) radii->note(raw);
-  std::unordered_map<std::string, Index> index_of;
-  while (table.next_row()) {
-    const std::string id = table.id(0);
-    if (!index_of.try_emplace(id, static_cast<Index>(raw.nodes.size())).second) {
-      table.fail("the id " + shown_id(id) + " was given before; ids must be unique");
-    }
-    raw.nodes.push_back({{table.real(1), table.real(2), table.real(3)}, radii ? radii->radius(table.real(4)) : 0});
-    raw.node_numbers.push_back(table.line_number());
-  }
-  if (trim(segments).empty()) return raw;
-  CsvTable pairs(segments, csv_segments_path(source).string());
-  pairs.read_header("a,b", raw.unit, raw.space);
-  pairs.need({"a", "b"});
-  while (pairs.next_row()) {
-    const auto end = [&](std::size_t i) {
-      const auto found = index_of.find(pairs.id(i));
-      if (found == index_of.end())
-        pairs.fail("there is no node with the id " + shown_id(pairs.id(i)) + " in " + source);
-      return found->second;
-    };
-    const Index a = end(0);
-    raw.segments.push_back({a, end(1)});
-    raw.segment_numbers.push_back(pairs.line_number());
-  }
-  return raw;
+                                   const std::string& second_source, const CenterlineReadOptions& options) {
+  return CsvPairReader(nodes, segments, source, second_source, options).run();
 }
 
 void write_centerline_csv(std::ostream& nodes, std::ostream& segments, const Centerline& centerline,

@@ -40,7 +40,8 @@ const std::vector<CenterlineFormat>& centerline_formats() {
        .options = {"radius-array"},
        .parse_pair = parse_centerline_csv,
        .write_pair = write_centerline_csv,
-       .second_file = second_csv_file},
+       .second_file = second_csv_file,
+       .others_second_file = voreens_second_file},
       {.name = "VessMorphoVis", .extensions = {".vmv"}, .parse = parse_vmv},
       {.name = "legacy VTK", .extensions = {".vtk"}, .options = {"radius-array"}, .parse = parse_centerline_vtk},
       {.name = "3D Slicer Markups",
@@ -60,6 +61,7 @@ const std::vector<CenterlineFormat>& centerline_formats() {
        .parse = parse_centerline_ply},
       {.name = "GraphML", .extensions = {".graphml"}, .options = {"radius-array"}, .parse = parse_graphml},
       {.name = "GEXF", .extensions = {".gexf"}, .options = {"radius-array"}, .parse = parse_gexf},
+      {.name = "ITK-TubeTK", .extensions = {".tre"}, .parse = parse_tube_scene},
       {.name = "Secomb network", .extensions = {".dat"}, .parse = parse_network},
       {.name = "MorphIO network", .extensions = {".h5"}, .needs = {"HDF5", ".vmv or .vtp"}, .read = kReadHdf5},
   };

@@ -40,6 +40,14 @@ std::vector<std::string> options_without_effect(const CenterlineReadOptions& opt
   return given;
 }
 
+std::filesystem::path second_file_to_read(const CenterlineFormat& format, const std::filesystem::path& path) {
+  const std::filesystem::path second = format.second_file(path);
+  const std::filesystem::path others = format.others_second_file ? format.others_second_file(path) : "";
+  std::error_code error;
+  return !others.empty() && std::filesystem::exists(others, error) && !std::filesystem::exists(second, error) ? others
+                                                                                                              : second;
+}
+
 namespace {
 
 RawCenterline read_file_of_centerline(const std::filesystem::path& path, const CenterlineReadOptions& options) {
@@ -47,9 +55,9 @@ RawCenterline read_file_of_centerline(const std::filesystem::path& path, const C
   if (format.read) return format.read(path);
   if (format.parse) return format.parse(read_file(path), path.string(), options);
   if (!format.parse_pair) refuse_without(format.needs, path);
-  const std::filesystem::path second = format.second_file(path);
+  const std::filesystem::path second = second_file_to_read(format, path);
   const std::string content = read_file(path);
-  return format.parse_pair(content, read_file(second), path.string(), options);
+  return format.parse_pair(content, read_file(second), path.string(), second.string(), options);
 }
 
 }  // namespace
@@ -57,7 +65,8 @@ RawCenterline read_file_of_centerline(const std::filesystem::path& path, const C
 RawCenterline parse_centerline(std::string_view content, const CenterlineFormat& format, const std::string& source,
                                const CenterlineReadOptions& options, std::string_view csv_segments) {
   if (format.parse) return format.parse(content, source, options);
-  if (format.parse_pair) return format.parse_pair(content, csv_segments, source, options);
+  if (format.parse_pair)
+    return format.parse_pair(content, csv_segments, source, csv_segments_path(source).string(), options);
   throw Unsupported(source + ": files of this kind are read by their names only");
 }
 

@@ -9,11 +9,11 @@ namespace vmesh::io {
 
 CenterlineFormat::Parse parse_swc, parse_vmv, parse_centerline_json, parse_centerline_vtp, parse_centerline_vtu,
     parse_centerline_vtk, parse_contours, parse_path, parse_gxl, parse_amira, parse_centerline_obj,
-    parse_centerline_ply, parse_network, parse_graphml, parse_gexf;
+    parse_centerline_ply, parse_network, parse_graphml, parse_gexf, parse_tube_scene;
 bool holds_obj_lines(std::string_view content);
 bool holds_ply_edges(std::string_view content);
 RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source,
-                                   const CenterlineReadOptions& options);
+                                   const std::string& second_source, const CenterlineReadOptions& options);
 RawCenterline read_hdf5_network(const std::filesystem::path& path);
 
 CenterlineFormat::Write write_swc, write_centerline_json, write_centerline_vtp;
@@ -21,6 +21,8 @@ void write_centerline_csv(std::ostream& nodes, std::ostream& segments, const Cen
                           const CenterlineMetadata& metadata);
 /// csv_segments_path(); throws InvalidInput if `path` names a segments file.
 std::filesystem::path second_csv_file(const std::filesystem::path& path);
+/// Of Voreen: "edges" instead of "nodes" in the name; empty if that is not in it.
+std::filesystem::path voreens_second_file(const std::filesystem::path& path);
 
 SurfaceFormat::Parse parse_off, parse_obj, parse_stl, parse_ply, parse_surface_vtp, parse_surface_vtk;
 /// Through assimp.

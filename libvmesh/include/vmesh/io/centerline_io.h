@@ -36,13 +36,15 @@ struct CenterlineFormat {
   // The functions of the format, null where it has none. It is read by one of the first three.
   Parse* parse = nullptr;
   RawCenterline (*parse_pair)(std::string_view content, std::string_view second, const std::string& source,
-                              const CenterlineReadOptions& options) = nullptr;
+                              const std::string& second_source, const CenterlineReadOptions& options) = nullptr;
   RawCenterline (*read)(const std::filesystem::path& path) = nullptr;
   Write* write = nullptr;
   void (*write_pair)(std::ostream& out, std::ostream& second, const Centerline& centerline,
                      const CenterlineMetadata& metadata) = nullptr;
   /// Of formats of two files: the second one. Throws InvalidInput if `path` is the second.
   std::filesystem::path (*second_file)(const std::filesystem::path& path) = nullptr;
+  /// The same as another program names it, for files that are read; empty if it has none for that name.
+  std::filesystem::path (*others_second_file)(const std::filesystem::path& path) = nullptr;
 
   bool is_written() const { return write != nullptr || write_pair != nullptr; }
 };
@@ -63,10 +65,13 @@ const CenterlineFormat& centerline_output_format(const std::filesystem::path& pa
 /// tree.segments.csv (header `a,b`, the ids of the nodes it joins).
 std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path);
 
+/// Of a format of two files, the second one of those to be read: another program's if it is there and ours is not.
+std::filesystem::path second_file_to_read(const CenterlineFormat& format, const std::filesystem::path& path);
+
 struct CenterlineReadOptions {
   /// Name of the array, column, property or measurement with the radius, or with the diameter if the name contains
-  /// "diam", or with the area of the cross-section if it contains "area". Empty: MaximumInscribedSphereRadius, Radius or
-  /// radius, or the only area; for Amira also thickness.
+  /// "diam", or with the area of the cross-section if it contains "area". Empty: MaximumInscribedSphereRadius, Radius
+  /// or radius, or the only area; for Amira also thickness.
   std::string radius_array;
   /// Radius (mm, > 0) of all nodes if the file has none. Files without radii are refused otherwise.
   std::optional<double> radius;
