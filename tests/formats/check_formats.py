@@ -24,7 +24,7 @@ import outputs  # noqa: E402
 import programs  # noqa: E402
 from report import Absent, Table, Vmesh  # noqa: E402
 
-PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "h5py", "networkx", "pydicom", "text")
+PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "h5py", "networkx", "pydicom", "tifffile", "text")
 
 
 def check(name, table, written, options, folder):
@@ -51,6 +51,8 @@ def check(name, table, written, options, folder):
         inputs.check_meshlab(table, meshlab, written)
     elif name == "pydicom":
         images.check_pydicom(table, written)
+    elif name == "tifffile":
+        images.check_tifffile(table, written)
     elif name == "networkx":
         networkx_inputs.check(table, written)
     elif name == "h5py":

@@ -50,14 +50,18 @@ std::vector<std::string> mha_seeds() {
               voxel_bytes<std::uint8_t>(small_values())};
 }
 
+std::vector<std::string> tif_seeds() {
+  return {tiff_file<std::int16_t>(small_image(), small_values(), "ImageJ=1.5\nimages=2\nunit=mm\nspacing=3\n", 2),
+          tiff_file<std::uint8_t>(small_image(), small_values(), "", 0, true),
+          tiff_file<float>(small_image(), small_values())};
+}
+
 }  // namespace
 
 std::map<std::string, MakeSeeds> image_seeds() {
   return {
-      {".nii", nii_seeds},
-      {".nii.gz", nii_gz_seeds},
-      {".nrrd", nrrd_seeds},
-      {".mha", mha_seeds},
+      {".nii", nii_seeds}, {".nii.gz", nii_gz_seeds}, {".nrrd", nrrd_seeds},
+      {".mha", mha_seeds}, {".tif", tif_seeds},       {".tiff", tif_seeds},
   };
 }
 

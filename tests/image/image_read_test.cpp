@@ -199,7 +199,7 @@ TEST_F(ReadImage, AxesWithoutVolumeAreRefused) {
 const std::vector<int> kPortalAndHepatic = {0, 1, 1, 0, 2, 2, 0, 1, 1, 0, 2, 2},
                        kTumor = {0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 1, 0};
 
-std::vector<float> read_segments(const SegmentChoice& choice, const std::string& more = "") {
+std::vector<float> read_segments(const ImageReadOptions& choice, const std::string& more = "") {
   const LoadedImage loaded = parse_image(layered_nrrd(kPortalAndHepatic, kTumor, more), "s.seg.nrrd", choice);
   EXPECT_EQ(loaded.image.size, (std::array<std::size_t, 3>{3, 2, 2}));
   EXPECT_EQ(loaded.image.position(Vec3(0, 0, 1)), Vec3(5, 6, 9));
@@ -222,7 +222,7 @@ TEST_F(ReadImage, SegmentsThatOverlapAreReadByNameOrValue) {
 }
 
 TEST_F(ReadImage, SegmentsThatAreNotClearAreRefusedWithTheirNames) {
-  const auto error = [](const SegmentChoice& choice, const std::string& more = "") {
+  const auto error = [](const ImageReadOptions& choice, const std::string& more = "") {
     return message_of<InvalidInput>([&] { read_segments(choice, more); });
   };
   expect_contains(error({}),

@@ -76,6 +76,7 @@ void add_required_coverage(CLI::App& verb, RequiredCoverage& required) {
 
 void add_fitting(CLI::App& verb, FittingArguments& arguments) {
   add_reading(verb, arguments.reference, "reference-");
+  add_voxel_size(verb, arguments.reference, "reference-");
   add_image_options(verb, arguments.image);
   add_read_option(
       verb, "--fit-error",

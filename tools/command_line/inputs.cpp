@@ -195,13 +195,22 @@ void refuse_without_file(const InputArguments& input) {
   if (!given.empty()) throw UsageError("--" + input.options_of + given.front() + " is for a file that is not given");
 }
 
+ReferenceOptions with_voxel_size(ReferenceOptions options, const InputArguments& input) {
+  options.voxel_size = input.read.voxel_size;
+  return options;
+}
+
 /// Calls `read` to read an image.
 template <class Read>
 auto reading_image(const InputArguments& input, Read read) {
   if (input.unit || input.space)
     throw UsageError(input.path.string() +
                      ": an image contains its position and unit; --unit and --space do not apply");
-  refuse_without_effect(input, {}, "an image");
+  InputArguments others = input;
+  if (const ImageFormat* format = find_format(image_formats(), input.path);
+      format && std::ranges::find(format->options, "voxel-size") != format->options.end())
+    others.read.voxel_size.reset();
+  refuse_without_effect(others, {}, "an image");
   try {
     return read();
   } catch (const InvalidInput&) {
@@ -263,20 +272,24 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
 }
 
 LoadedImage load_image(const InputArguments& input, const ReferenceOptions& options, Console& console) {
-  LoadedImage loaded = reading_image(input, [&] { return read_image(input.path, choice_of(options)); });
+  const ReferenceOptions all = with_voxel_size(options, input);
+  LoadedImage loaded = reading_image(input, [&] { return read_image(input.path, read_options_of(all)); });
   console.warn(loaded.warnings);
   return loaded;
 }
 
 VesselMask load_vessel_mask(const InputArguments& input, const ReferenceOptions& options, Console& console) {
   std::vector<std::string> warnings;
-  VesselMask mask = reading_image(input, [&] { return read_vessel_mask(input.path, options, warnings); });
+  VesselMask mask =
+      reading_image(input, [&] { return read_vessel_mask(input.path, with_voxel_size(options, input), warnings); });
   console.warn(warnings);
   return mask;
 }
 
 ImageSummary load_image_summary(const InputArguments& input, Console& console) {
-  ImageSummary summary = reading_image(input, [&] { return summarize_image(input.path, console.progress()); });
+  ImageSummary summary = reading_image(input, [&] {
+    return summarize_image(input.path, console.progress(), read_options_of(with_voxel_size({}, input)));
+  });
   console.warn(summary.image.warnings);
   return summary;
 }

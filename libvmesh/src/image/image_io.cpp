@@ -65,14 +65,15 @@ std::vector<double> values_of(const std::vector<std::string>& names, const std::
   return values;
 }
 
-LoadedImage parse_image(std::string_view content, const std::string& source, const SegmentChoice& choice) {
-  return collected(
-      source, [&](const auto& begin, const auto& visit) { parse_image_slices(content, source, begin, visit, choice); });
+LoadedImage parse_image(std::string_view content, const std::string& source, const ImageReadOptions& options) {
+  return collected(source, [&](const auto& begin, const auto& visit) {
+    parse_image_slices(content, source, begin, visit, options);
+  });
 }
 
-LoadedImage read_image(const std::filesystem::path& path, const SegmentChoice& choice) {
+LoadedImage read_image(const std::filesystem::path& path, const ImageReadOptions& options) {
   return collected(path.string(),
-                   [&](const auto& begin, const auto& visit) { read_image_slices(path, begin, visit, choice); });
+                   [&](const auto& begin, const auto& visit) { read_image_slices(path, begin, visit, options); });
 }
 
 }  // namespace vmesh

@@ -108,16 +108,16 @@ class VoxelReader {
 
 /// The chosen segments of an image of several layers. Throws InvalidInput if there are none, or if a value is that of
 /// several segments.
-std::vector<ImageSegment> chosen_segments(const ImageHeader& header, const SegmentChoice& choice,
+std::vector<ImageSegment> chosen_segments(const ImageHeader& header, const ImageReadOptions& options,
                                           const std::string& name) {
   const auto is_named = [&](const ImageSegment& segment) {
-    return std::ranges::any_of(choice.names, [&](const auto& word) { return lower(word) == lower(segment.name); });
+    return std::ranges::any_of(options.segments, [&](const auto& word) { return lower(word) == lower(segment.name); });
   };
   std::vector<ImageSegment> chosen;
   for (const ImageSegment& segment : header.segments) {
     if (is_named(segment)) chosen.push_back(segment);
   }
-  for (const double value : choice.values) {
+  for (const double value : options.labels) {
     const auto has_value = [&](const ImageSegment& segment) { return segment.value == value; };
     if (std::ranges::any_of(chosen, has_value)) continue;
     if (std::ranges::count_if(header.segments, has_value) > 1)
@@ -158,11 +158,11 @@ void visit_voxels(ByteSource& bytes, const ImageHeader& header, const std::vecto
 /// Reads the voxels from `content`, the bytes of a file of that size, unpacked if all of it is compressed.
 void parse_voxels(ByteSource& content, std::uint64_t file_size, bool all_packed, ImageHeader header,
                   const std::string& name, const ImageBegin& begin, const SliceVisitor& visit,
-                  const SegmentChoice& choice) {
+                  const ImageReadOptions& options) {
   if (header.data_at_end) header.data_begin = file_size - std::min(file_size, bytes_needed(header));
   check_size(file_size, header, all_packed || header.packed, name);
   std::vector<ImageSegment> chosen;
-  if (header.layers > 1) chosen = chosen_segments(header, choice, name);
+  if (header.layers > 1) chosen = chosen_segments(header, options, name);
   begin(frame_of(header));
   skip(content, header.data_begin);
   if (!header.packed) return visit_voxels(content, header, chosen, name, visit);
@@ -179,9 +179,10 @@ InputFile open_second(const std::string& given, const std::filesystem::path& pat
 
 /// `file_size`: of all bytes that `file` will give; `source` names it. `in_memory`: no other file belongs to it.
 void parse(ByteSource& file, std::uint64_t file_size, const std::string& source, bool in_memory,
-           const ImageBegin& begin, const SliceVisitor& visit, const SegmentChoice& choice) {
+           const ImageBegin& begin, const SliceVisitor& visit, const ImageReadOptions& options) {
   const ImageFormat* format = find_format(image_formats(), source);
   if (!format) throw Unsupported(source + ": images are " + listed_image_extensions());
+  if (!format->parse_header) refuse_without(format->needs, source);
   PeekedBytes stored(file);
   const bool all_packed = is_packed(stored, *format, source);
   std::optional<image::UnpackedBytes> unpacked;
@@ -190,24 +191,26 @@ void parse(ByteSource& file, std::uint64_t file_size, const std::string& source,
   const ImageHeader header = format->parse_header(content.peek(format->header_bytes), source);
   image::check_place(header.origin, header.steps, source);
   if (header.data_file.empty())
-    return parse_voxels(content, file_size, all_packed, header, source, begin, visit, choice);
+    return parse_voxels(content, file_size, all_packed, header, source, begin, visit, options);
   if (in_memory) throw Unsupported(source + ": its voxels are in another file; store header and voxels in one");
   const std::filesystem::path path = std::filesystem::path(source).parent_path() / header.data_file;
   InputFile data = open_second(source, path, "voxels are");
   image::BytesOfFile voxels(data);
-  parse_voxels(voxels, data.size(), false, header, path.string(), begin, visit, choice);
+  parse_voxels(voxels, data.size(), false, header, path.string(), begin, visit, options);
 }
 
 }  // namespace
 
 void parse_image_slices(std::string_view content, const std::string& source, const ImageBegin& begin,
-                        const SliceVisitor& visit, const SegmentChoice& choice) {
+                        const SliceVisitor& visit, const ImageReadOptions& options) {
+  if (const ImageFormat* format = find_format(image_formats(), source); format && format->read)
+    return format->read(source, content, begin, visit, options);
   image::BytesInMemory bytes(content);
-  parse(bytes, content.size(), source, true, begin, visit, choice);
+  parse(bytes, content.size(), source, true, begin, visit, options);
 }
 
 void read_image_slices(const std::filesystem::path& path, const ImageBegin& begin, const SliceVisitor& visit,
-                       const SegmentChoice& choice) {
+                       const ImageReadOptions& options) {
   std::error_code error;
   const bool is_folder = std::filesystem::is_directory(path, error), is_img = extension_of(path) == ".img";
   const bool is_dicom = is_folder || (!is_img && find_format(image_formats(), path) == nullptr);
@@ -215,13 +218,15 @@ void read_image_slices(const std::filesystem::path& path, const ImageBegin& begi
   if (is_img) {
     const std::filesystem::path header = image::other_of_pair(path, ".hdr", ".HDR");
     const InputFile there = open_second(path.string(), header, "header is");
-    return read_image_slices(header, begin, visit, choice);
+    return read_image_slices(header, begin, visit, options);
   }
+  if (const ImageFormat* format = find_format(image_formats(), path); format && format->read)
+    return format->read(path.string(), std::nullopt, begin, visit, options);
   InputFile file(path);
   // Files that the system generates do not tell their size; an empty one is refused.
-  if (file.size() == 0) return parse_image_slices(read_file(path), path.string(), begin, visit, choice);
+  if (file.size() == 0) return parse_image_slices(read_file(path), path.string(), begin, visit, options);
   image::BytesOfFile bytes(file);
-  parse(bytes, file.size(), path.string(), false, begin, visit, choice);
+  parse(bytes, file.size(), path.string(), false, begin, visit, options);
 }
 
 void visit_slices(const VoxelImage& image, const SliceVisitor& visit) {

@@ -131,7 +131,9 @@ std::string list_of_values(const std::set<float>& values) {
   return text.str();
 }
 
-SegmentChoice choice_of(const ReferenceOptions& options) { return {options.segments, options.labels}; }
+ImageReadOptions read_options_of(const ReferenceOptions& options) {
+  return {options.segments, options.labels, options.voxel_size};
+}
 
 ReferenceOptions with_labels(ReferenceOptions options, const std::vector<ImageSegment>& segments) {
   for (const double value : values_of(options.segments, segments)) options.labels.push_back(value);

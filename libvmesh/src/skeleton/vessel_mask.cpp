@@ -149,7 +149,7 @@ VesselMask read_vessel_mask(const std::filesystem::path& path, const ReferenceOp
                             std::vector<std::string>& warnings) {
   check(options);
   if (options.spacing > 0 || options.smooth > 0) {
-    LoadedImage loaded = read_image(path, choice_of(options));
+    LoadedImage loaded = read_image(path, read_options_of(options));
     warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
     return vessel_mask(loaded, options);
   }
@@ -160,7 +160,7 @@ VesselMask read_vessel_mask(const std::filesystem::path& path, const ReferenceOp
         warnings.insert(warnings.end(), image.warnings.begin(), image.warnings.end());
         mask = std::make_unique<VesselMask>(image.frame, with_labels(options, image.segments));
       },
-      [&](std::size_t k, std::span<const float> values) { mask->add_slice(k, values); }, choice_of(options));
+      [&](std::size_t k, std::span<const float> values) { mask->add_slice(k, values); }, read_options_of(options));
   mask->finish();
   return std::move(*mask);
 }

@@ -21,13 +21,6 @@ struct ImageFrame {
   std::vector<ImageSegment> segments = {};  ///< that the file names
 };
 
-/// Called once, before the first slice.
-using ImageBegin = std::function<void(const ImageFrame& image)>;
-
-/// Called with slice k (along the third axis) in ascending order: size[0] * size[1] values, the first axis fastest,
-/// valid during the call only.
-using SliceVisitor = std::function<void(std::size_t k, std::span<const float> values)>;
-
 /// Reads an image like read_image(), but hands it over slice by slice, in the memory of two slices and two megabytes,
 /// however large it is and whether or not it is compressed. DICOM is first read as a whole. Passes on what `begin` and
 /// `visit` throw; nothing more is read then.
@@ -35,11 +28,11 @@ using SliceVisitor = std::function<void(std::size_t k, std::span<const float> va
 /// Throws like read_image(). What can be told from the header and the size of the file is thrown before `begin` is
 /// called; that a compressed file holds less than it claims, or values that are not finite, only on reaching the place.
 void read_image_slices(const std::filesystem::path& path, const ImageBegin& begin, const SliceVisitor& visit,
-                       const SegmentChoice& choice = {});
+                       const ImageReadOptions& options = {});
 
 /// The same from the content of a file; like parse_image().
 void parse_image_slices(std::string_view content, const std::string& source, const ImageBegin& begin,
-                        const SliceVisitor& visit, const SegmentChoice& choice = {});
+                        const SliceVisitor& visit, const ImageReadOptions& options = {});
 
 /// The same from an image in memory.
 void visit_slices(const VoxelImage& image, const SliceVisitor& visit);
