@@ -27,13 +27,14 @@ class Formats : public CommandTest {
   }
 };
 
-const std::vector<std::pair<std::string, std::string>> kOptions = {
-    {"radius-array", "R"}, {"radius", "2"}, {"voxel-size", "0.5"}, {"unit", "cm"}, {"space", "RAS"}};
+const std::vector<std::pair<std::string, std::string>> kOptions = {{"radius-array", "R"},  {"radius", "2"},
+                                                                   {"tolerance", "0.5mm"}, {"voxel-size", "0.5"},
+                                                                   {"unit", "cm"},         {"space", "RAS"}};
 
 TEST_F(Formats, AreListedAsTextAndJson) {
   const Json formats = listed();
   const std::string text = vmesh({"formats"}).out;
-  EXPECT_NE(text.find("centerline .swc: SWC; read; written; --voxel-size, --radius, --unit, --space\n"),
+  EXPECT_NE(text.find("centerline .swc: SWC; read; written; --voxel-size, --radius, --tolerance, --unit, --space\n"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("centerline .gxl .xml: VascuSynth; read; --voxel-size"), std::string::npos) << text;

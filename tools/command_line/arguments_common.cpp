@@ -126,6 +126,11 @@ void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::st
           "--" + of + "radius", [&input](const double& radius) { input.read.radius = radius; },
           "radius of all nodes of a file without radii, mm")
       ->check(in_range(1e-9, 1e9));
+  add_read_option(
+      verb, "--" + of + "tolerance",
+      [&input](const std::string& text) { input.read.tolerance = parse_end_tolerance(text); },
+      "join ends of branches that are nearer to each other than this: .5mm, or .1 of their radius")
+      .type_name("Xmm|X");
   add_voxel_size(verb, input, of);
 }
 
@@ -141,7 +146,8 @@ void add_centerline_input(CLI::App& verb, InputArguments& input, const std::stri
       ->type_name("FILE");
   add_reading(verb, input, "");
   add_centerline_reading(verb, input, "");
-  group(verb, "How to read the input", {"--unit", "--space", "--radius-array", "--radius", "--voxel-size"});
+  group(verb, "How to read the input",
+        {"--unit", "--space", "--radius-array", "--radius", "--tolerance", "--voxel-size"});
 }
 
 void add_report(CLI::App& verb, ReportArguments& report) {

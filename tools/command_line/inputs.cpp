@@ -156,7 +156,8 @@ std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& 
 /// The extensions of the formats on which an option for reading acts.
 std::string extensions_with(const std::string& option) {
   return listed(extensions_of(centerline_formats(), [&](const CenterlineFormat& format) {
-    return option == "radius" || std::ranges::find(format.options, option) != format.options.end();
+    return option == "radius" || option == "tolerance" ||
+           std::ranges::find(format.options, option) != format.options.end();
   }));
 }
 

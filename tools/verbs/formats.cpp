@@ -13,7 +13,7 @@ struct FormatsArguments {
 
 std::vector<std::string> options_of(const CenterlineFormat& format) {
   std::vector<std::string> options = format.options;
-  options.insert(options.end(), {"radius", "unit", "space"});
+  options.insert(options.end(), {"radius", "tolerance", "unit", "space"});
   return options;
 }
 std::vector<std::string> options_of(const SurfaceFormat&) { return {"unit", "space"}; }

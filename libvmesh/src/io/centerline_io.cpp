@@ -33,7 +33,8 @@ std::vector<std::string> options_without_effect(const CenterlineReadOptions& opt
   std::vector<std::string> given;
   if (!options.radius_array.empty()) given.push_back("radius-array");
   if (options.voxel_size) given.push_back("voxel-size");
-  if (options.radius && paths.empty()) given.push_back("radius");  // which acts on every format
+  if (options.radius && paths.empty()) given.push_back("radius");  // which act on every format
+  if (options.tolerance && paths.empty()) given.push_back("tolerance");
   for (const std::filesystem::path& path : paths) {
     for (const std::string& option : centerline_format(path).options) std::erase(given, option);
   }
@@ -104,6 +105,7 @@ RawCenterline convert_read(RawCenterline raw, const CenterlineReadOptions& optio
                            std::optional<Space> space, std::vector<std::string>& warnings) {
   warnings.insert(warnings.end(), raw.warnings.begin(), raw.warnings.end());
   raw.warnings.clear();
+  if (options.tolerance) raw.join_ends = *options.tolerance;
   const bool may_be_wrong = !unit && raw.unit != LengthUnit::um && raw.unit != LengthUnit::nm;
   raw = convert_to_internal(std::move(raw), unit, space, warnings);
   if (may_be_wrong) {

@@ -19,12 +19,13 @@ struct CenterlineReadOptions;
 /// A format of centerlines: what it is called, what it can hold, and what reads and writes it.
 struct CenterlineFormat {
   std::string name;
-  std::vector<std::string> extensions;    ///< lower case, with their dots
-  std::vector<std::string> options = {};  ///< of CenterlineReadOptions, those that act on it besides `radius`
-  bool one_branch = false;                ///< a file holds one branch of a tree
-  bool trees_only = false;                ///< cannot hold loops
-  bool keeps_end_sections = false;        ///< has room for flat ends
-  OptionalPart needs = {};                ///< what `read` needs
+  std::vector<std::string> extensions;  ///< lower case, with their dots
+  std::vector<std::string> options =
+      {};                           ///< of CenterlineReadOptions, those that act on it besides `radius` and `tolerance`
+  bool one_branch = false;          ///< a file holds one branch of a tree
+  bool trees_only = false;          ///< cannot hold loops
+  bool keeps_end_sections = false;  ///< has room for flat ends
+  OptionalPart needs = {};          ///< what `read` needs
 
   /// From the content of a file that `source` names in messages.
   using Parse = RawCenterline(std::string_view content, const std::string& source,
@@ -75,6 +76,9 @@ struct CenterlineReadOptions {
   std::string radius_array;
   /// Radius (mm, > 0) of all nodes if the file has none. Files without radii are refused otherwise.
   std::optional<double> radius;
+  /// Ends of branches, of one file or of several, that are nearer to each other than this are joined when the
+  /// centerline is cleaned, also where that closes a loop.
+  std::optional<EndTolerance> tolerance;
   /// GXL: sides of a voxel, in the unit of the radii; such files are refused without it. SWC: positions and radii are
   /// in voxels of these sides, which must be equal.
   std::optional<Vec3> voxel_size;
