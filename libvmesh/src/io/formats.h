@@ -24,9 +24,11 @@ std::filesystem::path second_csv_file(const std::filesystem::path& path);
 /// Of Voreen: "edges" instead of "nodes" in the name; empty if that is not in it.
 std::filesystem::path voreens_second_file(const std::filesystem::path& path);
 
-SurfaceFormat::Parse parse_off, parse_obj, parse_stl, parse_ply, parse_surface_vtp, parse_surface_vtk;
+SurfaceFormat::Parse parse_off, parse_obj, parse_stl, parse_ply, parse_surface_vtp, parse_surface_vtk, parse_glb;
 /// Through assimp.
 LoadedSurface read_scene(const std::filesystem::path& path);
+/// Ours by ourselves, others as a scene.
+LoadedSurface read_glb(const std::filesystem::path& path);
 
 SurfaceFormat::Write write_off, write_obj, write_stl, write_ply, write_glb, write_surface_vtp;
 

@@ -8,6 +8,7 @@
 
 #include "bytes.h"
 #include "formats.h"
+#include "glb.h"
 #include "text.h"
 
 namespace vmesh::io {
@@ -18,9 +19,7 @@ using OrderedJson = nlohmann::ordered_json;
 enum ComponentType { kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
 enum Target { kVertices = 34962, kIndices = 34963, kNoTarget = 0 };
 
-/// From LPS to y up (superior) and z towards the viewer (anterior).
-Vec3 turned(const Vec3& p) { return {p.x(), p.z(), -p.y()}; }
-Vec3 metres(const Vec3& p) { return 1e-3 * turned(p); }
+Vec3 metres(const Vec3& p) { return 1e-3 * turned_for_glb(p); }
 
 double linear_from_srgb(double byte) {
   const double v = byte / 255;
@@ -56,7 +55,7 @@ class GlbWriter {
                                      {"inputSHA256", &metadata.input_sha256}}) {
       if (!value->empty()) extras[key] = one_line(*value);
     }
-    extras["frame"] = "metres; x to the left, y superior, z anterior; from LPS in mm: (x, z, -y) / 1000";
+    extras["frame"] = kGlbFrame;
     json_["asset"]["extras"] = std::move(extras);
     Vec3 low = mesh.vertices.front(), high = low;
     for (const Vec3& p : mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -122,7 +121,8 @@ class GlbWriter {
 
   std::size_t normals() {
     const std::size_t at = view(kVertices);
-    for (const Vec3& n : vertex_normals(mesh_)) store_vector(n.squaredNorm() > 0 ? turned(n) : Vec3(Vec3::UnitY()));
+    for (const Vec3& n : vertex_normals(mesh_))
+      store_vector(n.squaredNorm() > 0 ? turned_for_glb(n) : Vec3(Vec3::UnitY()));
     return accessor(at, kFloat, "VEC3", mesh_.vertices.size());
   }
 
