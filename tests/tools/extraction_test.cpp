@@ -63,6 +63,8 @@ TEST_F(Extraction, SegmentsHaveNames) {
   EXPECT_EQ(extracted("Right"), extracted("2"));
   EXPECT_EQ(extracted("left,right"), extracted("1,2"));
   EXPECT_EQ(vmesh({"reference", "@bars.seg.nrrd", "--label", "left", "-o", "@left.stl"}).exit_code, 0);
+  const std::string told = vmesh({"info", "@bars.seg.nrrd"}).out;
+  EXPECT_NE(told.find("segments: {\"name\":\"right\",\"label\":2}"), std::string::npos) << told;
   const Outcome run = vmesh({"generate", "@bars.seg.nrrd", "--label", "middle", "-o", "@c.ply"});
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_NE(run.err.find("no segment \"middle\"; the segments are \"left\" (1) and \"right\" (2)"), std::string::npos)
