@@ -131,9 +131,9 @@ TEST_F(ReadTiff, WhatIsNoStackOfNumbersIsRefused) {
     std::string text = kImageJ;
     return tiff_file<std::int16_t>(sample_, values, text.replace(text.find(from), from.size(), to), 4);
   };
-  expect_contains(refusal<Unsupported>(with("slices=5", "channels=2")), "has 2 channels");
-  expect_contains(refusal<Unsupported>(with("images=5", "images=600")), "ImageJ stored 600 slices in 5 pages");
-  expect_contains(refusal<Unsupported>(with("slices=5", "frames=3")), "has 3 frames");
+  expect_contains(refusal<Unsupported>(with("slices=5", "channels=2")), "has \"2\" channels");
+  expect_contains(refusal<Unsupported>(with("images=5", "images=600")), "ImageJ stored \"600\" slices in 5 pages");
+  expect_contains(refusal<Unsupported>(with("slices=5", "frames=3")), "has \"3\" frames");
   const std::string good = tiff_file<std::int16_t>(sample_, values);
   const auto entry = [&](int tag) { return good.find(bytes_of(static_cast<std::uint16_t>(tag), false) + "\3"); };
   const auto changed = [&](int tag, std::uint16_t value) {

@@ -86,6 +86,7 @@ TEST(ReadTubeScene, BinaryPointsAreFloats) {
   EXPECT_EQ(raw.nodes[3].radius, 1.5);
   expect_contains(error(kScene + tube("BinaryData = True\n", points.substr(1), "2")),
                   "the file ends within the points");
+  expect_contains(error(kScene + tube("BinaryData = True\nElementType = MET_SHORT\n", points, "2")), "\"MET_SHORT\"");
 }
 
 TEST(ReadTubeScene, OtherObjectsAreLeftOut) {
@@ -117,7 +118,7 @@ TEST(ReadTubeScene, NamesTheLineThatIsWrong) {
   expect_contains(with("NPoints = 2", "NPoints = 3"), "the file ends within the points");
   expect_contains(with("NPoints = 2", "NPoints = 2000000000"), "which the file cannot hold");
   expect_contains(with("NPoints = 2", "NPoints = -2"), "NPoints is \"-2\"");
-  expect_contains(with("NDims = 3\nNObjects", "NDims = 2\nNObjects"), "there are 2 dimensions");
+  expect_contains(with("NDims = 3\nNObjects", "NDims = 2\nNObjects"), "NDims is \"2\"");
 }
 
 TEST(ReadTubeScene, AChainOfManyParentsIsPlacedQuickly) {

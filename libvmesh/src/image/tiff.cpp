@@ -262,10 +262,10 @@ class TiffStack {
     };
     for (const char* key : {"channels", "frames"}) {
       if (number(key, 1) != 1)
-        throw Unsupported(name_ + ": has " + entries.find(key)->second.substr(0, 9) + " " + key + "; store one stack");
+        throw Unsupported(name_ + ": has " + cited(entries.find(key)->second) + " " + key + "; store one stack");
     }
     if (number("images", pages_) != pages_)
-      throw Unsupported(name_ + ": ImageJ stored " + entries.find("images")->second.substr(0, 9) + " slices in " +
+      throw Unsupported(name_ + ": ImageJ stored " + cited(entries.find("images")->second) + " slices in " +
                         std::to_string(pages_) + " pages; store it as .nii or .nrrd, or in less than 4 GB");
     const auto written = entries.find("unit");
     if (written == entries.end()) return std::nullopt;

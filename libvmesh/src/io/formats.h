@@ -24,6 +24,9 @@ std::filesystem::path second_csv_file(const std::filesystem::path& path);
 /// Of Voreen: "edges" instead of "nodes" in the name; empty if that is not in it.
 std::filesystem::path voreens_second_file(const std::filesystem::path& path);
 
+/// How our GLB files tell their frame; by this they are known.
+constexpr const char* kGlbFrame = "metres; x to the left, y superior, z anterior; from LPS in mm: (x, z, -y) / 1000";
+
 SurfaceFormat::Parse parse_off, parse_obj, parse_stl, parse_ply, parse_surface_vtp, parse_surface_vtk, parse_glb;
 /// Through assimp.
 LoadedSurface read_scene(const std::filesystem::path& path);

@@ -9,7 +9,6 @@
 #include "vmesh/core/stored_number.h"
 
 #include "formats.h"
-#include "glb.h"
 #include "text.h"
 #include "triangulation.h"
 
@@ -33,7 +32,7 @@ class GlbReader {
       : document_(document), bytes_(bytes), source_(source), bytes_left_(bytes.size()) {}
 
   LoadedSurface run() {
-    const nlohmann::json& primitive = member(element(member(element("meshes", 0), "primitives"), 0), nullptr);
+    const nlohmann::json& primitive = element(member(element("meshes", 0), "primitives"), 0);
     const nlohmann::json& attributes = member(primitive, "attributes");
     LoadedSurface surface;
     surface.unit = LengthUnit::mm;
@@ -52,7 +51,6 @@ class GlbReader {
 
   const nlohmann::json& member(const nlohmann::json& object, const char* key) const {
     if (!object.is_object()) fail("its description is broken; get the file anew");
-    if (key == nullptr) return object;
     const auto found = object.find(key);
     if (found == object.end()) fail(std::string("its description has no \"") + key + "\"; get the file anew");
     return *found;
@@ -92,16 +90,25 @@ class GlbReader {
 
   void read_positions(std::size_t accessor, TriMesh& mesh) {
     const std::vector<double> x = numbers<float>(accessor, 3, "VEC3");
-    const nlohmann::json& translation = member(element("nodes", 0), "translation");
-    Vec3 origin;
+    const Vec3 origin = translation();
+    mesh.vertices.reserve(x.size() / 3);
+    for (std::size_t i = 0; i < x.size(); i += 3) {
+      const Vec3 p = 1e3 * (origin + Vec3(x[i], x[i + 1], x[i + 2]));
+      mesh.vertices.emplace_back(p.x(), -p.z(), p.y());
+    }
+  }
+
+  /// Of the surface, which has none if it has bones.
+  Vec3 translation() const {
+    Vec3 origin = Vec3::Zero();
+    const nlohmann::json& node = element("nodes", 0);
+    if (!node.is_object() || !node.contains("translation")) return origin;
     for (std::size_t a = 0; a < 3; ++a) {
-      const nlohmann::json& value = element(translation, a);
+      const nlohmann::json& value = element(node["translation"], a);
       if (!value.is_number()) fail("the translation of its surface is not three numbers; get the file anew");
       origin[static_cast<Eigen::Index>(a)] = value.get<double>();
     }
-    mesh.vertices.reserve(x.size() / 3);
-    for (std::size_t i = 0; i < x.size(); i += 3)
-      mesh.vertices.push_back(lps_of_glb(origin + Vec3(x[i], x[i + 1], x[i + 2])));
+    return origin;
   }
 
   MeshAttribute attribute(const std::string& name, std::size_t accessor) {
@@ -130,7 +137,7 @@ class GlbReader {
   std::size_t bytes_left_;  ///< that no accessor has taken
 };
 
-/// The JSON of a GLB file that vmesh wrote, and its bytes; nullopt for any other.
+/// The JSON of a GLB file that vmesh wrote, and its bytes; nullopt for any other, and for compressed ones.
 std::optional<std::pair<nlohmann::json, std::string_view>> own_glb(std::string_view content) {
   constexpr std::size_t kHead = 12;
   std::size_t at = kHead;
@@ -145,7 +152,7 @@ std::optional<std::pair<nlohmann::json, std::string_view>> own_glb(std::string_v
     if (!at_key->is_object() || found == at_key->end()) return std::nullopt;
     at_key = &*found;
   }
-  if (*at_key != kGlbFrame) return std::nullopt;
+  if (*at_key != kGlbFrame || document.contains("extensionsRequired")) return std::nullopt;
   return std::pair(std::move(document), *bytes);
 }
 

@@ -8,7 +8,6 @@
 
 #include "bytes.h"
 #include "formats.h"
-#include "glb.h"
 #include "text.h"
 
 namespace vmesh::io {
@@ -19,7 +18,9 @@ using OrderedJson = nlohmann::ordered_json;
 enum ComponentType { kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
 enum Target { kVertices = 34962, kIndices = 34963, kNoTarget = 0 };
 
-Vec3 metres(const Vec3& p) { return 1e-3 * turned_for_glb(p); }
+/// From LPS to y up (superior) and z towards the viewer (anterior).
+Vec3 turned(const Vec3& p) { return {p.x(), p.z(), -p.y()}; }
+Vec3 metres(const Vec3& p) { return 1e-3 * turned(p); }
 
 double linear_from_srgb(double byte) {
   const double v = byte / 255;
@@ -121,8 +122,7 @@ class GlbWriter {
 
   std::size_t normals() {
     const std::size_t at = view(kVertices);
-    for (const Vec3& n : vertex_normals(mesh_))
-      store_vector(n.squaredNorm() > 0 ? turned_for_glb(n) : Vec3(Vec3::UnitY()));
+    for (const Vec3& n : vertex_normals(mesh_)) store_vector(n.squaredNorm() > 0 ? turned(n) : Vec3(Vec3::UnitY()));
     return accessor(at, kFloat, "VEC3", mesh_.vertices.size());
   }
 

@@ -78,8 +78,7 @@ class TubeSceneReader {
       const Eigen::Matrix<double, 9, 1> rows = vector<9>(key, value);
       objects_.back().place.linear() = rows.reshaped<Eigen::RowMajor>(3, 3);
     }
-    if (key == "NDims" && value != "3")
-      fail_here("there are " + std::string(value.substr(0, 9)) + " dimensions; 3 are needed");
+    if (key == "NDims" && value != "3") fail_here("NDims is " + cite(value) + "; tubes in 3 dimensions are needed");
     if (key == "Points") return read_points();
     if (key == "NPoints" || key == "PointDim" || key == "BinaryData" || key == "ElementType") entries_[key] = value;
   }
@@ -123,7 +122,10 @@ class TubeSceneReader {
     const std::size_t width = fields_.size();
     const auto count = parse_integer(entries_["NPoints"]);
     const bool binary = lower(entries_["BinaryData"]).starts_with('t');
-    const NumberType type = entries_["ElementType"] == "MET_DOUBLE" ? NumberType::f64 : NumberType::f32;
+    const std::string& element = entries_["ElementType"];
+    if (binary && !element.empty() && element != "MET_FLOAT" && element != "MET_DOUBLE")
+      fail_here("points of " + cite(element) + " are not supported; store them as text");
+    const NumberType type = element == "MET_DOUBLE" ? NumberType::f64 : NumberType::f32;
     const std::size_t least = binary ? width * size_of(type) : 2 * width - 1;
     if (!count || *count < 0 || static_cast<std::uint64_t>(*count) > lines_.rest().size() / least + 1)
       fail_here("NPoints is " + cite(entries_["NPoints"]) + ", which the file cannot hold; it is cut off or broken");
