@@ -98,6 +98,14 @@ def name_of(path, base, template, formats):
     return re.sub(r"[^\w.+=@/-]", "_", name, flags=re.ASCII).strip("/")
 
 
+def is_second_of_pair(path):
+    """Whether the file belongs to another one: the segments of a CSV pair, or Voreen's edges beside its nodes."""
+    folder, name = os.path.split(path)
+    head, edges, tail = name.rpartition("edges")
+    has_nodes = edges and name.endswith(".csv") and os.path.exists(os.path.join(folder, f"{head}nodes{tail}"))
+    return name.endswith(".segments.csv") or bool(has_nodes)
+
+
 def find_inputs(entry, where, folder, formats):
     """Path and name of each case of an entry of `inputs`."""
     patterns = entry.get("files")
@@ -109,7 +117,7 @@ def find_inputs(entry, where, folder, formats):
     for pattern in patterns:
         absolute = os.path.join(folder, pattern)
         paths = sorted(glob.glob(absolute, recursive=True))
-        paths = [path for path in paths if not path.endswith(".segments.csv") and
+        paths = [path for path in paths if not is_second_of_pair(path) and
                  not any(fnmatch.fnmatch(path, os.path.join(folder, unwanted)) for unwanted in exclude)]
         if not paths:
             raise PlanError(f"{where}: nothing matches {pattern} in {folder}; check the pattern")
@@ -206,7 +214,7 @@ def config_of_folder(folder, formats):
     found = sorted(path.name for path in folder.iterdir() if path.name.lower().endswith(formats.inputs))
     if not found:
         raise PlanError(f"{folder}: no centerlines or images in it ({' '.join(formats.inputs)})")
-    return {"inputs": [{"files": [glob.escape(name) for name in found if not name.endswith(".segments.csv")]}]}
+    return {"inputs": [{"files": [glob.escape(name) for name in found if not is_second_of_pair(folder / name)]}]}
 
 
 def forget(out, cases, retry_failed):

@@ -65,6 +65,65 @@ std::string message_of_failure(const RawCenterline& raw) {
   return "no exception";
 }
 
+/// Three straight branches of 10 mm that should meet at the origin, off by `gap` along x.
+RawCenterline star(double gap) {
+  RawCenterline raw = raw_of(
+      {{{gap, 0, 0}, 1}, {{10, 0, 0}, 1}, {{0, gap, 0}, 1}, {{0, 10, 0}, 1}, {{-gap, 0, 0}, 1}, {{-10, 0, 0}, 1}},
+      {{0, 1}, {2, 3}, {4, 5}});
+  raw.node_word = "line";
+  return raw;
+}
+
+TEST(JoinEnds, JoinsThoseWithinTheToleranceAndTellsWhere) {
+  RawCenterline raw = star(0.3);
+  EXPECT_EQ(clean(raw).centerline.component_count(), 3u);
+  for (const EndTolerance tolerance : {EndTolerance{0.45, 0}, EndTolerance{0, 0.45}}) {
+    raw.join_ends = tolerance;
+    const CleanedCenterline cleaned = clean(raw);
+    EXPECT_EQ(cleaned.centerline.component_count(), 1u);
+    EXPECT_EQ(cleaned.centerline.cycle_rank(), 0u);
+    EXPECT_EQ(cleaned.centerline.nodes().size(), 6u);
+    ASSERT_EQ(cleaned.report.count(Action::joined_ends), 2u);
+    EXPECT_NE(cleaned.report.actions.back().message.find("test.swc: line 2: this end of a branch lies 0.424"),
+              std::string::npos)
+        << cleaned.report.actions.back().message;
+  }
+  raw.join_ends = {0.42, 0};  // the square root of 2, times 0.3, is more
+  EXPECT_EQ(clean(raw).report.count(Action::joined_ends), 0u);
+}
+
+TEST(JoinEnds, ClosesLoopsButNotShortBranches) {
+  RawCenterline ring = raw_of({{{0, 0, 0}, 1}, {{10, 0, 0}, 1}, {{10, 10, 0}, 1}, {{0, 10, 0}, 1}, {{0, 0.5, 0}, 1}},
+                              {{0, 1}, {1, 2}, {2, 3}, {3, 4}});
+  ring.join_ends = {0.6, 0};
+  EXPECT_EQ(clean(ring).centerline.cycle_rank(), 1u);
+  ring.tree_only = true;
+  EXPECT_EQ(clean(ring).centerline.cycle_rank(), 0u);
+  RawCenterline twig = raw_of({{{0, 0, 0}, 1}, {{0.1, 0.2, 0}, 1}, {{0.5, 0, 0}, 1}}, {{0, 1}, {1, 2}});
+  twig.join_ends = {3, 0};
+  EXPECT_EQ(clean(twig).centerline.cycle_rank(), 0u);
+}
+
+TEST(JoinEnds, ManyEndsInOnePlaceAreRefusedQuickly) {
+  RawCenterline raw = raw_of({}, {});
+  constexpr Index kBranches = 100000;
+  for (Index b = 0; b < kBranches; ++b) {
+    raw.nodes.push_back({{0.01 * (b % 317), 0.01 * (b / 317), 0}, 1});
+    raw.nodes.push_back({{0.01 * (b % 317), 0.01 * (b / 317), 50}, 1});
+    raw.segments.push_back({2 * b, 2 * b + 1});
+  }
+  raw.join_ends = {10, 0};
+  EXPECT_THROW(clean(raw), InvalidInput);
+}
+
+TEST(JoinEnds, TolerancesAreMillimetresOrRadii) {
+  EXPECT_EQ(parse_end_tolerance(".5mm").mm, 0.5);
+  EXPECT_EQ(parse_end_tolerance(".5mm").radii, 0);
+  EXPECT_EQ(parse_end_tolerance("0.1").radii, 0.1);
+  for (const char* text : {"", "mm", "-1mm", "0", "1cm", "nan", "1e99", "0.5 mm"})
+    EXPECT_THROW(parse_end_tolerance(text), InvalidInput) << text;
+}
+
 TEST(Clean, LeavesACleanTreeAlone) {
   const auto result = clean(raw_of({node(0, 0, 2), node(5, 0, 1.5), node(9, 3, 1)}, {{0, 1}, {1, 2}}));
   EXPECT_TRUE(result.report.actions.empty());

@@ -19,11 +19,12 @@ import caps  # noqa: E402
 import hdf5_inputs  # noqa: E402
 import images  # noqa: E402
 import inputs  # noqa: E402
+import networkx_inputs  # noqa: E402
 import outputs  # noqa: E402
 import programs  # noqa: E402
 from report import Absent, Table, Vmesh  # noqa: E402
 
-PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "h5py", "pydicom", "text")
+PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "h5py", "networkx", "pydicom", "tifffile", "text")
 
 
 def check(name, table, written, options, folder):
@@ -50,6 +51,10 @@ def check(name, table, written, options, folder):
         inputs.check_meshlab(table, meshlab, written)
     elif name == "pydicom":
         images.check_pydicom(table, written)
+    elif name == "tifffile":
+        images.check_tifffile(table, written)
+    elif name == "networkx":
+        networkx_inputs.check(table, written)
     elif name == "h5py":
         hdf5_inputs.check(table, written, options.shared_data)
     else:

@@ -30,11 +30,11 @@ def nrrd(path, detached=False):
     )
 
 
-def check_ball(table, form, program, vmesh, make, turn):
+def check_ball(table, form, program, vmesh, make, turn, options=(), way="in, image"):
     """`make` writes the image; `turn` takes its frame to LPS."""
 
     def action():
-        vmesh("reference", make(), "--label", 1, "--binary", "-o", vmesh.path("ball.ply"))
+        vmesh("reference", make(), *options, "--label", 1, "--binary", "-o", vmesh.path("ball.ply"))
         there = vmesh.surface(vmesh.path("ball.ply"))
         off = numpy.linalg.norm(there.points - BALL_CENTER * numpy.array(turn), axis=1) - BALL_RADIUS
         # The contour lies between voxels, half a voxel off at most along each axis.
@@ -42,7 +42,7 @@ def check_ball(table, form, program, vmesh, make, turn):
         expect(numpy.abs(off).max() <= allowed, f"the ball is off by {numpy.abs(off).max():.3g} mm")
         return len(there.points), len(there.faces), "values", "mm, " + ("LPS" if turn[0] > 0 else "RAS")
 
-    table.check(form, "in, image", program, action)
+    table.check(form, way, program, action)
 
 
 def contours(table, written):
@@ -66,6 +66,8 @@ def write_by_vtk(vtk, path):
     writer, settings = "vtkMetaImageWriter", {}
     if not path.endswith((".mha", ".mhd")):
         writer, settings = "vtkNIFTIImageWriter", {"QFormMatrix": vtk.vtk.vtkMatrix4x4(), "QFac": 1}
+    if path.endswith(".tif"):
+        writer, settings = "vtkTIFFWriter", {}
     voxels = vtk.vtk.vtkImageData()
     voxels.SetDimensions(BALL_SIZE)
     voxels.SetSpacing([BALL_SPACING] * 3)
@@ -80,6 +82,48 @@ def check_vtk(table, vtk, written):
     for form, turn in forms.items():
         path = written.vmesh.path("ball" + form)
         check_ball(table, form, vtk.name, written.vmesh, lambda path=path: write_by_vtk(vtk, path), turn)
+
+
+    if reads_tiff(table, written.vmesh):
+        path, size = written.vmesh.path("by_vtk.tif"), ("--voxel-size", BALL_SPACING)
+        check_ball(table, ".tif", vtk.name, written.vmesh, lambda: write_by_vtk(vtk, path), (1, 1, 1), size)
+
+
+def reads_tiff(table, vmesh):
+    path = small.write(vmesh.path("no.tif"), "no TIFF")
+    try:
+        vmesh("reference", path, "-o", vmesh.path("no.ply"))
+    except Wrong as wrong:
+        if "VMESH_WITH_TIFF" in str(wrong):
+            table.notes.append("SKIPPED TIFF: this vmesh is built without libtiff")
+            return False
+    return True
+
+
+def check_tifffile(table, written):
+    try:
+        import tifffile
+    except ImportError as error:
+        raise Absent(f"tifffile is not installed (Debian: python3-tifffile): {error}") from None
+    vmesh, slices = written.vmesh, ball().transpose(2, 1, 0)
+    if not contours(table, written) or not reads_tiff(table, vmesh):
+        return
+    sizes = {"resolution": (1 / BALL_SPACING,) * 2, "metadata": {"spacing": BALL_SPACING, "unit": "mm", "axes": "ZYX"}}
+    for word, voxels, settings in (
+        ("ImageJ", slices, {"imagej": True, **sizes}),
+        ("tiles", slices.astype("u2"), {"tile": (16, 32), "photometric": "minisblack"}),
+    ):
+        path = vmesh.path(f"{word}.tif")
+        check_ball(
+            table,
+            ".tif",
+            f"tifffile {tifffile.__version__}",
+            vmesh,
+            lambda path=path, voxels=voxels, settings=settings: (tifffile.imwrite(path, voxels, **settings), path)[1],
+            (1, 1, 1),
+            () if "imagej" in settings else ("--voxel-size", BALL_SPACING),
+            f"in, image, {word}",
+        )
 
 
 def check_text(table, written):

@@ -301,7 +301,22 @@ def check_text(table, written, shared_data):
     one(".vmv", lambda: small.vmv(path("tree.vmv")), options=("--unit", "um"))
     one(".swc", lambda: small.swc(path("by_hand.swc")))
     one(".csv", lambda: small.pair(path("by_hand.csv")))
+    one(".csv", lambda: small.voreen(path("tree_nodes.csv")), way="in, of Voreen")
+    one(".tre", lambda: small.tubes(path("tree.tre"), False), place="mm, LPS (the format's)", way="in, text")
+    one(".tre", lambda: small.tubes(path("binary.tre"), True), place="mm, LPS (the format's)", way="in, binary")
     one(".json", lambda: small.own_json(path("by_hand.json")), place="cm, RAS")
+    check_surface(
+        table,
+        ".glb",
+        "vmesh",
+        written,
+        lambda: (path("wall.glb"), written.wall, "mm, LPS of ours"),
+        FLOAT,
+        True,
+        NORMAL_NAMES,
+        (),
+        "in, ours",
+    )
     if assimp_reads_scenes(vmesh, path):
         check_surface(
             table,

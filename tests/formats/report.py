@@ -224,7 +224,10 @@ def expect_same_tree(arrived, written, tolerance):
 
 
 KINDS = {
-    "centerline": (".swc", ".csv", ".json", ".mrk.json", ".ctgr", ".pth", ".gxl", ".am", ".dat", ".vmv", ".h5"),
+    "centerline": (
+        (".swc", ".csv", ".json", ".mrk.json", ".ctgr", ".pth", ".gxl", ".am", ".dat", ".vmv", ".h5")
+        + (".graphml", ".gexf", ".tre")
+    ),
     "image": (),
 }
 

@@ -160,6 +160,37 @@ def pair(path):
     )
 
 
+def voreen(path):
+    """Tables of nodes and edges by Voreen, a radius per edge."""
+    write(
+        path.replace("nodes", "edges"),
+        "id;node1id;node2id;length;avgRadiusAvg;avgRadiusStd\n"
+        + "".join(f"{i};{a};{b};20;{RADIUS};0\n" for i, (a, b) in enumerate(SEGMENTS)),
+    )
+    return write(
+        path,
+        "id;pos_x;pos_y;pos_z;degree;isAtSampleBorder\n"
+        + "".join(f"{i};{p[0]};{p[1]};{p[2]};1;0\n" for i, p in enumerate(POINTS)),
+    )
+
+
+def tubes(path, binary):
+    """A scene of ITK-TubeTK: a tube per vessel, in voxels of half a millimetre, children at a point of their parent."""
+    scene = b"ObjectType = Scene\nNDims = 3\nNObjects = 3\n"
+    for number, (a, b) in enumerate(SEGMENTS):
+        scene += (
+            f"ObjectType = Tube\nObjectSubType = Vessel\nNDims = 3\nID = {number}\nParentID = {number and 0 or -1}\n"
+            f"BinaryData = {binary}\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 0.5 0.5 0.5\n"
+            f"ParentPoint = {number and 1 or -1}\nRoot = {not number}\nPointDim = id x y z red r\nNPoints = 2\nPoints = \n"
+        ).encode()
+        rows = [[i, *(POINTS[n] * 2), 1, RADIUS * 2] for i, n in enumerate((a, b))]
+        if binary:
+            scene += struct.pack("<12f", *rows[0], *rows[1]) + b"\n"
+        else:
+            scene += "".join(" ".join(map(str, row)) + " \n" for row in rows).encode()
+    return write(path, scene + b"EndGroup = \n")
+
+
 def own_json(path):
     return write(
         path,

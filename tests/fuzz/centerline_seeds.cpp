@@ -67,6 +67,8 @@ std::vector<std::string> json_seeds() {
  "segments": [[0, 1], [1, 2], [1, 3]]})",
           R"({"schema": "vmesh.centerline/1", "unit": "um", "options": "\u00e4\n", "more": {"a": [true, null, {}]},
  "nodes": [[1e3, -0.5, 1e-9, 2]], "segments": []})",
+          R"({"graph": {"unit": "um"}, "nodes": [{"id": 1, "pos": [0, 0, 0], "r": 2}, {"id": "b", "x": 0, "y": "9",
+ "z": 0, "r": 1}], "links": [{"source": 1, "target": "b", "w": [1]}]})",
           R"({"schema": "vmesh.centerline/1", "nodes": [[0, 0, 0, 2], [8, 0, 0, 2]], "segments": [[0, 1]],
  "end_sections": [{"node": 1, "center": [8, 0, 0], "normal": [1, 0, 0.1], "area": 12.5, "open": false},
  {"node": 0, "center": [0, 0, 0], "normal": [-1, 0, 0], "area": 8, "open": true,
@@ -77,7 +79,7 @@ std::vector<std::string> markups_seeds() {
   return {R"({"markups": [{"type": "Fiducial"}, {"type": "Curve", "coordinateSystem": "RAS", "coordinateUnits": "cm",
  "controlPoints": [{"position": [0, 0, 0]}, {"position": [0, 0, 9], "positionStatus": "defined"},
  {"positionStatus": "undefined", "position": []}],
- "measurements": [{"name": "length"}, {"name": "Radius", "controlPointValues": [2, 1.5, 0]}]},
+ "measurements": [{"name": "length"}, {"name": "Radius", "units": "mm", "controlPointValues": [2, 1.5, 0]}]},
  {"type": "Line", "coordinateSystem": "RAS", "coordinateUnits": ["cm"], "measurements": [{"name": "radius",
  "controlPointValues": [1, 1]}], "controlPoints": [{"position": [0, 0, 5]}, {"position": [5, 0, 5]}]}]})"};
 }
@@ -85,6 +87,8 @@ std::vector<std::string> markups_seeds() {
 std::vector<std::string> csv_seeds() {
   return {"# SPACE=LPS\nid,x,y,z,radius\n0,0,0,0,2\n1,8,0,0,1.5\n2,12,4,0,1\n\fa,b\n0,1\n1,2\n",
           "note, Radius ,z,y,x,id\nhello,1,2,3,4,10\r\n,1,2,3,14,11\r\n\fb,a,why\n10,11,\n",
+          "id;pos_x;pos_y;pos_z\n0;0;0;0\n1;0;0;20\n\fid;node1id;node2id;avgRadiusAvg\n0;0;1;2.5\n",
+          "id,x,y,z,Section Area\n0,0,0,0,2\n1,8,0,0,1.5\n\fa,b\n0,1\n",
           "id;x;y;z;\"radius\"\r\nroot;0,5;1;2;1,5\r\n720575940590515268;1;2;3;1\r\n;;;;\r\n\f"
           "a;b\r\nroot;720575940590515268\r\n"};
 }
@@ -146,6 +150,42 @@ std::vector<std::string> gxl_seeds() {
           "<edge id=\"e0\" from=\"n0\" to=\"n1\"><attr name=\" flow\"><float>9</float></attr><attr name=\" radius\">"
           "<float>2.5</float></attr></edge><edge id=\"e1\" to=\"n2\" from=\"n1\"><attr name=\" radius\">"
           "<float>1</float></attr></edge></graph></gxl>"};
+}
+
+std::vector<std::string> graphml_seeds() {
+  const auto node = [](const std::string& id, const std::string& data) {
+    return "<node id=\"" + id + "\">" + data + "</node>";
+  };
+  const std::string keys =
+      "<key id=\"d0\" for=\"node\" attr.name=\"pos\"/><key id=\"d1\" for=\"node\" attr.name=\"radius\"/>"
+      "<key id=\"d2\" for=\"edge\" attr.name=\"diameter\"/>";
+  return {"<graphml>" + keys + "<graph>" + node("a", "<data key=\"d0\">[0, 0.5, 2]</data><data key=\"d1\">2</data>") +
+              node("b", "<data key=\"x\">9</data><data key=\"y\">0</data><data key=\"z\">0</data>") +
+              "<edge source=\"a\" target=\"b\"/></graph></graphml>",
+          "<graphml>" + keys + "<graph><data key=\"unit\">um</data>" + node("1", "<data key=\"d0\">0 0 0</data>") +
+              node("2", "<data key=\"d0\">0 0 9</data>") +
+              "<edge source=\"1\" target=\"2\"><data key=\"d2\">4</data></edge></graph></graphml>"};
+}
+
+std::vector<std::string> tre_seeds() {
+  const std::string head = "ObjectType = Scene\nNDims = 3\nNObjects = 2\n";
+  const auto tube = [](const std::string& more, const std::string& points) {
+    return "ObjectType = Tube\nNDims = 3\n" + more + "PointDim = x y z r\nNPoints = 2\nPoints = \n" + points;
+  };
+  return {head + "ObjectType = Group\nID = 5\nOffset = 1 2 3\nEndGroup = \n" +
+              tube("ID = 1\nParentID = 5\nElementSpacing = 0.5 0.5 2\n", "0 0 0 4\n0 0 9 3\n") +
+              tube("ID = 2\nParentID = 1\nParentPoint = 1\n", "0 0 18 2\n0 8 18 1\n"),
+          head + tube("BinaryData = True\nTransformMatrix = 0 1 0 1 0 0 0 0 1\n",
+                      bytes_of<float>({0, 0, 0, 2, 0, 0, 9, 2}, std::endian::little))};
+}
+
+std::vector<std::string> gexf_seeds() {
+  return {
+      "<gexf><graph><attributes class=\"node\"><attribute id=\"0\" title=\"radius\"/></attributes><nodes>"
+      "<node id=\"a\"><attvalues><attvalue for=\"0\" value=\"2\"/></attvalues><viz:position x=\"0\" y=\"0\" z=\"0\"/>"
+      "</node><node id=\"b\"><attvalues><attvalue for=\"0\" value=\"1.5\"/></attvalues>"
+      "<viz:position x=\"0\" y=\"8\" z=\"0\"/></node></nodes>"
+      "<edges><edge id=\"0\" source=\"a\" target=\"b\"/></edges></graph></gexf>"};
 }
 
 std::vector<std::string> amira_seeds() {
@@ -247,10 +287,11 @@ std::vector<std::string> ply_edge_seeds() {
 
 std::map<std::string, MakeSeeds> centerline_seeds() {
   return {
-      {".obj", obj_line_seeds}, {".ply", ply_edge_seeds}, {".vtu", vtu_seeds},          {".swc", swc_seeds},
-      {".vmv", vmv_seeds},      {".json", json_seeds},    {".csv", csv_seeds},          {".vtk", vtk_seeds},
-      {".vtp", vtp_seeds},      {".ctgr", ctgr_seeds},    {".pth", pth_seeds},          {".gxl", gxl_seeds},
-      {".am", amira_seeds},     {".dat", network_seeds},  {".mrk.json", markups_seeds},
+      {".obj", obj_line_seeds},    {".ply", ply_edge_seeds},     {".vtu", vtu_seeds}, {".swc", swc_seeds},
+      {".vmv", vmv_seeds},         {".json", json_seeds},        {".csv", csv_seeds}, {".vtk", vtk_seeds},
+      {".vtp", vtp_seeds},         {".ctgr", ctgr_seeds},        {".pth", pth_seeds}, {".gxl", gxl_seeds},
+      {".graphml", graphml_seeds}, {".gexf", gexf_seeds},        {".tre", tre_seeds}, {".am", amira_seeds},
+      {".dat", network_seeds},     {".mrk.json", markups_seeds},
   };
 }
 

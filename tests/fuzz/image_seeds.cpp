@@ -37,7 +37,8 @@ std::vector<std::string> nrrd_seeds() {
   return {nrrd_header(image, "short") + voxels,
           nrrd_header(image, "int16", "encoding: gzip\n", true) + packed(voxels, true),
           "NRRD0001\ntype: uchar\ndimension: 3\nsizes: 3 2 2\nspacings: 1 2 3\nencoding: raw\nkey:=value\n\n" +
-              voxel_bytes<std::uint8_t>(small_values())};
+              voxel_bytes<std::uint8_t>(small_values()),
+          layered_nrrd({0, 1, 1, 0, 2, 2, 0, 1, 1, 0, 2, 2}, {0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 1, 0})};
 }
 
 std::vector<std::string> mha_seeds() {
@@ -49,14 +50,18 @@ std::vector<std::string> mha_seeds() {
               voxel_bytes<std::uint8_t>(small_values())};
 }
 
+std::vector<std::string> tif_seeds() {
+  return {tiff_file<std::int16_t>(small_image(), small_values(), "ImageJ=1.5\nimages=2\nunit=mm\nspacing=3\n", 2),
+          tiff_file<std::uint8_t>(small_image(), small_values(), "", 0, true),
+          tiff_file<float>(small_image(), small_values())};
+}
+
 }  // namespace
 
 std::map<std::string, MakeSeeds> image_seeds() {
   return {
-      {".nii", nii_seeds},
-      {".nii.gz", nii_gz_seeds},
-      {".nrrd", nrrd_seeds},
-      {".mha", mha_seeds},
+      {".nii", nii_seeds}, {".nii.gz", nii_gz_seeds}, {".nrrd", nrrd_seeds},
+      {".mha", mha_seeds}, {".tif", tif_seeds},       {".tiff", tif_seeds},
   };
 }
 

@@ -92,7 +92,7 @@ Verdict read_surface_as(const SurfaceFormat& format, std::string_view content) {
 Verdict read_image_as(std::string_view content, std::string_view ending) {
   const std::string source = "input" + std::string(ending);
   return verdict_of(source, [&] {
-    const VoxelImage image = parse_image(content, source).image;
+    const VoxelImage image = parse_image(content, source, {.segments = {"tumor"}, .labels = {2}}).image;
     require(image.values.size() == image.size[0] * image.size[1] * image.size[2], "voxels that are not there");
     require(image.origin.allFinite() && image.steps.allFinite(), "an image without a place");
   });
@@ -127,7 +127,7 @@ std::vector<Reader> make_readers() {
                    seeds_of(surface_seeds(), ending)});
   }
   for (const std::string& ending :
-       extensions_of(image_formats(), [](const auto& f) { return f.parse_header && !f.in_two_files; }))
+       extensions_of(image_formats(), [](const auto& f) { return (f.parse_header && !f.in_two_files) || f.read; }))
     all.push_back({name_of(ending), ending, [ending](auto content) { return read_image_as(content, ending); },
                    seeds_of(image_seeds(), ending)});
   return all;

@@ -1,4 +1,5 @@
 // Reading a file takes at most a multiple of its size in memory, whatever its content claims.
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -118,6 +119,8 @@ TEST(ReadingMemory, HeadersThatLieAreErrors) {
       {"vtk", "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\nPOINTS " + kLie + " float\nabc\n"},
       {"am", amira_head(kLie) + "@1\n0 0 0\n"},
       {"am", amira_head("3", "(HxZip,9)", "BINARY") + "@1\nabcdefghi\n"},
+      {"tre", "ObjectType=Tube\nPointDim=x y z r\nNPoints=" + kLie + "\nPoints=\n0 0 0 1\n"},
+      {"tre", "ObjectType=Tube\nPointDim=x y z r\nBinaryData=T\nNPoints=" + kLie + "\nPoints=\nabcd"},
       {"dat", "t\n1 1 1\n1 1 1\n1\n1\n1\n" + kLie + "\nhead\n1 5 1 2 9\n"},
       {"vtp",
        vtp_head + kLie + "\"><Points><DataArray NumberOfComponents=\"3\" type=\"Int8\">0</DataArray></Points>" + end},
@@ -183,6 +186,19 @@ TEST(ReadingMemory, OfOtherProgramsFilesIsAMultipleOfTheFile) {
   expect_bounded("gxl", many("<edge from=\"a\" to=\"b\"><attr name=\"radius\"><float>1</float></attr></edge>",
                              "<gxl><graph><node id=\"a\">" + position + "</node><node id=\"b\">" + position + "</node>",
                              "</graph></gxl>"));
+  const std::string edge = "<edge source='1' target='2'/>", place = "<data key='pos'>0 0 0</data>";
+  expect_bounded("graphml",
+                 numbered("<node id='%'>" + place + "</node>", "<graphml><graph>", edge + "</graph></graphml>"));
+  expect_bounded("graphml", numbered("<data key='area%'>1</data>", "<graphml><graph><node id='1'>" + place,
+                                     "</node><node id='2'>" + place + "</node>" + edge + "</graph></graphml>"));
+  expect_bounded("graphml", many(edge, "<graphml><graph><node id='1'>" + place + "</node>", "</graph></graphml>"));
+  expect_bounded("gexf", numbered("<node id='%'><viz:position x='0' y='0' z='0'/></node>", "<gexf><graph><nodes>",
+                                  "</nodes><edges>" + edge + "</edges></graph></gexf>"));
+  expect_bounded("json", numbered(R"({"id":%,"pos":[0,0,0]},)", R"({"nodes":[)",
+                                  R"({"id":-1,"pos":[0,0,0]}],"links":[{"source":1,"target":2}]})"));
+  expect_bounded("tre", many("ObjectType=Tube\n", "ObjectType=Scene\n"));
+  expect_bounded("tre", numbered("ObjectType=Group\nID=%\nParentID=%\n"));
+  expect_bounded("tre", many("0 0 0 1\n", "ObjectType=Tube\nPointDim=x y z r\nNPoints=131000\nPoints=\n"));
   const std::string network = "t\n1 1 1\n1 1 1\n1\n1\n1\n";
   expect_bounded("dat", many("1 5 1 2 9\n", network + "99999\nhead\n"));
   expect_bounded("dat", numbered("% 1 1 1\n", network + "0\nhead\n999999\nhead\n"));
@@ -278,6 +294,8 @@ TEST(ReadingMemory, OfImagesIsAMultipleOfWhatTheyHold) {
   expect_bounded("nii", nifti);
   expect_bounded("nrrd", nrrd_header(image, "uchar") + voxels);
   expect_bounded("mha", mha_header(image, "MET_UCHAR") + voxels);
+  const bool reads_tiff = std::ranges::any_of(readers(), [](const Reader& reader) { return reader.name == "tif"; });
+  if (reads_tiff) expect_bounded("tif", tiff_file<std::uint8_t>(image, std::vector<double>(kSize, 7)));
   const std::pair<const char*, std::string> packed_files[] = {
       {"nii_gz", packed(nifti, true)},
       {"nrrd", nrrd_header(image, "uchar", "encoding: gzip\n") + packed(voxels, true)},

@@ -118,12 +118,33 @@ std::vector<std::string> surface_vtp_seeds() {
       "AwAAAAABAg==AQAAAAM=</AppendedData></VTKFile>"};
 }
 
+std::vector<std::string> glb_seeds() {
+  const auto word = [](std::size_t value) {
+    std::string bytes;
+    for (int b = 0; b < 4; ++b) bytes += static_cast<char>(value >> (8 * b) & 0xff);
+    return bytes;
+  };
+  std::string text =
+      R"({"asset":{"extras":{"frame":"metres; x to the left, y superior, z anterior; from LPS in mm: (x, z, -y) / 1000"}},
+"bufferViews":[{"byteOffset":0,"byteLength":36},{"byteOffset":36,"byteLength":12},{"byteOffset":48,"byteLength":12}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+{"bufferView":1,"componentType":5126,"count":3,"type":"SCALAR"},{"bufferView":2,"componentType":5125,"count":3,"type":"SCALAR"}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"_RADIUS":1},"indices":2}]}],
+"nodes":[{"mesh":0,"translation":[0.1,0,0.5]}]})";
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::string one("\0\0\x80\x3f", 4), zero(4, '\0');
+  const std::string bytes =
+      zero + zero + zero + one + zero + zero + zero + one + zero + one + one + one + word(0) + word(1) + word(2);
+  return {"glTF" + word(2) + word(28 + text.size() + bytes.size()) + word(text.size()) + "JSON" + text +
+          word(bytes.size()) + std::string("BIN\0", 4) + bytes};
+}
+
 }  // namespace
 
 std::map<std::string, MakeSeeds> surface_seeds() {
   return {
-      {".vtp", surface_vtp_seeds}, {".vtk", surface_vtk_seeds}, {".ply", ply_seeds},
-      {".stl", stl_seeds},         {".obj", obj_seeds},         {".off", off_seeds},
+      {".vtp", surface_vtp_seeds}, {".vtk", surface_vtk_seeds}, {".ply", ply_seeds}, {".stl", stl_seeds},
+      {".obj", obj_seeds},         {".off", off_seeds},         {".glb", glb_seeds},
   };
 }
 

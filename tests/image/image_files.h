@@ -56,6 +56,71 @@ std::string voxel_bytes(const std::vector<double>& values, bool big_endian = fal
   return bytes;
 }
 
+/// A TIFF stack, a page and strip per slice, uncompressed; with a resolution if it is above 0.
+template <class T>
+std::string tiff_file(const SampleImage& image, const std::vector<double>& values, const std::string& description = "",
+                      double resolution = 0, bool big_endian = false) {
+  const std::string voxels = voxel_bytes<T>(values, big_endian);
+  const std::size_t page_size = voxels.size() / static_cast<std::size_t>(image.size[2]);
+  const auto word = [&](std::size_t value) { return bytes_of(static_cast<std::uint32_t>(value), big_endian); };
+  const auto half = [&](int value) { return bytes_of(static_cast<std::uint16_t>(value), big_endian); };
+  std::string file = big_endian ? std::string("MM\0*", 4) : std::string("II*\0", 4);
+  std::size_t next = file.size();  // where the place of the next directory goes
+  file += word(0);
+  for (int k = 0; k < image.size[2]; ++k) {
+    const std::size_t data = file.size();
+    file += voxels.substr(static_cast<std::size_t>(k) * page_size, page_size);
+    if (file.size() % 2 == 1) file += '\0';
+    const std::size_t ratio = file.size();
+    file += word(static_cast<std::size_t>(resolution * 1000)) + word(1000);
+    const std::size_t text = file.size();
+    file += description + std::string(8, '\0');
+    if (file.size() % 2 == 1) file += '\0';
+    const auto number = [&](int tag, std::size_t value) { return half(tag) + half(4) + word(1) + word(value); };
+    const auto small = [&](int tag, int value) { return half(tag) + half(3) + word(1) + half(value) + half(0); };
+    std::vector<std::string> entries = {number(256, static_cast<std::size_t>(image.size[0])),
+                                        number(257, static_cast<std::size_t>(image.size[1])),
+                                        small(258, 8 * static_cast<int>(sizeof(T))),
+                                        small(259, 1),
+                                        small(262, 1),
+                                        half(270) + half(2) + word(description.size() + 5) + word(text),
+                                        number(273, data),
+                                        small(277, 1),
+                                        number(278, static_cast<std::size_t>(image.size[1])),
+                                        number(279, page_size),
+                                        half(282) + half(5) + word(1) + word(ratio),
+                                        half(283) + half(5) + word(1) + word(ratio),
+                                        small(339, std::is_floating_point_v<T> ? 3
+                                                   : std::is_signed_v<T>       ? 2
+                                                                               : 1)};
+    if (resolution == 0) entries.erase(entries.begin() + 10, entries.begin() + 12);
+    if (description.empty()) entries.erase(entries.begin() + 5);
+    file.replace(next, 4, word(file.size()));
+    file += half(static_cast<int>(entries.size()));
+    for (const std::string& entry : entries) file += entry;
+    next = file.size();
+    file += word(0);
+  }
+  return file;
+}
+
+/// A segmentation of 3D Slicer of 3 x 2 x 2 voxels, with two layers of the given values.
+inline std::string layered_nrrd(const std::vector<int>& first, const std::vector<int>& second,
+                                const std::string& more = "") {
+  std::string file =
+      "NRRD0005\ntype: uchar\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 3 2 2\n"
+      "space directions: none (1,0,0) (0,1,0) (0,0,2)\nkinds: list domain domain domain\nencoding: raw\n"
+      "space origin: (5,6,7)\nSegment0_Name:=Portal\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+      "Segment1_Name:=hepatic vein\nSegment1_LabelValue:=2\nSegment1_Layer:=0\nSegment1_Color:=1 0 0\n"
+      "Segment2_Name:=tumor\nSegment2_LabelValue:=1\nSegment2_Layer:=1\n" +
+      more + "\n";
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    file += static_cast<char>(first[v]);
+    file += static_cast<char>(second[v]);
+  }
+  return file;
+}
+
 /// NIfTI-1 data types by number.
 template <class T>
 constexpr int nifti_type() {

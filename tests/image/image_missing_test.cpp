@@ -18,6 +18,16 @@ TEST(WithoutGdcm, ReadingSaysWhatIsMissing) {
 }
 #endif
 
+#if !VMESH_HAS_TIFF
+TEST(WithoutLibtiff, ReadingSaysWhatIsMissing) {
+  const TemporaryFolder folder;
+  const std::string message = message_of<Unsupported>([&] { read_image(folder.write("a.tif", "x")); });
+  expect_contains(message, "built without TIFF (CMake option VMESH_WITH_TIFF)");
+  expect_contains(message, "a.tif");
+  EXPECT_THROW(read_image(folder / "missing.tif"), ReadError);
+}
+#endif
+
 TEST(ImagePath, DicomIsToldByItsContent) {
   const TemporaryFolder folder;
   std::string begin(132, '\0');
@@ -33,7 +43,7 @@ TEST(ImagePath, DicomIsToldByItsContent) {
 }
 
 TEST(ImagePath, IsToldByItsEnding) {
-  for (const char* name : {"a.nii", "b/a.NII.GZ", "a.nrrd", "A.Mha", "a.mhd", "a.dcm"})
+  for (const char* name : {"a.nii", "b/a.NII.GZ", "a.nrrd", "A.Mha", "a.mhd", "a.dcm", "a.tif", "a.TIFF"})
     EXPECT_TRUE(is_image_path(name)) << name;
   for (const char* name : {"a.gz", "a.ply", "nii", "a.nii.ply", ""}) EXPECT_FALSE(is_image_path(name)) << name;
 }

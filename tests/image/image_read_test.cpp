@@ -196,6 +196,53 @@ TEST_F(ReadImage, AxesWithoutVolumeAreRefused) {
   refusal<InvalidInput>("flat.mha", mha_header(sample_, "MET_SHORT") + voxels);
 }
 
+const std::vector<int> kPortalAndHepatic = {0, 1, 1, 0, 2, 2, 0, 1, 1, 0, 2, 2},
+                       kTumor = {0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 1, 0};
+
+std::vector<float> read_segments(const ImageReadOptions& choice, const std::string& more = "") {
+  const LoadedImage loaded = parse_image(layered_nrrd(kPortalAndHepatic, kTumor, more), "s.seg.nrrd", choice);
+  EXPECT_EQ(loaded.image.size, (std::array<std::size_t, 3>{3, 2, 2}));
+  EXPECT_EQ(loaded.image.position(Vec3(0, 0, 1)), Vec3(5, 6, 9));
+  return loaded.image.values;
+}
+
+TEST_F(ReadImage, SegmentsThatOverlapAreReadByNameOrValue) {
+  const auto where = [](const std::vector<int>& layer, int value) {
+    std::vector<float> values;
+    for (const int there : layer) values.push_back(static_cast<float>(there == value ? value : 0));
+    return values;
+  };
+  EXPECT_EQ(read_segments({{"portal"}, {}}), where(kPortalAndHepatic, 1));
+  EXPECT_EQ(read_segments({{"Hepatic Vein"}, {}}), where(kPortalAndHepatic, 2));
+  EXPECT_EQ(read_segments({{}, {2}}), where(kPortalAndHepatic, 2));
+  EXPECT_EQ(read_segments({{"tumor"}, {}}), where(kTumor, 1));
+  EXPECT_EQ(values_of({"TUMOR", "hepatic vein"},
+                      parse_image(layered_nrrd(kPortalAndHepatic, kTumor), "s.seg.nrrd", {{"tumor"}, {}}).segments),
+            (std::vector<double>{1, 2}));
+}
+
+TEST_F(ReadImage, SegmentsThatAreNotClearAreRefusedWithTheirNames) {
+  const auto error = [](const ImageReadOptions& choice, const std::string& more = "") {
+    return message_of<InvalidInput>([&] { read_segments(choice, more); });
+  };
+  expect_contains(error({}),
+                  "s.seg.nrrd: its segments overlap, in 2 layers; choose by name or value, with --label: the "
+                  "segments are \"Portal\" (1), \"hepatic vein\" (2) and \"tumor\" (1)");
+  expect_contains(error({{"artery"}, {}}), "\"Portal\" (1)");
+  expect_contains(error({{}, {1}}), "several segments have the value chosen; choose by name");
+  expect_contains(error({{}, {2}}, "Segment2_Layer:=2\n"), "the segment \"tumor\" is in layer 2; there are 2");
+  expect_contains(error({{}, {2}}, "Segment2_Layer:=-1\n"), "segment 2: its Layer is negative");
+  expect_contains(error({{}, {2}}, "Segment0_LabelValue:=x\n"), "LabelValue");
+  expect_contains(message_of<InvalidInput>([] { values_of({"a"}, {}); }), "the image names no segments");
+  EXPECT_EQ(read("flat.nrrd", nrrd_header(sample_, "short", "encoding: raw\nSegment7_Name:=vessel\n") +
+                                  voxel_bytes<std::int16_t>(sample_.values()))
+                .segments.at(0)
+                .name,
+            "vessel");
+  std::string many = layered_nrrd(kPortalAndHepatic, kTumor);
+  refusal<InvalidInput>("many.nrrd", many.replace(many.find("sizes: 2"), 8, "sizes: 99999999999"));
+}
+
 TEST_F(ReadImage, WhatIsNoScalarImageOfThreeDimensionsIsRefused) {
   const std::string voxels = voxel_bytes<std::int16_t>(sample_.values());
   std::string flat = nifti_file<std::int16_t>(sample_, sample_.values());

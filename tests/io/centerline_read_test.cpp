@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include "vmesh/io/centerline_io.h"
@@ -260,6 +261,26 @@ TEST(ReadCsv, IdsMayBeOf64BitsNegativeOrText) {
                   "line 2: \"1.5\" is not an id");
 }
 
+TEST(ReadCsv, TakesTheRadiusFromTheColumnThatIsNamed) {
+  const auto read = [](const std::string& column, const std::string& name, std::optional<double> radius = {}) {
+    CenterlineReadOptions options;
+    options.radius_array = name;
+    options.radius = radius;
+    return parse_centerline("id,x,y,z," + column + "\n1,0,0,0,4\n2,0,0,1,4\n", centerline_format("t.csv"), "t.csv",
+                            options, "a,b\n1,2\n");
+  };
+  EXPECT_EQ(read("Thick", "thick").nodes[1].radius, 4);
+  EXPECT_EQ(read("Thick", "thick").radius_arrays, std::vector<std::string>{"thick"});
+  EXPECT_EQ(read("diameter", "diameter").nodes[1].radius, 2);
+  expect_contains(read("diameter", "diameter").warnings.back(), "t.csv: radii are half of \"diameter\"");
+  EXPECT_NEAR(read("Area", "").nodes[1].radius, std::sqrt(4 / std::numbers::pi), 1e-15);
+  expect_contains(read("Area", "").warnings.back(), "circles of the area \"area\"");
+  EXPECT_EQ(read("note", "", 3).nodes[1].radius, 0);  // which convert_read() replaces
+  expect_contains(message_of<InvalidInput>([&] { read("diameter", ""); }), "t.csv: line 1: there is no column radius");
+  expect_contains(message_of<InvalidInput>([&] { read("radius", "width"); }), "there is no column width");
+  expect_contains(message_of<InvalidInput>([&] { read("radius", "width"); }), "--radius-array");
+}
+
 TEST(ReadCsv, NamesFileAndLineThatAreWrong) {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& nodes, const std::string& segments) {
@@ -275,6 +296,37 @@ TEST(ReadCsv, NamesFileAndLineThatAreWrong) {
   expect_contains(message_of<ReadError>([&] { read_centerline(folder / "t.csv"); }), "t.segments.csv");
   folder.write("t.segments.csv", "a,b\n");
   expect_contains(message_of<InvalidInput>([&] { read_centerline(folder / "t.segments.csv"); }), "nodes");
+}
+
+TEST(ReadCsv, ReadsNodesAndEdgesOfVoreen) {
+  const TemporaryFolder folder;
+  const std::string edges =
+      "id;node1id;node2id;length;avgRadiusAvg;num_voxels\n0;0;1;20.5;2.5;7\n1;1;2;9;1.5;7\n2;1;3;9;-1;0\n";
+  folder.write("brain_edges.csv", edges);
+  const auto path =
+      folder.write("brain_nodes.csv",
+                   "id;pos_x;pos_y;pos_z;degree;isAtSampleBorder\n0;0;0;0;1;1\n1;0;0;20;3;0\n2;9;0;20;1;0\n"
+                   "3;-9;0;20.5;1;0\n");
+  const auto raw = read_centerline(path);
+  ASSERT_GE(raw.nodes.size(), 4u);
+  EXPECT_EQ(raw.nodes[3].position, Vec3(-9, 0, 20.5));
+  EXPECT_EQ(raw.nodes[0].radius, 2.5);
+  EXPECT_EQ(raw.nodes[1].radius, 1.5);
+  EXPECT_EQ(raw.nodes[3].radius, 0);  // taken from its neighbours when it is cleaned
+  EXPECT_EQ(raw.radius_arrays, std::vector<std::string>{"avgRadiusAvg"});
+  expect_contains(raw.warnings.at(0), "1 segments have the radius -1");
+  EXPECT_EQ(load_centerline(path).cleaned.centerline.component_count(), 1u);
+  const auto error = [&](const std::string& from, const std::string& to) {
+    std::string changed = edges;
+    folder.write("brain_edges.csv", changed.replace(changed.find(from), from.size(), to));
+    return message_of<InvalidInput>([&] { read_centerline(path); });
+  };
+  expect_contains(error(";1.5;", ";-2;"), "brain_edges.csv: line 3: \"-2\" is not a radius");
+  expect_contains(error(";1;2;", ";1;7;"), "brain_edges.csv: line 3: there is no node with the id 7");
+  expect_contains(error("node2id", "other"), "there is no column");
+  expect_contains(error("avgRadiusAvg", "other"), "brain_nodes.csv: line 1: there is no column radius");
+  folder.write("brain_nodes.segments.csv", "a,b\n0,1\n");
+  expect_contains(message_of<InvalidInput>([&] { read_centerline(path); }), "no column radius");  // ours is read
 }
 
 RawCenterline obj(const std::string& text) {

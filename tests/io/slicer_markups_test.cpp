@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include "vmesh/io/centerline_io.h"
 
 #include "io_support.h"
@@ -64,6 +66,25 @@ TEST(ReadSlicerMarkups, TakesOneRadiusForAllWhereThereIsNone) {
   options = {};
   options.radius_array = "torsion";
   EXPECT_EQ(parse(with("Radius", "Torsion"), options).nodes[0].radius, 0.5);
+}
+
+TEST(ReadSlicerMarkups, TheUnitOfTheRadiusNeedNotBeThatOfThePositions) {
+  const RawCenterline raw = parse(with("\"Radius\",", "\"Radius\", \"units\": \"mm\","));
+  EXPECT_EQ(raw.unit, LengthUnit::cm);
+  EXPECT_EQ(raw.nodes[1].position, Vec3(1, 2, 8));
+  EXPECT_DOUBLE_EQ(raw.nodes[0].radius, 0.05);
+  EXPECT_DOUBLE_EQ(raw.nodes[1].radius, 0.025);
+  EXPECT_EQ(raw.radius_arrays, std::vector<std::string>{"Radius"});
+  EXPECT_EQ(parse(with("\"Radius\",", "\"Radius\", \"units\": \"\",")).nodes[0].radius, 0.5);
+  CenterlineReadOptions options;
+  options.radius_array = "Section area";
+  for (const std::string unit : {"mm2", "mm^2", "mm\xC2\xB2"}) {
+    const double radius =
+        parse(with("\"Radius\",", "\"Section Area\", \"units\": \"" + unit + "\","), options).nodes[0].radius;
+    EXPECT_NEAR(std::numbers::pi * radius * radius, 0.005, 1e-15);  // square centimetres
+  }
+  expect_contains(error(with("\"Radius\",", "\"Radius\", \"units\": \"furlong\",")),
+                  "markups[0], measurement \"radius\": the unit \"furlong\" is not known");
 }
 
 TEST(ReadSlicerMarkups, NamesTheElementThatIsWrong) {

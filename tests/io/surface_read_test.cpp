@@ -219,11 +219,18 @@ TEST(ReadScene, TakesNodesAndUnitsInGlbAndCollada) {
                         {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
   write_surface(folder / "t.glb", mesh);
   const LoadedSurface glb = read_surface(folder / "t.glb");
-  EXPECT_EQ(glb.unit, LengthUnit::m);
-  EXPECT_EQ(glb.mesh.faces, mesh.faces);
-  ASSERT_EQ(glb.mesh.vertices.size(), 4u);
-  for (std::size_t v = 0; v < 4; ++v)
-    EXPECT_LT((1000 * glb.mesh.vertices[v] - mesh.vertices[v]).norm(), 1e-5);  // float
+  // A name other than ours for the frame makes it a scene like others.
+  std::string foreign = testing::content_of(folder / "t.glb");
+  foreign[foreign.find("metres; x")] = 'M';
+  const LoadedSurface scene = read_surface(folder.write("f.glb", foreign));
+  EXPECT_EQ(glb.unit, LengthUnit::mm);
+  EXPECT_EQ(scene.unit, LengthUnit::m);
+  for (const LoadedSurface* read : {&glb, &scene}) {
+    EXPECT_EQ(read->mesh.faces, mesh.faces);
+    ASSERT_EQ(read->mesh.vertices.size(), 4u);
+    for (std::size_t v = 0; v < 4; ++v)
+      EXPECT_LT((millimetres_per(read->unit) * read->mesh.vertices[v] - mesh.vertices[v]).norm(), 1e-5);  // float
+  }
   const LoadedSurface collada = read_surface(folder.write("t.dae", kCollada));
   EXPECT_EQ(collada.unit, LengthUnit::m);
   ASSERT_EQ(collada.mesh.vertices.size(), 4u);
@@ -313,6 +320,63 @@ TEST(ReadScene, NeedsAssimp) {
   expect_contains(message_of<Unsupported>([&] { read_surface(folder.write("t.glb", "glTF")); }), "VMESH_WITH_ASSIMP");
 }
 #endif
+
+/// A tetrahedron with two vertices at one place, and attributes.
+TriMesh glb_mesh() {
+  return {{{10, 20, 30}, {11, 20, 30}, {10, 22, 30}, {10, 20, 33}, {10, 20, 33}},
+          {{0, 2, 1}, {0, 1, 3}, {1, 2, 4}, {2, 0, 4}}};
+}
+
+TEST(ReadGlb, OurFilesComeBackWithFrameAndAttributes) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = glb_mesh();
+  MeshAttributes attributes;
+  attributes.vertex = {{"radius", {1.5, 2, 2.5, 3, 3}, false},
+                       {"segment", {0, 1, 2, 3, 70000}, true},
+                       {"red", {255, 0, 0, 0, 9}, true},
+                       {"green", {255, 0, 0, 0, 9}, true},
+                       {"blue", {255, 0, 0, 0, 9}, true}};
+  write_surface(folder / "t.glb", mesh, attributes);
+  LoadedSurface read = read_surface(folder / "t.glb");
+  EXPECT_EQ(read.unit, LengthUnit::mm);
+  EXPECT_EQ(read.space, Space::lps);
+  EXPECT_EQ(read.mesh.faces, mesh.faces);
+  ASSERT_EQ(read.mesh.vertices.size(), mesh.vertices.size());
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    EXPECT_LT((read.mesh.vertices[v] - mesh.vertices[v]).norm(), 1e-6) << "float, from the middle of the surface";
+  std::ranges::sort(read.attributes.vertex, {}, &MeshAttribute::name);
+  ASSERT_EQ(read.attributes.vertex.size(), 2u);
+  for (std::size_t a = 0; a < 2; ++a) {
+    EXPECT_EQ(read.attributes.vertex[a].name, attributes.vertex[a].name);
+    EXPECT_EQ(read.attributes.vertex[a].values, attributes.vertex[a].values);
+    EXPECT_EQ(read.attributes.vertex[a].integer, attributes.vertex[a].integer);
+  }
+  convert_to_internal(read, "t.glb", {}, {});
+  EXPECT_TRUE(read.warnings.empty());
+  EXPECT_EQ(read.attributes.vertex[0].values[0], 1.5);
+}
+
+TEST(ReadGlb, ABrokenFileIsRefused) {
+  const TemporaryFolder folder;
+  MeshAttributes attributes;
+  attributes.vertex = {{"radius", {1, 1, 1, 1, 1}, false}};
+  write_surface(folder / "t.glb", glb_mesh(), attributes);
+  const std::string whole = testing::content_of(folder / "t.glb");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = whole;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    EXPECT_EQ(from.size(), to.size());
+    return message_of<InvalidInput>(
+        [&] { parse_surface(text.replace(at, from.size(), to), surface_format("t.glb"), "t.glb"); });
+  };
+  expect_contains(with("\"count\":5", "\"count\":9"), "t.glb: accessor 0: its numbers are not there");
+  expect_contains(with("\"count\":5", "\"count\":4"),
+                  "t.glb: the attribute \"radius\" has not one number for every vertex");
+  expect_contains(with("\"byteOffset\":120", "\"byteOffset\":-20"), "no number where one must be");
+  expect_contains(with("POSITION", "POSITIVE"), "no \"POSITION\"");
+  expect_contains(with("\"VEC3\"", "\"VEC4\""), "accessor 0: its numbers are not of the type");
+}
 
 TEST(SharedData, EveryAdversarialMeshIsReadOrRefusedWithItsName) {
   VMESH_NEED_SHARED_DATA("adversarial_mesh_trimesh");

@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 
@@ -62,6 +64,35 @@ TEST(ReadVtp, FindsTheRadiusUnderItsUsualNamesOrTheOneGiven) {
   }
   EXPECT_EQ(parse(vtp("thickness"), "thickness").nodes[0].radius, 1);
   expect_contains(error(vtp("thickness")), "thickness");
+}
+
+TEST(ReadVtp, DiametersAndAreasBecomeRadiiWhichIsSaid) {
+  const auto diameters = parse(vtp("MeanDiameter"), "MeanDiameter");
+  EXPECT_EQ(diameters.nodes[1].radius, 1);
+  EXPECT_EQ(diameters.radius_arrays, std::vector<std::string>{"MeanDiameter"});
+  expect_contains(diameters.warnings.back(), "t.vtp: radii are half of \"MeanDiameter\"");
+  for (const std::string wanted : {"CenterlineSectionArea", ""}) {
+    const auto areas = parse(vtp("CenterlineSectionArea"), wanted);
+    for (Index n = 0; n < 3; ++n) {
+      const double radius = areas.nodes[n].radius;
+      EXPECT_NEAR(std::numbers::pi * radius * radius, n + 1, 1e-12);
+    }
+    expect_contains(areas.warnings.back(), "circles of the area \"CenterlineSectionArea\"");
+  }
+  EXPECT_EQ(parse(vtp("RadiusOfTheArea"), "RadiusOfTheArea").nodes[1].radius, 2);
+}
+
+TEST(ReadVtp, AnAreaIsTakenOnlyIfNothingElseMayHoldTheRadius) {
+  const std::string area = R"(<DataArray type="Float64" Name="AREA" format="ascii">5 5 5 5 5</DataArray>)";
+  const auto with_area = [&](std::string text) { return text.insert(text.find("<PointData>") + 11, area); };
+  EXPECT_EQ(parse(with_area(vtp("Radius"))).nodes[1].radius, 2);
+  EXPECT_EQ(parse(with_area(vtp("Radius"))).radius_arrays, std::vector<std::string>{"Radius"});
+  expect_contains(error(with_area(vtp("SectionArea"))), "--radius-array");
+  CenterlineReadOptions one_for_all;
+  one_for_all.radius = 7;
+  const auto raw = parse_centerline(vtp("SectionArea"), centerline_format("t.vtp"), "t.vtp", one_for_all);
+  EXPECT_EQ(raw.nodes[1].radius, 0);  // which convert_read() replaces
+  EXPECT_TRUE(raw.radius_arrays.empty());
 }
 
 TEST(ReadVtp, RefusesBrokenFilesWithoutNoise) {

@@ -219,6 +219,22 @@ def test_a_file_keeps_the_places(tmp_path):
     np.testing.assert_allclose(again.radius, surface.radius, rtol=1e-14)
 
 
+@pytest.mark.parametrize("extension, rtol", [(".ply", 1e-14), (".vtp", 1e-14), (".glb", 2**-24)])
+def test_the_radius_in_a_file_is_there(tmp_path, extension, rtol):
+    surface = vmesh.generate(*FORK)
+    surface.save(tmp_path / f"fork{extension}")
+    again = vmesh.read_surface(tmp_path / f"fork{extension}")
+    np.testing.assert_allclose(again.radius, surface.radius, rtol=rtol)
+    np.testing.assert_array_equal(again.vertex_attributes["segment"], surface.segment)
+    assert again.segment is None  # which needs the centerline
+
+
+def test_without_a_radius_in_the_file_there_is_none(tmp_path):
+    surface = vmesh.generate(*FORK)
+    surface.save(tmp_path / "fork.stl")
+    assert vmesh.read_surface(tmp_path / "fork.stl").radius is None
+
+
 def test_a_file_can_be_in_another_unit(tmp_path):
     surface = vmesh.generate(*FORK)
     surface.save(tmp_path / "fork.ply", unit="cm", space="RAS")

@@ -39,6 +39,24 @@ TEST_F(CenterlineInputs, ASetOfSlicersCurves) {
   EXPECT_EQ(summary.at("centerline").at("ends"), 3);
 }
 
+TEST_F(CenterlineInputs, EndsThatNearlyMeetAreJoinedOnRequest) {
+  write("a.swc", "# SPACE=LPS UNIT=mm\n1 0 0 0 0 2 -1\n2 0 0 0 20 2 1\n");
+  write("b.swc", "# SPACE=LPS UNIT=mm\n1 0 0 0 23 2 -1\n2 0 0 0 40 2 1\n");
+  const auto components = [this](std::vector<std::string> more) {
+    more.insert(more.begin(), {"@a.swc", "@b.swc"});
+    const std::string said = grow(more);
+    const auto summary = nlohmann::json::parse(read("out.json"));
+    const bool joins = summary.at("cleaning").at("joined_ends").size() == 1;
+    EXPECT_EQ(joins, said.find("this end of a branch lies 3 mm from that in line 2 of") != std::string::npos) << said;
+    return summary.at("centerline").at("components").get<int>();
+  };
+  EXPECT_EQ(components({}), 2);
+  EXPECT_EQ(components({"--tolerance", "2.9mm"}), 2);
+  EXPECT_EQ(components({"--tolerance", "3.1mm"}), 1);
+  EXPECT_EQ(components({"--tolerance", "1.6"}), 1);
+  EXPECT_EQ(vmesh({"info", "@a.swc", "--tolerance", "3cm"}).exit_code, 2);
+}
+
 TEST_F(CenterlineInputs, AFolderOfBranchesIsATree) {
   std::filesystem::create_directory(path("curves"));
   write("curves/a.mrk.json", curve(R"({"position": [0,0,0]}, {"position": [0,0,20]})", "3, 2.8"));

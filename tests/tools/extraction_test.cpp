@@ -11,7 +11,7 @@ namespace {
 class Extraction : public CommandTest {
  protected:
   /// A mask of two bars along x, of labels 1 and 2, 24 mm long and 5 mm thick, `gap` mm apart.
-  void write_bars(const std::string& name, int gap) const {
+  void write_bars(const std::string& name, int gap, const std::string& more = "") const {
     constexpr int kLong = 30, kWide = 30, kHigh = 11;
     std::string voxels(kLong * kWide * kHigh, '\0');
     for (int k = 3; k < 8; ++k)
@@ -22,8 +22,8 @@ class Extraction : public CommandTest {
         }
     write(name,
           "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 30 30 11\nspace directions: "
-          "(1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: raw\n\n" +
-              voxels);
+          "(1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: raw\n" +
+              more + "\n" + voxels);
   }
 
   nlohmann::json summary() const { return nlohmann::json::parse(read("out.json")); }
@@ -49,6 +49,26 @@ TEST_F(Extraction, LabelsTogetherOrEachOnItsOwn) {
     const double y = written.at("nodes").at(written.at("segments").at(s).at(0).get<std::size_t>()).at(1);
     EXPECT_EQ(written.at("segment_labels").at(s), y < 7.5 ? 1 : 2);
   }
+}
+
+TEST_F(Extraction, SegmentsHaveNames) {
+  write_bars("bars.seg.nrrd", 6,
+             "Segment0_Name:=left\nSegment0_LabelValue:=1\nSegment1_Name:=right\nSegment1_LabelValue:=2\n");
+  const auto extracted = [this](const std::string& label) {
+    const Outcome run = vmesh({"centerline", "@bars.seg.nrrd", "--label", label, "-o", "@c.swc"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const std::string content = read("c.swc");
+    return content.substr(content.find("\n1 "));  // without the comments, which tell the options
+  };
+  EXPECT_EQ(extracted("Right"), extracted("2"));
+  EXPECT_EQ(extracted("left,right"), extracted("1,2"));
+  EXPECT_EQ(vmesh({"reference", "@bars.seg.nrrd", "--label", "left", "-o", "@left.stl"}).exit_code, 0);
+  const std::string told = vmesh({"info", "@bars.seg.nrrd"}).out;
+  EXPECT_NE(told.find("segments: {\"name\":\"right\",\"label\":2}"), std::string::npos) << told;
+  const Outcome run = vmesh({"generate", "@bars.seg.nrrd", "--label", "middle", "-o", "@c.ply"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("no segment \"middle\"; the segments are \"left\" (1) and \"right\" (2)"), std::string::npos)
+      << run.err;
 }
 
 TEST_F(Extraction, WhatIsLeftOutCanBeRefused) {

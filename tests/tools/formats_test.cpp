@@ -27,13 +27,14 @@ class Formats : public CommandTest {
   }
 };
 
-const std::vector<std::pair<std::string, std::string>> kOptions = {
-    {"radius-array", "R"}, {"radius", "2"}, {"voxel-size", "0.5"}, {"unit", "cm"}, {"space", "RAS"}};
+const std::vector<std::pair<std::string, std::string>> kOptions = {{"radius-array", "R"},  {"radius", "2"},
+                                                                   {"tolerance", "0.5mm"}, {"voxel-size", "0.5"},
+                                                                   {"unit", "cm"},         {"space", "RAS"}};
 
 TEST_F(Formats, AreListedAsTextAndJson) {
   const Json formats = listed();
   const std::string text = vmesh({"formats"}).out;
-  EXPECT_NE(text.find("centerline .swc: SWC; read; written; --voxel-size, --radius, --unit, --space\n"),
+  EXPECT_NE(text.find("centerline .swc: SWC; read; written; --voxel-size, --radius, --tolerance, --unit, --space\n"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("centerline .gxl .xml: VascuSynth; read; --voxel-size"), std::string::npos) << text;
@@ -117,12 +118,16 @@ TEST_F(Formats, EveryOptionActsOnASurfaceOrIsRefusedByName) {
   }
 }
 
-TEST_F(Formats, NoOptionForCenterlinesActsOnAnImage) {
+TEST_F(Formats, EveryOptionActsOnAnImageOrIsRefusedByName) {
   for (const Json& format : listed().at("image")) {
     if (format.at("extensions").empty()) continue;
     const std::string name = "@liver" + format.at("extensions").at(0).get<std::string>();
     write(name.substr(1), "nothing of use");
-    for (const auto& [option, value] : kOptions) EXPECT_TRUE(refuses(name, option, value)) << name << " --" << option;
+    const Json& options = format.at("options");
+    for (const auto& [option, value] : kOptions) {
+      const bool acts = std::find(options.begin(), options.end(), option) != options.end();
+      EXPECT_EQ(refuses(name, option, value), !acts) << name << " --" << option;
+    }
   }
 }
 

@@ -101,14 +101,7 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
   return numbers;
 }
 
-void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
-  verb.add_option("--" + of + "radius-array", input.read.radius_array,
-                  "array of the file that holds the radius; the diameter if \"diam\" is in its name")
-      ->type_name("NAME");
-  verb.add_option_function<double>(
-          "--" + of + "radius", [&input](const double& radius) { input.read.radius = radius; },
-          "radius of all nodes of a file without radii, mm")
-      ->check(in_range(1e-9, 1e9));
+void add_voxel_size(CLI::App& verb, InputArguments& input, const std::string& of) {
   verb.add_option_function<std::string>(
           "--" + of + "voxel-size",
           [&input, option = "--" + of + "voxel-size"](const std::string& text) {
@@ -119,8 +112,26 @@ void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::st
             if (!(input.read.voxel_size->minCoeff() > 0))
               throw CLI::ValidationError(option, "must be above 0: " + text);
           },
-          "sides of the voxels in which the file counts, in its unit: GXL files of VascuSynth, SWC")
+          "sides of the voxels: in which a file counts, in its unit (GXL of VascuSynth, SWC); of a TIFF stack, mm")
       ->type_name("S|SX,SY,SZ");
+}
+
+void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
+  verb.add_option(
+          "--" + of + "radius-array", input.read.radius_array,
+          "array or column of the file that holds the radius; the diameter if \"diam\" is in its name, the area "
+          "of the cross-section if \"area\" is")
+      ->type_name("NAME");
+  verb.add_option_function<double>(
+          "--" + of + "radius", [&input](const double& radius) { input.read.radius = radius; },
+          "radius of all nodes of a file without radii, mm")
+      ->check(in_range(1e-9, 1e9));
+  add_read_option(
+      verb, "--" + of + "tolerance",
+      [&input](const std::string& text) { input.read.tolerance = parse_end_tolerance(text); },
+      "join ends of branches that are nearer to each other than this: .5mm, or .1 of their radius")
+      .type_name("Xmm|X");
+  add_voxel_size(verb, input, of);
 }
 
 void add_centerline_input(CLI::App& verb, InputArguments& input, const std::string& help) {
@@ -135,7 +146,8 @@ void add_centerline_input(CLI::App& verb, InputArguments& input, const std::stri
       ->type_name("FILE");
   add_reading(verb, input, "");
   add_centerline_reading(verb, input, "");
-  group(verb, "How to read the input", {"--unit", "--space", "--radius-array", "--radius", "--voxel-size"});
+  group(verb, "How to read the input",
+        {"--unit", "--space", "--radius-array", "--radius", "--tolerance", "--voxel-size"});
 }
 
 void add_report(CLI::App& verb, ReportArguments& report) {

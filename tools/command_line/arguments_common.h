@@ -66,6 +66,9 @@ void add_input(CLI::App& verb, InputArguments& input, const std::string& help);
 /// The same for centerlines, which may consist of several files and may need a radius.
 void add_centerline_input(CLI::App& verb, InputArguments& input, const std::string& help);
 
+/// Adds the option for files that count in voxels, or do not tell how large these are; `of` as above.
+void add_voxel_size(CLI::App& verb, InputArguments& input, const std::string& of);
+
 /// Adds options for centerline files with missing information; `of` as above.
 void add_centerline_reading(CLI::App& verb, InputArguments& input, const std::string& of);
 

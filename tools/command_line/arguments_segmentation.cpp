@@ -11,7 +11,19 @@ namespace vmesh::tool {
 
 void add_image_options(CLI::App& verb, ReferenceOptions& options) {
   CLI::Option* label =
-      verb.add_option("--label", options.labels, "image: voxels of this value are inside, or of these: 1,2,5")
+      verb.add_option_function<std::vector<std::string>>(
+              "--label",
+              [&options](const std::vector<std::string>& words) {
+                for (const std::string& word : words) {
+                  double value = 0;
+                  if (CLI::detail::lexical_cast(word, value)) {
+                    options.labels.push_back(value);
+                  } else {
+                    options.segments.push_back(word);
+                  }
+                }
+              },
+              "image: voxels of this value are inside, or of these: 1,2,5; or segments of 3D Slicer by name")
           ->delimiter(',')
           ->allow_extra_args(false)
           ->type_name("N,N,...");
@@ -64,6 +76,7 @@ void add_required_coverage(CLI::App& verb, RequiredCoverage& required) {
 
 void add_fitting(CLI::App& verb, FittingArguments& arguments) {
   add_reading(verb, arguments.reference, "reference-");
+  add_voxel_size(verb, arguments.reference, "reference-");
   add_image_options(verb, arguments.image);
   add_read_option(
       verb, "--fit-error",

@@ -156,7 +156,8 @@ std::vector<std::filesystem::path> expanded_folder(const std::filesystem::path& 
 /// The extensions of the formats on which an option for reading acts.
 std::string extensions_with(const std::string& option) {
   return listed(extensions_of(centerline_formats(), [&](const CenterlineFormat& format) {
-    return option == "radius" || std::ranges::find(format.options, option) != format.options.end();
+    return option == "radius" || option == "tolerance" ||
+           std::ranges::find(format.options, option) != format.options.end();
   }));
 }
 
@@ -195,13 +196,22 @@ void refuse_without_file(const InputArguments& input) {
   if (!given.empty()) throw UsageError("--" + input.options_of + given.front() + " is for a file that is not given");
 }
 
+ReferenceOptions with_voxel_size(ReferenceOptions options, const InputArguments& input) {
+  options.voxel_size = input.read.voxel_size;
+  return options;
+}
+
 /// Calls `read` to read an image.
 template <class Read>
 auto reading_image(const InputArguments& input, Read read) {
   if (input.unit || input.space)
     throw UsageError(input.path.string() +
                      ": an image contains its position and unit; --unit and --space do not apply");
-  refuse_without_effect(input, {}, "an image");
+  InputArguments others = input;
+  if (const ImageFormat* format = find_format(image_formats(), input.path);
+      format && std::ranges::find(format->options, "voxel-size") != format->options.end())
+    others.read.voxel_size.reset();
+  refuse_without_effect(others, {}, "an image");
   try {
     return read();
   } catch (const InvalidInput&) {
@@ -262,21 +272,25 @@ LoadedCenterline load_clean_centerline(const InputArguments& input, Console& con
   return loaded;
 }
 
-LoadedImage load_image(const InputArguments& input, Console& console) {
-  LoadedImage loaded = reading_image(input, [&] { return read_image(input.path); });
+LoadedImage load_image(const InputArguments& input, const ReferenceOptions& options, Console& console) {
+  const ReferenceOptions all = with_voxel_size(options, input);
+  LoadedImage loaded = reading_image(input, [&] { return read_image(input.path, read_options_of(all)); });
   console.warn(loaded.warnings);
   return loaded;
 }
 
 VesselMask load_vessel_mask(const InputArguments& input, const ReferenceOptions& options, Console& console) {
   std::vector<std::string> warnings;
-  VesselMask mask = reading_image(input, [&] { return read_vessel_mask(input.path, options, warnings); });
+  VesselMask mask =
+      reading_image(input, [&] { return read_vessel_mask(input.path, with_voxel_size(options, input), warnings); });
   console.warn(warnings);
   return mask;
 }
 
 ImageSummary load_image_summary(const InputArguments& input, Console& console) {
-  ImageSummary summary = reading_image(input, [&] { return summarize_image(input.path, console.progress()); });
+  ImageSummary summary = reading_image(input, [&] {
+    return summarize_image(input.path, console.progress(), read_options_of(with_voxel_size({}, input)));
+  });
   console.warn(summary.image.warnings);
   return summary;
 }
@@ -324,7 +338,10 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& input) 
 
 std::vector<std::filesystem::path> files_of_input(const std::filesystem::path& input) {
   std::error_code error;
-  return std::filesystem::is_directory(input, error) ? files_in(input) : files_of(input);
+  if (std::filesystem::is_directory(input, error)) return files_in(input);
+  const CenterlineFormat* format = find_centerline_format(input);
+  if (format != nullptr && format->second_file) return {input, second_file_to_read(*format, input)};
+  return {input};
 }
 
 std::vector<std::filesystem::path> files_of(const InputArguments& input) {

@@ -38,7 +38,7 @@ LoadedSurface load_surface(const InputArguments& input, FileFrame* said = nullpt
 LoadedCenterline load_clean_centerline(const InputArguments& input, Console& console);
 
 /// An image; --unit and --space are refused (UsageError), as images contain their position and unit.
-LoadedImage load_image(const InputArguments& input, Console& console);
+LoadedImage load_image(const InputArguments& input, const ReferenceOptions& options, Console& console);
 
 /// The vessels' voxels of an image, likewise.
 VesselMask load_vessel_mask(const InputArguments& input, const ReferenceOptions& options, Console& console);

@@ -69,7 +69,9 @@ void log_loops(const ExtractionReport& report, Console& console) {
 
 std::string describe(const ReferenceOptions& image) {
   std::ostringstream text;
-  for (std::size_t i = 0; i < image.labels.size(); ++i) text << (i == 0 ? " --label " : ",") << image.labels[i];
+  const char* before = " --label ";
+  for (const double label : image.labels) text << std::exchange(before, ",") << label;
+  for (const std::string& name : image.segments) text << std::exchange(before, ",") << '"' << name << '"';
   if (image.threshold) text << " --threshold " << *image.threshold;
   if (image.spacing > 0) text << " --spacing " << image.spacing;
   if (image.smooth > 0) text << " --smooth " << image.smooth;

@@ -190,7 +190,13 @@ Json to_json(const Centerline& centerline) {
 Json to_json(const CleaningReport& report) {
   std::map<std::string, std::size_t> counts;
   for (const CleaningAction& action : report.actions) ++counts[std::string(to_string(action.kind))];
-  return {{"counts", counts.empty() ? Json::object() : Json(counts)}, {"actions", report.summary()}};
+  Json joins = Json::array();
+  for (const CleaningAction& action : report.actions) {
+    if (action.kind == CleaningAction::Kind::joined_ends) joins.push_back(action.message);
+  }
+  return {{"counts", counts.empty() ? Json::object() : Json(counts)},
+          {"actions", report.summary()},
+          {"joined_ends", std::move(joins)}};
 }
 
 Json to_json(const SurfaceMeasurement& measurement) {
@@ -256,7 +262,10 @@ Json to_json(const GenerateReport& report) {
   Json json = {
       {"schema", "vmesh.summary/1"},
       {"generator", generator_json()},
-      {"input", {{"file", arguments.input.path.string()}, {"sha256", report.input_sha256}}},
+      {"input",
+       {{"file", arguments.input.path.string()},
+        {"sha256", report.input_sha256},
+        {"radius_arrays", report.radius_arrays}}},
       {"output", arguments.output.string()},
       {"options", options_json(arguments)},
       {"centerline", to_json(centerline)},

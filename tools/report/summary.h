@@ -18,6 +18,7 @@ namespace vmesh::tool {
 struct GenerateReport {
   const GenerateArguments* arguments = nullptr;
   std::string input_sha256;
+  std::vector<std::string> radius_arrays;  ///< of the input, see RawCenterline
   const CleanedCenterline* cleaned = nullptr;
   std::vector<Contact> contacts;               ///< of the cleaned centerline
   std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed or moved

@@ -22,6 +22,7 @@ struct CenterlineArguments {
 
 void add_options(CLI::App& verb, CenterlineArguments& arguments) {
   add_input(verb, arguments.input, "surface, or image (" + listed_image_extensions() + ")");
+  add_voxel_size(verb, arguments.input, "");
   add_output(verb, arguments.output, "centerline");
   add_image_options(verb, arguments.image);
   verb.add_flag("--each-label", arguments.each_label,
@@ -41,6 +42,7 @@ void check(const CenterlineArguments& arguments) {
   if (!arguments.each_label) return;
   if (!is_image(arguments.input.path)) throw UsageError("--each-label is for images; this is taken for a surface");
   if (arguments.image.threshold) throw UsageError("--each-label and --threshold exclude each other");
+  if (!arguments.image.segments.empty()) throw UsageError("--each-label takes labels by their values, not by name");
 }
 
 /// Those given, else all in the image.

@@ -8,7 +8,7 @@
 namespace vmesh::tool {
 
 bool has_options(const ReferenceOptions& image) {
-  return !image.labels.empty() || image.threshold || image.spacing > 0 || image.smooth > 0;
+  return !image.labels.empty() || !image.segments.empty() || image.threshold || image.spacing > 0 || image.smooth > 0;
 }
 
 void check_options_of_image(const std::filesystem::path& input, const ReferenceOptions& image) {
@@ -34,7 +34,7 @@ TriMesh load_fit_reference(const FittingArguments& arguments, Console& console) 
     return naming(path, [&] {
       ReferenceOptions options = image;
       options.all_components = true;  // the fit decides what belongs to a vessel
-      return reference_surface(load_image(arguments.reference, console), options).mesh;
+      return reference_surface(load_image(arguments.reference, options, console), options).mesh;
     });
   }
   check_options_of_image(path, image);

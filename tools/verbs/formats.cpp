@@ -13,15 +13,18 @@ struct FormatsArguments {
 
 std::vector<std::string> options_of(const CenterlineFormat& format) {
   std::vector<std::string> options = format.options;
-  options.insert(options.end(), {"radius", "unit", "space"});
+  options.insert(options.end(), {"radius", "tolerance", "unit", "space"});
   return options;
 }
 std::vector<std::string> options_of(const SurfaceFormat&) { return {"unit", "space"}; }
-std::vector<std::string> options_of(const ImageFormat&) { return {}; }
+std::vector<std::string> options_of(const ImageFormat& format) { return format.options; }
 
 bool is_read(const CenterlineFormat& format) { return format.parse || format.parse_pair || format.read; }
 bool is_read(const SurfaceFormat& format) { return format.parse || format.read; }
-bool is_read(const ImageFormat& format) { return format.parse_header || VMESH_TOOL_WITH_DICOM; }
+bool is_read(const ImageFormat& format) {
+  const bool is_dicom = format.extensions.empty();
+  return format.parse_header || format.read || (is_dicom && VMESH_TOOL_WITH_DICOM);
+}
 
 bool is_mostly_another(const CenterlineFormat& format) { return format.holds_lines != nullptr; }
 bool is_mostly_another(const SurfaceFormat&) { return false; }

@@ -277,6 +277,7 @@ int run(const GenerateArguments& given, Console& console) {
   const GenerateInput input = load_input(arguments, console);
   const auto& [loaded, reference, extraction, read_stages] = input;
   report.input_sha256 = sha256_of(arguments.input);
+  report.radius_arrays = loaded.file.radius_arrays;
   report.cleaned = &loaded.cleaned;
   report.extraction = extraction;
   bool kept_limits = true;  // budget and error

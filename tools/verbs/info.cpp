@@ -52,7 +52,8 @@ Json messages_of(const std::vector<CenterlineProblem>& problems) {
 /// under "error".
 void describe(const RawCenterline& raw, Json& json) {
   json["kind"] = "centerline";
-  json["in_file"] = {{"nodes", raw.nodes.size()}, {"segments", raw.segments.size()}};
+  json["in_file"] = {
+      {"nodes", raw.nodes.size()}, {"segments", raw.segments.size()}, {"radius_arrays", raw.radius_arrays}};
   try {
     const CleanedCenterline cleaned = clean(raw);
     json["centerline"] = to_json(cleaned.centerline);

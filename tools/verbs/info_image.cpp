@@ -101,6 +101,11 @@ Json describe_image(const InputArguments& input, Console& console) {
   } else {
     describe_labels(summary, json);
   }
+  if (!summary.image.segments.empty()) {
+    json["segments"] = list_json(summary.image.segments, [](const ImageSegment& segment) {
+      return Json{{"name", segment.name}, {"label", static_cast<std::int64_t>(segment.value)}};
+    });
+  }
   json["next"] = next_commands(input.path, summary);
   json["problems"] = problems_of(summary);
   json["warnings"] = summary.image.warnings;

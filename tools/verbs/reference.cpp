@@ -20,6 +20,7 @@ struct ReferenceArguments {
 
 void add_options(CLI::App& verb, ReferenceArguments& arguments) {
   add_input(verb, arguments.input, "image (" + listed_image_extensions() + ") or centerline");
+  add_voxel_size(verb, arguments.input, "");
   add_output(verb, arguments.output, "surface");
   add_image_options(verb, arguments.options);
   verb.add_option("--voxel", arguments.voxel, "centerline: side of the voxels, mm")->check(in_range(1e-6, 1e6));
@@ -35,7 +36,7 @@ void check(const ReferenceArguments& arguments) {
   const std::string name = arguments.input.path.string();
   if (image && arguments.voxel > 0) throw UsageError(name + ": --voxel is for centerlines; see --spacing");
   if (image) return;
-  if (!options.labels.empty() || options.threshold || options.spacing > 0)
+  if (!options.labels.empty() || !options.segments.empty() || options.threshold || options.spacing > 0)
     throw UsageError(name + ": --label, --threshold and --spacing are for images; this is taken for a centerline");
   if (arguments.voxel == 0)
     throw UsageError(name + ": to contour the volume of a centerline, give the side of the voxels: --voxel MM");
@@ -55,7 +56,7 @@ std::string describe(const ReferenceArguments& arguments) {
 ReferenceSurface contoured(const ReferenceArguments& arguments, Console& console) {
   return naming(arguments.input.path, [&] {
     if (is_image(arguments.input.path)) {
-      const LoadedImage image = load_image(arguments.input, console);
+      const LoadedImage image = load_image(arguments.input, arguments.options, console);
       stop_if_interrupted();
       return reference_surface(image, arguments.options);
     }

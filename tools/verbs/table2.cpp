@@ -71,7 +71,8 @@ bool has_image(const Table2Arguments& arguments) { return is_image(arguments.ref
 void check_options(const Table2Arguments& arguments) {
   const ReferenceOptions& image = arguments.image;
   const bool has_reference = !arguments.reference.path.empty(), has_centerline = !arguments.centerline.path.empty();
-  if (!has_image(arguments) && (!image.labels.empty() || image.threshold || image.spacing > 0))
+  if (!has_image(arguments) &&
+      (!image.labels.empty() || !image.segments.empty() || image.threshold || image.spacing > 0))
     throw UsageError("--label, --threshold and --spacing are for a --reference that is an image");
   if (has_reference && !has_image(arguments) && (image.smooth > 0 || image.binary))
     throw UsageError(arguments.reference.path.string() + ": --smooth and --binary do not apply to a surface");
@@ -140,8 +141,9 @@ TriMesh load_reference(const Table2Arguments& arguments, Table2Source& source, C
   }
   ReferenceOptions contour = arguments.image;
   contour.all_components = arguments.all_components;
-  ReferenceSurface surface = naming(
-      arguments.reference.path, [&] { return reference_surface(load_image(arguments.reference, console), contour); });
+  ReferenceSurface surface = naming(arguments.reference.path, [&] {
+    return reference_surface(load_image(arguments.reference, contour, console), contour);
+  });
   describe_contour(surface, source);
   return std::move(surface.mesh);
 }

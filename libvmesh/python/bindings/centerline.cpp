@@ -273,7 +273,7 @@ nodes.)");
 ...) and cleans it. Several paths make one centerline.
 
     unit, space   win over what the file says: nm, um, mm, cm, m; LPS, RAS
-    radius_array  .vtp, .vtk, .am: the array of radii, or of diameters
+    radius_array  .vtp, .vtk, .csv, .am: the array of radii, diameters or areas
     radius        mm, for files without radii
     voxel_size    (3,), sides of the voxels in which the file counts: .gxl (in the unit of the radii), .swc (all equal)
     the others    as for clean()

@@ -75,7 +75,9 @@ void bind_images(py::module_& module) {
         const ReferenceOptions options = options_of(label, threshold, spacing, smooth, all_components);
         const auto* path = std::get_if<fs::path>(&image);
         if (path != nullptr)
-          return result_of(py::none(), [&](const Progress&) { return surface_of(read_image(*path), options); });
+          return result_of(py::none(), [&](const Progress&) {
+            return surface_of(read_image(*path, read_options_of(options)), options);
+          });
         const LoadedImage loaded = image_of(std::get<py::array>(image), affine);
         return result_of(py::none(), [&](const Progress&) { return surface_of(loaded, options); });
       },

@@ -48,6 +48,9 @@ SurfacePtr read_surface_file(const fs::path& path, const CenterlinePtr& centerli
   auto surface = std::make_shared<SurfaceObject>();
   surface->result.mesh = std::move(loaded.mesh);
   surface->attributes = std::move(loaded.attributes);
+  for (const MeshAttribute& attribute : surface->attributes.vertex) {
+    if (attribute.name == "radius") surface->result.radius = attribute.values;
+  }
   surface->warnings = std::move(loaded.warnings);
   if (centerline) bind_to(*surface, centerline);
   return surface;
@@ -98,7 +101,7 @@ py::object binding_view(const py::object& self, T CenterlineBinding::*member) {
 }
 
 py::object radius_view(const py::object& self) {
-  if (!self.cast<const SurfaceObject&>().centerline) return py::none();
+  if (result_of(self).radius.empty()) return py::none();
   return vector_view(result_of(self).radius, self);
 }
 
@@ -198,8 +201,10 @@ void bind_arrays(py::class_<SurfaceObject, SurfacePtr>& surface) {
           "parameter", [](const py::object& self) { return binding_view(self, &CenterlineBinding::t); },
           "Where on that segment, (n,) float64 in [0, 1] from its first node to its second, or None. A\n"
           "view, not writable.")
-      .def_property_readonly("radius", &radius_view,
-                             "Radius of the vessel at that place, (n,) float64, mm, or None. A view, not writable.")
+      .def_property_readonly(
+          "radius", &radius_view,
+          "Radius of the vessel at that place, or as the file has it, (n,) float64, mm, or None. A view,\n"
+          "not writable.")
       .def_property_readonly(
           "branch", [](const SurfaceObject& self) { return branch_of(self, &BranchLabels::vertex); },
           "Index into centerline.branches() of every vertex, (n,) uint32, or None. Made anew each time.")

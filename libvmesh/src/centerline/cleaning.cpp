@@ -240,10 +240,18 @@ void remove_duplicate_segments(Workspace& work) {
 }  // namespace cleaning
 
 std::string_view to_string(CleaningAction::Kind kind) {
-  constexpr std::array<std::string_view, 11> kNames = {"rounded",        "removed_self_loop",         "merged_trunk",
-                                                       "merged_overlap", "contracted_segment",        "merged_node",
-                                                       "kept_crossing",  "removed_duplicate_segment", "repaired_radius",
-                                                       "joined_gap",     "dropped_end_section"};
+  constexpr std::array<std::string_view, 12> kNames = {"rounded",
+                                                       "removed_self_loop",
+                                                       "merged_trunk",
+                                                       "merged_overlap",
+                                                       "contracted_segment",
+                                                       "merged_node",
+                                                       "kept_crossing",
+                                                       "removed_duplicate_segment",
+                                                       "repaired_radius",
+                                                       "joined_gap",
+                                                       "joined_ends",
+                                                       "dropped_end_section"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -280,6 +288,7 @@ CleanedCenterline clean(const RawCenterline& raw, const CleaningOptions& options
   work.compact();
   remove_duplicate_segments(work);
   repair_radii(work);
+  join_ends(work);
   if (options.join_gaps.value_or(raw.loose_branches)) join_gaps(work);
   CleanedCenterline cleaned = build(work);
   keep_end_sections(work, cleaned);

@@ -51,6 +51,8 @@ void contract_short_segments(Workspace& work);
 void merge_coincident_nodes(Workspace& work);
 void remove_duplicate_segments(Workspace& work);
 void repair_radii(Workspace& work);
+/// As RawCenterline::join_ends asks for.
+void join_ends(Workspace& work);
 void join_gaps(Workspace& work);
 /// The sections of the raw centerline that are at ends of the cleaned one; the others are reported.
 void keep_end_sections(Workspace& work, CleanedCenterline& cleaned);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <sstream>
@@ -74,6 +75,9 @@ void append(const RawCenterline& file, bool has_paths, RawCenterline& all) {
     section.node += first_node;
     all.end_sections.push_back(std::move(section));
   }
+  for (const std::string& name : file.radius_arrays) {
+    if (std::ranges::find(all.radius_arrays, name) == all.radius_arrays.end()) all.radius_arrays.push_back(name);
+  }
   all.warnings.insert(all.warnings.end(), file.warnings.begin(), file.warnings.end());
 }
 
@@ -145,6 +149,17 @@ std::optional<Space> parse_space(std::string_view text) {
   if (key == "ras" || key == "right-anterior-superior") return Space::ras;
   if (key == "unknown") return Space::unknown;
   return std::nullopt;
+}
+
+EndTolerance parse_end_tolerance(std::string_view text) {
+  const bool in_mm = text.ends_with("mm");
+  const std::string_view number = text.substr(0, text.size() - (in_mm ? 2 : 0));
+  double value = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (error != std::errc() || end != number.data() + number.size() || !(value > 0 && value <= 1e9))
+    throw InvalidInput("\"" + std::string(text) +
+                       "\" is no tolerance; give millimetres, such as 0.5mm, or radii, such as 0.1");
+  return in_mm ? EndTolerance{value, 0} : EndTolerance{0, value};
 }
 
 double millimetres_per(LengthUnit unit) {

@@ -1,8 +1,18 @@
 #include "vmesh/image/image_io.h"
 
 #include "image_header.h"
+#include "tiff.h"
 
 namespace vmesh {
+namespace {
+
+#if VMESH_IMAGE_WITH_TIFF
+constexpr auto kReadTiff = image::read_tiff;
+#else
+constexpr decltype(&image::read_tiff) kReadTiff = nullptr;
+#endif
+
+}  // namespace
 
 const std::vector<ImageFormat>& image_formats() {
   using namespace image;
@@ -32,6 +42,11 @@ const std::vector<ImageFormat>& image_formats() {
        .in_two_files = true,
        .header_bytes = kLongestText,
        .parse_header = parse_meta_header},
+      {.name = "TIFF",
+       .extensions = {".tif", ".tiff"},
+       .options = {"voxel-size"},
+       .needs = {"TIFF", ".nii.gz, .nrrd or .mha"},
+       .read = kReadTiff},
       {.name = "DICOM", .extensions = {}, .of_parts = {".dcm"}},
   };
   return formats;

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include "vmesh/core/error.h"
 #include "vmesh/core/file_format.h"
@@ -93,6 +94,19 @@ std::string cited(std::string_view text) {
       shown.begin(), shown.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   if (text.size() > kMostShown) shown += "...";
   return "\"" + shown + "\"";
+}
+
+std::string list_of(const std::vector<ImageSegment>& segments) {
+  constexpr std::size_t kMostListed = 10;
+  if (segments.empty()) return "the image names no segments, choose values";
+  std::vector<std::string> words;
+  for (std::size_t s = 0; s < segments.size() && s < kMostListed; ++s) {
+    std::ostringstream word;
+    word << cited(segments[s].name) << " (" << segments[s].value << ")";
+    words.push_back(word.str());
+  }
+  if (segments.size() > kMostListed) words.push_back(std::to_string(segments.size() - kMostListed) + " more");
+  return "the segments are " + listed(words, "and");
 }
 
 bool take_line(std::string_view& text, std::string_view& line) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vmesh/core/types.h"
+#include "vmesh/image/image_io.h"
 
 #include "number_type.h"
 
@@ -26,7 +27,11 @@ struct ImageHeader {
   std::uint64_t data_begin = 0;     ///< bytes before the voxels
   bool data_at_end = false;         ///< instead, the voxels are the last bytes of the file
   bool packed = false;              ///< compressed by zlib or gzip from there on
+  std::uint64_t layers = 1;         ///< numbers stored for every voxel, side by side; no more than kMostLayers
+  std::vector<ImageSegment> segments;
   std::vector<std::string> warnings;
+
+  static constexpr std::uint64_t kMostLayers = 1000;
 
   std::uint64_t voxels() const { return size[0] * size[1] * size[2]; }
 };
@@ -63,6 +68,9 @@ std::string folded(std::string_view text);
 
 /// `text` in quotes, on one line and shortened for a message.
 std::string cited(std::string_view text);
+
+/// "the segments are "portal" (1) and "hepatic" (2)", for messages.
+std::string list_of(const std::vector<ImageSegment>& segments);
 
 /// Removes the next line from `text`, without its end. False if nothing is left. The last line need not have an end.
 bool take_line(std::string_view& text, std::string_view& line);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "vmesh/core/error.h"
 #include "vmesh/core/memory.h"
 #include "vmesh/image/image_slices.h"
 
@@ -32,7 +33,7 @@ LoadedImage collected(const std::string& name, Read read) {
   LoadedImage loaded;
   std::size_t voxels = 0;
   const auto begin = [&](const ImageFrame& image) {
-    loaded = {image.frame, image.integer, image.warnings};
+    loaded = {image.frame, image.integer, image.warnings, image.segments};
     voxels = image.frame.size[0] * image.frame.size[1] * image.frame.size[2];
     require_memory(static_cast<double>(voxels) * sizeof(float),
                    name + ": an image of " + std::to_string(voxels) + " voxels",
@@ -52,13 +53,27 @@ bool is_image_path(const std::filesystem::path& path) {
 
 bool is_image(const std::filesystem::path& path) { return is_image_path(path) || image::is_dicom(path); }
 
-LoadedImage parse_image(std::string_view content, const std::string& source) {
-  return collected(source,
-                   [&](const auto& begin, const auto& visit) { parse_image_slices(content, source, begin, visit); });
+std::vector<double> values_of(const std::vector<std::string>& names, const std::vector<ImageSegment>& segments) {
+  std::vector<double> values;
+  for (const std::string& name : names) {
+    const auto found =
+        std::ranges::find_if(segments, [&](const ImageSegment& segment) { return lower(segment.name) == lower(name); });
+    if (found == segments.end())
+      throw InvalidInput("there is no segment " + image::cited(name) + "; " + image::list_of(segments));
+    values.push_back(found->value);
+  }
+  return values;
 }
 
-LoadedImage read_image(const std::filesystem::path& path) {
-  return collected(path.string(), [&](const auto& begin, const auto& visit) { read_image_slices(path, begin, visit); });
+LoadedImage parse_image(std::string_view content, const std::string& source, const ImageReadOptions& options) {
+  return collected(source, [&](const auto& begin, const auto& visit) {
+    parse_image_slices(content, source, begin, visit, options);
+  });
+}
+
+LoadedImage read_image(const std::filesystem::path& path, const ImageReadOptions& options) {
+  return collected(path.string(),
+                   [&](const auto& begin, const auto& visit) { read_image_slices(path, begin, visit, options); });
 }
 
 }  // namespace vmesh

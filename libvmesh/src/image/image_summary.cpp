@@ -156,17 +156,21 @@ class Summarizer {
 
 }  // namespace
 
-ImageSummary summarize_image(const std::filesystem::path& path, const Progress& progress) {
+ImageSummary summarize_image(const std::filesystem::path& path, const Progress& progress,
+                             const ImageReadOptions& options) {
   Summarizer summarizer;
   double slices = 1;
   const auto begin = [&](const ImageFrame& image) {
     summarizer.begin(image);
     slices = static_cast<double>(image.frame.size[2]);
   };
-  read_image_slices(path, begin, [&](std::size_t k, std::span<const float> slice) {
-    report_progress(progress, "reading", static_cast<double>(k) / slices);
-    summarizer.add(slice);
-  });
+  read_image_slices(
+      path, begin,
+      [&](std::size_t k, std::span<const float> slice) {
+        report_progress(progress, "reading", static_cast<double>(k) / slices);
+        summarizer.add(slice);
+      },
+      options);
   return summarizer.end();
 }
 

@@ -1,4 +1,6 @@
 // NRRD (https://teem.sourceforge.net/nrrd/format.html), in one file or two, raw or gzip.
+#include <charconv>
+#include <cmath>
 #include <map>
 
 #include "vmesh/core/error.h"
@@ -58,16 +60,33 @@ NumberType number_type(const std::string& word, const std::string& name) {
 
 constexpr const char* kDataFile = "data file";
 
+/// Adds what a line like "Segment3_Name:=portal" says of a segment; other lines are left alone.
+void read_segment_line(std::string_view key, std::string_view value, std::map<std::uint64_t, Entries>& segments) {
+  constexpr std::string_view kSegment = "Segment";
+  if (!key.starts_with(kSegment)) return;
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(key.data() + kSegment.size(), key.data() + key.size(), number);
+  if (error != std::errc() || end == key.data() + key.size() || *end != '_') return;
+  const std::string_view property(end + 1, static_cast<std::size_t>(key.data() + key.size() - end - 1));
+  if (property == "Name" || property == "LabelValue" || property == "Layer")
+    segments[number].insert_or_assign(std::string(property), trimmed(value));
+}
+
 /// Lines up to the empty one, or, if the voxels are in another file, to the end; keys in lower case, and values but for
 /// names of files.
-Entries entries_of(std::string_view bytes, const std::string& name, std::uint64_t& header_end) {
+Entries entries_of(std::string_view bytes, const std::string& name, std::uint64_t& header_end,
+                   std::map<std::uint64_t, Entries>& segments) {
   Entries entries;
   std::string_view rest = bytes, line;
   if (!bytes.starts_with("NRRD000") || !take_line(rest, line))
     throw InvalidInput(name + ": this is not an NRRD file: it does not begin with a line such as NRRD0004");
   while (take_line(rest, line) && !line.empty()) {
     const std::size_t colon = line.find(':');
-    if (line.front() == '#' || colon == std::string_view::npos || line.substr(colon).starts_with(":=")) continue;
+    if (line.front() == '#' || colon == std::string_view::npos) continue;
+    if (line.substr(colon).starts_with(":=")) {
+      read_segment_line(line.substr(0, colon), line.substr(colon + 2), segments);
+      continue;
+    }
     const std::string key = folded(line.substr(0, colon));
     const std::string_view value = line.substr(colon + 1);
     if (key == kDataFile || key == "datafile") {
@@ -109,6 +128,41 @@ void set_data(ImageHeader& header, const Entries& entries, std::uint64_t header_
   if (endian.empty() && size_of(header.type) > 1) throw InvalidInput(name + ": the header has no line \"endian\"");
 }
 
+/// Segments that overlap are in layers, along an axis in front of the others. Takes that out of `sizes`.
+void take_layers(ImageHeader& header, std::vector<double>& sizes, const std::string& kinds, const std::string& name) {
+  if (sizes.size() != 4 || header.segments.empty() || !kinds.starts_with("list")) return;
+  if (!(sizes[0] >= 1 && sizes[0] <= ImageHeader::kMostLayers) || sizes[0] != std::floor(sizes[0]))
+    throw InvalidInput(name + ": the header gives no valid number of layers of segments");
+  header.layers = static_cast<std::uint64_t>(sizes[0]);
+  sizes.erase(sizes.begin());
+}
+
+/// The segments that a file of 3D Slicer names. In older ones each is a layer, with the value 1.
+std::vector<ImageSegment> segments_of(const std::map<std::uint64_t, Entries>& lines, const std::string& name) {
+  std::vector<ImageSegment> segments;
+  for (const auto& [number, entries] : lines) {
+    const auto integer = [&](const char* key, double otherwise) {
+      const std::vector<double> numbers = numbers_in(optional(entries, key), name, key);
+      if (numbers.empty()) return otherwise;
+      if (numbers.size() > 1 || !(std::abs(numbers[0]) <= 1e9) || numbers[0] != std::floor(numbers[0]))
+        throw InvalidInput(name + ": segment " + std::to_string(number) + ": its " + key + " is not a number");
+      return numbers[0];
+    };
+    const double layer = integer("Layer", static_cast<double>(segments.size()));
+    if (layer < 0) throw InvalidInput(name + ": segment " + std::to_string(number) + ": its Layer is negative");
+    segments.push_back({optional(entries, "Name"), integer("LabelValue", 1), static_cast<std::size_t>(layer)});
+  }
+  return segments;
+}
+
+void check_layers(const ImageHeader& header, const std::string& name) {
+  for (const ImageSegment& segment : header.segments) {
+    if (header.layers > 1 && segment.layer >= header.layers)
+      throw InvalidInput(name + ": the segment " + cited(segment.name) + " is in layer " +
+                         std::to_string(segment.layer) + "; there are " + std::to_string(header.layers));
+  }
+}
+
 /// From the file's frame to LPS.
 Eigen::DiagonalMatrix<double, 3> frame_of(ImageHeader& header, const std::string& space, const std::string& name) {
   if (space == "left-posterior-superior" || space == "lps") return {1, 1, 1};
@@ -129,6 +183,7 @@ void set_place(ImageHeader& header, const Entries& entries, const std::string& n
     throw Unsupported(name + ": space units " + cited(units) + " are not supported; store the image in mm");
   std::string directions = optional(entries, "space directions");
   while (directions.ends_with(" none")) directions.resize(directions.size() - 5);
+  if (header.layers > 1 && directions.starts_with("none ")) directions.erase(0, 5);
   if (!directions.empty()) {
     const std::vector<double> numbers = numbers_in(directions, name, "space directions");
     if (numbers.size() != 9) throw InvalidInput(name + ": the header's \"space directions\" are not three vectors");
@@ -151,12 +206,18 @@ void set_place(ImageHeader& header, const Entries& entries, const std::string& n
 ImageHeader parse_nrrd_header(std::string_view bytes, const std::string& name) {
   ImageHeader header;
   std::uint64_t header_end = 0;
-  const Entries entries = entries_of(bytes, name, header_end);
-  const std::vector<double> sizes = numbers_in(required(entries, "sizes", name), name, "sizes");
+  std::map<std::uint64_t, Entries> segments;
+  const Entries entries = entries_of(bytes, name, header_end, segments);
+  header.segments = segments_of(segments, name);
+  std::vector<double> sizes = numbers_in(required(entries, "sizes", name), name, "sizes");
   const std::vector<double> dimension = numbers_in(required(entries, "dimension", name), name, "dimension");
   if (dimension.size() != 1 || dimension[0] != static_cast<double>(sizes.size()))
     throw InvalidInput(name + ": the header's \"dimension\" and \"sizes\" contradict each other");
+  take_layers(header, sizes, optional(entries, "kinds"), name);
+  check_layers(header, name);
   set_size(header, sizes, name);
+  if (static_cast<double>(header.voxels()) * static_cast<double>(header.layers) > 1e17)
+    throw InvalidInput(name + ": the header claims more than 10^17 numbers; it is broken");
   header.type = number_type(required(entries, "type", name), name);
   set_data(header, entries, header_end, name);
   set_place(header, entries, name);

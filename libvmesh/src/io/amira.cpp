@@ -11,6 +11,7 @@
 
 #include "edge_radii.h"
 #include "formats.h"
+#include "radius_array.h"
 #include "text.h"
 
 namespace vmesh::io {
@@ -329,7 +330,7 @@ class AmiraReader {
       if (!wanted->is_there) fail("the data of " + wanted->name + " are not there; the file is cut off");
     }
     if (radii_ != nullptr && !radii_->is_there) fail("the data of " + one_line(radii_->name) + " are not there");
-    scale_ = radii_ != nullptr && lower(radii_->name).find("diam") != std::string::npos ? 0.5 : 1.0;
+    if (radii_ != nullptr) array_.emplace(radii_->name);
     vertex_node_.assign(vertices_->values.size() / 3, kNone);
     const bool per_edge = radii_ != nullptr && radii_->location == "edge";
     std::size_t first = 0;
@@ -344,6 +345,7 @@ class AmiraReader {
     const auto unused = std::count(vertex_node_.begin(), vertex_node_.end(), kNone);
     if (unused > 0)
       raw_.warnings.push_back(raw_.source + ": " + std::to_string(unused) + " vertices belong to no edge; left out");
+    if (array_) array_->note(raw_);
     if (radii_ != nullptr && lower(radii_->name) == "thickness")
       raw_.warnings.push_back(raw_.source + ": " + one_line(radii_->name) + " is taken as the radius, as in Amira");
     if (per_edge) set_radii_of_segments(raw_, segment_radii_);
@@ -354,7 +356,7 @@ class AmiraReader {
   }
 
   double point_radius(std::size_t point) const {
-    return radii_ != nullptr && radii_->location == "point" ? scale_ * radii_->values[point] : 0;
+    return radii_ != nullptr && radii_->location == "point" ? array_->radius(radii_->values[point]) : 0;
   }
 
   /// The node of vertex number `end` of the edge; its radius is the largest that an edge gives it.
@@ -386,7 +388,7 @@ class AmiraReader {
     const auto join = [&](Index node) {
       raw_.segments.push_back({before, node});
       raw_.segment_numbers.push_back(edge);
-      if (per_edge) segment_radii_.push_back(scale_ * radii_->values[edge]);
+      if (per_edge) segment_radii_.push_back(array_->radius(radii_->values[edge]));
       before = node;
     };
     for (std::size_t point = first; point < end; ++point) {
@@ -411,8 +413,8 @@ class AmiraReader {
   Declaration *vertices_ = nullptr, *edges_ = nullptr, *sizes_ = nullptr, *points_ = nullptr, *radii_ = nullptr;
   Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  ///< with shift_, the TransformationMatrix
   Vec3 shift_ = Vec3::Zero();
-  double factor_ = 1;  ///< of lengths, under axes_
-  double scale_ = 1;   ///< factor from radii_ to radii
+  double factor_ = 1;                 ///< of lengths, under axes_
+  std::optional<RadiusArray> array_;  ///< what radii_ holds
   std::vector<Index> vertex_node_;
   std::vector<double> segment_radii_;
 };

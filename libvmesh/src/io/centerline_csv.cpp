@@ -1,11 +1,13 @@
 #include <algorithm>
-#include <array>
+#include <optional>
 #include <ostream>
 #include <unordered_map>
 
 #include "comments.h"
+#include "edge_radii.h"
 #include "formats.h"
 #include "node_id.h"
+#include "radius_array.h"
 #include "text.h"
 
 namespace vmesh {
@@ -24,12 +26,12 @@ class CsvTable {
     throw InvalidInput(source_ + ": line " + std::to_string(lines_.number()) + ": " + what);
   }
 
-  template <std::size_t N>
-  void read_header(const std::array<std::string_view, N>& names, LengthUnit& unit, Space& space) {
-    const std::string wanted = "the header must name the columns " + join(names);
+  /// `wanted`: the columns that there should be, for messages.
+  void read_header(const std::string& wanted, LengthUnit& unit, Space& space) {
+    wanted_ = "the header must name the columns " + wanted;
     std::string_view line;
     do {
-      if (!lines_.next(line)) throw InvalidInput(source_ + ": it contains no table; " + wanted);
+      if (!lines_.next(line)) throw InvalidInput(source_ + ": it contains no table; " + wanted_);
       if (trim(line).starts_with('#')) read_tags(line, unit, space);
     } while (is_skipped(line));
     for (const char separator : {';', '\t'}) {
@@ -37,13 +39,32 @@ class CsvTable {
         separator_ = separator;
     }
     split(line);
-    for (const auto name : names) {
-      std::size_t column = 0;
-      while (column < fields_.size() && lower(fields_[column]) != name) ++column;
-      if (column == fields_.size()) fail("there is no column " + std::string(name) + "; " + wanted);
-      columns_.push_back(column);
+    names_.reserve(fields_.size());
+    for (const auto name : fields_) names_.push_back(lower(name));
+  }
+
+  /// The names of all columns, in lower case.
+  const std::vector<std::string>& names() const { return names_; }
+
+  /// Whether there is a column of that name, in any case; it becomes the next of those wanted.
+  bool find(const std::string& name) {
+    const auto found = std::ranges::find(names_, lower(name));
+    if (found == names_.end()) return false;
+    columns_.push_back(static_cast<std::size_t>(found - names_.begin()));
+    return true;
+  }
+
+  /// The columns of the first of these lists of which the table has the second column.
+  void need_one_of(const std::vector<std::vector<std::string>>& lists) {
+    const auto has = [this](const auto& list) { return std::ranges::find(names_, list[1]) != names_.end(); };
+    const auto there = std::ranges::find_if(lists, has);
+    for (const std::string& name : there == lists.end() ? lists.front() : *there) {
+      if (!find(name)) fail_without(name);
     }
-    width_ = fields_.size();
+  }
+
+  [[noreturn]] void fail_without(const std::string& name, const std::string& hint = {}) const {
+    fail("there is no column " + one_line(name) + "; " + wanted_ + hint);
   }
 
   bool next_row() {
@@ -52,8 +73,8 @@ class CsvTable {
       if (!lines_.next(line)) return false;
       split(line);
     } while (is_skipped(line) || is_empty_row());
-    if (fields_.size() != width_) {
-      fail("it has " + std::to_string(fields_.size()) + " columns, the header has " + std::to_string(width_));
+    if (fields_.size() != names_.size()) {
+      fail("it has " + std::to_string(fields_.size()) + " columns, the header has " + std::to_string(names_.size()));
     }
     return true;
   }
@@ -115,19 +136,112 @@ class CsvTable {
     return text.empty() || text.front() == '#';
   }
 
-  template <std::size_t N>
-  static std::string join(const std::array<std::string_view, N>& names) {
-    std::string text;
-    for (const auto name : names) text.append(text.empty() ? "" : ",").append(name);
-    return text;
-  }
-
   LineReader lines_;
   char separator_ = ',';
   std::string source_;
+  std::string wanted_;
+  std::vector<std::string> names_;
   std::vector<std::string_view> fields_;
   std::vector<std::size_t> columns_;
-  std::size_t width_ = 0;
+};
+
+/// Reads the two tables, under our names of columns or Voreen's.
+class CsvPairReader {
+ public:
+  CsvPairReader(std::string_view nodes, std::string_view segments, const std::string& source,
+                const std::string& second_source, const CenterlineReadOptions& options)
+      : options_(options),
+        nodes_(nodes, source),
+        has_segments_(!trim(segments).empty()),
+        segments_(segments, second_source) {
+    raw_.source = source;
+    raw_.node_word = "line";
+    raw_.segment_word = "line of the segments file";
+  }
+
+  RawCenterline run() {
+    nodes_.read_header("id,x,y,z,radius", raw_.unit, raw_.space);
+    nodes_.need_one_of({{"id", "x", "y", "z"}, {"id", "pos_x", "pos_y", "pos_z"}});
+    if (has_segments_) {
+      segments_.read_header("a,b", raw_.unit, raw_.space);
+      segments_.need_one_of({{"a", "b"}, {"node1id", "node2id"}});
+    }
+    find_radius();
+    read_nodes();
+    if (has_segments_) read_segments();
+    if (of_segments_) set_radii_of_segments(raw_, segment_radii_);
+    return std::move(raw_);
+  }
+
+ private:
+  /// In the table of nodes, or else in that of segments.
+  void find_radius() {
+    const std::string& wanted = options_.radius_array;
+    const auto take = [&](CsvTable& table, const std::string& name) {
+      if (!table.find(name)) return false;
+      (&table == &nodes_ ? of_nodes_ : of_segments_).emplace(name).note(raw_);
+      return true;
+    };
+    if (take(nodes_, wanted.empty() ? "radius" : wanted)) return;
+    if (take(segments_, wanted.empty() ? "avgRadiusAvg" : wanted)) return;
+    if (options_.radius && wanted.empty()) return;
+    if (const auto area = only_area(nodes_.names()); area && wanted.empty()) {
+      take(nodes_, *area);
+      return;
+    }
+    nodes_.fail_without(wanted.empty() ? "radius" : wanted,
+                        "; name the one that holds the radius with --radius-array, or give one radius for all with "
+                        "--radius");
+  }
+
+  void read_nodes() {
+    while (nodes_.next_row()) {
+      const std::string id = nodes_.id(0);
+      if (!index_of_.try_emplace(id, static_cast<Index>(raw_.nodes.size())).second)
+        nodes_.fail("the id " + shown_id(id) + " was given before; ids must be unique");
+      const double radius = of_nodes_ ? of_nodes_->radius(nodes_.real(4)) : 0;
+      raw_.nodes.push_back({{nodes_.real(1), nodes_.real(2), nodes_.real(3)}, radius});
+      raw_.node_numbers.push_back(nodes_.line_number());
+    }
+  }
+
+  void read_segments() {
+    while (segments_.next_row()) {
+      const Index a = end(0);
+      raw_.segments.push_back({a, end(1)});
+      raw_.segment_numbers.push_back(segments_.line_number());
+      if (of_segments_) segment_radii_.push_back(segment_radius());
+    }
+    if (unmeasured_ > 0)
+      raw_.warnings.push_back(raw_.source + ": " + std::to_string(unmeasured_) +
+                              " segments have the radius -1, which stands for none");
+  }
+
+  double segment_radius() {
+    const double value = segments_.real(2);
+    constexpr double kUnmeasured = -1;  // by Voreen
+    if (value == kUnmeasured) ++unmeasured_;
+    if (!(value >= 0 || value == kUnmeasured))
+      segments_.fail(cite(segments_.field(2)) + " is not a radius; it must be 0 or more");
+    return of_segments_->radius(std::max(value, 0.0));
+  }
+
+  Index end(std::size_t column) const {
+    const auto found = index_of_.find(segments_.id(column));
+    if (found == index_of_.end())
+      segments_.fail("there is no node with the id " + shown_id(segments_.id(column)) + " in " + raw_.source);
+    return found->second;
+  }
+
+  const CenterlineReadOptions& options_;
+  CsvTable nodes_;
+  bool has_segments_;
+  CsvTable segments_;
+  RawCenterline raw_;
+  std::optional<RadiusArray> of_nodes_, of_segments_;
+  std::vector<double> segment_radii_;
+  std::size_t unmeasured_ = 0;
+  std::unordered_map<std::string, Index> index_of_;
 };
 
 }  // namespace
@@ -138,37 +252,16 @@ std::filesystem::path second_csv_file(const std::filesystem::path& path) {
   return csv_segments_path(path);
 }
 
-RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source) {
-  RawCenterline raw;
-  raw.source = source;
-  raw.node_word = "line";
-  raw.segment_word = "line of the segments file";
-  CsvTable table(nodes, source);
-  table.read_header(std::array<std::string_view, 5>{"id", "x", "y", "z", "radius"}, raw.unit, raw.space);
-  std::unordered_map<std::string, Index> index_of;
-  while (table.next_row()) {
-    const std::string id = table.id(0);
-    if (!index_of.try_emplace(id, static_cast<Index>(raw.nodes.size())).second) {
-      table.fail("the id " + shown_id(id) + " was given before; ids must be unique");
-    }
-    raw.nodes.push_back({{table.real(1), table.real(2), table.real(3)}, table.real(4)});
-    raw.node_numbers.push_back(table.line_number());
-  }
-  if (trim(segments).empty()) return raw;
-  CsvTable pairs(segments, csv_segments_path(source).string());
-  pairs.read_header(std::array<std::string_view, 2>{"a", "b"}, raw.unit, raw.space);
-  while (pairs.next_row()) {
-    const auto end = [&](std::size_t i) {
-      const auto found = index_of.find(pairs.id(i));
-      if (found == index_of.end())
-        pairs.fail("there is no node with the id " + shown_id(pairs.id(i)) + " in " + source);
-      return found->second;
-    };
-    const Index a = end(0);
-    raw.segments.push_back({a, end(1)});
-    raw.segment_numbers.push_back(pairs.line_number());
-  }
-  return raw;
+std::filesystem::path voreens_second_file(const std::filesystem::path& path) {
+  std::string name = path.filename().string();
+  const std::size_t at = name.rfind("nodes");
+  if (at == std::string::npos) return {};
+  return std::filesystem::path(path).replace_filename(name.replace(at, 5, "edges"));
+}
+
+RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source,
+                                   const std::string& second_source, const CenterlineReadOptions& options) {
+  return CsvPairReader(nodes, segments, source, second_source, options).run();
 }
 
 void write_centerline_csv(std::ostream& nodes, std::ostream& segments, const Centerline& centerline,

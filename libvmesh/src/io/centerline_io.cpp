@@ -33,11 +33,20 @@ std::vector<std::string> options_without_effect(const CenterlineReadOptions& opt
   std::vector<std::string> given;
   if (!options.radius_array.empty()) given.push_back("radius-array");
   if (options.voxel_size) given.push_back("voxel-size");
-  if (options.radius && paths.empty()) given.push_back("radius");  // which acts on every format
+  if (options.radius && paths.empty()) given.push_back("radius");  // which act on every format
+  if (options.tolerance && paths.empty()) given.push_back("tolerance");
   for (const std::filesystem::path& path : paths) {
     for (const std::string& option : centerline_format(path).options) std::erase(given, option);
   }
   return given;
+}
+
+std::filesystem::path second_file_to_read(const CenterlineFormat& format, const std::filesystem::path& path) {
+  const std::filesystem::path second = format.second_file(path);
+  const std::filesystem::path others = format.others_second_file ? format.others_second_file(path) : "";
+  std::error_code error;
+  return !others.empty() && std::filesystem::exists(others, error) && !std::filesystem::exists(second, error) ? others
+                                                                                                              : second;
 }
 
 namespace {
@@ -47,9 +56,9 @@ RawCenterline read_file_of_centerline(const std::filesystem::path& path, const C
   if (format.read) return format.read(path);
   if (format.parse) return format.parse(read_file(path), path.string(), options);
   if (!format.parse_pair) refuse_without(format.needs, path);
-  const std::filesystem::path second = format.second_file(path);
+  const std::filesystem::path second = second_file_to_read(format, path);
   const std::string content = read_file(path);
-  return format.parse_pair(content, read_file(second), path.string());
+  return format.parse_pair(content, read_file(second), path.string(), second.string(), options);
 }
 
 }  // namespace
@@ -57,7 +66,8 @@ RawCenterline read_file_of_centerline(const std::filesystem::path& path, const C
 RawCenterline parse_centerline(std::string_view content, const CenterlineFormat& format, const std::string& source,
                                const CenterlineReadOptions& options, std::string_view csv_segments) {
   if (format.parse) return format.parse(content, source, options);
-  if (format.parse_pair) return format.parse_pair(content, csv_segments, source);
+  if (format.parse_pair)
+    return format.parse_pair(content, csv_segments, source, csv_segments_path(source).string(), options);
   throw Unsupported(source + ": files of this kind are read by their names only");
 }
 
@@ -95,6 +105,7 @@ RawCenterline convert_read(RawCenterline raw, const CenterlineReadOptions& optio
                            std::optional<Space> space, std::vector<std::string>& warnings) {
   warnings.insert(warnings.end(), raw.warnings.begin(), raw.warnings.end());
   raw.warnings.clear();
+  if (options.tolerance) raw.join_ends = *options.tolerance;
   const bool may_be_wrong = !unit && raw.unit != LengthUnit::um && raw.unit != LengthUnit::nm;
   raw = convert_to_internal(std::move(raw), unit, space, warnings);
   if (may_be_wrong) {

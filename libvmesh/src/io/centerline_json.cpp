@@ -4,6 +4,7 @@
 
 #include "comments.h"
 #include "formats.h"
+#include "graph_files.h"
 #include "slicer_markups.h"
 #include "text.h"
 
@@ -199,6 +200,7 @@ RawCenterline parse_centerline_json(std::string_view content, const std::string&
                        ": this is not valid JSON: " + one_line(std::string_view(error.what()).substr(0, kMostShown)));
   }
   if (document.is_object() && document.contains("markups")) return read_markups(document, source, options);
+  if (is_node_link(document)) return read_node_link(document, source, options);
   if (!options.radius_array.empty())
     throw InvalidInput(source + ": radii are the fourth numbers of \"nodes\"; --radius-array does not apply");
   return JsonReader(document, source).run();

@@ -9,10 +9,11 @@ namespace vmesh::io {
 
 CenterlineFormat::Parse parse_swc, parse_vmv, parse_centerline_json, parse_centerline_vtp, parse_centerline_vtu,
     parse_centerline_vtk, parse_contours, parse_path, parse_gxl, parse_amira, parse_centerline_obj,
-    parse_centerline_ply, parse_network;
+    parse_centerline_ply, parse_network, parse_graphml, parse_gexf, parse_tube_scene;
 bool holds_obj_lines(std::string_view content);
 bool holds_ply_edges(std::string_view content);
-RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source);
+RawCenterline parse_centerline_csv(std::string_view nodes, std::string_view segments, const std::string& source,
+                                   const std::string& second_source, const CenterlineReadOptions& options);
 RawCenterline read_hdf5_network(const std::filesystem::path& path);
 
 CenterlineFormat::Write write_swc, write_centerline_json, write_centerline_vtp;
@@ -20,10 +21,17 @@ void write_centerline_csv(std::ostream& nodes, std::ostream& segments, const Cen
                           const CenterlineMetadata& metadata);
 /// csv_segments_path(); throws InvalidInput if `path` names a segments file.
 std::filesystem::path second_csv_file(const std::filesystem::path& path);
+/// Of Voreen: "edges" instead of "nodes" in the name; empty if that is not in it.
+std::filesystem::path voreens_second_file(const std::filesystem::path& path);
 
-SurfaceFormat::Parse parse_off, parse_obj, parse_stl, parse_ply, parse_surface_vtp, parse_surface_vtk;
+/// How our GLB files tell their frame; by this they are known.
+constexpr const char* kGlbFrame = "metres; x to the left, y superior, z anterior; from LPS in mm: (x, z, -y) / 1000";
+
+SurfaceFormat::Parse parse_off, parse_obj, parse_stl, parse_ply, parse_surface_vtp, parse_surface_vtk, parse_glb;
 /// Through assimp.
 LoadedSurface read_scene(const std::filesystem::path& path);
+/// Ours by ourselves, others as a scene.
+LoadedSurface read_glb(const std::filesystem::path& path);
 
 SurfaceFormat::Write write_off, write_obj, write_stl, write_ply, write_glb, write_surface_vtp;
 

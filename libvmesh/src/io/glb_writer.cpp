@@ -56,7 +56,7 @@ class GlbWriter {
                                      {"inputSHA256", &metadata.input_sha256}}) {
       if (!value->empty()) extras[key] = one_line(*value);
     }
-    extras["frame"] = "metres; x to the left, y superior, z anterior; from LPS in mm: (x, z, -y) / 1000";
+    extras["frame"] = kGlbFrame;
     json_["asset"]["extras"] = std::move(extras);
     Vec3 low = mesh.vertices.front(), high = low;
     for (const Vec3& p : mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);

@@ -5,6 +5,7 @@
 #include "vmesh/core/error.h"
 
 #include "edge_radii.h"
+#include "radius_array.h"
 #include "text.h"
 
 namespace vmesh::io {
@@ -66,9 +67,19 @@ class Converter {
   std::vector<Index> node_of_;
 };
 
-std::vector<std::string> radius_names(const std::string& wanted) {
-  if (!wanted.empty()) return {wanted};
-  return {"MaximumInscribedSphereRadius", "Radius", "radius"};
+/// The names under which the radius is looked for.
+std::vector<std::string> radius_names(const Attributes& attributes, const CenterlineReadOptions& options,
+                                      std::vector<std::string> usual) {
+  if (!options.radius_array.empty()) return {options.radius_array};
+  if (options.radius) return usual;
+  std::vector<std::string> present;
+  for (const ScalarArrays* arrays : {&attributes.point, &attributes.cell}) {
+    for (const auto& [name, values] : *arrays) {
+      if (!values.empty()) present.push_back(name);
+    }
+  }
+  if (const auto area = only_area(present)) usual.push_back(*area);
+  return usual;
 }
 
 void name_arrays(const ScalarArrays& arrays, std::string& names) {
@@ -81,26 +92,23 @@ void name_arrays(const ScalarArrays& arrays, std::string& names) {
 }
 
 [[noreturn]] void fail_without_radius(const std::string& source, const std::string& wanted,
-                                      const Attributes& attributes) {
+                                      const std::vector<std::string>& usual, const Attributes& attributes) {
   std::string of_points, of_cells;
   name_arrays(attributes.point, of_points);
   name_arrays(attributes.cell, of_cells);
-  throw InvalidInput(source + ": there is no array " +
-                     (wanted.empty() ? "MaximumInscribedSphereRadius, Radius or radius" : one_line(wanted)) +
+  throw InvalidInput(source + ": there is no array " + (wanted.empty() ? listed(usual) : one_line(wanted)) +
                      " of points or lines; it has " + (of_points.empty() ? "none" : of_points) + " of points and " +
                      (of_cells.empty() ? "none" : of_cells) +
                      " of lines; name the one that holds the radius with --radius-array, or give one radius for all "
                      "with --radius");
 }
 
-/// Diameters are halved.
-double scale_of(const std::string& name) { return lower(name).find("diam") != std::string::npos ? 0.5 : 1; }
-
 /// The radius array with its name; null if there is none.
 const std::pair<const std::string, std::vector<double>>* find_radius(const ScalarArrays& arrays,
-                                                                     const std::string& wanted, std::size_t count,
-                                                                     const std::string& source, const char* element) {
-  for (const std::string& name : radius_names(wanted)) {
+                                                                     const std::vector<std::string>& names,
+                                                                     std::size_t count, const std::string& source,
+                                                                     const char* element) {
+  for (const std::string& name : names) {
     const auto found = arrays.find(name);
     if (found == arrays.end()) continue;
     if (found->second.size() == count) return &*found;
@@ -111,40 +119,50 @@ const std::pair<const std::string, std::vector<double>>* find_radius(const Scala
 }
 
 /// Radii of segments from those of their lines.
-std::vector<double> radii_of_segments(const RawCenterline& raw, const std::vector<double>& of_cells, double scale) {
+std::vector<double> radii_of_segments(const RawCenterline& raw, const std::vector<double>& of_cells,
+                                      const RadiusArray& array) {
   std::vector<double> radii;
-  for (const std::uint64_t cell : raw.segment_numbers) radii.push_back(scale * of_cells[cell]);
+  for (const std::uint64_t cell : raw.segment_numbers) radii.push_back(array.radius(of_cells[cell]));
   return radii;
 }
 
 }  // namespace
 
+const std::vector<std::string>& usual_radii() {
+  static const std::vector<std::string> names = {"MaximumInscribedSphereRadius", "Radius", "radius"};
+  return names;
+}
+
 RawCenterline to_raw_centerline(PolyLines data, const std::string& source, const Attributes& attributes,
-                                const CenterlineReadOptions& options) {
-  const std::string& wanted = options.radius_array;
-  if (const auto* radius = find_radius(attributes.point, wanted, data.points.size(), source, "point")) {
-    const double scale = scale_of(radius->first);
-    for (std::size_t i = 0; i < data.points.size(); ++i) data.points[i].radius = scale * radius->second[i];
-    return Converter(data, source).run();
+                                const CenterlineReadOptions& options, const std::vector<std::string>& usual) {
+  const std::vector<std::string> names = radius_names(attributes, options, usual);
+  if (const auto* radius = find_radius(attributes.point, names, data.points.size(), source, "point")) {
+    const RadiusArray array(radius->first);
+    for (std::size_t i = 0; i < data.points.size(); ++i) data.points[i].radius = array.radius(radius->second[i]);
+    RawCenterline raw = Converter(data, source).run();
+    array.note(raw);
+    return raw;
   }
   std::size_t cells = 0;
   for (const auto& [name, values] : attributes.cell) cells = std::max(cells, values.size());
   const std::size_t least = data.vertices.size() + data.lines.size();
-  if (const auto* radius = find_radius(attributes.cell, wanted, std::max(cells, least), source, "cell")) {
-    const double scale = scale_of(radius->first);
+  if (const auto* radius = find_radius(attributes.cell, names, std::max(cells, least), source, "cell")) {
+    const RadiusArray array(radius->first);
     // A vertex is a sphere of its own, a line a vessel of one radius.
     for (std::size_t c = 0; c < data.vertices.size(); ++c) {
-      for (const Index point : data.vertices[c]) data.points[point].radius = scale * radius->second[c];
+      for (const Index point : data.vertices[c]) data.points[point].radius = array.radius(radius->second[c]);
     }
     RawCenterline raw = Converter(data, source).run();
     const std::vector<CenterlineNode> before = raw.nodes;
-    set_radii_of_segments(raw, radii_of_segments(raw, radius->second, scale));
+    set_radii_of_segments(raw, radii_of_segments(raw, radius->second, array));
     for (std::size_t n = 0; n < before.size(); ++n) {
       if (raw.nodes[n].radius == 0) raw.nodes[n].radius = before[n].radius;
     }
+    array.note(raw);
     return raw;
   }
-  if (!options.radius || !wanted.empty()) fail_without_radius(source, wanted, attributes);
+  if (!options.radius || !options.radius_array.empty())
+    fail_without_radius(source, options.radius_array, usual, attributes);
   return Converter(data, source).run();
 }
 

@@ -26,11 +26,15 @@ struct Attributes {
   const ScalarArrays& cell;
 };
 
+/// Names under which files have the radius.
+const std::vector<std::string>& usual_radii();
+
 /// Leaves out points without a cell and lines of fewer than two points, with a warning. Radii are those of points, or
-/// else of cells, under the name in `options` or a usual one; 0 if the options give one for all instead. Throws
-/// InvalidInput if nothing remains, or if there is no radius, listing the available names.
+/// else of cells, under the name in `options` or a usual one, or the only area; 0 if the options give one for all
+/// instead. Throws InvalidInput if nothing remains, or if there is no radius, listing the available names.
 RawCenterline to_raw_centerline(PolyLines data, const std::string& source, const Attributes& attributes,
-                                const CenterlineReadOptions& options);
+                                const CenterlineReadOptions& options,
+                                const std::vector<std::string>& usual = usual_radii());
 
 /// The same of lines over the vertices of a surface without faces, with its attributes, unit and frame.
 RawCenterline to_raw_centerline(LoadedSurface points, std::vector<std::vector<Index>> lines, const std::string& source,

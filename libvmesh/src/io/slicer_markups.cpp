@@ -1,11 +1,19 @@
 #include "slicer_markups.h"
 
+#include "radius_array.h"
 #include "text.h"
 
 namespace vmesh::io {
 namespace {
 
 using Json = nlohmann::json;
+
+/// A measurement of every control point.
+struct PointMeasurement {
+  const Json& values;
+  RadiusArray array;
+  double units = 1;  ///< of the coordinates, in one of the radii
+};
 
 /// The member as text, or empty.
 std::string text_of(const Json& object, const char* key) {
@@ -50,7 +58,7 @@ class MarkupsReader {
     read_frame(curve, m);
     const auto points = curve.find("controlPoints");
     if (points == curve.end() || !points->is_array()) fail(name(m) + ": \"controlPoints\" must be an array");
-    const Json* radii = radii_of(curve, m, points->size());
+    const auto radii = radii_of(curve, m, points->size());
     const auto first_segment = static_cast<Index>(raw_.segments.size());
     Index before = kNone;
     for (std::size_t p = 0; p < points->size(); ++p) {
@@ -59,7 +67,7 @@ class MarkupsReader {
       if (!point.is_object()) fail(place + ": it must be an object");
       const std::string status = lower(text_of(point, "positionStatus"));
       if (status == "undefined" || status == "preview") continue;
-      raw_.nodes.push_back({position(point, place), radii == nullptr ? 0.0 : radius((*radii)[p], place)});
+      raw_.nodes.push_back({position(point, place), radii ? radius(*radii, p, place) : 0});
       raw_.node_numbers.push_back(p);
       const auto node = static_cast<Index>(raw_.nodes.size() - 1);
       if (before != kNone) {
@@ -84,20 +92,22 @@ class MarkupsReader {
     std::string written_unit = text_of(curve, "coordinateUnits");
     if (const auto units = curve.find("coordinateUnits"); units != curve.end() && units->is_array() && !units->empty())
       written_unit = units->front().is_string() ? units->front().get<std::string>() : "";
-    LengthUnit unit = LengthUnit::mm;  // Slicer's default
-    if (!written_unit.empty()) {
-      const auto known = parse_length_unit(written_unit);
-      if (!known) fail(name(m) + ": the unit " + cite(written_unit) + " is not known; use nm, um, mm, cm or m");
-      unit = *known;
-    }
+    const LengthUnit unit = written_unit.empty() ? LengthUnit::mm : known_unit(written_unit, name(m));
     if (!raw_.nodes.empty() && (raw_.space != space || raw_.unit != unit))
       fail(name(m) + ": its frame or unit is not that of the curves before; save them in one");
     raw_.space = space;
     raw_.unit = unit;
   }
 
-  /// The list of radii, one per control point; null when there is none and none is needed.
-  const Json* radii_of(const Json& curve, std::size_t m, std::size_t count) {
+  LengthUnit known_unit(const std::string& written, const std::string& place) const {
+    const auto known = parse_length_unit(written);
+    if (!known || *known == LengthUnit::unknown)
+      fail(place + ": the unit " + cite(written) + " is not known; use nm, um, mm, cm or m");
+    return *known;
+  }
+
+  /// The measurement of radii; nullopt when there is none and none is needed.
+  std::optional<PointMeasurement> radii_of(const Json& curve, std::size_t m, std::size_t count) {
     const std::string wanted = lower(options_.radius_array.empty() ? "radius" : options_.radius_array);
     const auto measurements = curve.find("measurements");
     if (measurements != curve.end() && measurements->is_array()) {
@@ -106,10 +116,19 @@ class MarkupsReader {
         const auto values = measurement.find("controlPointValues");
         if (values == measurement.end() || !values->is_array() || values->size() != count)
           fail(name(m) + ": the measurement " + cite(wanted) + " must have controlPointValues, one for every point");
-        return &*values;
+        PointMeasurement found{*values, RadiusArray(text_of(measurement, "name"))};
+        std::string unit = text_of(measurement, "units");
+        for (const std::string_view square : {"\xC2\xB2", "2", "^"}) {  // of areas: mm2, mm^2
+          if (unit.ends_with(square)) unit.resize(unit.size() - square.size());
+        }
+        if (!unit.empty())
+          found.units =
+              millimetres_per(known_unit(unit, name(m) + ", measurement " + cite(wanted))) / millimetres_per(raw_.unit);
+        if (raw_.radius_arrays.empty()) found.array.note(raw_);
+        return found;
       }
     }
-    if (options_.radius) return nullptr;
+    if (options_.radius) return std::nullopt;
     fail(name(m) + ": there is no measurement " + cite(wanted) +
          " of its control points; give all of them one with --radius, or save the curves of Extract Centerline");
   }
@@ -126,9 +145,10 @@ class MarkupsReader {
     return result;
   }
 
-  double radius(const Json& value, const std::string& place) const {
+  double radius(const PointMeasurement& radii, std::size_t point, const std::string& place) const {
+    const Json& value = radii.values[point];
     if (!value.is_number()) fail(place + ": its radius is not a number");
-    return value.get<double>();
+    return radii.units * radii.array.radius(value.get<double>());
   }
 
   const CenterlineReadOptions& options_;

@@ -131,8 +131,18 @@ std::string list_of_values(const std::set<float>& values) {
   return text.str();
 }
 
+ImageReadOptions read_options_of(const ReferenceOptions& options) {
+  return {options.segments, options.labels, options.voxel_size};
+}
+
+ReferenceOptions with_labels(ReferenceOptions options, const std::vector<ImageSegment>& segments) {
+  for (const double value : values_of(options.segments, segments)) options.labels.push_back(value);
+  options.segments.clear();
+  return options;
+}
+
 void check(const ReferenceOptions& options) {
-  if (!options.labels.empty() && options.threshold)
+  if (!(options.labels.empty() && options.segments.empty()) && options.threshold)
     throw InvalidInput("a label and a threshold exclude each other; give one");
   if (!(options.spacing >= 0) || !(options.smooth >= 0)) throw InvalidInput("spacing and smoothing are 0 or more mm");
 }
@@ -140,7 +150,7 @@ void check(const ReferenceOptions& options) {
 PreparedImage prepared_image(const LoadedImage& image, const ReferenceOptions& options) {
   check(options);
   check_memory_for_mask(image.image);
-  PreparedImage scene = scene_of(image, options);
+  PreparedImage scene = scene_of(image, with_labels(options, image.segments));
   scene.image = cropped_to(scene.image, scene.isovalue, margin_of(scene.image, options));
   check_memory_for_contour(scene.image, options);
   if (options.spacing > 0) {

@@ -138,7 +138,7 @@ VesselMask vessel_mask(const LoadedImage& loaded, const ReferenceOptions& option
   }
   check(options);
   const VoxelImage& image = loaded.image;
-  VesselMask mask(image, options);
+  VesselMask mask(image, with_labels(options, loaded.segments));
   const std::size_t slice = image.size[0] * image.size[1];
   for (std::size_t k = 0; k < image.size[2]; ++k) mask.add_slice(k, std::span(image.values).subspan(k * slice, slice));
   mask.finish();
@@ -149,7 +149,7 @@ VesselMask read_vessel_mask(const std::filesystem::path& path, const ReferenceOp
                             std::vector<std::string>& warnings) {
   check(options);
   if (options.spacing > 0 || options.smooth > 0) {
-    LoadedImage loaded = read_image(path);
+    LoadedImage loaded = read_image(path, read_options_of(options));
     warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
     return vessel_mask(loaded, options);
   }
@@ -158,9 +158,9 @@ VesselMask read_vessel_mask(const std::filesystem::path& path, const ReferenceOp
       path,
       [&](const ImageFrame& image) {
         warnings.insert(warnings.end(), image.warnings.begin(), image.warnings.end());
-        mask = std::make_unique<VesselMask>(image.frame, options);
+        mask = std::make_unique<VesselMask>(image.frame, with_labels(options, image.segments));
       },
-      [&](std::size_t k, std::span<const float> values) { mask->add_slice(k, values); });
+      [&](std::size_t k, std::span<const float> values) { mask->add_slice(k, values); }, read_options_of(options));
   mask->finish();
   return std::move(*mask);
 }

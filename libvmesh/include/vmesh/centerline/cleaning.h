@@ -43,6 +43,7 @@ struct CleaningAction {
     removed_duplicate_segment,  ///< a segment between nodes that are joined already
     repaired_radius,            ///< a zero radius was interpolated along the graph
     joined_gap,                 ///< a segment was added from a branch's loose end to its parent
+    joined_ends,                ///< a segment was added between two ends (RawCenterline::join_ends)
     dropped_end_section,        ///< a flat end is at no end of the centerline any more, or beside it
   };
   using Element = CenterlineProblem::Element;
@@ -69,7 +70,7 @@ struct CleanedCenterline {
   Centerline centerline;
   CleaningReport report;
   std::vector<Index> raw_node;     ///< for every node, the raw node it stems from (the first of those merged)
-  std::vector<Index> raw_segment;  ///< for every segment, the raw segment; kNone for a joined gap
+  std::vector<Index> raw_segment;  ///< for every segment, the raw segment; kNone for joined gaps and ends
   std::vector<EndSection> end_sections = {};  ///< ascending in their nodes, at most one per end; of `centerline`
 };
 

@@ -27,6 +27,14 @@ std::optional<Space> parse_space(std::string_view text);
 /// Millimetres in one unit. Throws InvalidInput for LengthUnit::unknown.
 double millimetres_per(LengthUnit unit);
 
+/// How near to each other ends of branches are joined: the larger of a distance and of a share of the radius at either.
+struct EndTolerance {
+  double mm = 0, radii = 0;
+};
+
+/// "0.5mm", or "0.1" for a tenth of the radius. Throws InvalidInput.
+EndTolerance parse_end_tolerance(std::string_view text);
+
 /// A centerline as read from a file, before it is checked or cleaned. Its content may be invalid in any way.
 struct RawCenterline {
   std::vector<CenterlineNode> nodes;  ///< in `unit` and `space`; radius 0 where unknown
@@ -43,11 +51,15 @@ struct RawCenterline {
   /// Branches in this kind of file may stop short of their parent (see CleaningOptions::join_gaps).
   bool loose_branches = false;
 
+  /// Ends of branches nearer than this are joined, as asked for; 0: none.
+  EndTolerance join_ends = {};
+
   std::string source;                          ///< file name for messages
   std::string node_word = "node";              ///< what a node is called in the file: "line", "point", "nodes row" ...
   std::string segment_word = "segment";        ///< the same for segments
   std::vector<std::uint64_t> node_numbers;     ///< number of every node under that word; empty: its index
   std::vector<std::uint64_t> segment_numbers;  ///< the same for segments
+  std::vector<std::string> radius_arrays;      ///< by name, what held the radii; empty if the format has one place
   std::vector<std::string> warnings;           ///< what the reader left out or assumed
 
   /// Where several files were merged, what each of them contributed, ascending; see merge(). Empty for a single file.

@@ -51,7 +51,8 @@ struct ImageSummary {
 
 /// Reads an image slice by slice, in the memory of a few slices and some megabytes (130 at most, for grey values spread
 /// over all powers of ten). Throws like read_image(), and Cancelled.
-ImageSummary summarize_image(const std::filesystem::path& path, const Progress& progress = {});
+ImageSummary summarize_image(const std::filesystem::path& path, const Progress& progress = {},
+                             const ImageReadOptions& options = {});
 
 /// The same of an image in memory.
 ImageSummary summarize_image(const LoadedImage& image);

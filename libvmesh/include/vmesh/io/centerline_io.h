@@ -19,12 +19,13 @@ struct CenterlineReadOptions;
 /// A format of centerlines: what it is called, what it can hold, and what reads and writes it.
 struct CenterlineFormat {
   std::string name;
-  std::vector<std::string> extensions;    ///< lower case, with their dots
-  std::vector<std::string> options = {};  ///< of CenterlineReadOptions, those that act on it besides `radius`
-  bool one_branch = false;                ///< a file holds one branch of a tree
-  bool trees_only = false;                ///< cannot hold loops
-  bool keeps_end_sections = false;        ///< has room for flat ends
-  OptionalPart needs = {};                ///< what `read` needs
+  std::vector<std::string> extensions;  ///< lower case, with their dots
+  std::vector<std::string> options =
+      {};                           ///< of CenterlineReadOptions, those that act on it besides `radius` and `tolerance`
+  bool one_branch = false;          ///< a file holds one branch of a tree
+  bool trees_only = false;          ///< cannot hold loops
+  bool keeps_end_sections = false;  ///< has room for flat ends
+  OptionalPart needs = {};          ///< what `read` needs
 
   /// From the content of a file that `source` names in messages.
   using Parse = RawCenterline(std::string_view content, const std::string& source,
@@ -35,13 +36,16 @@ struct CenterlineFormat {
   bool (*holds_lines)(std::string_view content) = nullptr;
   // The functions of the format, null where it has none. It is read by one of the first three.
   Parse* parse = nullptr;
-  RawCenterline (*parse_pair)(std::string_view content, std::string_view second, const std::string& source) = nullptr;
+  RawCenterline (*parse_pair)(std::string_view content, std::string_view second, const std::string& source,
+                              const std::string& second_source, const CenterlineReadOptions& options) = nullptr;
   RawCenterline (*read)(const std::filesystem::path& path) = nullptr;
   Write* write = nullptr;
   void (*write_pair)(std::ostream& out, std::ostream& second, const Centerline& centerline,
                      const CenterlineMetadata& metadata) = nullptr;
   /// Of formats of two files: the second one. Throws InvalidInput if `path` is the second.
   std::filesystem::path (*second_file)(const std::filesystem::path& path) = nullptr;
+  /// The same as another program names it, for files that are read; empty if it has none for that name.
+  std::filesystem::path (*others_second_file)(const std::filesystem::path& path) = nullptr;
 
   bool is_written() const { return write != nullptr || write_pair != nullptr; }
 };
@@ -62,12 +66,19 @@ const CenterlineFormat& centerline_output_format(const std::filesystem::path& pa
 /// tree.segments.csv (header `a,b`, the ids of the nodes it joins).
 std::filesystem::path csv_segments_path(const std::filesystem::path& nodes_path);
 
+/// Of a format of two files, the second one of those to be read: another program's if it is there and ours is not.
+std::filesystem::path second_file_to_read(const CenterlineFormat& format, const std::filesystem::path& path);
+
 struct CenterlineReadOptions {
-  /// VTP, VTU, VTK, Amira: name of the point or line array with the radius, or with the diameter if the name contains
-  /// "diam". Empty: MaximumInscribedSphereRadius, Radius or radius; for Amira also thickness.
+  /// Name of the array, column, property or measurement with the radius, or with the diameter if the name contains
+  /// "diam", or with the area of the cross-section if it contains "area". Empty: MaximumInscribedSphereRadius, Radius
+  /// or radius, or the only area; for Amira also thickness.
   std::string radius_array;
   /// Radius (mm, > 0) of all nodes if the file has none. Files without radii are refused otherwise.
   std::optional<double> radius;
+  /// Ends of branches, of one file or of several, that are nearer to each other than this are joined when the
+  /// centerline is cleaned, also where that closes a loop.
+  std::optional<EndTolerance> tolerance;
   /// GXL: sides of a voxel, in the unit of the radii; such files are refused without it. SWC: positions and radii are
   /// in voxels of these sides, which must be equal.
   std::optional<Vec3> voxel_size;

@@ -29,8 +29,8 @@ struct SurfaceFormat {
   using Parse = LoadedSurface(std::string_view content, const std::string& source);
   using Write = void(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
                      const SurfaceMetadata& metadata, const SurfaceSkin* skin);
-  // The functions of the format, null where it has none. It is read by `parse` or, as it may refer to other files, by
-  // `read`.
+  // The functions of the format, null where it has none. It is read by `read`, as it may refer to other files or be a
+  // scene, or else by `parse`.
   Parse* parse = nullptr;
   LoadedSurface (*read)(const std::filesystem::path& path) = nullptr;
   Write* write = nullptr;
@@ -81,7 +81,7 @@ void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const
 
 struct LoadedSurface {
   TriMesh mesh;
-  MeshAttributes attributes;              ///< of PLY, VTP and VTK files, under the names write_surface() takes
+  MeshAttributes attributes;              ///< of PLY, VTP, VTK and our GLB files, under the names write_surface() takes
   LengthUnit unit = LengthUnit::unknown;  ///< as tagged in the file; positions are not converted
   Space space = Space::unknown;           ///< as tagged in the file; positions are not converted
   std::vector<std::string> warnings;      ///< what was left out or changed
@@ -89,11 +89,13 @@ struct LoadedSurface {
 
 /// Reads a surface by extension. Polygons are triangulated (triangulate_polygon()), lines and loose points are left
 /// out, equal corners of an STL file become one vertex. Needs at most 128 times the size of the file (compressed VTP:
-/// of its uncompressed data) plus a megabyte of memory, whatever the file says. GLB and scenes are read by assimp in a
-/// child process, as assimp may crash on damaged files, and without that bound: all meshes of a scene, with their
-/// nodes' transformations applied, become one surface without attributes, in which coincident vertices are merged.
-/// Scenes with y up are rotated to have z up. Throws ReadError (missing, a directory, unreadable), InvalidInput
-/// (content; also when there is no face at all), Unsupported (a scene in a build without assimp).
+/// of its uncompressed data) plus a megabyte of memory, whatever the file says. A GLB file of write_surface() comes
+/// back in mm and LPS, vertex by vertex, with its attributes in lower case, but not its colours. Other GLB files and
+/// scenes are read by assimp in a child process, as assimp may crash on damaged files, and without that bound: all
+/// meshes of a scene, with their nodes' transformations applied, become one surface without attributes, in which
+/// coincident vertices are merged. Scenes with y up are rotated to have z up. Throws ReadError (missing, a directory,
+/// unreadable), InvalidInput (content; also when there is no face at all), Unsupported (a scene in a build without
+/// assimp).
 LoadedSurface read_surface(const std::filesystem::path& path);
 
 /// Converts to millimetres and LPS, including attributes that are lengths. Arguments take precedence over the file; if

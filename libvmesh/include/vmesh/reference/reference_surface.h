@@ -17,6 +17,10 @@ struct ReferenceOptions {
   /// Voxels of these values are inside. Without labels and threshold: non-zero voxels, provided that the image has only
   /// one value besides 0.
   std::vector<double> labels;
+  /// The same by the names of segments, in files that name them.
+  std::vector<std::string> segments = {};
+  /// Sides of a voxel (mm) where the file does not tell them: TIFF.
+  std::optional<Vec3> voxel_size = std::nullopt;
   /// Voxels of at least this value are inside; the image's own values are contoured. Not together with `labels`.
   std::optional<double> threshold;
   /// Side of cubic voxels to resample to (mm); 0: the image's own voxels.
@@ -40,6 +44,12 @@ struct ReferenceSurface {
 /// "it holds 1, 2, 5": the values of an image besides 0, for messages; no more than kListedValues of them.
 std::string list_of_values(const std::set<float>& values);
 inline constexpr std::size_t kListedValues = 20;
+
+/// What to read of an image for these options.
+ImageReadOptions read_options_of(const ReferenceOptions& options);
+
+/// The options with labels instead of the names of segments. Throws InvalidInput for one that is not there.
+ReferenceOptions with_labels(ReferenceOptions options, const std::vector<ImageSegment>& segments);
 
 /// Throws InvalidInput for options out of range, or that exclude each other.
 void check(const ReferenceOptions& options);
