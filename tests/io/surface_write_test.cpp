@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "vmesh/io/surface_io.h"
@@ -62,6 +63,58 @@ TEST(WriteSurface, EveryFormatButStlBringsEveryBitBack) {
       }
     }
   }
+}
+
+void expect_same(const TriMesh& is, const TriMesh& was) {
+  ASSERT_EQ(is.faces.size(), was.faces.size());
+  for (std::size_t f = 0; f < was.faces.size(); ++f) {
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_EQ(is.vertices.at(is.faces[f][i]), was.vertices.at(was.faces[f][i])) << f;
+  }
+}
+
+TEST(WriteSurface, TextBringsEveryBitBack) {
+  const TemporaryFolder folder;
+  for (const std::string extension : {".stl", ".ply"}) {
+    SCOPED_TRACE(extension);
+    const auto path = folder / ("t" + extension);
+    write_surface(path, tetrahedron(), attributes(), kMetadata, {SurfaceEncoding::text});
+    const std::string content = content_of(path);
+    EXPECT_TRUE(
+        std::all_of(content.begin(), content.end(), [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); }));
+    const auto back = read_surface(path);
+    EXPECT_EQ(back.unit, LengthUnit::mm);
+    EXPECT_EQ(back.space, Space::lps);
+    expect_same(back.mesh, tetrahedron());
+  }
+  const MeshAttributes back = read_surface(folder / "t.ply").attributes;
+  ASSERT_EQ(back.vertex.size(), 2u);
+  ASSERT_EQ(back.face.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    expect_same(back.vertex[i], attributes().vertex[i]);
+    expect_same(back.face[i], attributes().face[i]);
+  }
+}
+
+TEST(WriteSurface, ANumberOfTextIsTheShortestThatIsTheSame) {
+  const TemporaryFolder folder;
+  TriMesh mesh = tetrahedron();
+  mesh.vertices[3] = {0.1, 1.0 / 3, 1e5};
+  write_surface(folder / "t.stl", mesh, {}, kMetadata, {SurfaceEncoding::text});
+  expect_contains(content_of(folder / "t.stl"), "vertex 0.1 0.3333333333333333 1e+05\n");
+}
+
+TEST(WriteSurface, TextIsRefusedByFormatsWithoutTheChoice) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& name) {
+    return testing::message_of<Unsupported>(
+        [&] { write_surface(folder / name, tetrahedron(), {}, {}, {SurfaceEncoding::text}); });
+  };
+  expect_contains(refused("t.vtp"), "t.vtp: VTP has no text form");
+  expect_contains(refused("t.glb"), "t.glb: GLB has no text form");
+  expect_contains(refused("t.obj"), "t.obj: OBJ is always text");
+  expect_contains(refused("t.off"), ".stl and .ply");
+  EXPECT_EQ(folder.file_count(), 0u);
 }
 
 TEST(WriteSurface, PlyAndVtpKeepTheAttributes) {

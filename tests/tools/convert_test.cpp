@@ -147,6 +147,27 @@ TEST_F(Convert, LeavesAttributesOut) {
   EXPECT_TRUE(none.face.empty() && none.vertex.empty());
 }
 
+TEST_F(Convert, WritesTextWhereTheFormatHasTheChoice) {
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.ply", "--ascii"}).exit_code, 0);
+  EXPECT_TRUE(read("y.ply").starts_with("ply\nformat ascii 1.0\n"));
+  ASSERT_EQ(vmesh({"convert", "@y.ply", "@y.stl", "--ascii"}).exit_code, 0);
+  EXPECT_TRUE(read("y.stl").starts_with("solid "));
+  ASSERT_EQ(vmesh({"convert", "@y.stl", "@back.ply"}).exit_code, 0);
+  const TriMesh before = read_surface(path("y.ply")).mesh, after = read_surface(path("back.ply")).mesh;
+  ASSERT_EQ(after.faces.size(), before.faces.size());
+  for (std::size_t f = 0; f < before.faces.size(); ++f) {
+    for (std::size_t i = 0; i < 3; ++i)
+      ASSERT_EQ(after.vertices[after.faces[f][i]], before.vertices[before.faces[f][i]]);
+  }
+  for (const std::string name : {"z.vtp", "z.obj", "z.glb", "z.json"}) {
+    const Outcome run = vmesh({"convert", name == "z.json" ? "@y.swc" : "@y.ply", "@" + name, "--ascii"});
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_NE(run.err.find(name), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("--ascii"), std::string::npos) << run.err;
+    EXPECT_FALSE(exists(name));
+  }
+}
+
 TEST_F(Convert, NeedsAnOutput) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"convert", "@y.swc"}, {"render", "@y.swc"}, {"synth"}})

@@ -37,7 +37,11 @@ void add_writing(CLI::App& verb, WritingArguments& writing) {
                   "of a surface: all; vertex: none of faces, which some PLY readers reject; or none")
       ->check(CLI::IsMember({"all", "vertex", "none"}))
       ->capture_default_str();
-  group(verb, "How to write the output", {"--output-unit", "--output-space", "--attributes"});
+  verb.add_flag_callback(
+      "--ascii", [&writing] { writing.encoding = SurfaceEncoding::text; },
+      "write the surface as text (" +
+          listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_text_form; }), "and") + ")");
+  group(verb, "How to write the output", {"--output-unit", "--output-space", "--attributes", "--ascii"});
 }
 
 void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {

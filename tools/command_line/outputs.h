@@ -42,7 +42,7 @@ const MeshAttribute* find_attribute(const std::vector<MeshAttribute>& attributes
 /// Adds what write_surface() adds to the attributes of vertices for this extension: colours, and in PLY the quality.
 void add_for_viewers(const std::string& extension, std::vector<MeshAttribute>& attributes);
 
-/// Throws UsageError for a unit or frame that the format does not have.
+/// Throws UsageError for a unit, frame or encoding that the format does not have.
 void check_writing(const std::filesystem::path& path, const WritingArguments& writing);
 
 /// "vmesh 0.1.0", for metadata.

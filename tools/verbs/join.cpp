@@ -157,7 +157,7 @@ void write_list(const JoinArguments& arguments, const JoinSummary& summary) {
         attributes_of(SurfaceSink::Vertices{surface.mesh.vertices, {}, surface.radius, part.place, part.branch}),
         attributes_of(SurfaceSink::Faces{surface.mesh.faces, skewness, label})};
     write_surface(folder / (part_name(p) + ".vtp"), surface.mesh, std::move(attributes),
-                  metadata_of(summary.manifest.source), {});
+                  metadata_of(summary.manifest.source), WritingArguments{});
   }
   write_text(arguments.output, vtm_text(folder.filename().string(), summary.manifest.parts));
 }
@@ -209,7 +209,7 @@ int run(const JoinArguments& arguments, Console& console) {
   } else if (extension == ".vtm") {
     write_list(arguments, summary);
   } else {
-    write_surface(arguments.output, memory.mesh, std::move(memory.attributes), metadata, {});
+    write_surface(arguments.output, memory.mesh, std::move(memory.attributes), metadata, WritingArguments{});
   }
   std::ostringstream line;
   line << "wrote " << arguments.output.string() << ": " << summary.vertices << " vertices, " << summary.faces

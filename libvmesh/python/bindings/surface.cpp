@@ -74,7 +74,7 @@ void save_surface(const SurfaceObject& self, const fs::path& path, const std::st
     const Centerline& centerline = self.centerline->centerline;
     skin = make_linear_skin(centerline, make_rod_tree(centerline), places_of(self));
   }
-  write_surface(path, self.mesh(), attributes_of(self), metadata, skin ? &*skin : nullptr);
+  write_surface(path, self.mesh(), attributes_of(self), metadata, {.skin = skin ? &*skin : nullptr});
 }
 
 py::dict as_dict(const std::vector<MeshAttribute>& attributes) {

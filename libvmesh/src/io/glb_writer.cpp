@@ -232,10 +232,10 @@ class GlbWriter {
 }  // namespace
 
 void write_glb(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-               const SurfaceMetadata& metadata, const SurfaceSkin* skin) {
+               const SurfaceMetadata& metadata, const SurfaceWriteOptions& options) {
   if (mesh.vertices.empty() || mesh.faces.empty())
     throw InvalidInput("a surface without faces cannot be written as GLB");
-  GlbWriter(mesh, attributes, metadata, skin).run(out);
+  GlbWriter(mesh, attributes, metadata, options.skin).run(out);
 }
 
 }  // namespace vmesh::io

@@ -246,7 +246,7 @@ RawCenterline parse_centerline_obj(std::string_view content, const std::string& 
 }
 
 void write_off(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, const SurfaceMetadata& metadata,
-               const SurfaceSkin*) {
+               const SurfaceWriteOptions&) {
   out << "OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.faces.size()) + " 0\n";
   std::string row;
   for (const Vec3& p : mesh.vertices) {
@@ -261,7 +261,7 @@ void write_off(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, co
 }
 
 void write_obj(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, const SurfaceMetadata& metadata,
-               const SurfaceSkin*) {
+               const SurfaceWriteOptions&) {
   out << comments(metadata, "# ");
   std::string row;
   for (const Vec3& p : mesh.vertices) {

@@ -49,6 +49,13 @@ void check(const std::filesystem::path& path, const SurfaceFormat& format, const
   if (!good) throw InvalidInput(name + ": the skin does not fit the surface: joints and weights are one per vertex");
 }
 
+void check(const std::filesystem::path& path, const SurfaceFormat& format, SurfaceEncoding encoding) {
+  if (encoding == SurfaceEncoding::usual || format.has_text_form) return;
+  throw Unsupported(path.string() + ": " + format.name + (format.is_text ? " is always text" : " has no text form") +
+                    "; there is one beside the binary one of " +
+                    listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_text_form; }), "and"));
+}
+
 bool is_length(const std::string& attribute) {
   return attribute == "radius" || attribute == "distance" || attribute == "displacement" ||
          attribute == "volume_distance";
@@ -87,10 +94,11 @@ const SurfaceFormat& surface_output_format(const std::filesystem::path& path) {
 }
 
 void write_surface(const std::filesystem::path& path, const TriMesh& given, const MeshAttributes& given_attributes,
-                   const SurfaceMetadata& metadata, const SurfaceSkin* skin) {
+                   const SurfaceMetadata& metadata, const SurfaceWriteOptions& options) {
   const SurfaceFormat& format = surface_output_format(path);
   check(path, given, given_attributes);
-  if (skin) check(path, format, given, *skin);
+  check(path, format, options.encoding);
+  if (options.skin) check(path, format, given, *options.skin);
   TriMesh converted;
   MeshAttributes converted_attributes;
   const bool converts = !format.has_own_frame && (metadata.unit != LengthUnit::mm || metadata.space != Space::lps);
@@ -102,7 +110,7 @@ void write_surface(const std::filesystem::path& path, const TriMesh& given, cons
   const TriMesh& mesh = converts ? converted : given;
   const MeshAttributes& attributes = converts ? converted_attributes : given_attributes;
   AtomicFile file(path);
-  format.write(file.stream(), mesh, attributes, metadata, skin);
+  format.write(file.stream(), mesh, attributes, metadata, options);
   file.commit();
 }
 

@@ -16,6 +16,7 @@ namespace vmesh {
 
 struct LoadedSurface;
 struct SurfaceMetadata;
+struct SurfaceWriteOptions;
 
 /// A format of surfaces: what it is called, what it can hold, and what reads and writes it.
 struct SurfaceFormat {
@@ -23,12 +24,14 @@ struct SurfaceFormat {
   std::vector<std::string> extensions;  ///< lower case, with their dots
   bool has_own_frame = false;           ///< always in metres with y up, whatever SurfaceMetadata says
   bool holds_bones = false;             ///< has room for a SurfaceSkin
+  bool is_text = false;                 ///< always
+  bool has_text_form = false;           ///< besides its usual, binary one
   OptionalPart needs = {};              ///< what `read` needs
 
   /// From the content of a file that `source` names in messages.
   using Parse = LoadedSurface(std::string_view content, const std::string& source);
   using Write = void(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-                     const SurfaceMetadata& metadata, const SurfaceSkin* skin);
+                     const SurfaceMetadata& metadata, const SurfaceWriteOptions& options);
   // The functions of the format, null where it has none. It is read by `parse` or, as it may refer to other files, by
   // `read`.
   Parse* parse = nullptr;
@@ -61,23 +64,36 @@ struct SurfaceMetadata {
   Space space = Space::lps;          ///< likewise; neither applies to GLB, which is in metres with y up
 };
 
+enum class SurfaceEncoding {
+  usual,  ///< binary, where the format has the choice
+  text,   ///< of formats with a text form
+};
+
+/// What some formats can do.
+struct SurfaceWriteOptions {
+  SurfaceEncoding encoding = SurfaceEncoding::usual;
+  const SurfaceSkin* skin = nullptr;  ///< bones; null: none
+};
+
 /// Writes a surface (given in mm and LPS) in the format of the extension, in the unit and frame of `metadata`, which
 /// are recorded (SPACE=LPS, UNIT=mm). Attributes named radius, distance, displacement and volume_distance are lengths.
 /// The bytes depend on the arguments alone, and the file appears complete or not at all.
-///   PLY  binary little-endian; positions and normals in double, so that they come back to the bit; every attribute;
-///        the face attribute EquiangleSkewness is named "quality", which MeshLab shows; attributes named red, green and
-///        blue are bytes, which all programs take for a colour
+///   PLY  binary little-endian, or text; positions and normals in double, so that they come back to the bit; every
+///        attribute; the face attribute EquiangleSkewness is named "quality", which MeshLab shows; attributes named
+///        red, green and blue are bytes, which all programs take for a colour
 ///   VTP  packed by zlib; every attribute; "radius" is named MaximumInscribedSphereRadius, "distance" Distance,
 ///        "group" GroupIds, face "quality" Quality; point array Normals; the first attributes are the active ones
 ///   OBJ, OFF  positions with the digits they need to come back to the bit; no attributes
-///   STL  binary; float; no attributes
+///   STL  binary, in float, or text, whose positions come back to the bit; no attributes
 ///   GLB  binary glTF 2.0 in metres, y up (superior), z towards the front (anterior); vertices are shared by faces;
 ///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; with
-///        `skin`, bones
+///        a skin, bones
+/// In text, numbers have the digits they need to come back to the bit.
 /// Throws InvalidInput when an attribute or the skin has a wrong length or a face names a vertex that does not exist,
-/// Unsupported (extension, a skin in another format than GLB or of more than 65,535 joints), WriteError.
+/// Unsupported (extension, an encoding that the format does not have, a skin in another format than GLB or of more than
+/// 65,535 joints), WriteError.
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes = {},
-                   const SurfaceMetadata& metadata = {}, const SurfaceSkin* skin = nullptr);
+                   const SurfaceMetadata& metadata = {}, const SurfaceWriteOptions& options = {});
 
 struct LoadedSurface {
   TriMesh mesh;
