@@ -1,6 +1,7 @@
 #include <ostream>
 #include <unordered_map>
 
+#include "boundaries.h"
 #include "bytes.h"
 #include "formats.h"
 #include "text.h"
@@ -134,14 +135,22 @@ void append_facet(std::string& bytes, const TriMesh& mesh, Index f) {
   bytes += "endloop\nendfacet\n";
 }
 
-/// The tags are at the end, as programs show what follows "solid" as its name.
-void write_text(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata) {
-  std::string bytes = "solid surface\n";
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
+void append_solid(std::ostream& out, std::string& bytes, const TriMesh& mesh, const Boundary& boundary) {
+  bytes += "solid " + boundary.name + "\n";
+  for (const Index f : boundary.faces) {
     append_facet(bytes, mesh, f);
     write_blocks(out, bytes);
   }
-  bytes += "endsolid surface " + tags_of(metadata) + "\n";
+  bytes += "endsolid " + boundary.name + "\n";
+}
+
+/// The tags are at the end, as programs take what follows "solid" as the name of a boundary.
+void write_text(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+                const SurfaceMetadata& metadata) {
+  std::string bytes;
+  for (const Boundary& boundary : boundaries_of(mesh, attributes)) append_solid(out, bytes, mesh, boundary);
+  bytes.back() = ' ';
+  bytes += tags_of(metadata) + "\n";
   write_out(out, bytes);
 }
 
@@ -167,10 +176,10 @@ LoadedSurface parse_stl(std::string_view content, const std::string& source) {
   return surface;
 }
 
-void write_stl(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, const SurfaceMetadata& metadata,
-               const SurfaceWriteOptions& options) {
+void write_stl(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+               const SurfaceMetadata& metadata, const SurfaceWriteOptions& options) {
   if (options.encoding == SurfaceEncoding::text) {
-    write_text(out, mesh, metadata);
+    write_text(out, mesh, attributes, metadata);
   } else {
     write_binary(out, mesh, metadata);
   }

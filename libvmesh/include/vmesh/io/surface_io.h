@@ -83,8 +83,10 @@ struct SurfaceWriteOptions {
 ///        red, green and blue are bytes, which all programs take for a colour
 ///   VTP  packed by zlib; every attribute; "radius" is named MaximumInscribedSphereRadius, "distance" Distance,
 ///        "group" GroupIds, face "quality" Quality; point array Normals; the first attributes are the active ones
-///   OBJ, OFF  positions with the digits they need to come back to the bit; no attributes
-///   STL  binary, in float, or text, whose positions come back to the bit; no attributes
+///   OBJ, OFF  positions with the digits they need to come back to the bit; no attributes; OBJ has normals, and groups
+///        by CapID: wall, cap_1, ...; without it, surface
+///   STL  binary, in float, or text, whose positions come back to the bit, with a solid for each group of OBJ; no
+///        attributes
 ///   GLB  binary glTF 2.0 in metres, y up (superior), z towards the front (anterior); vertices are shared by faces;
 ///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; with
 ///        a skin, bones
