@@ -21,7 +21,7 @@ set(CPACK_COMPONENT_COMMAND_DESCRIPTION
   "Vessel centerlines to surfaces
 Turns centerlines of vessels, points with radii, into closed triangle meshes,
 fits them to segmentations, measures and deforms them. With manual pages and
-completion for bash.")
+completion for bash, zsh and fish.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvmesh-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)

@@ -204,7 +204,9 @@ TEST_F(Convert, AVtpIsTakenForWhatItHolds) {
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@faces.vtp"}).exit_code, 0);
   EXPECT_EQ(vmesh({"convert", "@lines.vtp", "-o", "@back.swc"}).exit_code, 0);
   EXPECT_EQ(vmesh({"convert", "@faces.vtp", "-o", "@back.ply"}).exit_code, 0);
-  EXPECT_EQ(vmesh({"convert", "@lines.vtp", "-o", "@wrong.ply"}).exit_code, 2);
+  const Outcome lines = vmesh({"convert", "@lines.vtp", "-o", "@wrong.ply"});
+  EXPECT_EQ(lines.exit_code, 2);
+  EXPECT_NE(lines.err.find("lines.vtp: holds lines, no faces: a centerline"), std::string::npos) << lines.err;
   EXPECT_EQ(vmesh({"convert", "@faces.vtp", "-o", "@wrong.swc"}).exit_code, 2);
   EXPECT_FALSE(exists("wrong.ply") || exists("wrong.swc"));
 }

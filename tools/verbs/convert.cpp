@@ -18,7 +18,7 @@ struct ConvertArguments {
 
 void add_options(CLI::App& verb, ConvertArguments& arguments) {
   add_centerline_input(verb, arguments.input, "centerline or surface");
-  add_output_after_several(verb, arguments.output, "file of the same kind");
+  add_output_after_several(verb, arguments.output, kFile, "file of the same kind");
   add_writing(verb, arguments.writing);
 }
 
@@ -32,8 +32,17 @@ std::optional<Kind> kind_of(const std::filesystem::path& path) {
   return std::nullopt;
 }
 
+/// Throws Unsupported.
+[[noreturn]] void refuse_output(const std::filesystem::path& path) {
+  const auto is_written = [](const auto& format) { return format.is_written(); };
+  throw Unsupported(path.string() + ": \"" + extension_of(path) + "\" is not supported; centerlines are written as " +
+                    listed(extensions_of(centerline_formats(), is_written)) + ", surfaces as " +
+                    listed(extensions_of(surface_formats(), is_written)));
+}
+
 std::optional<Kind> kind_of_output(const std::filesystem::path& path) {
   const CenterlineFormat* format = find_centerline_format(path);
+  if (format == nullptr && find_surface_format(path) == nullptr) refuse_output(path);
   return format != nullptr && format->holds_lines != nullptr ? Kind::surface : kind_of(path);
 }
 
@@ -80,8 +89,11 @@ int run(const ConvertArguments& arguments, Console& console) {
   stop_if_interrupted();
   const bool is_surface = std::holds_alternative<LoadedSurface>(input);
   if (const auto to = kind_of_output(arguments.output); to && (*to == Kind::surface) != is_surface)
-    throw UsageError(arguments.input.path.string() + ": contains a " + (is_surface ? "surface" : "centerline") +
-                     ", which cannot be written to " + arguments.output.string());
+    throw UsageError(arguments.input.path.string() +
+                     (is_surface ? ": holds a surface, which cannot be written to " + arguments.output.string() +
+                                       "; see vmesh centerline"
+                                 : ": holds lines, no faces: a centerline, which cannot be written to " +
+                                       arguments.output.string() + "; see vmesh generate"));
   std::visit([&](const auto& content) { convert(content, arguments, console); }, input);
   console.log("wrote " + arguments.output.string());
   return kOk;

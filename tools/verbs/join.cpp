@@ -24,8 +24,8 @@ struct JoinArguments {
 };
 
 void add_options(CLI::App& verb, JoinArguments& arguments) {
-  verb.add_option("DIR", arguments.folder, "folder of the parts")->required();
-  add_output(verb, arguments.output,
+  verb.add_option("DIR", arguments.folder, "folder of the parts")->required()->type_name(kFolder);
+  add_output(verb, arguments.output, kSurfaceFile,
              "surface (.ply is written part by part; .vtm lists the parts, each a .vtp file; others need memory for "
              "the whole)");
   add_threads(verb, arguments.threads);

@@ -65,7 +65,7 @@ void add_render_look(CLI::App& verb, RenderArguments& arguments) {
 
 void add_options(CLI::App& verb, RenderArguments& arguments) {
   add_input(verb, arguments.input, "surface");
-  add_output(verb, arguments.output, "picture (.png)");
+  add_output(verb, arguments.output, "FILE.png", "picture (.png)");
   add_render_view(verb, arguments.options);
   add_render_look(verb, arguments);
   group(verb, "How to read the input", {"--unit", "--space"});

@@ -35,7 +35,7 @@ void warn_of_error(const ErrorSummary& error, const ErrorLimit& limit, std::vect
 void name_nodes(const CenterlineObject& centerline, std::vector<Defect>& defects) {
   for (Defect& defect : defects) {
     if (defect.node < centerline.place_of_node.size())
-      defect.message += ", nearest to " + centerline.place_of_node[defect.node];
+      defect.message += ", near " + centerline.place_of_node[defect.node];
     if (defect.branch != kNone) defect.message += ", on branch " + std::to_string(defect.branch);
   }
 }

@@ -87,9 +87,11 @@ const SurfaceFormat& surface_format(const std::filesystem::path& path) {
 }
 
 const SurfaceFormat& surface_output_format(const std::filesystem::path& path) {
-  const SurfaceFormat& format = surface_format(path);
-  if (format.is_written()) return format;
-  throw Unsupported(path.string() + ": files of this kind are read, not written; write the surface as " +
+  const SurfaceFormat* format = find_surface_format(path);
+  if (format != nullptr && format->is_written()) return *format;
+  const std::string what = format != nullptr ? "files of this kind are read, not written; write the surface as "
+                                             : "\"" + extension_of(path) + "\" is not supported; write the surface as ";
+  throw Unsupported(path.string() + ": " + what +
                     listed(extensions_of(surface_formats(), [](const auto& f) { return f.is_written(); })));
 }
 

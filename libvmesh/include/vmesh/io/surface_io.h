@@ -50,7 +50,7 @@ const SurfaceFormat* find_surface_format(const std::filesystem::path& path);
 /// The same; otherwise throws Unsupported, listing the supported extensions.
 const SurfaceFormat& surface_format(const std::filesystem::path& path);
 
-/// The same for a file to be written; also throws Unsupported for read-only formats.
+/// The same for a file to be written: throws Unsupported, listing what can be written, for read-only formats too.
 const SurfaceFormat& surface_output_format(const std::filesystem::path& path);
 
 /// Where a surface comes from; written as comments or field data where the format has room (all but STL; STL has 80
