@@ -168,6 +168,27 @@ TEST_F(Convert, WritesTextWhereTheFormatHasTheChoice) {
   }
 }
 
+TEST_F(Convert, CompressesGlbOnly) {
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.ply"}).exit_code, 0);
+  for (const char* name : {"z.ply", "z.obj", "z.swc"}) {
+    const Outcome run = vmesh({"convert", "@y.ply", std::string("@") + name, "--compress"});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_NE(run.err.find(std::string(name)), std::string::npos) << run.err;
+    EXPECT_FALSE(exists(name));
+  }
+  const Outcome both = vmesh({"convert", "@y.ply", "@z.glb", "--compress", "--ascii"});
+  EXPECT_EQ(both.exit_code, 2) << both.err;
+  const Outcome run = vmesh({"convert", "@y.ply", "@z.glb", "--compress"});
+  if (run.exit_code == 4) {
+    EXPECT_NE(run.err.find("VMESH_WITH_MESHOPTIMIZER"), std::string::npos) << run.err;
+    EXPECT_FALSE(exists("z.glb"));
+    return;
+  }
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ASSERT_EQ(vmesh({"convert", "@y.ply", "@plain.glb"}).exit_code, 0);
+  EXPECT_LT(read("z.glb").size(), read("plain.glb").size());
+}
+
 TEST_F(Convert, NeedsAnOutput) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"convert", "@y.swc"}, {"render", "@y.swc"}, {"synth"}})

@@ -44,7 +44,12 @@ void add_writing(CLI::App& verb, WritingArguments& writing) {
       "--ascii", [&writing] { writing.encoding = SurfaceEncoding::text; },
       "write the surface as text (" +
           listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_text_form; }), "and") + ")");
-  group(verb, "How to write the output", {"--output-unit", "--output-space", "--attributes", "--ascii"});
+  verb.add_flag_callback(
+          "--compress", [&writing] { writing.encoding = SurfaceEncoding::compressed; },
+          "compress a .glb for web pages and game engines (EXT_meshopt_compression), to about a third; positions are "
+          "rounded to a millionth of the size")
+      ->excludes("--ascii");
+  group(verb, "How to write the output", {"--output-unit", "--output-space", "--attributes", "--ascii", "--compress"});
 }
 
 void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {

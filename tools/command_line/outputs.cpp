@@ -175,6 +175,10 @@ void check_is_text(const fs::path& path, const SurfaceFormat* format) {
 void check_writing(const fs::path& path, const WritingArguments& writing) {
   const SurfaceFormat* format = find_surface_format(path);
   if (writing.encoding == SurfaceEncoding::text) check_is_text(path, format);
+  if (writing.encoding == SurfaceEncoding::compressed && (format == nullptr || !format->has_compressed_form))
+    throw UsageError(path.string() + ": --compress is for " +
+                     listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_compressed_form; })) +
+                     " only");
   if (format != nullptr && format->has_own_frame && (writing.unit != LengthUnit::mm || writing.space != Space::lps))
     throw UsageError(path.string() + ": " + format->name +
                      " is always in metres with y up; --output-unit and --output-space do not apply");

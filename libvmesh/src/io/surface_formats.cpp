@@ -27,6 +27,7 @@ const std::vector<SurfaceFormat>& surface_formats() {
        .extensions = {".glb"},
        .has_own_frame = true,
        .holds_bones = true,
+       .has_compressed_form = true,
        .needs = assimp,
        .read = kReadScene,
        .write = write_glb},

@@ -50,10 +50,19 @@ void check(const std::filesystem::path& path, const SurfaceFormat& format, const
 }
 
 void check(const std::filesystem::path& path, const SurfaceFormat& format, SurfaceEncoding encoding) {
-  if (encoding == SurfaceEncoding::usual || format.has_text_form) return;
-  throw Unsupported(path.string() + ": " + format.name + (format.is_text ? " is always text" : " has no text form") +
-                    "; there is one beside the binary one of " +
-                    listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_text_form; }), "and"));
+  const std::string name = path.string() + ": ";
+  if (encoding == SurfaceEncoding::text && !format.has_text_form)
+    throw Unsupported(name + format.name + (format.is_text ? " is always text" : " has no text form") +
+                      "; there is one beside the binary one of " +
+                      listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_text_form; }), "and"));
+  if (encoding != SurfaceEncoding::compressed) return;
+  if (!format.has_compressed_form)
+    throw Unsupported(name + format.name + " has no compressed form; compressed are " +
+                      listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_compressed_form; })));
+  if (!VMESH_IO_WITH_MESHOPTIMIZER)
+    throw Unsupported(name +
+                      "to compress it needs meshoptimizer, and this vmesh was built without it (CMake option "
+                      "VMESH_WITH_MESHOPTIMIZER); write it uncompressed");
 }
 
 bool is_length(const std::string& attribute) {

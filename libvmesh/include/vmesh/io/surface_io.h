@@ -26,6 +26,7 @@ struct SurfaceFormat {
   bool holds_bones = false;             ///< has room for a SurfaceSkin
   bool is_text = false;                 ///< always
   bool has_text_form = false;           ///< besides its usual, binary one
+  bool has_compressed_form = false;     ///< likewise
   OptionalPart needs = {};              ///< what `read` needs
 
   /// From the content of a file that `source` names in messages.
@@ -65,8 +66,9 @@ struct SurfaceMetadata {
 };
 
 enum class SurfaceEncoding {
-  usual,  ///< binary, where the format has the choice
-  text,   ///< of formats with a text form
+  usual,      ///< binary, where the format has the choice
+  text,       ///< of formats with a text form
+  compressed  ///< of formats with a compressed form, in builds with meshoptimizer
 };
 
 /// What some formats can do.
@@ -89,7 +91,9 @@ struct SurfaceWriteOptions {
 ///        attributes
 ///   GLB  binary glTF 2.0 in metres, y up (superior), z towards the front (anterior); vertices are shared by faces;
 ///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; with
-///        a skin, bones
+///        a skin, bones, around the origin of the frame. Compressed by EXT_meshopt_compression: positions are rounded
+///        to two millionths of their greatest coordinate (from the middle of the surface, or the origin with bones),
+///        normals to a 4,000th, attributes that are no integers to 31 millionths; triangles are in another order
 /// In text, numbers have the digits they need to come back to the bit.
 /// Throws InvalidInput when an attribute or the skin has a wrong length or a face names a vertex that does not exist,
 /// Unsupported (extension, an encoding that the format does not have, a skin in another format than GLB or of more than
