@@ -100,11 +100,6 @@ void write_text(const fs::path& path, const std::string& text) {
   file.commit();
 }
 
-const MeshAttribute* find_attribute(const std::vector<MeshAttribute>& attributes, const std::string& name) {
-  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
-  return found == attributes.end() ? nullptr : &*found;
-}
-
 namespace {
 
 void add_colors(std::vector<MeshAttribute>& attributes) {

@@ -6,6 +6,7 @@
 
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/mesh/find_attribute.h"
 
 #include "command_line/arguments.h"
 #include "command_line/console.h"
@@ -35,9 +36,6 @@ void write_surface(const std::filesystem::path& path, const TriMesh& mesh, MeshA
 /// write_centerline(); logs how many flat ends are lost if the format has no room for them.
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
                       const CenterlineMetadata& metadata, const std::vector<EndSection>& sections, Console& console);
-
-/// Null if there is none of that name.
-const MeshAttribute* find_attribute(const std::vector<MeshAttribute>& attributes, const std::string& name);
 
 /// Adds what write_surface() adds to the attributes of vertices for this extension: colours, and in PLY the quality.
 void add_for_viewers(const std::string& extension, std::vector<MeshAttribute>& attributes);

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "vmesh/centerline/branches.h"
-#include "vmesh/core/version.h"
 
 #include "command_line/arguments_growth.h"
 #include "command_line/outputs.h"
@@ -158,8 +157,6 @@ Json wall_json(const WallDistance& wall) {
 }
 
 }  // namespace
-
-Json generator_json() { return {{"name", "vmesh"}, {"version", version()}}; }
 
 Json to_json(const Centerline& centerline) {
   double length = 0;

@@ -55,7 +55,7 @@ from ._core import (
     reference_surface,
     synthetic_tree,
 )
-from ._functions import evaluate, fit, generate, hausdorff, render
+from ._functions import evaluate, fit, generate, hausdorff, page, render
 from ._vtk import from_vtk, to_vtk
 
 __all__ = [
@@ -85,6 +85,7 @@ __all__ = [
     "OneSidedHausdorff",
     "Opening",
     "OperatingPoint",
+    "page",
     "read_centerline",
     "read_surface",
     "ReadError",

@@ -288,3 +288,26 @@ def render(
         legend=legend,
         range=range,
     )
+
+
+def page(
+    surface: SurfaceLike,
+    path: Union[str, PathLike[str]],
+    *,
+    reference: Optional[SurfaceLike] = None,
+    title: Optional[str] = None,
+) -> None:
+    """Writes a page with the surface in 3D for any browser, without a network: one file (.html).
+
+    surface    a surface or a pair (vertices, faces), coloured by any of its attributes, by its skewness and, where it
+               is bound to a centerline, by the distance to the vessels, mm
+    path       of the page
+    reference  another one, shown in transparency, with the surface's distance to it, mm
+    title      of the page; None: the name of the file
+
+    It lists the worst places, each a click away, beside figures and distributions. Raises WriteError, InvalidInput,
+    Unsupported (another extension, or a build without pages).
+    """
+    _core.page(
+        _as_surface(surface), path, reference=None if reference is None else _as_surface(reference), title=title
+    )

@@ -1,8 +1,9 @@
 #include "boundaries.h"
 
-#include <algorithm>
 #include <map>
 #include <numeric>
+
+#include "vmesh/mesh/find_attribute.h"
 
 #include "text.h"
 
@@ -27,9 +28,8 @@ std::vector<Index> all_faces(const TriMesh& mesh) {
 }  // namespace
 
 std::vector<Boundary> boundaries_of(const TriMesh& mesh, const MeshAttributes& attributes) {
-  const auto caps = std::find_if(attributes.face.begin(), attributes.face.end(),
-                                 [](const MeshAttribute& a) { return a.name == "CapID"; });
-  if (caps == attributes.face.end() || mesh.faces.empty()) return {{"surface", all_faces(mesh)}};
+  const MeshAttribute* caps = find_attribute(attributes.face, "CapID");
+  if (caps == nullptr || mesh.faces.empty()) return {{"surface", all_faces(mesh)}};
   std::map<double, std::vector<Index>> faces;
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     const double id = caps->values[f];

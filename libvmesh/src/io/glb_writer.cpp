@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "vmesh/mesh/find_attribute.h"
+
 #include "bytes.h"
 #include "formats.h"
 #include "glb_packing.h"
@@ -27,11 +29,6 @@ Vec3 metres(const Vec3& p) { return 1e-3 * turned(p); }
 double linear_from_srgb(double byte) {
   const double v = byte / 255;
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-
-const MeshAttribute* find(const std::vector<MeshAttribute>& attributes, std::string_view name) {
-  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
-  return found == attributes.end() ? nullptr : &*found;
 }
 
 bool is_color(const std::string& name) { return name == "red" || name == "green" || name == "blue" || name == "alpha"; }
@@ -73,7 +70,8 @@ class GlbWriter {
     OrderedJson attributes = OrderedJson::object();
     attributes["POSITION"] = positions();
     attributes["NORMAL"] = normals();
-    if (find(attributes_.vertex, "red") && find(attributes_.vertex, "green") && find(attributes_.vertex, "blue"))
+    if (find_attribute(attributes_.vertex, "red") && find_attribute(attributes_.vertex, "green") &&
+        find_attribute(attributes_.vertex, "blue"))
       attributes["COLOR_0"] = colors();
     for (const MeshAttribute& a : attributes_.vertex) {
       if (!is_color(a.name)) attributes[custom_name(a.name)] = scalars(a);
@@ -151,7 +149,7 @@ class GlbWriter {
     const std::size_t at = view(kVertices);
     for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
       for (const char* name : {"red", "green", "blue"}) {
-        const double value = std::clamp(find(attributes_.vertex, name)->values[v], 0.0, 255.0);
+        const double value = std::clamp(find_attribute(attributes_.vertex, name)->values[v], 0.0, 255.0);
         store(bytes_, static_cast<std::uint8_t>(std::lround(255 * linear_from_srgb(value))));
       }
       store(bytes_, std::uint8_t{255});
