@@ -147,6 +147,9 @@ TEST(WriteSurface, BoundariesAreSolidsAndGroups) {
       EXPECT_EQ(back.mesh.vertices.at(back.mesh.faces[0][i]), tetrahedron().vertices[tetrahedron().faces[1][i]]);
     }
   }
+  with_caps.face.back() = {"ModelFaceID", {2, 1, 2, 2}, true};
+  write_surface(folder / "t.obj", tetrahedron(), with_caps, kMetadata);
+  EXPECT_EQ(sections(content_of(folder / "t.obj"), "g", "f"), (decltype(expected){{"face_1", 1}, {"face_2", 3}}));
   write_surface(folder / "t.obj", tetrahedron(), attributes(), kMetadata);
   EXPECT_EQ(sections(content_of(folder / "t.obj"), "g", "f"), (decltype(expected){{"surface", 4}}));
 }

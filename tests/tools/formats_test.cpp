@@ -64,6 +64,11 @@ TEST_F(Formats, LinesInFormatsOfSurfacesAreCenterlines) {
   EXPECT_EQ(vmesh({"generate", "@l.ply", "-o", "@p.stl"}).exit_code, 0);
   EXPECT_EQ(read("o.stl"), read("p.stl"));
   EXPECT_EQ(vmesh({"convert", "@l.ply", "@l.swc"}).exit_code, 0);
+  const Outcome written = vmesh({"convert", "@l.obj", "@lines.stl"});
+  EXPECT_EQ(written.exit_code, 2);
+  EXPECT_NE(written.err.find("l.obj: holds lines, no faces: a centerline, which cannot be written to "),
+            std::string::npos)
+      << written.err;
   const Outcome as_surface = vmesh({"evaluate", "@l.ply"});
   EXPECT_EQ(as_surface.exit_code, 3) << as_surface.err;
   EXPECT_NE(as_surface.err.find("l.ply: this file holds lines, no faces, and a surface is needed"), std::string::npos)

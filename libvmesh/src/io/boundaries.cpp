@@ -12,10 +12,9 @@ namespace {
 
 constexpr double kWall = -1;  ///< as CapID
 
-std::string name_of_cap(double id) {
-  if (id == kWall) return "wall";
-  std::string name = "cap_";
-  append(name, id);
+std::string numbered(const char* word, double number) {
+  std::string name = word;
+  append(name, number);
   return name;
 }
 
@@ -25,18 +24,25 @@ std::vector<Index> all_faces(const TriMesh& mesh) {
   return faces;
 }
 
+std::map<double, std::vector<Index>> faces_by(const MeshAttribute& labels) {
+  std::map<double, std::vector<Index>> faces;
+  for (Index f = 0; f < labels.values.size(); ++f) {
+    const double label = labels.values[f];
+    faces[label > 0 ? label : kWall].push_back(f);  // also what is not a number
+  }
+  return faces;
+}
+
 }  // namespace
 
 std::vector<Boundary> boundaries_of(const TriMesh& mesh, const MeshAttributes& attributes) {
   const MeshAttribute* caps = find_attribute(attributes.face, "CapID");
-  if (caps == nullptr || mesh.faces.empty()) return {{"surface", all_faces(mesh)}};
-  std::map<double, std::vector<Index>> faces;
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    const double id = caps->values[f];
-    faces[id > 0 ? id : kWall].push_back(f);  // also what is not a number
-  }
+  const MeshAttribute* labels = caps != nullptr ? caps : find_attribute(attributes.face, "ModelFaceID");
+  if (labels == nullptr || mesh.faces.empty()) return {{"surface", all_faces(mesh)}};
+  const char* word = caps != nullptr ? "cap_" : "face_";
   std::vector<Boundary> boundaries;
-  for (auto& [id, of_id] : faces) boundaries.push_back({name_of_cap(id), std::move(of_id)});
+  for (auto& [label, faces] : faces_by(*labels))
+    boundaries.push_back({label == kWall ? "wall" : numbered(word, label), std::move(faces)});
   return boundaries;
 }
 

@@ -13,7 +13,8 @@ struct Boundary {
   std::vector<Index> faces;
 };
 
-/// By the attribute CapID of faces: "wall", then "cap_1" and so on; without it all faces, as "surface".
+/// By the attribute CapID of faces: "wall", then "cap_1" and so on; else by ModelFaceID: "face_1" and so on, as the
+/// walls of other programs are numbered in any way; without either all faces, as "surface".
 std::vector<Boundary> boundaries_of(const TriMesh& mesh, const MeshAttributes& attributes);
 
 }  // namespace vmesh::io

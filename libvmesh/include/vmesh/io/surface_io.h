@@ -86,7 +86,7 @@ struct SurfaceWriteOptions {
 ///   VTP  packed by zlib; every attribute; "radius" is named MaximumInscribedSphereRadius, "distance" Distance,
 ///        "group" GroupIds, face "quality" Quality; point array Normals; the first attributes are the active ones
 ///   OBJ, OFF  positions with the digits they need to come back to the bit; no attributes; OBJ has normals, and groups
-///        by CapID: wall, cap_1, ...; without it, surface
+///        by CapID: wall, cap_1, ...; else by ModelFaceID: face_1, ...; without either, surface
 ///   STL  binary, in float, or text, whose positions come back to the bit, with a solid for each group of OBJ; no
 ///        attributes
 ///   GLB  binary glTF 2.0 in metres, y up (superior), z towards the front (anterior); vertices are shared by faces;
