@@ -21,7 +21,7 @@ set(CPACK_COMPONENT_COMMAND_DESCRIPTION
   "Vessel centerlines to surfaces
 Turns centerlines of vessels, points with radii, into closed triangle meshes,
 fits them to segmentations, measures and deforms them. With manual pages and
-completion for bash.")
+completion for bash, zsh and fish.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvmesh-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
@@ -40,6 +40,9 @@ if(VMESH_HAS_DICOM)
 endif()
 if(VMESH_HAS_TIFF)
   list(APPEND recommended libtiff-dev)
+endif()
+if(VMESH_HAS_MESHOPTIMIZER)
+  list(APPEND recommended libmeshoptimizer-dev)
 endif()
 list(JOIN recommended ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION

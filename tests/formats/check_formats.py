@@ -24,7 +24,8 @@ import outputs  # noqa: E402
 import programs  # noqa: E402
 from report import Absent, Table, Vmesh  # noqa: E402
 
-PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "h5py", "networkx", "pydicom", "tifffile", "text")
+PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "gmsh", "tetgen", "h5py", "networkx", "pydicom", "tifffile",
+            "text")
 
 
 def check(name, table, written, options, folder):
@@ -49,6 +50,8 @@ def check(name, table, written, options, folder):
         meshlab = programs.MeshLab(folder)
         outputs.check_meshlab(table, meshlab, written)
         inputs.check_meshlab(table, meshlab, written)
+    elif name in ("gmsh", "tetgen"):
+        outputs.check_mesher(table, programs.Gmsh(folder) if name == "gmsh" else programs.TetGen(folder), written)
     elif name == "pydicom":
         images.check_pydicom(table, written)
     elif name == "tifffile":

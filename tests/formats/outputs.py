@@ -49,6 +49,8 @@ class Written:
             vmesh("convert", path("wall.ply"), path("wall." + ending))
         vmesh("generate", path("tree.json"), path("skin.ply"))
         vmesh("generate", path("tree.json"), path("skin.glb"), "--bones")
+        for ending in ("ply", "stl"):
+            vmesh("convert", path("wall.ply"), path("text." + ending), "--ascii")
         for ending in ("swc", "csv"):
             vmesh("convert", path("tree.json"), path("tree." + ending))
         self.with_vtk = "built without VTK" not in self.try_vtp()
@@ -196,6 +198,18 @@ def check_three(table, three, written, bent_tree):
     table.check(".obj", "out", three.name, lambda: surface("wall.obj", False))
     table.check(".glb", "out", three.name, scene)
     table.check(".glb", "out, `--bones`: bent as the deformer bends it", three.name, bent)
+
+
+def check_mesher(table, mesher, written):
+    """Programs that fill surfaces for simulations; those of them tested here read PLY as text only."""
+
+    def surface(name):
+        there = mesher.surface(written.vmesh.path(name))
+        expect_same_surface(there, written.wall, DOUBLE, (), (), False)
+        return len(there.points), len(there.faces), "", ""
+
+    for ending in ("ply", "stl"):
+        table.check("." + ending, "out, `--ascii`", mesher.name, lambda ending=ending: surface("text." + ending))
 
 
 def check_meshlab(table, meshlab, written):

@@ -122,8 +122,10 @@ class Meshio:
 
     def surface(self, path):
         mesh = self.meshio.read(path)
-        expect([c.type for c in mesh.cells] == ["triangle"], f"cells of the types {[c.type for c in mesh.cells]}")
-        return Surface(mesh.points, mesh.cells[0].data, dict(mesh.point_data), {})
+        # One block, or one for each group of an OBJ file.
+        expect({c.type for c in mesh.cells} == {"triangle"}, f"cells of the types {[c.type for c in mesh.cells]}")
+        faces = numpy.concatenate([c.data for c in mesh.cells])
+        return Surface(mesh.points, faces, dict(mesh.point_data), {})
 
     def write(self, surface, path, **options):
         mesh = self.meshio.Mesh(surface.points, [("triangle", surface.faces)])
@@ -200,3 +202,49 @@ class MeshLab:
         rows = numpy.array([line.split() for line in lines[start : start + len(surface.points)]], float)
         surface.of_points = {n: rows[:, i] for i, n in enumerate(names[: rows.shape[1]]) if n not in ("x", "y", "z")}
         return surface
+
+
+class Gmsh:
+    """Gmsh, through its own format in text."""
+
+    def __init__(self, folder):
+        self.command, self.folder = need("gmsh", "gmsh"), folder
+        self.name = "Gmsh " + run([self.command, "-info"]).split(":")[1].split()[0]
+
+    def surface(self, path):
+        out = os.path.join(self.folder, "gmsh.msh")
+        run([self.command, path, "-0", "-format", "msh2", "-o", out])
+        with open(out) as file:
+            lines = file.read().splitlines()
+        nodes = self.section(lines, "$Nodes")
+        number = {row[0]: i for i, row in enumerate(nodes)}
+        faces = [row[-3:] for row in self.section(lines, "$Elements") if row[1] == "2"]
+        return Surface(
+            numpy.array([row[1:4] for row in nodes], float).reshape(-1, 3),
+            numpy.array([[number[node] for node in face] for face in faces], int).reshape(-1, 3),
+        )
+
+    def section(self, lines, name):
+        start = lines.index(name)
+        return [line.split() for line in lines[start + 2 : start + 2 + int(lines[start + 1])]]
+
+
+class TetGen:
+    """TetGen: the boundary of the tetrahedra with which it fills a surface, without points of its own there."""
+
+    def __init__(self, folder):
+        self.command, self.folder = need("tetgen", "tetgen"), folder
+        self.name = "TetGen 1.5"
+
+    def surface(self, path):
+        copy = os.path.join(self.folder, "tetgen" + os.path.splitext(path)[1])
+        shutil.copyfile(path, copy)
+        run([self.command, "-pYQz", copy])
+        points = self.rows("tetgen.1.node")[:, 1:4]
+        faces = self.rows("tetgen.1.face")[:, 1:4].astype(int)
+        return Surface(points, faces[:, ::-1])  # which face inwards
+
+    def rows(self, name):
+        path = os.path.join(self.folder, name)
+        expect(os.path.exists(path), f"TetGen wrote no {name}")
+        return numpy.loadtxt(path, skiprows=1)

@@ -67,6 +67,17 @@ function bend(scene, mesh) {
   }
 }
 
+// Those of an OBJ file: a mesh for each group, none with an index.
+function reportGroups(group) {
+  const all = {points: [], faces: [], attributes: {}, bones: 0};
+  group.updateMatrixWorld(true);
+  for (const mesh of group.children) {
+    for (const x of points(mesh)) all.points.push(x);
+  }
+  for (let i = 0; i < all.points.length / 3; ++i) all.faces.push(i);
+  print(all);
+}
+
 function reportScene(scene) {
   const meshes = [];
   scene.traverse((object) => object.isMesh && meshes.push(object));
@@ -87,7 +98,7 @@ if (task === 'version') {
     throw error;
   });
 } else if (file.endsWith('.obj')) {
-  reportScene(load('OBJLoader').parse(fs.readFileSync(file, 'utf8')));
+  reportGroups(load('OBJLoader').parse(fs.readFileSync(file, 'utf8')));
 } else {
   report(new THREE.Mesh(load(file.endsWith('.stl') ? 'STLLoader' : 'PLYLoader').parse(bytes(file))));
 }

@@ -166,12 +166,12 @@ TEST(ReadJson, ReadsOurSchema) {
 TEST(ReadJson, NamesTheEntryThatIsWrong) {
   expect_contains(json_error("{"), "t.json");
   expect_contains(json_error("[]"), "t.json");
-  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1],[0,0,1]],"segments":[]})"), "nodes entry 1");
-  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,null,1]],"segments":[]})"), "nodes entry 0");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1],[0,0,1]],"segments":[]})"), "node 1");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,null,1]],"segments":[]})"), "node 0");
   expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,1e999,1]],"segments":[]})"), "t.json");
-  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]],"segments":[[0,1]]})"), "segments entry 0");
-  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]],"segments":[[0,-1]]})"), "segments entry 0");
-  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]],"segments":[[0,0.5]]})"), "segments entry 0");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]],"segments":[[0,1]]})"), "segment 0");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]],"segments":[[0,-1]]})"), "segment 0");
+  expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]],"segments":[[0,0.5]]})"), "segment 0");
   expect_contains(json_error(kJsonHead + R"("nodes":[[0,0,0,1]]})"), "\"segments\"");
   expect_contains(json_error(kJsonHead + R"("unit":"furlong","nodes":[],"segments":[]})"), "furlong");
   expect_contains(message_of<Unsupported>([] { json(R"({"schema":"vmesh.centerline/9"})"); }), "vmesh.centerline/1");

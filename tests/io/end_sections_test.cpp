@@ -166,11 +166,11 @@ TEST(EndSections, InJsonAreRefusedWithWhatIsWrong) {
            {"open", 1, "neither true nor false"},
            {"ring", {{9, 2, 0}, {9, -1, 2}}, "at least three points"},
            {"ring", json::array(), "at least three points"},
-           {"ring", {1, 2, 3}, "\"ring\" entry 0: it must be [x, y, z]"},
+           {"ring", {1, 2, 3}, "\"ring\" point 0: it must be [x, y, z]"},
            {"ring", 7, "\"ring\": it must be an array"}}) {
     SCOPED_TRACE(::testing::Message() << key << " " << value);
     const std::string text = message(key, value);
-    expect_contains(text, "t.json: end_sections entry 0: ");
+    expect_contains(text, "t.json: end section 0: ");
     expect_contains(text, part);
   }
   for (const char* key : {"node", "center", "normal", "area", "open"}) {

@@ -61,8 +61,8 @@ TEST(ReadGxl, ScalesPositionsByTheVoxelAndKeepsRadiiOfEdges) {
   EXPECT_EQ(raw.nodes[5].position, Vec3(20, 1.5, 0));
   EXPECT_EQ(raw.nodes[5].radius, 1);
   ASSERT_EQ(raw.segments.size(), 5u);
-  EXPECT_EQ(raw.name_of_segment(4), "t.gxl: edge entry 2");
-  EXPECT_EQ(raw.name_of_node(5), "t.gxl: node entry 1");
+  EXPECT_EQ(raw.name_of_segment(4), "t.gxl: edge 2");
+  EXPECT_EQ(raw.name_of_node(5), "t.gxl: node 1");
 }
 
 TEST(ReadGxl, AShortEdgeChangesInItsMiddle) {
@@ -81,10 +81,10 @@ TEST(ReadGxl, NeedsTheVoxelAndNamesWhatIsWrong) {
   const std::string good = gxl(kNodes + edge("n0", "n1", "2"));
   expect_contains(message_of<InvalidInput>([&] { parse_centerline(good, centerline_format("t.gxl"), "t.gxl"); }),
                   "--voxel-size");
-  expect_contains(error(gxl(kNodes + edge("n0", "n9", "2"))), "t.gxl: edge entry 0: there is no node \"n9\"");
-  expect_contains(error(gxl(kNodes + edge("n0", "n1", "wide"))), "t.gxl: edge entry 0: its radius \"wide\"");
-  expect_contains(error(gxl(kNodes + node("n1", floats(1, 1, 1)))), "node entry 4: the id \"n1\" occurs twice");
-  expect_contains(error(gxl(node("n0", "<float>1</float>"))), "node entry 0: its position");
+  expect_contains(error(gxl(kNodes + edge("n0", "n9", "2"))), "t.gxl: edge 0: there is no node \"n9\"");
+  expect_contains(error(gxl(kNodes + edge("n0", "n1", "wide"))), "t.gxl: edge 0: its radius \"wide\"");
+  expect_contains(error(gxl(kNodes + node("n1", floats(1, 1, 1)))), "node 4: the id \"n1\" occurs twice");
+  expect_contains(error(gxl(node("n0", "<float>1</float>"))), "node 0: its position");
   expect_contains(error(gxl(kNodes)), "no <edge>");
   expect_contains(error("<svg/>"), "not a GXL file");
 }

@@ -73,6 +73,76 @@ TEST(Produce, FlatEndsOfAStubBesideAVesselDoNotCrossIt) {
   EXPECT_NEAR(production.ends.ends[3].area, std::numbers::pi * 1.2 * 1.2, 1e-9);
 }
 
+/// A vessel along x that ends in front of the middle of another, `gap` away from its wall.
+Centerline crossroads(double gap) {
+  return {{{{-10, 0, 0}, 1}, {{0, 0, 0}, 1}, {{gap + 2, -12, 0}, 2}, {{gap + 2, 12, 0}, 2}}, {{0, 1}, {2, 3}}};
+}
+
+TEST(Produce, AnExtensionThatRunsIntoAVesselIsNamedWithTheLongestThatFits) {
+  ProductionOptions options;
+  options.ends = EndShape::flat;
+  options.extension = 5;
+  const Production production = produce(crossroads(4), {}, options);
+  EXPECT_FALSE(production.result.is_sound());
+  ASSERT_EQ(production.ends.blocked.size(), 1u);
+  const BlockedExtension& blocked = production.ends.blocked[0];
+  EXPECT_EQ(blocked.node, 1u);
+  EXPECT_EQ(blocked.branch, 1u);
+  EXPECT_EQ(blocked.length, 5);
+  // The wall is four radii ahead, by the error of hexagons; a quarter is left free, in radii of the corners.
+  EXPECT_NEAR(blocked.longest, 3.7, 0.25);
+  EXPECT_NEAR(blocked.at.x(), 4, 0.35);
+  const std::vector<std::string> problems = problems_of(production.ends);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].find("the flow extension at node 1, 5 radii long, runs into the vessel of branch 1 at ("),
+            std::string::npos)
+      << problems[0];
+  options.extension = blocked.longest;
+  EXPECT_TRUE(produce(crossroads(4), {}, options).result.is_sound());
+}
+
+TEST(Produce, FittedExtensionsAreAsLongAsThereIsRoom) {
+  ProductionOptions options;
+  options.ends = EndShape::flat;
+  options.extension = kLongestFittedExtension;
+  options.fit_extensions = true;
+  for (const double gap : {2.0, 4.0, 8.0, 20.0}) {
+    SCOPED_TRACE(gap);
+    const Production production = produce(crossroads(gap), {}, options);
+    EXPECT_TRUE(production.result.is_sound());
+    EXPECT_TRUE(production.ends.blocked.empty());
+    ASSERT_EQ(production.ends.ends.size(), 4u);
+    const FlatEnd& end = production.ends.ends[1];
+    if (gap > kLongestFittedExtension + 1) {
+      EXPECT_EQ(end.extension, kLongestFittedExtension);
+    } else {
+      EXPECT_LT(end.extension, gap);
+      EXPECT_GT(end.extension, gap - 0.6);
+    }
+    // A circle of the area of the end is as wide as the vessel.
+    EXPECT_NEAR(end.center.x(), end.extension, 0.01);
+    for (const Index free : {0u, 2u, 3u}) EXPECT_EQ(production.ends.ends[free].extension, kLongestFittedExtension);
+  }
+}
+
+TEST(Produce, FittedExtensionsLeaveRoomForEachOther) {
+  const Centerline facing = {{{{-10, 0, 0}, 1}, {{0, 0, 0}, 1}, {{6, .5, 0}, 1}, {{16, .5, 0}, 1}}, {{0, 1}, {2, 3}}};
+  ProductionOptions options;
+  options.ends = EndShape::open;
+  options.extension = kLongestFittedExtension;
+  options.fit_extensions = true;
+  const Production production = produce(facing, {}, options);
+  EXPECT_TRUE(production.result.is_sound());
+  ASSERT_EQ(production.ends.ends.size(), 4u);
+  EXPECT_NEAR(production.ends.ends[1].extension, 5.7, 0.1);  // the first takes what there is
+  EXPECT_EQ(production.ends.ends[2].extension, 0);
+  ASSERT_EQ(production.ends.blocked.size(), 1u);
+  EXPECT_EQ(production.ends.blocked[0].branch, 0u);
+  EXPECT_NE(problems_of(production.ends).at(0).find("the end at node 2 has no flow extension: the vessel of branch 0"),
+            std::string::npos)
+      << problems_of(production.ends).at(0);
+}
+
 TEST(Produce, EndsAsWanted) {
   const Centerline centerline = fork();
   ProductionOptions options;

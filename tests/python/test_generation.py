@@ -16,7 +16,17 @@ def test_arrays_and_centerline_give_the_same_surface():
     np.testing.assert_array_equal(from_arrays.faces, from_centerline.faces)
 
 
-@pytest.mark.parametrize("options", [[], ["--around", "9"], ["--max-error", "10%"], ["--ends", "flat"]])
+@pytest.mark.parametrize(
+    "options",
+    [
+        [],
+        ["--around", "9"],
+        ["--max-error", "10%"],
+        ["--ends", "flat"],
+        ["--budget", "vertices=1500"],
+        ["--ends", "flat", "--flow-extensions", "auto"],
+    ],
+)
 def test_the_command_makes_the_same_surface(tmp_path, options):
     command = os.environ.get("VMESH_COMMAND")
     if not command:
@@ -25,7 +35,8 @@ def test_the_command_makes_the_same_surface(tmp_path, options):
     made = [command, "generate", tmp_path / "tree.json", "-o", tmp_path / "tree.ply", "--quiet", *options]
     subprocess.run(made, check=True)
     of_command = vmesh.read_surface(tmp_path / "tree.ply")
-    names = {"--around": "around", "--max-error": "max_error", "--ends": "ends"}
+    names = {"--around": "around", "--max-error": "max_error", "--ends": "ends", "--budget": "budget"}
+    names["--flow-extensions"] = "flow_extension"
     keywords = {names[k]: int(v) if v.isdigit() else v for k, v in zip(options[::2], options[1::2])}
     surface = vmesh.generate(vmesh.read_centerline(tmp_path / "tree.json"), **keywords)
     np.testing.assert_array_equal(surface.vertices, of_command.vertices)
@@ -260,3 +271,67 @@ def test_any_mesh_can_be_bound():
 def test_faces_must_name_vertices():
     with pytest.raises(vmesh.InvalidInput, match="row 1 names vertex 4"):
         vmesh.Surface(np.zeros((4, 3)), [[0, 1, 2], [1, 2, 4]])
+
+
+def test_a_budget_chooses_the_finest_surface_within_it():
+    surface = vmesh.generate(vmesh.synthetic_tree(150, seed=2), budget="vertices=1500")
+    assert len(surface.vertices) <= 1500
+    within = [point for point in surface.tried if point.within_budget]
+    assert len(surface.vertices) == max(point.vertices for point in within)
+    assert [point.around for point in surface.tried] == sorted(point.around for point in surface.tried)
+    finer = min(point.vertices for point in surface.tried if not point.within_budget)
+    assert finer > 1500
+    assert vmesh.generate(*FORK).tried == []
+
+
+def test_a_budget_of_error_is_kept():
+    surface = vmesh.generate(*FORK, budget="error=0.2mm")
+    assert surface.unproven_faces == 0 and surface.warnings == []
+    assert max(point.max_error for point in surface.tried if point.within_budget) <= 0.2
+
+
+def test_a_budget_that_cannot_be_met_is_told():
+    with pytest.warns(vmesh.SurfaceWarning, match="nothing is within the budget vertices=5"):
+        vmesh.generate(*FORK, budget="vertices=5")
+    for options in ({"around": 8}, {"max_error": 0.1}, {"least_vertices": 100, "elongation": 4}):
+        with pytest.raises(vmesh.InvalidInput, match="a budget chooses"):
+            vmesh.generate(*FORK, budget="vertices=500", **options)
+    with pytest.raises(vmesh.InvalidInput, match="budget"):
+        vmesh.generate(*FORK, budget="cheap")
+
+
+def test_extensions_are_as_long_as_there_is_room():
+    nodes = [[-10, 0, 0], [0, 0, 0], [6, -12, 0], [6, 12, 0]]
+    crossroads = vmesh.Centerline(nodes, [1, 1, 2, 2], [[0, 1], [2, 3]])
+    with pytest.raises(vmesh.DefectiveSurface), pytest.warns(vmesh.SurfaceWarning, match="at most 3.* radii fit there"):
+        vmesh.generate(crossroads, ends="flat", flow_extension=5)
+    surface = vmesh.generate(crossroads, ends="flat", flow_extension="auto")
+    extensions = {end.node: end.extension for end in surface.flat_ends}
+    assert 3 < extensions.pop(1) < 4
+    assert set(extensions.values()) == {10.0}
+    opened = vmesh.generate(crossroads, ends="open")
+    assert [end.extension for end in vmesh.finish_ends(opened, extension=2).flat_ends] == [2.0] * 4
+    with pytest.raises(vmesh.InvalidInput, match="neither a number of radii nor"):
+        vmesh.generate(crossroads, ends="flat", flow_extension="long")
+
+
+def test_normals_are_an_array_like_the_radius():
+    surface = vmesh.generate(*straight())
+    assert surface.normals.shape == surface.vertices.shape
+    middle = (surface.parameter > 0.1) & (abs(surface.vertices[:, 0] - 10) < 5)
+    outward = surface.vertices[middle] * [0, 1, 1] / np.linalg.norm(surface.vertices[middle, 1:], axis=1)[:, None]
+    assert (np.sum(outward * surface.normals[middle], axis=1) > 0.95).all()
+
+
+def test_files_are_text_or_packed_on_request(tmp_path):
+    surface = vmesh.generate(*FORK)
+    surface.save(tmp_path / "fork.ply", ascii=True)
+    assert (tmp_path / "fork.ply").read_text().startswith("ply\nformat ascii")
+    np.testing.assert_array_equal(vmesh.read_surface(tmp_path / "fork.ply").vertices, surface.vertices)
+    with pytest.raises(vmesh.Unsupported, match="no text form"):
+        surface.save(tmp_path / "fork.vtp", ascii=True)
+    with pytest.raises(vmesh.Unsupported, match="no compressed form"):
+        surface.save(tmp_path / "other.ply", compress=True)
+    with pytest.raises(vmesh.InvalidInput, match="ascii, compress"):
+        surface.save(tmp_path / "other.ply", ascii=True, compress=True)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["fork.ply"]

@@ -332,5 +332,33 @@ TEST(Render, RejectsAttributesThatDoNotFit) {
   EXPECT_NO_THROW(draw({-std::numeric_limits<double>::infinity(), 1}, AttributeDomain::face));
 }
 
+TEST(RenderByName, TakesTheVertexAttributeAndForLabelsTheFaces) {
+  const TriMesh mesh = make_sphere(1);
+  MeshAttribute of_vertices{"branch", std::vector<double>(mesh.vertices.size(), 1)};
+  MeshAttribute of_faces{"branch", std::vector<double>(mesh.faces.size(), 2)};
+  RenderOptions options = small();
+  options.categories = true;
+  EXPECT_EQ(render(mesh, {{of_vertices}, {of_faces}}, "branch", small()).pixels,
+            render(mesh, of_faces, AttributeDomain::face, options).pixels);
+  of_vertices.name = of_faces.name = "radius";
+  EXPECT_EQ(render(mesh, {{of_vertices}, {of_faces}}, "radius", small()).pixels,
+            render(mesh, of_vertices, AttributeDomain::vertex, small()).pixels);
+  EXPECT_NE(render(mesh, {{of_vertices}, {of_faces}}, "skewness", small()).pixels,
+            render(mesh, of_vertices, AttributeDomain::vertex, small()).pixels);
+}
+
+TEST(RenderByName, ListsTheNamesForAnUnknownOne) {
+  const TriMesh mesh = make_sphere(1);
+  const MeshAttributes attributes = {{{"radius", std::vector<double>(mesh.vertices.size(), 1)}},
+                                     {{"group", std::vector<double>(mesh.faces.size(), 1)}}};
+  try {
+    render(mesh, attributes, "thickness", small());
+    ADD_FAILURE() << "no exception";
+  } catch (const InvalidInput& error) {
+    EXPECT_STREQ(error.what(), "there is no attribute thickness to colour by; the surface has radius, group");
+  }
+  EXPECT_THROW(render(mesh, MeshAttributes(), "radius", small()), InvalidInput);
+}
+
 }  // namespace
 }  // namespace vmesh

@@ -147,6 +147,48 @@ TEST_F(Convert, LeavesAttributesOut) {
   EXPECT_TRUE(none.face.empty() && none.vertex.empty());
 }
 
+TEST_F(Convert, WritesTextWhereTheFormatHasTheChoice) {
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.ply", "--ascii"}).exit_code, 0);
+  EXPECT_TRUE(read("y.ply").starts_with("ply\nformat ascii 1.0\n"));
+  ASSERT_EQ(vmesh({"convert", "@y.ply", "@y.stl", "--ascii"}).exit_code, 0);
+  EXPECT_TRUE(read("y.stl").starts_with("solid "));
+  ASSERT_EQ(vmesh({"convert", "@y.stl", "@back.ply"}).exit_code, 0);
+  const TriMesh before = read_surface(path("y.ply")).mesh, after = read_surface(path("back.ply")).mesh;
+  ASSERT_EQ(after.faces.size(), before.faces.size());
+  for (std::size_t f = 0; f < before.faces.size(); ++f) {
+    for (std::size_t i = 0; i < 3; ++i)
+      ASSERT_EQ(after.vertices[after.faces[f][i]], before.vertices[before.faces[f][i]]);
+  }
+  for (const std::string name : {"z.vtp", "z.obj", "z.glb", "z.json"}) {
+    const Outcome run = vmesh({"convert", name == "z.json" ? "@y.swc" : "@y.ply", "@" + name, "--ascii"});
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_NE(run.err.find(name), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("--ascii"), std::string::npos) << run.err;
+    EXPECT_FALSE(exists(name));
+  }
+}
+
+TEST_F(Convert, CompressesGlbOnly) {
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.ply"}).exit_code, 0);
+  for (const char* name : {"z.ply", "z.obj", "z.swc"}) {
+    const Outcome run = vmesh({"convert", "@y.ply", std::string("@") + name, "--compress"});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_NE(run.err.find(std::string(name)), std::string::npos) << run.err;
+    EXPECT_FALSE(exists(name));
+  }
+  const Outcome both = vmesh({"convert", "@y.ply", "@z.glb", "--compress", "--ascii"});
+  EXPECT_EQ(both.exit_code, 2) << both.err;
+  const Outcome run = vmesh({"convert", "@y.ply", "@z.glb", "--compress"});
+  if (run.exit_code == 4) {
+    EXPECT_NE(run.err.find("VMESH_WITH_MESHOPTIMIZER"), std::string::npos) << run.err;
+    EXPECT_FALSE(exists("z.glb"));
+    return;
+  }
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ASSERT_EQ(vmesh({"convert", "@y.ply", "@plain.glb"}).exit_code, 0);
+  EXPECT_LT(read("z.glb").size(), read("plain.glb").size());
+}
+
 TEST_F(Convert, NeedsAnOutput) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"convert", "@y.swc"}, {"render", "@y.swc"}, {"synth"}})
@@ -183,7 +225,9 @@ TEST_F(Convert, AVtpIsTakenForWhatItHolds) {
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@faces.vtp"}).exit_code, 0);
   EXPECT_EQ(vmesh({"convert", "@lines.vtp", "-o", "@back.swc"}).exit_code, 0);
   EXPECT_EQ(vmesh({"convert", "@faces.vtp", "-o", "@back.ply"}).exit_code, 0);
-  EXPECT_EQ(vmesh({"convert", "@lines.vtp", "-o", "@wrong.ply"}).exit_code, 2);
+  const Outcome lines = vmesh({"convert", "@lines.vtp", "-o", "@wrong.ply"});
+  EXPECT_EQ(lines.exit_code, 2);
+  EXPECT_NE(lines.err.find("lines.vtp: holds lines, no faces: a centerline"), std::string::npos) << lines.err;
   EXPECT_EQ(vmesh({"convert", "@faces.vtp", "-o", "@wrong.swc"}).exit_code, 2);
   EXPECT_FALSE(exists("wrong.ply") || exists("wrong.swc"));
 }

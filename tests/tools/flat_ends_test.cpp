@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -99,6 +100,45 @@ TEST_F(FlatEnds, AreThoseOfTheSurface) {
       EXPECT_LT(distance(wall, mesh.vertices.at(v)), 1e-3 * kHigh);
   }
   for (const json& end : summary.at("caps")) EXPECT_EQ(end.at("at_section"), true);
+}
+
+/// The normals of the facets of every solid of an STL file.
+std::map<std::string, std::vector<Vec3>> normals_of_solids(const std::string& content) {
+  std::map<std::string, std::vector<Vec3>> solids;
+  std::istringstream lines(content);
+  std::string solid;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string word, normal;
+    words >> word;
+    if (word == "solid") words >> solid;
+    Vec3 n;
+    if (word == "facet" && words >> normal >> n.x() >> n.y() >> n.z()) solids[solid].push_back(n);
+  }
+  return solids;
+}
+
+TEST_F(FlatEnds, AreSolidsOfTheirOwn) {
+  write_y("y.swc");
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.stl", "--ascii", "--ends", "flat", "--json", "@y.json"}).exit_code, 0);
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.vtp", "--ends", "flat"}).exit_code, 0);
+  const auto solids = normals_of_solids(read("y.stl"));
+  const json caps = json::parse(read("y.json")).at("caps");
+  ASSERT_EQ(caps.size(), 3u);
+  ASSERT_EQ(solids.size(), 4u);
+  std::map<double, std::size_t> faces_of;
+  for (const MeshAttribute& a : read_surface(path("y.vtp")).attributes.face) {
+    if (a.name == "CapID")
+      for (const double id : a.values) ++faces_of[id];
+  }
+  EXPECT_EQ(solids.at("wall").size(), faces_of.at(-1));
+  for (const json& cap : caps) {
+    const int id = cap.at("cap_id").get<int>();
+    const auto of_cap = solids.at("cap_" + std::to_string(id));
+    EXPECT_EQ(of_cap.size(), faces_of.at(id));
+    const auto normal = cap.at("normal").get<std::array<double, 3>>();
+    for (const Vec3& n : of_cap) EXPECT_LT((n - Vec3(normal[0], normal[1], normal[2])).norm(), 1e-5);
+  }
 }
 
 TEST_F(FlatEnds, AreIgnoredWhereEndsAreRound) {

@@ -65,9 +65,15 @@ TEST_F(Formats, LinesInFormatsOfSurfacesAreCenterlines) {
   EXPECT_EQ(vmesh({"generate", "@l.ply", "-o", "@p.stl"}).exit_code, 0);
   EXPECT_EQ(read("o.stl"), read("p.stl"));
   EXPECT_EQ(vmesh({"convert", "@l.ply", "@l.swc"}).exit_code, 0);
+  const Outcome written = vmesh({"convert", "@l.obj", "@lines.stl"});
+  EXPECT_EQ(written.exit_code, 2);
+  EXPECT_NE(written.err.find("l.obj: holds lines, no faces: a centerline, which cannot be written to "),
+            std::string::npos)
+      << written.err;
   const Outcome as_surface = vmesh({"evaluate", "@l.ply"});
   EXPECT_EQ(as_surface.exit_code, 3) << as_surface.err;
-  EXPECT_NE(as_surface.err.find("this is a centerline, and a surface is needed"), std::string::npos) << as_surface.err;
+  EXPECT_NE(as_surface.err.find("l.ply: this file holds lines, no faces, and a surface is needed"), std::string::npos)
+      << as_surface.err;
   // Errors are those of lines, not of a surface without triangles.
   write("bad.obj", "v 0 0 0\nv 9 0 0\nl 1 5\n");
   const Outcome bad = vmesh({"generate", "@bad.obj", "--radius", "1", "-o", "@o.stl"});
@@ -75,12 +81,38 @@ TEST_F(Formats, LinesInFormatsOfSurfacesAreCenterlines) {
   EXPECT_NE(bad.err.find("bad.obj: line 3: there is no vertex 5"), std::string::npos) << bad.err;
 }
 
-TEST_F(Formats, UnknownOnesAreRefusedWithAllThatAreKnown) {
+/// Expects the extensions of the formats of a kind that can be written in a message, and no others.
+void expect_lists_written(const std::string& message, const Json& formats) {
+  for (const Json& format : formats) {
+    for (const std::string extension : format.at("extensions")) {
+      const bool is_listed = (message + " ").find(extension + " ") != std::string::npos ||
+                             message.find(extension + ",") != std::string::npos ||
+                             message.find(extension + "\n") != std::string::npos;
+      EXPECT_EQ(is_listed, format.at("written").get<bool>()) << extension << " in " << message;
+    }
+  }
+}
+
+TEST_F(Formats, UnknownOutputsAreRefusedWithAllThatCanBeWritten) {
   const Json formats = listed();
-  for (const auto& [kind, output] : {std::pair{"surface", "tree.xyz"}, std::pair{"centerline", "frame.xyz"}}) {
-    write_y("y.swc");
-    const Outcome run = kind == std::string("surface") ? vmesh({"generate", "@y.swc", "-o", "@" + std::string(output)})
-                                                       : vmesh({"synth", "-o", "@" + std::string(output)});
+  write_y("y.swc");
+  const Outcome surface = vmesh({"generate", "@y.swc", "-o", "@tree.xyz"});
+  EXPECT_EQ(surface.exit_code, 4);
+  expect_lists_written(surface.err, formats.at("surface"));
+  const Outcome centerline = vmesh({"synth", "-o", "@frame.xyz"});
+  EXPECT_EQ(centerline.exit_code, 4);
+  expect_lists_written(centerline.err, formats.at("centerline"));
+  const Outcome either = vmesh({"convert", "@y.swc", "@y.xyz"});
+  EXPECT_EQ(either.exit_code, 4);
+  EXPECT_NE(either.err.find("y.xyz: \".xyz\" is not supported; centerlines are written as .swc"), std::string::npos);
+  EXPECT_NE(either.err.find(", surfaces as .off"), std::string::npos) << either.err;
+}
+
+TEST_F(Formats, UnknownInputsAreRefusedWithAllThatAreKnown) {
+  const Json formats = listed();
+  write("y.xyz", "");
+  for (const auto& [kind, verb] : {std::pair{"surface", "render"}, std::pair{"centerline", "cones"}}) {
+    const Outcome run = vmesh({verb, "@y.xyz", "-o", verb == std::string("render") ? "@y.png" : "@y.ply"});
     EXPECT_EQ(run.exit_code, 4);
     for (const Json& format : formats.at(kind)) {
       for (const std::string extension : format.at("extensions"))

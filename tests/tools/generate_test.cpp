@@ -151,6 +151,28 @@ TEST_F(Generate, CapsEndsForFlow) {
   for (Index f = 0; f < surface.mesh.faces.size(); ++f) EXPECT_EQ(face.values[f] == 1, cap.values[f] == -1);
 }
 
+TEST_F(Generate, TellsWhichFlowExtensionHasNoRoom) {
+  write("crossing.swc", "# SPACE=LPS\n# UNIT=mm\n1 0 -10 0 0 1 -1\n2 0 0 0 0 1 1\n3 0 6 -12 0 2 -1\n4 0 6 12 0 2 3\n");
+  const Outcome refused = vmesh({"generate", "@crossing.swc", "@a.ply", "--ends", "flat", "--flow-extensions", "5"});
+  EXPECT_EQ(refused.exit_code, 7) << refused.err;
+  for (const char* part : {"the flow extension at node 3, 5 radii long, runs into the vessel of branch 0",
+                           "radii fit there", "--flow-extensions auto"})
+    EXPECT_NE(refused.err.find(part), std::string::npos) << refused.err;
+  EXPECT_FALSE(exists("a.ply"));
+  const Outcome run = vmesh({"generate", "@crossing.swc", "@a.ply", "--ends", "flat", "--flow-extensions", "auto",
+                             "--check", "--json", "@a.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json summary = json::parse(read("a.json"));
+  EXPECT_EQ(summary.at("options").at("flow_extensions"), "auto");
+  for (const json& cap : summary.at("caps")) {
+    const double length = cap.at("extension_radii");
+    EXPECT_TRUE(cap.at("node") == 3 ? length > 3 && length < 4 : length == 10) << cap;
+  }
+  for (const char* wrong : {"-1", "long", "2000", "nan"})
+    EXPECT_EQ(vmesh({"generate", "@crossing.swc", "@b.ply", "--ends", "flat", "--flow-extensions", wrong}).exit_code,
+              2);
+}
+
 TEST_F(Generate, LeavesEndsOpenBesideFlatOnes) {
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply", "--ends", "flat", "--open-ends", "0", "--json", "@y.json"})
                 .exit_code,
@@ -336,7 +358,7 @@ TEST_F(Overlap, IsRefusedWhenKept) {
   EXPECT_FALSE(exists("x.ply"));
   EXPECT_FALSE(exists("x.json"));
   EXPECT_NE(run.err.find("crossing_faces: "), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("nearest to line "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find(", near line "), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("on branch "), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("--allow-defects"), std::string::npos) << run.err;
 

@@ -38,6 +38,7 @@ TEST_F(Messages, InfoTellsOpeningsAreaBoxAndUnitOfAnOpenSurface) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto report = nlohmann::json::parse(run.out);
   EXPECT_EQ(report.at("openings").at("count"), 2);
+  EXPECT_EQ(report.at("topology").at("openings"), 2);
   for (const auto& opening : report.at("openings").at("largest")) {
     EXPECT_DOUBLE_EQ(opening.at("area_mm2").get<double>(), 6);
     EXPECT_EQ(opening.at("edges"), 4);

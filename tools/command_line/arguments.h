@@ -8,6 +8,7 @@
 
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
 #include "vmesh/reference/reference_surface.h"
 
 namespace vmesh::tool {
@@ -35,6 +36,7 @@ struct WritingArguments {
   LengthUnit unit = LengthUnit::mm;
   Space space = Space::lps;
   std::string attributes = "all";  ///< of surfaces: "all", "vertex" or "none"
+  SurfaceEncoding encoding = SurfaceEncoding::usual;
 };
 
 /// A report on stdout and in a file.

@@ -6,22 +6,25 @@ namespace vmesh::tool {
 
 void add_common(CLI::App& verb, CommonArguments& common, bool with_json) {
   verb.add_flag("-q,--quiet", common.quiet, "only warnings and errors on stderr");
-  if (with_json) verb.add_option("--json", common.json, "write a summary to this file; - for stdout");
+  if (with_json)
+    verb.add_option("--json", common.json, "write a summary to this file; - for stdout")->type_name("FILE.json");
 }
 
 void add_html(CLI::App& verb, CommonArguments& common) {
   verb.add_option(
-      "--html", common.html,
-      "write a page to this file: the surface in 3D with its worst places, distributions and figures, for any "
-      "browser, without a network (.html)");
+          "--html", common.html,
+          "write a page to this file: the surface in 3D with its worst places, distributions and figures, for any "
+          "browser, without a network (.html)")
+      ->type_name("FILE.html|.htm");
 }
 
-void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& help) {
-  verb.add_option("-o,--output,OUT", output, help);
+void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& type, const std::string& help) {
+  verb.add_option("-o,--output,OUT", output, help)->type_name(type);
 }
 
-void add_output_after_several(CLI::App& verb, std::filesystem::path& output, const std::string& help) {
-  verb.add_option("-o,--output", output, help + "; without -o, the last of the files");
+void add_output_after_several(CLI::App& verb, std::filesystem::path& output, const std::string& type,
+                              const std::string& help) {
+  verb.add_option("-o,--output", output, help + "; without -o, the last of the files")->type_name(type);
 }
 
 void add_writing(CLI::App& verb, WritingArguments& writing) {
@@ -37,7 +40,16 @@ void add_writing(CLI::App& verb, WritingArguments& writing) {
                   "of a surface: all; vertex: none of faces, which some PLY readers reject; or none")
       ->check(CLI::IsMember({"all", "vertex", "none"}))
       ->capture_default_str();
-  group(verb, "How to write the output", {"--output-unit", "--output-space", "--attributes"});
+  verb.add_flag_callback(
+      "--ascii", [&writing] { writing.encoding = SurfaceEncoding::text; },
+      "write the surface as text (" +
+          listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_text_form; }), "and") + ")");
+  verb.add_flag_callback(
+          "--compress", [&writing] { writing.encoding = SurfaceEncoding::compressed; },
+          "compress a .glb for web pages and game engines (EXT_meshopt_compression), to about a third; positions are "
+          "rounded to a millionth of the size")
+      ->excludes("--ascii");
+  group(verb, "How to write the output", {"--output-unit", "--output-space", "--attributes", "--ascii", "--compress"});
 }
 
 void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
@@ -52,7 +64,7 @@ void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {
 }
 
 void add_input(CLI::App& verb, InputArguments& input, const std::string& help) {
-  verb.add_option("IN", input.path, help)->required();
+  verb.add_option("IN", input.path, help)->required()->type_name(kFile);
   add_reading(verb, input, "");
 }
 
@@ -143,7 +155,7 @@ void add_centerline_input(CLI::App& verb, InputArguments& input, const std::stri
           },
           help + "; several files with a branch each form one")
       ->required()
-      ->type_name("FILE");
+      ->type_name(kFile);
   add_reading(verb, input, "");
   add_centerline_reading(verb, input, "");
   group(verb, "How to read the input",
@@ -151,7 +163,8 @@ void add_centerline_input(CLI::App& verb, InputArguments& input, const std::stri
 }
 
 void add_report(CLI::App& verb, ReportArguments& report) {
-  verb.add_option("--report", report.file, "also write the report to this file (.txt, .md, .csv, .json)");
+  verb.add_option("--report", report.file, "also write the report to this file (.txt, .md, .csv, .json)")
+      ->type_name("FILE.txt|.md|.csv|.json");
   verb.add_option("--format", report.format, "of the report on stdout")
       ->check(CLI::IsMember({"text", "markdown", "csv"}))
       ->capture_default_str();

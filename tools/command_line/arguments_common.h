@@ -8,6 +8,7 @@
 #include "vmesh/tuning/budget.h"
 
 #include "command_line/arguments.h"
+#include "command_line/file_types.h"
 #include "command_line/usage_error.h"
 
 namespace vmesh::tool {
@@ -37,11 +38,12 @@ void add_common(CLI::App& verb, CommonArguments& common, bool with_json);
 /// Adds --html, for verbs that can make a page.
 void add_html(CLI::App& verb, CommonArguments& common);
 
-/// Adds -o, or the last word: see settle_output().
-void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& help);
+/// Adds -o, or the last word: see settle_output(). `type`: of file_types.h.
+void add_output(CLI::App& verb, std::filesystem::path& output, const std::string& type, const std::string& help);
 
 /// The same for verbs whose input may be several files.
-void add_output_after_several(CLI::App& verb, std::filesystem::path& output, const std::string& help);
+void add_output_after_several(CLI::App& verb, std::filesystem::path& output, const std::string& type,
+                              const std::string& help);
 
 /// Without -o, the last of several inputs is the output. Throws UsageError if none is left.
 template <class Arguments>

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "command_line/completion.h"
+#include "command_line/file_types.h"
 #include "command_line/manual.h"
 #include "command_line/outputs.h"
 #include "command_line/usage_error.h"
@@ -13,7 +14,8 @@ namespace {
 
 constexpr const char* kCompletionExamples = R"(Examples:
   source <(vmesh completion bash)
-  vmesh completion bash > ~/.local/share/bash-completion/completions/vmesh)";
+  source <(vmesh completion zsh)
+  vmesh completion fish | source)";
 constexpr const char* kManualExamples = R"(Examples:
   vmesh man generate | man -l -
   vmesh man -o ~/.local/share/man/man1)";
@@ -38,13 +40,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 void add_help(CLI::App& app, HelpArguments& arguments) {
   CLI::App& completion = *app.add_subcommand("completion", "Print a script that lets a shell complete vmesh's words");
-  completion.add_option("SHELL", arguments.shell, "bash")->required()->check(CLI::IsMember({"bash"}));
+  completion.add_option("SHELL", arguments.shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   completion.footer(kCompletionExamples);
   CLI::App& manual = *app.add_subcommand("man", "Print a manual page");
   std::vector<std::string> verbs;
   for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
   manual.add_option("VERB", arguments.verb, "of this verb; without, of vmesh itself")->check(CLI::IsMember(verbs));
-  manual.add_option("-o,--output", arguments.folder, "write all pages into this folder instead");
+  manual
+      .add_option("-o,--output", arguments.folder, "write all pages into this folder instead, which is made if need be")
+      ->type_name(kFolder);
   manual.footer(kManualExamples);
 }
 
@@ -68,7 +74,9 @@ void check_verb(const CLI::App& app, std::string_view word) {
 
 bool ran_help(const CLI::App& app, const HelpArguments& arguments) {
   if (app.got_subcommand("completion")) {
-    write_text("-", bash_completion(app));
+    write_text("-", arguments.shell == "zsh"    ? zsh_completion(app)
+                    : arguments.shell == "fish" ? fish_completion(app)
+                                                : bash_completion(app));
   } else if (app.got_subcommand("man")) {
     if (!arguments.folder.empty()) {
       write_manual_pages(app, arguments.folder);

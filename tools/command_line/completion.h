@@ -6,8 +6,10 @@
 
 namespace vmesh::tool {
 
-/// A bash script that completes verbs, options, their values, and file names.
+/// Scripts that complete verbs, options, their values, folders, and files by the extensions that an option takes.
 std::string bash_completion(const CLI::App& app);
+std::string zsh_completion(const CLI::App& app);
+std::string fish_completion(const CLI::App& app);
 
 /// The choices of an option, from "TEXT:{um,mm,cm,m}"; none for other options.
 std::vector<std::string> choices_of(const CLI::Option& option);

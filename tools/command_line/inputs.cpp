@@ -51,8 +51,8 @@ std::string make_centerline_first(const std::filesystem::path& path, const std::
          path.string() + " -o " + made;
 }
 
-std::string make_surface_first(const std::filesystem::path& path, const std::string& kind, const std::string& verb) {
-  return path.string() + ": this is " + kind + ", and a surface is needed; make one first: vmesh " + verb + " " +
+std::string make_surface_first(const std::filesystem::path& path, const std::string& what, const std::string& verb) {
+  return path.string() + ": this " + what + ", and a surface is needed; make one first: vmesh " + verb + " " +
          path.string() + " -o " + path.stem().stem().string() + ".ply";
 }
 
@@ -245,9 +245,9 @@ RawCenterline load_raw_centerline(const InputArguments& input, std::vector<std::
 LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
   if (!input.more.empty())
     throw UsageError(input.more.front().string() + ": several files can form a centerline, but not a surface");
-  if (is_image(input.path)) throw Unsupported(make_surface_first(input.path, "an image", "reference"));
+  if (is_image(input.path)) throw Unsupported(make_surface_first(input.path, "is an image", "reference"));
   if (holds_only_a_centerline(input.path))
-    throw Unsupported(make_surface_first(input.path, "a centerline", "generate"));
+    throw Unsupported(make_surface_first(input.path, "is a centerline", "generate"));
   try {
     LoadedSurface surface = read_surface(input.path);
     refuse_without_effect(input, {}, "a surface");
@@ -257,7 +257,7 @@ LoadedSurface load_surface(const InputArguments& input, FileFrame* said) {
     return surface;
   } catch (const InvalidInput&) {
     if (may_be_both(input.path) && holds_centerline(input.path))
-      throw InvalidInput(make_surface_first(input.path, "a centerline", "generate"));
+      throw InvalidInput(make_surface_first(input.path, "file holds lines, no faces", "generate"));
     throw;
   }
 }

@@ -154,6 +154,9 @@ std::string manual_page(const CLI::App& app, const CLI::App* verb) {
 }
 
 void write_manual_pages(const CLI::App& app, const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw WriteError(folder.string() + ": the folder cannot be made: " + error.message());
   write_text(folder / "vmesh.1", manual_page(app));
   for (const CLI::App* verb : app.get_subcommands({}))
     write_text(folder / ("vmesh-" + verb->get_name() + ".1"), manual_page(app, verb));

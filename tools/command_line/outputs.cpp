@@ -100,11 +100,6 @@ void write_text(const fs::path& path, const std::string& text) {
   file.commit();
 }
 
-const MeshAttribute* find_attribute(const std::vector<MeshAttribute>& attributes, const std::string& name) {
-  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
-  return found == attributes.end() ? nullptr : &*found;
-}
-
 namespace {
 
 void add_colors(std::vector<MeshAttribute>& attributes) {
@@ -144,7 +139,7 @@ void write_surface(const fs::path& path, const TriMesh& mesh, MeshAttributes att
   add_for_viewers(extension, attributes.vertex);
   metadata.unit = writing.unit;
   metadata.space = writing.space;
-  vmesh::write_surface(path, mesh, attributes, metadata, skin);
+  vmesh::write_surface(path, mesh, attributes, metadata, {writing.encoding, skin});
 }
 
 void write_centerline(const fs::path& path, const Centerline& centerline, const CenterlineMetadata& metadata,
@@ -158,8 +153,27 @@ void write_centerline(const fs::path& path, const Centerline& centerline, const 
               listed(keeping, "and"));
 }
 
+namespace {
+
+/// `format`: null if it is no surface's.
+void check_is_text(const fs::path& path, const SurfaceFormat* format) {
+  if (format != nullptr && format->has_text_form) return;
+  const std::string name = path.string() + ": ";
+  if (format != nullptr && format->is_text)
+    throw UsageError(name + format->name + " is always text; leave out --ascii");
+  throw UsageError(name + "--ascii is for surfaces in " +
+                   listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_text_form; }), "and"));
+}
+
+}  // namespace
+
 void check_writing(const fs::path& path, const WritingArguments& writing) {
   const SurfaceFormat* format = find_surface_format(path);
+  if (writing.encoding == SurfaceEncoding::text) check_is_text(path, format);
+  if (writing.encoding == SurfaceEncoding::compressed && (format == nullptr || !format->has_compressed_form))
+    throw UsageError(path.string() + ": --compress is for " +
+                     listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_compressed_form; })) +
+                     " only");
   if (format != nullptr && format->has_own_frame && (writing.unit != LengthUnit::mm || writing.space != Space::lps))
     throw UsageError(path.string() + ": " + format->name +
                      " is always in metres with y up; --output-unit and --output-space do not apply");

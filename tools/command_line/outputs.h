@@ -6,6 +6,7 @@
 
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/mesh/find_attribute.h"
 
 #include "command_line/arguments.h"
 #include "command_line/console.h"
@@ -36,13 +37,10 @@ void write_surface(const std::filesystem::path& path, const TriMesh& mesh, MeshA
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,
                       const CenterlineMetadata& metadata, const std::vector<EndSection>& sections, Console& console);
 
-/// Null if there is none of that name.
-const MeshAttribute* find_attribute(const std::vector<MeshAttribute>& attributes, const std::string& name);
-
 /// Adds what write_surface() adds to the attributes of vertices for this extension: colours, and in PLY the quality.
 void add_for_viewers(const std::string& extension, std::vector<MeshAttribute>& attributes);
 
-/// Throws UsageError for a unit or frame that the format does not have.
+/// Throws UsageError for a unit, frame or encoding that the format does not have.
 void check_writing(const std::filesystem::path& path, const WritingArguments& writing);
 
 /// "vmesh 0.1.0", for metadata.

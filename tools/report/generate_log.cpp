@@ -1,5 +1,7 @@
 #include "report/generate_log.h"
 
+#include <algorithm>
+
 #include "vmesh/core/text.h"
 
 namespace vmesh::tool {
@@ -19,6 +21,16 @@ void tell_of_notches(const ErrorSummary& error, Console& console) {
   console.log(counted(error.closed_notches.size(), "notch", "notches") +
               " too narrow for triangles closed, which the limit accounts for: the deepest by " +
               number(deepest.depth) + " mm at " + text_of(deepest.position));
+}
+
+/// Of those that were fitted.
+void tell_of_extensions(const GenerateReport& report, Console& console) {
+  const std::vector<FlatEnd>& ends = report.ends.ends;
+  if (!report.arguments->production.fit_extensions || ends.empty()) return;
+  const auto [shortest, longest] = std::minmax_element(
+      ends.begin(), ends.end(), [](const FlatEnd& a, const FlatEnd& b) { return a.extension < b.extension; });
+  console.log("flow extensions of " + number(shortest->extension, 2) + " to " + number(longest->extension, 2) +
+              " radii, at node " + std::to_string(shortest->node) + " the shortest");
 }
 
 void log_simplification(const SimplifiedCenterline& simplified, Console& console) {
@@ -110,6 +122,7 @@ void log_result(const GenerateReport& report, Console& console) {
   if (limit.is_set() && report.result->error.unproven_faces == 0)
     console.log("proven: nowhere farther than " + to_string(limit) + " from the boundary, nor the boundary from it");
   tell_of_notches(report.result->error, console);
+  tell_of_extensions(report, console);
   double total = 0;
   for (const StageTime& stage : report.stages) total += stage.seconds;
   console.log("wrote " + report.arguments->output.string() + " after " + number(total, 2) + " s");
@@ -137,10 +150,13 @@ void log_refusal(const GenerateReport& report, Console& console) {
   std::vector<std::string> lines;
   for (const Defect& defect : report.result->defects)
     lines.push_back(std::string(to_string(defect.kind)) + ": " + defect.message);
+  const std::string cure = report.ends.blocked.empty()
+                               ? "check the radii and nodes there, try another --around or --blend"
+                               : "shorten the flow extensions, or give --flow-extensions auto, which makes each as "
+                                 "long as there is room";
   log_refusal(lines,
-              report.arguments->input.path.string() +
-                  ": no sound surface was found, nothing is written: check the radii and nodes there, try another "
-                  "--around or --blend, or write the surface as it is with --allow-defects",
+              report.arguments->input.path.string() + ": no sound surface was found, nothing is written: " + cure +
+                  ", or write the surface as it is with --allow-defects",
               console);
 }
 

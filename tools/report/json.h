@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vmesh/core/types.h"
+#include "vmesh/core/version.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/quality/hausdorff.h"
 
@@ -14,6 +15,9 @@ namespace vmesh::tool {
 
 /// JSON that keeps the order in which its members were written.
 using Json = nlohmann::ordered_json;
+
+/// The program and its version.
+inline Json generator_json() { return {{"name", "vmesh"}, {"version", version()}}; }
 
 inline Json to_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 

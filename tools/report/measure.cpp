@@ -6,6 +6,7 @@
 #include "vmesh/surface/metric_skewness.h"
 
 #include "command_line/interrupt.h"
+#include "report/openings.h"
 
 namespace vmesh::tool {
 namespace {
@@ -17,6 +18,7 @@ bool has_genus(const Topology& topology) { return topology.closed && topology.ma
 SurfaceMeasurement measure_surface(const TriMesh& mesh) {
   SurfaceMeasurement measurement;
   measurement.topology = measure_topology(mesh);
+  measurement.openings = boundary_loops(mesh).size();
   measurement.metric_skewness = measurement.skewness = summarize_skewness(mesh);
   stop_if_interrupted();
   measurement.self_intersections = self_intersections(mesh).size();

@@ -19,7 +19,7 @@ struct SurfaceMeasurement {
   SkewnessSummary skewness;
   SkewnessSummary metric_skewness;  ///< that of triangles that may be longer than wide, see metric_skewness()
   std::size_t self_intersections = 0;
-  std::size_t openings = 0;        ///< intended ones
+  std::size_t openings = 0;        ///< boundary_loops(); of a generated surface the intended ones
   std::size_t open_elsewhere = 0;  ///< boundary edges besides those of openings
 };
 

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <span>
 
+#include "vmesh/core/text.h"
+#include "vmesh/mesh/find_attribute.h"
 #include "vmesh/mesh/triangle_quality.h"
-
-#include "command_line/outputs.h"
 
 namespace vmesh::tool {
 namespace {

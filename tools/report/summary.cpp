@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "vmesh/centerline/branches.h"
-#include "vmesh/core/version.h"
 
 #include "command_line/arguments_growth.h"
 #include "command_line/outputs.h"
@@ -50,7 +49,7 @@ Json options_json(const GenerateArguments& arguments) {
   json["overlap"] = overlap_of(arguments);
   json["gap"] = arguments.production.preparation.gap;
   json["ends"] = to_string(arguments.production.ends);
-  json["flow_extensions"] = arguments.production.extension;
+  json["flow_extensions"] = arguments.production.fit_extensions ? Json("auto") : Json(arguments.production.extension);
   json["unit"] = arguments.input.unit ? Json(to_string(*arguments.input.unit)) : Json();
   json["space"] = arguments.input.space ? Json(to_string(*arguments.input.space)) : Json();
   return json;
@@ -158,8 +157,6 @@ Json wall_json(const WallDistance& wall) {
 }
 
 }  // namespace
-
-Json generator_json() { return {{"name", "vmesh"}, {"version", version()}}; }
 
 Json to_json(const Centerline& centerline) {
   double length = 0;
@@ -356,7 +353,7 @@ Json caps_json(const FlatEnds& ends) {
   return list_json(ends.ends, [](const FlatEnd& end) {
     return Json{{"cap_id", end.label},           {"model_face_id", end.label + 1}, {"node", end.node},
                 {"center", to_json(end.center)}, {"normal", to_json(end.normal)},  {"area_mm2", end.area},
-                {"capped", end.capped},          {"at_section", end.at_section}};
+                {"capped", end.capped},          {"at_section", end.at_section},   {"extension_radii", end.extension}};
   });
 }
 
@@ -413,7 +410,11 @@ std::string describe(const GenerateArguments& arguments) {
   if (options.open_ends.all) text << " --open-ends all";
   const std::vector<Index>& open = options.open_ends.nodes;
   for (std::size_t i = 0; i < open.size(); ++i) text << (i == 0 ? " --open-ends " : ",") << open[i];
-  if (arguments.production.extension > 0) text << " --flow-extensions " << exact_text(arguments.production.extension);
+  if (arguments.production.fit_extensions) {
+    text << " --flow-extensions auto";
+  } else if (arguments.production.extension > 0) {
+    text << " --flow-extensions " << exact_text(arguments.production.extension);
+  }
   text << " --overlap " << overlap_of(arguments) << " --gap " << exact_text(arguments.production.preparation.gap);
   const std::filesystem::path& reference = arguments.fitting.reference.path;
   if (!reference.empty()) text << " --fit " << reference.string();

@@ -50,7 +50,6 @@ Json caps_json(const FlatEnds& ends);
 /// Without their rings.
 Json to_json(const std::vector<EndSection>& sections);
 Json to_json(const SurfaceMeasurement& measurement);
-Json generator_json();
 
 /// "--beta 0.3 --blend 0.5 ...": how a surface was made.
 std::string describe(const GenerateArguments& arguments);

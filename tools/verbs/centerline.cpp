@@ -23,7 +23,7 @@ struct CenterlineArguments {
 void add_options(CLI::App& verb, CenterlineArguments& arguments) {
   add_input(verb, arguments.input, "surface, or image (" + listed_image_extensions() + ")");
   add_voxel_size(verb, arguments.input, "");
-  add_output(verb, arguments.output, "centerline");
+  add_output(verb, arguments.output, kCenterlineFile, "centerline");
   add_image_options(verb, arguments.image);
   verb.add_flag("--each-label", arguments.each_label,
                 "image: a centerline of each label on its own, in one file; segments carry the label (.json, .vtp)");

@@ -18,7 +18,7 @@ struct ConesArguments {
 
 void add_options(CLI::App& verb, ConesArguments& arguments) {
   add_centerline_input(verb, arguments.input, "centerline");
-  add_output_after_several(verb, arguments.output, "surface");
+  add_output_after_several(verb, arguments.output, kSurfaceFile, "surface");
   add_number(verb, "--sides", arguments.sides, 3, 1000, "of a cone");
 }
 

@@ -18,7 +18,7 @@ struct ConvertArguments {
 
 void add_options(CLI::App& verb, ConvertArguments& arguments) {
   add_centerline_input(verb, arguments.input, "centerline or surface");
-  add_output_after_several(verb, arguments.output, "file of the same kind");
+  add_output_after_several(verb, arguments.output, kFile, "file of the same kind");
   add_writing(verb, arguments.writing);
 }
 
@@ -32,13 +32,40 @@ std::optional<Kind> kind_of(const std::filesystem::path& path) {
   return std::nullopt;
 }
 
+/// Throws Unsupported.
+[[noreturn]] void refuse_output(const std::filesystem::path& path) {
+  const auto is_written = [](const auto& format) { return format.is_written(); };
+  throw Unsupported(path.string() + ": \"" + extension_of(path) + "\" is not supported; centerlines are written as " +
+                    listed(extensions_of(centerline_formats(), is_written)) + ", surfaces as " +
+                    listed(extensions_of(surface_formats(), is_written)));
+}
+
 std::optional<Kind> kind_of_output(const std::filesystem::path& path) {
   const CenterlineFormat* format = find_centerline_format(path);
+  if (format == nullptr && find_surface_format(path) == nullptr) refuse_output(path);
   return format != nullptr && format->holds_lines != nullptr ? Kind::surface : kind_of(path);
+}
+
+[[noreturn]] void refuse_surface(const ConvertArguments& arguments) {
+  throw UsageError(arguments.input.path.string() + ": holds a surface, which cannot be written to " +
+                   arguments.output.string() + "; see vmesh centerline");
+}
+
+[[noreturn]] void refuse_lines(const ConvertArguments& arguments) {
+  throw UsageError(arguments.input.path.string() +
+                   ": holds lines, no faces: a centerline, which cannot be written to " + arguments.output.string() +
+                   "; see vmesh generate");
+}
+
+/// Of a file in a format that is mostly a surface's.
+bool holds_lines(const std::filesystem::path& path) {
+  const CenterlineFormat* format = find_centerline_format(path);
+  return format != nullptr && format->holds_lines != nullptr && may_be_centerline(path);
 }
 
 void check_kinds(const ConvertArguments& arguments) {
   check_is_no_image(arguments.input);
+  if (kind_of_output(arguments.output) == Kind::surface && holds_lines(arguments.input.path)) refuse_lines(arguments);
   const auto from = kind_of(arguments.input.path), to = kind_of_output(arguments.output);
   if (from && to && *from != *to)
     throw UsageError(arguments.output.string() + ": a " + (*from == Kind::surface ? "surface" : "centerline") +
@@ -80,8 +107,7 @@ int run(const ConvertArguments& arguments, Console& console) {
   stop_if_interrupted();
   const bool is_surface = std::holds_alternative<LoadedSurface>(input);
   if (const auto to = kind_of_output(arguments.output); to && (*to == Kind::surface) != is_surface)
-    throw UsageError(arguments.input.path.string() + ": contains a " + (is_surface ? "surface" : "centerline") +
-                     ", which cannot be written to " + arguments.output.string());
+    is_surface ? refuse_surface(arguments) : refuse_lines(arguments);
   std::visit([&](const auto& content) { convert(content, arguments, console); }, input);
   console.log("wrote " + arguments.output.string());
   return kOk;

@@ -33,8 +33,9 @@ void add_options(CLI::App& verb, DeformArguments& arguments) {
   verb.add_option("SURFACE", arguments.surface.path, "surface around it, grown by vmesh or not")->required();
   add_reading(verb, arguments.surface, "surface-");
   verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (tools/README.md, Scenes)")
-      ->required();
-  add_output(verb, arguments.output, "new or empty folder for the frames");
+      ->required()
+      ->type_name("FILE.json");
+  add_output(verb, arguments.output, kFolder, "new or empty folder for the frames");
   verb.add_option("--format", arguments.format, "of the frames")
       ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off", "glb"}))
       ->capture_default_str();

@@ -37,7 +37,8 @@ void add_options(CLI::App& verb, EvaluateArguments& arguments) {
   add_centerline_reading(verb, arguments.centerline, "centerline-");
   verb.add_option("-o,--output", arguments.output,
                   "the surface with the skewness of its faces, and its vertices' distance to the reference and "
-                  "volume_distance (.ply, .vtp)");
+                  "volume_distance (.ply, .vtp)")
+      ->type_name(kSurfaceFile);
   add_report(verb, arguments.report);
   add_measuring(verb, arguments.tolerance_mm, arguments.samples);
   add_threads(verb, arguments.threads);

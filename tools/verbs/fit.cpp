@@ -30,7 +30,7 @@ void add_options(CLI::App& verb, FitArguments& arguments) {
   verb.add_option("REFERENCE", arguments.fitting.reference.path,
                   "surface, or image (" + listed_image_extensions() + ")")
       ->required();
-  add_output(verb, arguments.output, "surface");
+  add_output(verb, arguments.output, kSurfaceFile, "surface");
   add_writing(verb, arguments.writing);
   verb.add_option("--centerline", arguments.centerline.path, "around which the surface was grown")->required();
   add_reading(verb, arguments.centerline, "centerline-");

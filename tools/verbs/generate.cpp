@@ -1,6 +1,7 @@
 #include <charconv>
 #include <sstream>
 
+#include "vmesh/core/text.h"
 #include "vmesh/deform/linear_skin.h"
 #include "vmesh/parts/part_files.h"
 #include "vmesh/surface/flat_reference.h"
@@ -38,6 +39,15 @@ OpenEnds parse_open_ends(const std::string& text) {
   return ends;
 }
 
+void take_extensions(const std::string& text, ProductionOptions& options) {
+  constexpr double kLongest = 1000;
+  options.fit_extensions = text == "auto";
+  options.extension = kLongestFittedExtension;
+  if (options.fit_extensions) return;
+  if (!CLI::detail::lexical_cast(text, options.extension) || !(options.extension >= 0 && options.extension <= kLongest))
+    throw InvalidInput("\"" + text + "\" is neither auto nor a number of radii from 0 to " + formatted("%g", kLongest));
+}
+
 void add_ends(CLI::App& verb, ProductionOptions& options) {
   add_choice(
       verb, "--ends", {"round", "flat", "open"},
@@ -50,8 +60,13 @@ void add_ends(CLI::App& verb, ProductionOptions& options) {
           "leave the surface open at these ends of the centerline, regardless of --ends: all, or node numbers as in "
           "the summary, separated by commas")
       ->type_name("all|N,N,...");
-  add_number(verb, "--flow-extensions", options.extension, 0.0, 1000.0,
-             "length of straight extensions at ends that are not round, in radii; 0: none");
+  add_read_option(
+      verb, "--flow-extensions", [&options](const std::string& text) { take_extensions(text, options); },
+      "length of straight extensions at ends that are not round, in radii; auto: at each end as long as there is room, "
+      "at most " +
+          formatted("%g", kLongestFittedExtension) + " radii; 0: none")
+      .type_name("R|auto")
+      ->default_str("0");
 }
 
 /// With --ends, --open-ends all means that all are open.
@@ -69,7 +84,7 @@ void add_options(CLI::App& verb, GenerateArguments& arguments) {
                        "centerline, or segmentation to extract it from and to fit to: an image (" +
                            listed_image_extensions() + ") or a wall (.stl, .ply, .obj, .vtp ...), open or closed");
   const auto written = extensions_of(surface_formats(), [](const auto& f) { return f.is_written(); });
-  add_output_after_several(verb, arguments.output, "surface (" + listed(written) + ")");
+  add_output_after_several(verb, arguments.output, kSurfaceFile, "surface (" + listed(written) + ")");
   add_writing(verb, arguments.writing);
   verb.add_flag("--bones", arguments.bones, "add bones along the centerline to a .glb, for bending it");
   add_growth(verb, arguments.production);
@@ -110,7 +125,8 @@ void add_options(CLI::App& verb, GenerateArguments& arguments) {
                   "fit to this surface or image: the vessels' own walls instead of round cones");
   add_fitting(verb, arguments.fitting);
   verb.add_option("--centerline-output", arguments.centerline_output,
-                  "with an image or a wall as input: where to save the extracted centerline");
+                  "with an image or a wall as input: where to save the extracted centerline")
+      ->type_name(kCenterlineFile);
   add_extraction(verb, arguments.extraction);
   add_required_coverage(verb, arguments.required_coverage);
   add_html(verb, arguments.common);
@@ -206,7 +222,7 @@ void judge(GenerateReport& report, const Centerline& grown, Console& console) {
 void name_nodes(std::vector<Defect>& defects, const LoadedCenterline& loaded) {
   for (Defect& defect : defects) {
     if (defect.node < loaded.cleaned.raw_node.size())
-      defect.message += ", nearest to " + loaded.file.place_of_node(loaded.cleaned.raw_node[defect.node]);
+      defect.message += ", near " + loaded.file.place_of_node(loaded.cleaned.raw_node[defect.node]);
     if (defect.branch != kNone) defect.message += ", on branch " + std::to_string(defect.branch);
   }
 }
@@ -360,7 +376,7 @@ const VerbRegistration<GenerateArguments> kRegistration({
   vmesh generate tree.swc -o game.obj --budget vertices=5000
   vmesh generate portal.swc -o portal.ply --fit liver.nii.gz --label 2 --spacing 1 --smooth 1
   vmesh generate liver.nii.gz --label 2 --spacing 1 --smooth 1 --tree -o portal.ply --centerline-output portal.swc
-  vmesh generate aorta.vtp -o aorta-flow.vtp --ends flat --flow-extensions 5 --json caps.json
+  vmesh generate aorta.vtp -o aorta-flow.vtp --ends flat --flow-extensions auto --json caps.json
   vmesh generate tree.swc tree.glb --bones
   vmesh generate tree.swc -o tree.ply --html tree.html
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)",

@@ -24,8 +24,8 @@ struct JoinArguments {
 };
 
 void add_options(CLI::App& verb, JoinArguments& arguments) {
-  verb.add_option("DIR", arguments.folder, "folder of the parts")->required();
-  add_output(verb, arguments.output,
+  verb.add_option("DIR", arguments.folder, "folder of the parts")->required()->type_name(kFolder);
+  add_output(verb, arguments.output, kSurfaceFile,
              "surface (.ply is written part by part; .vtm lists the parts, each a .vtp file; others need memory for "
              "the whole)");
   add_threads(verb, arguments.threads);
@@ -157,7 +157,7 @@ void write_list(const JoinArguments& arguments, const JoinSummary& summary) {
         attributes_of(SurfaceSink::Vertices{surface.mesh.vertices, {}, surface.radius, part.place, part.branch}),
         attributes_of(SurfaceSink::Faces{surface.mesh.faces, skewness, label})};
     write_surface(folder / (part_name(p) + ".vtp"), surface.mesh, std::move(attributes),
-                  metadata_of(summary.manifest.source), {});
+                  metadata_of(summary.manifest.source), WritingArguments{});
   }
   write_text(arguments.output, vtm_text(folder.filename().string(), summary.manifest.parts));
 }
@@ -209,7 +209,7 @@ int run(const JoinArguments& arguments, Console& console) {
   } else if (extension == ".vtm") {
     write_list(arguments, summary);
   } else {
-    write_surface(arguments.output, memory.mesh, std::move(memory.attributes), metadata, {});
+    write_surface(arguments.output, memory.mesh, std::move(memory.attributes), metadata, WritingArguments{});
   }
   std::ostringstream line;
   line << "wrote " << arguments.output.string() << ": " << summary.vertices << " vertices, " << summary.faces

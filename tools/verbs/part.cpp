@@ -22,8 +22,8 @@ void check_arguments(const GenerateArguments& arguments) {
   if (!arguments.input.more.empty())
     throw UsageError(arguments.input.more.front().string() + ": parts are grown one at a time");
   if (describe(arguments) != describe(plain) || arguments.budget || !arguments.fitting.reference.path.empty() ||
-      arguments.bones || arguments.check || arguments.allow_defects || !arguments.common.html.empty() ||
-      !arguments.centerline_output.empty())
+      arguments.writing.encoding != SurfaceEncoding::usual || arguments.bones || arguments.check ||
+      arguments.allow_defects || !arguments.common.html.empty() || !arguments.centerline_output.empty())
     throw UsageError(arguments.input.path.string() +
                      ": a part is grown with the options given to vmesh split; only --threads, --json and "
                      "--quiet apply");

@@ -21,7 +21,7 @@ struct ReferenceArguments {
 void add_options(CLI::App& verb, ReferenceArguments& arguments) {
   add_input(verb, arguments.input, "image (" + listed_image_extensions() + ") or centerline");
   add_voxel_size(verb, arguments.input, "");
-  add_output(verb, arguments.output, "surface");
+  add_output(verb, arguments.output, kSurfaceFile, "surface");
   add_image_options(verb, arguments.options);
   verb.add_option("--voxel", arguments.voxel, "centerline: side of the voxels, mm")->check(in_range(1e-6, 1e6));
   verb.add_flag("--binary", arguments.options.binary,

@@ -29,7 +29,7 @@ struct SplitArguments {
 
 void add_options(CLI::App& verb, SplitArguments& arguments) {
   add_centerline_input(verb, arguments.input, "centerline");
-  add_output_after_several(verb, arguments.output, "folder for the parts");
+  add_output_after_several(verb, arguments.output, kFolder, "folder for the parts");
   add_number(verb, "--vertices", arguments.vertices, 1.0, 1e9, "of a part's surface, approximately");
   add_growth(verb, arguments.generate.production);
   group(verb, "Resolution", {"--around", "--preset", "--max-vertices", "--simplification", "--elongation"});

@@ -15,7 +15,7 @@ struct SynthArguments {
 };
 
 void add_options(CLI::App& verb, SynthArguments& arguments) {
-  add_output(verb, arguments.output, "centerline");
+  add_output(verb, arguments.output, kCenterlineFile, "centerline");
   add_number(verb, "--vertices", arguments.options.vertices, 2, 10000000, "nodes of the centerline");
   verb.add_option("--seed", arguments.options.seed, "of the random numbers; each gives a different tree")
       ->capture_default_str();

@@ -21,7 +21,7 @@ struct Table1Arguments {
 
 void add_options(CLI::App& verb, Table1Arguments& arguments) {
   add_report(verb, arguments.report);
-  verb.add_option("--plot", arguments.plot, "accuracy against time, as a picture (.svg)");
+  verb.add_option("--plot", arguments.plot, "accuracy against time, as a picture (.svg)")->type_name("FILE.svg");
 }
 
 /// A column of the paper's Table 1.

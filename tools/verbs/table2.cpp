@@ -48,7 +48,8 @@ void add_options(CLI::App& verb, Table2Arguments& arguments) {
   add_report(verb, arguments.report);
   verb.add_option("--surfaces", arguments.surfaces,
                   "folder for reference.ply, cones.ply, low.ply and high.ply with distances (the reference's: to low), "
-                  "and centerline.json");
+                  "and centerline.json")
+      ->type_name(kFolder);
   verb.add_flag("--check", arguments.check, "exit with 1 unless the low resolution meets all requirements");
   add_html(verb, arguments.common);
 }

@@ -20,7 +20,8 @@ struct TradeoffArguments {
 void add_options(CLI::App& verb, TradeoffArguments& arguments) {
   add_centerline_input(verb, arguments.input, "centerline");
   add_report(verb, arguments.report);
-  verb.add_option("--plot", arguments.plot, "error against time and against vertices, as a picture (.svg)");
+  verb.add_option("--plot", arguments.plot, "error against time and against vertices, as a picture (.svg)")
+      ->type_name("FILE.svg");
   add_number(verb, "--samples", arguments.options.samples, std::size_t{1}, std::size_t{10'000'000},
              "points on each surface and on the vessels");
   add_number(verb, "--threads", arguments.options.generate.threads, 0, 4096, "to work on; 0: all");

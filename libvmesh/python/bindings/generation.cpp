@@ -1,3 +1,5 @@
+#include <variant>
+
 #include "arrays.h"
 #include "growth.h"
 #include "module.h"
@@ -17,6 +19,17 @@ T option(const py::dict& options, const char* name) {
   }
 }
 
+/// A length in radii, or "auto".
+using Extension = std::variant<double, std::string>;
+
+void take_extension(const Extension& given, double& extension, bool& fits) {
+  const auto* text = std::get_if<std::string>(&given);
+  if (text != nullptr && *text != "auto")
+    throw InvalidInput("the extension \"" + *text + "\" is neither a number of radii nor \"auto\"");
+  fits = text != nullptr;
+  extension = fits ? kLongestFittedExtension : std::get<double>(given);
+}
+
 ProductionOptions request_of(const py::dict& given) {
   const auto text = [&](const char* name) { return option<std::string>(given, name); };
   ProductionOptions request;
@@ -34,7 +47,7 @@ ProductionOptions request_of(const py::dict& given) {
   request.preparation.gap = option<double>(given, "gap");
   request.ends = parse_end_shape(text("ends"));
   options.open_ends.nodes = to_indices(option<py::object>(given, "open_ends"), "open_ends");
-  request.extension = option<double>(given, "flow_extension");
+  take_extension(option<Extension>(given, "flow_extension"), request.extension, request.fit_extensions);
   options.simplification = option<double>(given, "simplification");
   options.elongation = option<double>(given, "elongation");
   options.least_vertices = option<std::size_t>(given, "least_vertices");
@@ -52,16 +65,19 @@ void bind_generation(py::module_& module) {
       "generate",
       [](const CenterlinePtr& centerline, const py::object& progress, const py::kwargs& options) {
         const ProductionOptions request = request_of(options);
-        return result_of(progress, [&](const Progress& report) { return grow(centerline, request, report); });
+        std::optional<Budget> budget;
+        if (const auto text = option<std::string>(options, "budget"); !text.empty()) budget = parse_budget(text);
+        return result_of(progress, [&](const Progress& report) { return grow(centerline, request, budget, report); });
       },
       py::arg("centerline").none(false), py::kw_only(), py::arg("progress"), "vmesh.generate() without its checks.");
   module.def(
       "finish_ends",
-      [](const SurfaceObject& surface, bool cap, const py::object& left_open, double extension, bool keep_area) {
+      [](const SurfaceObject& surface, bool cap, const py::object& left_open, const Extension& extension,
+         bool keep_area) {
         FlatEndOptions options;
         options.cap = cap;
         options.left_open = to_indices(left_open, "left_open");
-        options.extension = extension;
+        take_extension(extension, options.extension, options.fit_extensions);
         options.keep_area = keep_area;
         const py::gil_scoped_release release;
         return with_finished_ends(surface, options);
@@ -72,7 +88,7 @@ void bind_generation(py::module_& module) {
 
     cap        close the ends by flat caps
     left_open  nodes of the centerline whose ends stay open even so
-    extension  length of straight extensions there, in radii
+    extension  length of straight extensions there, in radii; "auto": of each as long as there is room, at most 10
     keep_area  scale the rings to the area of the round cross-section; not for fitted surfaces
 
 `Surface.flat_ends` lists them, `Surface.cap_label` says which faces are caps.)");

@@ -32,17 +32,27 @@ void warn_of_error(const ErrorSummary& error, const ErrorLimit& limit, std::vect
                      ": triangles are already as small as allowed; allow a larger error there, or check the radii");
 }
 
+void warn_of_budget(const Budget& budget, const std::vector<OperatingPoint>& tried,
+                    std::vector<std::string>& warnings) {
+  const auto keeps = [](const OperatingPoint& point) { return point.within_budget; };
+  if (std::none_of(tried.begin(), tried.end(), keeps))
+    warnings.push_back("nothing is within the budget " + to_string(budget) +
+                       "; this is the closest surface: allow more, or check the radii");
+}
+
 void name_nodes(const CenterlineObject& centerline, std::vector<Defect>& defects) {
   for (Defect& defect : defects) {
     if (defect.node < centerline.place_of_node.size())
-      defect.message += ", nearest to " + centerline.place_of_node[defect.node];
+      defect.message += ", near " + centerline.place_of_node[defect.node];
     if (defect.branch != kNone) defect.message += ", on branch " + std::to_string(defect.branch);
   }
 }
 
 }  // namespace
 
-SurfacePtr grow(const CenterlinePtr& centerline, const ProductionOptions& options, const Progress& progress) {
+SurfacePtr grow(const CenterlinePtr& centerline, ProductionOptions options, const std::optional<Budget>& budget,
+                const Progress& progress) {
+  options.preparation.simplify = !budget;  // which decides for every trial
   auto surface = std::make_shared<SurfaceObject>();
   std::vector<std::string>& warnings = surface->warnings;
   surface->centerline = centerline;
@@ -55,6 +65,15 @@ SurfacePtr grow(const CenterlinePtr& centerline, const ProductionOptions& option
       warn_of_contacts(prepared.contacts(), warnings);
     }
   };
+  if (budget) {
+    steps.grow = [&](const Centerline& grown, const GenerateOptions& growth) {
+      BudgetedSurface within = generate_within(*budget, grown, growth, progress);
+      options.growth.max_error = within.choice().options.max_error;
+      surface->tried = std::move(within.tried);
+      warn_of_budget(*budget, surface->tried, warnings);
+      return std::move(within.result);
+    };
+  }
   Production production = produce(centerline->centerline, centerline->end_sections, options, progress, steps);
   surface->result = std::move(production.result);
   surface->ends = std::move(production.ends);

@@ -15,5 +15,7 @@ PYBIND11_MODULE(_core, module) {
   bind_evaluation(module);
   bind_fit(module);
   bind_images(module);
+  bind_pages(module);
+  bind_pictures(module);
   bind_deformation(module);
 }

@@ -14,6 +14,8 @@ void bind_generation(py::module_& module);
 void bind_fit(py::module_& module);
 void bind_evaluation(py::module_& module);
 void bind_images(py::module_& module);
+void bind_pages(py::module_& module);
+void bind_pictures(py::module_& module);
 void bind_deformation(py::module_& module);
 
 }  // namespace vmesh::python

@@ -10,6 +10,7 @@
 #include "vmesh/mesh/tri_mesh.h"
 #include "vmesh/surface/flat_ends.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/tuning/budget.h"
 
 namespace vmesh::python {
 
@@ -30,6 +31,7 @@ struct SurfaceObject {
   MeshAttributes attributes;  ///< of the file it was read from
   std::vector<std::string> warnings;
   FlatEnds ends;
+  std::vector<OperatingPoint> tried;  ///< to keep within a budget
   std::optional<FitReport> fit;
 
   const TriMesh& mesh() const { return result.mesh; }

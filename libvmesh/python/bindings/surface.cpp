@@ -11,6 +11,7 @@
 #include "vmesh/surface/surface_attributes.h"
 
 #include "arrays.h"
+#include "attributes.h"
 #include "binding.h"
 #include "module.h"
 #include "text.h"
@@ -56,28 +57,25 @@ SurfacePtr read_surface_file(const fs::path& path, const CenterlinePtr& centerli
   return surface;
 }
 
-MeshAttributes attributes_of(const SurfaceObject& self) {
-  if (!self.centerline) return self.attributes;
-  const GenerateResult& r = self.result;
-  MeshAttributes attributes = surface_attributes(r.mesh, r.binding, r.radius, r.openings, self.centerline->centerline);
-  if (!self.ends.ends.empty()) add_cap_labels(self.ends, attributes);
-  return attributes;
-}
-
 void save_surface(const SurfaceObject& self, const fs::path& path, const std::string& unit, const std::string& space,
-                  bool bones) {
+                  bool bones, bool ascii, bool compress) {
   SurfaceMetadata metadata;
   metadata.generator = generator_name();
   metadata.unit = unit_of(unit);
   metadata.space = space_of(space);
   if (bones && !self.centerline) throw InvalidInput("bones need a centerline, and this surface is not bound to one");
+  if (ascii && compress) throw InvalidInput("ascii, compress: a file is one or the other");
   const py::gil_scoped_release release;
   std::optional<SurfaceSkin> skin;
   if (bones) {
     const Centerline& centerline = self.centerline->centerline;
     skin = make_linear_skin(centerline, make_rod_tree(centerline), places_of(self));
   }
-  write_surface(path, self.mesh(), attributes_of(self), metadata, skin ? &*skin : nullptr);
+  SurfaceWriteOptions options;
+  if (ascii) options.encoding = SurfaceEncoding::text;
+  if (compress) options.encoding = SurfaceEncoding::compressed;
+  if (skin) options.skin = &*skin;
+  write_surface(path, self.mesh(), attributes_of(self), metadata, options);
 }
 
 py::dict as_dict(const std::vector<MeshAttribute>& attributes) {
@@ -182,7 +180,19 @@ void bind_parts(py::module_& module) {
       .def_property_readonly(
           "normal", [](const FlatEnd& e) { return array_of(e.normal); }, "(3,) out of the vessel.")
       .def_readonly("area", &FlatEnd::area, "Of the cross-section, mm^2.")
-      .def_readonly("capped", &FlatEnd::capped, "Else it is open.");
+      .def_readonly("capped", &FlatEnd::capped, "Else it is open.")
+      .def_readonly("extension", &FlatEnd::extension, "Its length, in radii of the circle of that area; 0: none.");
+  py::class_<OperatingPoint>(module, "OperatingPoint", "Options that were tried to keep within a budget.")
+      .def_property_readonly(
+          "around", [](const OperatingPoint& p) { return p.options.around; }, "Vertices around a vessel.")
+      .def_readonly("vertices", &OperatingPoint::vertices)
+      .def_readonly("seconds", &OperatingPoint::seconds, "That growth took.")
+      .def_property_readonly(
+          "mean_error", [](const OperatingPoint& p) { return p.error.mean_mm; },
+          "Of the faces' distance to the vessels' boundary, mm.")
+      .def_property_readonly(
+          "max_error", [](const OperatingPoint& p) { return p.error.max_mm; }, "The same at most, mm.")
+      .def_readonly("within_budget", &OperatingPoint::within_budget);
 }
 
 void bind_arrays(py::class_<SurfaceObject, SurfacePtr>& surface) {
@@ -218,12 +228,21 @@ void bind_arrays(py::class_<SurfaceObject, SurfacePtr>& surface) {
           "cap_label",
           [](const py::object& self) { return vector_view(self.cast<const SurfaceObject&>().ends.cap_label, self); },
           "Of every face the FlatEnd.label that it caps, 0 for the wall; empty without flat ends.")
-      .def("normals", &normals_of, "Unit normals of the vertices, (n, 3) float64, weighted by area.")
+      .def_property_readonly("normals", &normals_of,
+                             "Unit normals of the vertices, weighted by area, (n, 3) float64. Made anew each time.")
       .def("padded_faces", &padded_faces,
            "(m, 4) int64: 3, then the corners. PyVista: pyvista.PolyData(surface.vertices, surface.padded_faces()).");
 }
 
 }  // namespace
+
+MeshAttributes attributes_of(const SurfaceObject& self) {
+  if (!self.centerline) return self.attributes;
+  const GenerateResult& r = self.result;
+  MeshAttributes attributes = surface_attributes(r.mesh, r.binding, r.radius, r.openings, self.centerline->centerline);
+  if (!self.ends.ends.empty()) add_cap_labels(self.ends, attributes);
+  return attributes;
+}
 
 void bind_surface(py::module_& module) {
   bind_parts(module);
@@ -258,6 +277,8 @@ whole numbers. With a centerline every vertex is bound to the nearest place on i
             return seconds;
           },
           "Seconds that growth took, by stage.")
+      .def_readonly("tried", &SurfaceObject::tried,
+                    "What generate() tried to keep within a budget, by `around`; empty without a budget.")
       .def_readonly("fit_report", &SurfaceObject::fit, "What fit() did, or None.")
       .def_property_readonly(
           "area", [](const SurfaceObject& self) { return surface_area(self.mesh()); }, "mm^2.")
@@ -269,9 +290,11 @@ whole numbers. With a centerline every vertex is bound to the nearest place on i
           "face_attributes", [](const SurfaceObject& self) { return as_dict(attributes_of(self).face); },
           "Arrays by name: those of a file, or EquiangleSkewness and branch.")
       .def("save", &save_surface, py::arg("path"), py::kw_only(), py::arg("unit") = "mm", py::arg("space") = "LPS",
-           py::arg("bones") = false,
+           py::arg("bones") = false, py::arg("ascii") = false, py::arg("compress") = false,
            "Writes it by extension: .ply, .vtp, .glb, .obj, .stl, .off. The file appears complete or not at all.\n"
-           "bones: a .glb gets some along the centerline. Raises WriteError, Unsupported.")
+           "bones: a .glb gets some along the centerline. ascii: .ply and .stl as text. compress: a .glb packed by\n"
+           "EXT_meshopt_compression, with positions rounded to a millionth of the size. Raises WriteError,\n"
+           "Unsupported.")
       .def(
           "to_vtk", [](const py::object& self) { return py::module_::import("vmesh._vtk").attr("to_vtk")(self); },
           "A vtkPolyData with the attributes as arrays; needs python3-vtk9. pyvista.wrap(surface.to_vtk()).")

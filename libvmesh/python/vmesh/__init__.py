@@ -36,6 +36,7 @@ from ._core import (
     Hausdorff,
     OneSidedHausdorff,
     Opening,
+    OperatingPoint,
     ReferenceDistance,
     SampledDistance,
     StepReport,
@@ -54,7 +55,7 @@ from ._core import (
     reference_surface,
     synthetic_tree,
 )
-from ._functions import evaluate, fit, generate, hausdorff
+from ._functions import evaluate, fit, generate, hausdorff, page, render
 from ._vtk import from_vtk, to_vtk
 
 __all__ = [
@@ -83,11 +84,14 @@ __all__ = [
     "InvalidInput",
     "OneSidedHausdorff",
     "Opening",
+    "OperatingPoint",
+    "page",
     "read_centerline",
     "read_surface",
     "ReadError",
     "reference_surface",
     "ReferenceDistance",
+    "render",
     "SampledDistance",
     "StepReport",
     "Surface",

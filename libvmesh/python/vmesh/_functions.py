@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import warnings
+from os import PathLike
 from typing import Any, Callable, Iterable, Optional, Sequence, Tuple, Union
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._core import Centerline, Evaluation, Hausdorff, Surface
-from ._errors import DefectiveSurface, SurfaceWarning
+from ._errors import DefectiveSurface, InvalidInput, SurfaceWarning
 
 Progress = Optional[Callable[[str, float], Any]]
 SurfaceLike = Union[Surface, Tuple[ArrayLike, ArrayLike]]
@@ -52,7 +54,8 @@ def generate(
     gap: float = 0.1,
     ends: str = "round",
     open_ends: Sequence[int] = (),
-    flow_extension: float = 0.0,
+    flow_extension: Union[float, str] = 0.0,
+    budget: Optional[str] = None,
     simplification: float = 0.35,
     elongation: float = 1.0,
     least_vertices: int = 0,
@@ -79,7 +82,11 @@ def generate(
     ends            how vessels end: "round", "flat" (capped, numbered for flow solvers), "open"; ends with one of
                     Centerline.end_sections are cut exactly there unless they are round
     open_ends       nodes at which the surface is left open regardless of `ends`
-    flow_extension  length of straight extensions at ends that are not round, in radii
+    flow_extension  length of straight extensions at ends that are not round, in radii; "auto": of each as long
+                    as there is room, at most 10 radii
+    budget          "vertices=5000", "time=50ms" or "error=0.2mm" choose `around` instead: the finest surface within
+                    that number of vertices or time, or the one with the fewest vertices that keeps the error;
+                    Surface.tried lists what was tried
     simplification  nodes are left out where that changes the vessels by at most this share of what edges across
                     them cut off anyway, 0 to 1
     elongation      along vessels, triangles as long as the error allows, at most this times their even
@@ -103,9 +110,12 @@ def generate(
         centerline = Centerline(centerline, radii, segments)
     elif radii is not None or segments is not None:
         raise TypeError("a Centerline has radii and segments of its own")
+    if budget is not None and (around != 6 or max_error is not None or least_vertices != 0):
+        raise InvalidInput("a budget chooses around, max_error and least_vertices; leave them out")
     surface = _core.generate(
         centerline,
         progress=progress,
+        budget=budget or "",
         around=around,
         max_error=_as_limit(max_error),
         blend=blend,
@@ -215,3 +225,89 @@ def hausdorff(a: SurfaceLike, b: SurfaceLike, *, tolerance: float = 1e-4, progre
     InvalidInput, Cancelled.
     """
     return _core.hausdorff(_as_surface(a), _as_surface(b), tolerance=tolerance, progress=progress)
+
+
+def render(
+    surface: SurfaceLike,
+    path: Union[None, str, PathLike[str]] = None,
+    *,
+    color: Union[None, str, ArrayLike] = None,
+    width: int = 1600,
+    height: int = 1200,
+    view: Union[str, Tuple[float, float]] = "front",
+    look_at: Optional[ArrayLike] = None,
+    view_height: float = 0.0,
+    zoom: float = 1.0,
+    field_of_view: float = 0.0,
+    edges: bool = False,
+    edge_width: float = 1.4,
+    smooth: bool = True,
+    back_faces: bool = True,
+    occlusion: float = 0.7,
+    legend: bool = True,
+    range: Optional[Tuple[float, float]] = None,
+) -> NDArray[np.uint8]:
+    """A picture of a surface, without a display: pixels (height, width, 3) uint8, sRGB, rows from the top.
+
+    surface        a surface or a pair (vertices, faces)
+    path           also write it to this file (.png)
+    color          an attribute by name, "skewness", or a number for every vertex, (n,), or face, (m,); labels
+                   ("branch", "group") get a colour each; None: one colour
+    width, height  pixels, 16 to 16384
+    view           where the camera stands: "front", "back", "left", "right", "top", "bottom", "iso", or azimuth
+                   and elevation in degrees (azimuth 0 in front of the patient, 90 at the left; elevation 90 above)
+    look_at        (3,) mm, the point in the middle; None: the middle of the surface
+    view_height    of what is shown there, mm; 0: all of the surface
+    zoom           magnification on top of that
+    field_of_view  degrees, below 120; 0: orthographic
+    edges          draw the triangles' edges, `edge_width` pixels wide
+    smooth         False: shade facet by facet
+    back_faces     draw the inside of the surface in magenta, so that holes and inverted faces show
+    occlusion      darkening where little ambient light arrives, 0 to 1
+    legend         draw the colour scale
+    range          values at its ends; None: the least and the greatest
+
+    The same arguments give the same picture, that of the command `vmesh render`. Raises InvalidInput, WriteError.
+    """
+    return _core.render(
+        _as_surface(surface),
+        path=path,
+        color=color if color is None or isinstance(color, str) else np.asarray(color),
+        width=width,
+        height=height,
+        view=view,
+        look_at=look_at,
+        view_height=view_height,
+        zoom=zoom,
+        field_of_view=field_of_view,
+        edges=edges,
+        edge_width=edge_width,
+        smooth=smooth,
+        back_faces=back_faces,
+        occlusion=occlusion,
+        legend=legend,
+        range=range,
+    )
+
+
+def page(
+    surface: SurfaceLike,
+    path: Union[str, PathLike[str]],
+    *,
+    reference: Optional[SurfaceLike] = None,
+    title: Optional[str] = None,
+) -> None:
+    """Writes a page with the surface in 3D for any browser, without a network: one file (.html).
+
+    surface    a surface or a pair (vertices, faces), coloured by any of its attributes, by its skewness and, where it
+               is bound to a centerline, by the distance to the vessels, mm
+    path       of the page
+    reference  another one, shown in transparency, with the surface's distance to it, mm
+    title      of the page; None: the name of the file
+
+    It lists the worst places, each a click away, beside figures and distributions. Raises WriteError, InvalidInput,
+    Unsupported (another extension, or a build without pages).
+    """
+    _core.page(
+        _as_surface(surface), path, reference=None if reference is None else _as_surface(reference), title=title
+    )

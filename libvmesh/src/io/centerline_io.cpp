@@ -22,9 +22,12 @@ const CenterlineFormat& centerline_format(const std::filesystem::path& path) {
 }
 
 const CenterlineFormat& centerline_output_format(const std::filesystem::path& path) {
-  const CenterlineFormat& format = centerline_format(path);
-  if (format.is_written()) return format;
-  throw Unsupported(path.string() + ": files of this kind are read, not written; write the centerline as " +
+  const CenterlineFormat* format = find_centerline_format(path);
+  if (format != nullptr && format->is_written()) return *format;
+  const std::string what = format != nullptr
+                               ? "files of this kind are read, not written; write the centerline as "
+                               : "\"" + extension_of(path) + "\" is not supported; write the centerline as ";
+  throw Unsupported(path.string() + ": " + what +
                     listed(extensions_of(centerline_formats(), [](const auto& f) { return f.is_written(); })));
 }
 

@@ -17,11 +17,7 @@ constexpr const char* kSchema = "vmesh.centerline/1";
 
 class JsonReader {
  public:
-  JsonReader(const Json& document, const std::string& source) : document_(document) {
-    raw_.source = source;
-    raw_.node_word = "nodes entry";
-    raw_.segment_word = "segments entry";
-  }
+  JsonReader(const Json& document, const std::string& source) : document_(document) { raw_.source = source; }
 
   RawCenterline run() {
     if (!document_.is_object())
@@ -72,7 +68,7 @@ class JsonReader {
 
   void read_nodes(const Json& nodes) {
     for (const Json& row : nodes) {
-      const std::string name = "nodes entry " + std::to_string(raw_.nodes.size());
+      const std::string name = "node " + std::to_string(raw_.nodes.size());
       if (!row.is_array() || row.size() != 4) fail(name + ": it must be [x, y, z, radius]");
       for (const Json& value : row) {
         if (!value.is_number()) fail(name + ": every value of [x, y, z, radius] must be a number");
@@ -93,7 +89,7 @@ class JsonReader {
 
   void read_segments(const Json& segments) {
     for (const Json& row : segments) {
-      const std::string name = "segments entry " + std::to_string(raw_.segments.size());
+      const std::string name = "segment " + std::to_string(raw_.segments.size());
       if (!row.is_array() || row.size() != 2) fail(name + ": it must be [a, b], two node indices");
       const Index a = node_at(row[0], name);
       raw_.segments.push_back({a, node_at(row[1], name)});
@@ -107,7 +103,7 @@ class JsonReader {
       ++degree[b];
     }
     for (const Json& entry : sections) {
-      const std::string name = "end_sections entry " + std::to_string(raw_.end_sections.size());
+      const std::string name = "end section " + std::to_string(raw_.end_sections.size());
       if (!entry.is_object()) fail(name + ": it must be an object {\"node\": ..., \"center\": [x, y, z], ...}");
       EndSection section = end_section(entry, name);
       if (degree[section.node] != 1)
@@ -133,7 +129,7 @@ class JsonReader {
     const Json& ring = entry["ring"];
     if (!ring.is_array()) fail(name + ": \"ring\": it must be an array of points [x, y, z]");
     for (const Json& p : ring)
-      section.ring.push_back(point(p, name + ": \"ring\" entry " + std::to_string(section.ring.size())));
+      section.ring.push_back(point(p, name + ": \"ring\" point " + std::to_string(section.ring.size())));
     if (ring.empty()) fail(name + ": \"ring\": it needs at least three points; leave it out if it is not known");
     return section;
   }

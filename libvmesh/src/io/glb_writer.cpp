@@ -1,13 +1,17 @@
 // Binary glTF 2.0 (Khronos, "glTF 2.0 Specification").
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
 
+#include "vmesh/mesh/find_attribute.h"
+
 #include "bytes.h"
 #include "formats.h"
+#include "glb_packing.h"
 #include "text.h"
 
 namespace vmesh::io {
@@ -27,11 +31,6 @@ double linear_from_srgb(double byte) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
-const MeshAttribute* find(const std::vector<MeshAttribute>& attributes, std::string_view name) {
-  const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
-  return found == attributes.end() ? nullptr : &*found;
-}
-
 bool is_color(const std::string& name) { return name == "red" || name == "green" || name == "blue" || name == "alpha"; }
 
 /// "volume distance" -> "_VOLUME_DISTANCE", as the specification requires for custom names.
@@ -47,8 +46,11 @@ std::string custom_name(const std::string& name) {
 class GlbWriter {
  public:
   GlbWriter(const TriMesh& mesh, const MeshAttributes& attributes, const SurfaceMetadata& metadata,
-            const SurfaceSkin* skin)
-      : mesh_(mesh), attributes_(attributes), skin_(skin) {
+            const SurfaceWriteOptions& options)
+      : mesh_(mesh),
+        attributes_(attributes),
+        skin_(options.skin),
+        packs_(options.encoding == SurfaceEncoding::compressed) {
     json_["asset"] = {{"version", "2.0"}, {"generator", one_line(metadata.generator)}};
     OrderedJson extras = OrderedJson::object();
     for (const auto& [key, value] : {std::pair{"options", &metadata.options},
@@ -58,6 +60,7 @@ class GlbWriter {
     }
     extras["frame"] = kGlbFrame;
     json_["asset"]["extras"] = std::move(extras);
+    if (skin_) return;  // the node of a surface with bones must not be moved
     Vec3 low = mesh.vertices.front(), high = low;
     for (const Vec3& p : mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
     origin_ = (low + high) / 2;
@@ -67,7 +70,8 @@ class GlbWriter {
     OrderedJson attributes = OrderedJson::object();
     attributes["POSITION"] = positions();
     attributes["NORMAL"] = normals();
-    if (find(attributes_.vertex, "red") && find(attributes_.vertex, "green") && find(attributes_.vertex, "blue"))
+    if (find_attribute(attributes_.vertex, "red") && find_attribute(attributes_.vertex, "green") &&
+        find_attribute(attributes_.vertex, "blue"))
       attributes["COLOR_0"] = colors();
     for (const MeshAttribute& a : attributes_.vertex) {
       if (!is_color(a.name)) attributes[custom_name(a.name)] = scalars(a);
@@ -79,6 +83,8 @@ class GlbWriter {
                                   {"doubleSided", true},
                                   {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.6}}}});
     add_nodes();
+    json_["buffers"].push_back({{"byteLength", 0}});
+    if (packs_) pack();
     write(out);
   }
 
@@ -91,10 +97,12 @@ class GlbWriter {
     return json_["bufferViews"].size() - 1;
   }
 
-  /// Adds an accessor for all bytes since the last view(); returns its number.
-  std::size_t accessor(std::size_t view, ComponentType type, const char* kind, std::size_t count) {
+  /// Adds an accessor for all bytes since the last view(); returns its number. `bits`: to which numbers may be rounded
+  /// by compression, see with_exponents(); 0: not at all.
+  std::size_t accessor(std::size_t view, ComponentType type, const char* kind, std::size_t count, int bits = 0) {
     OrderedJson& described = json_["bufferViews"][view];
     described["byteLength"] = bytes_.size() - described["byteOffset"].get<std::size_t>();
+    contents_.push_back({count, bits, type == kUnsignedInt});
     json_["accessors"].push_back(
         {{"bufferView", view}, {"componentType", static_cast<int>(type)}, {"count", count}, {"type", kind}});
     return json_["accessors"].size() - 1;
@@ -106,31 +114,42 @@ class GlbWriter {
 
   std::size_t positions() {
     const std::size_t at = view(kVertices);
-    constexpr float kFar = std::numeric_limits<float>::infinity();
-    Eigen::Vector3f low(kFar, kFar, kFar), high = -low;
-    for (const Vec3& vertex : mesh_.vertices) {
-      const Eigen::Vector3f p = metres(vertex - origin_).cast<float>();
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-      for (const float x : p) store(bytes_, x);
-    }
-    const std::size_t number = accessor(at, kFloat, "VEC3", mesh_.vertices.size());
-    json_["accessors"][number]["min"] = OrderedJson::array({low.x(), low.y(), low.z()});
-    json_["accessors"][number]["max"] = OrderedJson::array({high.x(), high.y(), high.z()});
+    for (const Vec3& vertex : mesh_.vertices) store_vector(metres(vertex - origin_));
+    const std::size_t number = accessor(at, kFloat, "VEC3", mesh_.vertices.size(), kPositionBits);
+    set_range(json_["accessors"][number], content_of(at));
     return number;
+  }
+
+  /// The bytes of a view.
+  std::string_view content_of(std::size_t view) const {
+    const OrderedJson& described = json_["bufferViews"][view];
+    return std::string_view(bytes_).substr(described["byteOffset"], described["byteLength"]);
+  }
+
+  /// Least and greatest of the vectors.
+  static void set_range(OrderedJson& accessor, std::string_view vectors) {
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    std::array<float, 3> low = {kFar, kFar, kFar}, high = {-kFar, -kFar, -kFar};
+    for (std::size_t i = 0; i < vectors.size() / sizeof(float); ++i) {
+      const float x = load<float>(vectors.data() + i * sizeof(float));
+      low[i % 3] = std::min(low[i % 3], x);
+      high[i % 3] = std::max(high[i % 3], x);
+    }
+    accessor["min"] = low;
+    accessor["max"] = high;
   }
 
   std::size_t normals() {
     const std::size_t at = view(kVertices);
     for (const Vec3& n : vertex_normals(mesh_)) store_vector(n.squaredNorm() > 0 ? turned(n) : Vec3(Vec3::UnitY()));
-    return accessor(at, kFloat, "VEC3", mesh_.vertices.size());
+    return accessor(at, kFloat, "VEC3", mesh_.vertices.size(), kNormalBits);
   }
 
   std::size_t colors() {
     const std::size_t at = view(kVertices);
     for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
       for (const char* name : {"red", "green", "blue"}) {
-        const double value = std::clamp(find(attributes_.vertex, name)->values[v], 0.0, 255.0);
+        const double value = std::clamp(find_attribute(attributes_.vertex, name)->values[v], 0.0, 255.0);
         store(bytes_, static_cast<std::uint8_t>(std::lround(255 * linear_from_srgb(value))));
       }
       store(bytes_, std::uint8_t{255});
@@ -143,7 +162,7 @@ class GlbWriter {
   std::size_t scalars(const MeshAttribute& attribute) {
     const std::size_t at = view(kVertices);
     for (const double value : attribute.values) store(bytes_, static_cast<float>(std::isfinite(value) ? value : 0));
-    return accessor(at, kFloat, "SCALAR", attribute.values.size());
+    return accessor(at, kFloat, "SCALAR", attribute.values.size(), attribute.integer ? 0 : kScalarBits);
   }
 
   std::size_t indices() {
@@ -171,25 +190,24 @@ class GlbWriter {
   /// at rest.
   void add_nodes() {
     const Vec3 origin = metres(origin_);
-    const OrderedJson translation = OrderedJson::array({origin.x(), origin.y(), origin.z()});
-    // Programs that do not support bones place the surface at rest by its own node.
-    json_["nodes"].push_back({{"name", "surface"}, {"mesh", 0}, {"translation", translation}});
+    json_["nodes"].push_back({{"name", "surface"}, {"mesh", 0}});
     if (!skin_) {
+      json_["nodes"][0]["translation"] = OrderedJson::array({origin.x(), origin.y(), origin.z()});
       json_["scenes"].push_back({{"nodes", OrderedJson::array({0})}});
     } else {
-      add_joints(translation);
+      add_joints();
       json_["scenes"].push_back({{"nodes", OrderedJson::array({0, 1})}});
     }
     json_["scene"] = 0;
   }
 
-  void add_joints(const OrderedJson& translation) {
+  void add_joints() {
     OrderedJson numbers = OrderedJson::array();
     const std::size_t at = view(kNoTarget);
     json_["nodes"][0]["skin"] = 0;
-    json_["nodes"].push_back({{"name", "bones"}, {"translation", translation}});
+    json_["nodes"].push_back({{"name", "bones"}});
     for (const SurfaceSkin::Joint& joint : skin_->joints) {
-      const Vec3 p = metres(joint.position - origin_);
+      const Vec3 p = metres(joint.position);
       numbers.push_back(json_["nodes"].size());
       json_["nodes"].push_back({{"name", joint.name}, {"translation", OrderedJson::array({p.x(), p.y(), p.z()})}});
       for (int column = 0; column < 4; ++column) {
@@ -203,10 +221,48 @@ class GlbWriter {
                               {"joints", std::move(numbers)}});
   }
 
+  /// Compresses all views. They then are parts of a second buffer, which is not in the file: programs unpack them
+  /// there.
+  void pack() {
+#if VMESH_IO_WITH_MESHOPTIMIZER
+    constexpr const char* kName = "EXT_meshopt_compression";
+    std::string packed;
+    for (std::size_t v = 0; v < contents_.size(); ++v) {
+      const auto [count, bits, is_indices] = contents_[v];
+      const std::string_view content = content_of(v);
+      const std::size_t stride = content.size() / count;
+      std::string bytes;
+      if (is_indices) {
+        bytes = packed_triangles(content, mesh_.vertices.size());
+      } else if (bits > 0) {
+        const std::string rounded = with_exponents(content, stride, bits);
+        if (json_["accessors"][v].contains("min")) set_range(json_["accessors"][v], without_exponents(rounded, stride));
+        bytes = packed_values(rounded, stride);
+      } else {
+        bytes = packed_values(content, stride);
+      }
+      packed.resize((packed.size() + 3) / 4 * 4, '\0');
+      OrderedJson extension = {{"buffer", 0},
+                               {"byteOffset", packed.size()},
+                               {"byteLength", bytes.size()},
+                               {"byteStride", stride},
+                               {"count", count},
+                               {"mode", is_indices ? "TRIANGLES" : "ATTRIBUTES"}};
+      if (bits > 0) extension["filter"] = "EXPONENTIAL";
+      json_["bufferViews"][v]["buffer"] = 1;
+      json_["bufferViews"][v]["extensions"][kName] = std::move(extension);
+      packed += bytes;
+    }
+    json_["buffers"].push_back({{"byteLength", bytes_.size()}, {"extensions", {{kName, {{"fallback", true}}}}}});
+    for (const char* list : {"extensionsUsed", "extensionsRequired"}) json_[list].push_back(kName);
+    bytes_ = std::move(packed);
+#endif
+  }
+
   void write(std::ostream& out) {
     constexpr std::size_t kLargest = std::numeric_limits<std::uint32_t>::max();
     bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');
-    json_["buffers"].push_back({{"byteLength", bytes_.size()}});
+    json_["buffers"][0]["byteLength"] = bytes_.size();
     std::string text = json_.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     const std::size_t size = 12 + 8 + text.size() + 8 + bytes_.size();
@@ -223,8 +279,20 @@ class GlbWriter {
 
   const TriMesh& mesh_;
   const MeshAttributes& attributes_;
+  // Two millionths of a position's greatest coordinate, a 4,000th of a normal, 31 millionths of an attribute.
+  static constexpr int kPositionBits = 20, kNormalBits = 12, kScalarBits = 16;
+
+  /// What is in a view, for pack(). Accessors have the numbers of their views.
+  struct Content {
+    std::size_t count;
+    int bits;
+    bool is_indices;
+  };
+
   const SurfaceSkin* skin_;
+  bool packs_;
   Vec3 origin_ = Vec3::Zero();  ///< at the centre, for precision
+  std::vector<Content> contents_;
   OrderedJson json_;
   std::string bytes_;
 };
@@ -232,10 +300,10 @@ class GlbWriter {
 }  // namespace
 
 void write_glb(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-               const SurfaceMetadata& metadata, const SurfaceSkin* skin) {
+               const SurfaceMetadata& metadata, const SurfaceWriteOptions& options) {
   if (mesh.vertices.empty() || mesh.faces.empty())
     throw InvalidInput("a surface without faces cannot be written as GLB");
-  GlbWriter(mesh, attributes, metadata, skin).run(out);
+  GlbWriter(mesh, attributes, metadata, options).run(out);
 }
 
 }  // namespace vmesh::io

@@ -14,8 +14,7 @@ class GxlReader {
   GxlReader(std::string_view content, const std::string& source, const CenterlineReadOptions& options)
       : file_(parse_xml(content, source)), options_(options) {
     raw_.source = source;
-    raw_.node_word = "node entry";
-    raw_.segment_word = "edge entry";
+    raw_.segment_word = "edge";
   }
 
   RawCenterline run() {
@@ -50,7 +49,7 @@ class GxlReader {
   }
 
   void read_node(pugi::xml_node node) {
-    const std::string place = "node entry " + std::to_string(raw_.nodes.size());
+    const std::string place = "node " + std::to_string(raw_.nodes.size());
     const std::string id(trim(node.attribute("id").value()));
     if (!node_of_.try_emplace(id, static_cast<Index>(raw_.nodes.size())).second)
       fail(place + ": the id " + cite(id) + " occurs twice");
@@ -72,7 +71,7 @@ class GxlReader {
   }
 
   void read_edge(pugi::xml_node edge) {
-    const std::string place = "edge entry " + std::to_string(raw_.segments.size());
+    const std::string place = "edge " + std::to_string(raw_.segments.size());
     const Index from = end(edge, "from", place);
     raw_.segments.push_back({from, end(edge, "to", place)});
     const pugi::xml_node radius = attribute(edge, "radius");

@@ -1,5 +1,6 @@
 #include <ostream>
 
+#include "boundaries.h"
 #include "comments.h"
 #include "formats.h"
 #include "poly_lines.h"
@@ -246,7 +247,7 @@ RawCenterline parse_centerline_obj(std::string_view content, const std::string& 
 }
 
 void write_off(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, const SurfaceMetadata& metadata,
-               const SurfaceSkin*) {
+               const SurfaceWriteOptions&) {
   out << "OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.faces.size()) + " 0\n";
   std::string row;
   for (const Vec3& p : mesh.vertices) {
@@ -260,8 +261,8 @@ void write_off(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, co
   out << comments(metadata, "# ");  // at the end, where readers that do not accept comments no longer read
 }
 
-void write_obj(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, const SurfaceMetadata& metadata,
-               const SurfaceSkin*) {
+void write_obj(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+               const SurfaceMetadata& metadata, const SurfaceWriteOptions&) {
   out << comments(metadata, "# ");
   std::string row;
   for (const Vec3& p : mesh.vertices) {
@@ -269,8 +270,22 @@ void write_obj(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, co
     append_row(row, p);
     out << row << '\n';
   }
-  for (const auto& [a, b, c] : mesh.faces) {
-    out << "f " + std::to_string(a + 1) + ' ' + std::to_string(b + 1) + ' ' + std::to_string(c + 1) + '\n';
+  // One for each vertex, also where caps meet the wall: several programs take vertices with more of them apart.
+  for (const Vec3& n : vertex_normals(mesh)) {
+    row = "vn";
+    for (const double x : n) append(row += ' ', static_cast<float>(x));
+    out << row << '\n';
+  }
+  for (const auto& [name, faces] : boundaries_of(mesh, attributes)) {
+    out << "g " << name << '\n';
+    for (const Index f : faces) {
+      row = "f";
+      for (const Index v : mesh.faces[f]) {
+        const std::string number = std::to_string(v + 1);
+        row.append(" ").append(number).append("//").append(number);
+      }
+      out << row << '\n';
+    }
   }
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <concepts>
 #include <ostream>
 
 #include "vmesh/core/atomic_file.h"
@@ -22,15 +23,52 @@ void declare(std::string& header, const MeshAttribute& attribute, const std::str
   header += std::string("property ") + type + name + "\n";
 }
 
-void store_value(std::string& bytes, const MeshAttribute& attribute, std::size_t i) {
-  if (is_color(attribute)) {
-    store(bytes, static_cast<std::uint8_t>(std::clamp(attribute.values[i], 0.0, 255.0)));
-  } else if (attribute.integer) {
-    store(bytes, static_cast<std::int32_t>(attribute.values[i]));
-  } else {
-    store(bytes, attribute.values[i]);
+/// The body of a file: binary, or text with a line for each vertex and face.
+class PlyBody {
+ public:
+  PlyBody(std::ostream& out, std::string& bytes, SurfaceEncoding encoding)
+      : out_(out), bytes_(bytes), is_text_(encoding == SurfaceEncoding::text) {}
+
+  void add(double value) {
+    if (is_text_) {
+      append(bytes_, value);
+    } else {
+      store(bytes_, value);
+    }
+    separate();
   }
-}
+  template <std::integral Integer>
+  void add(Integer value) {
+    if (is_text_) {
+      bytes_ += std::to_string(value);
+    } else {
+      store(bytes_, value);
+    }
+    separate();
+  }
+  void add(const MeshAttribute& attribute, std::size_t i) {
+    if (is_color(attribute)) {
+      add(static_cast<std::uint8_t>(std::clamp(attribute.values[i], 0.0, 255.0)));
+    } else if (attribute.integer) {
+      add(static_cast<std::int32_t>(attribute.values[i]));
+    } else {
+      add(attribute.values[i]);
+    }
+  }
+  void end_row() {
+    if (is_text_) bytes_.back() = '\n';
+    write_blocks(out_, bytes_);
+  }
+
+ private:
+  void separate() {
+    if (is_text_) bytes_ += ' ';
+  }
+
+  std::ostream& out_;
+  std::string& bytes_;
+  bool is_text_;
+};
 
 /// PLY names are single words.
 std::string word(const std::string& name) {
@@ -42,8 +80,9 @@ std::string word(const std::string& name) {
 }
 
 std::string header_of(std::size_t vertices, std::size_t faces, const MeshAttributes& attributes,
-                      const SurfaceMetadata& metadata) {
-  std::string bytes = "ply\nformat binary_little_endian 1.0\n" + comments(metadata, "comment ");
+                      const SurfaceMetadata& metadata, SurfaceEncoding encoding) {
+  const std::string format = encoding == SurfaceEncoding::text ? "ascii" : "binary_little_endian";
+  std::string bytes = "ply\nformat " + format + " 1.0\n" + comments(metadata, "comment ");
   for (const auto& a : attributes.face) {
     if (a.name == kSkewnessName) bytes += std::string(kSkewnessComment) + "\n";
   }
@@ -56,33 +95,33 @@ std::string header_of(std::size_t vertices, std::size_t faces, const MeshAttribu
   return bytes;
 }
 
-void write_vertices(std::ostream& out, std::string& bytes, std::span<const Vec3> positions,
-                    std::span<const Vec3> normals, const std::vector<MeshAttribute>& attributes) {
+void write_vertices(PlyBody body, std::span<const Vec3> positions, std::span<const Vec3> normals,
+                    const std::vector<MeshAttribute>& attributes) {
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    for (const double x : positions[v]) store(bytes, x);
-    for (const double x : normals[v]) store(bytes, x);
-    for (const auto& a : attributes) store_value(bytes, a, v);
-    write_blocks(out, bytes);
+    for (const double x : positions[v]) body.add(x);
+    for (const double x : normals[v]) body.add(x);
+    for (const auto& a : attributes) body.add(a, v);
+    body.end_row();
   }
 }
 
-void write_faces(std::ostream& out, std::string& bytes, std::span<const Triangle> faces,
-                 const std::vector<MeshAttribute>& attributes) {
+void write_faces(PlyBody body, std::span<const Triangle> faces, const std::vector<MeshAttribute>& attributes) {
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    store(bytes, std::uint8_t{3});
-    for (const Index v : faces[f]) store(bytes, static_cast<std::int32_t>(v));
-    for (const auto& a : attributes) store_value(bytes, a, f);
-    write_blocks(out, bytes);
+    body.add(std::uint8_t{3});
+    for (const Index v : faces[f]) body.add(static_cast<std::int32_t>(v));
+    for (const auto& a : attributes) body.add(a, f);
+    body.end_row();
   }
 }
 
 }  // namespace
 
 void write_ply(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-               const SurfaceMetadata& metadata, const SurfaceSkin*) {
-  std::string bytes = header_of(mesh.vertices.size(), mesh.faces.size(), attributes, metadata);
-  write_vertices(out, bytes, mesh.vertices, vertex_normals(mesh), attributes.vertex);
-  write_faces(out, bytes, mesh.faces, attributes.face);
+               const SurfaceMetadata& metadata, const SurfaceWriteOptions& options) {
+  std::string bytes = header_of(mesh.vertices.size(), mesh.faces.size(), attributes, metadata, options.encoding);
+  const PlyBody body(out, bytes, options.encoding);
+  write_vertices(body, mesh.vertices, vertex_normals(mesh), attributes.vertex);
+  write_faces(body, mesh.faces, attributes.face);
   write_out(out, bytes);
 }
 
@@ -109,7 +148,7 @@ PlyStream::PlyStream(const std::filesystem::path& path, std::size_t vertices, st
   if (vertices >= 0x80000000 || faces >= 0x80000000)
     throw InvalidInput(name_ + ": the surface has too many vertices or faces for its file format (2^31)");
   file_ = std::make_unique<AtomicFile>(path);
-  bytes_ = io::header_of(vertices, faces, declared, metadata);
+  bytes_ = io::header_of(vertices, faces, declared, metadata, SurfaceEncoding::usual);
 }
 
 PlyStream::~PlyStream() = default;
@@ -120,7 +159,7 @@ void PlyStream::add_vertices(std::span<const Vec3> positions, std::span<const Ve
   if (normals.size() != positions.size() || positions.size() > vertices_left_)
     throw InvalidInput(name_ + ": more vertices than were declared, or normals for others");
   vertices_left_ -= positions.size();
-  io::write_vertices(file_->stream(), bytes_, positions, normals, attributes);
+  io::write_vertices({file_->stream(), bytes_, SurfaceEncoding::usual}, positions, normals, attributes);
 }
 
 void PlyStream::add_faces(std::span<const Triangle> faces, const std::vector<MeshAttribute>& attributes) {
@@ -128,7 +167,7 @@ void PlyStream::add_faces(std::span<const Triangle> faces, const std::vector<Mes
   if (vertices_left_ > 0 || faces.size() > faces_left_)
     throw InvalidInput(name_ + ": faces come after all vertices, no more than were declared");
   faces_left_ -= faces.size();
-  io::write_faces(file_->stream(), bytes_, faces, attributes);
+  io::write_faces({file_->stream(), bytes_, SurfaceEncoding::usual}, faces, attributes);
 }
 
 void PlyStream::commit() {

@@ -135,6 +135,14 @@ SceneFrame frame_of(const std::filesystem::path& path, const std::string& extens
   return {up == 1, LengthUnit::cm, static_cast<float>(factor)};
 }
 
+/// Whether a glTF file's JSON, or what contains it, says that nothing can be made of the file without the extension.
+bool requires_extension(std::string_view content, std::string_view name) {
+  const std::size_t list = content.find("\"extensionsRequired\"");
+  if (list == std::string_view::npos) return false;
+  const std::string_view names = content.substr(list, content.substr(list).find(']'));
+  return names.find(name) != std::string_view::npos;
+}
+
 std::string imported(const std::filesystem::path& path, const std::string& content, const std::string& extension) {
   const std::string source = path.string();
   Assimp::Importer importer;
@@ -177,6 +185,10 @@ class Answer {
 LoadedSurface read_scene(const std::filesystem::path& path) {
   const std::string source = path.string(), extension = extension_of(path);
   const std::string content = read_file(path);
+  constexpr const char* kCompression = "EXT_meshopt_compression";
+  if ((extension == ".glb" || extension == ".gltf") && requires_extension(content, kCompression))
+    throw Unsupported(source + ": it is compressed by " + kCompression +
+                      ", which is not read; give the file from which it was made, or write it uncompressed");
   const std::string bytes =
       in_child_process(source, content.size(), [&] { return imported(path, content, extension); });
   Answer answer(bytes);

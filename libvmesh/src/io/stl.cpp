@@ -1,6 +1,7 @@
 #include <ostream>
 #include <unordered_map>
 
+#include "boundaries.h"
 #include "bytes.h"
 #include "formats.h"
 #include "text.h"
@@ -78,7 +79,7 @@ void parse_text(std::string_view content, const std::string& source, LoadedSurfa
     split_blank(line, fields);
     if (fields.empty()) continue;
     const std::string word = lower(fields[0]);
-    if (word == "solid") read_tags(line, surface.unit, surface.space);
+    if (word == "solid" || word == "endsolid") read_tags(line, surface.unit, surface.space);
     if (word == "vertex") {
       Vec3 p;
       for (std::size_t i = 0; i < 3; ++i) {
@@ -94,6 +95,63 @@ void parse_text(std::string_view content, const std::string& source, LoadedSurfa
       corners.clear();
     }
   }
+}
+
+/// Frame, unit and generator on one line.
+std::string tags_of(const SurfaceMetadata& metadata) {
+  return "SPACE=" + std::string(to_string(metadata.space)) + " UNIT=" + std::string(to_string(metadata.unit)) + " " +
+         one_line(metadata.generator);
+}
+
+Vec3 facet_normal(const TriMesh& mesh, Index f) { return area_normal(mesh, f).normalized(); }
+
+void write_binary(std::ostream& out, const TriMesh& mesh, const SurfaceMetadata& metadata) {
+  std::string bytes = tags_of(metadata);
+  bytes.resize(kHeaderSize, ' ');
+  store(bytes, static_cast<std::uint32_t>(mesh.faces.size()));
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    for (const double x : facet_normal(mesh, f)) store(bytes, static_cast<float>(x));
+    for (const Index v : mesh.faces[f]) {
+      for (const double x : mesh.vertices[v]) store(bytes, static_cast<float>(x));
+    }
+    store(bytes, std::uint16_t{0});
+    write_blocks(out, bytes);
+  }
+  write_out(out, bytes);
+}
+
+/// "facet normal 0 0 1" or "vertex 1 2 3".
+template <class Real>
+void append_line(std::string& bytes, const char* words, const Vec3& p) {
+  bytes += words;
+  for (const double x : p) append(bytes += ' ', static_cast<Real>(x));
+  bytes += '\n';
+}
+
+void append_facet(std::string& bytes, const TriMesh& mesh, Index f) {
+  append_line<float>(bytes, "facet normal", facet_normal(mesh, f));
+  bytes += "outer loop\n";
+  for (const Index v : mesh.faces[f]) append_line<double>(bytes, "vertex", mesh.vertices[v]);
+  bytes += "endloop\nendfacet\n";
+}
+
+void append_solid(std::ostream& out, std::string& bytes, const TriMesh& mesh, const Boundary& boundary) {
+  bytes += "solid " + boundary.name + "\n";
+  for (const Index f : boundary.faces) {
+    append_facet(bytes, mesh, f);
+    write_blocks(out, bytes);
+  }
+  bytes += "endsolid " + boundary.name + "\n";
+}
+
+/// The tags are at the end, as programs take what follows "solid" as the name of a boundary.
+void write_text(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+                const SurfaceMetadata& metadata) {
+  std::string bytes;
+  for (const Boundary& boundary : boundaries_of(mesh, attributes)) append_solid(out, bytes, mesh, boundary);
+  bytes.back() = ' ';
+  bytes += tags_of(metadata) + "\n";
+  write_out(out, bytes);
 }
 
 }  // namespace
@@ -118,22 +176,13 @@ LoadedSurface parse_stl(std::string_view content, const std::string& source) {
   return surface;
 }
 
-void write_stl(std::ostream& out, const TriMesh& mesh, const MeshAttributes&, const SurfaceMetadata& metadata,
-               const SurfaceSkin*) {
-  std::string bytes = "SPACE=" + std::string(to_string(metadata.space)) +
-                      " UNIT=" + std::string(to_string(metadata.unit)) + " " + one_line(metadata.generator);
-  bytes.resize(kHeaderSize, ' ');
-  store(bytes, static_cast<std::uint32_t>(mesh.faces.size()));
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    const Vec3 normal = area_normal(mesh, f).normalized();
-    for (const double x : normal) store(bytes, static_cast<float>(x));
-    for (const Index v : mesh.faces[f]) {
-      for (const double x : mesh.vertices[v]) store(bytes, static_cast<float>(x));
-    }
-    store(bytes, std::uint16_t{0});
-    write_blocks(out, bytes);
+void write_stl(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
+               const SurfaceMetadata& metadata, const SurfaceWriteOptions& options) {
+  if (options.encoding == SurfaceEncoding::text) {
+    write_text(out, mesh, attributes, metadata);
+  } else {
+    write_binary(out, mesh, metadata);
   }
-  write_out(out, bytes);
 }
 
 }  // namespace vmesh::io

@@ -17,16 +17,17 @@ const std::vector<SurfaceFormat>& surface_formats() {
   using namespace io;
   const OptionalPart assimp = {"assimp", ".ply, .obj, .off or .stl"};
   static const std::vector<SurfaceFormat> formats = {
-      {.name = "OFF", .extensions = {".off"}, .parse = parse_off, .write = write_off},
-      {.name = "OBJ", .extensions = {".obj"}, .parse = parse_obj, .write = write_obj},
-      {.name = "STL", .extensions = {".stl"}, .parse = parse_stl, .write = write_stl},
-      {.name = "PLY", .extensions = {".ply"}, .parse = parse_ply, .write = write_ply},
+      {.name = "OFF", .extensions = {".off"}, .is_text = true, .parse = parse_off, .write = write_off},
+      {.name = "OBJ", .extensions = {".obj"}, .is_text = true, .parse = parse_obj, .write = write_obj},
+      {.name = "STL", .extensions = {".stl"}, .has_text_form = true, .parse = parse_stl, .write = write_stl},
+      {.name = "PLY", .extensions = {".ply"}, .has_text_form = true, .parse = parse_ply, .write = write_ply},
       {.name = "VTP", .extensions = {".vtp"}, .parse = parse_surface_vtp, .write = write_surface_vtp},
       {.name = "legacy VTK", .extensions = {".vtk"}, .parse = parse_surface_vtk},
       {.name = "GLB",
        .extensions = {".glb"},
        .has_own_frame = true,
        .holds_bones = true,
+       .has_compressed_form = true,
        .parse = parse_glb,
        .read = read_glb,
        .write = write_glb},

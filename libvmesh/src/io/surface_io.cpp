@@ -49,6 +49,22 @@ void check(const std::filesystem::path& path, const SurfaceFormat& format, const
   if (!good) throw InvalidInput(name + ": the skin does not fit the surface: joints and weights are one per vertex");
 }
 
+void check(const std::filesystem::path& path, const SurfaceFormat& format, SurfaceEncoding encoding) {
+  const std::string name = path.string() + ": ";
+  if (encoding == SurfaceEncoding::text && !format.has_text_form)
+    throw Unsupported(name + format.name + (format.is_text ? " is always text" : " has no text form") +
+                      "; there is one beside the binary one of " +
+                      listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_text_form; }), "and"));
+  if (encoding != SurfaceEncoding::compressed) return;
+  if (!format.has_compressed_form)
+    throw Unsupported(name + format.name + " has no compressed form; compressed are " +
+                      listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_compressed_form; })));
+  if (!VMESH_IO_WITH_MESHOPTIMIZER)
+    throw Unsupported(name +
+                      "to compress it needs meshoptimizer, and this vmesh was built without it (CMake option "
+                      "VMESH_WITH_MESHOPTIMIZER); write it uncompressed");
+}
+
 bool is_length(const std::string& attribute) {
   return attribute == "radius" || attribute == "distance" || attribute == "displacement" ||
          attribute == "volume_distance";
@@ -80,17 +96,20 @@ const SurfaceFormat& surface_format(const std::filesystem::path& path) {
 }
 
 const SurfaceFormat& surface_output_format(const std::filesystem::path& path) {
-  const SurfaceFormat& format = surface_format(path);
-  if (format.is_written()) return format;
-  throw Unsupported(path.string() + ": files of this kind are read, not written; write the surface as " +
+  const SurfaceFormat* format = find_surface_format(path);
+  if (format != nullptr && format->is_written()) return *format;
+  const std::string what = format != nullptr ? "files of this kind are read, not written; write the surface as "
+                                             : "\"" + extension_of(path) + "\" is not supported; write the surface as ";
+  throw Unsupported(path.string() + ": " + what +
                     listed(extensions_of(surface_formats(), [](const auto& f) { return f.is_written(); })));
 }
 
 void write_surface(const std::filesystem::path& path, const TriMesh& given, const MeshAttributes& given_attributes,
-                   const SurfaceMetadata& metadata, const SurfaceSkin* skin) {
+                   const SurfaceMetadata& metadata, const SurfaceWriteOptions& options) {
   const SurfaceFormat& format = surface_output_format(path);
   check(path, given, given_attributes);
-  if (skin) check(path, format, given, *skin);
+  check(path, format, options.encoding);
+  if (options.skin) check(path, format, given, *options.skin);
   TriMesh converted;
   MeshAttributes converted_attributes;
   const bool converts = !format.has_own_frame && (metadata.unit != LengthUnit::mm || metadata.space != Space::lps);
@@ -102,7 +121,7 @@ void write_surface(const std::filesystem::path& path, const TriMesh& given, cons
   const TriMesh& mesh = converts ? converted : given;
   const MeshAttributes& attributes = converts ? converted_attributes : given_attributes;
   AtomicFile file(path);
-  format.write(file.stream(), mesh, attributes, metadata, skin);
+  format.write(file.stream(), mesh, attributes, metadata, options);
   file.commit();
 }
 

@@ -20,6 +20,13 @@ std::string_view value_after(std::string_view text, std::string_view key) {
   return rest.substr(0, end);
 }
 
+template <class Real>
+void append_shortest(std::string& text, Real value) {
+  char buffer[40];
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
+  text.append(buffer, result.ptr);
+}
+
 }  // namespace
 
 LineReader::LineReader(std::string_view text) : text_(text) {
@@ -90,11 +97,8 @@ std::optional<std::int64_t> parse_integer(std::string_view text) {
   return static_cast<std::int64_t>(*value);
 }
 
-void append(std::string& text, double value) {
-  char buffer[40];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-  text.append(buffer, result.ptr);
-}
+void append(std::string& text, double value) { append_shortest(text, value); }
+void append(std::string& text, float value) { append_shortest(text, value); }
 
 void append(std::string& text, std::uint64_t value) { text += std::to_string(value); }
 

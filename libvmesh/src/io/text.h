@@ -42,6 +42,7 @@ std::optional<std::int64_t> parse_integer(std::string_view text);
 
 /// Appends the shortest text that reads back as `value`.
 void append(std::string& text, double value);
+void append(std::string& text, float value);
 void append(std::string& text, std::uint64_t value);
 
 /// Looks for SPACE=... and UNIT=... in a comment.

@@ -197,7 +197,7 @@ void write_centerline_vtp(std::ostream& out, const Centerline& centerline, const
 }
 
 void write_surface_vtp(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-                       const SurfaceMetadata& metadata, const SurfaceSkin*) {
+                       const SurfaceMetadata& metadata, const SurfaceWriteOptions&) {
   VtpFile file;
   file.open("PolyData");
   file.open("FieldData");

@@ -25,6 +25,7 @@ FlatEnds finish(GenerateResult& result, const Centerline& centerline, const std:
   finishing.cap = ends.shape == EndShape::flat;
   finishing.left_open = ends.left_open;
   finishing.extension = options.extension;
+  finishing.fit_extensions = options.fit_extensions;
   finishing.keep_area = !fitted && options.growth.placement == Placement::balanced;
   finishing.sections = sections;
   return finish_ends(result, centerline, finishing);

@@ -59,7 +59,7 @@ const CenterlineFormat* find_centerline_format(const std::filesystem::path& path
 /// The same; otherwise throws Unsupported, listing the supported extensions.
 const CenterlineFormat& centerline_format(const std::filesystem::path& path);
 
-/// The same for a file to be written; also throws Unsupported for read-only formats.
+/// The same for a file to be written: throws Unsupported, listing what can be written, for read-only formats too.
 const CenterlineFormat& centerline_output_format(const std::filesystem::path& path);
 
 /// The second file of a CSV pair: tree.csv or tree.nodes.csv (header `id,x,y,z,radius`) goes with

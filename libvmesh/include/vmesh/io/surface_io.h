@@ -16,6 +16,7 @@ namespace vmesh {
 
 struct LoadedSurface;
 struct SurfaceMetadata;
+struct SurfaceWriteOptions;
 
 /// A format of surfaces: what it is called, what it can hold, and what reads and writes it.
 struct SurfaceFormat {
@@ -23,12 +24,15 @@ struct SurfaceFormat {
   std::vector<std::string> extensions;  ///< lower case, with their dots
   bool has_own_frame = false;           ///< always in metres with y up, whatever SurfaceMetadata says
   bool holds_bones = false;             ///< has room for a SurfaceSkin
+  bool is_text = false;                 ///< always
+  bool has_text_form = false;           ///< besides its usual, binary one
+  bool has_compressed_form = false;     ///< likewise
   OptionalPart needs = {};              ///< what `read` needs
 
   /// From the content of a file that `source` names in messages.
   using Parse = LoadedSurface(std::string_view content, const std::string& source);
   using Write = void(std::ostream& out, const TriMesh& mesh, const MeshAttributes& attributes,
-                     const SurfaceMetadata& metadata, const SurfaceSkin* skin);
+                     const SurfaceMetadata& metadata, const SurfaceWriteOptions& options);
   // The functions of the format, null where it has none. It is read by `read`, as it may refer to other files or be a
   // scene, or else by `parse`.
   Parse* parse = nullptr;
@@ -47,7 +51,7 @@ const SurfaceFormat* find_surface_format(const std::filesystem::path& path);
 /// The same; otherwise throws Unsupported, listing the supported extensions.
 const SurfaceFormat& surface_format(const std::filesystem::path& path);
 
-/// The same for a file to be written; also throws Unsupported for read-only formats.
+/// The same for a file to be written: throws Unsupported, listing what can be written, for read-only formats too.
 const SurfaceFormat& surface_output_format(const std::filesystem::path& path);
 
 /// Where a surface comes from; written as comments or field data where the format has room (all but STL; STL has 80
@@ -61,23 +65,41 @@ struct SurfaceMetadata {
   Space space = Space::lps;          ///< likewise; neither applies to GLB, which is in metres with y up
 };
 
+enum class SurfaceEncoding {
+  usual,      ///< binary, where the format has the choice
+  text,       ///< of formats with a text form
+  compressed  ///< of formats with a compressed form, in builds with meshoptimizer
+};
+
+/// What some formats can do.
+struct SurfaceWriteOptions {
+  SurfaceEncoding encoding = SurfaceEncoding::usual;
+  const SurfaceSkin* skin = nullptr;  ///< bones; null: none
+};
+
 /// Writes a surface (given in mm and LPS) in the format of the extension, in the unit and frame of `metadata`, which
 /// are recorded (SPACE=LPS, UNIT=mm). Attributes named radius, distance, displacement and volume_distance are lengths.
 /// The bytes depend on the arguments alone, and the file appears complete or not at all.
-///   PLY  binary little-endian; positions and normals in double, so that they come back to the bit; every attribute;
-///        the face attribute EquiangleSkewness is named "quality", which MeshLab shows; attributes named red, green and
-///        blue are bytes, which all programs take for a colour
+///   PLY  binary little-endian, or text; positions and normals in double, so that they come back to the bit; every
+///        attribute; the face attribute EquiangleSkewness is named "quality", which MeshLab shows; attributes named
+///        red, green and blue are bytes, which all programs take for a colour
 ///   VTP  packed by zlib; every attribute; "radius" is named MaximumInscribedSphereRadius, "distance" Distance,
 ///        "group" GroupIds, face "quality" Quality; point array Normals; the first attributes are the active ones
-///   OBJ, OFF  positions with the digits they need to come back to the bit; no attributes
-///   STL  binary; float; no attributes
+///   OBJ, OFF  positions with the digits they need to come back to the bit; no attributes; OBJ has normals, and groups
+///        by CapID: wall, cap_1, ...; else by ModelFaceID: face_1, ...; without either, surface
+///   STL  binary, in float, or text, whose positions come back to the bit, with a solid for each group of OBJ; no
+///        attributes
 ///   GLB  binary glTF 2.0 in metres, y up (superior), z towards the front (anterior); vertices are shared by faces;
 ///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; with
-///        `skin`, bones
+///        a skin, bones, around the origin of the frame. Compressed by EXT_meshopt_compression: positions are rounded
+///        to two millionths of their greatest coordinate (from the middle of the surface, or the origin with bones),
+///        normals to a 4,000th, attributes that are no integers to 31 millionths; triangles are in another order
+/// In text, numbers have the digits they need to come back to the bit.
 /// Throws InvalidInput when an attribute or the skin has a wrong length or a face names a vertex that does not exist,
-/// Unsupported (extension, a skin in another format than GLB or of more than 65,535 joints), WriteError.
+/// Unsupported (extension, an encoding that the format does not have, a skin in another format than GLB or of more than
+/// 65,535 joints), WriteError.
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes = {},
-                   const SurfaceMetadata& metadata = {}, const SurfaceSkin* skin = nullptr);
+                   const SurfaceMetadata& metadata = {}, const SurfaceWriteOptions& options = {});
 
 struct LoadedSurface {
   TriMesh mesh;

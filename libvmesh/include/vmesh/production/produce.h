@@ -20,7 +20,8 @@ struct ProductionOptions {
   GenerateOptions growth;  ///< open_ends: those that are open whatever `ends` says
   PreparationOptions preparation;
   EndShape ends = EndShape::round;
-  double extension = 0;  ///< length of straight extensions at ends that are not round, in radii; 0: none
+  double extension = 0;         ///< length of straight extensions at ends that are not round, in radii; 0: none
+  bool fit_extensions = false;  ///< make each only as long as there is room for it, see FlatEndOptions
 };
 
 /// Throws InvalidInput where an end that is to be open is none, or nothing is there to extend.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -66,6 +67,11 @@ enum class AttributeDomain { vertex, face };
 /// drawn grey. Throws InvalidInput also when there is not one value per vertex or face, or when none is finite and no
 /// range is given.
 Image render(const TriMesh& mesh, const MeshAttribute& attribute, AttributeDomain domain,
+             const RenderOptions& options = {});
+
+/// The same by the attribute of that name, or by "skewness", which is measured. "branch" and "group" are categories.
+/// Throws InvalidInput also for a name that there is not, listing those there are.
+Image render(const TriMesh& mesh, const MeshAttributes& attributes, const std::string& color,
              const RenderOptions& options = {});
 
 }  // namespace vmesh

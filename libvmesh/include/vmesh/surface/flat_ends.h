@@ -8,6 +8,9 @@
 
 namespace vmesh {
 
+/// The longest extension that is made of its own accord, see FlatEndOptions::fit_extensions: five diameters.
+inline constexpr double kLongestFittedExtension = 10;
+
 /// How to finish the ends at which a surface was left open.
 struct FlatEndOptions {
   /// Scale the rings to the area of the vessel's round cross-section, in which they are inscribed: with six vertices
@@ -18,6 +21,9 @@ struct FlatEndOptions {
   /// Length of a straight extension of the same cross-section that is first added at every end, in radii of the circle
   /// of equal area. 0: none.
   double extension = 0;
+  /// Make each extension only as long as there is room for it, in the order of the nodes: a quarter of its radius is
+  /// left free ahead, a twentieth beside. Where less than half of a radius would be left, there is none.
+  bool fit_extensions = false;
   /// Ends at these nodes get exactly these cross-sections, see end_at_sections(); keep_area applies to those without a
   /// ring. The others, and those that cannot be kept, are cut across the vessel.
   std::vector<EndSection> sections;
@@ -33,6 +39,16 @@ struct FlatEnd {
   double area = 0;             ///< of the cross-section, mm^2
   bool capped = false;         ///< else open
   bool at_section = false;     ///< the cross-section, before any extension, is that of FlatEndOptions::sections
+  double extension = 0;        ///< length of the extension, in radii of the circle of that area
+};
+
+/// An extension for which there is not enough room: it runs into another vessel, or is left out (length 0).
+struct BlockedExtension {
+  Index node = kNone;      ///< of the centerline
+  double length = 0;       ///< in radii of the circle of the end's area
+  double longest = 0;      ///< there is room for, likewise
+  Index branch = kNone;    ///< that is in the way, in find_branches()
+  Vec3 at = Vec3::Zero();  ///< where it is in the way, mm
 };
 
 struct FlatEnds {
@@ -41,6 +57,7 @@ struct FlatEnds {
   std::vector<SectionNotKept> not_kept;
   /// Nodes whose ends have less than the vessel's area, in spite of keep_area: with all of it, faces would cross.
   std::vector<Index> narrowed;
+  std::vector<BlockedExtension> blocked;
 };
 
 /// What a user should know of ends that are not as asked for, a sentence each.

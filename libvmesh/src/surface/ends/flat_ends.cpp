@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/text.h"
 #include "vmesh/edit/crossing_guard.h"
+#include "vmesh/surface/branch_labels.h"
 #include "vmesh/surface/defects.h"
 
 #include "surface/ends/disc.h"
+#include "surface/ends/extension_room.h"
 #include "surface/ends/opening_extension.h"
 #include "surface/ends/ring_moves.h"
 
@@ -18,7 +22,7 @@ namespace {
 class EndFinisher {
  public:
   EndFinisher(GenerateResult& result, const Centerline& centerline, const FlatEndOptions& options)
-      : result_(result), options_(options) {
+      : result_(result), centerline_(centerline), options_(options) {
     Index label = 0;
     label_.resize(centerline.nodes().size(), 0);
     for (Index n = 0; n < label_.size(); ++n) {
@@ -31,25 +35,32 @@ class EndFinisher {
     SectionEnds sections = end_at_sections(result_, options_.sections, options_.keep_area);
     ends_.not_kept = std::move(sections.not_kept);
     if (options_.keep_area) scale_rings(sections.kept);
+    if (options_.extension > 0) room_.emplace(result_);
     for (Opening& opening : result_.openings) {
       const bool at_section = std::binary_search(sections.kept.begin(), sections.kept.end(), opening.node);
-      if (options_.extension > 0) extend(opening);
-      const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
-      const Vec3 area = area_vector(ring);
-      FlatEnd end{label_[opening.node], opening.node, area_centroid(ring), area.normalized(),
-                  area.norm(),          false,        at_section};
-      const auto& left_open = options_.left_open;
-      end.capped = options_.cap && std::find(left_open.begin(), left_open.end(), end.node) == left_open.end();
-      if (end.capped) {
-        cap(opening, ring, end);
-      } else {
-        open.push_back(std::move(opening));
-      }
-      ends_.ends.push_back(end);
+      if (!finish(opening, at_section)) open.push_back(std::move(opening));
     }
     result_.openings = std::move(open);
     ends_.cap_label.resize(result_.mesh.faces.size(), 0);
     return std::move(ends_);
+  }
+
+  /// The extensions that are left out, or whose faces cross others. `crossings`: pairs of faces of the finished
+  /// surface.
+  std::vector<BlockedExtension> blocked(const std::vector<std::pair<Index, Index>>& crossings) const {
+    std::vector<BlockedExtension> blocked;
+    if (tight_.empty()) return blocked;
+    const std::vector<Index> branch = branch_label_of_cones(centerline_);
+    for (const TightExtension& tight : tight_) {
+      const auto is_of_it = [&](Index f) { return tight.first_face <= f && f < tight.end_face; };
+      const bool crosses = std::any_of(crossings.begin(), crossings.end(),
+                                       [&](const auto& pair) { return is_of_it(pair.first) || is_of_it(pair.second); });
+      if (!crosses && tight.length > 0) continue;
+      const Index segment = result_.binding[tight.room.vertex].segment;
+      blocked.push_back(
+          {tight.node, tight.length, tight.room.length / tight.radius, branch.at(segment), tight.room.at});
+    }
+    return blocked;
   }
 
  private:
@@ -105,14 +116,47 @@ class EndFinisher {
     return crosses;
   }
 
-  void extend(Opening& opening) {
+  /// Whether the opening was capped.
+  bool finish(Opening& opening, bool at_section) {
+    const std::size_t first_face = result_.mesh.faces.size();
+    const double extension = options_.extension > 0 ? extend(opening) : 0;
     const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
     const Vec3 area = area_vector(ring);
-    const Vec3 shift = options_.extension * std::sqrt(area.norm() / std::numbers::pi) * area.normalized();
+    FlatEnd end{label_[opening.node], opening.node, area_centroid(ring), area.normalized(),
+                area.norm(),          false,        at_section,          extension};
+    const auto& left_open = options_.left_open;
+    end.capped = options_.cap && std::find(left_open.begin(), left_open.end(), end.node) == left_open.end();
+    if (end.capped) cap(opening, ring, end);
+    ends_.ends.push_back(end);
+    if (!tight_.empty() && tight_.back().node == end.node) {
+      tight_.back().first_face = first_face;
+      tight_.back().end_face = result_.mesh.faces.size();
+    }
+    return end.capped;
+  }
+
+  // Returns the length of the extension, in radii.
+  double extend(Opening& opening) {
+    const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
+    const Vec3 area = area_vector(ring);
+    const double radius = std::sqrt(area.norm() / std::numbers::pi);
+    const ExtensionRoom::Room room = room_->ahead(opening, ring, options_.extension * radius);
+    const double length = options_.fit_extensions ? fitted(room.length / radius) : options_.extension;
+    if (room.vertex != kNone) tight_.push_back({opening.node, length, radius, room});
+    if (length == 0) return 0;
+    const Vec3 shift = length * radius * area.normalized();
     std::vector<Vec3> target = ring;
     for (Vec3& p : target) p += shift;
+    const std::size_t first_face = result_.mesh.faces.size();
     extend_opening(result_, opening, target);
     opening.center += shift;
+    room_->add(result_.mesh, first_face, opening.ring);
+    return length;
+  }
+
+  static double fitted(double room) {
+    constexpr double kShortest = 0.5;
+    return room < kShortest ? 0 : room;
   }
 
   void cap(const Opening& opening, const std::vector<Vec3>& ring, const FlatEnd& end) {
@@ -124,11 +168,34 @@ class EndFinisher {
     ends_.cap_label.resize(result_.mesh.faces.size(), end.label);
   }
 
+  struct TightExtension {
+    Index node;
+    double length, radius;  // in radii, and in mm
+    ExtensionRoom::Room room;
+    std::size_t first_face = 0, end_face = 0;  // of the extension and its cap
+  };
+
   GenerateResult& result_;
+  const Centerline& centerline_;
   const FlatEndOptions& options_;
-  std::vector<Index> label_;  // of nodes that are ends
+  std::optional<ExtensionRoom> room_;
+  std::vector<TightExtension> tight_;  // in whose way something is
+  std::vector<Index> label_;           // of nodes that are ends
   FlatEnds ends_;
 };
+
+std::string problem_of(const BlockedExtension& extension) {
+  const std::string node = std::to_string(extension.node);
+  const std::string obstacle =
+      "the vessel of branch " + std::to_string(extension.branch) +
+      formatted(" at (%.3f, %.3f, %.3f)", extension.at.x(), extension.at.y(), extension.at.z());
+  const double longest = std::floor(100 * extension.longest) / 100;  // not longer than fits
+  if (extension.length == 0)
+    return "the end at node " + node + " has no flow extension: " + obstacle +
+           formatted(" leaves room for %.2f radii", longest);
+  return "the flow extension at node " + node + formatted(", %g radii long, runs into ", extension.length) + obstacle +
+         formatted("; at most %.2f radii fit there", longest);
+}
 
 }  // namespace
 
@@ -140,15 +207,19 @@ std::vector<std::string> problems_of(const FlatEnds& ends) {
   for (const Index node : ends.narrowed)
     problems.push_back("the end at node " + std::to_string(node) +
                        " is smaller than the vessel there: with all of its area, faces would cross");
+  for (const BlockedExtension& extension : ends.blocked) problems.push_back(problem_of(extension));
   return problems;
 }
 
 FlatEnds finish_ends(GenerateResult& result, const Centerline& centerline, const FlatEndOptions& options) {
   if (!(options.extension >= 0 && std::isfinite(options.extension)))
     throw InvalidInput("the extension of ends must be >= 0");
-  if (result.openings.empty()) return {{}, std::vector<Index>(result.mesh.faces.size(), 0), {}, {}};
-  FlatEnds ends = EndFinisher(result, centerline, options).run();
-  find_defects_again(centerline, self_intersections(result.mesh), result);
+  if (result.openings.empty()) return {{}, std::vector<Index>(result.mesh.faces.size(), 0), {}, {}, {}};
+  EndFinisher finisher(result, centerline, options);
+  FlatEnds ends = finisher.run();
+  const auto crossings = self_intersections(result.mesh);
+  ends.blocked = finisher.blocked(crossings);
+  find_defects_again(centerline, crossings, result);
   return ends;
 }
 

@@ -1,0 +1,71 @@
+"""Pages that show a surface in a browser."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+import vmesh
+
+from shapes import FORK, box
+
+
+@pytest.fixture
+def made(tmp_path):
+    """Makes a page and returns the data in it."""
+
+    def make(surface, **options):
+        path = tmp_path / "fork.html"
+        try:
+            vmesh.page(surface, path, **options)
+        except vmesh.Unsupported as error:
+            assert "built without pages" in str(error) and not path.exists()
+            pytest.skip(str(error))
+        text = path.read_text(encoding="utf-8")
+        assert "src=" not in re.sub(r"<script>.*?</script>", "", text, flags=re.DOTALL)  # nothing from elsewhere
+        return json.loads(re.search(r'<script[^>]*id="page-data">(.*?)</script>', text, re.DOTALL).group(1))
+
+    return make
+
+
+def test_a_page_has_the_surface_and_what_is_known_of_it(made):
+    surface = vmesh.generate(*FORK)
+    page = made(surface, title="A fork")
+    assert page["title"] == "A fork"
+    shown = page["surfaces"][0]
+    assert (shown["vertices"], shown["faces"]) == (len(surface.vertices), len(surface.faces))
+    names = {attribute["name"] for attribute in shown["attributes"]}
+    assert {"radius", "branch", "EquiangleSkewness", "volume_distance"} <= names
+    assert page["centerline"]["nodes"] == len(FORK[0])
+    skew = [place for place in page["places"] if place["label"] == "Skew triangle"]
+    assert float(skew[0]["value"]) == pytest.approx(surface.skewness.max(), abs=5e-4)
+    corners = surface.vertices[surface.faces[surface.skewness.argmax()]]
+    np.testing.assert_allclose(skew[0]["at"], corners.mean(axis=0))
+
+
+def test_it_compares_with_a_reference(made):
+    surface, reference = vmesh.Surface(*box()), vmesh.Surface(*box(side=1.25, origin=(0, 0, -0.5)))
+    page = made(surface, reference=(reference.vertices, reference.faces))
+    assert [shown["reference"] for shown in page["surfaces"]] == [False, True]
+    histogram = next(h for h in page["histograms"] if h["title"] == "Distance of vertices to the reference")
+    assert histogram["max"] == pytest.approx(vmesh.closest_points(surface.vertices, reference)[2].max())
+    assert page["centerline"] is None
+
+
+def test_defects_are_places(made):
+    nodes = [[-10, 0, 0], [10, 0, 0], [0, -10, 0.5], [0, 10, 0.5]]
+    with pytest.warns(vmesh.SurfaceWarning):
+        surface = vmesh.generate(nodes, [2] * 4, [[0, 1], [2, 3]], overlap="keep", allow_defects=True)
+    page = made(surface)
+    assert page["places"][0]["label"].startswith("Defect: crossing_faces")
+    assert page["warnings"] == surface.warnings
+
+
+def test_what_cannot_be_written_is_said(tmp_path):
+    with pytest.raises(vmesh.Unsupported, match="pages are written as .html or .htm"):
+        vmesh.page(box(), tmp_path / "page.pdf")
+    with pytest.raises(vmesh.WriteError):
+        vmesh.page(box(), tmp_path / "none" / "page.html")
+    with pytest.raises(TypeError):
+        vmesh.page(None, tmp_path / "page.html")
+    assert list(tmp_path.iterdir()) == []
