@@ -53,7 +53,7 @@ TEST(ReadGraphMl, ReadsPositionsOfBothKindsAndRadii) {
   const RawCenterline raw = parse("t.graphml", graphml(kGraphMlNodes, kGraphMlEdges));
   expect_is_the_bend(raw);
   EXPECT_EQ(raw.unit, LengthUnit::um);
-  EXPECT_EQ(raw.name_of_node(2), "t.graphml: node entry 2");
+  EXPECT_EQ(raw.name_of_node(2), "t.graphml: node 2");
 }
 
 TEST(ReadGraphMl, TakesRadiiOfEdgesWhereNodesHaveNone) {
@@ -76,11 +76,11 @@ TEST(ReadGraphMl, NamesWhatIsWrong) {
     EXPECT_NE(at, std::string::npos) << from;
     return error("t.graphml", text.replace(at, from.size(), to));
   };
-  expect_contains(with("\"tip\"><data", "\"root\"><data"), "t.graphml: node entry 2: the id \"root\" occurs twice");
-  expect_contains(with("target=\"tip\"", "target=\"tap\""), "edge entry 1: there is no node \"tap\"");
+  expect_contains(with("\"tip\"><data", "\"root\"><data"), "t.graphml: node 2: the id \"root\" occurs twice");
+  expect_contains(with("target=\"tip\"", "target=\"tap\""), "edge 1: there is no node \"tap\"");
   expect_contains(with("target=\"tip\"", "to=\"tip\""), "there is a <edge> without target");
-  expect_contains(with("(-8. 0 33)", "(-8 33)"), "node entry 2: its pos \"(-8 33)\" is not three numbers");
-  expect_contains(with("<data key=\"d2\">0</data>", ""), "node entry 0: it has no position; give nodes");
+  expect_contains(with("(-8. 0 33)", "(-8 33)"), "node 2: its pos \"(-8 33)\" is not three numbers");
+  expect_contains(with("<data key=\"d2\">0</data>", ""), "node 0: it has no position; give nodes");
   expect_contains(with("<data key=\"d2\">0</data>", "<data key=\"d2\">low</data>"), "its z \"low\" is not a number");
   expect_contains(error("t.graphml", graphml(kGraphMlNodes, "")), "it contains no edge");
   expect_contains(error("t.graphml", "<gexf/>"), "this is not a GraphML file");
@@ -143,11 +143,11 @@ TEST(ReadNodeLink, NamesTheEntryThatIsWrong) {
     EXPECT_NE(at, std::string::npos) << from;
     return error("t.json", text.replace(at, from.size(), to));
   };
-  expect_contains(with("\"id\": 7", "\"id\": [7]"), "nodes entry 0: \"id\" must be a text or a number");
-  expect_contains(with("\"source\": \"b\"", "\"from\": \"b\""), "links entry 1: \"source\" must be");
-  expect_contains(with("\"source\": 7", "\"source\": 8"), "edge entry 0: there is no node \"8\"");
-  expect_contains(with("[0, 0.5, 20]", "[0, 0.5]"), "node entry 1: it has no position");
-  expect_contains(with("{\"source\": 7, \"target\": \"b\"}", "5"), "links entry 0: it must be an object");
+  expect_contains(with("\"id\": 7", "\"id\": [7]"), "node 0: \"id\" must be a text or a number");
+  expect_contains(with("\"source\": \"b\"", "\"from\": \"b\""), "edge 1: \"source\" must be");
+  expect_contains(with("\"source\": 7", "\"source\": 8"), "edge 0: there is no node \"8\"");
+  expect_contains(with("[0, 0.5, 20]", "[0, 0.5]"), "node 1: it has no position");
+  expect_contains(with("{\"source\": 7, \"target\": \"b\"}", "5"), "edge 0: it must be an object");
   expect_contains(error("t.json", R"({"nodes": 5, "links": []})"), "\"nodes\" must be an array");
 }
 

@@ -41,8 +41,8 @@ std::size_t axis_of(const std::string& name) {
 }  // namespace
 
 std::string GraphBuilder::place() const {
-  return element_ == Element::node ? "node entry " + std::to_string(nodes_.size())
-                                   : "edge entry " + std::to_string(edges_.size() - 1);
+  return element_ == Element::node ? "node " + std::to_string(nodes_.size())
+                                   : "edge " + std::to_string(edges_.size() - 1);
 }
 
 void GraphBuilder::begin_node(const std::string& id) {
@@ -97,7 +97,7 @@ void GraphBuilder::add_position(const Vec3& position) {
 
 Index GraphBuilder::node(const std::string& id, std::size_t edge) const {
   const auto found = node_of_.find(id);
-  if (found == node_of_.end()) fail("edge entry " + std::to_string(edge) + ": there is no node " + cite(id));
+  if (found == node_of_.end()) fail("edge " + std::to_string(edge) + ": there is no node " + cite(id));
   return found->second;
 }
 
@@ -127,8 +127,8 @@ RawCenterline GraphBuilder::finish() {
   for (std::size_t e = 0; e < edges_.size(); ++e)
     lines.lines.push_back({node(edges_[e].first, e), node(edges_[e].second, e)});
   RawCenterline raw = to_raw_centerline(std::move(lines), source_, {of_nodes, of_edges}, options_, kRadiiOfGraphs);
-  raw.node_word = "node entry";
-  raw.segment_word = "edge entry";
+  raw.node_word = "node";
+  raw.segment_word = "edge";
   raw.loose_branches = false;  // what is joined has an edge
   raw.path_starts.clear();
   raw.unit = unit_;

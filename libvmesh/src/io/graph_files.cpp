@@ -92,13 +92,13 @@ class NodeLinkReader {
     if (const auto about = document.find("graph"); about != document.end() && about->is_object()) add_members(*about);
     const char* links = document.contains("links") ? "links" : "edges";
     for (const auto& node : list(document, "nodes")) {
-      place_ = "nodes entry " + std::to_string(count_++);
+      place_ = "node " + std::to_string(count_++);
       graph_.begin_node(id(node, "id"));
       add_members(node);
     }
     count_ = 0;
     for (const auto& link : list(document, links)) {
-      place_ = links + std::string(" entry ") + std::to_string(count_++);
+      place_ = "edge " + std::to_string(count_++);
       const std::string from = id(link, "source");
       graph_.begin_edge(from, id(link, "target"));
       add_members(link);
