@@ -93,8 +93,10 @@ void log_preparation(const PreparedCenterline& prepared, GenerateReport& report,
 void log_choice(const BudgetedSurface& surface, const GenerateArguments& arguments, Console& console) {
   console.log("for " + to_string(*arguments.budget) + " these were tried:");
   for (const OperatingPoint& point : surface.tried) {
+    const double spacing = point.options.ring_spacing;
     console.log(std::string(&point == &surface.choice() ? "* " : "  ") + std::to_string(point.options.around) +
-                " around: " + std::to_string(point.vertices) + " vertices, " + number(point.seconds) + " s, distance " +
+                " around" + (spacing == 1 ? "" : ", rings " + number(spacing) + " times as far apart") + ": " +
+                std::to_string(point.vertices) + " vertices, " + number(point.seconds) + " s, distance " +
                 number(point.error.mean_relative) + " mean, " + number(point.error.max_relative) + " max (" +
                 number(point.error.max_mm) + " mm), skewness " + number(point.skewness.mean) + " mean, " +
                 number(point.skewness.max) + " max" + (point.within_budget ? "" : "; beyond the budget"));

@@ -402,6 +402,7 @@ std::string describe(const GenerateArguments& arguments) {
                            });
   const GenerateOptions& options = arguments.production.growth;
   if (options.elongation > 1) text << " " << kElongationFlag << " " << exact_text(options.elongation);
+  if (options.ring_spacing != 1) text << " --ring-spacing " << exact_text(options.ring_spacing);
   text << " --growth " << to_string(options.growth) << " --placement " << to_string(options.placement);
   if (options.deformable) text << " --deformable";
   if (options.max_error.is_set()) text << " --max-error " << to_string(options.max_error);

@@ -99,6 +99,10 @@ void add_options(CLI::App& verb, GenerateArguments& arguments) {
       "refine until the surface is proven to be no farther than this from the boundary, and the boundary from it: "
       "0.3mm, 10% (of the local radius), or both, separated by a comma")
       .type_name("Xmm|X%");
+  verb.add_option("--ring-spacing", arguments.production.growth.ring_spacing,
+                  "distance of rings along vessels by that of even triangles, for numbers of vertices between "
+                  "those of --around")
+      ->check(in_range(kLeastRingSpacing, kMostRingSpacing));
   verb.add_option("--least-vertices", arguments.production.growth.least_vertices,
                   "with --elongation: leave out vertices until this number is left, where they "
                   "reduce the mean error most; with --max-error, only as long as that stays proven; 0: as few as "
@@ -114,7 +118,8 @@ void add_options(CLI::App& verb, GenerateArguments& arguments) {
       ->excludes("--around")
       ->excludes("--preset")
       ->excludes("--max-error")
-      ->excludes("--least-vertices");
+      ->excludes("--least-vertices")
+      ->excludes("--ring-spacing");
   add_ends(verb, arguments.production);
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
@@ -132,7 +137,7 @@ void add_options(CLI::App& verb, GenerateArguments& arguments) {
   add_html(verb, arguments.common);
   group(verb, "Resolution",
         {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification", "--elongation",
-         "--least-vertices", "--deformable"});
+         "--ring-spacing", "--least-vertices", "--deformable"});
   group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
   group(verb, "Ends", {"--ends", "--open-ends", "--flow-extensions"});
   group(verb, "How it is made", {"--growth", "--beta", "--max-center-distance", "--sweeps", "--threads"});

@@ -50,6 +50,7 @@ ProductionOptions request_of(const py::dict& given) {
   take_extension(option<Extension>(given, "flow_extension"), request.extension, request.fit_extensions);
   options.simplification = option<double>(given, "simplification");
   options.elongation = option<double>(given, "elongation");
+  options.ring_spacing = option<double>(given, "ring_spacing");
   options.least_vertices = option<std::size_t>(given, "least_vertices");
   options.deformable = option<bool>(given, "deformable");
   options.sweeps = option<int>(given, "sweeps");

@@ -58,6 +58,7 @@ def generate(
     budget: Optional[str] = None,
     simplification: float = 0.35,
     elongation: float = 1.0,
+    ring_spacing: float = 1.0,
     least_vertices: int = 0,
     deformable: bool = False,
     sweeps: int = 30,
@@ -91,6 +92,8 @@ def generate(
                     them cut off anyway, 0 to 1
     elongation      along vessels, triangles as long as the error allows, at most this times their even
                     length, 1 (even) to 16
+    ring_spacing    distance of rings along vessels by that of even triangles, 0.8 to 1.25, for numbers of
+                    vertices between those of around
     least_vertices  with an elongation: leave out vertices until this number is left, where
                     they reduce the mean error most; with `max_error`, as long as that stays proven
     deformable      for a centerline that is to move: a ring of vertices at every node
@@ -110,8 +113,8 @@ def generate(
         centerline = Centerline(centerline, radii, segments)
     elif radii is not None or segments is not None:
         raise TypeError("a Centerline has radii and segments of its own")
-    if budget is not None and (around != 6 or max_error is not None or least_vertices != 0):
-        raise InvalidInput("a budget chooses around, max_error and least_vertices; leave them out")
+    if budget is not None and (around != 6 or max_error is not None or least_vertices != 0 or ring_spacing != 1):
+        raise InvalidInput("a budget chooses around, ring_spacing, max_error and least_vertices; leave them out")
     surface = _core.generate(
         centerline,
         progress=progress,
@@ -128,6 +131,7 @@ def generate(
         flow_extension=flow_extension,
         simplification=simplification,
         elongation=elongation,
+        ring_spacing=ring_spacing,
         least_vertices=least_vertices,
         deformable=deformable,
         sweeps=sweeps,

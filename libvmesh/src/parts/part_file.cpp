@@ -53,6 +53,7 @@ json to_json(const GenerateOptions& o) {
           {"sweeps", o.sweeps},
           {"placement", to_string(o.placement)},
           {"elongation", o.elongation},
+          {"ring_spacing", o.ring_spacing},
           {"deformable", o.deformable}};
 }
 
@@ -65,9 +66,12 @@ GenerateOptions options_of(const json& j) {
   o.sweeps = j.at("sweeps").get<int>();
   o.placement = parse_placement(j.at("placement").get<std::string>());
   o.elongation = j.at("elongation").get<double>();
+  o.ring_spacing = j.at("ring_spacing").get<double>();
   o.deformable = j.at("deformable").get<bool>();
   o.simplification = 0;
   if (!(o.elongation >= 1 && o.elongation <= kMostElongation)) throw InvalidInput("its options are out of range");
+  if (!(o.ring_spacing >= kLeastRingSpacing && o.ring_spacing <= kMostRingSpacing))
+    throw InvalidInput("its options are out of range");
   if (!(o.around >= 3 && o.around <= 200 && o.sweeps >= 0)) throw InvalidInput("its options are out of range");
   return o;
 }

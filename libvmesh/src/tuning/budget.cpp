@@ -17,6 +17,8 @@ constexpr int kMaxTrials = 12;               // the secant needs four or five; t
 constexpr double kRefused = 0.8;             // of max_vertices: if more are expected, the run may be refused
 constexpr int kMostFiner = 3;                // refinement steps while the error is not proven
 constexpr double kStart = 12;                // times the vertices wanted: a surface to leave vertices out of
+constexpr double kNearBudget = 0.95;         // of the vertices wanted: near enough
+constexpr int kMostSpacings = 4;             // distances of rings tried for that
 constexpr int kErrorLadder[] = {4, 5, 6, 8, 10, 12, 16, 20, 24};
 
 InvalidInput unknown_budget(std::string_view text) {
@@ -47,6 +49,7 @@ class BudgetSearch {
       leave_out_the_rest();
     } else {
       find_finest();
+      if (budget_.kind == Budget::Kind::vertices) fill_up();
     }
     return result();
   }
@@ -81,6 +84,34 @@ class BudgetSearch {
     if (fits > kCoarsest) attempt(fits - 1);
   }
 
+  // Between two whole numbers of vertices around, vertices are inversely proportional to the distance of rings. Starts
+  // from the nearer of the surfaces with one number and the next.
+  void fill_up() {
+    const OperatingPoint* start = nullptr;
+    for (const auto& [setting, trial] : trials_) {
+      if (start == nullptr || misses(trial.point) < misses(*start)) start = &trial.point;
+    }
+    const int around = start->options.around;
+    double spacing = 1, vertices = static_cast<double>(start->vertices);
+    for (int i = 0; i < kMostSpacings && !near_enough(); ++i) {
+      const double aim = std::min(0.5 * (1 + kNearBudget) * allowed(), kRefused * options_.max_vertices);
+      const double next = std::clamp(spacing * vertices / aim, kLeastRingSpacing, kMostRingSpacing);
+      if (next == spacing || spacing * vertices > next * allowed()) return;  // out of reach
+      spacing = next;
+      vertices = static_cast<double>(attempt(around, spacing).point.vertices);
+    }
+  }
+
+  // By which factor, above or below, the vertices are not those wanted.
+  double misses(const OperatingPoint& point) const {
+    return std::abs(std::log(static_cast<double>(point.vertices) / allowed()));
+  }
+
+  bool near_enough() const {
+    const std::size_t vertices = best_->surface.mesh.vertices.size();
+    return vertices <= budget_.vertices && static_cast<double>(vertices) >= kNearBudget * allowed();
+  }
+
   void leave_out_the_rest() {
     options_.least_vertices = budget_.vertices;
     const double start = std::min(kStart * allowed(), kRefused * options_.max_vertices);
@@ -111,13 +142,16 @@ class BudgetSearch {
       return a.point.vertices < b.point.vertices;
     }
     if (!a.point.within_budget) return cost(a.point) < cost(b.point);
+    if (budget_.kind == Budget::Kind::vertices) return a.point.vertices > b.point.vertices;
     return a.point.options.around > b.point.options.around;
   }
 
-  const Trial& attempt(int around) {
-    if (const auto known = trials_.find(around); known != trials_.end()) return known->second;
+  const Trial& attempt(int around, double ring_spacing = 1) {
+    const Setting setting{around, ring_spacing};
+    if (const auto known = trials_.find(setting); known != trials_.end()) return known->second;
     GenerateOptions options = options_;
     options.around = around;
+    options.ring_spacing = ring_spacing;
     const auto begin = std::chrono::steady_clock::now();
     GenerateResult surface = generate_surface(centerline_, options, progress_);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
@@ -130,23 +164,24 @@ class BudgetSearch {
     trial.point.error = measure_deviation(surface.mesh, surface.binding, VesselField(centerline_, options.blend));
     trial.point.within_budget =
         budget_.kind == Budget::Kind::error ? trial.unproven == 0 : cost(trial.point) <= allowed();
-    const Trial& kept = trials_.emplace(around, std::move(trial)).first->second;
-    if (!best_ || better(kept, trials_.at(best_->around))) best_ = {around, std::move(surface)};
+    const Trial& kept = trials_.emplace(setting, std::move(trial)).first->second;
+    if (!best_ || better(kept, trials_.at(best_->setting))) best_ = {setting, std::move(surface)};
     return kept;
   }
 
   BudgetedSurface result() {
     BudgetedSurface chosen;
-    for (const auto& [around, trial] : trials_) {
-      if (around == best_->around) chosen.chosen = chosen.tried.size();
+    for (const auto& [setting, trial] : trials_) {
+      if (setting == best_->setting) chosen.chosen = chosen.tried.size();
       chosen.tried.push_back(trial.point);
     }
     chosen.result = std::move(best_->surface);
     return chosen;
   }
 
+  using Setting = std::pair<int, double>;  // vertices around, distance of rings
   struct Best {
-    int around;
+    Setting setting;
     GenerateResult surface;
   };
 
@@ -154,7 +189,7 @@ class BudgetSearch {
   const Centerline& centerline_;
   GenerateOptions options_;
   const Progress& progress_;
-  std::map<int, Trial> trials_;  // by vertices around
+  std::map<Setting, Trial> trials_;
   std::optional<Best> best_;
 };
 

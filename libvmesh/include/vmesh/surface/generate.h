@@ -63,6 +63,9 @@ struct OpenEnds {
 /// Largest GenerateOptions::elongation: beyond it triangles would be nearly degenerate.
 inline constexpr int kMostElongation = 16;
 
+/// Bounds of GenerateOptions::ring_spacing.
+inline constexpr double kLeastRingSpacing = 0.8, kMostRingSpacing = 1.25;
+
 /// How a surface is grown and finished. Lengths are in units of the local vessel radius unless said otherwise.
 struct GenerateOptions {
   /// Weight of the attraction by the vessel boundary against the vertex normal, Eq. 11; in [0, 1].
@@ -85,6 +88,10 @@ struct GenerateOptions {
   /// most. Without max_error, nothing is proven then, but no vertex is farther from the boundary than half the local
   /// radius. 0: as many are left out as max_error allows. Only with an elongation above 1, and not deformable.
   std::size_t least_vertices = 0;
+  /// Between the numbers of vertices that whole numbers `around` give: rings along vessels lie farther apart or nearer
+  /// by this factor than those of even triangles, in [kLeastRingSpacing, kMostRingSpacing], and edges at junctions and
+  /// ends are longer by its square root. Near enough to 1 that triangles stay fairly even.
+  double ring_spacing = 1;
   /// For a centerline that is to move: no node is left out by `simplification`, and triangles are no longer than the
   /// segments around, so that there is a ring of vertices at every node.
   bool deformable = false;

@@ -35,15 +35,16 @@ struct OperatingPoint {
 
 struct BudgetedSurface {
   GenerateResult result;
-  std::vector<OperatingPoint> tried;  ///< ascending in GenerateOptions::around
+  std::vector<OperatingPoint> tried;  ///< ascending in GenerateOptions::around and ring_spacing
   std::size_t chosen = 0;             ///< index into `tried`; `result` is its surface
   const OperatingPoint& choice() const { return tried[chosen]; }
   bool met() const { return choice().within_budget; }
 };
 
 /// The best operating point within a budget: for vertices or time the finest surface within it, for an error the
-/// surface with the fewest vertices. GenerateOptions::around varies, an error budget also sets max_error; the rest is
-/// as in `options`. Neighbours of the choice are tried, too. If nothing is within the budget, the closest is chosen.
+/// surface with the fewest vertices. GenerateOptions::around varies, for vertices ring_spacing too, so that few are
+/// missing; an error budget also sets max_error; the rest is as in `options`. Neighbours of the choice are tried, too.
+/// If nothing is within the budget, the closest is chosen.
 ///
 /// With an elongation above 1 (and not deformable), a surface within a budget of vertices is a much finer one of which
 /// all but that number were left out, those that increase the mean error least (GenerateOptions::least_vertices).

@@ -61,7 +61,7 @@ class Optimizer {
     };
     if (grown.stage == GrownMesh::Stage::assembled) {
       lift_limit();
-      edge_per_radius_ = edge_length_per_radius(options_.around);
+      edge_per_radius_ = intended_edge(options_.around);
       state_.update_sizes(edge_per_radius_, options_.max_error);
       for (int round = 0; !state_.surface.fine_spots.empty() && round < kSpotRounds; ++round) {
         state_.stir_all();
@@ -219,8 +219,12 @@ class Optimizer {
     });
   }
 
+  double intended_edge(double around) const {
+    return std::sqrt(options_.ring_spacing) * edge_length_per_radius(around);
+  }
+
   void optimize_at(double around) {
-    edge_per_radius_ = edge_length_per_radius(around);
+    edge_per_radius_ = intended_edge(around);
     state_.stir_all();
     sweep_from(0, [&] { state_.stir_all(); });
     untangle();

@@ -15,6 +15,8 @@ namespace {
 void check_options(const GenerateOptions& o) {
   if (!(o.beta >= 0 && o.beta <= 1)) throw InvalidInput("beta must be in [0, 1]");
   if (!(o.around >= 3 && o.around <= 200)) throw InvalidInput("around must be in [3, 200]");
+  if (!(o.ring_spacing >= kLeastRingSpacing && o.ring_spacing <= kMostRingSpacing))
+    throw InvalidInput("ring_spacing must be in [0.8, 1.25]");
   if (!(o.max_center_distance > 0)) throw InvalidInput("max_center_distance must be > 0");
   if (!(o.simplification >= 0 && o.simplification <= 1)) throw InvalidInput("simplification must be in [0, 1]");
   if (!(o.elongation >= 1 && o.elongation <= kMostElongation))
@@ -65,7 +67,7 @@ Demand demand_of(const Centerline& centerline, const GenerateOptions& options, d
 }
 
 double expected(const Centerline& centerline, const GenerateOptions& options) {
-  return expected_vertices(centerline, options.around, options.max_error);
+  return expected_vertices(centerline, options.around, options.max_error) / options.ring_spacing;
 }
 
 }  // namespace

@@ -256,7 +256,7 @@ class PieceMaker {
       const std::vector<Ring>& all = tubes_.rings(stretch.branch);
       for (Index k = 0; k < stretch.count; ++k) rings += all[(stretch.first + k) % all.size()].elongation;
     }
-    return (rings + 2 * static_cast<double>(plan_.nodes.size())) * ring_pitch(context_.options.around);
+    return (rings + 2 * static_cast<double>(plan_.nodes.size())) * RingOptions::of(context_.options).pitch();
   }
 
   // Nodes that must lie inside: all except those right at a seam.

@@ -77,7 +77,7 @@ Rings RingLayer::lay(Index branch) const {
 // `sides`: of every ring, from where its angles count.
 Rings RingLayer::lay_evenly(Index branch, std::vector<Vec3>& sides) const {
   const BranchAxis& axis = axes_[branch];
-  const double pitch = ring_pitch(options_.around);
+  const double pitch = options_.pitch();
   const double total = axis.length_in_radii();
   const auto bands = static_cast<std::size_t>(std::max(1.0, std::round(total / pitch)));
   const double step = total / static_cast<double>(bands);
@@ -142,7 +142,7 @@ void RingLayer::leave_out_steps(std::vector<Ring>& rings, std::vector<Vec3>& sid
 Rings RingLayer::spread(Index branch, const Rings& even, const std::vector<Vec3>& sides) const {
   const BranchAxis& axis = axes_[branch];
   const std::vector<Ring>& rings = even.rings;
-  const double pitch = ring_pitch(options_.around);
+  const double pitch = options_.pitch();
   const double step = axis.length_in_radii() / std::max(1.0, std::round(axis.length_in_radii() / pitch));
   Rings laid;
   laid.points.reserve(even.points.size());
@@ -188,7 +188,7 @@ std::vector<Ring> RingLayer::spread_run(Index branch, std::span<const Ring> run,
     Ring& ring = rings.back();
     ring.beside = {section(branch, places[k] - step / 2), section(branch, places[k] + step / 2)};
     ring.elongation = here.at(places[k]);
-    if (!ring.free || (k > 0 && !apart(rings[k - 1], ring, kMinSpacing * ring_pitch(options_.around)))) return {};
+    if (!ring.free || (k > 0 && !apart(rings[k - 1], ring, kMinSpacing * options_.pitch()))) return {};
   }
   profile.append(here, step);
   return rings;

@@ -50,9 +50,11 @@ struct RingOptions {
   ErrorLimit limit = {};       ///< no ring is lifted beyond it
   double elongation = 1;       ///< the most that rings lie farther apart than evenly
   bool ring_per_node = false;  ///< they lie no farther apart than nodes
+  double spacing = 1;          ///< times the distance of even triangles
 
+  double pitch() const { return spacing * ring_pitch(around); }
   static RingOptions of(const GenerateOptions& o) {
-    return {o.around, o.placement, o.max_error, o.elongation, o.deformable};
+    return {o.around, o.placement, o.max_error, o.elongation, o.deformable, o.ring_spacing};
   }
 };
 
