@@ -1,4 +1,6 @@
 """Opens pages in a headless Chromium: browser_test.py VMESH EXAMPLES. Exits with 77, loudly, where there is none."""
+import base64
+import json
 import os
 import shutil
 import subprocess
@@ -30,6 +32,23 @@ FRONT = """(() => { const s = vmesh.shown.surface; let best = 0, near = Infinity
   return [best, p.x + b.left, p.y + b.top]; })()"""
 
 
+# Where a vertex is on the screen.
+ON_SCREEN = """(v => { const p = vmesh.scene.onScreen(vmesh.shown.vertex(v));
+  const b = vmesh.scene.canvas.getBoundingClientRect(); return [p.x + b.left, p.y + b.top]; })"""
+# The name and, in base64, the content of the file that a choice of Save makes.
+SAVED = """(kind => new Promise(done => { const anchor = HTMLAnchorElement.prototype; let blob = null;
+  const [click, create] = [anchor.click, URL.createObjectURL];
+  URL.createObjectURL = made => { blob = made; return "blob:made"; };
+  anchor.click = async function () { const bytes = blob && new Uint8Array(await blob.arrayBuffer());
+    done([this.download, blob ? btoa(Array.from(bytes, c => String.fromCharCode(c)).join("")) : this.href.split(",")[1]]); };
+  const save = document.getElementById("save"); save.value = kind; save.dispatchEvent(new Event("change"));
+  anchor.click = click; URL.createObjectURL = create; }))"""
+# CIE L* of sRGB.
+LIGHTNESS = """(rgb => { const [r, g, b] = rgb.map(c => { c /= 255;
+  return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; });
+  return 116 * Math.cbrt(0.2126 * r + 0.7152 * g + 0.0722 * b) - 16; })"""
+
+
 def distance(a, b):
     return sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5
 
@@ -55,6 +74,12 @@ class PageInABrowser(unittest.TestCase):
     @classmethod
     def vmesh(cls, *arguments):
         subprocess.run([VMESH, *arguments, "-q"], cwd=cls.folder, check=True, stdout=subprocess.DEVNULL)
+
+    def evaluated(self, name):
+        """What the command says of a surface compared with small.ply."""
+        self.vmesh("evaluate", name, "--reference", "small.ply", "--unit", "mm", "--space", "LPS", "--json", "it.json")
+        with open(self.page("it.json"), encoding="utf-8") as file:
+            return json.load(file)
 
     def page(self, name):
         return os.path.join(self.folder, name)
@@ -152,13 +177,118 @@ class PageInABrowser(unittest.TestCase):
     def test_colours_rise_evenly_in_lightness(self):
         with Browser(1400, 900) as browser:
             browser.open(self.page("eval.html"))
-            # CIE L*, of the luminance of sRGB
-            light = browser.ask("""SEQUENTIAL.map(rgb => { const [r, g, b] = rgb.map(c => { c /= 255;
-              return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; });
-              return 116 * Math.cbrt(0.2126 * r + 0.7152 * g + 0.0722 * b) - 16; })""")
+            light = browser.ask(f"SEQUENTIAL.map({LIGHTNESS})")
             self.assertGreater(light[-1] - light[0], 60)
             for i in range(16, len(light), 16):
                 self.assertGreater(light[i] - light[i - 16], 2, "a sixteenth of the scale can be told from the next")
+
+    def test_the_worst_place_is_brightest(self):
+        with Browser(1400, 900) as browser:
+            browser.open(self.page("eval.html"))
+            for name in ("distance", "volume_distance", "EquiangleSkewness"):
+                browser.ask(f"vmesh.colorBy('{name}')")
+                worst, brightest, ties = browser.ask(f"""(() => {{ const a = vmesh.attribute, s = vmesh.shown.surface;
+                  const light = [], size = []; const colors = vmesh.shown.mesh.geometry.attributes.color.array;
+                  for (let i = 0; i < s.corners.length; ++i) {{ const of = a.onFaces ? Math.floor(i / 3) : s.corners[i];
+                    size.push(Math.abs(a.value(of))); light.push({LIGHTNESS}(Array.from(colors.subarray(3 * i, 3 * i + 3)))); }}
+                  const most = Math.max(...size), top = Math.max(...light);
+                  return [light[size.indexOf(most)], top, light.filter(l => l > top - 1e-9).length / light.length]; }})()""")
+                self.assertEqual(worst, brightest, name)
+                self.assertLess(ties, 0.01, "it stands out: " + name)
+
+    def test_legends_have_numbers_at_both_ends(self):
+        with Browser(1400, 900) as browser:
+            browser.open(self.page("eval.html"))
+            for name in ("radius", "distance", "EquiangleSkewness"):
+                browser.ask(f"vmesh.colorBy('{name}')")
+                high = browser.ask("(() => { const a = vmesh.attribute; let most = 0;"
+                                   "for (let i = 0; i < a.count; ++i) most = Math.max(most, a.value(i)); return most; })()")
+                ends = browser.ask("['low', 'high'].map(c => Number(document.querySelector(`#legend .${c}`).textContent))")
+                self.assertAlmostEqual(ends[1] / high, 1, delta=0.006)
+                self.assertLess(ends[0], 0.5 * ends[1])
+                boxes = browser.ask("Array.from(document.querySelectorAll('#legend .legend-ticks span'))"
+                                    ".map(e => { const b = e.getBoundingClientRect(); return [b.left, b.right]; })")
+                boxes.sort()
+                for left, right in zip(boxes, boxes[1:]):
+                    self.assertLess(left[1], right[0], "numbers do not overlap")
+
+    def test_the_toolbar_is_beside_the_picture(self):
+        for width, height, touch in ((1400, 900, False), (400, 800, True)):
+            with self.subTest(width=width), Browser(width, height, touch) as browser:
+                browser.open(self.page("eval.html"))
+                tools, canvas = browser.ask("[document.getElementById('tools'), vmesh.scene.canvas].map(e => {"
+                                            "const b = e.getBoundingClientRect(); return [b.top, b.bottom]; })")
+                self.assertLessEqual(tools[1], canvas[0])
+                self.assertGreater(canvas[1] - canvas[0], 0.4 * height)
+
+    def test_cuts_off_what_is_nearest(self):
+        with Browser(1400, 900) as browser:
+            browser.open(self.page("eval.html"))
+            whole = browser.ask(DRAWN)
+            self.assertTrue(browser.ask("document.getElementById('cut-depth').hidden"), "off by default")
+            front = browser.ask(FRONT)[1:]
+            browser.click_on("#cut")
+            depth = ("(depth => { const c = document.getElementById('cut-depth'); c.value = depth;"
+                     "c.dispatchEvent(new Event('input')); })")
+            shares = []
+            for value in (0, 400, 700, 1000):
+                browser.ask(f"{depth}({value})")
+                shares.append(browser.ask(DRAWN))
+            self.assertAlmostEqual(shares[0], whole, delta=0.01 * whole)
+            self.assertEqual(shares, sorted(shares, reverse=True))
+            self.assertLess(shares[2], 0.7 * whole)
+            self.assertLess(shares[3], 1e-4)
+            browser.click(*front)
+            self.assertTrue(browser.ask("document.getElementById('picked').hidden"), "what is cut off cannot be picked")
+            browser.press("x")
+            self.assertEqual(browser.ask(DRAWN), whole)
+            self.assertEqual(browser.problems, [])
+
+    def test_the_ruler_tells_the_distance_of_two_clicks(self):
+        for width, height, touch in ((1400, 900, False), (400, 800, True)):
+            with self.subTest(width=width), Browser(width, height, touch) as browser:
+                browser.open(self.page("eval.html"), "#place=1")
+                front = browser.ask(FRONT)[0]
+                # The neighbour that looks most towards the camera.
+                other = browser.ask(f"""(() => {{ const c = vmesh.shown.surface.corners, towards =
+                    vmesh.scene.camera.position.clone().sub(vmesh.shown.vertex({front})).normalize();
+                  const near = [...c.keys()].filter(i => c[i] === {front}).flatMap(i => [0, 1, 2].map(k => c[i - i % 3 + k]));
+                  const facing = v => v === {front} ? -2 : vmesh.shown.normal(v).dot(towards);
+                  return near.reduce((best, v) => facing(v) > facing(best) ? v : best); }})()""")
+                length = browser.ask(f"vmesh.shown.vertex({front}).distanceTo(vmesh.shown.vertex({other}))")
+                browser.ask("vmesh.set('ruler', true)")
+                browser.click(*browser.ask(f"{ON_SCREEN}({front})"))
+                self.assertEqual(browser.ask("document.getElementById('length').textContent"), "")
+                browser.click(*browser.ask(f"{ON_SCREEN}({other})"))
+                told = browser.ask("document.getElementById('length').textContent")
+                self.assertTrue(told.endswith(" mm"), told)
+                self.assertAlmostEqual(float(told[:-3]) / length, 1, delta=0.05)
+                self.assertTrue(browser.ask("document.getElementById('picked').hidden"))
+                browser.press("m")
+                self.assertTrue(browser.ask("document.getElementById('length').hidden"))
+                self.assertEqual(browser.problems, [])
+
+    def test_saves_what_is_shown(self):
+        with Browser(700, 500) as browser:
+            browser.open(self.page("eval.html"))
+            for kind in ("ply", "stl", "png"):
+                name, content = browser.ask(f"{SAVED}('{kind}')")
+                self.assertEqual(name, f"small.{kind}")
+                with open(self.page(f"saved.{kind}"), "wb") as file:
+                    file.write(base64.b64decode(content))
+            self.assertEqual(browser.problems, [])
+        original = self.evaluated("small.ply")
+        for name in ("saved.ply", "saved.stl"):
+            saved = self.evaluated(name)
+            self.assertTrue(saved["topology"]["closed"], name)
+            self.assertEqual(saved["vertices"], original["vertices"], name)
+            distance_mm = saved["reference"]["hausdorff_mm"]["upper"]
+            self.assertLess(distance_mm, 0.01, name)
+        with open(self.page("saved.png"), "rb") as file:
+            head = file.read(24)
+        self.assertEqual(head[1:4], b"PNG")
+        self.assertGreater(int.from_bytes(head[16:20], "big"), 100)
+        self.vmesh("render", "saved.ply", "-o", "values.png", "--color", "volume_distance", "--width", "64")
 
     def test_holds_several_surfaces(self):
         with Browser(1400, 900) as browser:
@@ -175,8 +305,11 @@ class PageInABrowser(unittest.TestCase):
             self.assertEqual(browser.problems, [])
 
     def test_plays_a_motion(self):
-        with Browser(1400, 900) as browser:
+        with Browser(1100, 700) as browser:
             browser.open(self.page("moved.html"))
+            legend, player = browser.ask("['legend', 'frames'].map(id => { const b = document.getElementById(id)"
+                                         ".getBoundingClientRect(); return [b.left, b.right]; })")
+            self.assertLess(legend[1], player[0], "the player is beside the legend")
             frames = browser.ask("vmesh.player.positions.length")
             self.assertGreater(frames, 5)
             rest = browser.ask("Array.from(vmesh.shown.surface.positions)")

@@ -1,13 +1,16 @@
 #include "vmesh/render/render.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
 
+#include "render/legend.h"
 #include "shapes.h"
 
 namespace vmesh {
@@ -275,6 +278,65 @@ TEST(Render, GivesTheSamePictureEveryTime) {
   EXPECT_EQ(first.pixels, render(sphere, attribute, AttributeDomain::face, options).pixels);
 }
 
+TEST(Render, GivesTheSamePictureWithAnyNumberOfThreads) {
+  RenderOptions options = small();
+  options.edges = true;
+  const TriMesh sphere = make_sphere(5, Vec3::Zero(), 200);  // more vertices than are lit at a time
+  MeshAttribute height{"height", {}};
+  for (const Vec3& p : sphere.vertices) height.values.push_back(p.z());
+  const auto with = [&](int threads) {
+    tbb::task_arena arena(threads);
+    return arena.execute([&] { return render(sphere, height, AttributeDomain::vertex, options).pixels; });
+  };
+  const auto one = with(1);
+  for (const int threads : {2, 3, 8}) EXPECT_EQ(with(threads), one) << threads;
+}
+
+TEST(Render, TellsHowFarItIsAndStopsWhenAskedTo) {
+  std::map<std::string, std::vector<double>, std::less<>> told;
+  const TriMesh sphere = make_sphere(5, Vec3::Zero(), 200);
+  render(sphere, small(), [&](std::string_view stage, double fraction) {
+    told[std::string(stage)].push_back(fraction);
+    return true;
+  });
+  for (const char* stage : {"light", "picture"}) {
+    EXPECT_GT(told[stage].size(), 1u) << stage;
+    EXPECT_TRUE(std::is_sorted(told[stage].begin(), told[stage].end())) << stage;
+    EXPECT_LT(told[stage].back(), 1) << stage;
+  }
+  EXPECT_THROW(render(sphere, small(), [](std::string_view stage, double) { return stage != "picture"; }), Cancelled);
+}
+
+TEST(Render, KeepsTheMeshClearOfTheLegend) {
+  RenderOptions options = small();
+  options.width = 320;
+  options.height = 240;
+  options.occlusion = 0;
+  const MeshAttribute height{"height", {0, 0, 1, 1}};
+  const Image whole = render(make_square(), height, AttributeDomain::vertex, options);
+  options.zoom = 10;  // far beyond the picture
+  const Image close = render(make_square(), height, AttributeDomain::vertex, options);
+  const int legend = 320 - legend_width({"height", 0, 1, false, false, {}}, 320, 240);
+  EXPECT_EQ(different_pixels(whole, close, legend), 0u);
+  EXPECT_NE(close.at(legend - 1, 120), options.background);
+}
+
+TEST(Render, TellsHowManyCategoriesTheLegendLeavesOut) {
+  RenderOptions options = small();
+  options.categories = true;
+  const auto legend_of = [&](int labels) {
+    TriMesh squares;
+    MeshAttribute segment{"segment", {}, true};
+    for (int i = 0; i < labels; ++i) {
+      append(squares, make_square());
+      segment.values.insert(segment.values.end(), {i + 0.0, i + 0.0});
+    }
+    return render(squares, segment, AttributeDomain::face, options);
+  };
+  const int column = 160 - legend_width({"segment", 0, 0, false, false, std::vector<double>(100, 0)}, 160, 120);
+  EXPECT_GT(different_pixels(legend_of(100), legend_of(101), column), 0u);
+}
+
 TEST(Render, SurvivesDegenerateMeshes) {
   const Vec3 p(3, 4, 5);
   EXPECT_NO_THROW(render({{p, p, p}, {{0, 1, 2}}}, small()));
@@ -345,6 +407,23 @@ TEST(RenderByName, TakesTheVertexAttributeAndForLabelsTheFaces) {
             render(mesh, of_vertices, AttributeDomain::vertex, small()).pixels);
   EXPECT_NE(render(mesh, {{of_vertices}, {of_faces}}, "skewness", small()).pixels,
             render(mesh, of_vertices, AttributeDomain::vertex, small()).pixels);
+}
+
+TEST(RenderByName, TakesIntegersForCategoriesUnlessARangeIsGiven) {
+  const TriMesh mesh = make_sphere(1);
+  MeshAttribute id{"ModelFaceID", {}, true};
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) id.values.push_back(1.0 + static_cast<double>(f % 3));
+  RenderOptions categories = small(), scale = small();
+  categories.categories = true;
+  scale.range = {0, 4};
+  const auto by_name = [&](const MeshAttribute& attribute, const RenderOptions& options) {
+    return render(mesh, {{}, {attribute}}, attribute.name, options).pixels;
+  };
+  EXPECT_EQ(by_name(id, small()), render(mesh, id, AttributeDomain::face, categories).pixels);
+  EXPECT_EQ(by_name(id, scale), render(mesh, id, AttributeDomain::face, scale).pixels);
+  EXPECT_NE(by_name(id, small()), by_name(id, scale));
+  id.name = "red";  // an amount
+  EXPECT_EQ(by_name(id, small()), render(mesh, id, AttributeDomain::face, small()).pixels);
 }
 
 TEST(RenderByName, ListsTheNamesForAnUnknownOne) {

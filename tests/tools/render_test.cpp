@@ -24,10 +24,22 @@ TEST_F(Render, ColoursByBranchOrByWhatElseIsInTheFile) {
     return vmesh({"render", "@y.ply", "-o", "@" + color + ".png", "--color", color, "--width", "160"});
   };
   for (const char* color : {"branch", "segment"}) EXPECT_EQ(draw(color).exit_code, 0) << color;
-  EXPECT_NE(read("branch.png"), read("segment.png"));  // a colour each, not a scale
+  EXPECT_NE(read("branch.png"), read("segment.png"));
   const Outcome run = draw("twig");
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_NE(run.err.find("branch"), std::string::npos) << run.err;
+}
+
+TEST_F(Render, GivesTheSameBytesWithAnyNumberOfThreads) {
+  write_y("y.swc");
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply"}).exit_code, 0);
+  for (const char* threads : {"1", "3"}) {
+    const std::string picture = std::string("@") + threads + ".png";
+    const Outcome run =
+        vmesh({"render", "@y.ply", "-o", picture, "--color", "segment", "--width", "320", "--threads", threads});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  EXPECT_EQ(read("1.png"), read("3.png"));
 }
 
 TEST_F(Render, PicturesArePng) {

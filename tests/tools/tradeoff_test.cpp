@@ -1,4 +1,5 @@
 #include <set>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -6,6 +7,25 @@
 
 namespace vmesh::testing {
 namespace {
+
+/// The column "skewness mean" of a table has numbers of at least three digits whose decimal points are below each
+/// other.
+void expect_brief_and_aligned(const std::string& table) {
+  std::istringstream lines(table);
+  std::string line;
+  std::getline(lines, line);
+  const std::string heading = "skewness mean";
+  const std::size_t column = line.find(heading);
+  std::set<std::size_t> points, lengths;
+  while (std::getline(lines, line)) {
+    std::string number;
+    std::istringstream(line.substr(column, heading.size())) >> number;
+    points.insert(line.find('.', column));
+    lengths.insert(number.substr(number.find_first_of("123456789")).size());
+  }
+  EXPECT_EQ(points.size(), 1u) << table;
+  EXPECT_EQ(lengths, std::set<std::size_t>{3}) << table;  // digits from the first that is not 0: skewness is below 1
+}
 
 class Tradeoff : public CommandTest {
  protected:
@@ -43,6 +63,7 @@ TEST_F(Tradeoff, WritesReportPlotAndSummary) {
   EXPECT_NE(read("r.md").find("vmesh against marching cubes"), std::string::npos);
   EXPECT_EQ(read("p.svg").rfind("<svg", 0), 0u);
   EXPECT_NE(run.out.find("best for vertices"), std::string::npos);
+  expect_brief_and_aligned(run.out.substr(run.out.find("  curve"), run.out.find("\n\n") - run.out.find("  curve")));
 }
 
 TEST_F(Tradeoff, RefusesAPlotItCannotDraw) {

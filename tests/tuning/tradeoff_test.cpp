@@ -1,6 +1,7 @@
 #include "vmesh/tuning/tradeoff.h"
 
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -68,7 +69,11 @@ class SweptTube : public ::testing::Test {
   static void SetUpTestSuite() {
     TradeoffOptions options;
     options.samples = 2000;
-    points_ = sweep_tradeoff(testing::straight_tube(), options);
+    points_ = sweep_tradeoff(testing::straight_tube(), options, [](std::string_view stage, double fraction) {
+      stages_.emplace(stage);
+      fractions_.push_back(fraction);
+      return true;
+    });
   }
   static std::vector<TradeoffPoint> curve(const std::string& name) {
     std::vector<TradeoffPoint> points;
@@ -77,7 +82,19 @@ class SweptTube : public ::testing::Test {
     return points;
   }
   static inline std::vector<TradeoffPoint> points_;
+  static inline std::set<std::string> stages_;
+  static inline std::vector<double> fractions_;
 };
+
+TEST_F(SweptTube, HasOneProgressFromBeginToEnd) {
+  EXPECT_EQ(stages_.size(), 1u);
+  EXPECT_EQ(fractions_.front(), 0);
+  EXPECT_EQ(fractions_.back(), 1);
+  for (std::size_t i = 1; i < fractions_.size(); ++i) {
+    EXPECT_GE(fractions_[i], fractions_[i - 1]);
+    EXPECT_LT(fractions_[i], fractions_[i - 1] + 0.05);  // about a hundred cases
+  }
+}
 
 TEST_F(SweptTube, FinerIsCloser) {
   const std::vector<TradeoffPoint> around = curve("around");

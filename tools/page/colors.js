@@ -39,10 +39,10 @@ function table(color) {
 
 /** From violet over teal to yellow. */
 const SEQUENTIAL = table((t) => oklch(0.3 + 0.62 * t, 0.15, 300 - 195 * t));
-/** From blue over pale grey to orange brown: for values below and above zero. */
+/** From light blue over dark grey to light orange: for values below and above zero, the farthest from it brightest. */
 const DIVERGING = table((t) => {
   const s = 2 * t - 1;
-  return oklch(0.94 - 0.46 * Math.abs(s), 0.15 * Math.abs(s), s < 0 ? 255 : 55);
+  return oklch(0.32 + 0.54 * Math.abs(s), 0.15 * Math.abs(s), s < 0 ? 245 : 65);
 });
 
 /** A colour for a label: distinct hues, and three lightnesses for colour blindness. */
@@ -51,11 +51,15 @@ function labelColor(label) {
   return oklch([0.72, 0.55, 0.85][label % 3], 0.12, (25 + 137.508 * label) % 360);
 }
 
-/** Values from `low` to `high` to colours. Values on both sides of zero get the scale that is pale at zero. */
-function makeScale({ low, high, min = low, max = high, labels = false }) {
+/**
+ * Values from `low` to `high` to colours, so that what is farthest from zero is brightest. Values on both sides of zero
+ * get the scale that is dark there.
+ */
+function makeScale({ low, high, labels = false }) {
   if (labels) return { labels, low, high, color: labelColor };
   const reach = Math.max(-low, high);
   const signed = Math.min(-low, high) > 0.2 * reach;  // if one side has hardly any values, the other gets all colours
+  const falling = !signed && -low > high;
   const from = signed ? -reach : low;
   const to = signed ? reach : high;
   const colors = signed ? DIVERGING : SEQUENTIAL;
@@ -63,10 +67,9 @@ function makeScale({ low, high, min = low, max = high, labels = false }) {
   const color = (value) => {
     if (!isFinite(value)) return MISSING;
     const t = Math.min(1, Math.max(0, (value - from) / width));
-    return colors[Math.round(t * (SCALE_STEPS - 1))];
+    return colors[Math.round((falling ? 1 - t : t) * (SCALE_STEPS - 1))];
   };
-  const beyond = (min < from ? "below " : "") + (max > to ? "above" : "");
-  return { labels, low: from, high: to, beyond, color };
+  return { labels, low: from, high: to, color };
 }
 
 const cssColor = (rgb) => `rgb(${rgb.join(",")})`;

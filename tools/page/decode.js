@@ -39,44 +39,19 @@ function decodeAttribute(json, vertices, faces) {
   };
 }
 
-/** Areas of faces, and a third of those around every vertex. */
-function areasOf({ positions, corners, vertices, faces }) {
-  const ofFace = new Float32Array(faces);
-  const ofVertex = new Float32Array(vertices);
-  for (let f = 0; f < faces; ++f) {
-    const [a, b, c] = corners.subarray(3 * f, 3 * f + 3).map((corner) => 3 * corner);
-    const u = [0, 1, 2].map((k) => positions[b + k] - positions[a + k]);
-    const v = [0, 1, 2].map((k) => positions[c + k] - positions[a + k]);
-    ofFace[f] = Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
-    for (const corner of [a, b, c]) ofVertex[corner / 3] += ofFace[f] / 3;
+/** The ends of the colour scale: the least and the largest value, or zero if the least is not far from it. */
+function rangeOf(attribute) {
+  let low = Infinity;
+  let high = -Infinity;
+  for (let i = 0; i < attribute.count; ++i) {
+    const value = attribute.value(i);
+    if (!isFinite(value)) continue;
+    low = Math.min(low, value);
+    high = Math.max(high, value);
   }
-  return { ofFace, ofVertex };
-}
-
-/**
- * The least and largest value of an attribute; `low` and `high`: the ends of a colour scale, which values of a
- * hundredth of the area do not stretch far.
- */
-function rangeOf(attribute, areas) {
-  const area = attribute.onFaces ? areas.ofFace : areas.ofVertex;
-  const order = [...area.keys()].filter((i) => isFinite(attribute.value(i)));
-  if (order.length === 0) return { min: 0, max: 1, low: 0, high: 1 };
-  order.sort((i, j) => attribute.value(i) - attribute.value(j));
-  const min = attribute.value(order[0]);
-  const max = attribute.value(order[order.length - 1]);
-  if (attribute.labels) return { min, max, low: min, high: max };
-  const total = order.reduce((sum, i) => sum + area[i], 0);
-  const atShare = (share) => {
-    let sum = 0;
-    return attribute.value(order.find((i) => (sum += area[i]) >= share * total) ?? order[order.length - 1]);
-  };
-  let low = atShare(0.01);
-  let high = atShare(0.99);
-  const room = 0.5 * (high - low);
-  if (low - room <= min) low = min;
-  if (high + room >= max) high = max;
-  if (low > 0 && low < 0.3 * high) low = 0;
-  return { min, max, low, high };
+  if (low > high) return { low: 0, high: 1 };
+  if (!attribute.labels && low > 0 && low < 0.3 * high) low = 0;
+  return { low, high };
 }
 
 function decodeSurface(json, origin) {
@@ -127,6 +102,11 @@ function vertexNormals(positions, corners) {
     for (let axis = 0; axis < 3; ++axis) normals[i + axis] /= length;
   }
   return normals;
+}
+
+/** A number with three significant digits, and all of those before its decimal point. */
+function brief(value) {
+  return numberText(value, value === 0 ? 0 : Math.max(0, 2 - Math.floor(Math.log10(Math.abs(value)))));
 }
 
 /** A number with enough digits to distinguish it from others of its kind. */

@@ -1,6 +1,6 @@
 # Writes OUTPUT, a C++ source with page_parts() in it. FOLDER holds the parts that are ours; THREE and CONTROLS are
 # three.js and its OrbitControls, empty when they are not there.
-set(scripts decode colors legend surface scene camera frames panel main)
+set(scripts decode colors legend surface scene camera frames panel cut ruler save main)
 
 # A raw string literal of at most 64 kB each: compilers need take no more.
 function(append_literal text)

@@ -32,7 +32,7 @@ class Player {
     for (let frame = 0; frame < this.positions.length; ++frame) {
       for (let v = 0; v < vertices; ++v) high = Math.max(high, at(frame, v));
     }
-    Object.assign(attribute, { low: 0, min: 0, high, max: high });
+    Object.assign(attribute, { low: 0, high });
     attribute.digits = 3;
     attribute.value = (v) => at(this.frame, v);
   }

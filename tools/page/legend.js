@@ -38,7 +38,13 @@ function gradient(scale) {
   return `linear-gradient(to right, ${stops.join(",")})`;
 }
 
-/** Fills `box` with the scale of an attribute; its end is pointed where values extend beyond it. */
+/** Round numbers well within a scale, for between those at its ends. */
+function innerTicks(scale) {
+  const room = 0.2 * (scale.high - scale.low);
+  return niceTicks(scale.low, scale.high, 4).filter((t) => t > scale.low + room && t < scale.high - room);
+}
+
+/** Fills `box` with the scale of an attribute. Both ends have their numbers. */
 function drawLegend(box, attribute, scale) {
   box.replaceChildren(element("div", { class: "legend-title" }, withUnit(attribute.label, attribute.unit)));
   if (scale.labels) {
@@ -51,14 +57,15 @@ function drawLegend(box, attribute, scale) {
     box.append(row);
     return;
   }
-  const ticks = niceTicks(scale.low, scale.high, 4);
-  const texts = tickTexts(ticks);
   const axis = element("div", { class: "legend-ticks" });
+  const ticks = scale.high > scale.low ? innerTicks(scale) : [];
+  const texts = tickTexts(ticks);
   ticks.forEach((tick, i) => {
-    const at = scale.high > scale.low ? (100 * (tick - scale.low)) / (scale.high - scale.low) : 50;
+    const at = (100 * (tick - scale.low)) / (scale.high - scale.low);
     axis.append(element("span", { style: `left:${at.toFixed(2)}%` }, texts[i]));
   });
-  box.append(element("div", { class: `legend-bar ${scale.beyond}`, style: `background:${gradient(scale)}` }), axis);
+  axis.append(element("span", { class: "low" }, brief(scale.low)), element("span", { class: "high" }, brief(scale.high)));
+  box.append(element("div", { class: "legend-bar", style: `background:${gradient(scale)}` }), axis);
 }
 
 /** Counts in bins as an SVG; `color`: of a value. */

@@ -1,6 +1,6 @@
 // Puts the page together.
 
-const TOGGLES = ["edges", "centerline", "reference", "glass"];
+const TOGGLES = ["edges", "centerline", "reference", "glass", "cut", "ruler"];
 
 class Viewer {
   constructor(page) {
@@ -11,7 +11,9 @@ class Viewer {
     this.centerline = page.centerline && decodeCenterline(page.centerline, this.origin);
     const lists = this.surfaces.map((surface) => surface.positions);
     if (this.centerline) lists.push(this.centerline.positions);
-    this.scene = new Scene(byId("view"), boundsOf(lists));
+    this.scene = new Scene(byId("picture"), boundsOf(lists));
+    this.cut = new Cut(this.scene);
+    this.ruler = new Ruler(this.scene, byId("length"));
     this.shown = null;
     this.place = -1;
     this.mark = null;
@@ -25,6 +27,8 @@ class Viewer {
     this.scene.afterDrawing.push(() => this.moveMark());
     this.addPicking();
     for (const name of TOGGLES) byId(name).addEventListener("click", () => this.toggle(name));
+    byId("cut-depth").addEventListener("input", () => this.moveCut());
+    byId("save").addEventListener("change", () => this.save());
     byId("all").addEventListener("click", () => this.viewAll());
     byId("color").addEventListener("change", () => this.colorBy(byId("color").value));
     byId("surface").addEventListener("change", () => this.showSurface(byId("surface").value));
@@ -53,7 +57,8 @@ class Viewer {
     const own = this.surfaces.filter((s) => s.attributes.length > 0);
     fillSelect(byId("surface"), own.map((s) => [s.name, s.name]));
     byId("surface-part").hidden = own.length < 2;
-    for (const id of ["edges", "glass"]) byId(id).hidden = own.length === 0;
+    for (const id of ["edges", "glass", "cut", "ruler"]) byId(id).hidden = own.length === 0;
+    for (const option of byId("save").querySelectorAll("[value=ply], [value=stl]")) option.hidden = own.length === 0;
     byId("color-part").hidden = own.length === 0;
     byId("legend").hidden = own.length === 0;
     if (own.length > 0) this.showSurface(own[0].name);
@@ -71,6 +76,7 @@ class Viewer {
     this.shown.group.visible = true;
     byId("surface").value = name;
     this.unpick();
+    this.ruler.clear();
     this.set("edges", this.is("edges"));
     this.set("glass", this.is("glass"));
     const colored = surface.attributes.filter((attribute) => attribute.name !== "parameter");
@@ -82,12 +88,8 @@ class Viewer {
   }
 
   colorBy(name) {
-    const { surface } = this.shown;
-    this.attribute = surface.attributes.find((a) => a.name === name) || null;
-    if (this.attribute && this.attribute.low === undefined) {
-      surface.areas = surface.areas || areasOf(surface);
-      Object.assign(this.attribute, rangeOf(this.attribute, surface.areas));
-    }
+    this.attribute = this.shown.surface.attributes.find((a) => a.name === name) || null;
+    if (this.attribute && this.attribute.low === undefined) Object.assign(this.attribute, rangeOf(this.attribute));
     this.scale = this.attribute && makeScale(this.attribute);
     byId("color").value = this.attribute ? name : "";
     this.shown.color(this.attribute, this.scale);
@@ -101,6 +103,7 @@ class Viewer {
     if (!this.page.frames) return;
     const show = (player) => {
       if (this.lines) this.lines.moved();
+      this.ruler.clear();
       if (this.attribute && this.attribute === player.displacement) this.shown.color(this.attribute, this.scale);
       byId("frame").value = player.frame;
       byId("time").textContent = `${player.times[player.frame].toFixed(2)} s`;
@@ -126,7 +129,33 @@ class Viewer {
     if (name === "glass" && this.shown) this.shown.seeThrough(on);
     if (name === "centerline" && this.lines) this.lines.visible = on;
     if (name === "reference" && this.reference) this.reference.group.visible = on;
+    if (name === "cut") this.setCut(on);
+    if (name === "ruler") this.ruler.clear();
     this.scene.draw();
+  }
+
+  setCut(on) {
+    byId("cut-depth").hidden = !on;
+    if (!on) {
+      this.cut.end();
+      return;
+    }
+    this.cut.begin();
+    this.moveCut();
+  }
+
+  moveCut() {
+    this.cut.move(Number(byId("cut-depth").value) / 1000);
+  }
+
+  /** Saves what was chosen, and offers the choice again. */
+  save() {
+    const kind = byId("save").value;
+    byId("save").value = "";
+    const name = `${this.page.title.replace(/\.\w+$/, "").replace(/[^\w.-]+/g, "-") || "surface"}.${kind}`;
+    if (kind === "png") download(pictureOf(this.scene, this.attribute, this.scale).toDataURL("image/png"), name);
+    if (kind === "ply") downloadBytes(plyOf(this.shown.surface, this.origin), name);
+    if (kind === "stl") downloadBytes(stlOf(this.shown.surface, this.origin), name);
   }
 
   toggle(name) {
@@ -200,7 +229,11 @@ class Viewer {
   }
 
   pick(x, y) {
-    const hit = this.shown && this.scene.pick(this.shown.mesh, x, y);
+    const hit = this.shown && this.scene.pick(this.shown.mesh, x, y, (point) => this.cut.shows(point));
+    if (this.is("ruler")) {
+      if (hit) this.ruler.add(hit.point);
+      return;
+    }
     if (!hit) {
       this.unpick();
       return;
@@ -248,7 +281,7 @@ function addKeys(viewer) {
   };
   const keys = {
     e: () => viewer.toggle("edges"), c: () => viewer.toggle("centerline"), r: () => viewer.toggle("reference"),
-    g: () => viewer.toggle("glass"), Home: () => viewer.viewAll(), 0: () => viewer.viewAll(),
+    g: () => viewer.toggle("glass"), x: () => viewer.toggle("cut"), m: () => viewer.toggle("ruler"), Home: () => viewer.viewAll(), 0: () => viewer.viewAll(),
     n: () => viewer.goTo(viewer.place + 1), p: () => viewer.goTo(Math.max(viewer.place, 0) - 1),
     ",": () => frame(-1), ".": () => frame(1), "?": toggleHelp, h: toggleHelp,
     " ": () => viewer.player && viewer.player.play(!viewer.player.playing),
@@ -257,7 +290,10 @@ function addKeys(viewer) {
     "+": () => scene.zoom(0.85), "-": () => scene.zoom(1 / 0.85),
     Escape: () => {
       if (!help.hidden) toggleHelp();
-      else viewer.unpick();
+      else {
+        viewer.unpick();
+        viewer.ruler.clear();
+      }
     },
   };
   document.addEventListener("keydown", (event) => {

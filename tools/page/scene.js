@@ -66,13 +66,13 @@ class Scene {
     return { x: ((p.x + 1) / 2) * this.box.clientWidth, y: ((1 - p.y) / 2) * this.box.clientHeight };
   }
 
-  /** The face of a mesh at a position in the window; null: none. */
-  pick(mesh, clientX, clientY) {
+  /** The face of a mesh at a position in the window, at a point that `shows`; null: none. */
+  pick(mesh, clientX, clientY, shows) {
     const box = this.canvas.getBoundingClientRect();
     const at = new THREE.Vector2(((clientX - box.left) / box.width) * 2 - 1, 1 - ((clientY - box.top) / box.height) * 2);
     const ray = new THREE.Raycaster();
     ray.setFromCamera(at, this.camera);
-    return ray.intersectObject(mesh)[0] || null;
+    return ray.intersectObject(mesh).find((hit) => shows(hit.point)) || null;
   }
 
   /** Half of the picture's height and width, at a distance of 1. */

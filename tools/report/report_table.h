@@ -29,6 +29,9 @@ void write_report(const std::vector<ReportTable>& tables, const Json& content, c
 /// A number with six significant digits.
 std::string format_number(double value);
 
+/// With three, and all digits before the decimal point.
+std::string format_briefly(double value);
+
 std::string format_point(const Vec3& p);
 
 /// The same for a bound, rounded so that it remains one.

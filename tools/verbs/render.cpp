@@ -14,6 +14,7 @@ struct RenderArguments {
   InputArguments input;
   std::filesystem::path output;
   RenderOptions options;
+  int threads = 0;    ///< 0: as many as there are
   std::string color;  ///< attribute to colour by, or "skewness"; empty: one colour
 };
 
@@ -45,10 +46,10 @@ void add_render_look(CLI::App& verb, RenderArguments& arguments) {
   verb.add_flag("!--flat", options.smooth, "shade facet by facet");
   verb.add_flag("!--no-back-faces", options.highlight_back_faces,
                 "do not highlight the inside of the surface in magenta");
-  verb.add_flag("!--no-legend", options.legend, "omit the colour scale");
+  verb.add_flag("!--no-legend", options.legend, "omit the colour scale or the list of categories");
   add_number(verb, "--occlusion", options.occlusion, 0.0, 1.0, "darkening where little ambient light arrives");
   verb.add_option("--color", arguments.color,
-                  "colour by this attribute of the file, or by skewness; branch: a colour for each")
+                  "colour by this attribute of the file, or by skewness; integers (branch, segment): a colour for each")
       ->type_name("NAME");
   verb.add_option_function<std::string>(
           "--range",
@@ -56,7 +57,7 @@ void add_render_look(CLI::App& verb, RenderArguments& arguments) {
             const std::vector<double> ends = parse_numbers("--range", text, 2);
             options.range = std::pair(ends[0], ends[1]);
           },
-          "attribute values at the ends of the colour scale")
+          "attribute values at the ends of the colour scale, which integers then have too")
       ->type_name("A,B");
 }
 
@@ -65,23 +66,23 @@ void add_options(CLI::App& verb, RenderArguments& arguments) {
   add_output(verb, arguments.output, "FILE.png", "picture (.png)");
   add_render_view(verb, arguments.options);
   add_render_look(verb, arguments);
+  add_threads(verb, arguments.threads);
   group(verb, "How to read the input", {"--unit", "--space"});
   group(verb, "View", {"--width", "--height", "--view", "--look-at", "--view-height", "--zoom", "--field-of-view"});
   group(verb, "Look",
         {"--edges", "--edge-width", "--flat", "--no-back-faces", "--no-legend", "--occlusion", "--color", "--range"});
 }
 
-Image draw(const LoadedSurface& surface, const RenderArguments& arguments) {
-  if (arguments.color.empty()) return render(surface.mesh, arguments.options);
-  return render(surface.mesh, surface.attributes, arguments.color, arguments.options);
+Image draw(const LoadedSurface& surface, const RenderArguments& arguments, const Progress& progress) {
+  if (arguments.color.empty()) return render(surface.mesh, arguments.options, progress);
+  return render(surface.mesh, surface.attributes, arguments.color, arguments.options, progress);
 }
 
 int run(const RenderArguments& arguments, Console& console) {
   check_outputs({{arguments.output, PlannedOutput::Kind::picture}}, files_of(arguments.input.path));
   const LoadedSurface surface = load_surface(arguments.input);
   console.warn(surface.warnings);
-  stop_if_interrupted();
-  const Image image = draw(surface, arguments);
+  const Image image = draw(surface, arguments, console.progress());
   stop_if_interrupted();
   write_png(arguments.output, image);
   console.log("wrote " + arguments.output.string());
@@ -98,6 +99,7 @@ const VerbRegistration<RenderArguments> kRegistration({
     .with_json = false,
     .add_options = add_options,
     .settle = settle_output,
+    .threads = [](const RenderArguments& arguments) { return arguments.threads; },
     .run = run,
 });
 

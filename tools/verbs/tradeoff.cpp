@@ -31,7 +31,7 @@ void add_options(CLI::App& verb, TradeoffArguments& arguments) {
 constexpr const char* kPeers[] = {"marching cubes, decimated", "marching cubes, quadric decimation", "marching cubes"};
 constexpr const char* kOurs[] = {"max-error", "around, blend 0", "vertices, elongation 16"};
 
-std::string text_or_dash(double value) { return std::isfinite(value) ? format_number(value) : "-"; }
+std::string text_or_dash(double value) { return std::isfinite(value) ? format_briefly(value) : "-"; }
 
 std::string ratio(double ours, double theirs) { return text_or_dash(ours / theirs); }
 
@@ -42,10 +42,10 @@ ReportTable points_table(const std::vector<TradeoffPoint>& points) {
                      "mean, radii", "rms", "max", "sound", "best for time", "best for vertices"},
                     {}};
   for (const TradeoffPoint& p : points) {
-    std::vector<std::string> row = {p.curve, p.setting, format_number(p.seconds), std::to_string(p.vertices)};
+    std::vector<std::string> row = {p.curve, p.setting, format_briefly(p.seconds), std::to_string(p.vertices)};
     for (const double value : {p.skewness_mean, p.skewness_max, p.error_mean_mm, p.error_rms_mm, p.error_max_mm,
                                p.error_mean_relative, p.error_rms_relative, p.error_max_relative})
-      row.push_back(format_number(value));
+      row.push_back(format_briefly(value));
     for (const bool value : {p.sound, p.best_for_time, p.best_for_vertices}) row.push_back(yes_no(value));
     table.rows.push_back(std::move(row));
   }

@@ -33,16 +33,16 @@ py::array pixels_of(const Image& image) {
 
 Image drawn(const SurfacePtr& surface, const ColorBy& color, const RenderOptions& options) {
   const TriMesh& mesh = surface->mesh();
-  const auto draw = [&](const auto& work) { return result_of(py::none(), [&](const Progress&) { return work(); }); };
+  const auto draw = [&](const auto& work) { return result_of(py::none(), work); };
   if (const auto* name = std::get_if<std::string>(&color))
-    return draw([&] { return render(mesh, attributes_of(*surface), *name, options); });
+    return draw([&](const Progress& p) { return render(mesh, attributes_of(*surface), *name, options, p); });
   const auto* values = std::get_if<py::array>(&color);
-  if (values == nullptr) return draw([&] { return render(mesh, options); });
+  if (values == nullptr) return draw([&](const Progress& p) { return render(mesh, options, p); });
   const bool of_vertices = values->size() == static_cast<py::ssize_t>(mesh.vertices.size());
   const std::size_t count = of_vertices ? mesh.vertices.size() : mesh.faces.size();
   const MeshAttribute attribute{"color", to_numbers(*values, "color", count)};
-  return draw(
-      [&] { return render(mesh, attribute, of_vertices ? AttributeDomain::vertex : AttributeDomain::face, options); });
+  const AttributeDomain domain = of_vertices ? AttributeDomain::vertex : AttributeDomain::face;
+  return draw([&](const Progress& p) { return render(mesh, attribute, domain, options, p); });
 }
 
 }  // namespace

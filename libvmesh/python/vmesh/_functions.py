@@ -255,8 +255,8 @@ def render(
 
     surface        a surface or a pair (vertices, faces)
     path           also write it to this file (.png)
-    color          an attribute by name, "skewness", or a number for every vertex, (n,), or face, (m,); labels
-                   ("branch", "group") get a colour each; None: one colour
+    color          an attribute by name, "skewness", or a number for every vertex, (n,), or face, (m,); integer
+                   attributes ("branch", "segment", ...) get a colour each, unless `range` is given; None: one colour
     width, height  pixels, 16 to 16384
     view           where the camera stands: "front", "back", "left", "right", "top", "bottom", "iso", or azimuth
                    and elevation in degrees (azimuth 0 in front of the patient, 90 at the left; elevation 90 above)

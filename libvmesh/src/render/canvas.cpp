@@ -25,13 +25,13 @@ void Canvas::blend(int x, int y, const Vec3& light, double opacity) {
   pixel += std::clamp(opacity, 0.0, 1.0) * (light - pixel);
 }
 
-void Canvas::fill(const Vec2& low, const Vec2& high, const Vec3& light, double opacity) {
+void Canvas::fill(const Vec2& low, const Vec2& high, const Vec3& light) {
   const auto covered = [](double pixel, double from, double to) {
     return std::clamp(std::min(pixel + 1, to) - std::max(pixel, from), 0.0, 1.0);
   };
   for (int y = static_cast<int>(std::floor(low.y())); y < high.y(); ++y) {
     for (int x = static_cast<int>(std::floor(low.x())); x < high.x(); ++x) {
-      blend(x, y, light, opacity * covered(x, low.x(), high.x()) * covered(y, low.y(), high.y()));
+      blend(x, y, light, covered(x, low.x(), high.x()) * covered(y, low.y(), high.y()));
     }
   }
 }

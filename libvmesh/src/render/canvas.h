@@ -21,7 +21,7 @@ class Canvas {
   /// Blends `light` over a pixel with the given opacity; does nothing outside the picture.
   void blend(int x, int y, const Vec3& light, double opacity);
   /// Fills the axis-parallel rectangle between two corners, its borders anti-aliased.
-  void fill(const Vec2& low, const Vec2& high, const Vec3& light, double opacity = 1);
+  void fill(const Vec2& low, const Vec2& high, const Vec3& light);
   /// Draws a line with round ends, anti-aliased.
   void stroke(const Vec2& from, const Vec2& to, double thickness, const Vec3& light);
 

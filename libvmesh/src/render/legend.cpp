@@ -24,9 +24,12 @@ double step_of(const std::vector<double>& ticks) { return ticks.size() > 1 ? tic
 
 std::string category_label(double category) { return tick_label(category, 1); }
 
+std::string more_label(std::size_t count) { return std::to_string(count) + " more"; }
+
 std::vector<std::string> labels_of(const Legend& legend) {
   if (!legend.categories.empty()) {
-    return {category_label(legend.categories.front()), category_label(legend.categories.back()), "..."};
+    return {category_label(legend.categories.front()), category_label(legend.categories.back()),
+            more_label(legend.categories.size())};
   }
   const auto ticks = legend_ticks(legend.low, legend.high, legend.integer, kTicks);
   std::vector<std::string> labels;
@@ -72,7 +75,8 @@ void draw_categories(Canvas& canvas, const Legend& legend, const Layout& at, con
     canvas.fill({at.left, y}, {at.left + at.bar_width, y + 1.3 * at.text}, category_color(legend.categories[i]));
     draw_text(canvas, category_label(legend.categories[i]), {label_x, y + 1.15 * at.text}, at.text, ink);
   }
-  if (!all) draw_text(canvas, "...", {label_x, y + 1.15 * at.text}, at.text, ink);
+  if (!all)
+    draw_text(canvas, more_label(legend.categories.size() - shown), {label_x, y + 1.15 * at.text}, at.text, ink);
 }
 
 }  // namespace
@@ -111,12 +115,6 @@ void draw_legend(Canvas& canvas, const Legend& legend, const Vec3& background) {
   const Layout at = layout_of(legend, canvas.width(), canvas.height());
   const Vec3 ink = background.sum() > 0.6 ? Vec3::Constant(0.02) : Vec3::Constant(0.85);
   const double x = at.left, label_x = x + at.bar_width + at.text;
-  // The picture under the legend fades out towards it.
-  for (int column = static_cast<int>(x - at.margin); column < canvas.width(); ++column) {
-    const double opacity = 0.9 * std::min(1.0, (column + 0.5 - (x - at.margin)) / at.margin);
-    canvas.fill({column, 0}, {column + 1, canvas.height()}, background, opacity);
-  }
-
   // A name too long for the column is set smaller.
   const double room = canvas.width() - x - 0.3 * at.margin;
   const double name_size = at.text * std::min(1.0, room / std::max(text_width(legend.name, at.text), 1.0));

@@ -26,7 +26,7 @@ std::string tick_label(double value, double step);
 /// Columns that the legend occupies at the right side of a picture of this size.
 int legend_width(const Legend& legend, int width, int height);
 
-/// Draws the scale with its ticks, or as many of the first categories as fit.
+/// Draws the scale with its ticks, or as many of the first categories as fit and how many there are more.
 void draw_legend(Canvas& canvas, const Legend& legend, const Vec3& background);
 
 }  // namespace vmesh

@@ -9,6 +9,9 @@
 #include <tuple>
 #include <utility>
 
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
 #include "vmesh/core/error.h"
 #include "vmesh/core/memory.h"
 
@@ -176,39 +179,53 @@ class PixelSampler {
   const Vec3& background_;
 };
 
-Image draw(const TriMesh& mesh, const RenderOptions& options, Coloring coloring, bool with_legend) {
+// Samples the leftmost `columns` of the picture, band by band.
+void cast_rays(const PixelSampler& sampler, const ShownTiles& shown, int columns, Canvas& canvas,
+               const Progress& progress) {
+  constexpr int kBand = 32, kTogether = 8;  // rows; rows and columns
+  for (int first = 0; first < canvas.height(); first += kBand) {
+    report_progress(progress, "picture", static_cast<double>(first) / canvas.height());
+    const int last = std::min(first + kBand, canvas.height());
+    tbb::parallel_for(tbb::blocked_range2d<int>(first, last, kTogether, 0, columns, kTogether), [&](const auto& block) {
+      for (int y = block.rows().begin(); y < block.rows().end(); ++y) {
+        for (int x = block.cols().begin(); x < block.cols().end(); ++x) {
+          if (shown.may_show_mesh(x, y)) canvas.at(x, y) = sampler.sample(x, y);
+        }
+      }
+    });
+  }
+}
+
+Image draw(const TriMesh& mesh, const RenderOptions& options, Coloring coloring, bool with_legend,
+           const Progress& progress) {
   constexpr double kBytesPerPixel = 28;
   require_memory(double(options.width) * options.height * kBytesPerPixel, "a picture of this size", "make it smaller");
   const int reserved = with_legend ? legend_width(coloring.legend, options.width, options.height) : 0;
   const Camera camera(mesh, options, reserved);
   const RayScene scene(mesh);
-  const SurfaceShader shader(mesh, options, camera, scene, std::move(coloring.colors));
+  const SurfaceShader shader(mesh, options, camera, scene, std::move(coloring.colors), progress);
   const Vec3 background = linear_from_srgb(options.background);
   const PixelSampler sampler(camera, scene, shader, background);
   const ShownTiles shown(mesh, camera, options.width, options.height);
   Canvas canvas(options.width, options.height, background);
-  for (int y = 0; y < options.height; ++y) {
-    for (int x = 0; x < options.width; ++x) {
-      if (shown.may_show_mesh(x, y)) canvas.at(x, y) = sampler.sample(x, y);
-    }
-  }
+  cast_rays(sampler, shown, options.width - reserved, canvas, progress);
   if (with_legend) draw_legend(canvas, coloring.legend, background);
   return canvas.image();
 }
 
 }  // namespace
 
-Image render(const TriMesh& mesh, const RenderOptions& options) {
+Image render(const TriMesh& mesh, const RenderOptions& options, const Progress& progress) {
   check_options(options);
   check_mesh(mesh);
-  return draw(mesh, options, {}, false);
+  return draw(mesh, options, {}, false, progress);
 }
 
-Image render(const TriMesh& mesh, const MeshAttribute& attribute, AttributeDomain domain,
-             const RenderOptions& options) {
+Image render(const TriMesh& mesh, const MeshAttribute& attribute, AttributeDomain domain, const RenderOptions& options,
+             const Progress& progress) {
   check_options(options);
   check_mesh(mesh);
-  return draw(mesh, options, make_coloring(mesh, attribute, domain, options), options.legend);
+  return draw(mesh, options, make_coloring(mesh, attribute, domain, options), options.legend, progress);
 }
 
 }  // namespace vmesh

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include <Eigen/Geometry>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include "render/canvas.h"
 #include "render/color.h"
@@ -45,7 +47,7 @@ double diagonal_of(const TriMesh& mesh) {
 }  // namespace
 
 SurfaceShader::SurfaceShader(const TriMesh& mesh, const RenderOptions& options, const Camera& camera,
-                             const RayScene& scene, AttributeColors attribute)
+                             const RayScene& scene, AttributeColors attribute, const Progress& progress)
     : mesh_(mesh),
       options_(options),
       camera_(camera),
@@ -53,43 +55,57 @@ SurfaceShader::SurfaceShader(const TriMesh& mesh, const RenderOptions& options, 
       material_(linear_from_srgb(options.material)),
       background_(linear_from_srgb(options.background)),
       normals_(vertex_normals(mesh)) {
-  if (options.occlusion > 0) measure_occlusion(scene);
+  if (options.occlusion > 0) measure_occlusion(scene, progress);
   if (options.edges) {
     for (const Vec3& p : mesh.vertices) projected_.push_back(camera.project(p));
   }
 }
 
-// Measures how much of a cosine-weighted hemisphere is open at every vertex; near obstacles count more than far ones.
-void SurfaceShader::measure_occlusion(const RayScene& scene) {
-  const double reach = kOcclusionReach * diagonal_of(mesh_), offset = 1e-3 * reach;
-  const auto directions = sphere_directions(
-      static_cast<int>(std::clamp(kOcclusionRays / static_cast<double>(mesh_.vertices.size()), 32., 96.)));
-  openness_.assign(mesh_.vertices.size(), 1);
-  for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
-    const Vec3& normal = normals_[v];
-    double total = 0, blocked = 0;
-    RayScene::Packet packet;
-    std::array<double, 4> weights{};
-    std::size_t filled = 0;
-    const auto flush = [&] {
-      for (std::size_t i = filled; i < 4; ++i) packet[i] = packet[0];
-      const auto hits = scene.cast(packet, reach);
-      for (std::size_t i = 0; i < filled; ++i) {
-        if (hits[i].face != kNone) blocked += weights[i] * (1 - hits[i].distance / reach);
-      }
-      filled = 0;
-    };
-    for (const Vec3& d : directions) {
-      const double cosine = normal.dot(d);
-      if (cosine <= 0.08) continue;  // a ray along the surface would hit adjacent facets
-      total += cosine;
-      weights[filled] = cosine;
-      packet[filled++] = {mesh_.vertices[v] + offset * normal, d};
-      if (filled == 4) flush();
-    }
-    if (filled > 0) flush();
-    if (total > 0) openness_[v] = 1 - blocked / total;
+// Measures how much of a cosine-weighted hemisphere is open at every vertex.
+void SurfaceShader::measure_occlusion(const RayScene& scene, const Progress& progress) {
+  constexpr std::size_t kBatch = 1 << 14, kTogether = 64;  // vertices
+  const double reach = kOcclusionReach * diagonal_of(mesh_);
+  const std::size_t count = mesh_.vertices.size();
+  const auto directions =
+      sphere_directions(static_cast<int>(std::clamp(kOcclusionRays / static_cast<double>(count), 32., 96.)));
+  openness_.assign(count, 1);
+  for (std::size_t first = 0; first < count; first += kBatch) {
+    report_progress(progress, "light", static_cast<double>(first) / static_cast<double>(count));
+    const std::size_t last = std::min(count, first + kBatch);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, kTogether), [&](const auto& range) {
+      for (std::size_t v = range.begin(); v < range.end(); ++v)
+        openness_[v] = openness_at(static_cast<Index>(v), scene, reach, directions);
+    });
   }
+}
+
+// Near obstacles count more than far ones.
+double SurfaceShader::openness_at(Index vertex, const RayScene& scene, double reach,
+                                  const std::vector<Vec3>& directions) const {
+  const Vec3& normal = normals_[vertex];
+  const double offset = 1e-3 * reach;
+  double total = 0, blocked = 0;
+  RayScene::Packet packet;
+  std::array<double, 4> weights{};
+  std::size_t filled = 0;
+  const auto flush = [&] {
+    for (std::size_t i = filled; i < 4; ++i) packet[i] = packet[0];
+    const auto hits = scene.cast(packet, reach);
+    for (std::size_t i = 0; i < filled; ++i) {
+      if (hits[i].face != kNone) blocked += weights[i] * (1 - hits[i].distance / reach);
+    }
+    filled = 0;
+  };
+  for (const Vec3& d : directions) {
+    const double cosine = normal.dot(d);
+    if (cosine <= 0.08) continue;  // a ray along the surface would hit adjacent facets
+    total += cosine;
+    weights[filled] = cosine;
+    packet[filled++] = {mesh_.vertices[vertex] + offset * normal, d};
+    if (filled == 4) flush();
+  }
+  if (filled > 0) flush();
+  return total > 0 ? 1 - blocked / total : 1;
 }
 
 Vec3 SurfaceShader::base_color(const RayHit& hit, const Vec3& weights) const {

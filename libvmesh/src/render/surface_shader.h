@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "vmesh/core/progress.h"
+
 #include "render/camera.h"
 #include "render/ray_scene.h"
 
@@ -21,13 +23,14 @@ class SurfaceShader {
  public:
   /// Arguments are kept by reference and must outlive the shader.
   SurfaceShader(const TriMesh& mesh, const RenderOptions& options, const Camera& camera, const RayScene& scene,
-                AttributeColors attribute);
+                AttributeColors attribute, const Progress& progress);
 
   /// The light from the surface at `hit` towards the camera; `pixel` is where the ray crosses the picture.
   Vec3 shade(const RayHit& hit, const Ray& ray, const Vec2& pixel) const;
 
  private:
-  void measure_occlusion(const RayScene& scene);
+  void measure_occlusion(const RayScene& scene, const Progress& progress);
+  double openness_at(Index vertex, const RayScene& scene, double reach, const std::vector<Vec3>& directions) const;
   Vec3 base_color(const RayHit& hit, const Vec3& weights) const;
   double edge_opacity(Index face, const Vec2& pixel) const;
 

@@ -1,6 +1,7 @@
 #include "vmesh/tuning/tradeoff.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <optional>
 
@@ -29,8 +30,11 @@ constexpr int kEfforts[] = {0, 10, 20, 30, 60};               // sweeps
 constexpr double kVoxels[] = {1.4, 1, 0.7, 0.5, 0.35, 0.25};  // in mean radii
 constexpr double kMostVoxels = 1.5e8;                         // beyond, a voxel size is left out
 constexpr std::size_t kMostRuns = 5;
-constexpr double kLongEnough = 0.5;    // seconds
-constexpr int kSides[] = {6, 12, 18};  // of truncated cones
+constexpr double kLongEnough = 0.5;                // seconds
+constexpr double kLimitWork = 7, kCountWork = 20;  // how much longer cases with a limit, or a number of vertices, take
+constexpr int kSides[] = {6, 12, 18};              // of truncated cones
+constexpr std::array<std::pair<const char*, Decimation>, 2> kDecimations = {
+    {{"marching cubes, decimated", Decimation::volume}, {"marching cubes, quadric decimation", Decimation::quadrics}}};
 
 std::string text_of(double value) { return formatted("%g", value); }
 
@@ -69,7 +73,7 @@ double voxels_of_box(const Centerline& centerline, double voxel) {
 class Sweep {
  public:
   Sweep(const Centerline& centerline, const TradeoffOptions& options, const Progress& progress)
-      : centerline_(centerline), options_(options), progress_(progress) {}
+      : centerline_(centerline), options_(options), progress_(progress), work_(work_for(options)) {}
 
   std::vector<TradeoffPoint> run() {
     const GenerateOptions& given = options_.generate;
@@ -82,22 +86,28 @@ class Sweep {
       for (const double elongation : kElongations) {
         const std::string curve = elongation > 1 ? "max-error, elongation " + text_of(elongation) : "max-error";
         for (const double limit : kLimits)
-          vary(curve, text_of(100 * limit) + " %", [&](GenerateOptions& o) {
-            o.around = std::min(given.around, kLimitAround);
-            o.max_error.relative = limit;
-            o.elongation = elongation;
-            o.blend = 0;
-          });
+          vary(
+              curve, text_of(100 * limit) + " %",
+              [&](GenerateOptions& o) {
+                o.around = std::min(given.around, kLimitAround);
+                o.max_error.relative = limit;
+                o.elongation = elongation;
+                o.blend = 0;
+              },
+              kLimitWork);
       }
       // Like marching cubes, whose voxels have one size for thick and thin vessels.
       const double most = kElongations[std::size(kElongations) - 1], radius = mean_radius(centerline_);
       for (const double limit : kLimits)
-        vary("max-error in mm, elongation " + text_of(most), text_of(limit * radius) + " mm", [&](GenerateOptions& o) {
-          o.around = std::min(given.around, kLimitAround);
-          o.max_error.mm = limit * radius;
-          o.elongation = most;
-          o.blend = 0;
-        });
+        vary(
+            "max-error in mm, elongation " + text_of(most), text_of(limit * radius) + " mm",
+            [&](GenerateOptions& o) {
+              o.around = std::min(given.around, kLimitAround);
+              o.max_error.mm = limit * radius;
+              o.elongation = most;
+              o.blend = 0;
+            },
+            kLimitWork);
     }
     if (options_.blend) {
       for (const double blend : kBlends) vary("blend", text_of(blend), [&](auto& o) { o.blend = blend; });
@@ -115,15 +125,50 @@ class Sweep {
     if (options_.marching_cubes) sweep_marching_cubes();
     if (options_.max_error) sweep_vertices();
     if (options_.cones) sweep_cones();
+    report_progress(progress_, kStage, 1);
     mark_best(points_);
     return std::move(points_);
   }
 
  private:
+  static constexpr const char* kStage = "sweep";
+
+  // In cases of plain settings.
+  static double work_for(const TradeoffOptions& o) {
+    const auto size = [](const auto& list) { return static_cast<double>(std::size(list)); };
+    const double counts = o.resolution ? size(kArounds) + 1 : 0;
+    double work = 0;
+    if (o.resolution) work += 2 * size(kArounds);
+    if (o.max_error) work += kLimitWork * size(kLimits) * (size(kElongations) + 1) + kCountWork * counts;
+    if (o.blend) work += size(kBlends);
+    if (o.beta) work += size(kBetas);
+    if (o.effort) work += size(kEfforts);
+    if (o.marching_cubes) work += size(kVoxels) + size(kDecimations) * counts;
+    if (o.cones) work += size(kSides);
+    return work;
+  }
+
+  // One progress for all cases: that of a single one only asks whether to go on.
+  void tell() const { report_progress(progress_, kStage, work_ > 0 ? std::min(1.0, done_ / work_) : 0); }
+
+  Progress alive() const {
+    return [this](std::string_view, double) {
+      tell();
+      return true;
+    };
+  }
+
+  template <class Make>
+  std::optional<TriMesh> add(const std::string& curve, const std::string& setting, Make&& make, double work = 1) {
+    tell();
+    std::optional<TriMesh> mesh = add_point(curve, setting, make);
+    done_ += work;
+    return mesh;
+  }
+
   // Makes a surface and adds its point; a refused case has no point.
   template <class Make>
-  std::optional<TriMesh> add(const std::string& curve, const std::string& setting, Make&& make) {
-    report_progress(progress_, "sweep", std::min(1.0, static_cast<double>(points_.size()) / 80));
+  std::optional<TriMesh> add_point(const std::string& curve, const std::string& setting, Make&& make) {
     TradeoffPoint point;
     point.curve = curve;
     point.setting = setting;
@@ -141,10 +186,11 @@ class Sweep {
   }
 
   template <class Change>
-  void vary(const std::string& curve, const std::string& setting, Change&& change) {
+  void vary(const std::string& curve, const std::string& setting, Change&& change, double work = 1) {
     GenerateOptions options = options_.generate;
     change(options);
-    add(curve, setting, [&] { return generate_surface(centerline_, options, progress_).mesh; });
+    add(
+        curve, setting, [&] { return generate_surface(centerline_, options, alive()).mesh; }, work);
   }
 
   // As many vertices as the even surfaces have, and half as many as the coarsest.
@@ -166,8 +212,9 @@ class Sweep {
       options.blend = 0;
       Budget budget;
       budget.vertices = count;
-      add("vertices, elongation " + text_of(options.elongation), std::to_string(count),
-          [&] { return generate_within(budget, centerline_, options, progress_).result.mesh; });
+      add(
+          "vertices, elongation " + text_of(options.elongation), std::to_string(count),
+          [&] { return generate_within(budget, centerline_, options, alive()).result.mesh; }, kCountWork);
     }
   }
 
@@ -177,7 +224,10 @@ class Sweep {
     double seconds = 0;
     for (const double share : kVoxels) {
       const double voxel = share * radius;
-      if (voxels_of_box(centerline_, voxel) > kMostVoxels) break;
+      if (voxels_of_box(centerline_, voxel) > kMostVoxels) {
+        ++done_;
+        continue;
+      }
       std::optional<TriMesh> mesh =
           add("marching cubes", text_of(voxel) + " mm", [&] { return reference_surface(centerline_, voxel).mesh; });
       if (!mesh) continue;
@@ -185,10 +235,12 @@ class Sweep {
       seconds = points_.back().seconds;
     }
     if (!finest) return;
-    for (const auto& [curve, order] : {std::pair("marching cubes, decimated", Decimation::volume),
-                                       {"marching cubes, quadric decimation", Decimation::quadrics}}) {
+    for (const auto& [curve, order] : kDecimations) {
       for (const std::size_t count : counts()) {
-        if (count >= finest->vertices.size()) break;
+        if (count >= finest->vertices.size()) {
+          ++done_;
+          continue;
+        }
         if (add(curve, std::to_string(count), [&, order = order] { return decimated(*finest, count, order); }))
           points_.back().seconds += seconds;
       }
@@ -203,6 +255,8 @@ class Sweep {
   const Centerline& centerline_;
   const TradeoffOptions& options_;
   const Progress& progress_;
+  double work_;      // unless cases are left out
+  double done_ = 0;  // of it, for refused cases as well
   std::vector<TradeoffPoint> points_;
 };
 

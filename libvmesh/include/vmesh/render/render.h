@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "vmesh/core/progress.h"
 #include "vmesh/mesh/tri_mesh.h"
 #include "vmesh/render/image.h"
 
@@ -55,10 +56,11 @@ struct RenderOptions {
 /// The colour of a label (rounded to an integer) in a picture of categories.
 Color label_color(double label);
 
-/// Draws a mesh without a display, by casting rays. The same input gives the same picture.
-/// Throws InvalidInput for a mesh without faces, with faces that name vertices which do not exist, with positions
-/// that are not finite, and for options out of range.
-Image render(const TriMesh& mesh, const RenderOptions& options = {});
+/// Draws a mesh without a display, by casting rays on the threads of the caller's arena (oneTBB). The same input gives
+/// the same picture, whatever the threads. A legend has the right side of the picture to itself.
+/// Throws InvalidInput for a mesh without faces, with faces that name vertices which do not exist, with positions that
+/// are not finite, and for options out of range; Cancelled.
+Image render(const TriMesh& mesh, const RenderOptions& options = {}, const Progress& progress = {});
 
 /// Whether an attribute has one value per vertex or per face.
 enum class AttributeDomain { vertex, face };
@@ -67,11 +69,12 @@ enum class AttributeDomain { vertex, face };
 /// drawn grey. Throws InvalidInput also when there is not one value per vertex or face, or when none is finite and no
 /// range is given.
 Image render(const TriMesh& mesh, const MeshAttribute& attribute, AttributeDomain domain,
-             const RenderOptions& options = {});
+             const RenderOptions& options = {}, const Progress& progress = {});
 
-/// The same by the attribute of that name, or by "skewness", which is measured. "branch" and "group" are categories.
-/// Throws InvalidInput also for a name that there is not, listing those there are.
+/// The same by the attribute of that name, or by "skewness", which is measured. Integer attributes (segment, branch,
+/// ModelFaceID ...) are categories, unless a range is given. Throws InvalidInput also for a name that there is not,
+/// listing those there are.
 Image render(const TriMesh& mesh, const MeshAttributes& attributes, const std::string& color,
-             const RenderOptions& options = {});
+             const RenderOptions& options = {}, const Progress& progress = {});
 
 }  // namespace vmesh

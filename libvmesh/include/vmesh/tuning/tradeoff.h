@@ -34,7 +34,7 @@ struct TradeoffOptions {
 };
 
 /// Makes the surfaces of every curve and measures them. Times depend on the machine and its load. Throws what
-/// generate_surface() throws.
+/// generate_surface() throws. Reports one progress over all of them.
 std::vector<TradeoffPoint> sweep_tradeoff(const Centerline& centerline, const TradeoffOptions& options = {},
                                           const Progress& progress = {});
 
