@@ -40,7 +40,8 @@ SAVED = """(kind => new Promise(done => { const anchor = HTMLAnchorElement.proto
   const [click, create] = [anchor.click, URL.createObjectURL];
   URL.createObjectURL = made => { blob = made; return "blob:made"; };
   anchor.click = async function () { const bytes = blob && new Uint8Array(await blob.arrayBuffer());
-    done([this.download, blob ? btoa(Array.from(bytes, c => String.fromCharCode(c)).join("")) : this.href.split(",")[1]]); };
+    const text = blob && btoa(Array.from(bytes, c => String.fromCharCode(c)).join(""));
+    done([this.download, text || this.href.split(",")[1]]); };
   const save = document.getElementById("save"); save.value = kind; save.dispatchEvent(new Event("change"));
   anchor.click = click; URL.createObjectURL = create; }))"""
 # CIE L* of sRGB.
@@ -190,7 +191,8 @@ class PageInABrowser(unittest.TestCase):
                 worst, brightest, ties = browser.ask(f"""(() => {{ const a = vmesh.attribute, s = vmesh.shown.surface;
                   const light = [], size = []; const colors = vmesh.shown.mesh.geometry.attributes.color.array;
                   for (let i = 0; i < s.corners.length; ++i) {{ const of = a.onFaces ? Math.floor(i / 3) : s.corners[i];
-                    size.push(Math.abs(a.value(of))); light.push({LIGHTNESS}(Array.from(colors.subarray(3 * i, 3 * i + 3)))); }}
+                    size.push(Math.abs(a.value(of)));
+                    light.push({LIGHTNESS}(Array.from(colors.subarray(3 * i, 3 * i + 3)))); }}
                   const most = Math.max(...size), top = Math.max(...light);
                   return [light[size.indexOf(most)], top, light.filter(l => l > top - 1e-9).length / light.length]; }})()""")
                 self.assertEqual(worst, brightest, name)
@@ -276,6 +278,11 @@ class PageInABrowser(unittest.TestCase):
                 self.assertEqual(name, f"small.{kind}")
                 with open(self.page(f"saved.{kind}"), "wb") as file:
                     file.write(base64.b64decode(content))
+            pictures = [browser.ask(f"{SAVED}('png')")[1]]
+            for change in ("vmesh.colorBy('branch')", "vmesh.set('cut', true)", "vmesh.set('edges', true)"):
+                browser.ask(change)
+                pictures.append(browser.ask(f"{SAVED}('png')")[1])
+            self.assertEqual(len(set(pictures)), len(pictures), "what is changed in the view changes in the picture")
             self.assertEqual(browser.problems, [])
         original = self.evaluated("small.ply")
         for name in ("saved.ply", "saved.stl"):

@@ -6,6 +6,7 @@
 #include <map>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
@@ -290,6 +291,17 @@ TEST(Render, GivesTheSamePictureWithAnyNumberOfThreads) {
   };
   const auto one = with(1);
   for (const int threads : {2, 3, 8}) EXPECT_EQ(with(threads), one) << threads;
+}
+
+TEST(Render, MayUseAllThreads) {
+  const auto allowed = [] { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); };
+  const std::size_t before = allowed();
+  std::size_t least = before;
+  render(make_sphere(5), small(), [&](std::string_view, double) {
+    least = std::min(least, allowed());
+    return true;
+  });
+  EXPECT_EQ(least, before);
 }
 
 TEST(Render, TellsHowFarItIsAndStopsWhenAskedTo) {

@@ -44,16 +44,24 @@ function innerTicks(scale) {
   return niceTicks(scale.low, scale.high, 4).filter((t) => t > scale.low + room && t < scale.high - room);
 }
 
+/** The labels that a legend has room for, and what tells of the others. */
+function shownLabels({ low, high }) {
+  const first = Math.max(0, low);
+  const end = Math.min(high + 1, first + 10);
+  const labels = [];
+  for (let label = first; label < end; ++label) labels.push(label);
+  return { labels, rest: high + 1 > end ? `to ${high}` : "" };
+}
+
 /** Fills `box` with the scale of an attribute. Both ends have their numbers. */
 function drawLegend(box, attribute, scale) {
   box.replaceChildren(element("div", { class: "legend-title" }, withUnit(attribute.label, attribute.unit)));
   if (scale.labels) {
     const row = element("div", { class: "legend-labels" });
-    const first = Math.max(0, attribute.low);
-    const end = Math.min(attribute.high + 1, first + 10);
-    for (let label = first; label < end; ++label)
+    const { labels, rest } = shownLabels(attribute);
+    for (const label of labels)
       row.append(element("span", { style: `--swatch:${cssColor(scale.color(label))}` }, String(label)));
-    if (attribute.high + 1 > end) row.append(element("em", {}, `to ${attribute.high}`));
+    if (rest) row.append(element("em", {}, rest));
     box.append(row);
     return;
   }
@@ -64,7 +72,7 @@ function drawLegend(box, attribute, scale) {
     const at = (100 * (tick - scale.low)) / (scale.high - scale.low);
     axis.append(element("span", { style: `left:${at.toFixed(2)}%` }, texts[i]));
   });
-  axis.append(element("span", { class: "low" }, brief(scale.low)), element("span", { class: "high" }, brief(scale.high)));
+  for (const end of ["low", "high"]) axis.append(element("span", { class: end }, brief(scale[end])));
   box.append(element("div", { class: "legend-bar", style: `background:${gradient(scale)}` }), axis);
 }
 

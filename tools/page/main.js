@@ -153,7 +153,10 @@ class Viewer {
     const kind = byId("save").value;
     byId("save").value = "";
     const name = `${this.page.title.replace(/\.\w+$/, "").replace(/[^\w.-]+/g, "-") || "surface"}.${kind}`;
-    if (kind === "png") download(pictureOf(this.scene, this.attribute, this.scale).toDataURL("image/png"), name);
+    if (kind === "png") {
+      const picture = pictureOf(this.scene, this.attribute, this.scale, this.ruler);
+      download(picture.toDataURL("image/png"), name);
+    }
     if (kind === "ply") downloadBytes(plyOf(this.shown.surface, this.origin), name);
     if (kind === "stl") downloadBytes(stlOf(this.shown.surface, this.origin), name);
   }
@@ -281,7 +284,8 @@ function addKeys(viewer) {
   };
   const keys = {
     e: () => viewer.toggle("edges"), c: () => viewer.toggle("centerline"), r: () => viewer.toggle("reference"),
-    g: () => viewer.toggle("glass"), x: () => viewer.toggle("cut"), m: () => viewer.toggle("ruler"), Home: () => viewer.viewAll(), 0: () => viewer.viewAll(),
+    g: () => viewer.toggle("glass"), x: () => viewer.toggle("cut"), m: () => viewer.toggle("ruler"),
+    Home: () => viewer.viewAll(), 0: () => viewer.viewAll(),
     n: () => viewer.goTo(viewer.place + 1), p: () => viewer.goTo(Math.max(viewer.place, 0) - 1),
     ",": () => frame(-1), ".": () => frame(1), "?": toggleHelp, h: toggleHelp,
     " ": () => viewer.player && viewer.player.play(!viewer.player.playing),

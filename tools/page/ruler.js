@@ -33,9 +33,14 @@ class Ruler {
     this.update();
   }
 
-  /** In mm; null: there are not two points. */
-  distance() {
-    return this.ends.length === 2 ? this.ends[0].distanceTo(this.ends[1]) : null;
+  /** Empty until there are two points. */
+  text() {
+    return this.ends.length === 2 ? `${brief(this.ends[0].distanceTo(this.ends[1]))} mm` : "";
+  }
+
+  /** Of both points; null until there are two. */
+  middle() {
+    return this.ends.length === 2 ? this.ends[0].clone().add(this.ends[1]).multiplyScalar(0.5) : null;
   }
 
   update() {
@@ -47,12 +52,12 @@ class Ruler {
       to.toArray(position.array, 3);
       position.needsUpdate = true;
     }
-    this.label.textContent = this.ends.length === 2 ? `${brief(this.distance())} mm` : "";
+    this.label.textContent = this.text();
     this.scene.draw();
   }
 
   moveLabel() {
-    const middle = this.ends.length === 2 && this.ends[0].clone().add(this.ends[1]).multiplyScalar(0.5);
+    const middle = this.middle();
     const at = middle && this.scene.onScreen(middle);
     this.label.hidden = !at;
     if (at) this.label.style.transform = `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px)`;

@@ -55,37 +55,63 @@ function stlOf(surface, origin) {
   return file;
 }
 
-/** The colour scale with its name and the numbers at both ends, in the lower left corner of a picture. */
-function paintScale(paint, attribute, scale, ink, height) {
-  const left = 24;
-  const width = 220;
-  const top = height - 52;
+const LEGEND = { left: 24, width: 220, bottom: 52 };  // in a picture, pixels
+
+/** The colour scale with the numbers at both ends, `top` pixels down a picture. */
+function paintScale(paint, scale, top, ink) {
+  const { left, width } = LEGEND;
   const colors = paint.createLinearGradient(left, 0, left + width, 0);
   for (let i = 0; i <= 24; ++i)
     colors.addColorStop(i / 24, cssColor(scale.color(scale.low + ((scale.high - scale.low) * i) / 24)));
   paint.fillStyle = colors;
   paint.fillRect(left, top, width, 12);
   paint.fillStyle = ink;
-  paint.font = "13px sans-serif";
-  paint.fillText(withUnit(attribute.label, attribute.unit), left, top - 8);
   paint.fillText(brief(scale.low), left, top + 28);
   paint.textAlign = "right";
   paint.fillText(brief(scale.high), left + width, top + 28);
 }
 
-/** A canvas with the view on the page's ground, and the colour scale if there is one. */
-function pictureOf(scene, attribute, scale) {
+/** Labels in a row, each after its colour. */
+function paintLabels(paint, attribute, scale, top, ink) {
+  const { labels, rest } = shownLabels(attribute);
+  let x = LEGEND.left;
+  for (const label of labels) {
+    paint.fillStyle = cssColor(scale.color(label));
+    paint.fillRect(x, top, 12, 12);
+    paint.fillStyle = ink;
+    paint.fillText(String(label), x + 16, top + 11);
+    x += 26 + paint.measureText(String(label)).width;
+  }
+  paint.fillText(rest, x, top + 11);
+}
+
+/** The legend of an attribute, in the lower left corner. */
+function paintLegend(paint, attribute, scale, height, ink) {
+  const top = height - LEGEND.bottom;
+  paint.fillStyle = ink;
+  paint.fillText(withUnit(attribute.label, attribute.unit), LEGEND.left, top - 8);
+  if (scale.labels) paintLabels(paint, attribute, scale, top, ink);
+  else paintScale(paint, scale, top, ink);
+}
+
+/** A canvas with the view on the page's ground, the legend if there is one, and the ruler's distance. */
+function pictureOf(scene, attribute, scale, ruler) {
   scene.render();  // its pixels last until the browser shows them
   const { canvas } = scene;
-  const style = getComputedStyle(document.body);
+  const { backgroundColor, color } = getComputedStyle(document.body);
   const picture = element("canvas", { width: canvas.width, height: canvas.height });
   const paint = picture.getContext("2d");
-  paint.fillStyle = style.backgroundColor;
+  paint.fillStyle = backgroundColor;
   paint.fillRect(0, 0, canvas.width, canvas.height);
   paint.drawImage(canvas, 0, 0);
   const zoom = scene.renderer.getPixelRatio();
   paint.scale(zoom, zoom);
-  if (scale && !scale.labels) paintScale(paint, attribute, scale, style.color, canvas.height / zoom);
+  paint.font = "13px sans-serif";
+  paint.fillStyle = color;
+  const middle = ruler.middle();
+  const at = middle && scene.onScreen(middle);
+  if (at) paint.fillText(ruler.text(), at.x + 8, at.y + 16);
+  if (attribute) paintLegend(paint, attribute, scale, canvas.height / zoom, color);
   return picture;
 }
 

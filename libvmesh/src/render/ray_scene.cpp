@@ -33,12 +33,14 @@ void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit4& packet) {
 
 struct RayScene::Embree {
   RTCDevice device = nullptr;
+  RTCDevice unlimited = nullptr;
   RTCScene scene = nullptr;
   Vec3 origin = Vec3::Zero();  // Embree computes in float: coordinates are relative to this point
 
   ~Embree() {
     if (scene) rtcReleaseScene(scene);
     if (device) rtcReleaseDevice(device);
+    if (unlimited) rtcReleaseDevice(unlimited);
   }
 };
 
@@ -70,6 +72,9 @@ RayScene::RayScene(const TriMesh& mesh) : embree_(std::make_unique<Embree>()) {
   rtcReleaseGeometry(geometry);
   rtcCommitScene(embree_->scene);
   if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) fail_with_embree(error);
+  // Embree keeps all of oneTBB to as many threads as the device with most of them has, which so far is one.
+  embree_->unlimited = rtcNewDevice("set_affinity=0");
+  if (!embree_->unlimited) fail_with_embree(rtcGetDeviceError(nullptr));
 }
 
 RayScene::~RayScene() = default;
