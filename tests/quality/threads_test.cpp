@@ -1,7 +1,9 @@
 // The same numbers on any number of threads.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include "vmesh/quality/closest_point.h"
 #include "vmesh/quality/hausdorff.h"
 #include "vmesh/quality/quality_report.h"
 #include "vmesh/quality/sampled_distance.h"
@@ -79,6 +81,13 @@ TEST(Threads, SelfIntersectionsAreTheSame) {
   const auto one = on_threads(1, find);
   EXPECT_GT(one.size(), 100u);
   EXPECT_EQ(one, on_threads(5, find));
+}
+
+TEST(ClosestPointIndex, LeavesAllThreadsToOthers) {
+  const auto allowed = [] { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); };
+  const std::size_t before = allowed();
+  const ClosestPointIndex index(TriMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+  EXPECT_EQ(allowed(), before);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
 
 #include "vmesh/quality/sampled_distance.h"
 
@@ -52,16 +53,20 @@ struct Measured {
   double distance, radius;
 };
 
-// Adds measure(i, near) for all i in order, a batch at a time; `near` is passed on from one to the next within a task.
+// Adds measure(i, near) for all i in order, a batch at a time; `near` is passed on from one to the next within a task,
+// which are the same for any number of threads.
 template <class Measure>
 void measure_in_order(std::size_t count, SideCollector& to, const Measure& measure) {
   std::vector<Measured> batch(std::min(count, kMeasuredTogether));
   for (std::size_t first = 0; first < count; first += kMeasuredTogether) {
     const std::size_t size = std::min(kMeasuredTogether, count - first);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size, kPerTask), [&](const auto& range) {
-      Index near = kNone;
-      for (std::size_t i = range.begin(); i < range.end(); ++i) batch[i] = measure(first + i, near);
-    });
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, size, kPerTask),
+        [&](const auto& range) {
+          Index near = kNone;
+          for (std::size_t i = range.begin(); i < range.end(); ++i) batch[i] = measure(first + i, near);
+        },
+        tbb::simple_partitioner());
     for (std::size_t i = 0; i < size; ++i) to.add(batch[i].position, batch[i].distance, batch[i].radius);
   }
 }

@@ -302,6 +302,7 @@ class Fit {
                         kAimPower),
         1 / kAimStep, kAimStep);
     find_cones(surface_, field_);
+    if (to_error_) step(matches_now(true));  // the next sizes follow from what the error is with these
     change_safely(surface_, [&](FitMesh& surface, const std::vector<char>& frozen) {
       flip_closer(surface, frozen, false, setting_);
     });

@@ -7,6 +7,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
 
 #include "vmesh/core/error.h"
 
@@ -61,14 +62,17 @@ SampledDistance sample_distance(const TriMesh& from, const ClosestPointIndex& to
   for (std::size_t first = 0; first < points.size(); first += kBatch) {
     report_progress(progress, "samples", static_cast<double>(first) / static_cast<double>(points.size()));
     const std::size_t last = std::min(points.size(), first + kBatch);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, kTogether), [&](const auto& range) {
-      Index near = kNone;
-      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-        const ClosestPoint found = to.closest(points[i].position, near);
-        near = found.face;
-        distances[i] = found.distance;
-      }
-    });
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(first, last, kTogether),
+        [&](const auto& range) {
+          Index near = kNone;
+          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const ClosestPoint found = to.closest(points[i].position, near);
+            near = found.face;
+            distances[i] = found.distance;
+          }
+        },
+        tbb::simple_partitioner());
   }
   const double area = surface_area(from);
   const double density = area > 0 ? static_cast<double>(distances.size()) / area : 0;
@@ -77,15 +81,18 @@ SampledDistance sample_distance(const TriMesh& from, const ClosestPointIndex& to
 
 std::vector<double> vertex_distances(const TriMesh& from, const ClosestPointIndex& to) {
   std::vector<double> distances(from.vertices.size(), std::numeric_limits<double>::quiet_NaN());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, distances.size(), kTogether), [&](const auto& range) {
-    Index near = kNone;
-    for (std::size_t v = range.begin(); v < range.end(); ++v) {
-      if (!within_reach(from.vertices[v])) continue;
-      const ClosestPoint found = to.closest(from.vertices[v], near);
-      near = found.face;
-      distances[v] = found.distance;
-    }
-  });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, distances.size(), kTogether),
+      [&](const auto& range) {
+        Index near = kNone;
+        for (std::size_t v = range.begin(); v < range.end(); ++v) {
+          if (!within_reach(from.vertices[v])) continue;
+          const ClosestPoint found = to.closest(from.vertices[v], near);
+          near = found.face;
+          distances[v] = found.distance;
+        }
+      },
+      tbb::simple_partitioner());
   return distances;
 }
 

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include <tbb/task_arena.h>
+
 #if VMESH_EMBREE == 3
 #include <embree3/rtcore.h>
 #else
@@ -33,20 +35,19 @@ void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit4& packet) {
 
 struct RayScene::Embree {
   RTCDevice device = nullptr;
-  RTCDevice unlimited = nullptr;
   RTCScene scene = nullptr;
   Vec3 origin = Vec3::Zero();  // Embree computes in float: coordinates are relative to this point
 
   ~Embree() {
     if (scene) rtcReleaseScene(scene);
     if (device) rtcReleaseDevice(device);
-    if (unlimited) rtcReleaseDevice(unlimited);
   }
 };
 
 RayScene::RayScene(const TriMesh& mesh) : embree_(std::make_unique<Embree>()) {
   embree_->device = rtcNewDevice(kEmbreeConfig);
   if (!embree_->device) fail_with_embree(rtcGetDeviceError(nullptr));
+  leave_threads_to_tbb(rtcNewDevice);
   const RTCDevice device = embree_->device;
   embree_->scene = rtcNewScene(device);
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
@@ -70,11 +71,8 @@ RayScene::RayScene(const TriMesh& mesh) : embree_(std::make_unique<Embree>()) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(embree_->scene, geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(embree_->scene);
+  tbb::task_arena(1).execute([&] { rtcCommitScene(embree_->scene); });
   if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) fail_with_embree(error);
-  // Embree keeps all of oneTBB to as many threads as the device with most of them has, which so far is one.
-  embree_->unlimited = rtcNewDevice("set_affinity=0");
-  if (!embree_->unlimited) fail_with_embree(rtcGetDeviceError(nullptr));
 }
 
 RayScene::~RayScene() = default;
