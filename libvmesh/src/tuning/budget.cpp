@@ -95,12 +95,15 @@ class BudgetSearch {
     double spacing = 1, vertices = static_cast<double>(start->vertices);
     for (int i = 0; i < kMostSpacings && !near_enough(); ++i) {
       const double aim = std::min(0.5 * (1 + kNearBudget) * allowed(), kRefused * options_.max_vertices);
-      const double next = std::clamp(spacing * vertices / aim, kLeastRingSpacing, kMostRingSpacing);
+      const double next = brief(std::clamp(spacing * vertices / aim, kLeastRingSpacing, kMostRingSpacing));
       if (next == spacing || spacing * vertices > next * allowed()) return;  // out of reach
       spacing = next;
       vertices = static_cast<double>(attempt(around, spacing).point.vertices);
     }
   }
+
+  // To three decimals, as the command prints it.
+  static double brief(double spacing) { return std::round(1000 * spacing) / 1000; }
 
   // By which factor, above or below, the vertices are not those wanted.
   double misses(const OperatingPoint& point) const {
