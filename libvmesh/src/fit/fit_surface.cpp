@@ -40,7 +40,7 @@ constexpr int kFirstRounds = 3, kLastRounds = 3;
 constexpr int kMoreRounds = 12;           // at most, to find the size that gives an error
 constexpr double kOfMostVertices = 0.98;  // target: the exact count cannot be controlled
 constexpr double kMore = 1.05;            // vertices that a fit may add without a budget
-constexpr int kCorrections = 5;
+constexpr int kCorrections = 5, kErrorCorrections = 8;
 // SizeLimits. For an error the count is not known beforehand: sizes may change by more, and by more at once.
 constexpr double kFinest = 0.5, kCoarsest = 1.5;  // without an error, relative to sizes for the count wanted
 constexpr double kErrorStep = 1.4, kErrorRefinement = 8, kErrorCoarsest = 4;
@@ -159,7 +159,7 @@ class Fit {
     if (options_.resize) resize();
     if (options_.resize && !to_error_) keep_to_wanted_vertices();
     finish();
-    for (int i = 0; options_.resize && to_error_ && i < kCorrections && !keeps_error(); ++i) {
+    for (int i = 0; options_.resize && to_error_ && i < kErrorCorrections && !keeps_error(); ++i) {
       even_error_ *= kCorrection;
       for (int round = 0; round < 2; ++round) resize_once(matches_after_step());
       if (!to_error_) keep_to_wanted_vertices();
