@@ -107,7 +107,8 @@ TEST_F(HelpTexts, FishCompletesVerbsOptionsWordsAndFiles) {
   const Outcome run = vmesh({"completion", "fish"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   write("vmesh.fish", run.out);
-  if (!can_run("fish")) GTEST_SKIP() << "no fish here: install it to test its completion";
+  if (!can_run("fish"))
+    GTEST_SKIP() << "no fish here: scripts/test installs it (scripts/install-dependencies --with-shells)";
   using Words = std::vector<std::string>;
   EXPECT_EQ(offered_by_fish("vmesh gen"), Words{"generate"});
   EXPECT_EQ(offered_by_fish("vmesh generate --uni"), Words{"--unit"});
@@ -125,7 +126,8 @@ TEST_F(HelpTexts, ZshCompletesVerbsOptionsWordsAndFiles) {
   const Outcome run = vmesh({"completion", "zsh"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   write("vmesh.zsh", run.out);
-  if (!can_run("zsh")) GTEST_SKIP() << "no zsh here: install it to test its completion";
+  if (!can_run("zsh"))
+    GTEST_SKIP() << "no zsh here: scripts/test installs it (scripts/install-dependencies --with-shells)";
   EXPECT_EQ(completed_by_zsh("vmesh gen"), "vmesh generate ");
   EXPECT_EQ(completed_by_zsh("vmesh generate --output-un"), "vmesh generate --output-unit=");
   EXPECT_EQ(completed_by_zsh("vmesh generate --unit c"), "vmesh generate --unit cm ");
