@@ -51,15 +51,23 @@ def contours(table, written):
     return written.with_vtk
 
 
-def reads_dicom(table, vmesh):
-    path = small.write(vmesh.path("no.dcm"), "no DICOM")
+def reads(table, vmesh, form, option, library):
+    path = small.write(vmesh.path("no" + form), "no image")
     try:
         vmesh("reference", path, "-o", vmesh.path("no.ply"))
     except Wrong as wrong:
-        if "VMESH_WITH_DICOM" in str(wrong):
-            table.notes.append("SKIPPED DICOM: this vmesh is built without GDCM")
+        if option in str(wrong):
+            table.notes.append(f"SKIPPED {form}: this vmesh is built without {library}")
             return False
     return True
+
+
+def reads_dicom(table, vmesh):
+    return reads(table, vmesh, ".dcm", "VMESH_WITH_DICOM", "GDCM")
+
+
+def reads_tiff(table, vmesh):
+    return reads(table, vmesh, ".tif", "VMESH_WITH_TIFF", "libtiff")
 
 
 def write_by_vtk(vtk, path):
@@ -82,22 +90,9 @@ def check_vtk(table, vtk, written):
     for form, turn in forms.items():
         path = written.vmesh.path("ball" + form)
         check_ball(table, form, vtk.name, written.vmesh, lambda path=path: write_by_vtk(vtk, path), turn)
-
-
     if reads_tiff(table, written.vmesh):
         path, size = written.vmesh.path("by_vtk.tif"), ("--voxel-size", BALL_SPACING)
         check_ball(table, ".tif", vtk.name, written.vmesh, lambda: write_by_vtk(vtk, path), (1, 1, 1), size)
-
-
-def reads_tiff(table, vmesh):
-    path = small.write(vmesh.path("no.tif"), "no TIFF")
-    try:
-        vmesh("reference", path, "-o", vmesh.path("no.ply"))
-    except Wrong as wrong:
-        if "VMESH_WITH_TIFF" in str(wrong):
-            table.notes.append("SKIPPED TIFF: this vmesh is built without libtiff")
-            return False
-    return True
 
 
 def check_tifffile(table, written):
