@@ -92,7 +92,7 @@ class BudgetSearch {
       if (start == nullptr || misses(trial.point) < misses(*start)) start = &trial.point;
     }
     const int around = start->options.around;
-    double spacing = 1, vertices = static_cast<double>(start->vertices);
+    double spacing = start->options.ring_spacing, vertices = static_cast<double>(start->vertices);
     for (int i = 0; i < kMostSpacings && !near_enough(); ++i) {
       const double aim = std::min(0.5 * (1 + kNearBudget) * allowed(), kRefused * options_.max_vertices);
       const double next = brief(std::clamp(spacing * vertices / aim, kLeastRingSpacing, kMostRingSpacing));
@@ -149,7 +149,9 @@ class BudgetSearch {
     return a.point.options.around > b.point.options.around;
   }
 
-  const Trial& attempt(int around, double ring_spacing = 1) {
+  const Trial& attempt(int around) { return attempt(around, options_.ring_spacing); }
+
+  const Trial& attempt(int around, double ring_spacing) {
     const Setting setting{around, ring_spacing};
     if (const auto known = trials_.find(setting); known != trials_.end()) return known->second;
     GenerateOptions options = options_;
