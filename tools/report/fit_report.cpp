@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "report/evaluation_report.h"
+#include "report/exact_text.h"
 #include "report/extraction_report.h"
 
 namespace vmesh::tool {
@@ -103,6 +104,7 @@ std::string describe(const FittingArguments& arguments) {
   std::ostringstream text;
   text << tool::describe(arguments.image);
   if (arguments.options.error > 0) text << " --fit-error " << arguments.options.error << "mm";
+  if (arguments.options.elongation > 1) text << " --elongation " << exact_text(arguments.options.elongation);
   text << " --fit-rounds " << arguments.options.rounds;
   if (!arguments.options.resize) text << " --keep-triangles";
   return text.str();

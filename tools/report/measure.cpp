@@ -13,13 +13,19 @@ namespace {
 
 bool has_genus(const Topology& topology) { return topology.closed && topology.manifold && topology.oriented; }
 
+// `plain`: without elongation.
+SkewnessSummary metric_summary(const TriMesh& mesh, const std::vector<Vec3>& elongation, const SkewnessSummary& plain) {
+  return elongation.empty() ? plain : summarize_skewness(metric_skewness(mesh, elongation));
+}
+
 }  // namespace
 
-SurfaceMeasurement measure_surface(const TriMesh& mesh) {
+SurfaceMeasurement measure_surface(const TriMesh& mesh, const std::vector<Vec3>& elongation) {
   SurfaceMeasurement measurement;
   measurement.topology = measure_topology(mesh);
   measurement.openings = boundary_loops(mesh).size();
-  measurement.metric_skewness = measurement.skewness = summarize_skewness(mesh);
+  measurement.skewness = summarize_skewness(mesh);
+  measurement.metric_skewness = metric_summary(mesh, elongation, measurement.skewness);
   stop_if_interrupted();
   measurement.self_intersections = self_intersections(mesh).size();
   return measurement;
@@ -28,9 +34,8 @@ SurfaceMeasurement measure_surface(const TriMesh& mesh) {
 SurfaceMeasurement measurement_of(const GenerateResult& result) {
   SurfaceMeasurement measurement;
   measurement.topology = result.check.topology;
-  measurement.skewness = measurement.metric_skewness = summarize_skewness(result.mesh);
-  if (!result.elongation.empty())
-    measurement.metric_skewness = summarize_skewness(metric_skewness(result.mesh, result.elongation));
+  measurement.skewness = summarize_skewness(result.mesh);
+  measurement.metric_skewness = metric_summary(result.mesh, result.elongation, measurement.skewness);
   measurement.self_intersections = result.check.crossing_pairs;
   measurement.openings = result.openings.size();
   if (measurement.openings > 0) measurement.open_elsewhere = result.check.topology.boundary_edges;

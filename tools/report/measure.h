@@ -23,7 +23,8 @@ struct SurfaceMeasurement {
   std::size_t open_elsewhere = 0;  ///< boundary edges besides those of openings
 };
 
-SurfaceMeasurement measure_surface(const TriMesh& mesh);
+/// `elongation`: of the vertices, see metric_skewness(); empty: none.
+SurfaceMeasurement measure_surface(const TriMesh& mesh, const std::vector<Vec3>& elongation = {});
 
 /// The same for a generated surface, from its checks. It may be open at ends of vessels: topology
 /// is with these closed, `open_elsewhere` are the boundary edges that do not belong to an opening.

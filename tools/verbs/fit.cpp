@@ -4,6 +4,7 @@
 #include "vmesh/io/sha256.h"
 #include "vmesh/surface/surface_attributes.h"
 
+#include "command_line/arguments_growth.h"
 #include "command_line/arguments_segmentation.h"
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
@@ -37,6 +38,10 @@ void add_options(CLI::App& verb, FitArguments& arguments) {
   add_fitting(verb, arguments.fitting);
   verb.add_option("--max-vertices", arguments.fitting.options.max_vertices,
                   "0: a twentieth more than the surface has, or as many as --fit-error needs")
+      ->capture_default_str();
+  verb.add_option(kElongationFlag.data(), arguments.fitting.options.elongation,
+                  "how much longer than wide triangles may be, where the reference is curved less along than across")
+      ->check(in_range(1, kMostElongation))
       ->capture_default_str();
   add_budget(verb, arguments.budget, "vertices=N: as --max-vertices N; error=Xmm: as --fit-error Xmm")
       .type_name("vertices=N|error=Xmm")
@@ -92,7 +97,7 @@ int run(const FitArguments& arguments, Console& console) {
   std::string options = "fit" + describe(fitting);
   if (wanted.max_vertices > 0) options += " --max-vertices " + std::to_string(wanted.max_vertices);
   const VesselSurface& fitted = result.surface;
-  const SurfaceMeasurement measurement = measure_surface(fitted.mesh);
+  const SurfaceMeasurement measurement = measure_surface(fitted.mesh, result.elongation);
   if (measurement.self_intersections > 0) {
     console.error(path.string() + ": fitted, " + std::to_string(measurement.self_intersections) +
                   " pairs of its faces cross; nothing is written");

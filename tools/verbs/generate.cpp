@@ -1,5 +1,6 @@
 #include <charconv>
 #include <sstream>
+#include <utility>
 
 #include "vmesh/core/text.h"
 #include "vmesh/deform/linear_skin.h"
@@ -256,15 +257,28 @@ void write(const GenerateReport& report) {
                 arguments.writing, skin ? &*skin : nullptr);
 }
 
-/// Fitting makes triangles even again.
+bool has_fit(const GenerateArguments& arguments) {
+  return !arguments.fitting.reference.path.empty() || arguments.segmentation;
+}
+
+/// A surface that is fitted grows with even triangles.
+void give_elongation_to_fit(GenerateArguments& arguments) {
+  if (has_fit(arguments)) arguments.fitting.options.elongation = std::exchange(arguments.production.growth.elongation, 1);
+}
+
 void check_elongation(const GenerateArguments& arguments) {
   const GenerateOptions& options = arguments.production.growth;
   if (options.least_vertices > 0 && (options.elongation == 1 || options.deformable))
     throw UsageError("--least-vertices needs " + std::string(kElongationFlag) +
                      " above 1, and no --deformable: else no vertices are left out");
   if (options.elongation == 1) return;
-  if (!arguments.fitting.reference.path.empty() || arguments.segmentation)
-    throw UsageError(std::string(kElongationFlag) + " cannot be combined with fitting, which makes triangles even");
+  if (has_fit(arguments)) {
+    const std::string with_fit = " cannot be combined with fitting to long triangles (" + std::string(kElongationFlag);
+    if (options.least_vertices > 0)
+      throw UsageError("--least-vertices" + with_fit + "): --budget vertices=N is the number of their vertices");
+    if (options.deformable) throw UsageError("--deformable" + with_fit + "): leave out one of the two options");
+    if (!arguments.fitting.options.resize) throw UsageError("--keep-triangles" + with_fit + "), which changes them");
+  }
   if (options.growth == GrowthMethod::paper) throw UsageError(std::string(kElongationFlag) + " needs --growth guided");
 }
 
@@ -291,6 +305,7 @@ int run(const GenerateArguments& given, Console& console) {
   arguments.segmentation = is_segmentation(arguments.input);
   check_arguments(arguments);
   apply_budget_to_fit(arguments);
+  give_elongation_to_fit(arguments);
   Stopwatch watch;
   GenerateReport report;
   report.arguments = &arguments;

@@ -465,6 +465,7 @@ def fit(
     resize: bool,
     max_vertices: int,
     error: float,
+    elongation: float,
     max_skewness: float,
     samples: int,
     tolerance: float,

@@ -14,10 +14,19 @@ struct FitVertex {
   double size = 0;        ///< intended length of the edges, mm
   double base_size = 0;   ///< size on the surface as given
   Index match = kNone;    ///< a face of the reference that was matched nearby
+  /// Direction in which triangles may be longer, times by how much; zero where they are even.
+  Vec3 elongation = Vec3::Zero();
 
   /// Of a vertex at `p` added between two.
   static FitVertex between(const FitVertex& a, const FitVertex& b, const Vec3& p) {
-    return {p, std::min(a.cone, b.cone), kNone, 0.5 * (a.size + b.size), 0.5 * (a.base_size + b.base_size), a.match};
+    const double sign = a.elongation.dot(b.elongation) < 0 ? -1 : 1;  // directions have none
+    return {p,
+            std::min(a.cone, b.cone),
+            kNone,
+            0.5 * (a.size + b.size),
+            0.5 * (a.base_size + b.base_size),
+            a.match,
+            0.5 * (a.elongation + sign * b.elongation)};
   }
 };
 

@@ -34,8 +34,9 @@ std::vector<ShapePull> shape_pulls(const FitMesh& surface, const VesselField& fi
 
 void step_nearer(FitMesh& surface, const Matches& matches, const FitSetting& setting, const std::vector<char>& frozen,
                  const LeastSquaresWeights& weights) {
-  std::vector<Vec3> steps = least_squares_steps(surface, matches, shape_pulls(surface, setting.field),
-                                                setting.opening_normals, frozen, weights);
+  const std::vector<ShapePull> pulls = setting.even ? shape_pulls(surface, setting.field)
+                                                    : std::vector<ShapePull>(surface.vertices().size());
+  std::vector<Vec3> steps = least_squares_steps(surface, matches, pulls, setting.opening_normals, frozen, weights);
   for (Index v = 0; v < steps.size(); ++v) {
     const double longest = kLongestStep * surface.mean_edge(v), norm = steps[v].norm();
     if (norm > longest) steps[v] *= longest / norm;
@@ -58,6 +59,13 @@ void find_cones(FitMesh& surface, const VesselField& field) {
   tbb::parallel_for(Index{0}, static_cast<Index>(surface.vertices().size()), [&](Index v) {
     surface.edit(v).cone = field.sample(surface.position(v), surface.vertex(v).cone).cone;
   });
+}
+
+void pack(FitMesh& surface, std::vector<Opening>& openings) {
+  const std::vector<Index> number = surface.pack();
+  for (Opening& opening : openings) {
+    for (Index& v : opening.ring) v = number[v];
+  }
 }
 
 void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh, const FitSetting& setting) {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "vmesh/surface/generate.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "fit/correspondence.h"
@@ -18,6 +19,7 @@ struct FitSetting {
   const VesselField& field;
   std::vector<Vec3> opening_normals;  ///< unit, by FitVertex::opening
   StepGuard guard;
+  bool even = true;  ///< triangles are to become even
 };
 
 /// Moves the vertices by one guarded step of least squares, except for frozen ones, and renews their cones.
@@ -29,6 +31,9 @@ void step_nearer(FitMesh& surface, const Matches& matches, const FitSetting& set
 double distance_from_reference(const Vec3& p, Index cone, const Vec3& normal, const FitSetting& setting);
 
 void find_cones(FitMesh& surface, const VesselField& field);
+
+/// Removes unused numbers.
+void pack(FitMesh& surface, std::vector<Opening>& openings);
 
 /// flip_edges_closer() by the distance from the reference.
 void flip_closer(FitMesh& surface, const std::vector<char>& frozen, bool harsh, const FitSetting& setting);

@@ -16,9 +16,11 @@
 #include "fit/correspondence.h"
 #include "fit/farthest.h"
 #include "fit/fit_steps.h"
+#include "fit/long_triangles.h"
 #include "fit/reshaping.h"
 #include "fit/resizing.h"
 #include "fit/spikes.h"
+#include "fit/subdivision.h"
 #include "fit/unmatched.h"
 
 namespace vmesh {
@@ -45,6 +47,14 @@ constexpr int kCorrections = 5, kErrorCorrections = 8;
 constexpr double kFinest = 0.5, kCoarsest = 1.5;  // without an error, relative to sizes for the count wanted
 constexpr double kErrorStep = 1.4, kErrorRefinement = 8, kErrorCoarsest = 4;
 // The error is kept where 95 % of the distances are between these shares of it.
+// Long triangles: the even fit from which they are made has this multiple of their number (measured on three fits: 6: 3
+// % farther, 4: 7), in the end halved this often; more vertices than twice the reference's add nothing.
+constexpr double kDense = 8, kDenseReference = 2;
+constexpr int kSubdivisions = 2, kDenseSteps = 2;
+// With an error: the even fit has it before it is halved, once.
+constexpr double kLongShare = 0.4;  // of its vertices: the first number to be tried
+constexpr int kLongCorrections = 6;
+constexpr double kLongError = 0.97;  // of the error: aim of the corrections
 constexpr double kNearlyError = 0.88, kKeptError = 0.95;
 constexpr double kSettled = 0.05;  // change of the number of vertices in a round, below which it has settled
 constexpr double kAimPower = 0.7, kAimStep = 1.25;  // how strongly and how far the aim follows what came out
@@ -64,6 +74,10 @@ void check(const FitOptions& options) {
     throw InvalidInput("the largest skewness of a fit is 0.1 to 0.9");
   if (!(options.error >= 0 && std::isfinite(options.error)))
     throw InvalidInput("the error of a fit is 0 or more, and finite");
+  if (!(options.elongation >= 1 && options.elongation <= kMostElongation))
+    throw InvalidInput("the elongation of a fit is 1 to " + std::to_string(kMostElongation));
+  if (options.elongation > 1 && !options.resize)
+    throw InvalidInput("a fit that keeps the triangles cannot have an elongation: leave out one of the two options");
 }
 
 void check(const VesselSurface& surface, const VesselField& field) {
@@ -109,7 +123,14 @@ class Fit {
         openings_(surface.openings.empty() ? find_openings(surface.mesh) : surface.openings) {
     setting_.guard.max_skewness = options.max_skewness;
     if (options.error > 0) limits_.step = kErrorStep;
-    const double count = kSamplesPerFace * static_cast<double>(surface_.faces().size());
+    most_vertices_ = options.max_vertices;
+    if (most_vertices_ == 0)
+      most_vertices_ = static_cast<std::size_t>(kMore * static_cast<double>(surface.mesh.vertices.size()));
+    long_vertices_ = static_cast<std::size_t>(kOfMostVertices * static_cast<double>(most_vertices_));
+    const double more =
+        static_cast<double>(options.max_vertices) / static_cast<double>(surface.mesh.vertices.size());
+    const double count =
+        kSamplesPerFace * (to_error_ ? 1 : std::max(1.0, more)) * static_cast<double>(surface_.faces().size());
     samples_ = reference_.samples(field, static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < samples_.size(); i += kFewer) {
       few_samples_.push_back(samples_[i]);
@@ -117,9 +138,7 @@ class Fit {
     }
     samples_and_rims_ = samples_;
     for (const ReferenceSample& sample : reference_.rim_samples()) samples_and_rims_.push_back(sample);
-    most_vertices_ = options.max_vertices;
-    if (most_vertices_ == 0)
-      most_vertices_ = static_cast<std::size_t>(kMore * static_cast<double>(surface.mesh.vertices.size()));
+    if (is_long() && !to_error_) most_vertices_ = vertices_before_subdivision();
     wanted_vertices_ = static_cast<std::size_t>(kOfMostVertices * static_cast<double>(most_vertices_));
     const double refinement =
         options.error > 0
@@ -158,6 +177,7 @@ class Fit {
     }
     if (options_.resize) resize();
     if (options_.resize && !to_error_) keep_to_wanted_vertices();
+    if (is_long()) return to_error_ ? make_long_to_error() : make_long();
     finish();
     for (int i = 0; options_.resize && to_error_ && i < kErrorCorrections && !keeps_error(); ++i) {
       even_error_ *= kCorrection;
@@ -173,6 +193,7 @@ class Fit {
       const FieldSample sample = field_.sample(v.position, v.cone);
       result.surface.binding.push_back({sample.cone, sample.t});
       result.radius.push_back(field_.relations().radius_at(sample.cone, sample.t));
+      if (is_long()) result.elongation.push_back(v.elongation);
     }
     result.surface.mesh = surface_.tri_mesh();
     result.surface.openings = openings_;
@@ -183,7 +204,7 @@ class Fit {
   static std::vector<FitVertex> vertices_of(const VesselSurface& surface) {
     std::vector<FitVertex> vertices;
     for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v)
-      vertices.push_back({surface.mesh.vertices[v], surface.binding[v].segment, kNone, 0, 0, kNone});
+      vertices.push_back({surface.mesh.vertices[v], surface.binding[v].segment});
     return vertices;
   }
 
@@ -197,11 +218,15 @@ class Fit {
       throw InvalidInput("the reference is nowhere near the surface; do both have the same unit and frame?");
   }
 
-  Matches next_matches(bool coarse = false) {
+  void report_round() {
     ++rounds_;
     const double share = static_cast<double>(rounds_) /
                          (rounds_ + kFirstRounds);  // an estimate: the number of rounds is not known beforehand
     report_progress(*progress_, "fit", share);
+  }
+
+  Matches next_matches(bool coarse = false) {
+    report_round();
     return matches_now(coarse);
   }
 
@@ -231,11 +256,63 @@ class Fit {
     if (options_.resize) bring_farthest_nearer(surface_, samples_and_rims_, setting_, most_vertices_);
   }
 
-  bool keeps_error() const {
-    const TriMesh mesh = surface_.tri_mesh();
-    return sample_distance(mesh, reference_.index(), options_.samples).distance.p95 <= options_.error &&
-           sample_distance(reference_.mesh(), ClosestPointIndex(mesh), options_.samples).distance.p95 <= options_.error;
+  bool is_long() const { return options_.elongation > 1; }
+
+  std::size_t vertices_before_subdivision() const {
+    const double wanted = static_cast<double>(long_vertices_);
+    const double most = std::max(2 * wanted, kDenseReference * static_cast<double>(reference_.mesh().vertices.size()));
+    return static_cast<std::size_t>(std::min(kDense * wanted, most) / std::pow(4, kSubdivisions));
   }
+
+  void make_long() {
+    check_memory(surface_.vertices().size() * (std::size_t{1} << (2 * kSubdivisions)), reference_.mesh());
+    make_dense(kSubdivisions);
+    make_long(long_vertices_);
+  }
+
+  // With as few vertices as the error allows, of which there are about so many that it is inversely proportional to
+  // them.
+  void make_long_to_error() {
+    const double even = static_cast<double>(surface_.vertices().size());
+    check_memory(4 * surface_.vertices().size(), reference_.mesh());
+    make_dense(1);
+    const FitMesh dense = surface_;
+    const std::vector<Opening> openings = openings_;
+    const double most = options_.max_vertices > 0 ? static_cast<double>(options_.max_vertices) : 2 * even;
+    double vertices = std::min(kLongShare * even, most);
+    for (int i = 0; i < kLongCorrections; ++i) {
+      surface_ = dense;
+      openings_ = openings;
+      make_long(static_cast<std::size_t>(vertices));
+      const double error = p95(), share = error / options_.error;
+      if ((share <= 1 && share > kKeptError) || (share > 1 && vertices >= most)) return;
+      vertices = std::min(most, vertices * share / kLongError);
+    }
+  }
+
+  // A fit of many even triangles.
+  void make_dense(int subdivisions) {
+    for (int i = 0; i < subdivisions; ++i) {
+      subdivide(surface_);
+      step(next_matches(false));
+      reshape(2, false);
+    }
+    for (int i = 0; i < kDenseSteps; ++i) step(next_matches(false));
+  }
+
+  void make_long(std::size_t vertices) {
+    const auto round = [this] { report_round(); };
+    LongTriangles(surface_, openings_, setting_, samples_, round).make(vertices, options_.elongation);
+  }
+
+  double p95() const {
+    const TriMesh mesh = surface_.tri_mesh();
+    return std::max(
+        sample_distance(mesh, reference_.index(), options_.samples).distance.p95,
+        sample_distance(reference_.mesh(), ClosestPointIndex(mesh), options_.samples).distance.p95);
+  }
+
+  bool keeps_error() const { return p95() <= options_.error; }
 
   void step(const Matches& matches) { step_nearer(surface_, matches, setting_); }
 
@@ -250,7 +327,7 @@ class Fit {
       for (int i = 0; i < kRelaxations; ++i) relax(surface, frozen, setting_.guard, power, first ? 0 : kLeftSkewness);
       repair(surface, frozen, setting_.guard);
     });
-    if (surface_.vertex_count() < surface_.vertices().size()) pack();
+    if (surface_.vertex_count() < surface_.vertices().size()) pack(surface_, openings_);
   }
 
   // Resizes triangles; for an error, until the number of vertices has settled.
@@ -294,7 +371,7 @@ class Fit {
       }
       repair(surface, frozen, setting_.guard);
     });
-    pack();
+    pack(surface_, openings_);
     if (options_.max_vertices > 0 && surface_.vertices().size() > most_vertices_) to_error_ = false;
     // Edge lengths differ a little from the intended sizes; corrects for that.
     aim_ = std::clamp(
@@ -314,13 +391,6 @@ class Fit {
     if (settled_ && p95 > 0) even_error_ *= std::clamp(std::sqrt(kAim * options_.error / p95), 1 / kAimStep, kAimStep);
   }
 
-  void pack() {
-    const std::vector<Index> number = surface_.pack();
-    for (Opening& opening : openings_) {
-      for (Index& v : opening.ring) v = number[v];
-    }
-  }
-
   const VesselField& field_;
   const FitOptions& options_;
   bool to_error_;  // sizes follow an error; otherwise (no error given, or too many vertices) a number of vertices
@@ -329,7 +399,8 @@ class Fit {
   FitMesh surface_;
   std::vector<Opening> openings_;
   std::vector<ReferenceSample> samples_, few_samples_, samples_and_rims_;
-  std::size_t most_vertices_ = 0, wanted_vertices_ = 0;
+  std::size_t most_vertices_ = 0, wanted_vertices_ = 0;  // of even triangles
+  std::size_t long_vertices_ = 0;                        // wanted, if the triangles are to be long
   double even_error_ = 0;  // mm, wanted everywhere
   bool settled_ = false;   // the number of vertices
   int rounds_ = 0;
@@ -401,6 +472,7 @@ FitReport fit_surface(GenerateResult& result, const Centerline& centerline, cons
   result.binding = std::move(fitted.surface.binding);
   result.openings = std::move(fitted.surface.openings);
   result.radius = std::move(fitted.radius);
+  result.elongation = std::move(fitted.elongation);
   result.defects.clear();
   find_defects(centerline, self_intersections(result.mesh), result);
   std::erase_if(result.defects, [&](const Defect& defect) {

@@ -5,7 +5,7 @@
 
 #include "vmesh/edit/crossing_guard.h"
 #include "vmesh/mesh/topology.h"
-#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/metric_skewness.h"
 
 namespace vmesh::fitting {
 namespace {
@@ -132,12 +132,24 @@ double skewness_with(const FitMesh& surface, Index face, Index vertex, const Vec
   for (int i = 0; i < 3; ++i) {
     if (surface.faces()[face][i] == vertex) corners[i] = p;
   }
-  return equiangle_skewness(corners[0], corners[1], corners[2]);
+  return skewness_at(surface, surface.faces()[face], corners);
+}
+
+double skewness_at(const FitMesh& surface, const Triangle& face, const std::array<Vec3, 3>& corners) {
+  const auto& [a, b, c] = face;
+  return metric_skewness(corners,
+                         {surface.vertex(a).elongation, surface.vertex(b).elongation, surface.vertex(c).elongation});
+}
+
+double skewness_after(const FitMesh& surface, const Triangle& face, const FitMesh::Step& step) {
+  std::array<Vec3, 3> elongation;
+  for (std::size_t i = 0; i < 3; ++i)
+    elongation[i] = face[i] == step.vertex ? step.target.elongation : surface.vertex(face[i]).elongation;
+  return metric_skewness(surface.placed(face, step).points, elongation);
 }
 
 double skewness_of(const FitMesh& surface, Index face) {
-  const auto [a, b, c] = surface.corners(face);
-  return equiangle_skewness(a, b, c);
+  return skewness_at(surface, surface.faces()[face], surface.corners(face));
 }
 
 double take_steps(FitMesh& surface, const std::vector<Vec3>& steps, const StepGuard& guard) {

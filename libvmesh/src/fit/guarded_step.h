@@ -18,9 +18,12 @@ struct StepGuard {
 /// share of the steps' length that was taken. No faces cross, before or after.
 double take_steps(FitMesh& surface, const std::vector<Vec3>& steps, const StepGuard& guard);
 
-/// Equiangle skewness of a face with corner i at `p`.
-double skewness_with(const FitMesh& surface, Index face, Index vertex, const Vec3& p);
+/// Equiangle skewness of a face in the metric of its corners' elongation (see metric_skewness()): with its corners
+/// where they are, at others, as a face of a step, with a corner at `p`.
 double skewness_of(const FitMesh& surface, Index face);
+double skewness_at(const FitMesh& surface, const Triangle& face, const std::array<Vec3, 3>& corners);
+double skewness_after(const FitMesh& surface, const Triangle& face, const FitMesh::Step& step);
+double skewness_with(const FitMesh& surface, Index face, Index vertex, const Vec3& p);
 
 /// Whether the cosine between two neighbours' unit normals may change from `before` to `cosine`.
 inline bool may_fold(double cosine, double before, double limit) { return cosine >= std::min(limit, before - 1e-9); }

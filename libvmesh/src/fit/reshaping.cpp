@@ -72,7 +72,7 @@ bool may_place(const FitMesh& surface, Index v, const Vec3& p, const std::vector
     }
     const Vec3 after = unit_normal(corners[0], corners[1], corners[2]);
     if (!(after.dot(before) >= guard.turn)) return false;
-    if (equiangle_skewness(corners[0], corners[1], corners[2]) > worst) return false;
+    if (skewness_at(surface, surface.faces()[f], corners) > worst) return false;
     for (int i = 0; i < 3; ++i) {
       const Index a = surface.faces()[f][i], b = surface.faces()[f][(i + 1) % 3];
       const Index g = surface.face_of(b, a);
@@ -119,12 +119,14 @@ struct FlippedShape {
 };
 
 FlippedShape shape_of(const FitMesh& surface, const Flip& flip) {
-  const Vec3 &pa = surface.position(flip.a), &pb = surface.position(flip.b);
-  const Vec3 &pc = surface.position(flip.c), &pd = surface.position(flip.d);
+  const Index a = flip.a, b = flip.b, c = flip.c, d = flip.d;
+  const Vec3 &pa = surface.position(a), &pb = surface.position(b), &pc = surface.position(c), &pd = surface.position(d);
   const Vec3 n1 = unit_normal(pa, pb, pc), n2 = unit_normal(pb, pa, pd);
   const Vec3 m1 = unit_normal(pc, pa, pd), m2 = unit_normal(pd, pb, pc);
-  return {std::max(equiangle_skewness(pa, pb, pc), equiangle_skewness(pb, pa, pd)),
-          std::max(equiangle_skewness(pc, pa, pd), equiangle_skewness(pd, pb, pc)),
+  const auto skewness = [&](Index u, Index v, Index w) {
+    return skewness_at(surface, {u, v, w}, {surface.position(u), surface.position(v), surface.position(w)});
+  };
+  return {std::max(skewness(a, b, c), skewness(b, a, d)), std::max(skewness(c, a, d), skewness(d, b, c)),
           std::min({m1.dot(n1), m1.dot(n2), m2.dot(n1), m2.dot(n2)}), m1.dot(m2)};
 }
 

@@ -32,7 +32,12 @@ struct FitOptions {
   /// Error to reach with as few vertices as possible, mm: 95 % of either surface is nearer to the other than this. 0:
   /// none; the number of vertices is then kept.
   double error = 0;
-  /// Equiangle skewness beyond which no step may worsen a triangle; 0.1 to 0.9.
+  /// How much longer than wide triangles may be, 1 to kMostElongation: along the direction in which the reference is
+  /// curved least, by the root of the ratio of its curvatures. Above 1, a fit with several times as many even triangles
+  /// is coarsened to the number wanted and fitted again; needs `resize`.
+  double elongation = 1;
+  /// Equiangle skewness beyond which no step may worsen a triangle; 0.1 to 0.9. With an elongation, that of
+  /// metric_skewness(), and at least 0.8.
   double max_skewness = 0.4;
   /// Points on each surface for mean, RMS and percentiles of the report; a quarter of them before the fit.
   std::size_t samples = 25'000;
@@ -80,7 +85,8 @@ struct FitReport {
 
 struct FitResult {
   VesselSurface surface;
-  std::vector<double> radius;  ///< local vessel radius at every vertex's binding, mm
+  std::vector<double> radius;    ///< local vessel radius at every vertex's binding, mm
+  std::vector<Vec3> elongation;  ///< of every vertex, see GenerateResult; empty where triangles are even
   FitReport report;
 };
 

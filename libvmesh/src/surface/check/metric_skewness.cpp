@@ -29,6 +29,12 @@ Elongation mean_of(const std::array<Elongation, 3>& corners) {
   return mean;
 }
 
+Elongation from_vector(const Vec3& elongation) {
+  const double times = elongation.norm();
+  if (times <= 1) return {};
+  return {times, elongation / times};
+}
+
 }  // namespace
 
 double least_skewness(const std::array<Vec3, 3>& p, const std::array<Elongation, 3>& corners) {
@@ -49,17 +55,20 @@ double least_skewness(const std::array<Vec3, 3>& p, const std::array<Elongation,
   return std::min(plain, metric.skewness(p[0], p[1], p[2]));
 }
 
+double metric_skewness(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& elongation) {
+  if (std::all_of(elongation.begin(), elongation.end(), [](const Vec3& e) { return e.isZero(0); }))
+    return equiangle_skewness(corners[0], corners[1], corners[2]);
+  return least_skewness(corners, {from_vector(elongation[0]), from_vector(elongation[1]), from_vector(elongation[2])});
+}
+
 std::vector<double> metric_skewness(const TriMesh& mesh, const std::vector<Vec3>& elongation) {
   if (elongation.empty()) return equiangle_skewness(mesh);
-  const auto at = [&](Index v) -> Elongation {
-    const double times = v < elongation.size() ? elongation[v].norm() : 0;
-    if (times <= 1) return {};
-    return {times, elongation[v] / times};
-  };
+  const auto at = [&](Index v) { return v < elongation.size() ? elongation[v] : Vec3(Vec3::Zero()); };
   std::vector<double> skewness;
   skewness.reserve(mesh.faces.size());
   for (const auto& [a, b, c] : mesh.faces)
-    skewness.push_back(least_skewness({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {at(a), at(b), at(c)}));
+    skewness.push_back(
+        metric_skewness({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {at(a), at(b), at(c)}));
   return skewness;
 }
 
