@@ -42,7 +42,8 @@ Json options_json(const GenerateArguments& arguments) {
   Json json = Json::object();
   for_each_generate_option(arguments.production.growth, [&json](const char* flag, const auto& value, auto, auto,
                                                                 const char*) { json[key_of(flag)] = value; });
-  if (arguments.fitting.options.elongation > 1) json[key_of(kElongationFlag.data())] = arguments.fitting.options.elongation;
+  if (arguments.fitting.options.elongation > 1)
+    json[key_of(kElongationFlag.data())] = arguments.fitting.options.elongation;
   json["growth"] = to_string(arguments.production.growth.growth);
   json["placement"] = to_string(arguments.production.growth.placement);
   json["max_error"] = to_json(arguments.production.growth.max_error);

@@ -263,7 +263,8 @@ bool has_fit(const GenerateArguments& arguments) {
 
 /// A surface that is fitted grows with even triangles.
 void give_elongation_to_fit(GenerateArguments& arguments) {
-  if (has_fit(arguments)) arguments.fitting.options.elongation = std::exchange(arguments.production.growth.elongation, 1);
+  if (has_fit(arguments))
+    arguments.fitting.options.elongation = std::exchange(arguments.production.growth.elongation, 1);
 }
 
 void check_elongation(const GenerateArguments& arguments) {

@@ -105,7 +105,8 @@ void bind_fit(py::module_& module) {
       },
       py::arg("surface").none(false), py::arg("reference").none(false), py::kw_only(), py::arg("progress"),
       py::arg("rounds"), py::arg("resize"), py::arg("max_vertices"), py::arg("error"), py::arg("elongation"),
-      py::arg("max_skewness"), py::arg("samples"), py::arg("tolerance"), py::arg("threads"), "vmesh.fit() without its checks.");
+      py::arg("max_skewness"), py::arg("samples"), py::arg("tolerance"), py::arg("threads"),
+      "vmesh.fit() without its checks.");
 }
 
 }  // namespace vmesh::python

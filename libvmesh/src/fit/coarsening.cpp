@@ -18,10 +18,10 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
-constexpr double kOutdated = 1.02;    // a step whose cost has grown by this factor waits for its turn
-constexpr double kTurn = 0.3;         // least cosine between a face's normals before and after a collapse
-constexpr double kHold = 1e-3;        // of the sum of squares: keeps vertices in directions in which nothing changes
-constexpr double kFarthest = 2;       // edge lengths from the middle of an edge: where its vertex may go
+constexpr double kOutdated = 1.02;  // a step whose cost has grown by this factor waits for its turn
+constexpr double kTurn = 0.3;       // least cosine between a face's normals before and after a collapse
+constexpr double kHold = 1e-3;      // of the sum of squares: keeps vertices in directions in which nothing changes
+constexpr double kFarthest = 2;     // edge lengths from the middle of an edge: where its vertex may go
 // Rounds over which curvature is averaged, an edge each. Measured on three fits: 1 to 6 give the same errors.
 constexpr int kReach = 3;
 
@@ -81,10 +81,9 @@ class Coarsener {
   Coarsener(FitMesh& surface, double max_skewness)
       : surface_(surface),
         max_skewness_(max_skewness),
-        guard_(surface.faces().size(),
-               [&surface](Index f) {
-                 return surface.has_face(f) ? std::make_optional(surface.placed(f)) : std::nullopt;
-               }),
+        guard_(
+            surface.faces().size(),
+            [&surface](Index f) { return surface.has_face(f) ? std::make_optional(surface.placed(f)) : std::nullopt; }),
         count_(surface.vertex_count()) {}
 
   void run(std::size_t vertices) {
@@ -130,7 +129,8 @@ class Coarsener {
   bool collapse(const MeshEdge& e, const Placement& placement) {
     const FitVertex &a = surface_.vertex(e.a), &b = surface_.vertex(e.b);
     FitVertex target = FitVertex::between(a, b, placement.position);
-    target.cone = (placement.position - a.position).norm() <= (placement.position - b.position).norm() ? a.cone : b.cone;
+    target.cone =
+        (placement.position - a.position).norm() <= (placement.position - b.position).norm() ? a.cone : b.cone;
     const FitMesh::Step step = surface_.collapsing(e.b, e.a, target);
     if (!keeps_shapes(step)) return false;
     std::vector<PlacedFace> faces;

@@ -34,8 +34,8 @@ std::vector<ShapePull> shape_pulls(const FitMesh& surface, const VesselField& fi
 
 void step_nearer(FitMesh& surface, const Matches& matches, const FitSetting& setting, const std::vector<char>& frozen,
                  const LeastSquaresWeights& weights) {
-  const std::vector<ShapePull> pulls = setting.even ? shape_pulls(surface, setting.field)
-                                                    : std::vector<ShapePull>(surface.vertices().size());
+  const std::vector<ShapePull> pulls =
+      setting.even ? shape_pulls(surface, setting.field) : std::vector<ShapePull>(surface.vertices().size());
   std::vector<Vec3> steps = least_squares_steps(surface, matches, pulls, setting.opening_normals, frozen, weights);
   for (Index v = 0; v < steps.size(); ++v) {
     const double longest = kLongestStep * surface.mean_edge(v), norm = steps[v].norm();

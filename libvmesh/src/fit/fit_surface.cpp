@@ -127,8 +127,7 @@ class Fit {
     if (most_vertices_ == 0)
       most_vertices_ = static_cast<std::size_t>(kMore * static_cast<double>(surface.mesh.vertices.size()));
     long_vertices_ = static_cast<std::size_t>(kOfMostVertices * static_cast<double>(most_vertices_));
-    const double more =
-        static_cast<double>(options.max_vertices) / static_cast<double>(surface.mesh.vertices.size());
+    const double more = static_cast<double>(options.max_vertices) / static_cast<double>(surface.mesh.vertices.size());
     const double count =
         kSamplesPerFace * (to_error_ ? 1 : std::max(1.0, more)) * static_cast<double>(surface_.faces().size());
     samples_ = reference_.samples(field, static_cast<std::size_t>(count));
@@ -307,9 +306,8 @@ class Fit {
 
   double p95() const {
     const TriMesh mesh = surface_.tri_mesh();
-    return std::max(
-        sample_distance(mesh, reference_.index(), options_.samples).distance.p95,
-        sample_distance(reference_.mesh(), ClosestPointIndex(mesh), options_.samples).distance.p95);
+    return std::max(sample_distance(mesh, reference_.index(), options_.samples).distance.p95,
+                    sample_distance(reference_.mesh(), ClosestPointIndex(mesh), options_.samples).distance.p95);
   }
 
   bool keeps_error() const { return p95() <= options_.error; }
@@ -401,8 +399,8 @@ class Fit {
   std::vector<ReferenceSample> samples_, few_samples_, samples_and_rims_;
   std::size_t most_vertices_ = 0, wanted_vertices_ = 0;  // of even triangles
   std::size_t long_vertices_ = 0;                        // wanted, if the triangles are to be long
-  double even_error_ = 0;  // mm, wanted everywhere
-  bool settled_ = false;   // the number of vertices
+  double even_error_ = 0;                                // mm, wanted everywhere
+  bool settled_ = false;                                 // the number of vertices
   int rounds_ = 0;
   const Progress* progress_ = nullptr;
   double aim_ = 1;  // correction to the number of vertices asked for

@@ -67,8 +67,7 @@ std::vector<double> metric_skewness(const TriMesh& mesh, const std::vector<Vec3>
   std::vector<double> skewness;
   skewness.reserve(mesh.faces.size());
   for (const auto& [a, b, c] : mesh.faces)
-    skewness.push_back(
-        metric_skewness({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {at(a), at(b), at(c)}));
+    skewness.push_back(metric_skewness({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {at(a), at(b), at(c)}));
   return skewness;
 }
 
