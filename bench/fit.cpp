@@ -1,4 +1,4 @@
-// Gain and cost of fitting, beside edge collapse of the reference to as many vertices (Garland and Heckbert by CGAL and
+// Gain and cost of fitting, with even and with long triangles, beside edge collapse of the reference to as many vertices (Garland and Heckbert by CGAL and
 // by VTK; Lindstrom and Turk by CGAL): a table in Markdown. Distances are the larger of both directions, mm; time is
 // user CPU on one thread, including the report's own measurements. Usage:
 //   bench_fit; cases are those of ../shared/data named below.
@@ -16,6 +16,7 @@
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/reference/reference_surface.h"
 #include "vmesh/skeleton/extract_centerline.h"
+#include "vmesh/surface/metric_skewness.h"
 #include "vmesh/volume/contacts.h"
 
 #include "peers.h"
@@ -67,8 +68,10 @@ Distances distances(const TriMesh& surface, const TriMesh& reference) {
   return {hausdorff(surface, reference, {1e-3, {}}).upper(), std::max(a.mean, b.mean), std::max(a.p95, b.p95)};
 }
 
-void print(const char* name, const char* method, const TriMesh& mesh, const Distances& d, double seconds) {
-  const SkewnessSummary skewness = summarize_skewness(mesh);
+// Skewness is that in the metric of the elongation, if there is one.
+void print(const char* name, const char* method, const TriMesh& mesh, const Distances& d, double seconds,
+           const std::vector<Vec3>& elongation = {}) {
+  const SkewnessSummary skewness = summarize_skewness(metric_skewness(mesh, elongation));
   const bool closed = measure_topology(mesh).closed;
   std::printf("| %s | %s | %zu | %.2f | %.3f | %.3f | %.3f / %.3f | %s, %zu | ", name, method, mesh.vertices.size(),
               d.hausdorff, d.mean, d.p95, skewness.mean, skewness.max, closed ? "yes" : "no",
@@ -81,6 +84,18 @@ void print_collapsed(const char* method, const TriMesh& collapsed, const TriMesh
   print("", method, collapsed, distances(collapsed, reference), 0);
 }
 
+// Returns the number of vertices.
+std::size_t print_fitted(const char* method, const GenerateResult& grown, const Centerline& centerline,
+                         const TriMesh& reference, FitOptions options) {
+  GenerateResult result = grown;
+  options.threads = 1;
+  const double begin = user_seconds();
+  fit_surface(result, centerline, reference, options);
+  const double seconds = user_seconds() - begin;
+  print("", method, result.mesh, distances(result.mesh, reference), seconds, result.elongation);
+  return result.mesh.vertices.size();
+}
+
 void measure(const Case& c) {
   const TriMesh reference = reference_of(c);
   ExtractOptions extraction;
@@ -90,17 +105,14 @@ void measure(const Case& c) {
       separate_contacts(with_round_ends(extracted.centerline, extracted.end_sections)).centerline;
   GenerateOptions options;
   options.around = c.around;
-  GenerateResult result = generate_surface(centerline, options);
-  print(c.name, "round cones", result.mesh, distances(result.mesh, reference), 0);
-  FitOptions fit;
-  fit.threads = 1;
-  const double begin = user_seconds();
-  fit_surface(result, centerline, reference, fit);
-  const double seconds = user_seconds() - begin;
-  const Distances fitted = distances(result.mesh, reference);
-  print("", "fitted", result.mesh, fitted, seconds);
-  const double share =
-      static_cast<double>(result.mesh.vertices.size()) / static_cast<double>(reference.vertices.size());
+  const GenerateResult grown = generate_surface(centerline, options);
+  print(c.name, "round cones", grown.mesh, distances(grown.mesh, reference), 0);
+  const std::size_t vertices = print_fitted("fitted", grown, centerline, reference, {});
+  FitOptions elongated;
+  elongated.elongation = kMostElongation;
+  elongated.max_vertices = vertices;
+  print_fitted("fitted, long triangles", grown, centerline, reference, elongated);
+  const double share = static_cast<double>(vertices) / static_cast<double>(reference.vertices.size());
   const bench::CgalMesh peer(reference);
   print_collapsed("quadric decimation, CGAL", peer.quadric_decimated(share), reference);
   if (bench::have_vtk())

@@ -13,6 +13,7 @@
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/defects.h"
 
+#include "fit/buried.h"
 #include "fit/correspondence.h"
 #include "fit/farthest.h"
 #include "fit/fit_steps.h"
@@ -238,6 +239,13 @@ class Fit {
     return matches;
   }
 
+  // Returns whether there were any; matches are then outdated.
+  bool remove_buried(const Matches& matches) {
+    if (!options_.resize || remove_buried_walls(surface_, matches, setting_) == 0) return false;
+    pack(surface_, openings_);
+    return true;
+  }
+
   Matches matches_now(bool coarse) {
     Matches matches = find_matches(surface_, reference_, coarse ? few_samples_ : samples_, field_,
                                    {coarse ? kCoarseDivision : kDivision});
@@ -332,7 +340,8 @@ class Fit {
   void resize() {
     const int rounds = std::max(1, options_.rounds - kFirstRounds - kLastRounds);
     for (int i = 0; i < (to_error_ ? rounds + kMoreRounds : rounds); ++i) {
-      const Matches matches = matches_after_step();
+      Matches matches = matches_after_step();
+      if (remove_buried(matches)) matches = matches_after_step();
       const std::size_t before = surface_.vertices().size();
       const double p95 = to_error_ ? matched_distance(matches, 0.95) : 0;
       if (to_error_ && settled_ && i >= rounds && p95 <= kKeptError * options_.error &&
