@@ -1,6 +1,6 @@
-// Gain and cost of fitting, with even and with long triangles, beside edge collapse of the reference to as many vertices (Garland and Heckbert by CGAL and
-// by VTK; Lindstrom and Turk by CGAL): a table in Markdown. Distances are the larger of both directions, mm; time is
-// user CPU on one thread, including the report's own measurements. Usage:
+// Gain and cost of fitting, with even and with long triangles, beside edge collapse of the reference to as many
+// vertices (Garland and Heckbert by CGAL and by VTK; Lindstrom and Turk by CGAL): a table in Markdown. Distances are
+// the larger of both directions, mm; time is user CPU on one thread, including the report's own measurements. Usage:
 //   bench_fit; cases are those of ../shared/data named below.
 #include <cstdio>
 #include <optional>
