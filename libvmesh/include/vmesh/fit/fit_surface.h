@@ -101,7 +101,8 @@ std::vector<Opening> find_openings(const TriMesh& mesh);
 /// same vessel along the graph, within 1.5 local radii; squared distances along the line between the two are minimised
 /// over all vertices at once (tangent distances; Pottmann, Huang, Yang, Hu, "Geometry and convergence analysis of
 /// algorithms for registration of 3D shapes", 2006), with tangential springs and smooth increments. Steps are limited
-/// so that triangles keep their shape and no faces cross.
+/// so that triangles keep their shape and no faces cross. With options.resize, walls inside of the reference, as in a
+/// crevice between two vessels that are one lumen there, give way to what spans their mouth.
 ///
 /// `surface` is bound to `centerline`. `reference` faces outwards or inwards as a whole; it may be open and may have
 /// parts that belong to no vessel. Deterministic. Throws InvalidInput for a reference without faces, one whose faces
