@@ -65,7 +65,8 @@ void check_format(const PlannedOutput& output) {
       throw Unsupported(output.path.string() + ": pages are written as .html or .htm");
     if (!VMESH_TOOL_WITH_HTML)
       throw Unsupported(
-          "--html: this vmesh was built without pages; install libjs-three and build it with -DVMESH_WITH_HTML=ON");
+          "--html: this vmesh was built without pages; build it after scripts/install-dependencies, with "
+          "-DVMESH_WITH_HTML=ON");
   }
   if (output.kind == Kind::picture && extension != ".png")
     throw Unsupported(output.path.string() + ": pictures are written as .png only");
