@@ -217,6 +217,13 @@ Arrays are copied. Raises InvalidInput that lists what is wrong; clean() mends t
           }));
 }
 
+/// A tolerance in radii.
+EndTolerance radii_of(double radii) {
+  if (!(radii > 0 && radii <= 1e9))
+    throw InvalidInput("join_ends: radii above 0 are needed, or text such as \"0.5mm\"");
+  return {0, radii};
+}
+
 }  // namespace
 
 void bind_centerline(py::module_& module) {
@@ -252,12 +259,15 @@ nodes.)");
       "read_centerline",
       [](const std::variant<fs::path, std::vector<fs::path>>& path, const std::optional<std::string>& unit,
          const std::optional<std::string>& space, const std::string& radius_array, std::optional<double> radius,
-         const py::object& voxel_size, double tolerance, double overlap_tolerance, std::optional<bool> join_gaps,
-         bool round, bool canonical_order) {
+         const py::object& voxel_size, const std::variant<std::monostate, double, std::string>& join_ends,
+         double tolerance, double overlap_tolerance, std::optional<bool> join_gaps, bool round, bool canonical_order) {
         CenterlineLoadOptions options;
         options.read.radius_array = radius_array;
         options.read.radius = radius;
         if (!voxel_size.is_none()) options.read.voxel_size = to_point(voxel_size, "voxel_size");
+        if (const auto* radii = std::get_if<double>(&join_ends)) options.read.tolerance = radii_of(*radii);
+        if (const auto* text = std::get_if<std::string>(&join_ends))
+          options.read.tolerance = parse_end_tolerance(*text);
         if (unit) options.unit = unit_of(*unit);
         if (space) options.space = space_of(*space);
         options.cleaning = cleaning_options(tolerance, overlap_tolerance, join_gaps, round, canonical_order);
@@ -266,9 +276,9 @@ nodes.)");
       },
       py::arg("path"), py::kw_only(), py::arg("unit") = py::none(), py::arg("space") = py::none(),
       py::arg("radius_array") = "", py::arg("radius") = py::none(), py::arg("voxel_size") = py::none(),
-      py::arg("tolerance") = plain.tolerance, py::arg("overlap_tolerance") = plain.overlap_tolerance,
-      py::arg("join_gaps") = py::none(), py::arg("round") = plain.round,
-      py::arg("canonical_order") = plain.canonical_order,
+      py::arg("join_ends") = py::none(), py::arg("tolerance") = plain.tolerance,
+      py::arg("overlap_tolerance") = plain.overlap_tolerance, py::arg("join_gaps") = py::none(),
+      py::arg("round") = plain.round, py::arg("canonical_order") = plain.canonical_order,
       R"(Reads a centerline by extension (.swc, .vtp, .json, .csv, .vmv, .vtk, .ctgr, .gxl, .am, .dat, .h5
 ...) and cleans it. Several paths make one centerline.
 
@@ -276,6 +286,8 @@ nodes.)");
     radius_array  .vtp, .vtk, .csv, .am: the array of radii, diameters or areas
     radius        mm, for files without radii
     voxel_size    (3,), sides of the voxels in which the file counts: .gxl (in the unit of the radii), .swc (all equal)
+    join_ends     join ends of branches that are nearer to each other than this: "0.5mm", or 0.1 of their radius; the
+                  --tolerance of the command
     the others    as for clean()
 
 Raises ReadError, InvalidInput that names file and line, Unsupported.)");
