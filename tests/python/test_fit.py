@@ -197,8 +197,8 @@ def test_the_voxels_of_a_tiff_have_the_size_given(tmp_path):
     np.testing.assert_allclose(2 * np.ptp(half.nodes, axis=0), np.ptp(whole.nodes, axis=0), atol=1e-3)
     np.testing.assert_allclose(2 * half.radii, whole.radii, rtol=1e-3)
     for unsaid in (vmesh.reference_surface(path), vmesh.extract_centerline(path)):
-        assert any("stack.tif" in warning and "voxel" in warning for warning in unsaid.warnings)
-    assert not any("voxel" in warning for warning in surface.warnings + whole.warnings)
+        assert any("1 mm is assumed" in warning for warning in unsaid.warnings)
+    assert not any("1 mm" in warning for warning in surface.warnings + whole.warnings)
     with pytest.raises(vmesh.InvalidInput, match="above 0"):
         vmesh.reference_surface(path, voxel_size=(1, 0, 1))
     write_segmentation(tmp_path / "s.seg.nrrd", values, ["portal"])
