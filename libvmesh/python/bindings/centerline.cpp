@@ -196,7 +196,8 @@ Arrays are copied. Raises InvalidInput that lists what is wrong; clean() mends t
       .def_readonly("warnings", &CenterlineObject::warnings,
                     "What was assumed because the file does not say, one line each.")
       .def("branches", &branches_of,
-           "The nodes of every branch, uint32 each: stretches between nodes where vessels branch or end. The labels\n"
+           "The nodes of every branch, (k,) uint32 each: stretches between nodes where vessels branch or end. The "
+           "labels\n"
            "of Surface.branch are indices into this list.")
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("unit") = "mm", py::arg("space") = "LPS",
            "Writes it by extension: .json, .swc, .vtp, .csv. The file appears complete or not at all. Raises "
@@ -282,13 +283,15 @@ nodes.)");
       R"(Reads a centerline by extension (.swc, .vtp, .json, .csv, .vmv, .vtk, .ctgr, .gxl, .am, .dat, .h5
 ...) and cleans it. Several paths make one centerline.
 
+    path          a file, or several
     unit, space   win over what the file says: nm, um, mm, cm, m; LPS, RAS
     radius_array  .vtp, .vtk, .csv, .am: the array of radii, diameters or areas
     radius        mm, for files without radii
     voxel_size    (3,), sides of the voxels in which the file counts: .gxl (in the unit of the radii), .swc (all equal)
     join_ends     join ends of branches that are nearer to each other than this: "0.5mm", or 0.1 of their radius; the
                   --tolerance of the command
-    the others    as for clean()
+    tolerance, overlap_tolerance, join_gaps, round, canonical_order
+                  as for clean()
 
 Raises ReadError, InvalidInput that names file and line, Unsupported.)");
   module.def(
@@ -297,8 +300,8 @@ Raises ReadError, InvalidInput that names file and line, Unsupported.)");
         return std::make_shared<CenterlineObject>(CenterlineObject{synthetic_tree({vertices, seed}), {}, {}, {}});
       },
       py::arg("vertices") = SyntheticTreeOptions().vertices, py::arg("seed") = SyntheticTreeOptions().seed,
-      "A tree like a liver's portal vein, of exactly that number of nodes, 2 to 10,000,000. A seed gives the same tree "
-      "always.");
+      "A tree like a liver's portal vein, of exactly `vertices` nodes, 2 to 10,000,000, in mm. A `seed` gives the same "
+      "tree always.");
 }
 
 }  // namespace vmesh::python
