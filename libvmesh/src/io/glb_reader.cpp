@@ -77,8 +77,8 @@ class GlbReader {
     const nlohmann::json& view = element("bufferViews", index_in(described, "bufferView"));
     const std::size_t begin = index_in(view, "byteOffset"), size = index_in(view, "byteLength");
     const std::size_t count = index_in(described, "count");
-    constexpr std::size_t type = std::is_same_v<Number, float> ? 5126 : sizeof(Number) == 4 ? 5125 : 5123;
-    if (index_in(described, "componentType") != type || member(described, "type") != kind)
+    constexpr std::size_t kType = std::is_same_v<Number, float> ? 5126 : sizeof(Number) == 4 ? 5125 : 5123;
+    if (index_in(described, "componentType") != kType || member(described, "type") != kind)
       fail("accessor " + std::to_string(accessor) + ": its numbers are not of the type that vmesh writes");
     if (begin > bytes_.size() || size > bytes_.size() - begin || count > size / (width * sizeof(Number)) ||
         size > bytes_left_)
@@ -136,7 +136,7 @@ class GlbReader {
     const std::size_t channels = member(element("accessors", accessor), "name") == kGlbColorAndAlpha ? 4 : 3;
     const std::vector<double> stored = numbers<std::uint16_t>(accessor, 4, "VEC4");
     for (std::size_t c = 0; c < channels; ++c) {
-      MeshAttribute& channel = attributes.emplace_back(kGlbColorChannels[c], std::vector<double>(), true);
+      MeshAttribute& channel = attributes.emplace_back(MeshAttribute{kGlbColorChannels[c], {}, true});
       channel.values.reserve(stored.size() / 4);
       for (std::size_t i = c; i < stored.size(); i += 4) channel.values.push_back(color_of_glb(stored[i], c));
     }
