@@ -19,13 +19,14 @@ import caps  # noqa: E402
 import hdf5_inputs  # noqa: E402
 import images  # noqa: E402
 import inputs  # noqa: E402
+import itk_inputs  # noqa: E402
 import networkx_inputs  # noqa: E402
 import outputs  # noqa: E402
 import programs  # noqa: E402
 from report import Absent, Table, Vmesh  # noqa: E402
 
-PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "gmsh", "tetgen", "h5py", "networkx", "pydicom", "tifffile",
-            "text")
+PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "gmsh", "tetgen", "h5py", "itk", "networkx", "pydicom",
+            "tifffile", "text")
 
 
 def check(name, table, written, options, folder):
@@ -58,6 +59,8 @@ def check(name, table, written, options, folder):
         images.check_tifffile(table, written)
     elif name == "networkx":
         networkx_inputs.check(table, written)
+    elif name == "itk":
+        itk_inputs.check(table, written)
     elif name == "h5py":
         hdf5_inputs.check(table, written, options.shared_data)
     else:

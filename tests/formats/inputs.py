@@ -313,7 +313,7 @@ def check_text(table, written, shared_data):
         lambda: (path("wall.glb"), written.wall, "mm, LPS of ours"),
         FLOAT,
         True,
-        NORMAL_NAMES,
+        (*NORMAL_NAMES, "red", "green", "blue"),
         (),
         "in, ours",
     )

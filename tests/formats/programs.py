@@ -1,5 +1,4 @@
 """The programs that files are exchanged with. Each is a class that raises Absent where its program is not installed."""
-import glob
 import json
 import os
 import shutil
@@ -154,18 +153,18 @@ class Assimp:
 
 
 class Three:
-    """three.js in node, with the loaders that Debian has beside it (three_reader.js)."""
+    """three.js in node, with its loaders (three_reader.mjs)."""
 
-    folder = "/usr/share/javascript/three"
+    folder = os.path.join(HERE, "..", "..", "build", "node_modules", "three")
 
     def __init__(self):
         self.node = need("node", "nodejs")
-        if not glob.glob(self.folder + "/build/three.js"):
-            raise Absent("three.js is not installed (Debian: libjs-three)")
+        if not os.path.exists(os.path.join(self.folder, "package.json")):
+            raise Absent("three.js is not there (scripts/fetch-three)")
         self.name = "three.js r" + self.call("version")
 
     def call(self, *arguments):
-        return json.loads(run([self.node, os.path.join(HERE, "three_reader.js"), self.folder, *arguments]))
+        return json.loads(run([self.node, os.path.join(HERE, "three_reader.mjs"), self.folder, *arguments]))
 
     def surface(self, path, *pose):
         """With a file of joints' poses, bent by them."""

@@ -331,11 +331,14 @@ TEST(ReadGlb, OurFilesComeBackWithFrameAndAttributes) {
   const TemporaryFolder folder;
   const TriMesh mesh = glb_mesh();
   MeshAttributes attributes;
-  attributes.vertex = {{"radius", {1.5, 2, 2.5, 3, 3}, false},
+  attributes.vertex = {{"red", {255, 1, 2, 3, 9}, true},
+                       {"green", {0, 0, 4, 5, 77}, true},
+                       {"blue", {254, 128, 6, 7, 8}, true},
+                       {"radius", {1.5, 2, 2.5, 3, 3}, false},
                        {"segment", {0, 1, 2, 3, 70000}, true},
-                       {"red", {255, 0, 0, 0, 9}, true},
-                       {"green", {255, 0, 0, 0, 9}, true},
-                       {"blue", {255, 0, 0, 0, 9}, true}};
+                       {"ModelFaceID", {1, 1, 2, 2, 3}, true},
+                       {"volume distance", {-1, 0, .5, 1, 2}, false},
+                       {"volume_distance", {0, 0, .25, 0, 0}, false}};
   write_surface(folder / "t.glb", mesh, attributes);
   LoadedSurface read = read_surface(folder / "t.glb");
   EXPECT_EQ(read.unit, LengthUnit::mm);
@@ -344,16 +347,45 @@ TEST(ReadGlb, OurFilesComeBackWithFrameAndAttributes) {
   ASSERT_EQ(read.mesh.vertices.size(), mesh.vertices.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     EXPECT_LT((read.mesh.vertices[v] - mesh.vertices[v]).norm(), 1e-6) << "float, from the middle of the surface";
-  std::ranges::sort(read.attributes.vertex, {}, &MeshAttribute::name);
-  ASSERT_EQ(read.attributes.vertex.size(), 2u);
-  for (std::size_t a = 0; a < 2; ++a) {
+  ASSERT_EQ(read.attributes.vertex.size(), attributes.vertex.size());
+  for (std::size_t a = 0; a < attributes.vertex.size(); ++a) {
     EXPECT_EQ(read.attributes.vertex[a].name, attributes.vertex[a].name);
     EXPECT_EQ(read.attributes.vertex[a].values, attributes.vertex[a].values);
     EXPECT_EQ(read.attributes.vertex[a].integer, attributes.vertex[a].integer);
   }
   convert_to_internal(read, "t.glb", {}, {});
   EXPECT_TRUE(read.warnings.empty());
-  EXPECT_EQ(read.attributes.vertex[0].values[0], 1.5);
+  EXPECT_EQ(read.attributes.vertex[3].values[0], 1.5);
+}
+
+TEST(ReadGlb, EveryColourComesBack) {
+  const TemporaryFolder folder;
+  TriMesh mesh;
+  MeshAttributes attributes;
+  for (const char* channel : {"red", "green", "blue", "alpha"}) attributes.vertex.push_back({channel, {}, true});
+  for (int i = 0; i < 256; ++i) {
+    mesh.vertices.emplace_back(i, i % 2, 0);
+    if (i > 1) mesh.faces.push_back({static_cast<Index>(i - 2), static_cast<Index>(i - 1), static_cast<Index>(i)});
+    for (int c = 0; c < 4; ++c) attributes.vertex[static_cast<std::size_t>(c)].values.push_back((i + 64 * c) % 256);
+  }
+  write_surface(folder / "t.glb", mesh, attributes);
+  const LoadedSurface read = read_surface(folder / "t.glb");
+  ASSERT_EQ(read.attributes.vertex.size(), 4u);
+  for (std::size_t c = 0; c < 4; ++c) {
+    EXPECT_EQ(read.attributes.vertex[c].name, attributes.vertex[c].name);
+    EXPECT_EQ(read.attributes.vertex[c].values, attributes.vertex[c].values);
+  }
+}
+
+TEST(ReadGlb, AColourChannelAloneIsAnAttribute) {
+  const TemporaryFolder folder;
+  MeshAttributes attributes;
+  attributes.vertex = {{"red", {1, 2, 3, 4, 5}, true}};
+  write_surface(folder / "t.glb", glb_mesh(), attributes);
+  const LoadedSurface read = read_surface(folder / "t.glb");
+  ASSERT_EQ(read.attributes.vertex.size(), 1u);
+  EXPECT_EQ(read.attributes.vertex[0].name, "red");
+  EXPECT_EQ(read.attributes.vertex[0].values, attributes.vertex[0].values);
 }
 
 TEST(ReadGlb, ABrokenFileIsRefused) {

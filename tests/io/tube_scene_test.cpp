@@ -1,4 +1,5 @@
 // Tubes of ITK-TubeTK.
+#include <algorithm>
 #include <bit>
 
 #include "vmesh/io/centerline_io.h"
@@ -19,7 +20,7 @@ std::string error(const std::string& text) {
   return message;
 }
 
-const std::string kScene = "ObjectType = Scene\nNDims = 3\nNObjects = 2\n";
+const std::string kScene = "ObjectType = Scene\nNDims = 3\nNObjects = 1\n";
 
 std::string tube(const std::string& more, const std::string& points, const std::string& count) {
   return "Comment = a vessel\nObjectType = Tube\nObjectSubType = Vessel\nNDims = 3\n" + more +
@@ -89,6 +90,67 @@ TEST(ReadTubeScene, BinaryPointsAreFloats) {
   expect_contains(error(kScene + tube("BinaryData = True\nElementType = MET_SHORT\n", points, "2")), "\"MET_SHORT\"");
 }
 
+TEST(ReadTubeScene, BinaryPointsMayBeginWithTheirHighByte) {
+  std::string points = floats({0, 0, 0, 1, 2, 0, 0, 0, 10, 2, 1.5f, 0});
+  for (std::size_t i = 0; i < points.size(); i += 4)
+    std::reverse(points.begin() + static_cast<std::ptrdiff_t>(i), points.begin() + static_cast<std::ptrdiff_t>(i + 4));
+  for (const char* key : {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}) {
+    const RawCenterline raw = parse(kScene + tube("BinaryData = True\n" + std::string(key) + " = True\n", points, "2"));
+    EXPECT_EQ(raw.nodes[1].position, Vec3(0, 0, 10));
+    EXPECT_EQ(raw.nodes[1].radius, 1.5);
+  }
+  expect_contains(error(kScene + tube("BinaryData = True\nCompressedData = True\n", points, "2")), "compressed");
+}
+
+TEST(ReadTubeScene, PointDimSaysWhereTheNumbersAre) {
+  const std::pair<const char*, const char*> variants[] = {
+      {"x y z r", "1 2 3 4"},
+      {"r x y z", "4 1 2 3"},
+      {"id z y x mark R", "7 3 2 1 0 4"},
+      {"x y z Radius tx ty tz", "1 2 3 4 0 0 1"},
+      {"id x y z red green blue alpha mark r rn mn bn cv lv ro in tx ty tz v1x v1y v1z v2x v2y v2z a1 a2 a3",
+       "0 1 2 3 1 0 0 1 0 4 0 0 0 0 0 0 0 0 0 1 0 0 0 0 0 0 0 0 0"}};
+  for (const auto& [names, numbers] : variants) {
+    const std::string point = numbers;
+    const RawCenterline raw = parse(kScene + "ObjectType = Tube\nNDims = 3\nPointDim = " + names +
+                                    "\nNPoints = 2\nPoints =\n" + point + "\n" + point + " \n");
+    ASSERT_EQ(raw.nodes.size(), 2u) << names;
+    EXPECT_EQ(raw.nodes[1].position, Vec3(1, 2, 3)) << names;
+    EXPECT_EQ(raw.nodes[1].radius, 4) << names;
+  }
+}
+
+TEST(ReadTubeScene, SpacingIsAppliedBeforeTheTransformation) {
+  const RawCenterline raw =
+      parse(kScene + tube("ElementSpacing = .5 .5 2\nTransformMatrix = 0 -3 0 3 0 0 0 0 3\nOffset = 100 0 0\n",
+                          "0 0 0 1 4 0\n2 0 10 2 3 0\n", "2"));
+  EXPECT_EQ(raw.nodes[0].position, Vec3(100, 0, 0));
+  EXPECT_LT((raw.nodes[1].position - Vec3(100, 3, 60)).norm(), 1e-12);
+  EXPECT_NEAR(raw.nodes[0].radius, 4 * .5 * 3, 1e-12) << "radii grow with what is around them";
+  expect_contains(error(kScene + tube("TransformMatrix = 1 0 0 0 0 0 0 0 1\n", "0 0 0 1 4 0\n2 0 10 2 3 0\n", "2")),
+                  "its determinant must not be 0");
+}
+
+TEST(ReadTubeScene, SeveralTubesAreAsManyPaths) {
+  std::string text = kScene;
+  for (int t = 0; t < 7; ++t)
+    text += tube("ID = " + std::to_string(t) + "\nOffset = " + std::to_string(20 * t) + " 0 0\n",
+                 "0 0 0 1 1 0\n0 0 4 2 1 0\n0 0 8 3 1 0\n", "3");
+  const RawCenterline raw = parse(text);
+  EXPECT_EQ(raw.path_starts, (std::vector<Index>{0, 2, 4, 6, 8, 10, 12}));
+  EXPECT_EQ(raw.nodes.back().position, Vec3(120, 0, 8));
+  EXPECT_TRUE(raw.warnings.empty());
+}
+
+TEST(ReadTubeScene, WarnsWhereTheSceneHasFewerObjectsThanItSays) {
+  const std::string scene = "ObjectType = Scene\nNDims = 3\nNObjects = 2\n";
+  const std::string one = tube("", "0 0 0 1 1 0\n0 0 4 2 1 0\n", "2");
+  EXPECT_TRUE(parse(scene + one + one).warnings.empty());
+  const RawCenterline raw = parse(scene + one);
+  ASSERT_EQ(raw.warnings.size(), 1u);
+  expect_contains(raw.warnings[0], "t.tre: NObjects is 2, but only 1 are there; the file may be cut off");
+}
+
 TEST(ReadTubeScene, OtherObjectsAreLeftOut) {
   std::string blob = tube("ID = 9\n", "0 0 0 1 2 0\n0 0 4 1 2 0\n", "2");
   blob.replace(blob.find("= Tube"), 6, "= Blob");
@@ -110,7 +172,7 @@ TEST(ReadTubeScene, NamesTheLineThatIsWrong) {
   };
   EXPECT_EQ(parse(good).nodes.size(), 2u);
   expect_contains(with("ObjectType = Scene\n", ""), "line 1: this is not a scene of tubes");
-  expect_contains(with("NObjects = 2", "hello"), "line 3: \"hello\" is no line such as");
+  expect_contains(with("NObjects = 1", "hello"), "line 3: \"hello\" is no line such as");
   expect_contains(with("id R tx", "id w tx"), "PointDim must name x, y, z and r; it is \"x y z id w tx\"");
   expect_contains(with("= 1 1 1", "= 1 1"), "line 8: ElementSpacing needs 3 numbers");
   expect_contains(with("= 1 1 1", "= 1 1 one"), "\"one\" is not a number");

@@ -2,6 +2,7 @@
 import base64
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -85,8 +86,32 @@ class PageInABrowser(unittest.TestCase):
     def page(self, name):
         return os.path.join(self.folder, name)
 
-    def test_twenty_seven_thousand_vertices_take_less_than_two_megabytes(self):
-        self.assertLess(os.path.getsize(self.page("tree.html")), 2_000_000)
+    def test_twenty_seven_thousand_vertices_take_less_than_1_6_megabytes(self):
+        self.assertLess(os.path.getsize(self.page("tree.html")), 1_600_000)
+
+    def test_has_the_three_js_that_is_pinned(self):
+        with open(os.path.join(os.path.dirname(__file__), "..", "..", "scripts", "fetch-three"), encoding="utf-8") as file:
+            pinned = re.search(r"^version=0\.(\d+)\.", file.read(), re.MULTILINE).group(1)
+        with Browser(400, 400) as browser:
+            browser.open(self.page("eval.html"))
+            self.assertEqual(browser.ask("window.__THREE__"), pinned)
+
+    def test_surfaces_have_the_colours_of_the_legend(self):
+        """Under one light, white and from everywhere, what is drawn is the colour of the scale, not a brighter one."""
+        with Browser(500, 500) as browser:
+            browser.open(self.page("eval.html"), "#color=branch")
+            browser.ask("""(() => { for (const light of vmesh.scene.scene.children.filter(c => c.isLight))
+                light.groundColor.copy(light.color), light.intensity = Math.PI;
+              for (const light of vmesh.scene.camera.children) light.intensity = 0;
+              vmesh.shown.mesh.material.specular.set(0); })()""")
+            vertex = browser.ask(FRONT)[0]
+            drawn, wanted = browser.ask(f"""(v => {{ const {{ scene, attribute, scale, shown }} = vmesh;
+              scene.render();
+              const p = scene.onScreen(shown.vertex(v)), gl = scene.renderer.getContext(), rgba = new Uint8Array(4);
+              gl.readPixels(Math.round(p.x), scene.canvas.height - Math.round(p.y), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, rgba);
+              return [Array.from(rgba).slice(0, 3), scale.color(attribute.value(v))]; }})({vertex})""")
+            for channel in range(3):
+                self.assertAlmostEqual(drawn[channel], wanted[channel], delta=3)
 
     def test_draws_at_the_size_of_a_desk_and_of_a_phone(self):
         for width, height, touch in ((1400, 900, False), (400, 800, True)):

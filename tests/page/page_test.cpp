@@ -132,9 +132,9 @@ TEST_F(Pages, StandAlone) {
   EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
   for (const char* loads : {"<script src", "<link", "@import", "url(", "<iframe"})
     EXPECT_EQ(page.find(loads), std::string::npos) << loads;
-  for (const char* left : {"@TITLE@", "@STYLE@", "@DATA@", "@THREE@", "@CONTROLS@", "@SCRIPT@"})
+  for (const char* left : {"@TITLE@", "@STYLE@", "@DATA@", "@LICENSE@", "@THREE@", "@SCRIPT@"})
     EXPECT_EQ(page.find(left), std::string::npos) << left;
-  std::vector<fs::path> parts = {VMESH_THREE, VMESH_THREE_CONTROLS};
+  std::vector<fs::path> parts = {VMESH_THREE_BUNDLE, VMESH_THREE_LICENSE};
   for (const fs::directory_entry& entry : fs::directory_iterator(VMESH_PAGE_SOURCES))
     if (const fs::path extension = entry.path().extension(); extension == ".js" || extension == ".css")
       parts.push_back(entry.path());

@@ -200,3 +200,18 @@ def test_reads_a_vtp_of_vmtk():
         pytest.skip(f"no data in {data}")
     tree = vmesh.read_centerline(files[0])
     assert len(tree.nodes) > 10 and (tree.radii > 0).all()
+
+
+def test_ends_that_nearly_meet_are_joined(tmp_path):
+    path = tmp_path / "gap.swc"
+    path.write_text("1 3 0 0 0 .5 -1\n2 3 5 0 0 .5 1\n3 3 5.3 0 0 .5 -1\n4 3 9 0 0 .5 3\n")
+    apart = vmesh.read_centerline(path, join_gaps=False)
+    assert apart.components == 2
+    for near in ("0.4mm", 0.7):  # radii
+        joined = vmesh.read_centerline(path, join_gaps=False, join_ends=near)
+        assert joined.components == 1
+        assert any("join" in line for line in joined.cleaning)
+    assert vmesh.read_centerline(path, join_gaps=False, join_ends=0.5).components == 2
+    for wrong in (0, -1, float("nan"), "near"):
+        with pytest.raises(vmesh.InvalidInput, match="0.5mm"):
+            vmesh.read_centerline(path, join_ends=wrong)

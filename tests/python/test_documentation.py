@@ -1,11 +1,14 @@
 """What the README says, run."""
 
+import ast
+import inspect
 import pathlib
 import re
 
 import pytest
 import vmesh
 
+STUBS = pathlib.Path(vmesh.__file__).parent / "_core.pyi"
 README = pathlib.Path(__file__).parents[2] / "libvmesh" / "python" / "README.md"
 
 
@@ -40,3 +43,55 @@ def test_names_in_it_exist(name):
     known = {"help", "PYTHONPATH", "ValueError", "OSError", "KeyboardInterrupt", "False", "progress", "out", "vmesh"}
     known |= {"defects", "surface"}
     assert name in known or any(hasattr(owner, name) for owner in owners), name
+
+
+def stubs(kind):
+    return [node for node in ast.parse(STUBS.read_text()).body if isinstance(node, kind)]
+
+
+def parameters(function):
+    """Names of a public function's parameters: `progress` is the same everywhere."""
+    if inspect.isfunction(function):
+        return set(inspect.signature(function).parameters) - {"progress"}
+    found = [stub for stub in stubs(ast.FunctionDef) if stub.name == function.__name__]
+    assert found, function
+    return {argument.arg for stub in found for argument in stub.args.args + stub.args.kwonlyargs} - {"progress"}
+
+
+FUNCTIONS = sorted(name for name in vmesh.__all__ if inspect.isroutine(getattr(vmesh, name)))
+CLASSES = sorted(name for name in vmesh.__all__ if inspect.isclass(getattr(vmesh, name)))
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_tell_what_every_parameter_is(name):
+    function = getattr(vmesh, name)
+    told = inspect.getdoc(function)
+    if not inspect.isfunction(function):
+        told = told.split("\n\n", 1)[1]  # behind the signature
+    assert [p for p in parameters(function) if not re.search(rf"\b{p}\b", told)] == []
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_members_of_classes_are_told_of(name):
+    members = {n: member for n, member in vars(getattr(vmesh, name)).items() if not n.startswith("_")}
+    assert [n for n, member in members.items() if not inspect.getdoc(member)] == []
+
+
+def members_with_arrays():
+    for stub in stubs(ast.ClassDef):
+        for member in stub.body:
+            if isinstance(member, ast.FunctionDef) and not member.name.startswith("_"):
+                if re.search(r"_Floats|_Indices|NDArray", ast.unparse(member.returns)):
+                    yield stub.name, member.name
+
+
+@pytest.mark.parametrize("owner, name", members_with_arrays())
+def test_arrays_are_told_with_their_shape(owner, name):
+    told = inspect.getdoc(getattr(getattr(vmesh, owner), name))
+    assert re.search(r"\((\w+,|\w+, \d)\)", told), told
+
+
+@pytest.mark.parametrize("owner, name", members_with_arrays())
+def test_positions_are_told_with_their_unit(owner, name):
+    if name in ("nodes", "vertices", "radii", "radius", "position", "center", "from_point", "to_point", "max_at"):
+        assert "mm" in inspect.getdoc(getattr(getattr(vmesh, owner), name))

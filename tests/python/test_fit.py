@@ -1,3 +1,5 @@
+import struct
+
 import numpy as np
 import pytest
 import vmesh
@@ -135,3 +137,72 @@ def test_a_centerline_of_a_mask_is_extracted():
     assert np.median(tree.radii) == pytest.approx(3, rel=0.02)
     with pytest.raises(vmesh.InvalidInput):
         vmesh.extract_centerline(inside, affine, label=7)
+
+
+def write_segmentation(path, values, names):
+    """A .seg.nrrd as 3D Slicer writes it, of one layer: voxels of 1 mm, values 1, 2 ... for the names."""
+    segments = "".join(
+        f"Segment{i}_Name:={name}\nSegment{i}_LabelValue:={i + 1}\nSegment{i}_Layer:=0\n" for i, name in enumerate(names)
+    )
+    header = (
+        "NRRD0004\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\n"
+        f"sizes: {' '.join(map(str, values.shape))}\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
+        f"encoding: raw\nspace origin: (0,0,0)\n{segments}\n"
+    )
+    path.write_bytes(header.encode() + values.astype(np.uint8).tobytes(order="F"))
+
+
+def test_segments_are_chosen_by_name(tmp_path):
+    values = np.zeros((40, 30, 30))
+    values[5:35, 5:11, 5:11] = 1
+    values[5:35, 18:26, 18:26] = 2
+    path = tmp_path / "liver.seg.nrrd"
+    write_segmentation(path, values, ["portal", "hepatic"])
+    by_name = vmesh.reference_surface(path, label="Portal")
+    np.testing.assert_array_equal(by_name.vertices, vmesh.reference_surface(path, label=1).vertices)
+    both = vmesh.reference_surface(path, label=["portal", 2])
+    assert len(both.faces) > len(by_name.faces)
+    tree = vmesh.extract_centerline(path, label="hepatic")
+    np.testing.assert_allclose(tree.nodes[:, 1:], 21.5, atol=0.2)
+    with pytest.raises(vmesh.InvalidInput, match="renal.*portal"):
+        vmesh.reference_surface(path, label="renal")
+    with pytest.raises(vmesh.InvalidInput, match="portal"):
+        vmesh.extract_centerline(values, np.eye(4), label="portal")
+
+
+def write_tiff(path, values):
+    """Pages of bytes, uncompressed, which do not tell the size of a voxel."""
+    width, height, pages = values.shape
+    file = struct.pack("<2sHI", b"II", 42, 8)
+    for page in range(pages):
+        at = len(file) + 2 + 12 * 8 + 4
+        tags = {256: width, 257: height, 258: 8, 259: 1, 262: 1, 273: at, 278: height, 279: width * height}
+        file += struct.pack("<H", len(tags)) + b"".join(struct.pack("<HHII", tag, 4, 1, n) for tag, n in tags.items())
+        file += struct.pack("<I", 0 if page == pages - 1 else at + width * height)
+        file += values[:, :, page].astype(np.uint8).tobytes(order="F")
+    path.write_bytes(file)
+
+
+def test_the_voxels_of_a_tiff_have_the_size_given(tmp_path):
+    values = np.zeros((40, 16, 16))
+    values[4:36, 4:12, 4:12] = 1
+    path = tmp_path / "stack.tif"
+    write_tiff(path, values)
+    try:
+        surface = vmesh.reference_surface(path, voxel_size=(0.5, 1, 2))
+    except vmesh.Unsupported as error:
+        pytest.skip(str(error))
+    np.testing.assert_allclose(np.ptp(surface.vertices, axis=0), [16, 8, 16], atol=1e-6)
+    half, whole = (vmesh.extract_centerline(path, voxel_size=(side, side, side)) for side in (0.5, 1))
+    np.testing.assert_allclose(2 * np.ptp(half.nodes, axis=0), np.ptp(whole.nodes, axis=0), atol=1e-3)
+    np.testing.assert_allclose(2 * half.radii, whole.radii, rtol=1e-3)
+    for unsaid in (vmesh.reference_surface(path), vmesh.extract_centerline(path)):
+        assert any("1 mm is assumed" in warning for warning in unsaid.warnings)
+    assert not any("1 mm" in warning for warning in surface.warnings + whole.warnings)
+    with pytest.raises(vmesh.InvalidInput, match="above 0"):
+        vmesh.reference_surface(path, voxel_size=(1, 0, 1))
+    write_segmentation(tmp_path / "s.seg.nrrd", values, ["portal"])
+    with pytest.raises(vmesh.InvalidInput, match="s.seg.nrrd: voxel_size does not act"):
+        vmesh.reference_surface(tmp_path / "s.seg.nrrd", voxel_size=(1, 1, 1))
+    with pytest.raises(vmesh.InvalidInput, match="affine"):
+        vmesh.extract_centerline(values, np.eye(4), voxel_size=(1, 1, 1))

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vmesh/io/surface_io.h"
+#include "vmesh/mesh/find_attribute.h"
 
 #include "run_vmesh.h"
 
@@ -44,7 +45,7 @@ TEST_F(Deform, PullsABranch) {
   EXPECT_LT(farthest_first, 1e-5);
   // The cap beyond the dragged node turns with it.
   EXPECT_NEAR(farthest, 5, 2.5);
-  EXPECT_EQ(last.attributes.vertex.back().name, "displacement");
+  EXPECT_NE(find_attribute(last.attributes.vertex, "displacement"), nullptr);
 }
 
 TEST_F(Deform, BindsASurfaceThatKnowsNoPlaces) {

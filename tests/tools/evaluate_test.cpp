@@ -128,11 +128,16 @@ TEST_F(Evaluate, WritesTheSurfaceWithWhatToColourItBy) {
                   .exit_code,
               0);
     const LoadedSurface surface = read_surface(path(name));
-    ASSERT_EQ(surface.attributes.vertex.size(), 2u);
+    const bool is_ply = name == "colored.ply";
+    ASSERT_EQ(surface.attributes.vertex.size(), is_ply ? 3u : 2u);
     EXPECT_EQ(surface.attributes.vertex[0].name, "distance");
     // The corners of the lid lie on the walls of the other box, to the rounding of coordinates of 2.
     for (const double distance : surface.attributes.vertex[0].values) EXPECT_LT(distance, 1e-15);
     EXPECT_EQ(surface.attributes.vertex[1].name, "volume_distance");
+    if (is_ply) {
+      EXPECT_EQ(surface.attributes.vertex[2].name, "quality");
+      EXPECT_EQ(surface.attributes.vertex[2].values, surface.attributes.vertex[1].values);
+    }
     ASSERT_EQ(surface.attributes.face.size(), 1u);
     EXPECT_EQ(surface.attributes.face[0].name, "EquiangleSkewness");
     EXPECT_NEAR(surface.attributes.face[0].values[0], 0.25, 1e-12);

@@ -37,6 +37,8 @@ struct WritingArguments {
   Space space = Space::lps;
   std::string attributes = "all";  ///< of surfaces: "all", "vertex" or "none"
   SurfaceEncoding encoding = SurfaceEncoding::usual;
+
+  bool operator==(const WritingArguments&) const = default;
 };
 
 /// A report on stdout and in a file.

@@ -27,7 +27,9 @@ void add_output_after_several(CLI::App& verb, std::filesystem::path& output, con
   verb.add_option("-o,--output", output, help + "; without -o, the last of the files")->type_name(type);
 }
 
-void add_writing(CLI::App& verb, WritingArguments& writing) {
+static constexpr const char* kWriting = "How to write the output";
+
+void add_writing_without_attributes(CLI::App& verb, WritingArguments& writing) {
   add_choice(
       verb, "--output-unit", {"nm", "um", "mm", "cm", "m"},
       [&writing](const std::string& text) { writing.unit = *parse_length_unit(text); }, "unit of the output")
@@ -36,10 +38,6 @@ void add_writing(CLI::App& verb, WritingArguments& writing) {
       verb, "--output-space", {"LPS", "RAS"},
       [&writing](const std::string& text) { writing.space = *parse_space(text); }, "patient frame of the output")
       ->default_str("LPS");
-  verb.add_option("--attributes", writing.attributes,
-                  "of a surface: all; vertex: none of faces, which some PLY readers reject; or none")
-      ->check(CLI::IsMember({"all", "vertex", "none"}))
-      ->capture_default_str();
   verb.add_flag_callback(
       "--ascii", [&writing] { writing.encoding = SurfaceEncoding::text; },
       "write the surface as text (" +
@@ -49,7 +47,16 @@ void add_writing(CLI::App& verb, WritingArguments& writing) {
           "compress a .glb for web pages and game engines (EXT_meshopt_compression), to about a third; positions are "
           "rounded to a millionth of the size")
       ->excludes("--ascii");
-  group(verb, "How to write the output", {"--output-unit", "--output-space", "--attributes", "--ascii", "--compress"});
+  group(verb, kWriting, {"--output-unit", "--output-space", "--ascii", "--compress"});
+}
+
+void add_writing(CLI::App& verb, WritingArguments& writing) {
+  add_writing_without_attributes(verb, writing);
+  verb.add_option("--attributes", writing.attributes,
+                  "of a surface: all; vertex: none of faces, which some PLY readers reject; or none")
+      ->check(CLI::IsMember({"all", "vertex", "none"}))
+      ->capture_default_str()
+      ->group(kWriting);
 }
 
 void add_reading(CLI::App& verb, InputArguments& input, const std::string& of) {

@@ -208,9 +208,7 @@ auto reading_image(const InputArguments& input, Read read) {
     throw UsageError(input.path.string() +
                      ": an image contains its position and unit; --unit and --space do not apply");
   InputArguments others = input;
-  if (const ImageFormat* format = find_format(image_formats(), input.path);
-      format && std::ranges::find(format->options, "voxel-size") != format->options.end())
-    others.read.voxel_size.reset();
+  if (takes_voxel_size(input.path)) others.read.voxel_size.reset();
   refuse_without_effect(others, {}, "an image");
   try {
     return read();

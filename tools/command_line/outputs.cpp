@@ -65,7 +65,8 @@ void check_format(const PlannedOutput& output) {
       throw Unsupported(output.path.string() + ": pages are written as .html or .htm");
     if (!VMESH_TOOL_WITH_HTML)
       throw Unsupported(
-          "--html: this vmesh was built without pages; install libjs-three and build it with -DVMESH_WITH_HTML=ON");
+          "--html: this vmesh was built without pages; build it after scripts/install-dependencies, with "
+          "-DVMESH_WITH_HTML=ON");
   }
   if (output.kind == Kind::picture && extension != ".png")
     throw Unsupported(output.path.string() + ": pictures are written as .png only");
@@ -174,6 +175,8 @@ void check_writing(const fs::path& path, const WritingArguments& writing) {
     throw UsageError(path.string() + ": --compress is for " +
                      listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_compressed_form; })) +
                      " only");
+  if (format == nullptr && writing.attributes != "all")
+    throw UsageError(path.string() + ": --attributes is for surfaces; this is a centerline's");
   if (format != nullptr && format->has_own_frame && (writing.unit != LengthUnit::mm || writing.space != Space::lps))
     throw UsageError(path.string() + ": " + format->name +
                      " is always in metres with y up; --output-unit and --output-space do not apply");

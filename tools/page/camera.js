@@ -28,7 +28,7 @@ function addAxes(svg, scene, look) {
   });
   for (const { letters } of parts) svg.append(...letters.map(({ button }) => button));
   scene.afterDrawing.push(() => {
-    const turn = scene.camera.quaternion.clone().inverse();
+    const turn = scene.camera.quaternion.clone().invert();
     for (const { line, letters } of parts) {
       const ends = letters.map(({ letter, button }) => {
         const v = new THREE.Vector3(...DIRECTIONS[letter].at).normalize().applyQuaternion(turn);

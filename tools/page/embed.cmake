@@ -1,5 +1,5 @@
-# Writes OUTPUT, a C++ source with page_parts() in it. FOLDER holds the parts that are ours; THREE and CONTROLS are
-# three.js and its OrbitControls, empty when they are not there.
+# Writes OUTPUT, a C++ source with page_parts() in it. FOLDER holds the parts that are ours; THREE is what
+# bundle.cmake made of three.js and LICENSE its licence, empty when they are not there.
 set(scripts decode colors legend surface scene camera frames panel cut ruler save main)
 
 # A raw string literal of at most 64 kB each: compilers need take no more.
@@ -35,7 +35,7 @@ add_part(kPage "${FOLDER}/page.html")
 add_part(kStyle "${FOLDER}/page.css")
 add_part(kScript ${scripts})
 add_part(kThree ${THREE})
-add_part(kControls ${CONTROLS})
+add_part(kLicense ${LICENSE})
 file(APPEND "${OUTPUT}.new" "\n}  // namespace\n
 template <std::size_t size>
 constexpr std::string_view view(const char (&text)[size]) {
@@ -43,7 +43,7 @@ constexpr std::string_view view(const char (&text)[size]) {
 }
 
 const PageParts& page_parts() {
-  static constexpr PageParts kParts{view(kPage), view(kStyle), view(kScript), view(kThree), view(kControls)};
+  static constexpr PageParts kParts{view(kPage), view(kStyle), view(kScript), view(kThree), view(kLicense)};
   return kParts;
 }
 

@@ -56,8 +56,8 @@ std::string to_html(const Page& page) {
   return filled(parts.page, {{"@TITLE@", title},
                              {"@STYLE@", parts.style},
                              {"@DATA@", data},
+                             {"@LICENSE@", parts.license},
                              {"@THREE@", parts.three},
-                             {"@CONTROLS@", parts.controls},
                              {"@SCRIPT@", parts.script}});
 }
 

@@ -7,7 +7,7 @@ namespace vmesh::tool {
 /// The parts of pages; the build embeds them in the command (see embed.cmake).
 struct PageParts {
   std::string_view page, style, script;
-  std::string_view three, controls;  ///< three.js and its OrbitControls; empty: not built in
+  std::string_view three, license;  ///< what is used of three.js, and its licence; empty: not built in
 };
 const PageParts& page_parts();
 

@@ -1,5 +1,8 @@
 // The picture: camera, light, and drawing when something has changed.
 
+// Colours are drawn as the legend has them, the numbers of sRGB, without going to linear light and back.
+THREE.ColorManagement.enabled = false;
+
 class Scene {
   constructor(box, bounds) {
     this.box = box;
@@ -8,22 +11,21 @@ class Scene {
     this.camera = new THREE.PerspectiveCamera(35, 1, 0.1, 1000);
     this.camera.up.set(0, 0, 1);
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.canvas = this.renderer.domElement;
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", "The surface in 3D. Drag to rotate, wheel to zoom, click for the values at a vertex.");
     box.prepend(this.canvas);
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
-    this.controls.enableKeys = false;
-    this.controls.screenSpacePanning = true;
     this.controls.target.copy(bounds.center);
     this.camera.position.copy(bounds.center).y -= bounds.radius;
     this.controls.addEventListener("change", () => this.draw());
     this.controls.addEventListener("start", () => this.stopFlight());
-    const light = new THREE.DirectionalLight(0xffffff, 0.52);
+    const light = new THREE.DirectionalLight(0xffffff, 0.52 * Math.PI);
     light.position.set(-0.4, 0.7, 1);
     this.camera.add(light);
-    this.scene.add(this.camera, new THREE.HemisphereLight(0xffffff, 0xb8bcc4, 0.62));
+    this.scene.add(this.camera, new THREE.HemisphereLight(0xffffff, 0xb8bcc4, 0.62 * Math.PI));
     this.afterDrawing = [];
     this.waiting = false;
     this.flight = null;
@@ -120,7 +122,7 @@ class Scene {
     const quiet = atOnce || window.matchMedia("(prefers-reduced-motion: reduce)").matches;
     const place = (t) => {
       const partly = new THREE.Quaternion();
-      THREE.Quaternion.slerp(still, turn, partly, t);
+      partly.slerpQuaternions(still, turn, t);
       const far = fromDistance * (distance / fromDistance) ** t;
       this.controls.target.lerpVectors(fromTarget, target, t);
       this.camera.position.copy(offset).normalize().applyQuaternion(partly).multiplyScalar(far);

@@ -44,7 +44,7 @@ class SurfaceView {
   }
 
   skin() {
-    return new THREE.MeshPhongMaterial({ vertexColors: THREE.VertexColors, side: THREE.DoubleSide, shininess: 18,
+    return new THREE.MeshPhongMaterial({ vertexColors: true, side: THREE.DoubleSide, shininess: 18,
       specular: 0x1c1c1c, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
   }
 

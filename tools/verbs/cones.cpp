@@ -14,12 +14,14 @@ struct ConesArguments {
   InputArguments input;
   std::filesystem::path output;
   int sides = 18;
+  WritingArguments writing;
 };
 
 void add_options(CLI::App& verb, ConesArguments& arguments) {
   add_centerline_input(verb, arguments.input, "centerline");
   add_output_after_several(verb, arguments.output, kSurfaceFile, "surface");
   add_number(verb, "--sides", arguments.sides, 3, 1000, "of a cone");
+  add_writing(verb, arguments.writing);
 }
 
 MeshAttributes attributes_of(const TruncatedCones& cones) {
@@ -31,12 +33,13 @@ MeshAttributes attributes_of(const TruncatedCones& cones) {
 int run(const ConesArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
+  check_writing(arguments.output, arguments.writing);
   check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, files_of(arguments.input));
   const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
   const TruncatedCones cones = truncated_cones(centerline, arguments.sides);
   const std::string how = "cones --sides " + std::to_string(arguments.sides), sha256 = sha256_of(arguments.input);
   write_surface(arguments.output, cones.mesh, attributes_of(cones),
-                {generator_name(), how, file_name_of(arguments.input), sha256});
+                {generator_name(), how, file_name_of(arguments.input), sha256}, arguments.writing);
   console.log("wrote " + arguments.output.string() + ": " + std::to_string(centerline.segments().size()) + " cones, " +
               std::to_string(cones.mesh.vertices.size()) + " vertices");
   write_json(arguments.common.json, {{"schema", "vmesh.cones/1"},

@@ -25,6 +25,7 @@ struct DeformArguments {
   std::filesystem::path script;
   std::filesystem::path output;  ///< folder
   std::string format = "vtp";    ///< extension of the frames
+  WritingArguments writing;
 };
 
 void add_options(CLI::App& verb, DeformArguments& arguments) {
@@ -39,6 +40,7 @@ void add_options(CLI::App& verb, DeformArguments& arguments) {
   verb.add_option("--format", arguments.format, "of the frames")
       ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off", "glb"}))
       ->capture_default_str();
+  add_writing(verb, arguments.writing);
   add_html(verb, arguments.common);
 }
 
@@ -177,7 +179,7 @@ struct Timing {
 class FrameWriter {
  public:
   FrameWriter(const DeformArguments& arguments, const LoadedSurface& rest, const SurfaceBinding& binding)
-      : rest_(rest), binding_(binding), mesh_(rest.mesh), attributes_(rest.attributes) {
+      : rest_(rest), binding_(binding), writing_(arguments.writing), mesh_(rest.mesh), attributes_(rest.attributes) {
     std::erase_if(attributes_.vertex, [](const MeshAttribute& a) { return a.name == "displacement"; });
     attributes_.vertex.push_back({"displacement", std::vector<double>(mesh_.vertices.size())});
     metadata_ = {generator_name(), "deform --script " + arguments.script.filename().string(),
@@ -191,7 +193,7 @@ class FrameWriter {
       displacement[v] = (mesh_.vertices[v] - rest_.mesh.vertices[v]).norm();
       largest_mm_ = std::max(largest_mm_, displacement[v]);
     }
-    write_surface(path, mesh_, attributes_, metadata_);
+    write_surface(path, mesh_, attributes_, metadata_, writing_);
   }
 
   double largest_displacement_mm() const { return largest_mm_; }
@@ -202,6 +204,7 @@ class FrameWriter {
  private:
   const LoadedSurface& rest_;
   const SurfaceBinding& binding_;
+  const WritingArguments& writing_;
   TriMesh mesh_;
   MeshAttributes attributes_;
   SurfaceMetadata metadata_;
@@ -256,6 +259,7 @@ void check_files(const DeformArguments& arguments) {
       {{arguments.common.json, PlannedOutput::Kind::summary}, {arguments.common.html, PlannedOutput::Kind::page}},
       inputs);
   surface_output_format("frame." + arguments.format);
+  check_writing("frame." + arguments.format, arguments.writing);
 }
 
 int run(const DeformArguments& arguments, Console& console) {

@@ -18,6 +18,7 @@ struct EvaluateArguments {
   InputArguments reference;      ///< surface to compare with; empty path: none
   InputArguments centerline;     ///< whose volume to compare with; empty path: none
   std::filesystem::path output;  ///< the surface with distances and skewness; empty: none
+  WritingArguments writing;
   ReportArguments report;
   std::string require;         ///< see parse_requirements()
   double tolerance_mm = 1e-4;  ///< of the Hausdorff distance
@@ -39,6 +40,7 @@ void add_options(CLI::App& verb, EvaluateArguments& arguments) {
                   "the surface with the skewness of its faces, and its vertices' distance to the reference and "
                   "volume_distance (.ply, .vtp)")
       ->type_name(kSurfaceFile);
+  add_writing(verb, arguments.writing);
   add_report(verb, arguments.report);
   add_measuring(verb, arguments.tolerance_mm, arguments.samples);
   add_threads(verb, arguments.threads);
@@ -159,6 +161,11 @@ class Evaluation {
 };
 
 void check_files(const EvaluateArguments& arguments) {
+  if (!arguments.output.empty()) {
+    check_writing(arguments.output, arguments.writing);
+  } else if (arguments.writing != WritingArguments{}) {
+    throw UsageError("how to write the surface was given, but not where; add -o FILE");
+  }
   check_outputs({{arguments.output, PlannedOutput::Kind::surface},
                  {arguments.common.json, PlannedOutput::Kind::summary},
                  {arguments.common.html, PlannedOutput::Kind::page},
@@ -197,7 +204,7 @@ int evaluate(const EvaluateArguments& arguments, Console& console) {
   stop_if_interrupted();
   if (!arguments.output.empty()) {
     write_surface(arguments.output, comparison.surface.mesh, evaluation.attributes(report.measures),
-                  metadata_of(arguments, report.sha256));
+                  metadata_of(arguments, report.sha256), arguments.writing);
     console.log("wrote " + arguments.output.string());
   }
   if (!arguments.common.html.empty()) {

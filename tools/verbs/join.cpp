@@ -20,14 +20,16 @@ struct JoinArguments {
   CommonArguments common;
   std::filesystem::path folder;
   std::filesystem::path output;
+  WritingArguments writing;
   int threads = 0;  ///< 0: as many as there are
 };
 
 void add_options(CLI::App& verb, JoinArguments& arguments) {
   verb.add_option("DIR", arguments.folder, "folder of the parts")->required()->type_name(kFolder);
   add_output(verb, arguments.output, kSurfaceFile,
-             "surface (.ply is written part by part; .vtm lists the parts, each a .vtp file; others need memory for "
-             "the whole)");
+             "surface (.ply is written part by part, unless one of the options below is given; .vtm lists the parts, "
+             "each a .vtp file; others need memory for the whole)");
+  add_writing(verb, arguments.writing);
   add_threads(verb, arguments.threads);
 }
 
@@ -157,7 +159,7 @@ void write_list(const JoinArguments& arguments, const JoinSummary& summary) {
         attributes_of(SurfaceSink::Vertices{surface.mesh.vertices, {}, surface.radius, part.place, part.branch}),
         attributes_of(SurfaceSink::Faces{surface.mesh.faces, skewness, label})};
     write_surface(folder / (part_name(p) + ".vtp"), surface.mesh, std::move(attributes),
-                  metadata_of(summary.manifest.source), WritingArguments{});
+                  metadata_of(summary.manifest.source), arguments.writing);
   }
   write_text(arguments.output, vtm_text(folder.filename().string(), summary.manifest.parts));
 }
@@ -185,7 +187,9 @@ void write_summary(const fs::path& path, const fs::path& output, const JoinSumma
 void check_arguments(const JoinArguments& arguments) {
   const fs::path manifest = arguments.folder / kManifestName;
   check_outputs({{arguments.common.json, PlannedOutput::Kind::summary}}, {manifest});
-  if (extension_of(arguments.output) == ".vtm") {
+  const bool lists_parts = extension_of(arguments.output) == ".vtm";
+  check_writing(lists_parts ? "part.vtp" : arguments.output, arguments.writing);
+  if (lists_parts) {
     check_can_be_written(arguments.output);
   } else {
     check_outputs({{arguments.output, PlannedOutput::Kind::surface}}, {manifest});
@@ -199,17 +203,18 @@ int run(const JoinArguments& arguments, Console& console) {
   PlySink file(arguments.output, metadata);
   MemorySink memory;
   NoSink none;
-  SurfaceSink& sink = extension == ".ply"   ? static_cast<SurfaceSink&>(file)
+  const bool by_blocks = extension == ".ply" && arguments.writing == WritingArguments{};
+  SurfaceSink& sink = by_blocks             ? static_cast<SurfaceSink&>(file)
                       : extension == ".vtm" ? static_cast<SurfaceSink&>(none)
                                             : static_cast<SurfaceSink&>(memory);
   const JoinSummary summary = join_parts(arguments.folder, sink, arguments.threads, console.progress());
   if (!summary.is_sound()) return refuse(arguments, summary, console);
-  if (extension == ".ply") {
+  if (by_blocks) {
     file.finish();
   } else if (extension == ".vtm") {
     write_list(arguments, summary);
   } else {
-    write_surface(arguments.output, memory.mesh, std::move(memory.attributes), metadata, WritingArguments{});
+    write_surface(arguments.output, memory.mesh, std::move(memory.attributes), metadata, arguments.writing);
   }
   std::ostringstream line;
   line << "wrote " << arguments.output.string() << ": " << summary.vertices << " vertices, " << summary.faces

@@ -16,6 +16,7 @@ struct ReferenceArguments {
   std::filesystem::path output;
   ReferenceOptions options;
   double voxel = 0;  ///< of a sampled centerline, mm; 0: not given
+  WritingArguments writing;
 };
 
 void add_options(CLI::App& verb, ReferenceArguments& arguments) {
@@ -28,6 +29,7 @@ void add_options(CLI::App& verb, ReferenceArguments& arguments) {
                 "contour only inside and outside instead of grey values: a staircase, with better triangles");
   verb.add_flag("--all-components", arguments.options.all_components,
                 "keep all components and cavities, not only the component of the largest volume");
+  add_writing_without_attributes(verb, arguments.writing);
 }
 
 void check(const ReferenceArguments& arguments) {
@@ -70,12 +72,13 @@ int run(const ReferenceArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
   check(arguments);
+  check_writing(arguments.output, arguments.writing);
   check_outputs({{arguments.output, Kind::surface}, {arguments.common.json, Kind::summary}}, files_of_input(path));
   const ReferenceSurface surface = contoured(arguments, console);
   stop_if_interrupted();
   const std::string sha256 = sha256_of_input(path);
   write_surface(arguments.output, surface.mesh, {},
-                {generator_name(), describe(arguments), path.filename().string(), sha256});
+                {generator_name(), describe(arguments), path.filename().string(), sha256}, arguments.writing);
   if (surface.components > 1 && !arguments.options.all_components)
     console.log("the largest of " + std::to_string(surface.components) + " components was kept (--all-components)");
   const char* kind = surface.binary ? "a binary volume" : "grey values";

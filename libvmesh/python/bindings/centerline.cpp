@@ -196,7 +196,8 @@ Arrays are copied. Raises InvalidInput that lists what is wrong; clean() mends t
       .def_readonly("warnings", &CenterlineObject::warnings,
                     "What was assumed because the file does not say, one line each.")
       .def("branches", &branches_of,
-           "The nodes of every branch, uint32 each: stretches between nodes where vessels branch or end. The labels\n"
+           "The nodes of every branch, (k,) uint32 each: stretches between nodes where vessels branch or end. The "
+           "labels\n"
            "of Surface.branch are indices into this list.")
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("unit") = "mm", py::arg("space") = "LPS",
            "Writes it by extension: .json, .swc, .vtp, .csv. The file appears complete or not at all. Raises "
@@ -215,6 +216,13 @@ Arrays are copied. Raises InvalidInput that lists what is wrong; clean() mends t
             centerline->end_sections = sections_from(state[5]);
             return centerline;
           }));
+}
+
+/// A tolerance in radii.
+EndTolerance radii_of(double radii) {
+  if (!(radii > 0 && radii <= 1e9))
+    throw InvalidInput("join_ends: radii above 0 are needed, or text such as \"0.5mm\"");
+  return {0, radii};
 }
 
 }  // namespace
@@ -252,12 +260,15 @@ nodes.)");
       "read_centerline",
       [](const std::variant<fs::path, std::vector<fs::path>>& path, const std::optional<std::string>& unit,
          const std::optional<std::string>& space, const std::string& radius_array, std::optional<double> radius,
-         const py::object& voxel_size, double tolerance, double overlap_tolerance, std::optional<bool> join_gaps,
-         bool round, bool canonical_order) {
+         const py::object& voxel_size, const std::variant<std::monostate, double, std::string>& join_ends,
+         double tolerance, double overlap_tolerance, std::optional<bool> join_gaps, bool round, bool canonical_order) {
         CenterlineLoadOptions options;
         options.read.radius_array = radius_array;
         options.read.radius = radius;
         if (!voxel_size.is_none()) options.read.voxel_size = to_point(voxel_size, "voxel_size");
+        if (const auto* radii = std::get_if<double>(&join_ends)) options.read.tolerance = radii_of(*radii);
+        if (const auto* text = std::get_if<std::string>(&join_ends))
+          options.read.tolerance = parse_end_tolerance(*text);
         if (unit) options.unit = unit_of(*unit);
         if (space) options.space = space_of(*space);
         options.cleaning = cleaning_options(tolerance, overlap_tolerance, join_gaps, round, canonical_order);
@@ -266,17 +277,21 @@ nodes.)");
       },
       py::arg("path"), py::kw_only(), py::arg("unit") = py::none(), py::arg("space") = py::none(),
       py::arg("radius_array") = "", py::arg("radius") = py::none(), py::arg("voxel_size") = py::none(),
-      py::arg("tolerance") = plain.tolerance, py::arg("overlap_tolerance") = plain.overlap_tolerance,
-      py::arg("join_gaps") = py::none(), py::arg("round") = plain.round,
-      py::arg("canonical_order") = plain.canonical_order,
+      py::arg("join_ends") = py::none(), py::arg("tolerance") = plain.tolerance,
+      py::arg("overlap_tolerance") = plain.overlap_tolerance, py::arg("join_gaps") = py::none(),
+      py::arg("round") = plain.round, py::arg("canonical_order") = plain.canonical_order,
       R"(Reads a centerline by extension (.swc, .vtp, .json, .csv, .vmv, .vtk, .ctgr, .gxl, .am, .dat, .h5
 ...) and cleans it. Several paths make one centerline.
 
+    path          a file, or several
     unit, space   win over what the file says: nm, um, mm, cm, m; LPS, RAS
     radius_array  .vtp, .vtk, .csv, .am: the array of radii, diameters or areas
     radius        mm, for files without radii
     voxel_size    (3,), sides of the voxels in which the file counts: .gxl (in the unit of the radii), .swc (all equal)
-    the others    as for clean()
+    join_ends     join ends of branches that are nearer to each other than this: "0.5mm", or 0.1 of their radius; the
+                  --tolerance of the command
+    tolerance, overlap_tolerance, join_gaps, round, canonical_order
+                  as for clean()
 
 Raises ReadError, InvalidInput that names file and line, Unsupported.)");
   module.def(
@@ -285,8 +300,8 @@ Raises ReadError, InvalidInput that names file and line, Unsupported.)");
         return std::make_shared<CenterlineObject>(CenterlineObject{synthetic_tree({vertices, seed}), {}, {}, {}});
       },
       py::arg("vertices") = SyntheticTreeOptions().vertices, py::arg("seed") = SyntheticTreeOptions().seed,
-      "A tree like a liver's portal vein, of exactly that number of nodes, 2 to 10,000,000. A seed gives the same tree "
-      "always.");
+      "A tree like a liver's portal vein, of exactly `vertices` nodes, 2 to 10,000,000, in mm. A `seed` gives the same "
+      "tree always.");
 }
 
 }  // namespace vmesh::python

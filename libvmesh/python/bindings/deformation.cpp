@@ -211,7 +211,7 @@ void bind_state(DeformationClass& deformation) {
 
 void bind_deformation(py::module_& module) {
   py::class_<StepReport>(module, "StepReport", "What happened in a step.")
-      .def_readonly("iterations", &StepReport::iterations)
+      .def_readonly("iterations", &StepReport::iterations, "Passes of the solver.")
       .def_readonly("rejections", &StepReport::rejections,
                     "Updates rejected because they would have raised the energy.")
       .def_readonly("work", &StepReport::work_J, "Work done by forces, gravity and dragged nodes, J.")

@@ -73,17 +73,17 @@ auto on_threads(int threads, const Work& work) {
 
 void bind_distribution(py::module_& module) {
   py::class_<Distribution>(module, "Distribution", "Summary statistics of a set of numbers.")
-      .def_readonly("count", &Distribution::count)
-      .def_readonly("min", &Distribution::min)
-      .def_readonly("max", &Distribution::max)
-      .def_readonly("mean", &Distribution::mean)
+      .def_readonly("count", &Distribution::count, "Of numbers.")
+      .def_readonly("min", &Distribution::min, "The least.")
+      .def_readonly("max", &Distribution::max, "The greatest.")
+      .def_readonly("mean", &Distribution::mean, "Arithmetic mean.")
       .def_readonly("rms", &Distribution::rms, "Root of the mean square, about zero.")
       .def_readonly("p5", &Distribution::p5, "5 % of the numbers are below.")
-      .def_readonly("p25", &Distribution::p25)
-      .def_readonly("median", &Distribution::median)
-      .def_readonly("p75", &Distribution::p75)
-      .def_readonly("p95", &Distribution::p95)
-      .def_readonly("p99", &Distribution::p99)
+      .def_readonly("p25", &Distribution::p25, "25 % of the numbers are below.")
+      .def_readonly("median", &Distribution::median, "Half of the numbers are below.")
+      .def_readonly("p75", &Distribution::p75, "75 % of the numbers are below.")
+      .def_readonly("p95", &Distribution::p95, "95 % of the numbers are below.")
+      .def_readonly("p99", &Distribution::p99, "99 % of the numbers are below.")
       .def("__repr__", [](const Distribution& d) {
         return py::str("<vmesh.Distribution of {}: {:.4g} to {:.4g}, mean {:.4g}>")
             .format(d.count, d.min, d.max, d.mean);
@@ -96,11 +96,11 @@ void bind_topology(py::module_& module) {
       .def_readonly("manifold", &Topology::manifold, "No edge has more than two faces, no vertex two fans.")
       .def_readonly("oriented", &Topology::oriented, "Neighbouring faces agree about the outside.")
       .def_readonly("outward", &Topology::outward, "Closed, oriented, and every component encloses a positive volume.")
-      .def_readonly("components", &Topology::components)
-      .def_readonly("boundary_edges", &Topology::boundary_edges)
-      .def_readonly("boundary_loops", &Topology::boundary_loops)
+      .def_readonly("components", &Topology::components, "Parts without a common vertex.")
+      .def_readonly("boundary_edges", &Topology::boundary_edges, "Edges of one face.")
+      .def_readonly("boundary_loops", &Topology::boundary_loops, "Rings of them.")
       .def_readonly("crowded_edges", &Topology::crowded_edges, "Edges with three faces or more.")
-      .def_readonly("euler_characteristic", &Topology::euler_characteristic)
+      .def_readonly("euler_characteristic", &Topology::euler_characteristic, "Vertices less edges plus faces.")
       .def_readonly("genus", &Topology::genus, "Sum over the components; 0 unless closed, manifold and oriented.");
 }
 
@@ -108,8 +108,8 @@ void bind_distances(py::module_& module) {
   py::class_<OneSidedHausdorff>(
       module, "OneSidedHausdorff",
       "The largest distance of a point of one surface from the other: an interval that contains it, mm.")
-      .def_readonly("lower", &OneSidedHausdorff::lower)
-      .def_readonly("upper", &OneSidedHausdorff::upper)
+      .def_readonly("lower", &OneSidedHausdorff::lower, "mm; the distance is at least this.")
+      .def_readonly("upper", &OneSidedHausdorff::upper, "mm; the distance is at most this.")
       .def_property_readonly(
           "from_point", [](const OneSidedHausdorff& h) { return array_of(h.witness.from); },
           "(3,) mm: a point at least `lower` away from the other surface.")
@@ -118,8 +118,8 @@ void bind_distances(py::module_& module) {
           "(3,) mm: the point of the other surface closest to it.");
   py::class_<Hausdorff>(module, "Hausdorff",
                         "The Hausdorff distance of two surfaces: an interval that contains it, mm.")
-      .def_property_readonly("lower", &Hausdorff::lower)
-      .def_property_readonly("upper", &Hausdorff::upper)
+      .def_property_readonly("lower", &Hausdorff::lower, "mm; the distance is at least this.")
+      .def_property_readonly("upper", &Hausdorff::upper, "mm; the distance is at most this.")
       .def_readonly("forward", &Hausdorff::forward, "From the first surface to the second.")
       .def_readonly("backward", &Hausdorff::backward, "From the second surface to the first.")
       .def("__repr__", [](const Hausdorff& h) {
@@ -127,41 +127,44 @@ void bind_distances(py::module_& module) {
       });
   py::class_<SampledDistance>(module, "SampledDistance", "Distances of points spread evenly over a surface.")
       .def_readonly("distance", &SampledDistance::distance, "mm; its maximum is a lower bound.")
-      .def_readonly("samples_per_mm2", &SampledDistance::samples_per_mm2);
+      .def_readonly("samples_per_mm2", &SampledDistance::samples_per_mm2, "Points compared, per mm^2 of the surface.");
   py::class_<VesselDistanceSide>(module, "VesselDistanceSide", "Distances of points of one boundary from the other.")
-      .def_readonly("mm", &VesselDistanceSide::mm)
+      .def_readonly("mm", &VesselDistanceSide::mm, "In mm.")
       .def_readonly("relative", &VesselDistanceSide::relative, "In local radii.")
       .def_property_readonly(
           "max_at", [](const VesselDistanceSide& s) { return array_of(s.max_at); }, "(3,) mm.")
-      .def_readonly("samples_per_mm2", &VesselDistanceSide::samples_per_mm2);
+      .def_readonly("samples_per_mm2", &VesselDistanceSide::samples_per_mm2,
+                    "Points compared, per mm^2 of the surface.");
   py::class_<VesselDistance>(module, "VesselDistance",
                              "The distance between a surface and the exact volume of a centerline, both ways.")
-      .def_readonly("from_surface", &VesselDistance::from_mesh)
-      .def_readonly("from_volume", &VesselDistance::from_volume);
+      .def_readonly("from_surface", &VesselDistance::from_mesh, "From the surface to the volume: VesselDistanceSide.")
+      .def_readonly("from_volume", &VesselDistance::from_volume,
+                    "From the volume's boundary to the surface: VesselDistanceSide.");
   py::class_<ReferenceDistance>(module, "ReferenceDistance", "The distance between two surfaces, both ways.")
-      .def_readonly("hausdorff", &ReferenceDistance::hausdorff)
-      .def_readonly("from_surface", &ReferenceDistance::from_surface)
-      .def_readonly("from_reference", &ReferenceDistance::from_reference);
+      .def_readonly("hausdorff", &ReferenceDistance::hausdorff, "Hausdorff, forward from the surface to the reference.")
+      .def_readonly("from_surface", &ReferenceDistance::from_surface, "To the reference: SampledDistance.")
+      .def_readonly("from_reference", &ReferenceDistance::from_reference, "To the surface: SampledDistance.");
 }
 
 void bind_report(py::module_& module) {
   py::class_<Evaluation>(module, "Evaluation", "Measurements of a surface.")
-      .def_readonly("vertices", &Evaluation::vertices)
-      .def_readonly("faces", &Evaluation::faces)
+      .def_readonly("vertices", &Evaluation::vertices, "Their number.")
+      .def_readonly("faces", &Evaluation::faces, "Their number.")
       .def_readonly("area", &Evaluation::area, "mm^2.")
       .def_readonly("volume", &Evaluation::volume, "Enclosed, mm^3; None unless closed and oriented.")
-      .def_property_readonly("topology", [](const Evaluation& e) { return e.defects.topology; })
+      .def_property_readonly(
+          "topology", [](const Evaluation& e) { return e.defects.topology; }, "Topology.")
       .def_readonly("skewness", &Evaluation::skewness, "Equiangle skewness of the faces: 0 equilateral, 1 degenerate.")
       .def_readonly("min_angle_deg", &Evaluation::min_angle, "Smallest angles of the faces.")
       .def_readonly("max_angle_deg", &Evaluation::max_angle, "Largest angles of the faces.")
       .def_property_readonly(
           "degenerate_faces",
           [](const Evaluation& e) { return array_of(std::vector<Index>(e.defects.degenerate_faces)); },
-          "Faces without area, uint32.")
+          "Faces without area, (n,) uint32.")
       .def_property_readonly(
           "duplicate_faces",
           [](const Evaluation& e) { return array_of(std::vector<Index>(e.defects.duplicate_faces)); },
-          "Faces with the corners of an earlier one, uint32.")
+          "Faces with the corners of an earlier one, (n,) uint32.")
       .def_property_readonly(
           "crossing_faces",
           [](const Evaluation& e) {

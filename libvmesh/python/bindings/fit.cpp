@@ -60,8 +60,8 @@ SurfacePtr fit(const SurfaceObject& surface, const SurfaceObject& reference, con
 void bind_reports(py::module_& module) {
   py::class_<FitDistance>(module, "FitDistance", "The distance between a surface and its reference, both ways, mm.")
       .def_readonly("hausdorff", &FitDistance::hausdorff, "Forward: from the surface to the reference.")
-      .def_readonly("from_surface", &FitDistance::from_surface)
-      .def_readonly("from_reference", &FitDistance::from_reference)
+      .def_readonly("from_surface", &FitDistance::from_surface, "To the reference: SampledDistance.")
+      .def_readonly("from_reference", &FitDistance::from_reference, "To the surface: SampledDistance.")
       .def_property_readonly("mean", &FitDistance::mean, "Of the worse direction.")
       .def_property_readonly("rms", &FitDistance::rms, "Of the worse direction.")
       .def_property_readonly("p95", &FitDistance::p95, "95 % are nearer, in the worse direction.");
@@ -76,7 +76,7 @@ void bind_reports(py::module_& module) {
           "segment", [](const UnmatchedPart& p) { return optional_index(p.segment); },
           "The nearest of the centerline, or None.");
   py::class_<FitReport>(module, "FitReport", "What fitting did.")
-      .def_readonly("vertices_before", &FitReport::vertices_before)
+      .def_readonly("vertices_before", &FitReport::vertices_before, "Number of vertices before.")
       .def_readonly("before", &FitReport::before, "The distance before.")
       .def_readonly("after", &FitReport::after, "The distance after.")
       .def_readonly("parts_apart", &FitReport::parts_apart,
@@ -87,7 +87,7 @@ void bind_reports(py::module_& module) {
       .def_readonly("unsupported", &FitReport::unsupported, "Regions of the surface that the reference lacks.")
       .def_readonly("nodes_outside", &FitReport::nodes_outside, "Nodes of the centerline outside the fitted surface.")
       .def_readonly("turned", &FitReport::turned, "The reference faced inwards and was turned over.")
-      .def_readonly("rounds", &FitReport::rounds);
+      .def_readonly("rounds", &FitReport::rounds, "Rounds that were made.");
 }
 
 }  // namespace

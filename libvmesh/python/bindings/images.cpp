@@ -50,15 +50,46 @@ SurfacePtr surface_of(const LoadedImage& image, const ReferenceOptions& options)
   return surface;
 }
 
-/// None, a number or several.
-using Labels = std::variant<std::monostate, double, std::vector<double>>;
+/// A value, or the name of a segment.
+using Label = std::variant<double, std::string>;
+/// None, one or several.
+using Labels = std::variant<std::monostate, Label, std::vector<Label>>;
 
-ReferenceOptions options_of(const Labels& label, std::optional<double> threshold, double spacing, double smooth,
-                            bool all_components) {
+void add_label(const Label& label, ReferenceOptions& options) {
+  if (const auto* value = std::get_if<double>(&label)) {
+    options.labels.push_back(*value);
+  } else {
+    options.segments.push_back(std::get<std::string>(label));
+  }
+}
+
+/// Sides of the voxels of an image, of which None tells nothing.
+std::optional<Vec3> sides_of(const py::object& voxel_size) {
+  if (voxel_size.is_none()) return std::nullopt;
+  const Vec3 sides = to_point(voxel_size, "voxel_size");
+  if (!(sides.minCoeff() > 0)) throw InvalidInput("voxel_size: sides of voxels are above 0");
+  return sides;
+}
+
+/// `vessels` is a file, or what has its own.
+template <class Vessels>
+void check_voxel_size(const Vessels& vessels, const py::object& voxel_size) {
+  if (voxel_size.is_none()) return;
+  const auto* path = std::get_if<fs::path>(&vessels);
+  if (path == nullptr) throw InvalidInput("voxel_size is for files; an array has its affine, a surface no voxels");
+  if (!takes_voxel_size(*path))
+    throw InvalidInput(path->string() + ": voxel_size does not act on it; the file says how large its voxels are");
+}
+
+ReferenceOptions options_of(const Labels& label, std::optional<double> threshold, const py::object& voxel_size,
+                            double spacing, double smooth, bool all_components) {
   ReferenceOptions options;
-  if (const auto* one = std::get_if<double>(&label)) options.labels = {*one};
-  if (const auto* several = std::get_if<std::vector<double>>(&label)) options.labels = *several;
+  if (const auto* one = std::get_if<Label>(&label)) add_label(*one, options);
+  if (const auto* several = std::get_if<std::vector<Label>>(&label)) {
+    for (const Label& each : *several) add_label(each, options);
+  }
   options.threshold = threshold;
+  options.voxel_size = sides_of(voxel_size);
   options.spacing = spacing;
   options.smooth = smooth;
   options.all_components = all_components;
@@ -71,8 +102,10 @@ void bind_images(py::module_& module) {
   module.def(
       "reference_surface",
       [](const std::variant<fs::path, py::array>& image, const py::object& affine, const Labels& label,
-         std::optional<double> threshold, double spacing, double smooth, bool all_components) {
-        const ReferenceOptions options = options_of(label, threshold, spacing, smooth, all_components);
+         std::optional<double> threshold, const py::object& voxel_size, double spacing, double smooth,
+         bool all_components) {
+        const ReferenceOptions options = options_of(label, threshold, voxel_size, spacing, smooth, all_components);
+        check_voxel_size(image, voxel_size);
         const auto* path = std::get_if<fs::path>(&image);
         if (path != nullptr)
           return result_of(py::none(), [&](const Progress&) {
@@ -82,15 +115,17 @@ void bind_images(py::module_& module) {
         return result_of(py::none(), [&](const Progress&) { return surface_of(loaded, options); });
       },
       py::arg("image"), py::arg("affine") = py::none(), py::kw_only(), py::arg("label") = py::none(),
-      py::arg("threshold") = py::none(), py::arg("spacing") = 0.0, py::arg("smooth") = 0.0,
-      py::arg("all_components") = true,
+      py::arg("threshold") = py::none(), py::arg("voxel_size") = py::none(), py::arg("spacing") = 0.0,
+      py::arg("smooth") = 0.0, py::arg("all_components") = true,
       R"(The surface of a segmentation, by marching cubes: what fit() fits to.
 
     image           a file (.nii, .nii.gz, .nrrd, .mha ...), or an array (ni, nj, nk) indexed [i, j, k]
     affine          (4, 4), of an array: takes (i, j, k, 1) to LPS, mm. NIfTI's is to RAS:
                     numpy.diag([-1, -1, 1, 1]) @ image.affine
-    label           voxels of this value, or of one of these, are inside; without label and threshold, those that are not 0
+    label           voxels of this value, or of one of these, are inside, or those of segments by name, in files of 3D
+                    Slicer (.seg.nrrd); without label and threshold, those that are not 0
     threshold       voxels of at least this value are inside
+    voxel_size      (3,), sides of a voxel, mm, of a TIFF stack that does not say it
     spacing         side of cubic voxels to resample to, mm; 0: the image's own
     smooth          standard deviation of a Gaussian to smooth with, mm; 0: none
     all_components  False: only the one that encloses the largest volume
@@ -99,8 +134,8 @@ Raises ReadError, InvalidInput, Unsupported.)");
   module.def(
       "extract_centerline",
       [](const std::variant<SurfacePtr, fs::path, py::array>& vessels, const py::object& affine, const Labels& label,
-         std::optional<double> threshold, double spacing, double join, bool largest, double least_length, bool tree,
-         bool balanced_wall, const py::object& progress) {
+         std::optional<double> threshold, const py::object& voxel_size, double spacing, double join, bool largest,
+         double least_length, bool tree, bool balanced_wall, const py::object& progress) {
         ExtractOptions options;
         options.spacing = spacing;
         options.join = join;
@@ -108,10 +143,11 @@ Raises ReadError, InvalidInput, Unsupported.)");
         options.least_length = least_length;
         options.tree = tree;
         options.balanced_wall = balanced_wall;
-        const auto object_of = [](ExtractedCenterline extracted) {
-          return std::make_shared<CenterlineObject>(
-              CenterlineObject{std::move(extracted.centerline), {}, {}, {}, std::move(extracted.end_sections)});
+        const auto object_of = [](ExtractedCenterline extracted, std::vector<std::string> warnings = {}) {
+          return std::make_shared<CenterlineObject>(CenterlineObject{
+              std::move(extracted.centerline), {}, std::move(warnings), {}, std::move(extracted.end_sections)});
         };
+        check_voxel_size(vessels, voxel_size);
         if (const auto* surface = std::get_if<SurfacePtr>(&vessels)) {
           if (*surface == nullptr) throw py::type_error("vessels: a Surface, a file or an array is needed, not None");
           if (!std::holds_alternative<std::monostate>(label) || threshold)
@@ -120,11 +156,13 @@ Raises ReadError, InvalidInput, Unsupported.)");
             return object_of(extract_centerline((*surface)->mesh(), options, report));
           });
         }
-        ReferenceOptions inside = options_of(label, threshold, 0, 0, true);
+        const ReferenceOptions inside = options_of(label, threshold, voxel_size, 0, 0, true);
         if (const auto* path = std::get_if<fs::path>(&vessels))
           return result_of(progress, [&](const Progress& report) {
             std::vector<std::string> warnings;
-            return object_of(extract_centerline(read_vessel_mask(*path, inside, warnings), options, report));
+            ExtractedCenterline extracted =
+                extract_centerline(read_vessel_mask(*path, inside, warnings), options, report);
+            return object_of(std::move(extracted), std::move(warnings));
           });
         const LoadedImage loaded = image_of(std::get<py::array>(vessels), affine);
         return result_of(progress, [&](const Progress& report) {
@@ -132,16 +170,18 @@ Raises ReadError, InvalidInput, Unsupported.)");
         });
       },
       py::arg("vessels"), py::arg("affine") = py::none(), py::kw_only(), py::arg("label") = py::none(),
-      py::arg("threshold") = py::none(), py::arg("spacing") = ExtractOptions().spacing,
-      py::arg("join") = ExtractOptions().join, py::arg("largest") = false, py::arg("least_length") = 0.0,
-      py::arg("tree") = false, py::arg("balanced_wall") = false, py::arg("progress") = py::none(),
+      py::arg("threshold") = py::none(), py::arg("voxel_size") = py::none(),
+      py::arg("spacing") = ExtractOptions().spacing, py::arg("join") = ExtractOptions().join,
+      py::arg("largest") = false, py::arg("least_length") = 0.0, py::arg("tree") = false,
+      py::arg("balanced_wall") = false, py::arg("progress") = py::none(),
       R"(The centerline of a wall or of a segmentation.
 
     vessels         a Surface, open or closed; or an image, a file or an array (ni, nj, nk) indexed [i, j, k]
     affine          (4, 4), of an array: takes (i, j, k, 1) to LPS, mm
-    label           image: voxels of this value, or of one of these, are inside; without label and threshold, those
-                    that are not 0
+    label           image: voxels of this value, or of one of these, are inside, or those of segments by name, in
+                    files of 3D Slicer (.seg.nrrd); without label and threshold, those that are not 0
     threshold       image: voxels of at least this value are inside
+    voxel_size      (3,), image: sides of a voxel, mm, of a TIFF stack that does not say it
     spacing         between nodes, in local radii, 0.1 to 10
     join            ends are joined with what they point at over gaps of up to this times the smaller radius
     largest         keep only the longest component

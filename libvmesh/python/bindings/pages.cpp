@@ -77,7 +77,8 @@ std::string page_about(const SurfaceObject& surface, const SurfaceObject* refere
 
 std::string page_about(const SurfaceObject&, const SurfaceObject*, const std::string&) {
   throw Unsupported(
-      "this vmesh was built without pages; build it with libjs-three, -DVMESH_WITH_HTML=ON and the command");
+      "this vmesh was built without pages; build it after scripts/install-dependencies, with -DVMESH_WITH_HTML=ON and "
+      "the command");
 }
 
 #endif

@@ -171,7 +171,7 @@ void bind_parts(py::module_& module) {
       .def_readonly("radius", &Opening::radius, "Of the vessel there, mm.")
       .def_property_readonly(
           "ring", [](const py::object& self) { return vector_view(self.cast<const Opening&>().ring, self); },
-          "Its vertices, uint32, counter-clockwise about the normal.");
+          "Its vertices, (k,) uint32, counter-clockwise about the normal.");
   py::class_<FlatEnd>(module, "FlatEnd", "An end of a vessel where the surface ends flat.")
       .def_readonly("label", &FlatEnd::label, "In Surface.cap_label: the end's rank among all ends, from 1.")
       .def_readonly("node", &FlatEnd::node, "Of the centerline.")
@@ -185,14 +185,14 @@ void bind_parts(py::module_& module) {
   py::class_<OperatingPoint>(module, "OperatingPoint", "Options that were tried to keep within a budget.")
       .def_property_readonly(
           "around", [](const OperatingPoint& p) { return p.options.around; }, "Vertices around a vessel.")
-      .def_readonly("vertices", &OperatingPoint::vertices)
+      .def_readonly("vertices", &OperatingPoint::vertices, "Of the surface.")
       .def_readonly("seconds", &OperatingPoint::seconds, "That growth took.")
       .def_property_readonly(
           "mean_error", [](const OperatingPoint& p) { return p.error.mean_mm; },
           "Of the faces' distance to the vessels' boundary, mm.")
       .def_property_readonly(
           "max_error", [](const OperatingPoint& p) { return p.error.max_mm; }, "The same at most, mm.")
-      .def_readonly("within_budget", &OperatingPoint::within_budget);
+      .def_readonly("within_budget", &OperatingPoint::within_budget, "Whether the surface keeps to it.");
 }
 
 void bind_arrays(py::class_<SurfaceObject, SurfacePtr>& surface) {
@@ -227,7 +227,7 @@ void bind_arrays(py::class_<SurfaceObject, SurfacePtr>& surface) {
       .def_property_readonly(
           "cap_label",
           [](const py::object& self) { return vector_view(self.cast<const SurfaceObject&>().ends.cap_label, self); },
-          "Of every face the FlatEnd.label that it caps, 0 for the wall; empty without flat ends.")
+          "Of every face the FlatEnd.label that it caps, (m,) uint32, 0 for the wall; empty without flat ends.")
       .def_property_readonly("normals", &normals_of,
                              "Unit normals of the vertices, weighted by area, (n, 3) float64. Made anew each time.")
       .def("padded_faces", &padded_faces,
@@ -285,10 +285,10 @@ whole numbers. With a centerline every vertex is bound to the nearest place on i
       .def_property_readonly("volume", &volume_of, "Enclosed, mm^3; None unless the surface is closed and oriented.")
       .def_property_readonly(
           "vertex_attributes", [](const SurfaceObject& self) { return as_dict(attributes_of(self).vertex); },
-          "Arrays by name: those of a file, or radius, segment, parameter, branch (opening).")
+          "Arrays by name, (n,) each: those of a file, or radius, segment, parameter, branch (opening).")
       .def_property_readonly(
           "face_attributes", [](const SurfaceObject& self) { return as_dict(attributes_of(self).face); },
-          "Arrays by name: those of a file, or EquiangleSkewness and branch.")
+          "Arrays by name, (m,) each: those of a file, or EquiangleSkewness and branch.")
       .def("save", &save_surface, py::arg("path"), py::kw_only(), py::arg("unit") = "mm", py::arg("space") = "LPS",
            py::arg("bones") = false, py::arg("ascii") = false, py::arg("compress") = false,
            "Writes it by extension: .ply, .vtp, .glb, .obj, .stl, .off. The file appears complete or not at all.\n"
@@ -304,6 +304,7 @@ whole numbers. With a centerline every vertex is bound to the nearest place on i
              py::arg("unit") = py::none(), py::arg("space") = py::none(),
              R"(Reads a surface by extension: .ply, .vtp, .vtk, .stl, .obj, .off, .glb, .gltf, .3mf, .dae, .x3d, .fbx.
 
+    path         the file
     centerline   what it was grown around: vertices are bound as the file says (.ply and .vtp that
                  vmesh wrote), or to the nearest place
     unit, space  win over what the file says: nm, um, mm, cm, m; LPS, RAS

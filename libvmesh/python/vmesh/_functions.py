@@ -227,7 +227,7 @@ def evaluate(
 
 
 def hausdorff(a: SurfaceLike, b: SurfaceLike, *, tolerance: float = 1e-4, progress: Progress = None) -> Hausdorff:
-    """The Hausdorff distance of two surfaces, as an interval of at most `tolerance` that contains it, mm.
+    """The Hausdorff distance of two surfaces, `a` and `b`, as an interval of at most `tolerance` that contains it, mm.
 
     Each is a surface or a pair (vertices, faces); open ones and soups of triangles are fine. Raises
     InvalidInput, Cancelled.

@@ -33,7 +33,7 @@ def to_vtk(surface: Surface) -> Any:
 
 
 def from_vtk(poly: Any) -> Surface:
-    """A Surface from the triangles of a vtkPolyData or of PyVista's PolyData; polygons are triangulated."""
+    """A Surface from the triangles of `poly`, a vtkPolyData or PyVista's PolyData, mm; polygons are triangulated."""
     vtk, convert = _import_vtk()
     triangles = vtk.vtkTriangleFilter()
     triangles.SetInputData(poly)

@@ -125,7 +125,8 @@ bool CrossingGuard::cross_axes(const std::vector<PlacedFace>& faces, const std::
 
 bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const {
   if (faces.empty()) return false;
-  auto [low, high] = box_of(faces.front().points);
+  auto around = box_of(faces.front().points);
+  Vec3 &low = around.first, &high = around.second;
   for (const PlacedFace& face : faces) {
     const auto box = box_of(face.points);
     low = low.cwiseMin(box.first);

@@ -51,6 +51,11 @@ bool is_image_path(const std::filesystem::path& path) {
   });
 }
 
+bool takes_voxel_size(const std::filesystem::path& path) {
+  const ImageFormat* format = find_format(image_formats(), path);
+  return format != nullptr && std::ranges::find(format->options, "voxel-size") != format->options.end();
+}
+
 bool is_image(const std::filesystem::path& path) { return is_image_path(path) || image::is_dicom(path); }
 
 std::vector<double> values_of(const std::vector<std::string>& names, const std::vector<ImageSegment>& segments) {

@@ -140,7 +140,9 @@ void take_layers(ImageHeader& header, std::vector<double>& sizes, const std::str
 /// The segments that a file of 3D Slicer names. In older ones each is a layer, with the value 1.
 std::vector<ImageSegment> segments_of(const std::map<std::uint64_t, Entries>& lines, const std::string& name) {
   std::vector<ImageSegment> segments;
-  for (const auto& [number, entries] : lines) {
+  for (const auto& line : lines) {
+    const std::uint64_t number = line.first;
+    const Entries& entries = line.second;
     const auto integer = [&](const char* key, double otherwise) {
       const std::vector<double> numbers = numbers_in(optional(entries, key), name, key);
       if (numbers.empty()) return otherwise;

@@ -2,6 +2,7 @@
 // LPS in mm. Other GLB files are scenes.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,7 @@
 #include "vmesh/core/stored_number.h"
 
 #include "formats.h"
+#include "glb_colors.h"
 #include "text.h"
 #include "triangulation.h"
 
@@ -38,10 +40,9 @@ class GlbReader {
     surface.unit = LengthUnit::mm;
     surface.space = Space::lps;
     read_positions(index_in(attributes, "POSITION"), surface.mesh);
-    for (const auto& [name, accessor] : attributes.items()) {
-      if (name.starts_with("_") && name.size() > 1)
-        surface.attributes.vertex.push_back(attribute(name, index_of(accessor)));
-    }
+    if (attributes.contains("COLOR_0")) add_colors(index_in(attributes, "COLOR_0"), surface.attributes.vertex);
+    for (const auto& [accessor, name] : custom_attributes(attributes))
+      surface.attributes.vertex.push_back(attribute(name, accessor));
     read_faces(index_in(primitive, "indices"), surface);
     return surface;
   }
@@ -75,8 +76,9 @@ class GlbReader {
     const nlohmann::json& described = element("accessors", accessor);
     const nlohmann::json& view = element("bufferViews", index_in(described, "bufferView"));
     const std::size_t begin = index_in(view, "byteOffset"), size = index_in(view, "byteLength");
-    const std::size_t count = index_in(described, "count"), type = std::is_same_v<Number, float> ? 5126 : 5125;
-    if (index_in(described, "componentType") != type || member(described, "type") != kind)
+    const std::size_t count = index_in(described, "count");
+    constexpr std::size_t kType = std::is_same_v<Number, float> ? 5126 : sizeof(Number) == 4 ? 5125 : 5123;
+    if (index_in(described, "componentType") != kType || member(described, "type") != kind)
       fail("accessor " + std::to_string(accessor) + ": its numbers are not of the type that vmesh writes");
     if (begin > bytes_.size() || size > bytes_.size() - begin || count > size / (width * sizeof(Number)) ||
         size > bytes_left_)
@@ -111,10 +113,33 @@ class GlbReader {
     return origin;
   }
 
+  /// The accessors and names of those that glTF does not know, in the order in which they were written.
+  std::map<std::size_t, std::string> custom_attributes(const nlohmann::json& attributes) const {
+    std::map<std::size_t, std::string> found;
+    for (const auto& [name, accessor] : attributes.items()) {
+      if (name.starts_with("_") && name.size() > 1) found.emplace(index_of(accessor), name);
+    }
+    return found;
+  }
+
+  /// Its accessor tells its own name; `name` has capitals and no blanks.
   MeshAttribute attribute(const std::string& name, std::size_t accessor) {
-    MeshAttribute read{lower(one_line(name.substr(1))), numbers<float>(accessor, 1, "SCALAR")};
-    read.integer = read.name == "segment" || read.name == "branch";
-    return read;
+    const nlohmann::json& described = element("accessors", accessor);
+    const std::vector<double> values = numbers<float>(accessor, 1, "SCALAR");
+    const auto own = described.find("name");
+    return {own != described.end() && own->is_string() ? one_line(own->get<std::string>())
+                                                       : lower(one_line(name.substr(1))),
+            values, described.contains("extras")};
+  }
+
+  void add_colors(std::size_t accessor, std::vector<MeshAttribute>& attributes) {
+    const std::size_t channels = member(element("accessors", accessor), "name") == kGlbColorAndAlpha ? 4 : 3;
+    const std::vector<double> stored = numbers<std::uint16_t>(accessor, 4, "VEC4");
+    for (std::size_t c = 0; c < channels; ++c) {
+      MeshAttribute& channel = attributes.emplace_back(MeshAttribute{kGlbColorChannels[c], {}, true});
+      channel.values.reserve(stored.size() / 4);
+      for (std::size_t i = c; i < stored.size(); i += 4) channel.values.push_back(color_of_glb(stored[i], c));
+    }
   }
 
   void read_faces(std::size_t accessor, LoadedSurface& surface) {

@@ -11,6 +11,7 @@
 
 #include "bytes.h"
 #include "formats.h"
+#include "glb_colors.h"
 #include "glb_packing.h"
 #include "text.h"
 
@@ -19,19 +20,24 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-enum ComponentType { kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
+enum ComponentType { kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
 enum Target { kVertices = 34962, kIndices = 34963, kNoTarget = 0 };
 
 /// From LPS to y up (superior) and z towards the viewer (anterior).
 Vec3 turned(const Vec3& p) { return {p.x(), p.z(), -p.y()}; }
 Vec3 metres(const Vec3& p) { return 1e-3 * turned(p); }
 
-double linear_from_srgb(double byte) {
-  const double v = byte / 255;
-  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+/// Red, green, blue and, where there is one, alpha; empty if one of the three is missing.
+std::vector<const MeshAttribute*> colors_of(const MeshAttributes& attributes) {
+  std::vector<const MeshAttribute*> channels;
+  for (const char* name : kGlbColorChannels) {
+    if (const MeshAttribute* channel = find_attribute(attributes.vertex, name))
+      channels.push_back(channel);
+    else if (channels.size() < 3)
+      return {};
+  }
+  return channels;
 }
-
-bool is_color(const std::string& name) { return name == "red" || name == "green" || name == "blue" || name == "alpha"; }
 
 /// "volume distance" -> "_VOLUME_DISTANCE", as the specification requires for custom names.
 std::string custom_name(const std::string& name) {
@@ -40,6 +46,14 @@ std::string custom_name(const std::string& name) {
     const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     result += letter ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : '_';
   }
+  return result;
+}
+
+/// A custom name that no other attribute has: "a b" and "a_b" become "_A_B" and "_A_B_2".
+std::string unique_name(const std::string& name, const OrderedJson& taken) {
+  const std::string custom = custom_name(name);
+  std::string result = custom;
+  for (int i = 2; taken.contains(result); ++i) result = custom + "_" + std::to_string(i);
   return result;
 }
 
@@ -70,11 +84,10 @@ class GlbWriter {
     OrderedJson attributes = OrderedJson::object();
     attributes["POSITION"] = positions();
     attributes["NORMAL"] = normals();
-    if (find_attribute(attributes_.vertex, "red") && find_attribute(attributes_.vertex, "green") &&
-        find_attribute(attributes_.vertex, "blue"))
-      attributes["COLOR_0"] = colors();
+    const std::vector<const MeshAttribute*> channels = colors_of(attributes_);
+    if (!channels.empty()) attributes["COLOR_0"] = colors(channels);
     for (const MeshAttribute& a : attributes_.vertex) {
-      if (!is_color(a.name)) attributes[custom_name(a.name)] = scalars(a);
+      if (std::ranges::find(channels, &a) == channels.end()) attributes[unique_name(a.name, attributes)] = scalars(a);
     }
     if (skin_) add_weights(attributes);
     const OrderedJson primitive = {{"attributes", std::move(attributes)}, {"indices", indices()}, {"material", 0}};
@@ -145,24 +158,28 @@ class GlbWriter {
     return accessor(at, kFloat, "VEC3", mesh_.vertices.size(), kNormalBits);
   }
 
-  std::size_t colors() {
+  /// In 16 bits: eight would not tell dark colours apart, as they are linear here.
+  std::size_t colors(const std::vector<const MeshAttribute*>& channels) {
     const std::size_t at = view(kVertices);
+    std::array<std::uint16_t, 4> color = {0, 0, 0, kGlbColorWhite};
     for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
-      for (const char* name : {"red", "green", "blue"}) {
-        const double value = std::clamp(find_attribute(attributes_.vertex, name)->values[v], 0.0, 255.0);
-        store(bytes_, static_cast<std::uint8_t>(std::lround(255 * linear_from_srgb(value))));
-      }
-      store(bytes_, std::uint8_t{255});
+      for (std::size_t c = 0; c < channels.size(); ++c) color[c] = glb_color(channels[c]->values[v], c);
+      for (const std::uint16_t value : color) store(bytes_, value);
     }
-    const std::size_t number = accessor(at, kUnsignedByte, "VEC4", mesh_.vertices.size());
+    const std::size_t number = accessor(at, kUnsignedShort, "VEC4", mesh_.vertices.size());
     json_["accessors"][number]["normalized"] = true;
+    json_["accessors"][number]["name"] = channels.size() == 4 ? kGlbColorAndAlpha : kGlbColor;
     return number;
   }
 
   std::size_t scalars(const MeshAttribute& attribute) {
     const std::size_t at = view(kVertices);
     for (const double value : attribute.values) store(bytes_, static_cast<float>(std::isfinite(value) ? value : 0));
-    return accessor(at, kFloat, "SCALAR", attribute.values.size(), attribute.integer ? 0 : kScalarBits);
+    const std::size_t number =
+        accessor(at, kFloat, "SCALAR", attribute.values.size(), attribute.integer ? 0 : kScalarBits);
+    json_["accessors"][number]["name"] = one_line(attribute.name);
+    if (attribute.integer) json_["accessors"][number]["extras"] = {{"integer", true}};
+    return number;
   }
 
   std::size_t indices() {

@@ -1,6 +1,8 @@
 // Scenes of tubes by ITK-TubeTK (MetaIO spatial objects, .tre): headers of "Key = Value", then points as text or
 // floats.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <span>
 #include <unordered_map>
@@ -24,6 +26,11 @@ struct SceneObject {
   Index first_node = 0, nodes = 0;
 };
 
+/// What tells how the points of an object are stored.
+constexpr std::array kOfPoints = {
+    "NPoints",     "PointDim",      "BinaryData", "BinaryDataByteOrderMSB", "ElementByteOrderMSB",
+    "ElementType", "CompressedData"};
+
 class TubeSceneReader {
  public:
   TubeSceneReader(std::string_view content, const std::string& source, const CenterlineReadOptions& options)
@@ -39,6 +46,7 @@ class TubeSceneReader {
   RawCenterline run() {
     std::string_view line;
     while (lines_.next(line)) read_line(trim(line));
+    warn_of_missing_objects();
     place_objects();
     join_tubes();
     if (others_ > 0)
@@ -77,10 +85,13 @@ class TubeSceneReader {
     if (key == "TransformMatrix" || key == "Rotation" || key == "Orientation") {
       const Eigen::Matrix<double, 9, 1> rows = vector<9>(key, value);
       objects_.back().place.linear() = rows.reshaped<Eigen::RowMajor>(3, 3);
+      if (!(std::abs(objects_.back().place.linear().determinant()) > 0))
+        fail_here(key + " makes all of it flat; its determinant must not be 0");
     }
+    if (key == "NObjects" && objects_.size() == 1) announced_ = parse_integer(value).value_or(0);
     if (key == "NDims" && value != "3") fail_here("NDims is " + cite(value) + "; tubes in 3 dimensions are needed");
     if (key == "Points") return read_points();
-    if (key == "NPoints" || key == "PointDim" || key == "BinaryData" || key == "ElementType") entries_[key] = value;
+    if (std::ranges::find(kOfPoints, key) != std::end(kOfPoints)) entries_[key] = value;
   }
 
   template <int Count>
@@ -121,7 +132,9 @@ class TubeSceneReader {
     const std::array<std::size_t, 4> column = columns();
     const std::size_t width = fields_.size();
     const auto count = parse_integer(entries_["NPoints"]);
-    const bool binary = lower(entries_["BinaryData"]).starts_with('t');
+    const bool binary = is_true("BinaryData");
+    const bool swapped = is_true("BinaryDataByteOrderMSB") || is_true("ElementByteOrderMSB");
+    if (binary && is_true("CompressedData")) fail_here("its points are compressed; store them uncompressed or as text");
     const std::string& element = entries_["ElementType"];
     if (binary && !element.empty() && element != "MET_FLOAT" && element != "MET_DOUBLE")
       fail_here("points of " + cite(element) + " are not supported; store them as text");
@@ -137,7 +150,7 @@ class TubeSceneReader {
     field_ = 0;
     for (Index p = 0; p < object.nodes; ++p) {
       const std::span stored(numbers.data(), width);
-      binary ? take_numbers(type, stored) : read_numbers(stored);
+      binary ? take_numbers(type, swapped, stored) : read_numbers(stored);
       raw_.nodes.push_back({{numbers[column[0]], numbers[column[1]], numbers[column[2]]}, numbers[column[3]]});
     }
     if (object.type.ends_with("tube")) return;
@@ -158,12 +171,22 @@ class TubeSceneReader {
     }
   }
 
-  void take_numbers(NumberType type, std::span<double> numbers) {
+  void take_numbers(NumberType type, bool swapped, std::span<double> numbers) {
     const std::size_t size = size_of(type);
     const std::string_view bytes = lines_.take(numbers.size() * size);
     if (bytes.size() < numbers.size() * size)
       fail_here("the file ends within the points of a tube; get the whole file");
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = number_at(bytes.data() + i * size, type, false);
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = number_at(bytes.data() + i * size, type, swapped);
+  }
+
+  bool is_true(const std::string& key) { return lower(entries_[key]).starts_with('t'); }
+
+  /// The scene itself is not counted.
+  void warn_of_missing_objects() {
+    const auto there = static_cast<std::int64_t>(objects_.size()) - 1;
+    if (announced_ > there)
+      raw_.warnings.push_back(raw_.source + ": NObjects is " + std::to_string(announced_) + ", but only " +
+                              std::to_string(there) + " are there; the file may be cut off");
   }
 
   /// The parent of every object; objects_.size() where there is none.
@@ -180,7 +203,8 @@ class TubeSceneReader {
     return parents;
   }
 
-  /// Applies spacings, and the transformations of objects and of their parents.
+  /// Applies spacings, and the transformations of objects and of their parents; to radii, the mean of what these
+  /// stretch.
   void place_objects() {
     parents_ = parents();
     enum class State { waiting, open, placed };
@@ -200,10 +224,11 @@ class TubeSceneReader {
       }
     }
     for (const SceneObject& object : objects_) {
+      const double scale = object.spacing.x() * std::cbrt(std::abs(object.place.linear().determinant()));
       for (Index n = object.first_node; n < object.first_node + object.nodes; ++n) {
         auto& [position, radius] = raw_.nodes[n];
         position = object.place * position.cwiseProduct(object.spacing);
-        radius *= object.spacing.x();
+        radius *= scale;
       }
     }
   }
@@ -229,8 +254,9 @@ class TubeSceneReader {
   RawCenterline raw_;
   std::vector<SceneObject> objects_;
   std::vector<std::size_t> parents_;
+  std::int64_t announced_ = 0;                  ///< objects in the scene
   std::size_t others_ = 0;                      ///< objects with points that are no tubes
-  std::map<std::string, std::string> entries_;  ///< of the last object, what tells how its points are stored
+  std::map<std::string, std::string> entries_;  ///< of the last object, those of kOfPoints
   std::vector<std::string_view> fields_;
   std::size_t field_ = 0;  ///< the next one of a line of numbers
 };

@@ -65,6 +65,9 @@ bool is_image_path(const std::filesystem::path& path);
 /// The same, or a DICOM file of any name, or a folder with such files. Does not wait for pipes.
 bool is_image(const std::filesystem::path& path);
 
+/// Whether ImageReadOptions::voxel_size acts on a file of this name.
+bool takes_voxel_size(const std::filesystem::path& path);
+
 /// A segment of a segmentation, as 3D Slicer stores them (.seg.nrrd): the voxels of a value in a layer. Segments that
 /// overlap are in layers of their own.
 struct ImageSegment {

@@ -210,7 +210,7 @@ class TriangleTest {
   double upper_bound(Range range) const {
     return least(
         range, [](const ConeBounds& b) { return b.high; },
-        [this](const ConeBounds& a, const ConeBounds& b) {
+        [](const ConeBounds& a, const ConeBounds& b) {
           const double difference = (a.gradient - b.gradient).norm() - a.turn - b.turn;
           return smooth_minimum(a.high, b.high, width(std::min(a.least_reach, b.least_reach), difference));
         });
@@ -220,7 +220,7 @@ class TriangleTest {
   double value_at_center(Range range) const {
     return least(
         range, [](const ConeBounds& b) { return b.at_center; },
-        [this](const ConeBounds& a, const ConeBounds& b) {
+        [](const ConeBounds& a, const ConeBounds& b) {
           const double reach = 0.5 * std::min(a.least_reach + a.most_reach, b.least_reach + b.most_reach);
           return smooth_minimum(a.at_center, b.at_center, width(reach, (a.gradient - b.gradient).norm()));
         });

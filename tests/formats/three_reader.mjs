@@ -1,20 +1,20 @@
-// Reads a surface with three.js, which runs without a display: node three_reader.js FOLDER_OF_THREE version,
-// node three_reader.js FOLDER_OF_THREE read FILE [POSE]. Prints JSON.
+// Reads a surface with three.js, which runs without a display: node three_reader.mjs FOLDER_OF_THREE version,
+// node three_reader.mjs FOLDER_OF_THREE read FILE [POSE]. Prints JSON.
 // POSE is a JSON file: joints by name with position (metres) and quaternion (x, y, z, w). The mesh is then skinned as
 // three.js' vertex shader does it (its chunk skinning_vertex), in doubles.
-'use strict';
-const fs = require('fs');
-const vm = require('vm');
+import fs from 'node:fs';
+import path from 'node:path';
 
 const [folder, task, file, pose] = process.argv.slice(2);
-const THREE = global.THREE = require(folder + '/build/three.js');
-global.self = global;
-console.log = console.time = console.timeEnd = () => {};
+const part = (name) => import(path.resolve(folder, name));
+const THREE = await part('build/three.module.js');
+const {MeshoptDecoder} = await part('examples/jsm/libs/meshopt_decoder.module.js');
+globalThis.self = globalThis;
+console.log = () => {};
 const print = (value) => process.stdout.write(JSON.stringify(value));
 
-function load(loader) {
-  vm.runInThisContext(fs.readFileSync(`${folder}/examples/js/loaders/${loader}.js`, 'utf8'), loader);
-  return new THREE[loader]();
+async function load(loader) {
+  return new (await part(`examples/jsm/loaders/${loader}.js`))[loader]();
 }
 
 function bytes(path) {
@@ -94,11 +94,11 @@ function reportScene(scene) {
 if (task === 'version') {
   print(THREE.REVISION);
 } else if (file.endsWith('.glb')) {
-  load('GLTFLoader').parse(bytes(file), '', (gltf) => reportScene(gltf.scene), (error) => {
-    throw error;
-  });
+  const loader = await load('GLTFLoader');
+  reportScene((await loader.setMeshoptDecoder(MeshoptDecoder).parseAsync(bytes(file), '')).scene);
 } else if (file.endsWith('.obj')) {
-  reportGroups(load('OBJLoader').parse(fs.readFileSync(file, 'utf8')));
+  reportGroups((await load('OBJLoader')).parse(fs.readFileSync(file, 'utf8')));
 } else {
-  report(new THREE.Mesh(load(file.endsWith('.stl') ? 'STLLoader' : 'PLYLoader').parse(bytes(file))));
+  const loader = await load(file.endsWith('.stl') ? 'STLLoader' : 'PLYLoader');
+  report(new THREE.Mesh(loader.parse(bytes(file))));
 }
