@@ -3,6 +3,7 @@
 //   bench_soundness [--all] [--keep] [--around N] [--blend B] [--elongation E] [--max-error LIMIT]
 //                   [--least-vertices N] [--rotate] [FILE...]
 //                   [--noisy FIRST COUNT] [--plausible FIRST COUNT] [--looped FIRST COUNT]
+//                   [--short-thick FIRST COUNT]
 // --rotate grows each random tree with the next of a list of options, whatever --around and --blend; --keep does not
 // separate vessels that touch; LIMIT as in `vmesh generate`.
 #include <algorithm>
@@ -128,6 +129,9 @@ int main(int argc, char** argv) {
       i += 2;
     } else if (word == "--plausible" && i + 2 < argc) {
       random("plausible", number(1), number(2), [](std::uint32_t seed) { return testing::plausible_tree(seed); });
+      i += 2;
+    } else if (word == "--short-thick" && i + 2 < argc) {
+      random("short_thick", number(1), number(2), [](std::uint32_t seed) { return testing::short_thick_tree(seed); });
       i += 2;
     } else if (word == "--looped" && i + 2 < argc) {
       random("looped", number(1), number(2),

@@ -1,6 +1,7 @@
 // Random vessels as from segmentations, around which surfaces must be sound.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <set>
@@ -101,6 +102,35 @@ inline Centerline plausible_tree(std::uint32_t seed, int loops = 0) {
   for (int l = 0; l < loops; ++l) {
     const Index a = draw.below(static_cast<Index>(nodes.size())), b = draw.below(static_cast<Index>(nodes.size()));
     if (a != b && joined.insert(std::minmax(a, b)).second) segments.push_back({a, b});
+  }
+  return Centerline(std::move(nodes), std::move(segments));
+}
+
+/// A tree whose steps are mostly shorter than its vessels are thick, with radii that fall by up to five at a step, down
+/// to a two hundredth: thin vessels leave thick ones within the rounding between these. 30 to 60 nodes.
+inline Centerline short_thick_tree(std::uint32_t seed) {
+  constexpr double kBranching = 0.2, kNarrowing = 0.3, kThinnest = 0.02;
+  Draw draw(seed);
+  const Index count = 30 + draw.below(31);
+  std::vector<CenterlineNode> nodes = {{Vec3::Zero(), draw.uniform(2.5, 4)}};
+  std::vector<CenterlineSegment> segments;
+  std::vector<Vec3> ways = {draw.direction()};
+  std::vector<Index> tips = {0};
+  while (nodes.size() < count) {
+    const Index tip = draw.below(static_cast<Index>(tips.size())), from = tips[tip];
+    const double parent = nodes[from].radius;
+    const Vec3 way = detail::turned(draw, ways[from], draw.uniform(0, 0.8));
+    const double share = draw.chance(kNarrowing) ? draw.uniform(0.2, 0.6) : draw.uniform(0.75, 1.05);
+    const auto next = static_cast<Index>(nodes.size());
+    nodes.push_back(
+        {nodes[from].position + draw.uniform(0.1, 1.8) * parent * way, std::max(kThinnest, share * parent)});
+    segments.push_back({from, next});
+    ways.push_back(way);
+    if (draw.chance(kBranching)) {
+      tips.push_back(next);
+    } else {
+      tips[tip] = next;
+    }
   }
   return Centerline(std::move(nodes), std::move(segments));
 }

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "vmesh/volume/contacts.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "random_centerline.h"
+#include "random_vessels.h"
 
 namespace vmesh {
 namespace {
@@ -304,6 +306,26 @@ TEST(Locality, AQueryFollowsTheVesselFromAnyHint) {
       const auto s = field.sample({x, 1.5, 0}, hint);
       EXPECT_EQ(s.cone, static_cast<Index>(2 * x));
       EXPECT_EQ(s.distance, 0.5);
+    }
+  }
+}
+
+// Otherwise the boundary has a step where it leaves the rounding between two thick ones.
+TEST(Locality, AThinVesselSeesTheRoundingThatCoversIt) {
+  for (const double blend : {1.0, 1.5, 2.0}) {
+    for (std::uint32_t seed = 0; seed < 30; ++seed) {
+      SeparationOptions options;
+      options.blend = blend;
+      const SeparatedCenterline tree = separate_contacts(testing::short_thick_tree(seed), options);
+      const VesselField field(tree.centerline, blend);
+      for (Index s = 0; s < tree.centerline.segments().size(); ++s) {
+        for (const double t : {0.0, 0.5, 1.0}) {
+          const Vec3 p = tree.centerline.point_at(s, t);
+          EXPECT_NEAR(field.sample(p, s).distance, field.sample_global(p).distance,
+                      0.01 * tree.centerline.radius_at(s, t))
+              << "blend " << blend << ", seed " << seed << ", segment " << s;
+        }
+      }
     }
   }
 }

@@ -7,6 +7,7 @@
 #include "vmesh/core/error.h"
 #include "vmesh/volume/field_excerpt.h"
 
+#include "volume/rounded_over.h"
 #include "volume/segment_locality_regions.h"
 
 namespace vmesh {
@@ -37,11 +38,23 @@ void ConeRelations::measure_runs() {
 }
 
 void ConeRelations::find_local_cones() {
-  auto [local, parting, apart, rounding] = segment_locality_by_regions(*centerline_, blend_);
+  LocalityPairs locality = segment_locality_by_regions(*centerline_, blend_);
+  apart_ = std::move(locality.apart);
+  std::sort(apart_.begin(), apart_.end());
+  rounding_ = std::move(locality.rounding);
+  list_local_cones(locality.local, locality.parting);
+  const auto more = rounded_over(*this);
+  if (more.empty()) return;
+  locality.parting.insert(locality.parting.end(), more.begin(), more.end());
+  list_local_cones(locality.local, locality.parting);
+}
 
+void ConeRelations::list_local_cones(const std::vector<std::pair<Index, Index>>& local,
+                                     const std::vector<std::pair<Index, Index>>& parting) {
+  using Pairs = std::vector<std::pair<Index, Index>>;
   local_offsets_.assign(cone_count() + 1, 0);
   for (std::size_t c = 0; c < cone_count(); ++c) ++local_offsets_[c + 1];
-  for (const LocalityPairs::Pairs* pairs : {&local, &parting}) {
+  for (const Pairs* pairs : {&local, &parting}) {
     for (const auto& [i, j] : *pairs) {
       ++local_offsets_[i + 1];
       ++local_offsets_[j + 1];
@@ -49,7 +62,7 @@ void ConeRelations::find_local_cones() {
   }
   std::partial_sum(local_offsets_.begin(), local_offsets_.end(), local_offsets_.begin());
   std::vector<Index> next(local_offsets_.begin(), local_offsets_.end() - 1);
-  const auto fill = [&](const LocalityPairs::Pairs& pairs, std::vector<Index>& lists) {
+  const auto fill = [&](const Pairs& pairs, std::vector<Index>& lists) {
     for (const auto& [i, j] : pairs) {
       lists[next[i]++] = j;
       lists[next[j]++] = i;
@@ -70,9 +83,6 @@ void ConeRelations::find_local_cones() {
     for (Index k = local_offsets_[c]; !partners.empty() && k < local_offsets_[c + 1]; ++k)
       is_parting_[k] = std::binary_search(partners.begin(), partners.end(), local_[k]);
   }
-  apart_ = std::move(apart);
-  std::sort(apart_.begin(), apart_.end());
-  rounding_ = std::move(rounding);
 }
 
 bool ConeRelations::are_one_volume(Index i, Index j) const {

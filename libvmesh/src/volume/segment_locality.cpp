@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <queue>
 #include <unordered_map>
 #include <utility>
@@ -21,7 +22,8 @@ constexpr double kReach = 2;  // safe 1.4 to 2.8
 // requires no more at a fork.) On vessel_portal, whose hairpin has a gap of 0.42, the mean error is 3 % larger with
 // 0.5.
 constexpr Touch kNearAgain{0.4, kOneVolume.larger};
-// With a larger blend, walls that part and come near again would be joined; safe 0.35 to 0.7.
+// Vessels that part are local to each other as far as this blend reaches; if they were as far as a larger one does,
+// many walls that part and come near again would be joined. A larger one ends there; safe 0.35 to 0.7.
 constexpr double kMostBlend = 0.5;
 // Of a gap: margin because spheres half a radius apart do not fill a cone (kOneVolume); safe 0.63 to 1.3.
 constexpr double kSpare = 0.9;
@@ -266,6 +268,25 @@ void part_unrelated_segments(const Centerline& centerline, const SphereChain& ch
   }
 }
 
+// Calls visit(p, q) for the pairs of spheres next to one of these, if segments that they belong to are unrelated.
+template <class Visit>
+void visit_unrelated(const SphereChain& chain, std::initializer_list<const PairSet*> related,
+                     const SegmentLocality& locality, Visit&& visit) {
+  const auto are_related = [&](Index i, Index j) {
+    return i == j || locality.local.contains(i, j) || locality.parting.contains(i, j) || locality.apart.contains(i, j);
+  };
+  for (const PairSet* pairs : related) {
+    for (const auto& [p, q] : pairs->pairs()) {
+      chain.visit_next_pairs(p, q, [&](Index next_p, Index next_q) {
+        const bool all_related = std::ranges::all_of(chain.segments(next_p), [&](Index i) {
+          return std::ranges::all_of(chain.segments(next_q), [&](Index j) { return are_related(i, j); });
+        });
+        if (!all_related) visit(next_p, next_q);
+      });
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<double> grow_shares(const Centerline& centerline, std::vector<double> share) {
@@ -298,8 +319,8 @@ SegmentLocality segment_locality(const Centerline& centerline, double blend) {
 
 SegmentLocality segment_locality_at_gaps(const Centerline& centerline, double blend) {
   const SphereChain chain(centerline);
-  const Touch wide{kReach * blend, kOneVolume.larger};
-  const bool has_wide_pairs = wide.smaller > kOneVolume.smaller && blend <= kMostBlend;
+  const Touch wide{kReach * std::min(blend, kMostBlend), kOneVolume.larger};
+  const bool has_wide_pairs = wide.smaller > kOneVolume.smaller;
   WidePairs wide_pairs(chain, wide);
   const PairSet touching = pairs_in_touch(chain, kOneVolume, [&](Index p, Index q) {
     if (has_wide_pairs) wide_pairs.note(p, q);
@@ -323,13 +344,15 @@ SegmentLocality segment_locality_at_gaps(const Centerline& centerline, double bl
     gap_pairs.visit_apart([&](Index p, Index q) { apart.join(p, q); });
     gap_pairs.visit_border([&](Index p, Index q) { rounding.end_before_gap(p, q); });
   }
-  locality.rounding = rounding.take();
   for (const auto& [i, j] : apart.pairs().pairs()) {
     if (!locality.local.contains(i, j)) locality.apart.insert(i, j);
   }
   for (const auto& [i, j] : near_gaps.pairs().pairs()) {
     if (!locality.local.contains(i, j) && !locality.apart.contains(i, j)) locality.parting.insert(i, j);
   }
+  if (blend > kMostBlend)
+    visit_unrelated(chain, {&touching, &parting}, locality, [&](Index p, Index q) { rounding.end_before_gap(p, q); });
+  locality.rounding = rounding.take();
   part_unrelated_segments(centerline, chain, wide, locality);
   return locality;
 }

@@ -100,6 +100,8 @@ class ConeRelations {
   void find_isolated();
   void measure_runs();
   void find_local_cones();
+  void list_local_cones(const std::vector<std::pair<Index, Index>>& local,
+                        const std::vector<std::pair<Index, Index>>& parting);
   [[noreturn]] static void throw_incomplete(Index cone);
 
   const Centerline* centerline_;

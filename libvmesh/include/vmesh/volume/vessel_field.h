@@ -24,10 +24,10 @@ struct ConeLanes;
 /// vessels part and come near again, as around a tight turn, there is less rounding, so that their walls stay apart.
 ///
 /// Local queries carry a hint, the cone they were last closest to; only cones local to it take part: those whose
-/// spheres it touches without a break from a common point on, and beyond that up to where the rounding between parting
-/// vessels ends; up to the default blend, the boundary has no step there. Vessels that part and come near again, or
-/// come close in space but not along the graph, are not local to each other. Global queries take every cone into
-/// account, for evaluation.
+/// spheres it touches without a break from a common point on, beyond that up to where the rounding between parting
+/// vessels ends, and those between which the rounding covers it: so the boundary has no step. A blend above 0.5 is
+/// reduced where vessels part, so that it ends there. Vessels that part and come near again, or come close in space but
+/// not along the graph, are not local to each other. Global queries take every cone into account, for evaluation.
 class VesselField {
  public:
   /// `blend` in [0, 2]. Keeps a reference to `centerline`, which must outlive the field.

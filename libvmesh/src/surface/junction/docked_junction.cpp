@@ -35,11 +35,13 @@ std::span<const Variant> variants_of(bool guarded, bool hub) {
 class JunctionDocker {
  public:
   JunctionDocker(const VesselRings& tubes, const GrowthSkeleton& skeleton, const JunctionGrowth& growth,
-                 const std::vector<TubeEnd>& docks, const GenerateOptions& options, const Progress& progress)
+                 const std::vector<TubeEnd>& docks, const GenerateOptions& options, bool may_hang,
+                 const Progress& progress)
       : skeleton_(skeleton),
         growth_(growth),
         docks_(docks),
         options_(options),
+        may_hang_(may_hang),
         progress_(progress),
         surface_(tubes.field()) {
     surface_.elongation_field = tubes.elongation_field();
@@ -124,8 +126,17 @@ class JunctionDocker {
                           GrownMesh::Stage::piece};
     const OptimizeReport report = optimize(surface_, options_, grown, progress_);
     docked.tangles = report.tangles;
-    docked.crossings = report.tangles > 0 ? find_crossing_walls(SweepState(surface_)).size() : 0;
     docked.unproven = report.unproven.size();
+    if (report.tangles == 0) return;
+    find_hanging(docked);
+    if (docked.hanging.empty() || may_hang_) docked.crossings = find_crossing_walls(SweepState(surface_)).size();
+  }
+
+  void find_hanging(DockedJunction& docked) {
+    const SweepState state(surface_);
+    const std::vector<Vertex> strays = find_strays(state);
+    if (!hangs(state, strays)) return;
+    for (const Vertex v : strays) docked.hanging.push_back({surface_.position(v), surface_.radius(v)});
   }
 
   void export_to(DockedJunction& docked) const {
@@ -161,6 +172,7 @@ class JunctionDocker {
   const JunctionGrowth& growth_;
   const std::vector<TubeEnd>& docks_;
   const GenerateOptions& options_;
+  const bool may_hang_;
   const Progress& progress_;
   BoundSurface surface_;
   std::vector<Vertex> vertex_;  // of the junction's vertices
@@ -180,20 +192,22 @@ Index kept_ring(const Tube& tube, bool at_end) {
 }
 
 DockedJunction make_docked_junction(const VesselRings& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
-                                    const GenerateOptions& options, bool guarded, const Progress& progress) {
+                                    const GenerateOptions& options, bool guarded, bool may_hang,
+                                    const Progress& progress) {
   const VesselField& field = tubes.field();
   const std::vector<TubeEnd> docks = docks_of(junction);
   const auto flaws = [](const DockedJunction& p) { return std::tuple(p.crossings, p.tangles, p.unproven); };
   std::optional<DockedJunction> best;
-  const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options);
+  const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options, progress);
   // When guarded, refinement for the error limit is left to the whole piece.
   GenerateOptions own_options = options;
   if (guarded) own_options.max_error = {};
   const bool hub = guarded && docks.size() >= kHub;
   for (const Variant& variant : variants_of(guarded, hub)) {
-    DockedJunction docked = JunctionDocker(tubes, skeleton, growth, docks, own_options, progress).make(variant);
+    DockedJunction docked =
+        JunctionDocker(tubes, skeleton, growth, docks, own_options, may_hang, progress).make(variant);
     if (!best || flaws(docked) < flaws(*best)) best = std::move(docked);
-    if (best->tangles == 0 && best->unproven == 0) break;
+    if ((best->tangles == 0 && best->unproven == 0) || (!may_hang && !best->hanging.empty())) break;
     if (hub && best->crossings == 0) break;
   }
   return *std::move(best);

@@ -2,6 +2,7 @@
 
 #include "vmesh/core/progress.h"
 
+#include "surface/remesh/bound_surface.h"
 #include "surface/tubes/growth_skeleton.h"
 
 namespace vmesh {
@@ -30,6 +31,9 @@ struct DockedJunction {
   std::size_t unproven = 0;      ///< faces for which the limit on the error is not proven
   std::size_t crossings = 0;     ///< vertices of faces that intersect each other
   std::size_t tangles = 0;       ///< those of them on neighbouring vessels, and vertices off the boundary
+  /// If it hangs: the vertices off the boundary, too many to be mended, and the vessels' radii there. Growth went
+  /// around a hole that the volume has and the graph has not, as where vessels part and are rounded together again.
+  std::vector<BoundSurface::Spot> hanging;
 };
 
 /// Number of rings at each end of a tube that the junction's surface replaces. The next ring is kept and joins the two.
@@ -39,9 +43,11 @@ std::size_t rings_given_away(const Tube& tube);
 Index kept_ring(const Tube& tube, bool at_end);
 
 /// Grows a junction, docks its tubes and optimises the surface around the docks. Where faces intersect, other variants
-/// are tried (resolution, rims as cut) and the best is kept. `guarded`: also tries variants in which only guarded steps
+/// are tried (resolution, rims as cut) and the best is kept; unless it `may_hang`, not where the first hangs, which
+/// others do as well. `guarded`: also tries variants in which only guarded steps
 /// are taken.
 DockedJunction make_docked_junction(const VesselRings& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
-                                    const GenerateOptions& options, bool guarded, const Progress& progress);
+                                    const GenerateOptions& options, bool guarded, bool may_hang,
+                                    const Progress& progress);
 
 }  // namespace vmesh

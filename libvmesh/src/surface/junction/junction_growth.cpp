@@ -92,12 +92,14 @@ LatticeSurface grow_lattice(const VesselField& field) {
 }  // namespace
 
 JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes,
-                               const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options)
+                               const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options,
+                               const Progress& progress)
     : field_(field),
       axes_(axes),
       skeleton_(skeleton),
       junction_(junction),
       options_(options),
+      progress_(progress),
       local_(make_junction_centerline(field.relations().centerline(), axes, junction)),
       centerline_(local_.nodes, local_.segments),
       local_field_(centerline_, options.blend),
@@ -132,7 +134,7 @@ GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   options.around = std::max(3, static_cast<int>(finer * options_.around));
   const double expected = expected_vertices(centerline_, options.around);
   const double around = std::min<double>(finer * kGrownAround, options.around);
-  optimize(surface, options, {around, expected, GrownMesh::Stage::piece, options_.max_error.is_set()}, {});
+  optimize(surface, options, {around, expected, GrownMesh::Stage::piece, options_.max_error.is_set()}, progress_);
   GenerateResult closed;
   surface.export_to(closed);
   return closed;

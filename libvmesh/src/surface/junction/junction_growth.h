@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vmesh/core/progress.h"
+
 #include "surface/junction/disc_cutter.h"
 #include "surface/junction/junction_centerline.h"
 #include "surface/junction/lattice_growth.h"
@@ -35,7 +37,7 @@ struct JunctionSurface {
 class JunctionGrowth {
  public:
   JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes, const GrowthSkeleton& skeleton,
-                 const Junction& junction, const GenerateOptions& options);
+                 const Junction& junction, const GenerateOptions& options, const Progress& progress = {});
 
   /// The surface at `finer` times the requested resolution. `smooth_rims`: rims are moved onto the boundary and lose
   /// their short edges; otherwise they stay as cut. `guarded`: faces never cross on the way from the lattice to the
@@ -64,6 +66,7 @@ class JunctionGrowth {
   const GrowthSkeleton& skeleton_;
   const Junction& junction_;
   const GenerateOptions& options_;
+  const Progress progress_;
   JunctionCenterline local_;
   Centerline centerline_;
   VesselField local_field_;

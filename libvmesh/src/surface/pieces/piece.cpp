@@ -104,21 +104,23 @@ class PieceMaker {
       : context_(context), tubes_(context.tubes), plan_(plan) {}
 
   PieceSurface run() {
-    PieceSurface best;
+    std::optional<PieceSurface> best;
     std::vector<PieceFault> last;
     const int first = is_hub() ? kFirstGuarded : 0;
     leave_room_at_hubs();
     for (int rung = first; rung < kRungs; ++rung) {
       if (rung > 0 && !climb(kLadder[rung], last)) continue;
-      PieceSurface piece = make(kLadder[rung]);
-      piece.rung = rung;
-      last = piece.faults;
+      std::optional<PieceSurface> piece = make(kLadder[rung], last);
+      if (!piece) continue;
+      piece->rung = rung;
+      last = piece->faults;
       const bool cannot_be_sound = vessels_overlap(last);
-      if (rung == first || badness(piece, mended()) < badness(best, mended())) best = std::move(piece);
-      best.cannot_be_sound = cannot_be_sound && !best.faults.empty();
-      if (badness(best, mended()) == kNoBadness || cannot_be_sound) break;
+      if (!best || badness(*piece, mended()) < badness(*best, mended())) best = std::move(piece);
+      best->cannot_be_sound = cannot_be_sound && !best->faults.empty();
+      if (badness(*best, mended()) == kNoBadness || cannot_be_sound) break;
     }
-    return best;
+    if (!best) best = make_hanging();
+    return *std::move(best);
   }
 
  private:
@@ -180,13 +182,24 @@ class PieceMaker {
     return covered_.size() + fine_spots_.size() + calm_spots_.size() > before || newly_guarded;
   }
 
-  PieceSurface make(const Rung& rung) {
+  // Where junctions hang on every rung, what guarded steps make of them.
+  PieceSurface make_hanging() {
+    may_hang_ = true;
+    std::vector<PieceFault> none;
+    PieceSurface piece = *make({0, 0, true}, none);
+    piece.rung = kRungs - 1;
+    return piece;
+  }
+
+  // Nothing where a junction hangs: its vertices off the boundary are the faults then.
+  std::optional<PieceSurface> make(const Rung& rung, std::vector<PieceFault>& hanging) {
     const GrowthSkeleton skeleton = make_growth_skeleton(tubes_, plan_, covered_);
     PieceSurface piece;
     piece.junctions = skeleton.junctions.size();
     piece.tubes = skeleton.tubes.size();
     Assembly assembly(tubes_, plan_, skeleton, context_.open);
     const auto docked = docked_junctions(skeleton, rung.guarded);
+    if (!may_hang_ && list_hanging(docked, hanging)) return std::nullopt;
     for (std::size_t j = 0; j < skeleton.junctions.size(); ++j) {
       const Junction& junction = skeleton.junctions[j];
       const DockedJunction& grown = **docked[j];
@@ -206,9 +219,10 @@ class PieceMaker {
       const GrownMesh grown{double(context_.options.around),
                             expected_vertices(length_in_radii(), context_.options.around), GrownMesh::Stage::assembled};
       const bool crosses = optimize(surface, context_.options, grown, context_.progress).crosses;
-      tested = !mend_worst_faces(surface, mended()) && !crosses;
+      tested = !mend_worst_faces(surface, mended(), context_.progress) && !crosses;
       // Guarded: improving adds no crossings. Not with an error limit: faces that are already proven would move.
-      if (!crosses && !context_.options.max_error.is_set()) improve_worst_faces(surface, kImproveAbove);
+      if (!crosses && !context_.options.max_error.is_set())
+        improve_worst_faces(surface, kImproveAbove, context_.progress);
     }
     const PieceFindings findings = check_piece(surface, nodes_of(skeleton), context_.options, !tested);
     piece.faults = findings.faults;
@@ -220,19 +234,34 @@ class PieceMaker {
     return piece;
   }
 
+  static bool list_hanging(const std::vector<const std::optional<DockedJunction>*>& docked,
+                           std::vector<PieceFault>& faults) {
+    if (std::all_of(docked.begin(), docked.end(), [](const auto* grown) { return (*grown)->hanging.empty(); }))
+      return false;
+    faults.clear();
+    for (const auto* grown : docked) {
+      for (const auto& [position, radius] : (*grown)->hanging)
+        faults.push_back({DefectKind::crossing_faces, position, radius, false});
+    }
+    return true;
+  }
+
   // Junctions that a rung leaves unchanged are not grown again.
   std::vector<const std::optional<DockedJunction>*> docked_junctions(const GrowthSkeleton& skeleton, bool guarded) {
     std::vector<const std::optional<DockedJunction>*> docked;
     std::vector<std::pair<const Junction*, GrownJunction*>> missing;
     for (const Junction& junction : skeleton.junctions) {
       GrownJunction& known = grown_[key_of(skeleton, junction)];
-      const bool will_do = known.docked && (known.guarded || !guarded || known.docked->tangles == 0);
+      const bool given_up = known.docked && !known.docked->hanging.empty();
+      const bool will_do =
+          known.docked && (given_up ? !may_hang_ : known.guarded || !guarded || known.docked->tangles == 0);
       if (!will_do) missing.emplace_back(&junction, &known);
       docked.push_back(&known.docked);
     }
     for_whole_tasks(missing.size(), [&](std::size_t i) {
       const auto& [junction, known] = missing[i];
-      known->docked = make_docked_junction(tubes_, skeleton, *junction, context_.options, guarded, context_.progress);
+      known->docked =
+          make_docked_junction(tubes_, skeleton, *junction, context_.options, guarded, may_hang_, context_.progress);
       known->guarded = guarded;
     });
     return docked;
@@ -325,6 +354,7 @@ class PieceMaker {
   std::vector<RingPlace> covered_;
   std::vector<BoundSurface::Spot> fine_spots_, calm_spots_;
   bool guarded_ = false;  // on the last rung
+  bool may_hang_ = false;
   struct GrownJunction {
     std::optional<DockedJunction> docked;
     bool guarded = false;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vmesh/core/progress.h"
+
 #include "surface/remesh/bound_surface.h"
 
 namespace vmesh {
@@ -8,10 +10,11 @@ namespace vmesh {
 /// size field: takes flips, collapses and moves that lower the worst skewness around, whether or not they leave the
 /// boundary, but never makes faces cross. Guards the surface from then on. Returns whether there were any such
 /// triangles.
-bool mend_worst_faces(BoundSurface& surface, double limit);
+/// `progress` is polled for cancellation.
+bool mend_worst_faces(BoundSurface& surface, double limit, const Progress& progress = {});
 
 /// Improves triangles that are not bad but could be better: like mending, but vertices stay at their lifts from the
 /// boundary, none are added, and moves leave the faces around hardly farther from it.
-void improve_worst_faces(BoundSurface& surface, double limit);
+void improve_worst_faces(BoundSurface& surface, double limit, const Progress& progress = {});
 
 }  // namespace vmesh

@@ -8,6 +8,9 @@ namespace {
 
 constexpr int kNeighbourDepth = 2;  // layers of neighbours around a tangle that take part; safe 1 to 3
 constexpr int kPasses = 5;          // safe 4 to 7
+// Share of the vertices off the boundary from which on a surface hangs. Measured on 40 short thick trees with a blend
+// of 2: surfaces that hung had 29 to 52 %, others at most 20 %.
+constexpr double kHanging = 0.25;
 
 bool neighbours(const BoundSurface& surface, const Triangle& f, const Triangle& g) {
   for (const Index v : f) {
@@ -52,11 +55,21 @@ std::vector<Vertex> find_crossing_walls(const SweepState& state) {
   return vertices;
 }
 
-std::vector<Vertex> find_tangles(const SweepState& state) {
+std::vector<Vertex> find_strays(const SweepState& state) {
   std::vector<Vertex> vertices;
   for (const Vertex v : state.mesh.vertices()) {
     if (state.off_boundary(v) && !state.surface.held(v)) vertices.push_back(v);
   }
+  return vertices;
+}
+
+bool hangs(const SweepState& state, const std::vector<Vertex>& strays) {
+  return static_cast<double>(strays.size()) > kHanging * static_cast<double>(state.mesh.number_of_vertices());
+}
+
+std::vector<Vertex> find_tangles(const SweepState& state) {
+  std::vector<Vertex> vertices = find_strays(state);
+  if (hangs(state, vertices)) return vertices;
   const TriMesh mesh = indexed_mesh(state, false);
   for (const auto& [f, g] : self_intersections(mesh)) {
     if (!neighbours(state.surface, mesh.faces[f], mesh.faces[g])) continue;

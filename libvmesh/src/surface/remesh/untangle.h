@@ -6,8 +6,15 @@
 
 namespace vmesh {
 
+/// Vertices off the boundary; ascending.
+std::vector<Vertex> find_strays(const SweepState& state);
+
+/// Whether so many vertices are off the boundary that the surface hangs across a hole that the volume has and the graph
+/// has not, as where vessels part and are rounded together again: no local operation mends that.
+bool hangs(const SweepState& state, const std::vector<Vertex>& strays);
+
 /// Vertices of intersecting faces whose vessels are neighbours along the graph, and vertices off the boundary: what
-/// local operations can mend. Ascending.
+/// local operations can mend. If it hangs, those off the boundary only. Ascending.
 std::vector<Vertex> find_tangles(const SweepState& state);
 
 /// Relaxes the surroundings of `tangles` on the boundary like a rubber sheet, which pulls folds flat. Stirs and returns
