@@ -446,5 +446,25 @@ TEST(Generate, ReportsProgressBetweenZeroAndOne) {
   EXPECT_EQ(stages, (std::vector<std::string>{"grow"}));
 }
 
+// As what edges cut off does, without an end: what is left over by balancing and projecting must shrink with them.
+TEST(Generate, EachDoublingOfVerticesAroundDividesTheMeanDistance) {
+  const Centerline centerline = two_forks();
+  for (const double blend : {0.0, 0.5}) {
+    const VesselField field(centerline, blend);
+    double coarser = 0;
+    for (const int around : {12, 24, 48, 96}) {
+      GenerateOptions options;
+      options.around = around;
+      options.blend = blend;
+      options.simplification = 0;
+      const GenerateResult result = generate_surface(centerline, options);
+      ASSERT_TRUE(result.is_sound());
+      const double mean = measure_deviation(result.mesh, result.binding, field).mean_relative;
+      EXPECT_TRUE(coarser == 0 || 3.5 * mean < coarser) << "blend " << blend << ", " << around << " around: " << mean;
+      coarser = mean;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vmesh

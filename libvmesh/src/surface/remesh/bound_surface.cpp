@@ -12,8 +12,6 @@ namespace vmesh {
 namespace {
 
 constexpr int kMaxProjectionSteps = 12;  // safe 8 to 17
-// Radii: single precision is enough for tolerances from here on; idle 7e-5 to 0.00014.
-constexpr double kRoughTolerance = 1e-4;
 // Slope of the elongation along the surface, per radius, and how far it is followed.
 constexpr double kElongationSlope = 0.5;
 constexpr int kElongationPasses = 3;

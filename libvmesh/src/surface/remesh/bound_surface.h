@@ -22,6 +22,9 @@ using Halfedge = SurfaceMesh::Halfedge_index;
 using Edge = SurfaceMesh::Edge_index;
 using Face = SurfaceMesh::Face_index;
 
+/// Radii: single precision, accurate to a few 1e-5, is enough for tolerances from here on.
+inline constexpr double kRoughTolerance = 5e-5;
+
 /// A point and what the field says about it.
 struct BoundaryPoint {
   Vec3 position;

@@ -19,6 +19,9 @@ inline constexpr double kShareOfLimit = 0.95;  // safe 0.66 to 1.3
 /// Target edge length in vessel radii at `around` vertices around a vessel.
 double edge_length_per_radius(double around);
 
+/// How deep an edge of this length across a vessel cuts into it, mm.
+inline double cut_off(double edge, double radius) { return edge * edge / (8 * radius); }
+
 /// Longest edge, mm, with which a surface in balanced placement stays within `limit` (mm) of a vessel of `radius`.
 double edge_length_for(double limit, double radius);
 
@@ -116,27 +119,38 @@ class SweepState {
   }
 
   /// Where `v` belongs when it is moved to `p`.
-  BoundaryPoint project(Vertex v, const Vec3& p, double tolerance = kProjectionTolerance) const {
-    return project_to_boundary(field, p, surface[v].cone, tolerance, surface[v].lift);
+  BoundaryPoint project(Vertex v, const Vec3& p) const {
+    return project_to_boundary(field, p, surface[v].cone, tolerance(v), surface[v].lift);
   }
   /// Where `v` belongs near its present position.
   BoundaryPoint project(Vertex v) const {
-    return project_to_boundary(field, {point(v), surface.sample(v)}, kProjectionTolerance, surface[v].lift);
+    return project_to_boundary(field, {point(v), surface.sample(v)}, tolerance(v), surface[v].lift);
   }
   /// Where the vertex belongs to which `a` and `b` would collapse.
   BoundaryPoint project_middle(Vertex a, Vertex b) const {
-    return project_to_boundary(field, 0.5 * (point(a) + point(b)), surface[a].cone, kProjectionTolerance,
+    return project_to_boundary(field, 0.5 * (point(a) + point(b)), surface[a].cone, tolerance(a),
                                0.5 * (surface[a].lift + surface[b].lift));
   }
 
  private:
   static constexpr char kActive = 1, kStirred = 2;
-  static constexpr double kOffBoundary = 0.01;          // vessel radii; safe 0.007 to 0.014
-  static constexpr double kProjectionTolerance = 1e-3;  // safe 0.0007 to 0.0014
+  static constexpr double kOffBoundary = 0.01;  // vessel radii; safe 0.007 to 0.014
+  // Distance from its lift at which a projected vertex has arrived, in vessel radii: at most the first, and that share
+  // of what edges cut off, which is the first at six around; but no less than single precision tells (kRoughTolerance).
+  // With
+  // an error limit, the first. That: safe 0.0007 to 0.0014.
+  static constexpr double kProjectionTolerance = 1e-3, kProjectionShare = 0.0067;
+
+  double tolerance(Vertex v) const {
+    if (has_limit_ || size(v) == 0) return kProjectionTolerance;
+    const double radius = surface.radius(v);
+    return std::clamp(kProjectionShare * cut_off(size(v), radius) / radius, kRoughTolerance, kProjectionTolerance);
+  }
 
   static double agreement(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& gradient_sum);
 
   SurfaceMesh::Property_map<Vertex, char> stirred_;
+  bool has_limit_ = false;
 };
 
 }  // namespace vmesh
