@@ -312,11 +312,11 @@ int run(const GenerateArguments& given, Console& console) {
   report.arguments = &arguments;
 
   const GenerateInput input = load_input(arguments, console);
-  const auto& [loaded, reference, extraction, read_stages] = input;
+  const LoadedCenterline& loaded = input.centerline;
   report.input_sha256 = sha256_of(arguments.input);
   report.radius_arrays = loaded.file.radius_arrays;
   report.cleaned = &loaded.cleaned;
-  report.extraction = extraction;
+  report.extraction = input.extraction;
   bool kept_limits = true;  // budget and error
 
   ProductionSteps steps;
@@ -326,7 +326,7 @@ int run(const GenerateArguments& given, Console& console) {
       arguments.production.growth.simplification = 0;
     }
     report.warnings = loaded.warnings;
-    report.stages = read_stages;
+    report.stages = input.stages;
     log_preparation(prepared, report, console);
     report.stages.push_back({prepared.separated ? "separate" : "contacts", watch.lap()});
     stop_if_interrupted();
@@ -342,7 +342,7 @@ int run(const GenerateArguments& given, Console& console) {
     report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
     for (const GrowthWarning& warning : result.warnings) warn(report, warning.message, console);
     warn_of_error(report, console);
-    if (reference && result.is_sound()) kept_limits &= fit(report, result, prepared, *reference, console);
+    if (input.reference && result.is_sound()) kept_limits &= fit(report, result, prepared, *input.reference, console);
     watch.lap();
     measure_distance(report, prepared.grown());
     return report.fit.has_value();
@@ -373,10 +373,10 @@ int run(const GenerateArguments& given, Console& console) {
   log_result(report, console);
   if (!arguments.common.json.empty()) write_json(arguments.common.json, to_json(report));
   if (!arguments.common.html.empty()) {
-    const TriMesh* fitted_to = reference ? &*reference : nullptr;
+    const TriMesh* fitted_to = input.reference ? &*input.reference : nullptr;
     write_page(arguments.common.html, page_of(report, prepared.grown(), attributes_of(report), fitted_to), console);
   }
-  if (extraction && !meets(arguments.required_coverage, *extraction, console)) return kCheckFailed;
+  if (input.extraction && !meets(arguments.required_coverage, *input.extraction, console)) return kCheckFailed;
   if (arguments.check && !report.problems.empty()) return kCheckFailed;
   return result.error.unproven_faces > 0 || !kept_limits ? kNotConverged : kOk;
 }

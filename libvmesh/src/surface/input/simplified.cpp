@@ -4,7 +4,7 @@
 #include "vmesh/surface/generate.h"
 #include "vmesh/volume/vessel_field.h"
 
-#include "surface/remesh/sweep_state.h"
+#include "surface/remesh/edge_lengths.h"
 
 namespace vmesh {
 namespace {

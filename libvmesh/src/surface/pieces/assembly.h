@@ -2,6 +2,7 @@
 
 #include "surface/junction/docked_junction.h"
 #include "surface/junction/junction_growth.h"
+#include "surface/remesh/bound_surface.h"
 #include "surface/tubes/growth_skeleton.h"
 
 namespace vmesh {

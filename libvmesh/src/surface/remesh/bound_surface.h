@@ -12,6 +12,7 @@
 #include "vmesh/surface/generate.h"
 #include "vmesh/volume/vessel_field.h"
 
+#include "surface/remesh/boundary_point.h"
 #include "surface/remesh/elongated_metric.h"
 
 namespace vmesh {
@@ -21,15 +22,6 @@ using Vertex = SurfaceMesh::Vertex_index;
 using Halfedge = SurfaceMesh::Halfedge_index;
 using Edge = SurfaceMesh::Edge_index;
 using Face = SurfaceMesh::Face_index;
-
-/// Radii: single precision, accurate to a few 1e-5, is enough for tolerances from here on.
-inline constexpr double kRoughTolerance = 5e-5;
-
-/// A point and what the field says about it.
-struct BoundaryPoint {
-  Vec3 position;
-  FieldSample sample = {};
-};
 
 /// What belongs to a vertex beside its position. When vertices are added or merged, this follows by itself.
 struct BoundVertex {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surface/remesh/sweep_state.h"
+#include "surface/remesh/edge_lengths.h"
 #include "surface/tubes/vessel_rings.h"
 
 namespace vmesh {

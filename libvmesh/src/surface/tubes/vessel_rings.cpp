@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "surface/remesh/sweep_state.h"
+#include "surface/remesh/edge_lengths.h"
 
 namespace vmesh {
 namespace {

@@ -4,7 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "surface/remesh/bound_surface.h"
+#include "vmesh/surface/generate.h"
+
+#include "surface/remesh/boundary_point.h"
+#include "surface/remesh/elongated_metric.h"
 #include "surface/tubes/branch_axis.h"
 #include "surface/tubes/elongation_profile.h"
 
