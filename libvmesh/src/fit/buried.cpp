@@ -21,7 +21,7 @@ constexpr double kInside = 0.2;   // local radii: how far a face must be from th
 constexpr double kDeep = 0.5;     // and how far the farthest of a region
 constexpr double kNearer = 0.75;  // of its distance: how far what replaces the region may be
 
-constexpr std::size_t kMostCorners = 256;  // of a mouth: the triangles take their cube
+constexpr std::size_t kMostCorners = 512;  // of a mouth: the triangles take their cube
 
 /// Faces joined by edges, without any in common with another.
 using Region = std::vector<Index>;

@@ -127,7 +127,7 @@ class Fit {
     most_vertices_ = options.max_vertices;
     if (most_vertices_ == 0)
       most_vertices_ = static_cast<std::size_t>(kMore * static_cast<double>(surface.mesh.vertices.size()));
-    long_vertices_ = static_cast<std::size_t>(kOfMostVertices * static_cast<double>(most_vertices_));
+    long_vertices_ = most_vertices_;  // that count is met exactly
     const double more = static_cast<double>(options.max_vertices) / static_cast<double>(surface.mesh.vertices.size());
     const double count =
         kSamplesPerFace * (to_error_ ? 1 : std::max(1.0, more)) * static_cast<double>(surface_.faces().size());
@@ -301,10 +301,14 @@ class Fit {
   void make_dense(int subdivisions) {
     for (int i = 0; i < subdivisions; ++i) {
       subdivide(surface_);
-      step(next_matches(false));
+      step(next_matches());
       reshape(2, false);
     }
-    for (int i = 0; i < kDenseSteps; ++i) step(next_matches(false));
+    for (int i = 0; i < kDenseSteps; ++i) {
+      Matches matches = next_matches();
+      if (remove_buried(matches)) matches = next_matches();
+      step(matches);
+    }
   }
 
   void make_long(std::size_t vertices) {
