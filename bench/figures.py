@@ -72,11 +72,12 @@ def rows_of(markdown: str) -> list[list[str]]:
 
 def put(readme: str, name: str, lines: list[str]) -> None:
     path = ROOT / readme
-    before, mark, rest = path.read_text().partition(f"<!-- figures: {name} -->\n")
-    _, end, after = rest.partition("<!-- end -->")
-    if not mark or not end:
+    # On lines of their own: this script's manual names them as well.
+    before, mark, rest = path.read_text().partition(f"\n<!-- figures: {name} -->\n")
+    old, end, after = rest.partition("\n<!-- end -->\n")
+    if not mark or not end or "<!-- figures: " in old:
         sys.exit(f"{readme}: there is no place for the table {name}")
-    path.write_text(before + mark + "\n" + "\n".join(lines) + "\n\n" + end + after)
+    path.write_text(before + mark + "\n" + "\n".join(lines) + "\n" + end + after)
 
 
 def generate(bench: Bench) -> None:
@@ -150,9 +151,48 @@ def elongation(bench: Bench) -> None:
         ["centerline", "limit", "vertices", "CPU, s", "with `--elongation 16`", "CPU, s", "ratio"], rows, left=2))
 
 
+EVEN, LONG, QUADRIC, COLLAPSE = ("fitted", "fitted, long triangles", "quadric decimation, CGAL",
+                                 "edge collapse, Lindstrom and Turk")
+
+
+def surfaces_by_case(text: str) -> dict[str, dict[str, dict[str, str]]]:
+    """What bench_fit printed: the cells by vessels, surface and column."""
+    header, *rows = rows_of(text)
+    cases: dict[str, dict[str, dict[str, str]]] = {}
+    name = ""
+    for row in rows:
+        cells = dict(zip(header, row, strict=True))
+        name = cells["vessels"] or name
+        cases.setdefault(name, {})[cells["surface"]] = cells
+    return cases
+
+
+def distances(cells: dict[str, str]) -> str:
+    return f"{number(float(cells['Hausdorff']), 2)} / {number(float(cells['mean']))} / {number(float(cells['95 %']))}"
+
+
+def write_fits(text: str) -> None:
+    cases = surfaces_by_case(text)
+    put("bench/README.md", "fit", table(
+        ["vessels", "vertices", "round cones", "fitted", "skewness mean / max", "CPU, s", "long triangles",
+         "skewness mean / max", "CPU, s"],
+        [[name, f"{int(of[EVEN]['vertices']):,}", distances(of["round cones"]), distances(of[EVEN]),
+          of[EVEN]["skewness mean / max"], of[EVEN]["CPU, s"], distances(of[LONG]), of[LONG]["skewness mean / max"],
+          of[LONG]["CPU, s"]] for name, of in cases.items()]))
+
+    def ratio(of: dict[str, dict[str, str]], ours: str, theirs: str, column: str) -> str:
+        return number(float(of[ours][column]) / float(of[theirs][column]), 2)
+
+    put("bench/README.md", "fit-peers", table(
+        ["vessels", "long triangles", "quadric decimation", "ours to theirs", "edge collapse", "ours to theirs, mean",
+         "95 %", "even triangles to edge collapse"],
+        [[name, number(float(of[LONG]["mean"])), number(float(of[QUADRIC]["mean"])), ratio(of, LONG, QUADRIC, "mean"),
+          number(float(of[COLLAPSE]["mean"])), ratio(of, LONG, COLLAPSE, "mean"), ratio(of, LONG, COLLAPSE, "95 %"),
+          ratio(of, EVEN, COLLAPSE, "mean")] for name, of in cases.items()]))
+
+
 def fit(bench: Bench) -> None:
-    header, *rows = rows_of(bench.run("bench_fit")[0])
-    put("bench/README.md", "fit", table(header, rows, left=2))
+    write_fits(bench.run("bench_fit")[0])
     others = []
     for name, file, options in FITTED:
         centerline = bench.folder / "centerline.swc"
