@@ -88,6 +88,24 @@ TEST_F(Fit, GrowsAndFitsInOneGo) {
   EXPECT_TRUE(self_intersections(read_surface(path("one.ply")).mesh).empty());
 }
 
+TEST_F(Fit, TrianglesMayBeLong) {
+  ASSERT_EQ(fit({"--json", "@even.json"}).exit_code, 0);
+  const Json even = Json::parse(read("even.json"));
+  const std::string vertices = "vertices=" + std::to_string(even["vertices"].get<int>());
+  const Outcome alone = fit({"--elongation", "16", "--budget", vertices, "--json", "@long.json"});
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  const Outcome grown = vmesh({"generate", "@y.swc", "--fit", "@scan.stl", "--elongation", "16", "--budget", vertices,
+                               "-o", "@one.ply", "--json", "@one.json"});
+  ASSERT_EQ(grown.exit_code, 0) << grown.err;
+  for (const char* file : {"long.json", "one.json"}) {
+    const Json summary = Json::parse(read(file));
+    EXPECT_LE(summary["vertices"], even["vertices"]) << file;
+    EXPECT_LT(summary["fit"]["after"]["mean_mm"].get<double>(), 0.8 * even["fit"]["after"]["mean_mm"].get<double>());
+    EXPECT_LT(summary["metric_skewness"]["mean"].get<double>(), summary["skewness"]["mean"].get<double>()) << file;
+  }
+  EXPECT_EQ(Json::parse(read("one.json"))["options"]["elongation"], 16);
+}
+
 TEST_F(Fit, WhatCannotBeFittedIsRefusedAndNothingWritten) {
   const auto expect_refused = [&](const Outcome& run, int exit_code, const std::string& text) {
     EXPECT_EQ(run.exit_code, exit_code) << run.err;
@@ -108,6 +126,11 @@ TEST_F(Fit, WhatCannotBeFittedIsRefusedAndNothingWritten) {
                  "--fit-error");
   expect_refused(vmesh({"generate", "@y.swc", "--fit", "@scan.stl", "--budget", "time=1s", "-o", "@fitted.ply"}), 2,
                  "budgets");
+  for (const char* option : {"--deformable", "--keep-triangles", "--least-vertices=100"}) {
+    const std::vector<std::string> words = {"generate",     "@y.swc", "--fit", "@scan.stl",  option,
+                                            "--elongation", "4",      "-o",    "@fitted.ply"};
+    expect_refused(vmesh(words), 2, "fitting to long triangles");
+  }
   expect_refused(vmesh({"generate", "@y.swc", "--centerline-output", "@c.json", "-o", "@fitted.ply"}), 2, "image");
 }
 
