@@ -63,6 +63,7 @@ class BoundSurface {
   BoundSurface& operator=(const BoundSurface&) = delete;
 
   const VesselField& field;
+  bool has_limit = false;  ///< on the error, which is to be proven
   SurfaceMesh mesh;
 
   BoundVertex& operator[](Vertex v) { return vertex_[v]; }

@@ -40,6 +40,7 @@ SweepState::SweepState(BoundSurface& bound_surface)
 SweepState::~SweepState() { mesh.remove_property_map(stirred_); }
 
 void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
+  surface.has_limit = limit.is_set();
   surface.update_elongation();
   for (const Vertex v : mesh.vertices()) {
     const double radius = surface.radius(v);

@@ -126,7 +126,7 @@ class SweepState {
   static constexpr double kProjectionTolerance = 1e-3, kProjectionShare = 0.029;
 
   double tolerance(Vertex v) const {
-    if (size(v) == 0) return kProjectionTolerance;
+    if (surface.has_limit || size(v) == 0) return kProjectionTolerance;
     const double radius = surface.radius(v);
     return std::clamp(kProjectionShare * cut_off(size(v), radius) / radius, kRoughTolerance, kProjectionTolerance);
   }
