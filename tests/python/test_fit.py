@@ -202,7 +202,7 @@ def test_the_voxels_of_a_tiff_have_the_size_given(tmp_path):
     try:
         surface = vmesh.reference_surface(path, voxel_size=(0.5, 1, 2))
     except vmesh.Unsupported as error:
-        pytest.skip(str(error))
+        pytest.skip(f"built without libtiff, which scripts/test installs: {error}")
     np.testing.assert_allclose(np.ptp(surface.vertices, axis=0), [16, 8, 16], atol=1e-6)
     half, whole = (vmesh.extract_centerline(path, voxel_size=(side, side, side)) for side in (0.5, 1))
     np.testing.assert_allclose(2 * np.ptp(half.nodes, axis=0), np.ptp(whole.nodes, axis=0), atol=1e-3)

@@ -1,6 +1,4 @@
 // All verbs that write surfaces write them as they are told: as text, compressed, in another unit and frame.
-#include <functional>
-
 #include "vmesh/io/surface_io.h"
 #include "vmesh/mesh/find_attribute.h"
 
@@ -13,8 +11,8 @@ using Words = std::vector<std::string>;
 
 struct WritingVerb {
   const char* name;
-  /// Arguments that write y.EXTENSION, without those about how.
-  std::function<Words(const std::string& extension)> command;
+  /// What follows to write y.ply, without words about how; another extension takes the place of the last "ply".
+  Words words;
   bool has_attributes = true;
   /// Of the file, as the verb names it.
   std::string stem = "y";
@@ -35,7 +33,9 @@ class Writing : public CommandTest, public ::testing::WithParamInterface<Writing
 
   Outcome written(const std::string& extension, const Words& how) const {
     std::filesystem::remove_all(path("frames"));
-    Words words = GetParam().command(extension);
+    Words words = GetParam().words;
+    words.back().replace(words.back().size() - 3, 3, extension);
+    words.insert(words.begin(), GetParam().name);
     words.insert(words.end(), how.begin(), how.end());
     return vmesh(words);
   }
@@ -115,37 +115,17 @@ TEST_P(Writing, WithoutAttributes) {
 }
 
 const WritingVerb kWritingVerbs[] = {
-    {"generate",
-     [](const std::string& e) {
-       return Words{"generate", "@tree.swc", "-o", "@y." + e};
-     }},
-    {"convert",
-     [](const std::string& e) {
-       return Words{"convert", "@tree.ply", "-o", "@y." + e};
-     }},
-    {"fit",
-     [](const std::string& e) {
-       return Words{"fit", "@tree.ply", "@tree.ply", "--centerline", "@tree.swc", "-o", "@y." + e};
-     }},
-    {"cones",
-     [](const std::string& e) {
-       return Words{"cones", "@tree.swc", "-o", "@y." + e};
-     }},
-    {"reference", [](const std::string& e) { return Words{"reference", "@tree.swc", "--voxel", "2", "-o", "@y." + e}; },
-     false},
-    {"evaluate",
-     [](const std::string& e) {
-       return Words{"evaluate", "@tree.ply", "-o", "@y." + e};
-     }},
-    {"join",
-     [](const std::string& e) {
-       return Words{"join", "@parts", "-o", "@y." + e};
-     }},
+    {"generate", {"@tree.swc", "-o", "@y.ply"}},
+    {"convert", {"@tree.ply", "-o", "@y.ply"}},
+    {"fit", {"@tree.ply", "@tree.ply", "--centerline", "@tree.swc", "-o", "@y.ply"}},
+    {"cones", {"@tree.swc", "-o", "@y.ply"}},
+    {"reference", {"@tree.swc", "--voxel", "2", "-o", "@y.ply"}, false},
+    {"evaluate", {"@tree.ply", "-o", "@y.ply"}},
+    {"join", {"@parts", "-o", "@y.ply"}},
     {"deform",
-     [](const std::string& e) {
-       return Words{"deform", "@tree.swc", "@tree.ply", "--script", "@scene.json", "-o", "@frames", "--format", e};
-     },
-     true, "frames/frame_000001"},
+     {"@tree.swc", "@tree.ply", "--script", "@scene.json", "-o", "@frames", "--format", "ply"},
+     true,
+     "frames/frame_000001"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Of, Writing, ::testing::ValuesIn(kWritingVerbs),

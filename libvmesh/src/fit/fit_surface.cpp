@@ -47,7 +47,6 @@ constexpr int kCorrections = 5, kErrorCorrections = 8;
 // SizeLimits. For an error the count is not known beforehand: sizes may change by more, and by more at once.
 constexpr double kFinest = 0.5, kCoarsest = 1.5;  // without an error, relative to sizes for the count wanted
 constexpr double kErrorStep = 1.4, kErrorRefinement = 8, kErrorCoarsest = 4;
-// The error is kept where 95 % of the distances are between these shares of it.
 // Long triangles: the even fit from which they are made has this multiple of their number (measured on three fits: 6: 3
 // % farther, 4: 7), in the end halved this often; more vertices than twice the reference's add nothing.
 constexpr double kDense = 8, kDenseReference = 2;
@@ -56,6 +55,7 @@ constexpr int kSubdivisions = 2, kDenseSteps = 2;
 constexpr double kLongShare = 0.4;  // of its vertices: the first number to be tried
 constexpr int kLongCorrections = 6;
 constexpr double kLongError = 0.97;  // of the error: aim of the corrections
+// The error is kept where 95 % of the distances are between these shares of it.
 constexpr double kNearlyError = 0.88, kKeptError = 0.95;
 constexpr double kSettled = 0.05;  // change of the number of vertices in a round, below which it has settled
 constexpr double kAimPower = 0.7, kAimStep = 1.25;  // how strongly and how far the aim follows what came out

@@ -15,7 +15,7 @@ namespace {
 constexpr double kMaxSkewness = 0.8;
 constexpr LeastSquaresWeights kWeights = {.tangential = 0.01};  // 0.005 and 0.02: within 2 %
 constexpr double kExchanged = 0.1;                              // of the vertices, in a round; 0.05: 1 to 3 % farther
-constexpr int kDivision = 3;
+constexpr int kRefits = 3, kExchanges = 3, kDivision = 3;
 
 /// An edge whose middle is far from the reference.
 struct FarEdge {

@@ -14,15 +14,13 @@ namespace vmesh::fitting {
 /// references.
 class LongTriangles {
  public:
-  /// `surface`: packed, even and dense; `round`: called before each round, of which there are kRounds.
+  /// `surface`: packed, even and dense; `round`: called before each round.
   LongTriangles(FitMesh& surface, std::vector<Opening>& openings, const FitSetting& setting,
                 const std::vector<ReferenceSample>& samples, std::function<void()> round);
 
   /// Coarsens the surface to `vertices` vertices and fits it again; then, a few times, adds some where it is farthest
   /// from the reference and leaves out others.
   void make(std::size_t vertices, double elongation);
-
-  static constexpr int kRefits = 3, kExchanges = 3, kRounds = kRefits + 3 * kExchanges + 1;
 
  private:
   void refit();
