@@ -16,6 +16,9 @@ constexpr double kWalked = 0.25;   // local radii: a locally closest point that 
 // Points farther apart than kNear local radii are counterparts only if neither has a much nearer one: nearer than
 // kMutual times their distance.
 constexpr double kNear = 0.25, kMutual = 0.2;
+// Unless one that is farther than kApart local radii lies along the normal, up to a cosine of kAlong: as the saddle of
+// the reference above that of two vessels that part too early, whose legs are near it.
+constexpr double kApart = 0.6, kAlong = 0.8;
 constexpr double kNoDistance = 1e-9;  // of a radius: below it the line between two points has no direction
 constexpr double kOnEdge = 1e-9;      // a corner's weight on the edge opposite to it
 constexpr std::size_t kGrain = 256;   // consecutive samples, each a hint for the next
@@ -113,7 +116,9 @@ class Matcher {
     if (!found) return {};
     near = found->face;
     if (reference_.on_border(found->face, found->point)) return {};
-    if (found->distance > kNear * radius) {  // not a counterpart if that point has a much nearer one itself
+    const bool is_along = found->distance > kApart * radius &&
+                          std::abs((found->point - p).dot(normal)) > kAlong * found->distance;
+    if (found->distance > kNear * radius && !is_along) {  // not a counterpart if that point has a much nearer one itself
       const Index there = reference_.cone(found->face);
       const double limit = kMutual * found->distance;
       if (on_surface(found->point, reference_.normal(found->face), there, limit, f)) return {};
