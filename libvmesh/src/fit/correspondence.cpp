@@ -116,9 +116,10 @@ class Matcher {
     if (!found) return {};
     near = found->face;
     if (reference_.on_border(found->face, found->point)) return {};
-    const bool is_along = found->distance > kApart * radius &&
-                          std::abs((found->point - p).dot(normal)) > kAlong * found->distance;
-    if (found->distance > kNear * radius && !is_along) {  // not a counterpart if that point has a much nearer one itself
+    const bool is_along =
+        found->distance > kApart * radius && std::abs((found->point - p).dot(normal)) > kAlong * found->distance;
+    if (found->distance > kNear * radius &&
+        !is_along) {  // not a counterpart if that point has a much nearer one itself
       const Index there = reference_.cone(found->face);
       const double limit = kMutual * found->distance;
       if (on_surface(found->point, reference_.normal(found->face), there, limit, f)) return {};
