@@ -9,6 +9,7 @@
 #include "vmesh/mesh/components.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/quality/closest_point.h"
 #include "vmesh/surface/flat_ends.h"
 #include "vmesh/surface/flat_reference.h"
 #include "vmesh/surface/metric_skewness.h"
@@ -223,6 +224,68 @@ TEST(FitSurface, ReachesAnErrorFromAnyResolution) {
   EXPECT_LT(std::max(vertices[0], vertices[1]), 1.25 * std::min(vertices[0], vertices[1]));
 }
 
+/// No listed region: the exact distance is that of all points.
+void expect_within(const FitResult& result, double limit) {
+  EXPECT_TRUE(result.report.beyond.empty());
+  EXPECT_TRUE(result.report.uncovered.empty());
+  EXPECT_TRUE(result.report.unsupported.empty());
+  EXPECT_LE(result.report.after.hausdorff.lower(), limit);
+}
+
+TEST(FitSurface, KeepsALargestError) {
+  const Centerline centerline = fork();
+  const TriMesh reference = wall(centerline);
+  FitOptions options = quick();
+  std::size_t vertices = 0;
+  for (const double limit : {0.4, 0.2}) {
+    options.max_error = limit;
+    const FitResult result = fit_surface(grown(centerline), centerline, reference, options);
+    expect_sound(result, centerline);
+    expect_within(result, limit);
+    EXPECT_GT(result.surface.mesh.vertices.size(), vertices);
+    vertices = result.surface.mesh.vertices.size();
+  }
+}
+
+TEST(FitSurface, KeepsALargestErrorButForListedRegions) {
+  const Centerline whole = fork(), trunk = fork(false);
+  const TriMesh reference = wall(whole);
+  FitOptions options = quick();
+  options.max_error = 0.4;
+  const FitResult result = fit_surface(grown(trunk), trunk, reference, options);
+  expect_sound(result, trunk);
+  EXPECT_TRUE(result.report.beyond.empty());
+  ASSERT_EQ(result.report.uncovered.size(), 1u);  // the twig
+  // Without the limit, the region ends where it is half of the local radius, 1.5 mm, away.
+  options.max_error = 0;
+  const FitResult free = fit_surface(grown(trunk), trunk, reference, options);
+  EXPECT_GT(result.report.uncovered[0].area, free.report.uncovered[0].area);
+}
+
+TEST(FitSurface, SaysWhereALargestErrorIsNotKept) {
+  const Centerline centerline = fork();
+  const TriMesh reference = wall(centerline);
+  const VesselSurface surface = grown(centerline);
+  FitOptions options = quick();
+  options.max_error = 0.05;
+  options.max_vertices = surface.mesh.vertices.size();
+  const FitResult result = fit_surface(surface, centerline, reference, options);
+  expect_sound(result, centerline);
+  EXPECT_LE(result.surface.mesh.vertices.size(), options.max_vertices);
+  ASSERT_FALSE(result.report.beyond.empty());
+  const ClosestPointIndex to_surface(result.surface.mesh), to_reference(reference);
+  double most = 0;
+  for (const UnmatchedPart& part : result.report.beyond) {
+    EXPECT_GT(part.distance, options.max_error);
+    EXPECT_GT(part.area, 0);
+    EXPECT_NEAR(part.distance,
+                std::max(to_surface.closest(part.position).distance, to_reference.closest(part.position).distance),
+                1e-9);
+    most = std::max(most, part.distance);
+  }
+  EXPECT_GT(most, 0.5 * result.report.after.hausdorff.lower());  // what was looked at is close to the farthest point
+}
+
 /// As many vertices, and long triangles.
 FitOptions elongated() {
   FitOptions options = quick();
@@ -297,6 +360,16 @@ TEST(FitSurface, LongTrianglesReachAnErrorWithFewerVertices) {
             0.75 * static_cast<double>(even.surface.mesh.vertices.size()));
 }
 
+TEST(FitSurface, KeepsALargestErrorWithLongTriangles) {
+  const Centerline centerline = fork();
+  const TriMesh reference = wall(centerline);
+  FitOptions options = elongated();
+  options.max_error = 0.3;
+  const FitResult result = fit_surface(grown(centerline), centerline, reference, options);
+  expect_sound_and_long(result);
+  expect_within(result, options.max_error);
+}
+
 TEST(FitSurface, TrianglesAreLongAlongATube) {
   const Centerline tube({{{0, 0, -15}, 2}, {{0, 0, 0}, 2}, {{0, 0, 15}, 2}}, {{0, 1}, {1, 2}});
   const FitResult result = fit_surface(grown(tube), tube, wall(tube, 48), elongated());
@@ -367,6 +440,15 @@ TEST(FitSurface, RefusesWhatIsNoSurface) {
   EXPECT_THROW(fit_surface(empty, centerline, reference, quick()), InvalidInput);
   FitOptions options = quick();
   options.rounds = 0;
+  EXPECT_THROW(fit_surface(surface, centerline, reference, options), InvalidInput);
+  for (const double error : {-1.0, std::nan("")}) {
+    options = quick();
+    options.max_error = error;
+    EXPECT_THROW(fit_surface(surface, centerline, reference, options), InvalidInput);
+  }
+  options = quick();
+  options.max_error = 1;
+  options.resize = false;
   EXPECT_THROW(fit_surface(surface, centerline, reference, options), InvalidInput);
   options = quick();
   options.error = -1;

@@ -93,7 +93,7 @@ TEST_F(Spike, IsSeenFromOutside) {
     const auto first = static_cast<Index>(wall.vertices.size());
     for (const Vec3& corner : {u, w, Vec3(-u - w)}) wall.vertices.push_back(p + 0.01 * corner);
     wall.faces.push_back({first, first + 1, first + 2});
-    const auto parts = uncovered_parts(surface_, FitReference(wall, field_), field_);
+    const auto parts = uncovered_parts(surface_, FitReference(wall, field_), field_).unmatched;
     const auto part = std::find_if(parts.begin(), parts.end(),
                                    [&](const UnmatchedPart& found) { return (found.position - p).norm() < 0.1; });
     ASSERT_NE(part, parts.end());

@@ -48,6 +48,16 @@ def test_long_triangles_come_nearer():
         vmesh.fit(surface, reference, elongation=17)
 
 
+def test_a_largest_error_is_proven():
+    surface, reference = vmesh.generate(*FORK), widened(1.1, around=48)
+    fitted = vmesh.fit(surface, reference, max_error=0.05)
+    report = fitted.fit_report
+    assert report.beyond == [] and report.uncovered == [] and report.unsupported == []
+    assert report.after.hausdorff.lower <= 0.05
+    missed = vmesh.fit(surface, reference, max_error=0.001, max_vertices=len(surface.vertices)).fit_report
+    assert missed.beyond and all(part.distance > 0.001 for part in missed.beyond)
+
+
 def test_it_does_not_depend_on_threads_or_form():
     surface, reference = vmesh.generate(*FORK), widened(1.1)
     one = vmesh.fit(surface, reference, threads=1, rounds=4)

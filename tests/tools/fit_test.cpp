@@ -64,6 +64,26 @@ TEST_F(Fit, AnErrorThatIsNotReachedIsToldByTheExitCode) {
   EXPECT_LE(read_surface(path("fitted.ply")).mesh.vertices.size(), 700u) << "the limit on vertices holds";
 }
 
+TEST_F(Fit, ALargestErrorIsProvenOrItsPlacesAreListed) {
+  const Outcome loose = fit({"--fit-error", "max=0.6mm", "--json", "@loose.json"});
+  ASSERT_EQ(loose.exit_code, 0) << loose.err;
+  const Json kept = Json::parse(read("loose.json"));
+  EXPECT_EQ(kept["fit"]["beyond"]["count"], 0);
+  EXPECT_NE(kept["options"].get<std::string>().find("--fit-error max=0.6mm"), std::string::npos);
+  ASSERT_EQ(kept["fit"]["uncovered"]["count"], 0);
+  ASSERT_EQ(kept["fit"]["unsupported"]["count"], 0);
+  EXPECT_LE(kept["fit"]["after"]["hausdorff_mm"]["lower"].get<double>(), 0.6);
+  const Outcome tight = fit({"--fit-error", "max=0.01mm", "--max-vertices", "700", "--json", "@tight.json"});
+  EXPECT_EQ(tight.exit_code, 6) << tight.err;
+  EXPECT_NE(tight.err.find("farther than 0.010 mm: "), std::string::npos) << tight.err;
+  EXPECT_GT(Json::parse(read("tight.json"))["fit"]["beyond"]["count"], 0);
+  EXPECT_LE(read_surface(path("fitted.ply")).mesh.vertices.size(), 700u);
+  const Outcome wrong = fit({"--fit-error", "max=5%"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("max=0.5mm"), std::string::npos) << wrong.err;
+  EXPECT_EQ(fit({"--fit-error", "max=0.6mm", "--keep-triangles"}).exit_code, 3);
+}
+
 TEST_F(Fit, ABudgetIsANumberOfVerticesOrAnError) {
   const Outcome few = fit({"--budget", "vertices=300", "--json", "@few.json"});
   ASSERT_EQ(few.exit_code, 0) << few.err;

@@ -81,12 +81,15 @@ void add_fitting(CLI::App& verb, FittingArguments& arguments) {
   add_read_option(
       verb, "--fit-error",
       [&arguments](const std::string& text) {
-        const ErrorLimit limit = parse_error_limit(text);
-        if (std::isfinite(limit.relative)) throw InvalidInput("give millimetres, such as 0.3mm");
-        arguments.options.error = limit.mm;
+        constexpr std::string_view kMax = "max=";
+        const bool is_max = text.starts_with(kMax);
+        const ErrorLimit limit = parse_error_limit(is_max ? std::string_view(text).substr(kMax.size()) : text);
+        if (std::isfinite(limit.relative)) throw InvalidInput("give millimetres, such as 0.3mm or max=0.5mm");
+        (is_max ? arguments.options.max_error : arguments.options.error) = limit.mm;
       },
-      "as many vertices as needed for 95 % of either surface to be nearer than this to the other")
-      .type_name("Xmm");
+      "as many vertices as needed for 95 % of either surface to be nearer than this to the other; with max= all of it, "
+      "but for regions that are listed, and proven")
+      .type_name("Xmm|max=Xmm");
   add_number(verb, "--fit-rounds", arguments.options.rounds, 1, 100, "rounds of the fit");
   verb.add_flag("!--keep-triangles", arguments.options.resize,
                 "only move the vertices; otherwise triangles become finer where the error is large, and coarser where "

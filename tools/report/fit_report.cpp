@@ -66,7 +66,8 @@ Json to_json(const FitReport& report) {
           {"rounds", report.rounds},
           {"parts_apart", {{"count", report.parts_apart}, {"area_mm2", report.area_apart}}},
           {"uncovered", to_json(report.uncovered)},
-          {"unsupported", to_json(report.unsupported)}};
+          {"unsupported", to_json(report.unsupported)},
+          {"beyond", to_json(report.beyond)}};
 }
 
 void log_fit(const FitReport& report, std::vector<std::string>& warnings, Console& console) {
@@ -90,20 +91,25 @@ void log_fit(const FitReport& report, std::vector<std::string>& warnings, Consol
   name_parts(outside, "region of the surface that the reference lacks", warnings, console);
 }
 
-bool keeps_error(const FitReport& report, double error, std::vector<std::string>& warnings, Console& console) {
-  if (error == 0 || report.after.p95() <= error) return true;
-  warnings.push_back(
-      formatted("95 %% of the surfaces are within %.3f mm of each other, not %.3f: regions that the other "
-                "surface lacks count as well",
-                report.after.p95(), error));
-  console.warn(warnings.back());
-  return false;
+bool keeps_error(const FitReport& report, const FitOptions& options, std::vector<std::string>& warnings,
+                 Console& console) {
+  const bool is_near = options.error == 0 || report.after.p95() <= options.error;
+  if (!is_near) {
+    warnings.push_back(
+        formatted("95 %% of the surfaces are within %.3f mm of each other, not %.3f: regions that the other "
+                  "surface lacks count as well",
+                  report.after.p95(), options.error));
+    console.warn(warnings.back());
+  }
+  name_parts(report.beyond, formatted("farther than %.3f mm", options.max_error), warnings, console);
+  return is_near && report.beyond.empty();
 }
 
 std::string describe(const FittingArguments& arguments) {
   std::ostringstream text;
   text << tool::describe(arguments.image);
   if (arguments.options.error > 0) text << " --fit-error " << arguments.options.error << "mm";
+  if (arguments.options.max_error > 0) text << " --fit-error max=" << arguments.options.max_error << "mm";
   if (arguments.options.elongation > 1) text << " --elongation " << exact_text(arguments.options.elongation);
   text << " --fit-rounds " << arguments.options.rounds;
   if (!arguments.options.resize) text << " --keep-triangles";

@@ -16,7 +16,6 @@ namespace {
 constexpr std::size_t kPageBins = 40;
 /// Places closer to each other than this share of the diagonal of the surface's box are shown as one.
 constexpr double kApart = 0.03;
-constexpr const char* kSkewness = "EquiangleSkewness";
 
 struct FoundAttribute {
   const MeshAttribute* attribute = nullptr;
@@ -153,6 +152,7 @@ void add_unmatched(Page& page, const FitReport& fit, std::size_t count) {
   };
   add(fit.uncovered, "Region of the reference that no vessel covers");
   add(fit.unsupported, "Region of the surface that the reference lacks");
+  add(fit.beyond, "Farther than the largest error");
 }
 
 }  // namespace vmesh::tool

@@ -92,7 +92,7 @@ int run(const FitArguments& arguments, Console& console) {
       naming(path, [&] { return fit_surface(surface, centerline, reference, wanted, console.progress()); });
   std::vector<std::string> warnings;
   log_fit(result.report, warnings, console);
-  const bool near = keeps_error(result.report, wanted.error, warnings, console);
+  const bool near = keeps_error(result.report, wanted, warnings, console);
   const std::string sha256 = sha256_of_file(path);
   std::string options = "fit" + describe(fitting);
   if (wanted.max_vertices > 0) options += " --max-vertices " + std::to_string(wanted.max_vertices);

@@ -197,7 +197,7 @@ bool fit(GenerateReport& report, GenerateResult& result, const PreparedCenterlin
   });
   log_fit(*report.fit, report.warnings, console);
   report.stages.push_back({"fit", watch.lap()});
-  return keeps_error(*report.fit, fitting.options.error, report.warnings, console);
+  return keeps_error(*report.fit, fitting.options, report.warnings, console);
 }
 
 /// Fills in how far the surface around `grown` is from its vessels.

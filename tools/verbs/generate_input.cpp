@@ -103,7 +103,8 @@ void check_input(const GenerateArguments& arguments) {
         "as "
         "input; this is taken for a centerline");
   if (fits) return;
-  if (arguments.fitting.options.error > 0) throw UsageError("--fit-error needs --fit REFERENCE");
+  if (arguments.fitting.options.error > 0 || arguments.fitting.options.max_error > 0)
+    throw UsageError("--fit-error needs --fit REFERENCE");
   if (has_options(image))
     throw UsageError("--label, --threshold, --spacing and --smooth are for images; none is given");
 }

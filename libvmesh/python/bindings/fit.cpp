@@ -85,6 +85,8 @@ void bind_reports(py::module_& module) {
       .def_readonly("uncovered", &FitReport::uncovered,
                     "Regions of the reference that no vessel covers. Largest first.")
       .def_readonly("unsupported", &FitReport::unsupported, "Regions of the surface that the reference lacks.")
+      .def_readonly("beyond", &FitReport::beyond,
+                    "With max_error, regions that are farther than it; the list is empty where that is proven.")
       .def_readonly("nodes_outside", &FitReport::nodes_outside, "Nodes of the centerline outside the fitted surface.")
       .def_readonly("turned", &FitReport::turned, "The reference faced inwards and was turned over.")
       .def_readonly("rounds", &FitReport::rounds, "Rounds that were made.");
@@ -97,15 +99,15 @@ void bind_fit(py::module_& module) {
   module.def(
       "fit",
       [](const SurfacePtr& surface, const SurfacePtr& reference, const py::object& progress, int rounds, bool resize,
-         std::size_t max_vertices, double error, double elongation, double max_skewness, std::size_t samples,
-         double tolerance, int threads) {
-        const FitOptions options{rounds,       resize,  max_vertices, error,  elongation,
-                                 max_skewness, samples, tolerance,    threads};
+         std::size_t max_vertices, double error, double max_error, double elongation, double max_skewness,
+         std::size_t samples, double tolerance, int threads) {
+        const FitOptions options{rounds,     resize,       max_vertices, error,     max_error,
+                                 elongation, max_skewness, samples,      tolerance, threads};
         return result_of(progress, [&](const Progress& report) { return fit(*surface, *reference, options, report); });
       },
       py::arg("surface").none(false), py::arg("reference").none(false), py::kw_only(), py::arg("progress"),
-      py::arg("rounds"), py::arg("resize"), py::arg("max_vertices"), py::arg("error"), py::arg("elongation"),
-      py::arg("max_skewness"), py::arg("samples"), py::arg("tolerance"), py::arg("threads"),
+      py::arg("rounds"), py::arg("resize"), py::arg("max_vertices"), py::arg("error"), py::arg("max_error"),
+      py::arg("elongation"), py::arg("max_skewness"), py::arg("samples"), py::arg("tolerance"), py::arg("threads"),
       "vmesh.fit() without its checks.");
 }
 

@@ -321,6 +321,8 @@ class FitReport:
     @property
     def unsupported(self) -> List[UnmatchedPart]: ...
     @property
+    def beyond(self) -> List[UnmatchedPart]: ...
+    @property
     def nodes_outside(self) -> List[Defect]: ...
     @property
     def turned(self) -> bool: ...
@@ -468,6 +470,7 @@ def fit(
     resize: bool,
     max_vertices: int,
     error: float,
+    max_error: float,
     elongation: float,
     max_skewness: float,
     samples: int,

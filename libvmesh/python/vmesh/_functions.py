@@ -149,6 +149,7 @@ def fit(
     resize: bool = True,
     max_vertices: int = 0,
     error: float = 0.0,
+    max_error: float = 0.0,
     elongation: float = 1.0,
     max_skewness: float = 0.4,
     samples: int = 100_000,
@@ -166,6 +167,8 @@ def fit(
     max_vertices   0: a twentieth more than there are, or as many as `error` needs
     error          mm: 95 % of either surface shall be nearer to the other, with as few vertices as
                    possible; 0: none
+    max_error      mm: no point of either surface shall be farther from the other, but for the regions that
+                   fit_report lists as uncovered or unsupported; proven, or fit_report.beyond has the places; 0: none
     elongation     how much longer than wide triangles may be, 1 to 16, where the reference is curved less along than
                    across; with the same number of vertices it comes two to three times nearer to the reference
     max_skewness   beyond which no step may worsen a triangle, 0.1 to 0.9
@@ -184,6 +187,7 @@ def fit(
         resize=resize,
         max_vertices=max_vertices,
         error=error,
+        max_error=max_error,
         elongation=elongation,
         max_skewness=max_skewness,
         samples=samples,

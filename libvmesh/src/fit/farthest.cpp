@@ -23,7 +23,7 @@ constexpr double kFar = 4;
 // refinement (kNotOfSize), as only what helps is kept. Measured on SU201, sixteen starts: at 0.6 and 0.8 the Hausdorff
 // distance is at most .28 mm, at 0.4 once .37.
 constexpr double kNotOfReach = 0.6;
-constexpr int kMostPlaces = 12;
+constexpr std::size_t kMostPlaces = 12;
 constexpr double kReach = 2.5;  // edges: radius of the refit around a new vertex. Measured: 1.5 to 3.5 give the same
 constexpr double kAtVertex = 1e-9;                            // other weights below this: the point is a vertex
 constexpr std::array<double, 3> kShares = {0.75, 0.5, 0.25};  // of its distance, by which a vertex is moved nearer
@@ -50,10 +50,11 @@ class FarPlaces {
     matches_ = find_matches(surface, setting.reference, samples, setting.field, {kDivision, true});
   }
 
-  void improve(std::size_t most_vertices) {
+  void improve(std::size_t most_vertices) { bring_below(kFar * rms_distance(matches_), most_vertices, kMostPlaces); }
+
+  void bring_below(double near, std::size_t most_vertices, std::size_t most_places) {
     std::vector<Place> left_alone;
-    const double near = kFar * rms_distance(matches_);
-    for (int i = 0; i < kMostPlaces; ++i) {
+    for (std::size_t i = 0; i < most_places; ++i) {
       const Match worst = farthest_match(surface_, matches_, left_alone);
       if (worst.face == kNone || std::abs(worst.distance) <= near) return;
       const Place place = place_of(surface_, worst);
@@ -277,6 +278,11 @@ void split_at(FitMesh& surface, const Match& match, int side) {
 void bring_farthest_nearer(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting,
                            std::size_t most_vertices) {
   FarPlaces(surface, samples, setting).improve(most_vertices);
+}
+
+void bring_below(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting,
+                 std::size_t most_vertices, double limit) {
+  FarPlaces(surface, samples, setting).bring_below(limit, most_vertices, surface.vertices().size());
 }
 
 }  // namespace vmesh::fitting

@@ -30,4 +30,8 @@ void split_at(FitMesh& surface, const Match& match, int side);
 void bring_farthest_nearer(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting,
                            std::size_t most_vertices);
 
+/// The same wherever it is farther than a limit, mm.
+void bring_below(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting,
+                 std::size_t most_vertices, double limit);
+
 }  // namespace vmesh::fitting

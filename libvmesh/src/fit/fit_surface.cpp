@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include <tbb/task_arena.h>
@@ -61,7 +62,12 @@ constexpr double kSettled = 0.05;  // change of the number of vertices in a roun
 constexpr double kAimPower = 0.7, kAimStep = 1.25;  // how strongly and how far the aim follows what came out
 // Memory, measured.
 constexpr double kBytesPerVertex = 12000, kBytesPerReferenceFace = 350;
-constexpr double kCorrection = 0.93;  // factor on the even error when the 95 % miss theirs
+// Of the largest error allowed: the one that 95 % are to keep, in the first try; the one at which places get vertices
+// of their own.
+constexpr double kOfMaxError = 0.4, kSafelyBelow = 0.85;
+constexpr int kMaxErrorCorrections = 5;
+constexpr double kMaxErrorCorrection = 0.75;  // factor on the even error, or that of 95 %, where that did not do
+constexpr double kCorrection = 0.93;          // factor on the even error when the 95 % miss theirs
 
 std::string text_of(const Vec3& p) {
   char text[128];
@@ -75,6 +81,10 @@ void check(const FitOptions& options) {
     throw InvalidInput("the largest skewness of a fit is 0.1 to 0.9");
   if (!(options.error >= 0 && std::isfinite(options.error)))
     throw InvalidInput("the error of a fit is 0 or more, and finite");
+  if (!(options.max_error >= 0 && std::isfinite(options.max_error)))
+    throw InvalidInput("the largest error of a fit is 0 or more, and finite");
+  if (options.max_error > 0 && !options.resize)
+    throw InvalidInput("a fit that keeps the triangles cannot keep a largest error: leave out one of the two options");
   if (!(options.elongation >= 1 && options.elongation <= kMostElongation))
     throw InvalidInput("the elongation of a fit is 1 to " + std::to_string(kMostElongation));
   if (options.elongation > 1 && !options.resize)
@@ -112,18 +122,25 @@ void check_memory(std::size_t vertices, const TriMesh& reference) {
       "allow fewer vertices or a larger error, or make the reference coarser");
 }
 
+TriMesh part_of(const TriMesh& mesh, const std::vector<Index>& faces) {
+  TriMesh part{mesh.vertices, {}};
+  for (const Index f : faces) part.faces.push_back(mesh.faces[f]);
+  return part;
+}
+
 class Fit {
  public:
   Fit(const VesselSurface& surface, const VesselField& field, const TriMesh& reference, const FitOptions& options)
       : field_(field),
         options_(options),
-        to_error_(options.error > 0),
+        error_(wanted_error(options)),
+        to_error_(error_ > 0),
         reference_(reference, field),
         setting_{reference_, field, {}, {}},
         surface_(surface.mesh.faces, vertices_of(surface)),
         openings_(surface.openings.empty() ? find_openings(surface.mesh) : surface.openings) {
     setting_.guard.max_skewness = options.max_skewness;
-    if (options.error > 0) limits_.step = kErrorStep;
+    if (error_ > 0) limits_.step = kErrorStep;
     most_vertices_ = options.max_vertices;
     if (most_vertices_ == 0)
       most_vertices_ = static_cast<std::size_t>(kMore * static_cast<double>(surface.mesh.vertices.size()));
@@ -141,11 +158,10 @@ class Fit {
     if (is_long() && !to_error_) most_vertices_ = vertices_before_subdivision();
     wanted_vertices_ = static_cast<std::size_t>(kOfMostVertices * static_cast<double>(most_vertices_));
     const double refinement =
-        options.error > 0
-            ? kErrorRefinement
-            : std::sqrt(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices().size()));
+        error_ > 0 ? kErrorRefinement
+                   : std::sqrt(static_cast<double>(wanted_vertices_) / static_cast<double>(surface_.vertices().size()));
     limits_.finest = std::min(limits_.finest, kFinest / refinement);
-    limits_.coarsest = std::max(limits_.coarsest, options.error > 0 ? kErrorCoarsest : kCoarsest / refinement);
+    limits_.coarsest = std::max(limits_.coarsest, error_ > 0 ? kErrorCoarsest : kCoarsest / refinement);
     for (Index i = 0; i < openings_.size(); ++i) {
       setting_.opening_normals.push_back(openings_[i].normal.normalized());
       for (const Index v : openings_[i].ring) surface_.edit(v).opening = i;
@@ -179,12 +195,28 @@ class Fit {
     if (options_.resize && !to_error_) keep_to_wanted_vertices();
     if (is_long()) return to_error_ ? make_long_to_error() : make_long();
     finish();
-    for (int i = 0; options_.resize && to_error_ && i < kErrorCorrections && !keeps_error(); ++i) {
-      even_error_ *= kCorrection;
-      for (int round = 0; round < 2; ++round) resize_once(matches_after_step());
-      if (!to_error_) keep_to_wanted_vertices();
-      finish();
+    for (int i = 0; options_.resize && to_error_ && i < kErrorCorrections && !keeps_error(); ++i) correct(kCorrection);
+    if (options_.max_error > 0) reach_max_error();
+  }
+
+  // Whatever is far from the other surface.
+  void find_far(FitReport& report) const {
+    const TriMesh mesh = surface_.tri_mesh();
+    std::vector<FarPoint> from_reference, from_surface;
+    if (options_.max_error > 0) {
+      from_reference = faces_beyond(reference_.mesh(), mesh, options_.max_error);
+      from_surface = faces_beyond(mesh, reference_.mesh(), options_.max_error);
     }
+    FarParts uncovered = uncovered_parts(surface_, reference_, field_, from_reference);
+    FarParts unsupported = unsupported_parts(surface_, reference_, field_, from_surface);
+    take_mouths(uncovered, part_of(mesh, unsupported.unmatched_faces), options_.max_error);
+    take_mouths(unsupported, part_of(reference_.mesh(), uncovered.unmatched_faces), options_.max_error);
+    report.uncovered = std::move(uncovered.unmatched);
+    report.unsupported = std::move(unsupported.unmatched);
+    report.beyond = std::move(uncovered.beyond);
+    report.beyond.insert(report.beyond.end(), unsupported.beyond.begin(), unsupported.beyond.end());
+    std::stable_sort(report.beyond.begin(), report.beyond.end(),
+                     [](const auto& a, const auto& b) { return a.area > b.area; });
   }
 
   FitResult result() {
@@ -201,6 +233,13 @@ class Fit {
   }
 
  private:
+  // That 95 % are to keep.
+  static double wanted_error(const FitOptions& options) {
+    if (options.max_error == 0) return options.error;
+    const double share = kOfMaxError * options.max_error;
+    return options.error > 0 ? std::min(options.error, share) : share;
+  }
+
   static std::vector<FitVertex> vertices_of(const VesselSurface& surface) {
     std::vector<FitVertex> vertices;
     for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v)
@@ -287,13 +326,20 @@ class Fit {
     const std::vector<Opening> openings = openings_;
     const double most = options_.max_vertices > 0 ? static_cast<double>(options_.max_vertices) : 2 * even;
     double vertices = std::min(kLongShare * even, most);
-    for (int i = 0; i < kLongCorrections; ++i) {
+    const auto make = [&] {
       surface_ = dense;
       openings_ = openings;
       make_long(static_cast<std::size_t>(vertices));
-      const double error = p95(), share = error / options_.error;
-      if ((share <= 1 && share > kKeptError) || (share > 1 && vertices >= most)) return;
+    };
+    for (int i = 0; i < kLongCorrections; ++i) {
+      make();
+      const double error = p95(), share = error / error_;
+      if ((share <= 1 && share > kKeptError) || (share > 1 && vertices >= most)) break;
       vertices = std::min(most, vertices * share / kLongError);
+    }
+    for (int i = 0; options_.max_error > 0 && i < kMaxErrorCorrections && vertices < most && !keeps_max_error(); ++i) {
+      vertices = std::min(most, vertices / kMaxErrorCorrection);
+      make();
     }
   }
 
@@ -322,7 +368,31 @@ class Fit {
                     sample_distance(reference_.mesh(), ClosestPointIndex(mesh), options_.samples).distance.p95);
   }
 
-  bool keeps_error() const { return p95() <= options_.error; }
+  bool keeps_error() const { return p95() <= error_; }
+
+  bool keeps_max_error() const {
+    FitReport report;
+    find_far(report);
+    return report.beyond.empty();
+  }
+
+  // Again with a smaller error around vertices.
+  void correct(double factor) {
+    even_error_ *= factor;
+    for (int round = 0; round < 2; ++round) resize_once(matches_after_step());
+    if (!to_error_) keep_to_wanted_vertices();
+    finish();
+  }
+
+  // First by vertices where it is needed.
+  void reach_max_error() {
+    const std::size_t most = options_.max_vertices > 0 ? most_vertices_ : std::numeric_limits<std::size_t>::max();
+    for (int i = 0;; ++i) {
+      bring_below(surface_, samples_and_rims_, setting_, most, kSafelyBelow * options_.max_error);
+      if (i == kMaxErrorCorrections || !to_error_ || keeps_max_error()) return;
+      correct(kMaxErrorCorrection);
+    }
+  }
 
   void step(const Matches& matches) { step_nearer(surface_, matches, setting_); }
 
@@ -348,9 +418,7 @@ class Fit {
       if (remove_buried(matches)) matches = matches_after_step();
       const std::size_t before = surface_.vertices().size();
       const double p95 = to_error_ ? matched_distance(matches, 0.95) : 0;
-      if (to_error_ && settled_ && i >= rounds && p95 <= kKeptError * options_.error &&
-          p95 > kNearlyError * options_.error)
-        return;
+      if (to_error_ && settled_ && i >= rounds && p95 <= kKeptError * error_ && p95 > kNearlyError * error_) return;
       if (to_error_) aim_at_error(p95);
       resize_once(matches);
       const double change = static_cast<double>(surface_.vertices().size()) / static_cast<double>(before);
@@ -398,12 +466,13 @@ class Fit {
 
   // Adapts the error wanted around vertices so that 95 % of the distances are below options.error.
   void aim_at_error(double p95) {
-    if (even_error_ == 0) even_error_ = kEvenShare * options_.error;
-    if (settled_ && p95 > 0) even_error_ *= std::clamp(std::sqrt(kAim * options_.error / p95), 1 / kAimStep, kAimStep);
+    if (even_error_ == 0) even_error_ = kEvenShare * error_;
+    if (settled_ && p95 > 0) even_error_ *= std::clamp(std::sqrt(kAim * error_ / p95), 1 / kAimStep, kAimStep);
   }
 
   const VesselField& field_;
   const FitOptions& options_;
+  double error_;   // mm, kept by 95 %; 0: any
   bool to_error_;  // sizes follow an error; otherwise (no error given, or too many vertices) a number of vertices
   FitReference reference_;
   FitSetting setting_;
@@ -454,8 +523,9 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
   check(options);
   const VesselField field(centerline);
   check(surface, field);
-  const std::size_t aimed_at =
-      options.error > 0 ? 0 : options.max_vertices;  // with an error, max_vertices is only a limit
+  const std::size_t aimed_at = options.error > 0 || options.max_error > 0
+                                   ? 0
+                                   : options.max_vertices;  // with an error, max_vertices is only a limit
   check_memory(std::max(surface.mesh.vertices.size(), aimed_at), reference);
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   return arena.execute([&] {
@@ -469,8 +539,7 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
     const TriMesh compared = fit.reference_without_apart(report);
     report.before = distance_between(surface.mesh, compared, options, options.samples / kFewerBefore + 1);
     report.after = distance_between(result.surface.mesh, compared, options, options.samples);
-    report.uncovered = uncovered_parts(fit.surface(), fit.reference(), field);
-    report.unsupported = unsupported_parts(fit.surface(), fit.reference(), field);
+    fit.find_far(report);
     return result;
   });
 }

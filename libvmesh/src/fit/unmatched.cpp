@@ -44,12 +44,17 @@ struct FarFace {
   double distance = -1;  // mm; negative: near
   double area = 0;
   bool inside = false;
+  bool unmatched = false;  // farther than half of the local radius
   Index cone = kNone;
 };
 
+void sort_by_area(std::vector<UnmatchedPart>& parts) {
+  std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.area > b.area; });
+}
+
 // Neighbours among the far faces are joined.
 template <class Faces>
-std::vector<UnmatchedPart> parts_of(const std::vector<FarFace>& faces, const Faces& own) {
+FarParts parts_of(const std::vector<FarFace>& faces, const Faces& own) {
   DisjointSets sets(faces.size());
   for (Index f = 0; f < faces.size(); ++f) {
     if (faces[f].distance < 0) continue;
@@ -59,13 +64,16 @@ std::vector<UnmatchedPart> parts_of(const std::vector<FarFace>& faces, const Fac
   }
   std::vector<Index> number(faces.size(), kNone);
   std::vector<UnmatchedPart> parts;
+  std::vector<char> is_unmatched;
   for (Index f = 0; f < faces.size(); ++f) {
     if (faces[f].distance < 0) continue;
     Index& part = number[sets.find(f)];
     if (part == kNone) {
       part = static_cast<Index>(parts.size());
       parts.emplace_back();
+      is_unmatched.push_back(0);
     }
+    if (faces[f].unmatched) is_unmatched[part] = 1;
     UnmatchedPart& whole = parts[part];
     whole.area += faces[f].area;
     if (faces[f].distance < whole.distance) continue;
@@ -74,8 +82,15 @@ std::vector<UnmatchedPart> parts_of(const std::vector<FarFace>& faces, const Fac
     whole.inside = faces[f].inside;
     whole.segment = faces[f].cone;
   }
-  std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.area > b.area; });
-  return parts;
+  FarParts result;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    (is_unmatched[i] ? result.unmatched : result.beyond).push_back(parts[i]);
+  for (Index f = 0; f < faces.size(); ++f) {
+    if (faces[f].distance >= 0 && is_unmatched[number[sets.find(f)]]) result.unmatched_faces.push_back(f);
+  }
+  sort_by_area(result.unmatched);
+  sort_by_area(result.beyond);
+  return result;
 }
 
 bool is_in_triangle(const std::array<Vec3, 3>& corners, const Vec3& p) {
@@ -101,13 +116,19 @@ bool is_behind(const Vec3& p, const ClosestPoint& closest, const Faces& faces) {
   return most < 0;
 }
 
+// `beyond`: its farthest point, if that is beyond a limit.
 template <class Faces>
-FarFace far_face(const Vec3& p, double area, Index cone, const ClosestPointIndex& to, const Faces& others,
-                 const VesselField& field) {
+FarFace far_face(const Vec3& center, double area, Index cone, const FarPoint& beyond, const ClosestPointIndex& to,
+                 const Faces& others, const VesselField& field) {
+  const double distance = to.closest(center).distance;
+  const bool unmatched = distance > kFar * widest_radius(field, cone);
+  if (!unmatched && beyond.distance < 0) return {};
+  const Vec3& p = beyond.distance > distance ? beyond.position : center;
   const ClosestPoint found = to.closest(p);
-  if (found.distance <= kFar * widest_radius(field, cone)) return {};
-  return {p, found.distance, area, is_behind(p, found, others), cone};
+  return {p, found.distance, area, is_behind(p, found, others), unmatched, cone};
 }
+
+FarPoint at(const std::vector<FarPoint>& beyond, Index face) { return beyond.empty() ? FarPoint{} : beyond[face]; }
 
 }  // namespace
 
@@ -134,29 +155,42 @@ std::vector<char> faces_apart(const Matches& matches, const std::vector<Referenc
   return apart;
 }
 
-std::vector<UnmatchedPart> uncovered_parts(const FitMesh& surface, const FitReference& reference,
-                                           const VesselField& field) {
+FarParts uncovered_parts(const FitMesh& surface, const FitReference& reference, const VesselField& field,
+                         const std::vector<FarPoint>& beyond) {
   const ClosestPointIndex index(surface.tri_mesh());
   const ReferenceFaces own{reference};
   const FittedFaces others{surface};
   std::vector<FarFace> faces(own.count());
   tbb::parallel_for(Index{0}, static_cast<Index>(faces.size()), [&](Index f) {
-    faces[f] = far_face(reference.center(f), reference.area(f), reference.cone(f), index, others, field);
+    faces[f] = far_face(reference.center(f), reference.area(f), reference.cone(f), at(beyond, f), index, others, field);
   });
   return parts_of(faces, own);
 }
 
-std::vector<UnmatchedPart> unsupported_parts(const FitMesh& surface, const FitReference& reference,
-                                             const VesselField& field) {
+FarParts unsupported_parts(const FitMesh& surface, const FitReference& reference, const VesselField& field,
+                           const std::vector<FarPoint>& beyond) {
   const FittedFaces own{surface};
   const ReferenceFaces others{reference};
   std::vector<FarFace> faces(own.count());
   tbb::parallel_for(Index{0}, static_cast<Index>(faces.size()), [&](Index f) {
     const auto [a, b, c] = surface.corners(f);
-    faces[f] = far_face((a + b + c) / 3, surface.area_normal(f).norm() / 2,
-                        surface.vertices()[surface.faces()[f][0]].cone, reference.index(), others, field);
+    faces[f] =
+        far_face((a + b + c) / 3, surface.area_normal(f).norm() / 2, surface.vertices()[surface.faces()[f][0]].cone,
+                 at(beyond, f), reference.index(), others, field);
   });
   return parts_of(faces, own);
+}
+
+void take_mouths(FarParts& parts, const TriMesh& others, double limit) {
+  if (others.faces.empty() || parts.beyond.empty()) return;
+  const ClosestPointIndex index(others);
+  std::vector<UnmatchedPart> left;
+  for (const UnmatchedPart& part : parts.beyond) {
+    const bool is_mouth = index.closest(part.position).distance < part.distance + limit;
+    (is_mouth ? parts.unmatched : left).push_back(part);
+  }
+  parts.beyond = std::move(left);
+  sort_by_area(parts.unmatched);
 }
 
 }  // namespace vmesh::fitting

@@ -5,6 +5,7 @@
 #include "vmesh/fit/fit_surface.h"
 
 #include "fit/correspondence.h"
+#include "fit/faces_beyond.h"
 
 namespace vmesh::fitting {
 
@@ -13,12 +14,24 @@ namespace vmesh::fitting {
 std::vector<char> faces_apart(const Matches& matches, const std::vector<ReferenceSample>& samples,
                               const FitReference& reference);
 
-/// Parts of the reference that the packed surface is farther from than half of the local radius; largest first.
-std::vector<UnmatchedPart> uncovered_parts(const FitMesh& surface, const FitReference& reference,
-                                           const VesselField& field);
+/// Connected faces of a surface that are far from the other one, largest first.
+struct FarParts {
+  std::vector<UnmatchedPart> unmatched;  ///< farther somewhere than half of the local radius
+  std::vector<UnmatchedPart> beyond;     ///< the others, farther than a limit
+  std::vector<Index> unmatched_faces;    ///< ascending
+};
 
-/// Parts of the packed surface that the reference is farther from than half of the local radius; largest first.
-std::vector<UnmatchedPart> unsupported_parts(const FitMesh& surface, const FitReference& reference,
-                                             const VesselField& field);
+/// Takes for unmatched what is `beyond` a limit, mm, because of what is unmatched of the other surface: the mouth of a
+/// missing twig. `others` are that surface's unmatched faces.
+void take_mouths(FarParts& parts, const TriMesh& others, double limit);
+
+/// Parts of the reference that are far from the packed surface: all that is farther than half of the local radius,
+/// with the faces that `beyond` a limit join them, if given for every face.
+FarParts uncovered_parts(const FitMesh& surface, const FitReference& reference, const VesselField& field,
+                         const std::vector<FarPoint>& beyond = {});
+
+/// The same for parts of the packed surface that are far from the reference.
+FarParts unsupported_parts(const FitMesh& surface, const FitReference& reference, const VesselField& field,
+                           const std::vector<FarPoint>& beyond = {});
 
 }  // namespace vmesh::fitting

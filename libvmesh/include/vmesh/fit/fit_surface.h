@@ -32,6 +32,10 @@ struct FitOptions {
   /// Error to reach with as few vertices as possible, mm: 95 % of either surface is nearer to the other than this. 0:
   /// none; the number of vertices is then kept.
   double error = 0;
+  /// Largest distance of any point of either surface from the other, mm, but for regions that the report lists as
+  /// uncovered or unsupported: vertices are added, at most `max_vertices`, where it is larger. Proven, or
+  /// FitReport::beyond has the places. 0: none. Needs `resize`.
+  double max_error = 0;
   /// How much longer than wide triangles may be, 1 to kMostElongation: along the direction in which the reference is
   /// curved least, by the root of the ratio of its curvatures. Above 1, a fit with several times as many even triangles
   /// is coarsened to the number wanted and fitted again; needs `resize`.
@@ -78,6 +82,9 @@ struct FitReport {
   /// Regions of the surface that the reference lacks: vessels beyond its end; inside it, walls between the legs of a
   /// hairpin in one wide lumen.
   std::vector<UnmatchedPart> unsupported;
+  /// With FitOptions::max_error, regions of either surface that are farther from the other, largest first; the regions
+  /// above then reach to where the distance is smaller. Empty: the largest distance is proven.
+  std::vector<UnmatchedPart> beyond;
   std::vector<Defect> nodes_outside;  ///< of the centerline, outside the fitted surface; for a GenerateResult only
   bool turned = false;                ///< the reference faced inwards and was turned over
   int rounds = 0;                     ///< of correspondence
