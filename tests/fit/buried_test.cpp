@@ -98,9 +98,9 @@ TEST(BuriedWalls, GiveWayWhereTheReferenceIsOneLumen) {
 }
 
 TEST(BuriedWalls, GiveWayInOtherForks) {
-  for (const double spread : {0.5, 0.6, 0.7}) {
+  for (const double spread : {0.5, 0.7}) {
     for (const double radius : {1.65, 1.95}) {
-      for (const int around : {6, 8, 10, 12}) {
+      for (const int around : {8, 12}) {
         const auto [best, report] = fits_of_fork(spread, radius, around);
         const auto where = [&] { return testing::Message() << spread << ' ' << radius << ' ' << around; };
         for (const UnmatchedPart& part : report.unsupported) EXPECT_FALSE(part.inside) << where();
