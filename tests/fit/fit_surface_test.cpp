@@ -262,6 +262,27 @@ TEST(FitSurface, KeepsALargestErrorButForListedRegions) {
   EXPECT_GT(result.report.uncovered[0].area, free.report.uncovered[0].area);
 }
 
+TEST(FitSurface, ALargestErrorIsProvenAnewAfterAChange) {
+  const Centerline centerline = fork();
+  const TriMesh reference = wall(centerline);
+  FitOptions options = quick();
+  options.max_error = 0.4;
+  FitResult result = fit_surface(grown(centerline), centerline, reference, options);
+  expect_within(result, options.max_error);
+  // A vertex in the middle of the trunk is pulled outward by twice the limit.
+  std::vector<Vec3>& vertices = result.surface.mesh.vertices;
+  const auto far = std::min_element(vertices.begin(), vertices.end(), [](const Vec3& a, const Vec3& b) {
+    return (a - Vec3(0, 3, 7)).norm() < (b - Vec3(0, 3, 7)).norm();
+  });
+  *far += 2 * options.max_error * Vec3::UnitY();
+  find_far_parts(result.report, result.surface, centerline, reference, options.max_error);
+  // That vertex, and the wall below it.
+  ASSERT_EQ(result.report.beyond.size(), 2u);
+  EXPECT_TRUE(std::any_of(result.report.beyond.begin(), result.report.beyond.end(), [&](const UnmatchedPart& part) {
+    return (part.position - *far).norm() < 1e-12 && !part.inside;
+  }));
+}
+
 TEST(FitSurface, SaysWhereALargestErrorIsNotKept) {
   const Centerline centerline = fork();
   const TriMesh reference = wall(centerline);

@@ -193,6 +193,9 @@ bool fit(GenerateReport& report, GenerateResult& result, const PreparedCenterlin
     const FlatReference flat = end_at_caps(result, reference);
     FitReport fitted = fit_surface(result, centerline, flat.mesh, fitting.options, console.progress());
     match_cap_areas(result, centerline, flat.caps);
+    if (fitting.options.max_error > 0 && !flat.caps.empty())
+      find_far_parts(fitted, {result.mesh, result.binding, result.openings}, centerline, flat.mesh,
+                     fitting.options.max_error);
     return fitted;
   });
   log_fit(*report.fit, report.warnings, console);

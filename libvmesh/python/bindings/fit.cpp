@@ -21,6 +21,9 @@ void fit_grown(SurfaceObject& surface, const TriMesh& reference, const FitOption
   const FlatReference flat = end_at_caps(surface.result, reference);
   surface.fit = fit_surface(surface.result, centerline, flat.mesh, options, progress);
   match_cap_areas(surface.result, centerline, flat.caps);
+  if (options.max_error > 0 && !flat.caps.empty())
+    find_far_parts(*surface.fit, {surface.result.mesh, surface.result.binding, surface.result.openings}, centerline,
+                   flat.mesh, options.max_error);
 }
 
 void fit_bound(SurfaceObject& surface, const TriMesh& reference, const FitOptions& options, const Progress& progress) {

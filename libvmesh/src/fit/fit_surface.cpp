@@ -128,6 +128,34 @@ TriMesh part_of(const TriMesh& mesh, const std::vector<Index>& faces) {
   return part;
 }
 
+// Whatever is far from the other surface, with `max_error` as in FitOptions.
+void find_far(FitReport& report, const FitMesh& surface, const FitReference& reference, const VesselField& field,
+              double max_error) {
+  const TriMesh mesh = surface.tri_mesh();
+  std::vector<FarPoint> from_reference, from_surface;
+  if (max_error > 0) {
+    from_reference = faces_beyond(reference.mesh(), mesh, max_error);
+    from_surface = faces_beyond(mesh, reference.mesh(), max_error);
+  }
+  FarParts uncovered = uncovered_parts(surface, reference, field, from_reference);
+  FarParts unsupported = unsupported_parts(surface, reference, field, from_surface);
+  take_mouths(uncovered, part_of(mesh, unsupported.unmatched_faces), max_error);
+  take_mouths(unsupported, part_of(reference.mesh(), uncovered.unmatched_faces), max_error);
+  report.uncovered = std::move(uncovered.unmatched);
+  report.unsupported = std::move(unsupported.unmatched);
+  report.beyond = std::move(uncovered.beyond);
+  report.beyond.insert(report.beyond.end(), unsupported.beyond.begin(), unsupported.beyond.end());
+  std::stable_sort(report.beyond.begin(), report.beyond.end(),
+                   [](const auto& a, const auto& b) { return a.area > b.area; });
+}
+
+std::vector<FitVertex> vertices_of(const VesselSurface& surface) {
+  std::vector<FitVertex> vertices;
+  for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v)
+    vertices.push_back({surface.mesh.vertices[v], surface.binding[v].segment});
+  return vertices;
+}
+
 class Fit {
  public:
   Fit(const VesselSurface& surface, const VesselField& field, const TriMesh& reference, const FitOptions& options)
@@ -199,26 +227,6 @@ class Fit {
     if (options_.max_error > 0) reach_max_error();
   }
 
-  // Whatever is far from the other surface.
-  void find_far(FitReport& report) const {
-    const TriMesh mesh = surface_.tri_mesh();
-    std::vector<FarPoint> from_reference, from_surface;
-    if (options_.max_error > 0) {
-      from_reference = faces_beyond(reference_.mesh(), mesh, options_.max_error);
-      from_surface = faces_beyond(mesh, reference_.mesh(), options_.max_error);
-    }
-    FarParts uncovered = uncovered_parts(surface_, reference_, field_, from_reference);
-    FarParts unsupported = unsupported_parts(surface_, reference_, field_, from_surface);
-    take_mouths(uncovered, part_of(mesh, unsupported.unmatched_faces), options_.max_error);
-    take_mouths(unsupported, part_of(reference_.mesh(), uncovered.unmatched_faces), options_.max_error);
-    report.uncovered = std::move(uncovered.unmatched);
-    report.unsupported = std::move(unsupported.unmatched);
-    report.beyond = std::move(uncovered.beyond);
-    report.beyond.insert(report.beyond.end(), unsupported.beyond.begin(), unsupported.beyond.end());
-    std::stable_sort(report.beyond.begin(), report.beyond.end(),
-                     [](const auto& a, const auto& b) { return a.area > b.area; });
-  }
-
   FitResult result() {
     FitResult result;
     for (const FitVertex& v : surface_.vertices()) {
@@ -238,13 +246,6 @@ class Fit {
     if (options.max_error == 0) return options.error;
     const double share = kOfMaxError * options.max_error;
     return options.error > 0 ? std::min(options.error, share) : share;
-  }
-
-  static std::vector<FitVertex> vertices_of(const VesselSurface& surface) {
-    std::vector<FitVertex> vertices;
-    for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v)
-      vertices.push_back({surface.mesh.vertices[v], surface.binding[v].segment});
-    return vertices;
   }
 
   void check_matched(const Matches& matches) const {
@@ -372,7 +373,7 @@ class Fit {
 
   bool keeps_max_error() const {
     FitReport report;
-    find_far(report);
+    find_far(report, surface_, reference_, field_, options_.max_error);
     return report.beyond.empty();
   }
 
@@ -539,9 +540,16 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
     const TriMesh compared = fit.reference_without_apart(report);
     report.before = distance_between(surface.mesh, compared, options, options.samples / kFewerBefore + 1);
     report.after = distance_between(result.surface.mesh, compared, options, options.samples);
-    fit.find_far(report);
+    find_far(report, fit.surface(), fit.reference(), field, options.max_error);
     return result;
   });
+}
+
+void find_far_parts(FitReport& report, const VesselSurface& surface, const Centerline& centerline,
+                    const TriMesh& reference, double max_error) {
+  const VesselField field(centerline);
+  check(surface, field);
+  find_far(report, FitMesh(surface.mesh.faces, vertices_of(surface)), FitReference(reference, field), field, max_error);
 }
 
 FitReport fit_surface(GenerateResult& result, const Centerline& centerline, const TriMesh& reference,

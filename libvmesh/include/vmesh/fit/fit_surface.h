@@ -124,4 +124,9 @@ FitResult fit_surface(const VesselSurface& surface, const Centerline& centerline
 FitReport fit_surface(GenerateResult& result, const Centerline& centerline, const TriMesh& reference,
                       const FitOptions& options = {}, const Progress& progress = {});
 
+/// Finds anew what of a fitted surface is uncovered, unsupported and beyond FitOptions::max_error, after it was changed
+/// once more. Throws like fit_surface().
+void find_far_parts(FitReport& report, const VesselSurface& surface, const Centerline& centerline,
+                    const TriMesh& reference, double max_error);
+
 }  // namespace vmesh
