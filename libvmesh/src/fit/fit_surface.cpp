@@ -66,6 +66,7 @@ constexpr double kBytesPerVertex = 12000, kBytesPerReferenceFace = 350;
 // of their own.
 constexpr double kOfMaxError = 0.4, kSafelyBelow = 0.85;
 constexpr int kMaxErrorCorrections = 5;
+constexpr double kMaxErrorProgress = 0.8;     // a correction that leaves more of the area beyond it was in vain
 constexpr double kMaxErrorCorrection = 0.75;  // factor on the even error, or that of 95 %, where that did not do
 constexpr double kCorrection = 0.93;          // factor on the even error when the 95 % miss theirs
 
@@ -338,9 +339,20 @@ class Fit {
       if ((share <= 1 && share > kKeptError) || (share > 1 && vertices >= most)) break;
       vertices = std::min(most, vertices * share / kLongError);
     }
-    for (int i = 0; options_.max_error > 0 && i < kMaxErrorCorrections && vertices < most && !keeps_max_error(); ++i) {
+    if (options_.max_error == 0) return;
+    double left = area_beyond();
+    for (int i = 0; i < kMaxErrorCorrections && vertices < most && left > 0; ++i) {
+      const FitMesh before = surface_;
+      const std::vector<Opening> openings_before = openings_;
       vertices = std::min(most, vertices / kMaxErrorCorrection);
       make();
+      const double area = area_beyond();
+      if (area > kMaxErrorProgress * left) {
+        surface_ = before;
+        openings_ = openings_before;
+        return;
+      }
+      left = area;
     }
   }
 
@@ -371,10 +383,13 @@ class Fit {
 
   bool keeps_error() const { return p95() <= error_; }
 
-  bool keeps_max_error() const {
+  // Of the faces that do not keep the largest error, mm^2.
+  double area_beyond() const {
     FitReport report;
     find_far(report, surface_, reference_, field_, options_.max_error);
-    return report.beyond.empty();
+    double area = 0;
+    for (const UnmatchedPart& part : report.beyond) area += part.area;
+    return area;
   }
 
   // Again with a smaller error around vertices.
@@ -385,14 +400,24 @@ class Fit {
     finish();
   }
 
-  // First by vertices where it is needed.
+  // First by vertices where it is needed; as long as finer triangles everywhere help.
   void reach_max_error() {
     const std::size_t most = options_.max_vertices > 0 ? most_vertices_ : std::numeric_limits<std::size_t>::max();
+    FitMesh best = surface_;
+    std::vector<Opening> openings_of_best = openings_;
+    double least = std::numeric_limits<double>::infinity();
     for (int i = 0;; ++i) {
       bring_below(surface_, samples_and_rims_, setting_, most, kSafelyBelow * options_.max_error);
-      if (i == kMaxErrorCorrections || !to_error_ || keeps_max_error()) return;
+      const double area = area_beyond();
+      if (area > kMaxErrorProgress * least) break;
+      best = surface_;
+      openings_of_best = openings_;
+      least = area;
+      if (area == 0 || i == kMaxErrorCorrections || !to_error_) break;
       correct(kMaxErrorCorrection);
     }
+    surface_ = best;
+    openings_ = openings_of_best;
   }
 
   void step(const Matches& matches) { step_nearer(surface_, matches, setting_); }
