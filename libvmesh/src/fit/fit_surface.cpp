@@ -123,33 +123,6 @@ void check_memory(std::size_t vertices, const TriMesh& reference) {
       "allow fewer vertices or a larger error, or make the reference coarser");
 }
 
-TriMesh part_of(const TriMesh& mesh, const std::vector<Index>& faces) {
-  TriMesh part{mesh.vertices, {}};
-  for (const Index f : faces) part.faces.push_back(mesh.faces[f]);
-  return part;
-}
-
-// Whatever is far from the other surface, with `max_error` as in FitOptions.
-void find_far(FitReport& report, const FitMesh& surface, const FitReference& reference, const VesselField& field,
-              double max_error) {
-  const TriMesh mesh = surface.tri_mesh();
-  std::vector<FarPoint> from_reference, from_surface;
-  if (max_error > 0) {
-    from_reference = faces_beyond(reference.mesh(), mesh, max_error);
-    from_surface = faces_beyond(mesh, reference.mesh(), max_error);
-  }
-  FarParts uncovered = uncovered_parts(surface, reference, field, from_reference);
-  FarParts unsupported = unsupported_parts(surface, reference, field, from_surface);
-  take_mouths(uncovered, part_of(mesh, unsupported.unmatched_faces), max_error);
-  take_mouths(unsupported, part_of(reference.mesh(), uncovered.unmatched_faces), max_error);
-  report.uncovered = std::move(uncovered.unmatched);
-  report.unsupported = std::move(unsupported.unmatched);
-  report.beyond = std::move(uncovered.beyond);
-  report.beyond.insert(report.beyond.end(), unsupported.beyond.begin(), unsupported.beyond.end());
-  std::stable_sort(report.beyond.begin(), report.beyond.end(),
-                   [](const auto& a, const auto& b) { return a.area > b.area; });
-}
-
 std::vector<FitVertex> vertices_of(const VesselSurface& surface) {
   std::vector<FitVertex> vertices;
   for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v)
@@ -340,20 +313,12 @@ class Fit {
       vertices = std::min(most, vertices * share / kLongError);
     }
     if (options_.max_error == 0) return;
-    double left = area_beyond();
-    for (int i = 0; i < kMaxErrorCorrections && vertices < most && left > 0; ++i) {
-      const FitMesh before = surface_;
-      const std::vector<Opening> openings_before = openings_;
+    mend_beyond([&] {
+      if (vertices >= most) return false;
       vertices = std::min(most, vertices / kMaxErrorCorrection);
       make();
-      const double area = area_beyond();
-      if (area > kMaxErrorProgress * left) {
-        surface_ = before;
-        openings_ = openings_before;
-        return;
-      }
-      left = area;
-    }
+      return true;
+    });
   }
 
   // A fit of many even triangles.
@@ -400,24 +365,38 @@ class Fit {
     finish();
   }
 
-  // First by vertices where it is needed; as long as finer triangles everywhere help.
+  // Vertices where they are needed, then finer triangles everywhere.
   void reach_max_error() {
     const std::size_t most = options_.max_vertices > 0 ? most_vertices_ : std::numeric_limits<std::size_t>::max();
-    FitMesh best = surface_;
-    std::vector<Opening> openings_of_best = openings_;
-    double least = std::numeric_limits<double>::infinity();
-    for (int i = 0;; ++i) {
+    const auto bring = [&] {
       bring_below(surface_, samples_and_rims_, setting_, most, kSafelyBelow * options_.max_error);
-      const double area = area_beyond();
-      if (area > kMaxErrorProgress * least) break;
-      best = surface_;
-      openings_of_best = openings_;
-      least = area;
-      if (area == 0 || i == kMaxErrorCorrections || !to_error_) break;
+    };
+    bring();
+    mend_beyond([&] {
+      if (!to_error_) return false;
       correct(kMaxErrorCorrection);
+      bring();
+      return true;
+    });
+  }
+
+  // Corrects as long as that mends a part of what does not keep the largest error; takes back what did not. `correct`
+  // returns whether there was anything left to try.
+  template <class Correct>
+  void mend_beyond(Correct&& correct) {
+    double left = area_beyond();
+    for (int i = 0; i < kMaxErrorCorrections && left > 0; ++i) {
+      const FitMesh surface = surface_;
+      const std::vector<Opening> openings = openings_;
+      if (!correct()) return;
+      const double area = area_beyond();
+      if (area > kMaxErrorProgress * left) {
+        surface_ = surface;
+        openings_ = openings;
+        return;
+      }
+      left = area;
     }
-    surface_ = best;
-    openings_ = openings_of_best;
   }
 
   void step(const Matches& matches) { step_nearer(surface_, matches, setting_); }

@@ -130,6 +130,26 @@ FarFace far_face(const Vec3& center, double area, Index cone, const FarPoint& be
 
 FarPoint at(const std::vector<FarPoint>& beyond, Index face) { return beyond.empty() ? FarPoint{} : beyond[face]; }
 
+TriMesh part_of(const TriMesh& mesh, const std::vector<Index>& faces) {
+  TriMesh part{mesh.vertices, {}};
+  for (const Index f : faces) part.faces.push_back(mesh.faces[f]);
+  return part;
+}
+
+// Takes for unmatched what is beyond the limit because of what is unmatched of the other surface, as the mouth of a
+// missing twig. `others`: that surface's unmatched faces.
+void take_mouths(FarParts& parts, const TriMesh& others, double limit) {
+  if (others.faces.empty() || parts.beyond.empty()) return;
+  const ClosestPointIndex index(others);
+  std::vector<UnmatchedPart> left;
+  for (const UnmatchedPart& part : parts.beyond) {
+    const bool is_mouth = index.closest(part.position).distance < part.distance + limit;
+    (is_mouth ? parts.unmatched : left).push_back(part);
+  }
+  parts.beyond = std::move(left);
+  sort_by_area(parts.unmatched);
+}
+
 }  // namespace
 
 std::vector<char> faces_apart(const Matches& matches, const std::vector<ReferenceSample>& samples,
@@ -181,16 +201,23 @@ FarParts unsupported_parts(const FitMesh& surface, const FitReference& reference
   return parts_of(faces, own);
 }
 
-void take_mouths(FarParts& parts, const TriMesh& others, double limit) {
-  if (others.faces.empty() || parts.beyond.empty()) return;
-  const ClosestPointIndex index(others);
-  std::vector<UnmatchedPart> left;
-  for (const UnmatchedPart& part : parts.beyond) {
-    const bool is_mouth = index.closest(part.position).distance < part.distance + limit;
-    (is_mouth ? parts.unmatched : left).push_back(part);
+void find_far(FitReport& report, const FitMesh& surface, const FitReference& reference, const VesselField& field,
+              double max_error) {
+  const TriMesh mesh = surface.tri_mesh();
+  std::vector<FarPoint> from_reference, from_surface;
+  if (max_error > 0) {
+    from_reference = faces_beyond(reference.mesh(), mesh, max_error);
+    from_surface = faces_beyond(mesh, reference.mesh(), max_error);
   }
-  parts.beyond = std::move(left);
-  sort_by_area(parts.unmatched);
+  FarParts uncovered = uncovered_parts(surface, reference, field, from_reference);
+  FarParts unsupported = unsupported_parts(surface, reference, field, from_surface);
+  take_mouths(uncovered, part_of(mesh, unsupported.unmatched_faces), max_error);
+  take_mouths(unsupported, part_of(reference.mesh(), uncovered.unmatched_faces), max_error);
+  report.uncovered = std::move(uncovered.unmatched);
+  report.unsupported = std::move(unsupported.unmatched);
+  report.beyond = std::move(uncovered.beyond);
+  report.beyond.insert(report.beyond.end(), unsupported.beyond.begin(), unsupported.beyond.end());
+  sort_by_area(report.beyond);
 }
 
 }  // namespace vmesh::fitting

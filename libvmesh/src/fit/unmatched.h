@@ -21,10 +21,6 @@ struct FarParts {
   std::vector<Index> unmatched_faces;    ///< ascending
 };
 
-/// Takes for unmatched what is `beyond` a limit, mm, because of what is unmatched of the other surface: the mouth of a
-/// missing twig. `others` are that surface's unmatched faces.
-void take_mouths(FarParts& parts, const TriMesh& others, double limit);
-
 /// Parts of the reference that are far from the packed surface: all that is farther than half of the local radius,
 /// with the faces that `beyond` a limit join them, if given for every face.
 FarParts uncovered_parts(const FitMesh& surface, const FitReference& reference, const VesselField& field,
@@ -33,5 +29,9 @@ FarParts uncovered_parts(const FitMesh& surface, const FitReference& reference, 
 /// The same for parts of the packed surface that are far from the reference.
 FarParts unsupported_parts(const FitMesh& surface, const FitReference& reference, const VesselField& field,
                            const std::vector<FarPoint>& beyond = {});
+
+/// Both in a report, with `max_error` as in FitOptions.
+void find_far(FitReport& report, const FitMesh& surface, const FitReference& reference, const VesselField& field,
+              double max_error);
 
 }  // namespace vmesh::fitting
