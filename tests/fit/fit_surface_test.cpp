@@ -531,7 +531,7 @@ TEST(FlatReference, EndsTheSurfaceInThePlanesOfItsCapsToTheirArea) {
   match_cap_areas(result, centerline, flat.caps);
   EXPECT_TRUE(result.is_sound());
   FlatEndOptions ends;
-  ends.keep_area = false;
+  ends.fitted = true;
   const FlatEnds found = finish_ends(result, centerline, ends);
   EXPECT_TRUE(result.is_sound());
   EXPECT_TRUE(measure_topology(result.mesh).closed);

@@ -105,7 +105,7 @@ void expect_caps(const std::string& name, const std::string& model_name, std::si
   fit_surface(result, centerline, flat.mesh);
   match_cap_areas(result, centerline, flat.caps);
   FlatEndOptions ends;
-  ends.keep_area = false;
+  ends.fitted = true;
   const FlatEnds found = finish_ends(result, centerline, ends);
   EXPECT_TRUE(result.is_sound());
   ASSERT_EQ(found.ends.size(), count);

@@ -16,13 +16,13 @@ namespace {
 
 // Measured on the hepatic veins 002, seven starts that differ by 1e-3 radii: Hausdorff distance at most 3.5 mm, six of
 // them 1.9; up to 8.4 without.
-constexpr double kInside = 0.2;   // local radii: how far a face must be from the reference to count,
-constexpr double kDeep = 0.5;     // and how far the farthest of a region
-constexpr double kNearer = 0.75;  // of its distance: how far what replaces the region may be
+constexpr double kInside = 0.2;         // local radii: how far a face must be from the reference to count,
+constexpr double kDeep = 0.5;           // and how far the farthest of a region
+constexpr double kAllowedShare = 0.75;  // of its distance: how far what replaces the region may be
 
-constexpr double kReach = 1.5;   // local radii: how far outward the reference may end for a face to move there
-constexpr double kThere = 1e-3;  // local radii: nearer than this is there
-constexpr int kMostSteps = 64;   // on the way there; beside a wall they are short
+constexpr double kReferenceReach = 1.5;  // local radii: how far outward the reference may end for a face to move there
+constexpr double kThere = 1e-3;          // local radii: nearer than this is there
+constexpr int kMostSteps = 64;           // on the way there; beside a wall they are short
 
 constexpr std::size_t kMostCorners = 512;  // of a mouth: the triangles take their cube
 
@@ -83,7 +83,7 @@ class BuriedWalls {
     const auto faces_it = [&](Index g) { return surface_.unit_normal(g).dot(outward) < 0; };
     const double there = kThere * radius(f);
     double way = 0;
-    for (int i = 0; i < kMostSteps && way < kReach * radius(f); ++i) {
+    for (int i = 0; i < kMostSteps && way < kReferenceReach * radius(f); ++i) {
       const Vec3 p = from + way * outward;
       const ClosestPoint found = closest(p);
       if (found.distance < there || setting_.reference.normal(found.face).dot(p - found.point) > 0) return true;
@@ -163,7 +163,7 @@ class BuriedWalls {
       }
       return true;
     };
-    const double allowed = kNearer * farthest(region);
+    const double allowed = kAllowedShare * farthest(region);
     for (const auto& [i, j, k] : span_polygon(corners, may_join)) {
       step.faces.push_back({mouth[i], mouth[j], mouth[k]});
       if (distance(step.faces.back()) > allowed) return false;

@@ -18,12 +18,12 @@ namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
-constexpr double kOutdated = 1.02;  // a step whose cost has grown by this factor waits for its turn
-constexpr double kTurn = 0.3;       // least cosine between a face's normals before and after a collapse
-constexpr double kHold = 1e-3;      // of the sum of squares: keeps vertices in directions in which nothing changes
-constexpr double kFarthest = 2;     // edge lengths from the middle of an edge: where its vertex may go
+constexpr double kOutdated = 1.02;    // a step whose cost has grown by this factor waits for its turn
+constexpr double kTurn = 0.3;         // least cosine between a face's normals before and after a collapse
+constexpr double kHeld = 1e-3;        // of the sum of squares: keeps vertices in directions in which nothing changes
+constexpr double kFarthestPlace = 2;  // edge lengths from the middle of an edge: where its vertex may go
 // Rounds over which curvature is averaged, an edge each. Measured on three fits: 1 to 6 give the same errors.
-constexpr int kReach = 3;
+constexpr int kRingsAround = 3;
 
 // From the scatter of the normals around: its largest direction is the mean normal, the others are those of curvature,
 // in which it grows with the square.
@@ -62,7 +62,7 @@ class SweptVolume {
   std::optional<Vec3> best(const Vec3& near) const {
     const double scale = matrix_.trace();
     if (!(scale > 0)) return std::nullopt;
-    const Mat3 held = matrix_ + kHold * scale * Mat3::Identity();
+    const Mat3 held = matrix_ + kHeld * scale * Mat3::Identity();
     const Mat3 inverse = held.inverse();
     Vec3 step = inverse * (right_ - matrix_ * near);
     const double stiffness = sum_.dot(inverse * sum_);
@@ -117,7 +117,7 @@ class Coarsener {
     }
     const Vec3 &a = surface_.position(e.a), &b = surface_.position(e.b), middle = 0.5 * (a + b);
     std::optional<Vec3> p = swept.best(middle);
-    if (!p || !((*p - middle).norm() <= kFarthest * (a - b).norm())) p = middle;
+    if (!p || !((*p - middle).norm() <= kFarthestPlace * (a - b).norm())) p = middle;
     return Placement{*p, std::max(0.0, swept.at(*p))};
   }
 
@@ -179,7 +179,7 @@ void find_elongation(FitMesh& surface, double most) {
     const Mat3 square = normal * normal.transpose() / normal.norm();
     for (const Index v : surface.faces()[f]) scatter[v] += square;
   }
-  for (int i = 0; i < kReach; ++i) {
+  for (int i = 0; i < kRingsAround; ++i) {
     const std::vector<Mat3> before = scatter;
     for (Index f = 0; f < surface.faces().size(); ++f) {
       for (const Index v : surface.faces()[f]) {

@@ -13,19 +13,19 @@
 namespace vmesh::fitting {
 namespace {
 
-constexpr int kDivision = 3, kRelaxations = 2;
+constexpr int kFineDivision = 3, kRelaxations = 2;
 constexpr std::size_t kEdgePoints = 3 * kPerEdge;  // of a face
 // Multiple of the RMS distance from which on a place, such as a ridge crossed by a triangle, gets a vertex of its own.
 // Measured on the aorta and SU201, sixteen starts (growth with `simplification` 0 to .8, vertices moved by 1e-6 radii):
 // Hausdorff distance at most .97 and .29 mm with 3 to 4.5, 1.00 and .29 with 5; safe 3 to 4.5.
-constexpr double kFar = 4;
+constexpr double kOfRms = 4;
 // Edge lengths (largest mean at a corner): farther points are not for the surface to follow. More than the limit for
 // refinement (kNotOfSize), as only what helps is kept. Measured on SU201, sixteen starts: at 0.6 and 0.8 the Hausdorff
 // distance is at most .28 mm, at 0.4 once .37.
 constexpr double kNotOfReach = 0.6;
 constexpr std::size_t kMostPlaces = 12;
-constexpr double kReach = 2.5;  // edges: radius of the refit around a new vertex. Measured: 1.5 to 3.5 give the same
-constexpr double kAtVertex = 1e-9;                            // other weights below this: the point is a vertex
+constexpr double kRefitReach = 2.5;  // edges, around a new vertex. Measured: 1.5 to 3.5 give the same
+constexpr double kAtVertex = 1e-9;   // other weights below this: the point is a vertex
 constexpr std::array<double, 3> kShares = {0.75, 0.5, 0.25};  // of its distance, by which a vertex is moved nearer
 constexpr int kRounds = 3;                                    // of the refit. Measured: 2 to 4 give the same
 // LeastSquaresWeights::emphasis of the refit where no vertex helps. Measured on the aorta: with 6 as near, with more
@@ -47,10 +47,10 @@ class FarPlaces {
  public:
   FarPlaces(FitMesh& surface, const std::vector<ReferenceSample>& samples, const FitSetting& setting)
       : surface_(surface), samples_(samples), setting_(setting) {
-    matches_ = find_matches(surface, setting.reference, samples, setting.field, {kDivision, true});
+    matches_ = find_matches(surface, setting.reference, samples, setting.field, {kFineDivision, true});
   }
 
-  void improve(std::size_t most_vertices) { bring_below(kFar * rms_distance(matches_), most_vertices, kMostPlaces); }
+  void improve(std::size_t most_vertices) { bring_below(kOfRms * rms_distance(matches_), most_vertices, kMostPlaces); }
 
   void bring_below(double near, std::size_t most_vertices, std::size_t most_places) {
     std::vector<Place> left_alone;
@@ -68,7 +68,7 @@ class FarPlaces {
     double edge = 0;
     for (const Index v : surface_.faces()[worst.face]) edge = std::max(edge, surface_.mean_edge(v));
     if (std::abs(worst.distance) > kNotOfReach * edge) return false;
-    const FitPatch patch = patch_around(surface_, worst.face, kReach * edge);
+    const FitPatch patch = patch_around(surface_, worst.face, kRefitReach * edge);
     const PatchMatches before = matches_of(patch);
     Match there = worst;
     there.face =
@@ -173,7 +173,7 @@ class FarPlaces {
   void renew(const FitPatch& patch, PatchMatches& matches, bool edges) const {
     std::vector<ReferenceSample> samples;
     for (const Index i : matches.samples) samples.push_back(samples_[i]);
-    MatchScope scope{kDivision, edges, {}};
+    MatchScope scope{kFineDivision, edges, {}};
     for (Index f = 0; f < patch.surface.faces().size(); ++f) scope.faces.push_back(patch.moves(f));
     matches.matches = find_matches(patch.surface, setting_.reference, samples, setting_.field, scope);
   }

@@ -15,7 +15,7 @@
 namespace vmesh::fitting {
 namespace {
 
-constexpr double kReach = 1;        // local radii from the round cones: as far as bulges go
+constexpr double kBulge = 1;        // local radii from the round cones: as far as bulges go
 constexpr double kSharpEdge = 0.7;  // largest cosine between the normals on both sides of a sharp edge
 // Roberts' R2, as in sample_surface().
 constexpr double kPlastic = 1.32471795724474602596;
@@ -157,7 +157,7 @@ void FitReference::find_cones(const VesselField& field) {
 void FitReference::find_near(const VesselField& field) {
   near_.resize(mesh_.faces.size());
   tbb::parallel_for(Index{0}, static_cast<Index>(mesh_.faces.size()), [&](Index f) {
-    near_[f] = field.sample(center(f), cones_[f]).distance <= kReach * widest_radius(field, cones_[f]);
+    near_[f] = field.sample(center(f), cones_[f]).distance <= kBulge * widest_radius(field, cones_[f]);
   });
 }
 

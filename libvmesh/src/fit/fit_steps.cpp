@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLongestStep = 0.35;  // of the edges around
 constexpr int kShapePower = 2;
-constexpr double kFarthest = 1.5;  // local radii, from the reference
+constexpr double kFarthestStart = 1.5;  // local radii, from the reference
 // The pull to good shapes counts relative to distances, which shrink with the square of the edges: it grows with the
 // square of edges by radius, between this and 1. Measured on portal vein 008 at 12 vertices around: mean distance .023
 // mm with 1, .021 with this and with half of it; less than 1 at 6 around costs portal vein 002 its shape (skewness .144
@@ -50,7 +50,7 @@ double distance_from_reference(const Vec3& p, Index cone, const Vec3& normal, co
     return (normal.isZero(0) || setting.reference.normal(g).dot(normal) > 0) &&
            same_vessel(setting.field, cone, setting.reference.cone(g));
   };
-  const double limit = kFarthest * widest_radius(setting.field, cone);
+  const double limit = kFarthestStart * widest_radius(setting.field, cone);
   const auto found = setting.reference.index().closest_among(p, limit, accepts);
   return found ? found->distance : -1;
 }

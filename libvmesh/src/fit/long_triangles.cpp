@@ -15,7 +15,7 @@ namespace {
 constexpr double kMaxSkewness = 0.8;
 constexpr LeastSquaresWeights kWeights = {.tangential = 0.01};  // 0.005 and 0.02: within 2 %
 constexpr double kExchanged = 0.1;                              // of the vertices, in a round; 0.05: 1 to 3 % farther
-constexpr int kRefits = 3, kExchanges = 3, kDivision = 3;
+constexpr int kRefits = 3, kExchanges = 3, kLongDivision = 3;
 
 /// An edge whose middle is far from the reference.
 struct FarEdge {
@@ -114,7 +114,7 @@ void LongTriangles::split_far_edges(const Matches& matches, const std::vector<ch
 
 Matches LongTriangles::next_matches(bool edges) {
   round_();
-  Matches matches = find_matches(surface_, setting_.reference, samples_, setting_.field, {kDivision, edges});
+  Matches matches = find_matches(surface_, setting_.reference, samples_, setting_.field, {kLongDivision, edges});
   remember(surface_, matches);
   return matches;
 }

@@ -14,9 +14,9 @@ namespace vmesh::fitting {
 namespace {
 
 constexpr int kAttempts = 6;
-constexpr double kLongestStep = 0.3;  // of the shortest edge
-constexpr double kGain = 0.02;        // in skewness, that a flip must achieve
-constexpr double kBent = 0.6;         // least cosine between the normals before and after a flip
+constexpr double kLongestRelaxation = 0.3;  // of the shortest edge
+constexpr double kGain = 0.02;              // in skewness, that a flip must achieve
+constexpr double kBentByFlip = 0.6;         // least cosine between the normals before and after a flip
 constexpr double kFlippedSkewness = 0.42;
 constexpr double kCloser = 0.02;  // of the edge: how much closer a flip must bring its midpoint
 constexpr double kCloserSkewness = 0.35;
@@ -54,7 +54,7 @@ Vec3 shape_step(const FitMesh& surface, Index v, int power) {
   const Eigen::Vector2d step = -energy.hessian.inverse() * energy.gradient;
   if (!step.allFinite()) return Vec3::Zero();
   Vec3 result = step.x() * u + step.y() * w;
-  const double longest = kLongestStep * shortest, norm = result.norm();
+  const double longest = kLongestRelaxation * shortest, norm = result.norm();
   if (norm > longest) result *= longest / norm;
   return result;
 }
@@ -135,7 +135,7 @@ bool should_flip(const FitMesh& surface, const Flip& flip, const StepGuard& guar
   const FlippedShape shape = shape_of(surface, flip);
   const bool more_even = flip.less_even < 0 && shape.worst_after <= std::max(kFlippedSkewness, shape.worst_before);
   const bool better = shape.worst_after < shape.worst_before - kGain && shape.worst_before > guard.max_skewness / 2;
-  return (more_even || better) && shape.turn > kBent && shape.bend > kBent;
+  return (more_even || better) && shape.turn > kBentByFlip && shape.bend > kBentByFlip;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 constexpr double kLong = 4.0 / 3, kShort = 4.0 / 5;  // of the intended length (Botsch, Kobbelt 2004)
 constexpr int kBisections = 16;                      // of an interval of 10^6: to 0.02 %
 constexpr double kCollapsedSkewness = 0.45;
-constexpr double kBent = 0.5;  // least cosine between a triangle's normals before and after a collapse
+constexpr double kBentByCollapse = 0.5;  // least cosine between a triangle's normals before and after a collapse
 
 using Neighbours = std::vector<std::vector<Index>>;
 
@@ -92,7 +92,7 @@ bool may_collapse_to(const FitMesh& surface, Index a, Index b, const Vec3& p, co
         if (face[i] == end) corners[i] = p;
       }
       const Vec3 after = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-      if (!(after.dot(before) > kBent * after.norm())) return false;
+      if (!(after.dot(before) > kBentByCollapse * after.norm())) return false;
       worst = std::max(worst, equiangle_skewness(corners[0], corners[1], corners[2]));
       for (int i = 0; i < 3; ++i) {  // must not create an edge that would be split again
         if (face[i] == end) continue;

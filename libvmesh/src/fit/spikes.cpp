@@ -11,8 +11,8 @@ namespace {
 // most 1.02 and .34 mm, 2.29 and .39 without any; a few of those places remain where only vertices of at most five
 // faces are collapsed, or where triangles may only have a skewness of .6.
 constexpr double kBlunt = 0.6;      // length of the sum of the faces' area vectors by that of the lengths
-constexpr double kFar = 0.15;       // of the edges around: what is nearer does no harm
-constexpr double kNearer = 0.6;     // of the vertex's distance: the most that may remain
+constexpr double kHarmful = 0.15;   // of the edges around: what is nearer does no harm
+constexpr double kMostLeft = 0.6;   // of the vertex's distance: the most that may remain
 constexpr double kSkewness = 0.75;  // of the triangles that remain; repair mends that
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -25,8 +25,8 @@ class Spikes {
     for (Index v = 0; v < surface_.vertices().size(); ++v) {
       if (!surface_.has_vertex(v) || on_border(surface_, v) || is_frozen(frozen_, v) || !is_pointed(v)) continue;
       const double distance = distance_from(v, surface_.position(v));
-      if (distance < kFar * surface_.mean_edge(v)) continue;
-      const Index end = nearest_end(v, kNearer * distance);
+      if (distance < kHarmful * surface_.mean_edge(v)) continue;
+      const Index end = nearest_end(v, kMostLeft * distance);
       if (end != kNone) collapse(v, end);
     }
   }

@@ -11,7 +11,7 @@
 namespace vmesh::fitting {
 namespace {
 
-constexpr double kFar = 0.5;          // local radii
+constexpr double kUnmatched = 0.5;    // local radii
 constexpr double kInTriangle = 1e-9;  // of its area: what rounding adds to the parts into which a point divides it
 
 // One interface to the faces of both surfaces.
@@ -121,7 +121,7 @@ template <class Faces>
 FarFace far_face(const Vec3& center, double area, Index cone, const FarPoint& beyond, const ClosestPointIndex& to,
                  const Faces& others, const VesselField& field) {
   const double distance = to.closest(center).distance;
-  const bool unmatched = distance > kFar * widest_radius(field, cone);
+  const bool unmatched = distance > kUnmatched * widest_radius(field, cone);
   if (!unmatched && beyond.distance < 0) return {};
   const Vec3& p = beyond.distance > distance ? beyond.position : center;
   const ClosestPoint found = to.closest(p);

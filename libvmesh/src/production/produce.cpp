@@ -26,7 +26,8 @@ FlatEnds finish(GenerateResult& result, const Centerline& centerline, const std:
   finishing.left_open = ends.left_open;
   finishing.extension = options.extension;
   finishing.fit_extensions = options.fit_extensions;
-  finishing.keep_area = !fitted && options.growth.placement == Placement::balanced;
+  finishing.keep_area = options.growth.placement == Placement::balanced;
+  finishing.fitted = fitted;
   finishing.sections = sections;
   return finish_ends(result, centerline, finishing);
 }

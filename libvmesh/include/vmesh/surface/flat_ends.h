@@ -14,8 +14,10 @@ inline constexpr double kLongestFittedExtension = 10;
 /// How to finish the ends at which a surface was left open.
 struct FlatEndOptions {
   /// Scale the rings to the area of the vessel's round cross-section, in which they are inscribed: with six vertices
-  /// around, that cuts off a sixth. A ring whose faces would then cross others stays as it is. Not for fitted surfaces.
+  /// around, that cuts off a sixth; those at `sections`, to the area of these. A ring whose faces would then cross
+  /// others stays as it is.
   bool keep_area = true;
+  bool fitted = false;           ///< leave the rings that are not at sections where a fit has placed them
   bool cap = true;               ///< close the ends by flat caps
   std::vector<Index> left_open;  ///< nodes of the centerline whose ends stay open even so
   /// Length of a straight extension of the same cross-section that is first added at every end, in radii of the circle
@@ -24,8 +26,8 @@ struct FlatEndOptions {
   /// Make each extension only as long as there is room for it, in the order of the nodes: a quarter of its radius is
   /// left free ahead, a twentieth beside. Where less than half of a radius would be left, there is none.
   bool fit_extensions = false;
-  /// Ends at these nodes get exactly these cross-sections, see end_at_sections(); keep_area applies to those without a
-  /// ring. The others, and those that cannot be kept, are cut across the vessel.
+  /// Ends at these nodes get these cross-sections, see end_at_sections(). The others, and those that cannot be kept,
+  /// are cut across the vessel.
   std::vector<EndSection> sections;
 };
 

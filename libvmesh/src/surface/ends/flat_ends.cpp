@@ -34,7 +34,9 @@ class EndFinisher {
     std::vector<Opening> open;
     SectionEnds sections = end_at_sections(result_, options_.sections, options_.keep_area);
     ends_.not_kept = std::move(sections.not_kept);
-    if (options_.keep_area) scale_rings(sections.kept);
+    ends_.narrowed = std::move(sections.narrowed);
+    if (options_.keep_area && !options_.fitted) scale_rings(sections.kept);
+    std::sort(ends_.narrowed.begin(), ends_.narrowed.end());
     if (options_.extension > 0) room_.emplace(result_);
     for (Opening& opening : result_.openings) {
       const bool at_section = std::binary_search(sections.kept.begin(), sections.kept.end(), opening.node);
@@ -83,7 +85,6 @@ class EndFinisher {
     }
     while (!scaled.empty() && take_back_crossing(scaled)) {
     }
-    std::sort(ends_.narrowed.begin(), ends_.narrowed.end());
   }
 
   // Whether there were any.

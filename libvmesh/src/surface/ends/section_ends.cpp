@@ -41,8 +41,8 @@ std::optional<double> distance_to_ring(const EndSection& section, const Vec3& di
 /// Where a ring goes in the plane of its section.
 class RingPlacement {
  public:
-  RingPlacement(const Opening& opening, const std::vector<Vec3>& ring, const EndSection& section, bool to_area)
-      : opening_(opening), ring_(ring), section_(section), to_area_(to_area) {}
+  RingPlacement(const Opening& opening, const std::vector<Vec3>& ring, const EndSection& section)
+      : opening_(opening), ring_(ring), section_(section) {}
 
   std::vector<Vec3> targets;  ///< of the ring's vertices
   std::string problem;        ///< why there is none; empty if there is
@@ -61,11 +61,16 @@ class RingPlacement {
       return;
     }
     cut_by_plane();
-    if (section_.ring.empty()) {
-      scale();
-    } else {
-      meet_ring();
-    }
+    if (!section_.ring.empty()) meet_ring();
+  }
+
+  /// The targets around the section's centre, scaled to its area.
+  std::vector<Vec3> scaled_targets() const {
+    std::vector<Vec3> scaled = targets;
+    const Vec3 middle = section_.ring.empty() ? area_centroid(targets) : section_.center;
+    const double factor = std::sqrt(section_.area / area_vector(targets).norm());
+    for (Vec3& p : scaled) p = section_.center + factor * (p - middle);
+    return scaled;
   }
 
  private:
@@ -73,13 +78,6 @@ class RingPlacement {
   void cut_by_plane() {
     const Vec3 way = opening_.normal / opening_.normal.dot(section_.normal);
     for (const Vec3& p : ring_) targets.push_back(p + (section_.center - p).dot(section_.normal) * way);
-  }
-
-  void scale() {
-    if (!to_area_) return;
-    const Vec3 middle = area_centroid(targets);
-    const double factor = std::sqrt(section_.area / area_vector(targets).norm());
-    for (Vec3& p : targets) p = section_.center + factor * (p - middle);
   }
 
   void meet_ring() {
@@ -98,7 +96,6 @@ class RingPlacement {
   const Opening& opening_;
   const std::vector<Vec3>& ring_;
   const EndSection& section_;
-  bool to_area_;
 };
 
 class SectionEnder {
@@ -109,8 +106,12 @@ class SectionEnder {
   SectionEnds run(const std::vector<EndSection>& sections) {
     plan_all(sections);
     apply_plans();
-    while (drop_faulty()) apply_plans();
-    for (const Plan& plan : plans_) ends_.kept.push_back(openings_before_[plan.opening].node);
+    while (change_faulty()) apply_plans();
+    for (const Plan& plan : plans_) {
+      const Index node = openings_before_[plan.opening].node;
+      ends_.kept.push_back(node);
+      if (plan.narrowed) ends_.narrowed.push_back(node);
+    }
     std::sort(ends_.kept.begin(), ends_.kept.end());
     return std::move(ends_);
   }
@@ -120,6 +121,8 @@ class SectionEnder {
     std::size_t opening = 0;
     const EndSection* section = nullptr;
     std::vector<VertexMove> moves;
+    std::vector<VertexMove> moves_onto_ring;  // instead, if those to the area are at fault
+    bool narrowed = false;                    // they were
   };
 
   void plan_all(const std::vector<EndSection>& sections) {
@@ -132,15 +135,20 @@ class SectionEnder {
       const auto section = section_at.find(opening.node);
       if (section == section_at.end()) continue;
       const std::vector<Vec3> ring = ring_positions(result_.mesh, opening);
-      RingPlacement placement(opening, ring, *section->second, to_area_);
+      RingPlacement placement(opening, ring, *section->second);
       placement.run();
       if (!placement.problem.empty()) {
         ends_.not_kept.push_back({opening.node, placement.problem});
         continue;
       }
-      std::vector<Vec3> ways;
-      for (std::size_t j = 0; j < ring.size(); ++j) ways.push_back(placement.targets[j] - ring[j]);
-      plans_.push_back({i, section->second, spread_moves(around, is_on_ring, opening.ring, ways, mean_edge(ring))});
+      const auto moves_to = [&](const std::vector<Vec3>& targets) {
+        std::vector<Vec3> ways;
+        for (std::size_t j = 0; j < ring.size(); ++j) ways.push_back(targets[j] - ring[j]);
+        return spread_moves(around, is_on_ring, opening.ring, ways, mean_edge(ring));
+      };
+      Plan plan{i, section->second, moves_to(to_area_ ? placement.scaled_targets() : placement.targets), {}, false};
+      if (to_area_ && !section->second->ring.empty()) plan.moves_onto_ring = moves_to(placement.targets);
+      plans_.push_back(std::move(plan));
     }
   }
 
@@ -154,8 +162,9 @@ class SectionEnder {
     }
   }
 
-  /// Gives up the plans that moved vertices of faces that cross or are degenerate; whether there were any.
-  bool drop_faulty() {
+  /// Gives up the area, or else the section, where that moved vertices of faces that cross or are degenerate; whether
+  /// there were any.
+  bool change_faulty() {
     std::map<Index, std::string> fault_at;      // by vertex
     const TriMesh closed = with_lids(result_);  // the wall must not go beyond an end's plane either
     for (const auto& [f, g] : self_intersections(closed)) {
@@ -168,17 +177,22 @@ class SectionEnder {
       for (const Index v : result_.mesh.faces[f])
         fault_at[v] = "a triangle would have a skewness of " + text_of(skewness[f], "");
     }
-    const std::size_t planned = plans_.size();
-    std::erase_if(plans_, [&](const Plan& plan) {
-      for (const VertexMove& move : plan.moves) {
-        const auto fault = fault_at.find(move.vertex);
-        if (fault == fault_at.end() || move.way.isZero(0)) continue;
-        ends_.not_kept.push_back({openings_before_[plan.opening].node, fault->second});
-        return true;
+    bool changed = false;
+    std::erase_if(plans_, [&](Plan& plan) {
+      const auto at_fault = std::find_if(plan.moves.begin(), plan.moves.end(), [&](const VertexMove& move) {
+        return fault_at.contains(move.vertex) && !move.way.isZero(0);
+      });
+      if (at_fault == plan.moves.end()) return false;
+      changed = true;
+      plan.narrowed = !plan.narrowed && !plan.moves_onto_ring.empty();
+      if (plan.narrowed) {
+        plan.moves = plan.moves_onto_ring;
+        return false;
       }
-      return false;
+      ends_.not_kept.push_back({openings_before_[plan.opening].node, fault_at[at_fault->vertex]});
+      return true;
     });
-    return plans_.size() < planned;
+    return changed;
   }
 
   GenerateResult& result_;
