@@ -28,6 +28,9 @@ constexpr double kRefitReach = 2.5;  // edges, around a new vertex. Measured: 1.
 constexpr double kAtVertex = 1e-9;   // other weights below this: the point is a vertex
 constexpr std::array<double, 3> kShares = {0.75, 0.5, 0.25};  // of its distance, by which a vertex is moved nearer
 constexpr int kRounds = 3;                                    // of the refit. Measured: 2 to 4 give the same
+// Least cosine between the normals of two faces of a ridge, unless it was less. In valleys, where vessels part, faces
+// may lie on each other.
+constexpr double kSharpest = -0.2;
 // LeastSquaresWeights::emphasis of the refit where no vertex helps. Measured on the aorta: with 6 as near, with more
 // skew triangles.
 constexpr double kEmphasis = 3;
@@ -75,6 +78,7 @@ class FarPlaces {
         static_cast<Index>(std::lower_bound(patch.faces.begin(), patch.faces.end(), worst.face) - patch.faces.begin());
     double least = farthest(patch, before.matches);
     const double limit = std::max(setting_.guard.max_skewness, worst_skewness(patch));
+    const double sharpest = std::min(kSharpest, sharpest_ridge(patch));
     std::optional<std::pair<FitPatch, PatchMatches>> best;
     const auto try_change = [&](const auto& change) {
       FitPatch changed = patch;
@@ -82,7 +86,7 @@ class FarPlaces {
       change(changed, after);
       renew(changed, after, true);
       const double left = farthest(changed, after.matches);
-      if (left >= least || worst_skewness(changed) > limit) return;
+      if (left >= least || worst_skewness(changed) > limit || sharpest_ridge(changed) < sharpest) return;
       least = left;
       best.emplace(std::move(changed), std::move(after));
     };
@@ -240,6 +244,31 @@ class FarPlaces {
       if (patch.moves(f)) worst = std::max(worst, skewness_of(patch.surface, f));
     }
     return worst;
+  }
+
+  // Least cosine between the normals of two faces that meet in a ridge.
+  static double sharpest_ridge(const FitPatch& patch) {
+    const FitMesh& surface = patch.surface;
+    double sharpest = 1;
+    for (Index f = 0; f < surface.faces().size(); ++f) {
+      if (!patch.moves(f)) continue;
+      const Triangle& face = surface.faces()[f];
+      const Vec3 normal = surface.unit_normal(f);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Index g = surface.face_of(face[(i + 1) % 3], face[i]);
+        if (g == kNone || !is_ridge(surface, f, i, g)) continue;
+        sharpest = std::min(sharpest, normal.dot(surface.unit_normal(g)));
+      }
+    }
+    return sharpest;
+  }
+
+  // Whether face `g` at side `i` of face `f` goes inward from it.
+  static bool is_ridge(const FitMesh& surface, Index f, std::size_t i, Index g) {
+    const Triangle& face = surface.faces()[f];
+    const Vec3 middle = (surface.position(face[i]) + surface.position(face[(i + 1) % 3])) / 2;
+    const auto [a, b, c] = surface.corners(g);
+    return surface.area_normal(f).dot((a + b + c) / 3 - middle) < 0;
   }
 
   FitMesh& surface_;
