@@ -6,6 +6,7 @@
 #include "vmesh/deform/surface_binding.h"
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/mesh/topology.h"
+#include "vmesh/quality/sampled_distance.h"
 
 #include "chains.h"
 
@@ -83,6 +84,65 @@ TEST(DeformedFit, KeepsItsProfileWhereTheCenterlineBends) {
   EXPECT_LT(flattest, 1.35);  // of 1.2 and of 2, less what triangles cut off and more where these are balanced
   EXPECT_GT(widest, 1.85);
   EXPECT_TRUE(self_intersections(moved).empty());
+}
+
+/// Where the vertices go when the vessel bends under its weight, held at one end.
+TriMesh bent(const Centerline& line, const VesselSurface& surface) {
+  const RodTree rods = make_rod_tree(line);
+  const std::vector<Vec3>& vertices = surface.mesh.vertices;
+  const SurfaceBinding binding(line, rods, vertices, vertex_normals(surface.mesh), places_of(surface));
+  SimulationOptions options;
+  options.gravity_mm_s2 = Vec3(0, -9810, 4000);
+  CenterlineSimulation simulation = simulate(line, {.young_Pa = 5e4}, options);
+  simulation.clamp(0);
+  for (int i = 0; i < 20; ++i) simulation.step();
+  DeformedSurface moved = binding.make_surface();
+  binding.apply(simulation.pose(), moved);
+  TriMesh mesh = surface.mesh;
+  for (Index v = 0; v < vertices.size(); ++v) mesh.vertices[v] = moved.position(binding.lane_of_vertex()[v]);
+  return mesh;
+}
+
+VesselSurface grown_oval(const Centerline& line, int around) {
+  GenerateOptions options;
+  options.around = around;
+  options.threads = 1;
+  GenerateResult grown = generate_surface(line, options);
+  for (Vec3& v : grown.mesh.vertices) v.z() *= 0.6;
+  return {grown.mesh, grown.binding, grown.openings};
+}
+
+/// The largest distance of the reference from a fit of long triangles, and when both are bent, mm.
+struct BentFit {
+  double at_rest, when_bent;
+};
+
+BentFit long_triangles_bent(const Centerline& line, bool deformable) {
+  const VesselSurface oval = grown_oval(line, 24);
+  FitOptions fit;
+  fit.threads = 1;
+  fit.samples = 10'000;
+  fit.elongation = 16;
+  fit.deformable = deformable;
+  fit.max_vertices = 300;  // fourteen to a node
+  GenerateOptions growth;
+  growth.threads = 1;
+  const GenerateResult grown = generate_surface(line, growth);
+  const FitResult fitted = fit_surface({grown.mesh, grown.binding, grown.openings}, line, oval.mesh, fit);
+  const TriMesh bent_fit = bent(line, fitted.surface);
+  EXPECT_TRUE(self_intersections(bent_fit).empty());
+  const auto farthest = [](const TriMesh& reference, const TriMesh& mesh) {
+    return sample_distance(reference, ClosestPointIndex(mesh), 20'000).distance.max;
+  };
+  return {farthest(oval.mesh, fitted.surface.mesh), farthest(bent(line, oval), bent_fit)};
+}
+
+TEST(DeformedFit, OfLongTrianglesBendsAtEveryNode) {
+  const Centerline line = straight_rod(20, 50, 2);  // its tip sinks by 40 mm
+  const BentFit deformable = long_triangles_bent(line, true), rigid = long_triangles_bent(line, false);
+  EXPECT_LT(rigid.at_rest, deformable.at_rest);  // whose triangles are shorter
+  EXPECT_LT(deformable.when_bent, 1.2 * deformable.at_rest);
+  EXPECT_GT(rigid.when_bent, 2 * deformable.when_bent);
 }
 
 }  // namespace

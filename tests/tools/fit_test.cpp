@@ -146,7 +146,7 @@ TEST_F(Fit, WhatCannotBeFittedIsRefusedAndNothingWritten) {
                  "--fit-error");
   expect_refused(vmesh({"generate", "@y.swc", "--fit", "@scan.stl", "--budget", "time=1s", "-o", "@fitted.ply"}), 2,
                  "budgets");
-  for (const char* option : {"--deformable", "--keep-triangles", "--least-vertices=100"}) {
+  for (const char* option : {"--keep-triangles", "--least-vertices=100"}) {
     const std::vector<std::string> words = {"generate",     "@y.swc", "--fit", "@scan.stl",  option,
                                             "--elongation", "4",      "-o",    "@fitted.ply"};
     expect_refused(vmesh(words), 2, "fitting to long triangles");

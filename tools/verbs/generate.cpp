@@ -268,6 +268,7 @@ bool has_fit(const GenerateArguments& arguments) {
 void give_elongation_to_fit(GenerateArguments& arguments) {
   if (has_fit(arguments))
     arguments.fitting.options.elongation = std::exchange(arguments.production.growth.elongation, 1);
+  arguments.fitting.options.deformable = arguments.production.growth.deformable;
 }
 
 void check_elongation(const GenerateArguments& arguments) {
@@ -280,7 +281,6 @@ void check_elongation(const GenerateArguments& arguments) {
     const std::string with_fit = " cannot be combined with fitting to long triangles (" + std::string(kElongationFlag);
     if (options.least_vertices > 0)
       throw UsageError("--least-vertices" + with_fit + "): --budget vertices=N is the number of their vertices");
-    if (options.deformable) throw UsageError("--deformable" + with_fit + "): leave out one of the two options");
     if (!arguments.fitting.options.resize) throw UsageError("--keep-triangles" + with_fit + "), which changes them");
   }
   if (options.growth == GrowthMethod::paper) throw UsageError(std::string(kElongationFlag) + " needs --growth guided");

@@ -102,16 +102,16 @@ void bind_fit(py::module_& module) {
   module.def(
       "fit",
       [](const SurfacePtr& surface, const SurfacePtr& reference, const py::object& progress, int rounds, bool resize,
-         std::size_t max_vertices, double error, double max_error, double elongation, double max_skewness,
-         std::size_t samples, double tolerance, int threads) {
-        const FitOptions options{rounds,     resize,       max_vertices, error,     max_error,
-                                 elongation, max_skewness, samples,      tolerance, threads};
+         std::size_t max_vertices, double error, double max_error, double elongation, bool deformable,
+         double max_skewness, std::size_t samples, double tolerance, int threads) {
+        const FitOptions options{rounds,     resize,       max_vertices, error,     max_error, elongation,
+                                 deformable, max_skewness, samples,      tolerance, threads};
         return result_of(progress, [&](const Progress& report) { return fit(*surface, *reference, options, report); });
       },
       py::arg("surface").none(false), py::arg("reference").none(false), py::kw_only(), py::arg("progress"),
       py::arg("rounds"), py::arg("resize"), py::arg("max_vertices"), py::arg("error"), py::arg("max_error"),
-      py::arg("elongation"), py::arg("max_skewness"), py::arg("samples"), py::arg("tolerance"), py::arg("threads"),
-      "vmesh.fit() without its checks.");
+      py::arg("elongation"), py::arg("deformable"), py::arg("max_skewness"), py::arg("samples"), py::arg("tolerance"),
+      py::arg("threads"), "vmesh.fit() without its checks.");
 }
 
 }  // namespace vmesh::python

@@ -472,6 +472,7 @@ def fit(
     error: float,
     max_error: float,
     elongation: float,
+    deformable: bool,
     max_skewness: float,
     samples: int,
     tolerance: float,

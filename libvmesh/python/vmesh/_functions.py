@@ -151,6 +151,7 @@ def fit(
     error: float = 0.0,
     max_error: float = 0.0,
     elongation: float = 1.0,
+    deformable: bool = False,
     max_skewness: float = 0.4,
     samples: int = 100_000,
     tolerance: float = 1e-3,
@@ -171,6 +172,8 @@ def fit(
                    fit_report lists as uncovered or unsupported; proven, or fit_report.beyond has the places; 0: none
     elongation     how much longer than wide triangles may be, 1 to 16, where the reference is curved less along than
                    across; with the same number of vertices it comes two to three times nearer to the reference
+    deformable     for a centerline that is to move: with an elongation, no edge is longer along the vessel than the
+                   segments there
     max_skewness   beyond which no step may worsen a triangle, 0.1 to 0.9
     samples        points on each surface for mean, RMS and percentiles of the report
     tolerance      width of the interval that contains a Hausdorff distance, mm
@@ -189,6 +192,7 @@ def fit(
         error=error,
         max_error=max_error,
         elongation=elongation,
+        deformable=deformable,
         max_skewness=max_skewness,
         samples=samples,
         tolerance=tolerance,

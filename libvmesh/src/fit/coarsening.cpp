@@ -78,9 +78,10 @@ class SweptVolume {
 
 class Coarsener {
  public:
-  Coarsener(FitMesh& surface, double max_skewness)
+  Coarsener(FitMesh& surface, double max_skewness, const ConeRelations* joints)
       : surface_(surface),
         max_skewness_(max_skewness),
+        joints_(joints),
         guard_(
             surface.faces().size(),
             [&surface](Index f) { return surface.has_face(f) ? std::make_optional(surface.placed(f)) : std::nullopt; }),
@@ -132,7 +133,7 @@ class Coarsener {
     target.cone =
         (placement.position - a.position).norm() <= (placement.position - b.position).norm() ? a.cone : b.cone;
     const FitMesh::Step step = surface_.collapsing(e.b, e.a, target);
-    if (!keeps_shapes(step)) return false;
+    if (!keeps_shapes(step) || !keeps_joints(step)) return false;
     std::vector<PlacedFace> faces;
     for (const Triangle& f : step.faces) faces.push_back(surface_.placed(f, step));
     if (!guard_.allows(faces, step.gone)) return false;
@@ -161,8 +162,34 @@ class Coarsener {
     return true;
   }
 
+  bool keeps_joints(const FitMesh::Step& step) const {
+    if (!joints_) return true;
+    return std::all_of(step.faces.begin(), step.faces.end(), [&](const Triangle& face) {
+      return std::all_of(face.begin(), face.end(),
+                         [&](Index v) { return v == step.vertex || keeps_joints(step.target, surface_.vertex(v)); });
+    });
+  }
+
+  // Whether an edge between the two may be.
+  bool keeps_joints(const FitVertex& a, const FitVertex& b) const {
+    if ((a.position - b.position).norm() <= std::max(a.base_size, b.base_size)) return true;
+    if (!are_adjacent(a.cone, b.cone)) return false;
+    const double longest = std::max(length_of(a.cone), length_of(b.cone));
+    return (place_of(a) - place_of(b)).norm() <= longest;
+  }
+
+  bool are_adjacent(Index i, Index j) const {
+    return joints_->first_node(i) == joints_->first_node(j) || joints_->first_node(i) == joints_->last_node(j) ||
+           joints_->last_node(i) == joints_->first_node(j) || joints_->last_node(i) == joints_->last_node(j);
+  }
+  double length_of(Index cone) const { return (joints_->axis_point(cone, 1) - joints_->axis_point(cone, 0)).norm(); }
+  Vec3 place_of(const FitVertex& v) const {
+    return joints_->axis_point(v.cone, joints_->sample_cone(v.position, v.cone).t);
+  }
+
   FitMesh& surface_;
   double max_skewness_;
+  const ConeRelations* joints_;
   CrossingGuard guard_;
   std::size_t count_;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
@@ -192,8 +219,8 @@ void find_elongation(FitMesh& surface, double most) {
   for (Index v = 0; v < count; ++v) surface.edit(v).elongation = elongation_of(scatter[v], most);
 }
 
-void coarsen(FitMesh& surface, std::size_t vertices, double max_skewness) {
-  Coarsener(surface, max_skewness).run(vertices);
+void coarsen(FitMesh& surface, std::size_t vertices, double max_skewness, const ConeRelations* joints) {
+  Coarsener(surface, max_skewness, joints).run(vertices);
 }
 
 }  // namespace vmesh::fitting

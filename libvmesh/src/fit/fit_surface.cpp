@@ -337,7 +337,8 @@ class Fit {
 
   void make_long(std::size_t vertices) {
     const auto round = [this] { report_round(); };
-    LongTriangles(surface_, openings_, setting_, samples_, round).make(vertices, options_.elongation);
+    LongTriangles(surface_, openings_, setting_, samples_, round)
+        .make(vertices, options_.elongation, options_.deformable);
   }
 
   double p95() const {

@@ -61,7 +61,8 @@ LongTriangles::LongTriangles(FitMesh& surface, std::vector<Opening>& openings, c
   setting_.even = false;
 }
 
-void LongTriangles::make(std::size_t vertices, double elongation) {
+void LongTriangles::make(std::size_t vertices, double elongation, bool deformable) {
+  deformable_ = deformable;
   find_elongation(surface_, elongation);
   coarsen_to(vertices);
   for (int i = 0; i < kRefits; ++i) refit();
@@ -88,7 +89,7 @@ void LongTriangles::exchange(std::size_t vertices) {
 }
 
 void LongTriangles::coarsen_to(std::size_t vertices) {
-  coarsen(surface_, vertices, kMaxSkewness);
+  coarsen(surface_, vertices, kMaxSkewness, deformable_ ? &setting_.field.relations() : nullptr);
   pack(surface_, openings_);
   find_cones(surface_, setting_.field);
 }

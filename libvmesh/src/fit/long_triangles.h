@@ -20,7 +20,8 @@ class LongTriangles {
 
   /// Coarsens the surface to `vertices` vertices and fits it again; then, a few times, adds some where it is farthest
   /// from the reference and leaves out others.
-  void make(std::size_t vertices, double elongation);
+  /// `deformable`: see FitOptions.
+  void make(std::size_t vertices, double elongation, bool deformable);
 
  private:
   void refit();
@@ -32,6 +33,7 @@ class LongTriangles {
   FitMesh& surface_;
   std::vector<Opening>& openings_;
   FitSetting setting_;
+  bool deformable_ = false;
   const std::vector<ReferenceSample>& samples_;
   std::function<void()> round_;
 };

@@ -40,6 +40,10 @@ struct FitOptions {
   /// curved least, by the root of the ratio of its curvatures. Above 1, a fit with several times as many even triangles
   /// is coarsened to the number wanted and fitted again; needs `resize`.
   double elongation = 1;
+  /// For a surface that will be deformed with its centerline: with an elongation, a vertex is left out only if no edge
+  /// then reaches farther along the vessel than the segments there are long, or is no longer than those of the surface
+  /// as given. So every bend has vertices.
+  bool deformable = false;
   /// Equiangle skewness beyond which no step may worsen a triangle; 0.1 to 0.9. With an elongation, that of
   /// metric_skewness(), and at least 0.8.
   double max_skewness = 0.4;
