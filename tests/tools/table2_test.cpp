@@ -85,7 +85,7 @@ TEST_F(Table2, ComesFromASurfaceAlone) {
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@y.ply", "--around", "24"}).exit_code, 0);
   const json report = table({"--reference", "@y.ply"});
   EXPECT_EQ(report.at("schema"), "vmesh.table2/1");
-  expect_rows(report, {"low, fitted", "high, fitted"});
+  expect_rows(report, {"low, fitted", "high, fitted", "low, fitted, long triangles"});
   EXPECT_EQ(report["rows"][0]["vertices"], read_surface(path("y.ply")).mesh.vertices.size());
   EXPECT_EQ(report["rows"][0]["paper"]["vertices"], 89'406);
   EXPECT_EQ(report.at("centerline").at("components"), 1);
@@ -180,7 +180,7 @@ TEST_F(Table2, ChecksWhatIsDemanded) {
 TEST_F(Table2, GoesFromAMaskToTheTable) {
   write_fork("fork.nii.gz");
   const json report = table({"--reference", "@fork.nii.gz", "--label", "2", "--spacing", "0.8", "--smooth", "0.8"});
-  expect_rows(report, {"low, fitted", "high, fitted"});
+  expect_rows(report, {"low, fitted", "high, fitted", "low, fitted, long triangles"});
   EXPECT_EQ(report["centerline"]["components"], 1);
   EXPECT_EQ(report["centerline"]["loops"], 0);
   EXPECT_EQ(report["source"]["contour_of"], "grey");

@@ -8,6 +8,7 @@
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/reference/cones.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/surface/metric_skewness.h"
 
 namespace vmesh {
 namespace {
@@ -53,15 +54,14 @@ class Grower {
     for (MethodRow& row : presets_) comparison_.rows.push_back(std::move(row));
   }
 
-  void add_fitted(Preset preset) {
-    const SurfaceMethod method = preset == Preset::low ? SurfaceMethod::low_fitted : SurfaceMethod::high_fitted;
+  void add_fitted(SurfaceMethod method, Preset preset, const FitOptions& fit = {}) {
     GenerateOptions options;
     options.around = vertices_around(preset);
     GenerateResult result = generate_surface(centerline_, options, progress_);
     // A surface that crosses itself cannot be fitted; the row then has the surface as grown, and says why.
     std::string refused;
     try {
-      fit_surface(result, centerline_, comparison_.rows[0].mesh, {}, progress_);
+      fit_surface(result, centerline_, comparison_.rows[0].mesh, fit, progress_);
     } catch (const InvalidInput& error) {
       refused = std::string("not fitted: ") + error.what();
     }
@@ -100,6 +100,7 @@ class Grower {
     row.method = method;
     row.around = options.around;
     row.mesh = std::move(result.mesh);
+    row.elongation = std::move(result.elongation);
     for (const GrowthWarning& warning : result.warnings) row.warnings.push_back(warning.message);
     for (const Defect& defect : result.defects) row.warnings.push_back("not sound: " + defect.message);
     return row;
@@ -141,6 +142,8 @@ std::string_view to_string(SurfaceMethod method) {
       return "low, fitted";
     case SurfaceMethod::high_fitted:
       return "high, fitted";
+    case SurfaceMethod::low_fitted_long:
+      return "low, fitted, long triangles";
     case SurfaceMethod::paper_growth:
       return "growth as published";
   }
@@ -159,12 +162,15 @@ MethodComparison compare_methods(TriMesh reference, const Centerline& centerline
   for (const Preset preset : {Preset::low, Preset::high}) grower.add_resolution(preset);
   grower.add_presets();
   if (options.fitted) {
-    grower.add_fitted(Preset::low);
-    grower.add_fitted(Preset::high);
+    grower.add_fitted(SurfaceMethod::low_fitted, Preset::low);
+    grower.add_fitted(SurfaceMethod::high_fitted, Preset::high);
+    FitOptions long_triangles;
+    long_triangles.elongation = kMostElongation;
+    grower.add_fitted(SurfaceMethod::low_fitted_long, Preset::low, long_triangles);
   }
   if (options.paper_growth) grower.add_paper_growth();
   for (MethodRow& row : comparison.rows) {
-    row.skewness = summarize_skewness(row.mesh);
+    row.skewness = summarize_skewness(metric_skewness(row.mesh, row.elongation));
     if (row.method == SurfaceMethod::marching_cubes) continue;
     if (row.around > 0) row.soundness = {measure_topology(row.mesh), self_intersections(row.mesh).size()};
     row.distance = measure_distance(row.mesh, comparison.rows[0].mesh, reference_index, options, progress);

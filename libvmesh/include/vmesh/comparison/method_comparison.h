@@ -17,7 +17,7 @@ namespace vmesh {
 
 /// The surfaces of a comparison: those of the paper's Table 2 in its order, that is marching cubes, which is the
 /// reference, truncated cones and the paper's two resolutions; then vmesh's presets where they are finer than these,
-/// the presets fitted to the reference, and the preset low grown as published.
+/// the presets fitted to the reference, the preset low fitted with long triangles, and grown as published.
 enum class SurfaceMethod {
   marching_cubes,
   truncated_cones,
@@ -27,11 +27,12 @@ enum class SurfaceMethod {
   high_preset,
   low_fitted,
   high_fitted,
+  low_fitted_long,
   paper_growth
 };
 
 /// "marching cubes", "truncated cones", "low resolution", "high resolution", "preset low", "preset high",
-/// "low, fitted", "high, fitted", "growth as published".
+/// "low, fitted", "high, fitted", "low, fitted, long triangles", "growth as published".
 std::string_view to_string(SurfaceMethod method);
 
 /// The distance between a surface and the reference, both ways.
@@ -51,7 +52,8 @@ struct MethodRow {
   SurfaceMethod method = SurfaceMethod::marching_cubes;
   int around = 0;  ///< vertices around a vessel; 0 for what vmesh did not grow
   TriMesh mesh;
-  SkewnessSummary skewness;
+  SkewnessSummary skewness;                   ///< of long triangles, that of metric_skewness()
+  std::vector<Vec3> elongation;               ///< of every vertex, see GenerateResult; empty where triangles are even
   std::optional<ReferenceDistance> distance;  ///< none for the reference itself
   std::optional<SurfaceSoundness> soundness;  ///< of what vmesh grew
   std::vector<std::string> warnings;          ///< of its growth
@@ -68,7 +70,7 @@ struct MethodOptions {
   int sides = 18;                 ///< of a truncated cone
   double tolerance = 1e-4;        ///< of the Hausdorff distances, mm
   std::size_t samples = 100'000;  ///< on each surface
-  bool fitted = false;            ///< both presets once more, fitted to the reference
+  bool fitted = false;            ///< the presets once more, fitted to the reference: both, and low with long triangles
   bool paper_growth = false;      ///< the preset low once more, grown as published
 };
 
