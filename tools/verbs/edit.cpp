@@ -1,0 +1,181 @@
+#include "vmesh/centerline/edits.h"
+#include "vmesh/core/text.h"
+#include "vmesh/io/sha256.h"
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/followed_surface.h"
+
+#include "command_line/interrupt.h"
+#include "command_line/outputs.h"
+#include "command_line/verb.h"
+#include "verbs/bound_surface.h"
+
+namespace vmesh::tool::edit_verb {
+namespace {
+
+using Kind = PlannedOutput::Kind;
+
+struct EditArguments {
+  CommonArguments common;
+  InputArguments input;
+  std::filesystem::path output;
+  CenterlineEdit edit;
+  std::string text;  ///< of the edit, as given
+  InputArguments follow;
+  std::filesystem::path follow_output;
+  WritingArguments writing;
+};
+
+/// NODE,LENGTH,SHARE; `sign` of the share: narrower or wider.
+RadiusChange parse_change(const std::string& option, const std::string& text, double sign) {
+  const std::vector<double> numbers = parse_numbers(option, text, 3);
+  if (!(numbers[0] >= 0 && numbers[0] < kNone && std::floor(numbers[0]) == numbers[0]))
+    throw InvalidInput("the first number is a node of the centerline, 0 or more");
+  if (!(numbers[1] > 0)) throw InvalidInput("the length must be positive, in mm");
+  if (!(numbers[2] > 0 && (sign > 0 || numbers[2] < 1)))
+    throw InvalidInput(sign > 0 ? "the share must be positive" : "the share must be between 0 and 1");
+  return {static_cast<Index>(numbers[0]), numbers[1], sign * numbers[2]};
+}
+
+void add_change(CLI::App& verb, EditArguments& arguments, const std::string& option, double sign,
+                const std::string& help) {
+  const auto take = [&arguments, option, sign](const std::string& text) {
+    arguments.edit.radius.push_back(parse_change(option, text, sign));
+    arguments.text += " " + option + " " + text;
+  };
+  add_read_option(verb, option, take, help).type_name("NODE,LENGTH,SHARE")->take_all()->trigger_on_parse();
+}
+
+void add_options(CLI::App& verb, EditArguments& arguments) {
+  add_centerline_input(verb, arguments.input, "centerline");
+  add_output_after_several(verb, arguments.output, kCenterlineFile, "edited centerline");
+  add_change(verb, arguments, "--stenosis", -1,
+             "narrow the vessels around a node, over LENGTH mm, by this share of the diameter in the middle");
+  add_change(verb, arguments, "--dilate", 1, "the same, wider");
+  verb.add_option("--remove", arguments.edit.removed_branches,
+                  "branch to leave out, with what it joins to the thickest end of its component")
+      ->allow_extra_args(false);
+  add_number(verb, "--scale", arguments.edit.scale, 1e-6, 1e6, "of all lengths, about the origin");
+  verb.add_option("--follow", arguments.follow.path,
+                  "surface that vmesh grew around the centerline: moved with it, the triangles stay (.ply, .vtp)");
+  add_reading(verb, arguments.follow, "follow-");
+  verb.add_option("--follow-output", arguments.follow_output, "where to write it")->type_name(kSurfaceFile);
+  add_writing(verb, arguments.writing);
+}
+
+void check_arguments(const EditArguments& arguments) {
+  if (arguments.follow.path.empty() != arguments.follow_output.empty())
+    throw UsageError("--follow names the surface and --follow-output the file to write: give both, or none");
+  check_writing(arguments.output, arguments.writing);
+  std::vector<PlannedOutput> outputs;
+  for (const std::filesystem::path& file : files_of(arguments.output)) outputs.push_back({file, Kind::centerline});
+  outputs.push_back({arguments.follow_output, Kind::surface});
+  outputs.push_back({arguments.common.json, Kind::summary});
+  check_outputs(outputs, files_of({&arguments.input, &arguments.follow}));
+}
+
+/// What is wrong with a surface that was moved, a sentence each.
+std::vector<std::string> problems_of(const TriMesh& before, const TriMesh& after) {
+  std::vector<std::string> problems;
+  const auto at = [&](Index face) {
+    const Vec3& p = after.vertices[after.faces[face][0]];
+    return formatted("(%.3f, %.3f, %.3f)", p.x(), p.y(), p.z());
+  };
+  std::vector<Index> turned;
+  for (Index f = 0; f < after.faces.size(); ++f) {
+    if (!(area_normal(before, f).dot(area_normal(after, f)) > 0)) turned.push_back(f);
+  }
+  if (!turned.empty())
+    problems.push_back(std::to_string(turned.size()) + " of its faces would turn over, the first at " +
+                       at(turned.front()));
+  const auto crossing = self_intersections(after);
+  if (!crossing.empty())
+    problems.push_back(std::to_string(crossing.size()) + " pairs of its faces would cross, the first at " +
+                       at(crossing.front().first));
+  return problems;
+}
+
+/// With the radii and the skewness of the moved surface.
+MeshAttributes attributes_after(const LoadedSurface& surface, const TriMesh& moved,
+                                const std::vector<CenterlineBinding>& binding, const Centerline& centerline,
+                                const CenterlineEdit& edit) {
+  MeshAttributes attributes = surface.attributes;
+  const ChangedRadius radius(centerline, edit.radius);
+  for (MeshAttribute& attribute : attributes.vertex) {
+    if (attribute.name != "radius") continue;
+    for (std::size_t v = 0; v < binding.size(); ++v)
+      attribute.values[v] *= edit.scale * radius.factor(binding[v].segment, binding[v].t);
+  }
+  for (MeshAttribute& attribute : attributes.face) {
+    if (attribute.name == "EquiangleSkewness") attribute.values = equiangle_skewness(moved);
+  }
+  return attributes;
+}
+
+struct Followed {
+  TriMesh mesh;
+  MeshAttributes attributes;
+  std::vector<std::string> problems;
+};
+
+Followed follow(const EditArguments& arguments, const Centerline& centerline, Console& console) {
+  const LoadedSurface surface = load_surface(arguments.follow);
+  console.warn(surface.warnings);
+  return naming(arguments.follow.path, [&] {
+    const std::vector<CenterlineBinding> binding = binding_of(surface, centerline);
+    TriMesh moved = surface.mesh;
+    moved.vertices = follow_edit(surface.mesh.vertices, binding, centerline, arguments.edit);
+    MeshAttributes attributes = attributes_after(surface, moved, binding, centerline, arguments.edit);
+    std::vector<std::string> problems = problems_of(surface.mesh, moved);
+    return Followed{std::move(moved), std::move(attributes), std::move(problems)};
+  });
+}
+
+int run(const EditArguments& arguments, Console& console) {
+  check_arguments(arguments);
+  const LoadedCenterline loaded = load_clean_centerline(arguments.input, console);
+  const Centerline& centerline = loaded.cleaned.centerline;
+  const EditedCenterline edited = naming(
+      arguments.input.path, [&] { return edit_centerline(centerline, arguments.edit, loaded.cleaned.end_sections); });
+  stop_if_interrupted();
+  Followed followed;
+  if (!arguments.follow.path.empty()) followed = follow(arguments, centerline, console);
+  for (const std::string& problem : followed.problems)
+    console.error(arguments.follow.path.string() + ": cannot follow: " + problem +
+                  "; nothing is written. Change less, or grow a surface around the edited centerline");
+  if (!followed.problems.empty()) return kDefective;
+
+  std::string options = "edit" + arguments.text;
+  for (const Index branch : arguments.edit.removed_branches) options += " --remove " + std::to_string(branch);
+  if (arguments.edit.scale != 1) options += formatted(" --scale %.17g", arguments.edit.scale);
+  const std::string name = file_name_of(arguments.input), sha256 = sha256_of(arguments.input);
+  write_centerline(arguments.output, edited.centerline,
+                   {generator_name(), options, name, sha256, arguments.writing.unit, arguments.writing.space},
+                   edited.end_sections, console);
+  console.log("wrote " + arguments.output.string() + ": " + std::to_string(edited.centerline.nodes().size()) +
+              " nodes, were " + std::to_string(centerline.nodes().size()));
+  if (arguments.follow.path.empty()) return kOk;
+  write_surface(arguments.follow_output, followed.mesh, followed.attributes,
+                {generator_name(), options, file_name_of(arguments.follow), sha256_of(arguments.follow)},
+                arguments.writing);
+  console.log("wrote " + arguments.follow_output.string());
+  return kOk;
+}
+
+const VerbRegistration<EditArguments> kRegistration({
+    .rank = 85,
+    .name = "edit",
+    .help = "Change a centerline for a study: a stenosis, a branch less; a surface can follow",
+    .examples = R"(Examples:
+  vmesh edit tree.swc -o narrowed.json --stenosis 12,8,0.5
+  vmesh edit tree.swc -o larger.swc --remove 7 --scale 1.1
+  vmesh edit tree.swc -o narrowed.json --stenosis 12,8,0.5 --follow tree.ply --follow-output narrowed.ply
+Nodes and branches are numbered as vmesh info and generate tell them.)",
+    .with_json = false,
+    .add_options = add_options,
+    .settle = settle_output,
+    .run = run,
+});
+
+}  // namespace
+}  // namespace vmesh::tool::edit_verb
