@@ -102,9 +102,9 @@ inline VolumeMesh tube_volume(const TubeSizes& sizes = {}) {
           {on_layer(a, l), on_layer(b, l), on_layer(c, l), on_layer(a, l + 1), on_layer(b, l + 1), on_layer(c, l + 1)});
     for (std::size_t k = 0; k < sizes.around; ++k) {
       const Index a = index(0, sizes.rings, k), b = index(0, sizes.rings, k + 1);
-      mesh.boundary.push_back({{on_layer(b, l), on_layer(a, l), on_layer(a, l + 1), on_layer(b, l + 1)}, 1});
+      mesh.boundary.push_back({{on_layer(a, l), on_layer(b, l), on_layer(b, l + 1), on_layer(a, l + 1)}, 1});
       mesh.boundary.push_back(
-          {{on_layer(a + top, l), on_layer(b + top, l), on_layer(b + top, l + 1), on_layer(a + top, l + 1)}, 2});
+          {{on_layer(b + top, l), on_layer(a + top, l), on_layer(a + top, l + 1), on_layer(b + top, l + 1)}, 2});
     }
   }
   for (const auto& [a, b, c] : side)

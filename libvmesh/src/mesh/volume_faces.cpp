@@ -109,19 +109,20 @@ std::vector<Index> cells_behind_boundary(const VolumeMesh& mesh) {
     for (std::size_t i = 0; i < (face.is_triangle() ? 3u : 4u); ++i) outside[face.corners[i]] = true;
   }
   std::vector<Index> behind(mesh.boundary.size(), kNone);
+  std::vector<bool> turned(mesh.boundary.size(), false);
   for_each_face(mesh, [&](Index cell, const CellFace& face) {
     // Most faces are inside, and most of these have a corner that is.
     if (!outside[face[0]] || !outside[face[1]] || !outside[face[2]]) return;
     const auto found = number.find(key_of(face));
     if (found == number.end()) return;
     if (behind[found->second] != kNone) throw InvalidInput(name_of(found->second) + "lies between two cells");
-    if (!same_side(face, mesh.boundary[found->second].corners))
-      throw InvalidInput(name_of(found->second) + "is turned inwards");
     behind[found->second] = cell;
+    turned[found->second] = !same_side(face, mesh.boundary[found->second].corners);
   });
-  const auto none = std::find(behind.begin(), behind.end(), kNone);
-  if (none != behind.end())
-    throw InvalidInput(name_of(static_cast<std::size_t>(none - behind.begin())) + "is no face of a cell");
+  for (std::size_t f = 0; f < behind.size(); ++f) {
+    if (behind[f] == kNone) throw InvalidInput(name_of(f) + "is no face of a cell");
+    if (turned[f]) throw InvalidInput(name_of(f) + "is turned inwards");
+  }
   return behind;
 }
 
