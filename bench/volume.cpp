@@ -70,9 +70,9 @@ VesselWall wall_of(const Production& production, const Centerline& centerline) {
 
 void print(const std::string& name, const VesselWall& wall, const VolumeResult& result, double seconds) {
   const VolumeMeasures measures = measure_volume(result.mesh);
-  std::printf("| %s | %zu | %zu | %zu | %.1f / %.2f | %.1f | %.1f | %.3f / %.3f | %.3f | %.2f |", name.c_str(),
-              wall.mesh.faces.size(), result.mesh.wedges.size(), result.mesh.tetrahedra.size(),
-              100 * result.layers.full_share, result.layers.least_share, measures.min_dihedral_deg,
+  std::printf("| %s | %zu | %zu | %zu | %zu | %.1f / %.2f | %.1f | %.1f | %.3f / %.3f | %.3f | %.2f |", name.c_str(),
+              wall.mesh.faces.size(), result.mesh.wedges.size(), result.mesh.pyramids.size(),
+              result.mesh.tetrahedra.size(),              100 * result.layers.full_share, result.layers.least_share, measures.min_dihedral_deg,
               measures.max_dihedral_deg, measures.least_radius_ratio, measures.mean_radius_ratio,
               measures.least_scaled_jacobian, seconds);
   for (const VolumeDefect& defect : result.defects) std::printf(" %s;", defect.message.c_str());
@@ -96,7 +96,7 @@ void examine(const std::string& name, const Centerline& centerline, const Produc
     tally.seconds += seconds;
     tally.refused += !result.is_sound();
     for (const VolumeDefect& defect : result.defects)
-      tally.failed += defect.kind != VolumeDefectKind::no_room && defect.kind != VolumeDefectKind::not_filled;
+      tally.failed += defect.kind != VolumeDefectKind::not_filled;
     if (result.is_sound())
       tally.least_dihedral = std::min(tally.least_dihedral, measure_volume(result.mesh).min_dihedral_deg);
     if (show || !result.is_sound()) print(name, wall, result, seconds);
@@ -114,8 +114,8 @@ int main(int argc, char** argv) {
   settings.production.ends = EndShape::flat;
   Tally tally;
   std::printf(
-      "| case | faces | wedges | tetrahedra | full layers, %% of the wall / least | least angle | largest | radius ratio "
-      "least / mean | least Jacobian of wedges | s | defects |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n");
+      "| case | faces | wedges | pyramids | tetrahedra | full layers, %% of the wall / least | least angle | largest | radius ratio "
+      "least / mean | least Jacobian of wedges | s | defects |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n");
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--all") {

@@ -43,13 +43,12 @@ void set_faces(const CoreSurface& surface, tetgenio& in) {
   }
 }
 
-// TetGen counts the corners of a tetrahedron the other way round.
 void take(const tetgenio& out, std::size_t given, Core& core) {
   for (std::size_t v = given; v < static_cast<std::size_t>(out.numberofpoints); ++v)
     core.added.emplace_back(out.pointlist[3 * v], out.pointlist[3 * v + 1], out.pointlist[3 * v + 2]);
   for (int t = 0; t < out.numberoftetrahedra; ++t) {
     const int* corner = out.tetrahedronlist + static_cast<std::ptrdiff_t>(t) * out.numberofcorners;
-    core.tetrahedra.push_back({static_cast<Index>(corner[1]), static_cast<Index>(corner[0]),
+    core.tetrahedra.push_back({static_cast<Index>(corner[0]), static_cast<Index>(corner[1]),
                                static_cast<Index>(corner[2]), static_cast<Index>(corner[3])});
   }
 }

@@ -14,7 +14,9 @@ class LayerSurface {
     mesh_.vertices = frame.position;
     for (Index v = 0; v < last_; ++v) mesh_.vertices.push_back(stack.at(frame, v, reach));
     mesh_.faces = frame.faces;
-    for (const auto& [a, b, c] : frame.faces) mesh_.faces.push_back({last_ + a, last_ + b, last_ + c});
+    for (const auto& [a, b, c] : frame.faces) {
+      if (moved(a) != a || moved(b) != b || moved(c) != c) mesh_.faces.push_back({moved(a), moved(b), moved(c)});
+    }
     for (const Cap& cap : frame.caps) add_cap(cap);
   }
 
@@ -30,6 +32,9 @@ class LayerSurface {
   }
 
  private:
+  // Where the layers at a vertex end: at itself if there are none.
+  Index moved(Index v) const { return stack_.ends_at(v) ? v : last_ + v; }
+
   void mark(Index v, std::vector<char>& crosses) const {
     if (v < last_) return;
     if (v < 2 * last_) {
@@ -42,8 +47,8 @@ class LayerSurface {
   void add_cap(const Cap& cap) {
     for (std::size_t j = 0; j < cap.rim.size(); ++j) {
       const Index a = cap.rim[j], b = cap.rim[(j + 1) % cap.rim.size()];
-      mesh_.faces.push_back({a, b, last_ + b});
-      mesh_.faces.push_back({a, last_ + b, last_ + a});
+      if (moved(b) != b) mesh_.faces.push_back({a, b, moved(b)});
+      if (moved(a) != a) mesh_.faces.push_back({a, moved(b), moved(a)});
     }
     const bool inside = stack_.side == LayerSide::inside;
     std::vector<Vec3> ring;
@@ -52,7 +57,7 @@ class LayerSurface {
     const auto added = static_cast<Index>(mesh_.vertices.size()), rim = static_cast<Index>(cap.rim.size());
     mesh_.vertices.insert(mesh_.vertices.end(), disc.vertices.begin(), disc.vertices.end());
     filled_cap_.resize(filled_cap_.size() + disc.vertices.size(), inside ? &cap : nullptr);
-    const auto number = [&](Index i) { return i >= rim ? added + i - rim : (inside ? last_ : 0) + cap.rim[i]; };
+    const auto number = [&](Index i) { return i >= rim ? added + i - rim : inside ? moved(cap.rim[i]) : cap.rim[i]; };
     for (const auto& [a, b, c] : disc.faces) mesh_.faces.push_back({number(a), number(b), number(c)});
   }
 

@@ -17,9 +17,11 @@ Vec3 area_vector(const WallFrame& frame, Index f) {
   return (frame.position[b] - frame.position[a]).cross(frame.position[c] - frame.position[a]);
 }
 
+// At corners at which the layers end there is nothing to keep.
 bool keeps_its_determinant(const WedgeCorners& corners, const Vec3& wall) {
   const auto coefficients = jacobian_coefficients(corners);
   for (std::size_t i = 0; i < 3; ++i) {
+    if (corners[i + 3] == corners[i]) continue;
     const double straight = wall.dot(corners[i + 3] - corners[i]);
     if (!(straight > 0)) return false;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -13,7 +13,8 @@ namespace {
 
 // Layers are made thinner in steps of this factor where they do not fit; idle .7 to .9.
 constexpr double kStep = 0.85;
-// They are given up below this share of what the gradation leaves of what was asked for: cells would be flatter than any solver likes.
+// They end below this share of what the gradation leaves of what was asked for: cells would be flatter than any solver
+// likes.
 constexpr double kLeastShare = 0.02;
 // Largest difference of the thickness at two vertices by their distance: sizes that change by a fifth from cell to
 // cell, the gradation of volume meshers.
@@ -44,23 +45,20 @@ class StackBuilder {
       : frame_(frame), progress_(progress) {
     stack_.side = side;
     stack_.level = levels_of(options);
-    find_ways();
     for (const double radius : frame.radius) stack_.asked_mm.push_back(asked_thickness(options, stack_.level, radius));
     stack_.reached_mm = stack_.asked_mm;
     stack_.limit.assign(frame.position.size(), LayerLimit::none);
+    find_ways();
   }
 
   LayerStack run() {
     limit_gradation();
     for (const double thickness : stack_.reached_mm) least_mm_.push_back(kLeastShare * thickness);
     const double reach = stack_.side == LayerSide::inside ? kReachInside : kReachOutside;
-    for (;;) {
+    do {
       make_well_shaped();
       report_progress(progress_, "layers", 0);
-      if (!stack_.stuck.empty()) break;
-      if (!make_thinner(vertices_without_room(frame_, stack_, reach), LayerLimit::room)) break;
-      limit_gradation();
-    }
+    } while (make_thinner(vertices_without_room(frame_, stack_, reach), LayerLimit::room));
     return std::move(stack_);
   }
 
@@ -74,7 +72,7 @@ class StackBuilder {
       const Index cap = frame_.cap_at[v];
       const FanDirection best =
           cap == kNone ? best_direction(fan) : best_direction_in_plane(fan, frame_.caps[cap].normal);
-      if (!(best.least > 0)) stack_.stuck.push_back(v);
+      if (!(best.least > 0)) end_at(v, LayerLimit::shape);
       double mean = 0;
       for (const Vec3& normal : fan) mean += best.way.dot(normal) / static_cast<double>(fan.size());
       stack_.way.push_back(best.way / std::max(mean, 1 / kLongest));
@@ -84,7 +82,7 @@ class StackBuilder {
   void make_well_shaped() {
     std::vector<Index> due(frame_.faces.size());
     for (Index f = 0; f < due.size(); ++f) due[f] = f;
-    while (stack_.stuck.empty() && !due.empty()) {
+    while (!due.empty()) {
       std::vector<char> is_due(frame_.position.size(), 0);
       for (const Index f : due) {
         if (is_well_shaped(frame_, stack_, f)) continue;
@@ -92,7 +90,6 @@ class StackBuilder {
       }
       const std::vector<double> before = stack_.reached_mm;
       make_thinner(is_due, LayerLimit::shape);
-      limit_gradation();
       due = faces_at_changes(before);
     }
   }
@@ -108,16 +105,22 @@ class StackBuilder {
     return faces;
   }
 
-  // Whether there were any.
+  void end_at(Index v, LayerLimit why) {
+    stack_.reached_mm[v] = 0;
+    stack_.limit[v] = why;
+  }
+
+  // Whether there is any of these vertices at which layers have not ended.
   bool make_thinner(const std::vector<char>& is_due, LayerLimit why) {
     bool any = false;
     for (Index v = 0; v < is_due.size(); ++v) {
-      if (!is_due[v]) continue;
+      if (!is_due[v] || stack_.ends_at(v)) continue;
       any = true;
       stack_.reached_mm[v] *= kStep;
       stack_.limit[v] = why;
-      if (stack_.reached_mm[v] < least_mm_[v]) stack_.stuck.push_back(v);
+      if (stack_.reached_mm[v] < least_mm_[v]) end_at(v, why);
     }
+    if (any) limit_gradation();
     return any;
   }
 
@@ -163,6 +166,15 @@ double area_at(const WallFrame& frame, Index v) {
 
 LayerStack lay_layers(const WallFrame& frame, const LayerOptions& options, LayerSide side, const Progress& progress) {
   return StackBuilder(frame, options, side, progress).run();
+}
+
+LayerStack without_layers(const WallFrame& frame, LayerSide side) {
+  LayerStack stack;
+  stack.side = side;
+  stack.way.assign(frame.position.size(), Vec3::Zero());
+  stack.asked_mm.assign(frame.position.size(), 0);
+  stack.reached_mm = stack.asked_mm;
+  return stack;
 }
 
 LayerSummary summarize(const WallFrame& frame, const LayerStack& stack) {

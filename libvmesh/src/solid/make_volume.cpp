@@ -36,13 +36,6 @@ void check_options(const VolumeOptions& options) {
   if (!options.shell_only && !can_mesh_lumen()) fill_core({});  // throws
 }
 
-VolumeDefect no_room(const WallFrame& frame, const LayerStack& stack, const std::string& what) {
-  const Vec3& p = frame.position[stack.stuck[0]];
-  return {VolumeDefectKind::no_room, p, stack.stuck.size(),
-          what + " have no room at " + counted(stack.stuck.size(), "vertex", "vertices") +
-              formatted(" of the wall, the first at (%.3f, %.3f, %.3f)", p.x(), p.y(), p.z())};
-}
-
 class VolumeMaker {
  public:
   VolumeMaker(const VesselWall& wall, const VolumeOptions& options, const Progress& progress)
@@ -54,10 +47,9 @@ class VolumeMaker {
   }
 
   VolumeResult run() {
-    if (parts_.with_lumen) parts_.layers = lay(options_.layers, LayerSide::inside, "layers", result_.layers);
-    parts_.shell = lay(options_.shell, LayerSide::outside, "layers of the shell", result_.shell);
+    if (parts_.with_lumen) parts_.layers = lay(options_.layers, LayerSide::inside, result_.layers);
+    parts_.shell = lay(options_.shell, LayerSide::outside, result_.shell);
     lap("layers");
-    if (!result_.defects.empty()) return std::move(result_);
     CoreSurface surface;
     Core core;
     if (parts_.with_lumen) {
@@ -78,11 +70,9 @@ class VolumeMaker {
   }
 
  private:
-  LayerStack lay(const LayerOptions& options, LayerSide side, const std::string& what, LayerSummary& summary) {
-    if (options.count == 0) return {};
+  LayerStack lay(const LayerOptions& options, LayerSide side, LayerSummary& summary) {
+    if (options.count == 0) return without_layers(frame_, side);
     LayerStack stack = lay_layers(frame_, options, side, progress_);
-    stack.side = side;
-    if (!stack.stuck.empty()) result_.defects.push_back(no_room(frame_, stack, what));
     summary = summarize(frame_, stack);
     return stack;
   }

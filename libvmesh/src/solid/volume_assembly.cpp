@@ -32,12 +32,13 @@ class Assembly {
   VolumeMesh run() {
     add_points();
     name_patches();
+    name_regions();
     if (parts_.with_lumen) {
       add_core();
-      add_layers(parts_.layers, layer_point_);
+      add_layers(parts_.layers, layer_point_, kLumen);
     }
-    if (parts_.shell.count() > 0) add_layers(parts_.shell, shell_point_);
-    label_regions();
+    add_layers(parts_.shell, shell_point_, static_cast<Index>(mesh_.region_names.size()) - 1);
+    join_regions();
     add_boundary();
     return std::move(mesh_);
   }
@@ -57,18 +58,21 @@ class Assembly {
     shell_point_ = add_levels(parts_.shell);
   }
 
-  // Returns where the points of the first level beyond the wall begin.
-  Index add_levels(const LayerStack& stack) {
-    const auto first = static_cast<Index>(mesh_.points.size());
-    for (std::size_t k = 1; k < stack.level.size(); ++k) {
-      for (Index v = 0; v < frame_.position.size(); ++v) mesh_.points.push_back(stack.at(frame_, v, stack.level[k]));
+  // Returns, for every vertex, where its points at levels beyond the wall begin; itself where layers end.
+  std::vector<Index> add_levels(const LayerStack& stack) {
+    std::vector<Index> first(frame_.position.size());
+    for (Index v = 0; v < first.size(); ++v) {
+      first[v] = stack.ends_at(v) ? v : static_cast<Index>(mesh_.points.size());
+      if (stack.ends_at(v)) continue;
+      for (std::size_t k = 1; k < stack.level.size(); ++k)
+        mesh_.points.push_back(stack.at(frame_, v, stack.level[k]));
     }
     return first;
   }
 
   // Of vertex `v` of the wall at level `k`.
-  Index point(Index first, std::size_t k, Index v) const {
-    return k == 0 ? v : first + static_cast<Index>((k - 1) * frame_.position.size()) + v;
+  static Index point(const std::vector<Index>& first, std::size_t k, Index v) {
+    return k == 0 || first[v] == v ? v : first[v] + static_cast<Index>(k) - 1;
   }
   // Of a vertex of the core's surface, or added.
   Index core_point(Index v) const {
@@ -89,25 +93,49 @@ class Assembly {
   void add_core() {
     for (const Tetrahedron& t : core_.tetrahedra)
       mesh_.tetrahedra.push_back({core_point(t[0]), core_point(t[1]), core_point(t[2]), core_point(t[3])});
+    region_.tetrahedra.resize(mesh_.tetrahedra.size(), kLumen);
   }
 
-  void add_layers(const LayerStack& stack, Index first) {
+  void add_layers(const LayerStack& stack, const std::vector<Index>& first, Index region) {
     for (std::size_t k = 0; k < stack.count(); ++k) {
       const auto [inner, outer] = stack.side == LayerSide::inside ? std::pair(k + 1, k) : std::pair(k, k + 1);
       for (const auto& [a, b, c] : frame_.faces) {
-        mesh_.wedges.push_back({point(first, inner, a), point(first, inner, b), point(first, inner, c),
-                                point(first, outer, a), point(first, outer, b), point(first, outer, c)});
+        add_cell({point(first, inner, a), point(first, inner, b), point(first, inner, c), point(first, outer, a),
+                  point(first, outer, b), point(first, outer, c)});
       }
+    }
+    region_.tetrahedra.resize(mesh_.tetrahedra.size(), region);
+    region_.wedges.resize(mesh_.wedges.size(), region);
+    region_.pyramids.resize(mesh_.pyramids.size(), region);
+  }
+
+  // What is left of a wedge whose corners coincide where layers end.
+  void add_cell(Wedge wedge) {
+    const auto ends = [&](std::size_t i) { return wedge[i] == wedge[i + 3]; };
+    const int count = ends(0) + ends(1) + ends(2);
+    if (count == 0) mesh_.wedges.push_back(wedge);
+    if (count == 0 || count == 3) return;
+    // A corner at which layers end comes last if it is the only one, else that at which they do not comes first.
+    while (count == 1 ? !ends(2) : ends(0)) {
+      std::rotate(wedge.begin(), wedge.begin() + 1, wedge.begin() + 3);
+      std::rotate(wedge.begin() + 3, wedge.begin() + 4, wedge.end());
+    }
+    const auto& [a, b, c, d, e, f] = wedge;
+    if (count == 1) {
+      mesh_.pyramids.push_back({a, d, e, b, c});
+    } else {
+      mesh_.tetrahedra.push_back({a, b, c, d});
     }
   }
 
-  void label_regions() {
+  void name_regions() {
     if (parts_.with_lumen) mesh_.region_names.push_back("lumen");
     if (parts_.shell.count() > 0) mesh_.region_names.push_back("wall");
-    mesh_.cell_region.assign(mesh_.cell_count(), kLumen);
-    const std::size_t shell = parts_.shell.count() * frame_.faces.size();
-    std::fill(mesh_.cell_region.end() - static_cast<std::ptrdiff_t>(shell), mesh_.cell_region.end(),
-              static_cast<Index>(mesh_.region_names.size()) - 1);
+  }
+
+  void join_regions() {
+    for (const auto* region : {&region_.tetrahedra, &region_.wedges, &region_.pyramids})
+      mesh_.cell_region.insert(mesh_.cell_region.end(), region->begin(), region->end());
   }
 
   void add_boundary() {
@@ -131,13 +159,17 @@ class Assembly {
     }
   }
 
-  void add_rings(const Cap& cap, const LayerStack& stack, Index first, Index patch) {
+  void add_rings(const Cap& cap, const LayerStack& stack, const std::vector<Index>& first, Index patch) {
     for (std::size_t k = 0; k < stack.count(); ++k) {
       for (std::size_t j = 0; j < cap.rim.size(); ++j) {
         Index a = cap.rim[j], b = cap.rim[(j + 1) % cap.rim.size()];
         if (stack.side == LayerSide::outside) std::swap(a, b);
-        mesh_.boundary.push_back(
-            {{point(first, k, a), point(first, k, b), point(first, k + 1, b), point(first, k + 1, a)}, patch});
+        const Index c = point(first, k + 1, b), d = point(first, k + 1, a);
+        a = point(first, k, a);
+        b = point(first, k, b);
+        if (a != d && b != c) mesh_.boundary.push_back({{a, b, c, d}, patch});
+        if (a != d && b == c) mesh_.boundary.push_back({{a, b, d, kNone}, patch});
+        if (a == d && b != c) mesh_.boundary.push_back({{a, b, c, kNone}, patch});
       }
     }
   }
@@ -155,8 +187,11 @@ class Assembly {
   const CoreSurface& surface_;
   const Core& core_;
   VolumeMesh mesh_;
-  Index layer_point_ = 0, shell_point_ = 0;  // where those of the first level begin
-  Index core_point_ = 0;                     // to be added to a vertex of the core that is none of the wall's
+  struct {
+    std::vector<Index> tetrahedra, wedges, pyramids;
+  } region_;                                        // of every cell
+  std::vector<Index> layer_point_, shell_point_;  // of add_levels()
+  Index core_point_ = 0;  // to be added to a vertex of the core that is none of the wall's
   Index lumen_wall_ = 0, first_shell_end_ = 0;
 };
 

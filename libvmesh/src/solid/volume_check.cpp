@@ -50,6 +50,13 @@ bool is_positive(const VolumeMesh& mesh, const Tetrahedron& t) {
                            point(mesh.points[t[3]])) == CGAL::POSITIVE;
 }
 
+/// The determinant of a pyramid's map is bilinear over the base, so those at the four corners decide.
+bool is_positive(const VolumeMesh& mesh, const Pyramid& p) {
+  const auto& [a, b, c, d, e] = p;
+  return is_positive(mesh, Tetrahedron{a, b, d, e}) && is_positive(mesh, Tetrahedron{b, c, a, e}) &&
+         is_positive(mesh, Tetrahedron{c, d, b, e}) && is_positive(mesh, Tetrahedron{d, a, c, e});
+}
+
 bool is_positive(const VolumeMesh& mesh, const Wedge& wedge) {
   WedgeCorners p;
   for (std::size_t i = 0; i < p.size(); ++i) p[i] = mesh.points[wedge[i]];
@@ -70,11 +77,12 @@ bool has_good_corners(const VolumeMesh& mesh, const BoundaryFace& face) {
          (face.is_triangle() || face.corners[3] < mesh.points.size());
 }
 
-template <class Cells>
-void find_bad_corners(const VolumeMesh& mesh, const Cells& cells, Finding& finding) {
-  for (const auto& cell : cells) {
-    if (!has_good_corners(mesh, cell)) finding.add(Vec3::Zero());
-  }
+void find_bad_corners(const VolumeMesh& mesh, Finding& finding) {
+  const auto examine = [&](const auto& element) {
+    if (!has_good_corners(mesh, element)) finding.add(Vec3::Zero());
+  };
+  for_each_cell(mesh, examine);
+  for (const BoundaryFace& face : mesh.boundary) examine(face);
 }
 
 void find_wrong_labels(const VolumeMesh& mesh, Finding& finding) {
@@ -112,11 +120,10 @@ CellFace reversed(const CellFace& face) {
 /// Of all cells, and of the outside.
 std::vector<Side> all_sides(const VolumeMesh& mesh) {
   std::vector<Side> sides;
-  sides.reserve(4 * mesh.tetrahedra.size() + 5 * mesh.wedges.size() + mesh.boundary.size());
-  for (const Tetrahedron& cell : mesh.tetrahedra)
+  sides.reserve(4 * mesh.tetrahedra.size() + 5 * (mesh.wedges.size() + mesh.pyramids.size()) + mesh.boundary.size());
+  for_each_cell(mesh, [&](const auto& cell) {
     for (const CellFace& face : faces_of(cell)) sides.push_back(side_of(face));
-  for (const Wedge& cell : mesh.wedges)
-    for (const CellFace& face : faces_of(cell)) sides.push_back(side_of(face));
+  });
   for (const BoundaryFace& face : mesh.boundary) sides.push_back(side_of(reversed(face.corners)));
   return sides;
 }
@@ -156,7 +163,7 @@ void find_crossings(const VolumeMesh& mesh, Finding& crossing, Finding& unmatche
   const TriMesh surface = boundary_surface(mesh);
   for (const auto& [f, g] : self_intersections(surface)) crossing.add(surface.vertices[surface.faces[f][0]]);
   const Topology topology = measure_topology(surface);
-  if (!topology.closed || !topology.manifold || !topology.oriented)
+  if (!topology.closed || topology.crowded_edges > 0 || !topology.oriented)
     unmatched.add(surface.vertices.empty() ? Vec3::Zero() : surface.vertices[0]);
 }
 
@@ -197,8 +204,6 @@ PatchMeasures measure_patch(const VesselWall& wall, Index patch) {
 
 std::string_view to_string(VolumeDefectKind kind) {
   switch (kind) {
-    case VolumeDefectKind::no_room:
-      return "no_room";
     case VolumeDefectKind::not_filled:
       return "not_filled";
     case VolumeDefectKind::inverted_cell:
@@ -218,19 +223,14 @@ std::string_view to_string(VolumeDefectKind kind) {
 std::vector<VolumeDefect> find_volume_defects(const VolumeMesh& mesh) {
   std::vector<VolumeDefect> defects;
   Finding corners(VolumeDefectKind::not_conforming, "cells or faces with corners that do not exist");
-  find_bad_corners(mesh, mesh.tetrahedra, corners);
-  find_bad_corners(mesh, mesh.wedges, corners);
-  find_bad_corners(mesh, mesh.boundary, corners);
+  find_bad_corners(mesh, corners);
   corners.add_to(defects);
   if (!defects.empty()) return defects;
 
   Finding inverted(VolumeDefectKind::inverted_cell, "cells that are flat or turned over somewhere");
-  for (const Tetrahedron& cell : mesh.tetrahedra) {
+  for_each_cell(mesh, [&](const auto& cell) {
     if (!is_positive(mesh, cell)) inverted.add(mesh.points[cell[0]]);
-  }
-  for (const Wedge& cell : mesh.wedges) {
-    if (!is_positive(mesh, cell)) inverted.add(mesh.points[cell[0]]);
-  }
+  });
   Finding unmatched(VolumeDefectKind::not_conforming, "faces without exactly one cell on either side");
   Finding labels(VolumeDefectKind::wrong_label, "cells or faces without a region or patch");
   Finding crossing(VolumeDefectKind::crossing_faces, "pairs of boundary faces that cross");

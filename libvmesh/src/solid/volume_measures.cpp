@@ -5,6 +5,7 @@
 
 #include "vmesh/solid/volume_check.h"
 
+#include "solid/cell_faces.h"
 #include "solid/wedge_jacobian.h"
 
 namespace vmesh {
@@ -78,6 +79,13 @@ double volume_of(const VolumeMesh& mesh, const Wedge& cell) {
   return std::accumulate(coefficients.begin(), coefficients.end(), 0.0) / 18;
 }
 
+double volume_of(const VolumeMesh& mesh, const Pyramid& cell) {
+  const auto& [a, b, c, d, e] = cell;
+  return (volume_of(mesh, Tetrahedron{a, b, d, e}) + volume_of(mesh, Tetrahedron{b, c, a, e}) +
+          volume_of(mesh, Tetrahedron{c, d, b, e}) + volume_of(mesh, Tetrahedron{d, a, c, e})) /
+         2;
+}
+
 VolumeMeasures measure_volume(const VolumeMesh& mesh) {
   VolumeMeasures measures;
   measure_tetrahedra(mesh, measures);
@@ -87,11 +95,10 @@ VolumeMeasures measure_volume(const VolumeMesh& mesh) {
     measures.least_scaled_jacobian = std::min(measures.least_scaled_jacobian, *most > 0 ? *least / *most : -1);
   }
   measures.region_volume_mm3.assign(mesh.region_names.size(), 0);
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    const std::size_t first_wedge = mesh.tetrahedra.size();
-    measures.region_volume_mm3.at(mesh.cell_region[c]) +=
-        c < first_wedge ? volume_of(mesh, mesh.tetrahedra[c]) : volume_of(mesh, mesh.wedges[c - first_wedge]);
-  }
+  std::size_t c = 0;
+  for_each_cell(mesh, [&](const auto& cell) {
+    measures.region_volume_mm3.at(mesh.cell_region[c++]) += volume_of(mesh, cell);
+  });
   measures.patch_area_mm2.assign(mesh.patch_names.size(), 0);
   for (const BoundaryFace& face : mesh.boundary) measures.patch_area_mm2.at(face.patch) += area_of(mesh, face);
   return measures;

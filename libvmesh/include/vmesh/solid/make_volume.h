@@ -43,10 +43,10 @@ enum class LayerLimit {
 };
 std::string_view to_string(LayerLimit limit);
 
-/// Connected vertices of the wall at which layers have less than kFullLayers of the thickness that was asked for.
+/// Connected vertices of the wall at which layers end, or have less than kFullLayers of the thickness that was asked for.
 struct ThinPlace {
   Vec3 position = Vec3::Zero();  ///< where they are thinnest, mm
-  double asked_mm = 0, reached_mm = 0;
+  double asked_mm = 0, reached_mm = 0;  ///< 0: they end there
   std::size_t vertices = 0;
   LayerLimit limit = LayerLimit::none;  ///< where they are thinnest
 };
@@ -54,7 +54,8 @@ struct ThinPlace {
 /// Share of the thickness that was asked for from which on layers count as complete.
 inline constexpr double kFullLayers = 0.9;
 
-/// How thick layers became. Thickness is measured along the way of a vertex, in the mean of the heights over its faces.
+/// How thick layers became. They end where they do not fit at all, in pyramids and tetrahedra between those of wedges.
+/// Thickness is measured along the way of a vertex, in the mean of the heights over its faces.
 struct LayerSummary {
   double full_share = 1;   ///< of the wall's area, with kFullLayers of the thickness that was asked for
   double least_share = 1;  ///< of it anywhere

@@ -11,7 +11,6 @@ namespace vmesh {
 
 /// What a sound volume mesh must not have.
 enum class VolumeDefectKind {
-  no_room,          ///< layers of the least thickness do not fit
   not_filled,       ///< the core could not be divided into tetrahedra
   inverted_cell,    ///< a tetrahedron or wedge without a positive volume everywhere
   not_conforming,   ///< cells that do not meet face to face, or boundary faces that are not those of one cell
@@ -29,8 +28,9 @@ struct VolumeDefect {
   std::string message;  ///< what, how many, where
 };
 
-/// Defects of any mesh, whoever made it, but for other_boundary. Tetrahedra are tested with exact predicates. A wedge
-/// is taken to be positive if all Bezier coefficients of the determinant of its map are (sufficient).
+/// Defects of any mesh, whoever made it, but for other_boundary. Tetrahedra and
+/// pyramids are tested with exact predicates. A wedge is taken to be positive if all Bezier coefficients of the
+/// determinant of its map are (sufficient).
 std::vector<VolumeDefect> find_volume_defects(const VolumeMesh& mesh);
 
 /// Whether the cells of `region` fill what `wall` encloses: the volume and the areas of caps, which are equal but for
@@ -51,5 +51,6 @@ VolumeMeasures measure_volume(const VolumeMesh& mesh);
 /// Volumes of cells, mm^3.
 double volume_of(const VolumeMesh& mesh, const Tetrahedron& cell);
 double volume_of(const VolumeMesh& mesh, const Wedge& cell);
+double volume_of(const VolumeMesh& mesh, const Pyramid& cell);
 
 }  // namespace vmesh
