@@ -1,9 +1,10 @@
-// The readers and writers of the formats, for their tables: centerline_formats() and surface_formats(). Internal to the
-// module. Writers write to a stream whose state the caller checks.
+// The readers and writers of the formats, for their tables: centerline_formats(), surface_formats() and
+// volume_formats(). Internal to the module. Writers write to a stream whose state the caller checks.
 #pragma once
 
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/io/volume_io.h"
 
 namespace vmesh::io {
 
@@ -34,5 +35,7 @@ LoadedSurface read_scene(const std::filesystem::path& path);
 LoadedSurface read_glb(const std::filesystem::path& path);
 
 SurfaceFormat::Write write_off, write_obj, write_stl, write_ply, write_glb, write_surface_vtp;
+
+VolumeFormat::Write write_volume_vtu;
 
 }  // namespace vmesh::io

@@ -4,6 +4,8 @@
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 
+#include "lengths.h"
+
 namespace vmesh {
 namespace {
 
@@ -65,21 +67,11 @@ void check(const std::filesystem::path& path, const SurfaceFormat& format, Surfa
                       "VMESH_WITH_MESHOPTIMIZER); write it uncompressed");
 }
 
-bool is_length(const std::string& attribute) {
-  return attribute == "radius" || attribute == "distance" || attribute == "displacement" ||
-         attribute == "volume_distance";
-}
-
 // Between LPS and another space; the same in both directions.
 void convert(TriMesh& mesh, MeshAttributes& attributes, double scale, Space space) {
-  const Vec3 axes = space == Space::ras ? Vec3(-scale, -scale, scale) : Vec3(scale, scale, scale);
-  for (Vec3& p : mesh.vertices) p = p.cwiseProduct(axes);
-  for (auto* list : {&attributes.vertex, &attributes.face}) {
-    for (MeshAttribute& a : *list) {
-      if (!is_length(a.name)) continue;
-      for (double& value : a.values) value *= scale;
-    }
-  }
+  io::move_points(mesh.vertices, scale, space);
+  io::scale_lengths(attributes.vertex, scale);
+  io::scale_lengths(attributes.face, scale);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vmesh/core/types.h"
+#include "vmesh/mesh/tri_mesh.h"
 
 namespace vmesh {
 
@@ -37,6 +38,12 @@ struct VolumeMesh {
   std::vector<std::string> patch_names;   ///< "wall", "cap_1" ...
 
   std::size_t cell_count() const { return tetrahedra.size() + wedges.size() + pyramids.size(); }
+};
+
+/// The attributes of a volume mesh in files, in file order.
+struct VolumeAttributes {
+  std::vector<MeshAttribute> point;  ///< each as long as VolumeMesh::points
+  std::vector<MeshAttribute> cell;   ///< each as long as VolumeMesh::cell_count()
 };
 
 }  // namespace vmesh
