@@ -40,14 +40,10 @@ std::string name_of(std::size_t face) { return "face " + std::to_string(face) + 
 template <class Take>
 void for_each_face(const VolumeMesh& mesh, const Take& take) {
   Index cell = 0;
-  for (const Tetrahedron& t : mesh.tetrahedra) {
-    for (const CellFace& face : faces_of(t)) take(cell, face);
+  for_each_cell(mesh, [&](const auto& corners) {
+    for (const CellFace& face : faces_of(corners)) take(cell, face);
     ++cell;
-  }
-  for (const Wedge& w : mesh.wedges) {
-    for (const CellFace& face : faces_of(w)) take(cell, face);
-    ++cell;
-  }
+  });
 }
 
 template <class Cell>
@@ -97,6 +93,11 @@ std::array<CellFace, 5> faces_of(const Wedge& cell) {
   return {{{a, c, b, kNone}, {d, e, f, kNone}, {a, b, e, d}, {b, c, f, e}, {c, a, d, f}}};
 }
 
+std::array<CellFace, 5> faces_of(const Pyramid& cell) {
+  const auto& [a, b, c, d, e] = cell;
+  return {{{a, d, c, b}, {a, b, e, kNone}, {b, c, e, kNone}, {c, d, e, kNone}, {d, a, e, kNone}}};
+}
+
 std::vector<Index> cells_behind_boundary(const VolumeMesh& mesh) {
   std::unordered_map<CellFace, Index, FaceHash> number;
   number.reserve(mesh.boundary.size());
@@ -129,6 +130,7 @@ std::vector<Index> cells_behind_boundary(const VolumeMesh& mesh) {
 void check_volume_mesh(const VolumeMesh& mesh) {
   check_corners(mesh.tetrahedra, mesh.points.size(), "tetrahedron");
   check_corners(mesh.wedges, mesh.points.size(), "wedge");
+  check_corners(mesh.pyramids, mesh.points.size(), "pyramid");
   check_names(mesh.region_names, "region", "regions");
   check_names(mesh.patch_names, "patch", "patches");
   check_boundary(mesh);

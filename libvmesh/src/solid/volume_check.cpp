@@ -8,8 +8,8 @@
 
 #include "vmesh/core/text.h"
 #include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/volume_faces.h"
 
-#include "solid/cell_faces.h"
 #include "solid/wedge_jacobian.h"
 
 namespace vmesh {

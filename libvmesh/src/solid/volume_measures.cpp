@@ -3,9 +3,9 @@
 #include <numbers>
 #include <numeric>
 
+#include "vmesh/mesh/volume_faces.h"
 #include "vmesh/solid/volume_check.h"
 
-#include "solid/cell_faces.h"
 #include "solid/wedge_jacobian.h"
 
 namespace vmesh {

@@ -13,6 +13,16 @@ using CellFace = std::array<Index, 4>;
 std::array<CellFace, 4> faces_of(const Tetrahedron& cell);
 /// The two triangles first.
 std::array<CellFace, 5> faces_of(const Wedge& cell);
+/// The quadrilateral first.
+std::array<CellFace, 5> faces_of(const Pyramid& cell);
+
+/// Calls visit(cell) for every cell, in the order of their numbers.
+template <class Visit>
+void for_each_cell(const VolumeMesh& mesh, const Visit& visit) {
+  for (const Tetrahedron& cell : mesh.tetrahedra) visit(cell);
+  for (const Wedge& cell : mesh.wedges) visit(cell);
+  for (const Pyramid& cell : mesh.pyramids) visit(cell);
+}
 
 /// The number of the cell to which each face of the boundary belongs. Throws InvalidInput, naming the face, if it is no
 /// face of a cell, of more than one, or seen from inside counter-clockwise.
