@@ -6,10 +6,11 @@
 
 #include "vmesh/io/surface_io.h"
 #include "vmesh/io/volume_io.h"
-#include "vmesh/mesh/split_wedges.h"
+#include "vmesh/mesh/split_cells.h"
 #include "vmesh/mesh/volume_faces.h"
 
 #include "io_support.h"
+#include "mixed_cells.h"
 #include "tube_volume.h"
 
 namespace vmesh {
@@ -38,6 +39,8 @@ std::string all_of(const VolumeMesh& mesh) {
   for (const Tetrahedron& t : mesh.tetrahedra) text << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << t[3] << '\n';
   for (const Wedge& w : mesh.wedges)
     for (const Index v : w) text << v << ' ';
+  for (const Pyramid& p : mesh.pyramids)
+    for (const Index v : p) text << v << ' ';
   for (const Index r : mesh.cell_region) text << r << ' ';
   for (const BoundaryFace& f : mesh.boundary) {
     for (const Index v : f.corners) text << v << ' ';
@@ -91,6 +94,15 @@ LoadedVolume parse(const std::string& text) { return parse_volume(text, *find_vo
 
 const std::string kPrism = "0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1";
 
+TEST(ReadVtu, BringsEveryKindOfCellBack) {
+  const TemporaryFolder folder;
+  const VolumeMesh mesh = testing::mixed_cells();
+  write_volume(folder / "t.vtu", mesh);
+  const LoadedVolume back = read_volume(folder / "t.vtu");
+  EXPECT_EQ(all_of(back.mesh), all_of(mesh));
+  EXPECT_TRUE(back.warnings.empty());
+}
+
 TEST(ReadVtu, CellsOfOtherProgramsAreTurnedAndGetTheirOutside) {
   const LoadedVolume documented = parse(grid(kPrism, "0 2 1 3 5 4", "6", "13"));
   EXPECT_EQ(documented.mesh.wedges, (std::vector<Wedge>{{0, 1, 2, 3, 4, 5}}));
@@ -130,7 +142,7 @@ TEST(ReadVtu, DamageIsNamed) {
   expect_contains(error(grid(kPrism, "0 1 2", "3", "10")), "cell 0 has 3 corners, there should be 4");
   expect_contains(error(grid(kPrism, "0 1 2 3", "5", "10")), "cell 0: its offset is out of range");
   expect_contains(error(grid(kPrism, "0 1 2 3 4 5 0 1", "8", "12")), "cell 0 is of VTK's type 12");
-  expect_contains(error(grid(kPrism, "0 1 2", "3", "5")), "there are no tetrahedra or wedges");
+  expect_contains(error(grid(kPrism, "0 1 2", "3", "5")), "there are no tetrahedra, wedges or pyramids");
   expect_contains(error(grid("nan 0 0 1 0 0 0 1 0 0 0 1", "0 1 2 3", "4", "10")), "point 0 is not finite");
   expect_contains(error(grid(kPrism, "0 1 2 3 0 1 2", "4 7", "10 5")),
                   "face 0 of the volume's boundary is turned inwards");
@@ -207,6 +219,15 @@ TEST(WriteGmsh, Version2HasNodesElementsAndPhysicalNames) {
   }
 }
 
+TEST(WriteGmsh, EveryKindOfCellHasItsType) {
+  const TemporaryFolder folder;
+  write_volume(folder / "t.msh", testing::mixed_cells());
+  const auto elements = section(content_of(folder / "t.msh"), "$Elements", "$End");
+  EXPECT_EQ(elements.at(elements.size() - 3), "11 4 2 3 3 2 7 5 8");
+  EXPECT_EQ(elements.at(elements.size() - 2), "12 6 2 4 4 1 2 3 4 5 6");
+  EXPECT_EQ(elements.at(elements.size() - 1), "13 7 2 3 3 2 3 6 5 7");
+}
+
 TEST(WriteGmsh, Version4HasTheSameByEntities) {
   const TemporaryFolder folder;
   const VolumeMesh mesh = two_regions();
@@ -259,11 +280,11 @@ TEST(WriteTetgen, HasThreeFilesAndNoWedges) {
   const TemporaryFolder folder;
   const VolumeMesh mesh = two_regions();
   const std::string refused = message_of<Unsupported>([&] { write_volume(folder / "t.node", mesh); });
-  expect_contains(refused, "t.node: TetGen holds tetrahedra alone");
+  expect_contains(refused, "t.node: TetGen holds no wedges");
   EXPECT_EQ(folder.file_count(), 0u);
-  write_volume(folder / "t.ele", mesh, kMetadata, {}, {.split_wedges = true});
+  write_volume(folder / "t.ele", mesh, kMetadata, {}, {.split_cells = true});
   EXPECT_EQ(folder.file_count(), 3u);
-  const VolumeMesh split = split_wedges(mesh).mesh;
+  const VolumeMesh split = split_cells(mesh).mesh;
   const auto rows = [&](const std::string& name) {
     std::vector<std::vector<double>> result;
     std::istringstream lines(content_of(folder / name));
@@ -356,6 +377,14 @@ TEST(WriteAbaqus, SetsAndSurfacesAreThoseOfTheMesh) {
   }
 }
 
+TEST(WriteAbaqus, PyramidsAreRefusedUnlessSplit) {
+  const TemporaryFolder folder;
+  expect_contains(message_of<Unsupported>([&] { write_volume(folder / "t.inp", testing::mixed_cells()); }),
+                  "t.inp: Abaqus holds no pyramids, and 1 cells of this mesh are such");
+  write_volume(folder / "t.inp", testing::mixed_cells(), {}, {}, {.split_cells = true});
+  EXPECT_EQ(content_of(folder / "t.inp").find("C3D6"), std::string::npos);
+}
+
 /// The entries of a list of OpenFOAM, after its number.
 std::vector<std::string> foam_list(const std::string& content) {
   std::vector<std::string> entries = section(content.substr(content.find("\n}\n")), "(", "\n)\n");
@@ -375,6 +404,14 @@ std::vector<Index> foam_face(std::string text) {
   std::vector<Index> corners{std::istream_iterator<Index>(words), {}};
   EXPECT_EQ(corners.size(), count);
   return corners;
+}
+
+TEST(WriteOpenFoam, PyramidsAreCellsLikeOthers) {
+  const TemporaryFolder folder;
+  const VolumeMesh mesh = testing::mixed_cells();
+  write_volume(folder / "polyMesh", mesh);
+  EXPECT_EQ(foam_list(content_of(folder / "polyMesh/neighbour")), (std::vector<std::string>{"2", "2"}));
+  EXPECT_EQ(foam_list(content_of(folder / "polyMesh/owner")).size(), 2 + mesh.boundary.size());
 }
 
 TEST(WriteOpenFoam, FacesBoundClosedCells) {
@@ -448,7 +485,7 @@ const MeshAttribute& attribute(const std::vector<MeshAttribute>& all, const std:
 
 TEST(WriteMeshComplete, SurfacesHaveTheNumbersOfTheVolume) {
   const TemporaryFolder folder;
-  const VolumeMesh mesh = split_wedges(two_regions()).mesh;
+  const VolumeMesh mesh = split_cells(two_regions()).mesh;
   const MeshAttribute radius{"radius", std::vector<double>(mesh.points.size(), 2.5)};
   write_volume(folder / "mesh-complete", mesh, kMetadata, {{radius}, {}});
   const LoadedVolume volume = read_volume(folder / "mesh-complete/mesh-complete.mesh.vtu");
@@ -491,7 +528,7 @@ TEST(WriteMeshComplete, SurfacesHaveTheNumbersOfTheVolume) {
 
 TEST(WriteFolders, AnOldMeshIsReplacedWhollyOrNotAtAll) {
   const TemporaryFolder folder;
-  VolumeMesh mesh = split_wedges(tube_volume()).mesh;
+  VolumeMesh mesh = split_cells(tube_volume()).mesh;
   write_volume(folder / "mesh-complete/", mesh);
   mesh.patch_names[2] = "left";
   write_volume(folder / "mesh-complete", mesh);

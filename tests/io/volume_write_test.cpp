@@ -182,7 +182,7 @@ TEST(WriteVolume, RefusesWhatDoesNotFitTogetherAndLeavesNothingBehind) {
 TEST(WriteVolume, WritesTheSameBytesTwice) {
   const TemporaryFolder folder;
   namespace fs = std::filesystem;
-  const VolumeWriteOptions split = {.split_wedges = true};
+  const VolumeWriteOptions split = {.split_cells = true};
   for (const VolumeFormat& format : volume_formats()) {
     SCOPED_TRACE(format.name);
     const std::string ending = format.is_folder() ? format.folder : "t" + format.extensions[0];

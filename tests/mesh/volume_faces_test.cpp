@@ -4,6 +4,7 @@
 
 #include "vmesh/core/error.h"
 
+#include "mixed_cells.h"
 #include "tube_volume.h"
 
 namespace vmesh {
@@ -34,6 +35,11 @@ TEST(VolumeFaces, FacesOfCellsLookOutwards) {
   for (const Tetrahedron& t : mesh.tetrahedra) {
     for (const CellFace& face : faces_of(t)) EXPECT_GT(normal(mesh, face).dot(centre(mesh, face) - centre(mesh, t)), 0);
   }
+  const VolumeMesh mixed = testing::mixed_cells();
+  for_each_cell(mixed, [&](const auto& cell) {
+    for (const CellFace& face : faces_of(cell))
+      EXPECT_GT(normal(mixed, face).dot(centre(mixed, face) - centre(mixed, cell)), 0);
+  });
   ASSERT_FALSE(mesh.wedges.empty());
   for (const Wedge& w : mesh.wedges) {
     for (const CellFace& face : faces_of(w)) EXPECT_GT(normal(mesh, face).dot(centre(mesh, face) - centre(mesh, w)), 0);
@@ -163,7 +169,7 @@ TEST(CheckVolumeMesh, NamesWhatDoesNotFit) {
   const std::string longest(60, 'a');
   EXPECT_EQ(error_of([&](VolumeMesh& m) { m.patch_names[0] = longest; }), "none");
   for (const std::string& name : {std::string(), std::string("a b"), std::string("1a"), std::string("a/b"),
-                                 std::string("a\"b"), std::string("\xc3\xa4"), longest + "a"})
+                                  std::string("a\"b"), std::string("\xc3\xa4"), longest + "a"})
     EXPECT_NE(error_of([&](VolumeMesh& m) { m.region_names[0] = name; }).find("cannot be the name of a region"),
               std::string::npos)
         << name;

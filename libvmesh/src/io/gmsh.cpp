@@ -3,6 +3,8 @@
 #include <map>
 #include <span>
 
+#include "vmesh/mesh/volume_faces.h"
+
 #include "comments.h"
 #include "formats.h"
 #include "text_rows.h"
@@ -10,7 +12,7 @@
 namespace vmesh::io {
 namespace {
 
-constexpr int kGmshTriangle = 2, kGmshQuad = 3, kGmshTetrahedron = 4, kGmshPrism = 6;
+constexpr int kGmshTriangle = 2, kGmshQuad = 3, kGmshTetrahedron = 4, kGmshPrism = 6, kGmshPyramid = 7;
 
 /// A physical group or an entity: patches from 1, then regions, so that their numbers differ also for programs that do
 /// not look at the dimension.
@@ -27,10 +29,10 @@ void for_each_element(const VolumeMesh& mesh, const Take& take) {
          std::span<const Index>(face.corners).first(is_triangle ? 3 : 4));
   }
   Index cell = 0;
-  for (const Tetrahedron& t : mesh.tetrahedra)
-    take(3, number_of_region(mesh, mesh.cell_region[cell++]), kGmshTetrahedron, std::span<const Index>(t));
-  for (const Wedge& w : mesh.wedges)
-    take(3, number_of_region(mesh, mesh.cell_region[cell++]), kGmshPrism, std::span<const Index>(w));
+  for_each_cell(mesh, [&](const auto& corners) {
+    const int type = corners.size() == 4 ? kGmshTetrahedron : corners.size() == 6 ? kGmshPrism : kGmshPyramid;
+    take(3, number_of_region(mesh, mesh.cell_region[cell++]), type, std::span<const Index>(corners));
+  });
 }
 
 void add_head(TextRows& rows, const char* version, const VolumeMesh& mesh, const VolumeMetadata& metadata) {

@@ -7,7 +7,7 @@
 #include "vmesh/core/atomic_folder.h"
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
-#include "vmesh/mesh/split_wedges.h"
+#include "vmesh/mesh/split_cells.h"
 #include "vmesh/mesh/volume_faces.h"
 
 #include "lengths.h"
@@ -30,6 +30,15 @@ void check_writable(const VolumeMesh& mesh, const VolumeAttributes& attributes) 
   check_volume_mesh(mesh);
   check_attributes(attributes.point, mesh.points.size(), "point");
   check_attributes(attributes.cell, mesh.cell_count(), "cell");
+}
+
+void check_cells(const std::filesystem::path& path, const VolumeFormat& format, const VolumeMesh& mesh) {
+  const auto refuse = [&](const char* kind, std::size_t count) {
+    throw Unsupported(path.string() + ": " + format.name + " holds no " + kind + ", and " + std::to_string(count) +
+                      " cells of this mesh are such; have cells split into tetrahedra");
+  };
+  if (!format.holds_wedges && !mesh.wedges.empty()) refuse("wedges", mesh.wedges.size());
+  if (!format.holds_pyramids && !mesh.pyramids.empty()) refuse("pyramids", mesh.pyramids.size());
 }
 
 template <class Wanted>
@@ -120,13 +129,11 @@ const VolumeFormat& volume_output_format(const std::filesystem::path& path) {
 void write_volume(const std::filesystem::path& path, const VolumeMesh& mesh, const VolumeMetadata& metadata,
                   const VolumeAttributes& attributes, const VolumeWriteOptions& options) {
   const VolumeFormat& format = volume_output_format(path);
-  if (!format.holds_wedges && !options.split_wedges && !mesh.wedges.empty())
-    throw Unsupported(path.string() + ": " + format.name + " holds tetrahedra alone, and " +
-                      std::to_string(mesh.wedges.size()) + " cells of this mesh are wedges; have these split");
+  if (!options.split_cells) check_cells(path, format, mesh);
   try {
     check_writable(mesh, attributes);
-    if (options.split_wedges && !mesh.wedges.empty()) {
-      const SplitWedges split = split_wedges(mesh);
+    if (options.split_cells) {
+      const SplitCells split = split_cells(mesh);
       write_converted(path, format, split.mesh, split_attributes(attributes, split.cell_origins), metadata);
     } else {
       write_converted(path, format, mesh, attributes, metadata);

@@ -17,7 +17,7 @@ namespace {
 
 /// What is read of vtkCellType.h.
 constexpr double kVertex = 1, kPolyVertex = 2, kLine = 3, kPolyLine = 4, kTriangle = 5, kQuad = 9, kTetra = 10,
-                 kWedge = 13;
+                 kWedge = 13, kPyramid = 14;
 
 double volume_of(const std::vector<Vec3>& points, const Tetrahedron& t) {
   const Vec3& a = points[t[0]];
@@ -29,6 +29,11 @@ double volume_of(const std::vector<Vec3>& points, const Wedge& w) {
   const auto [a, b, c, d, e, f] = w;
   return volume_of(points, Tetrahedron{a, b, c, d}) + volume_of(points, Tetrahedron{b, c, d, e}) +
          volume_of(points, Tetrahedron{c, d, e, f});
+}
+
+double volume_of(const std::vector<Vec3>& points, const Pyramid& p) {
+  const auto [a, b, c, d, e] = p;
+  return volume_of(points, Tetrahedron{a, b, c, e}) + volume_of(points, Tetrahedron{a, c, d, e});
 }
 
 class VtuReader {
@@ -111,7 +116,7 @@ class VtuReader {
       begin = ends[c];
     }
     if (volume_.mesh.cell_count() == 0)
-      fail("there are no tetrahedra or wedges; a surface is read from VTP, PLY, STL or OBJ");
+      fail("there are no tetrahedra, wedges or pyramids; a surface is read from VTP, PLY, STL or OBJ");
     if (left_out_ > 0)
       volume_.warnings.push_back(source_ + ": " + std::to_string(left_out_) + " lines and loose points are left out");
   }
@@ -140,6 +145,9 @@ class VtuReader {
       const auto [a, c, b, d, f, e] = corners<6>(cell, ids);  // VTK's base looks outwards
       mesh.wedges.push_back({a, b, c, d, e, f});
       wedges_.push_back(cell);
+    } else if (type == kPyramid) {
+      mesh.pyramids.push_back(corners<5>(cell, ids));
+      pyramids_.push_back(cell);
     } else if (type == kTriangle) {
       const auto [a, b, c] = corners<3>(cell, ids);
       mesh.boundary.push_back({{a, b, c, kNone}, 0});
@@ -153,23 +161,23 @@ class VtuReader {
       std::string text;
       append(text, type);
       fail("cell " + std::to_string(cell) + " is of VTK's type " + text +
-           "; volume meshes are of tetrahedra (10) and wedges (13), with triangles and quads outside");
+           "; volume meshes are of tetrahedra (10), wedges (13) and pyramids (14), with triangles and quads outside");
     }
   }
 
   /// Other programs order the corners of wedges in the other way.
   void turn_cells() {
     std::size_t turned = 0;
-    for (Tetrahedron& t : volume_.mesh.tetrahedra) {
-      if (volume_of(volume_.mesh.points, t) >= 0) continue;
-      std::swap(t[0], t[1]);
-      ++turned;
-    }
-    for (Wedge& w : volume_.mesh.wedges) {
-      if (volume_of(volume_.mesh.points, w) >= 0) continue;
-      std::swap(w[1], w[2]), std::swap(w[4], w[5]);
-      ++turned;
-    }
+    const auto turn = [&](auto& cells, const auto& swap) {
+      for (auto& cell : cells) {
+        if (volume_of(volume_.mesh.points, cell) >= 0) continue;
+        swap(cell);
+        ++turned;
+      }
+    };
+    turn(volume_.mesh.tetrahedra, [](Tetrahedron& t) { std::swap(t[0], t[1]); });
+    turn(volume_.mesh.wedges, [](Wedge& w) { std::swap(w[1], w[2]), std::swap(w[4], w[5]); });
+    turn(volume_.mesh.pyramids, [](Pyramid& p) { std::swap(p[1], p[3]); });
     if (turned > 0)
       volume_.warnings.push_back(source_ + ": " + std::to_string(turned) +
                                  " cells had corners in an order that gives a negative volume; turned");
@@ -187,9 +195,10 @@ class VtuReader {
 
   void read_cell_data(pugi::xml_node data) {
     std::vector<MeshAttribute> all;
-    read_attributes(data, tetrahedra_.size() + wedges_.size() + faces_.size() + left_out_, all);
+    read_attributes(data, volume_.mesh.cell_count() + faces_.size() + left_out_, all);
     std::vector<std::size_t> cells = tetrahedra_;
     cells.insert(cells.end(), wedges_.begin(), wedges_.end());
+    cells.insert(cells.end(), pyramids_.begin(), pyramids_.end());
     std::vector<double> region(cells.size(), 1), patch(faces_.size(), 1);
     for (MeshAttribute& attribute : all) {
       const auto of = [&](const std::vector<std::size_t>& places) {
@@ -249,7 +258,7 @@ class VtuReader {
   XmlFile file_;
   VtpArrays arrays_;
   LoadedVolume volume_;
-  std::vector<std::size_t> tetrahedra_, wedges_, faces_;  ///< their numbers in the file
+  std::vector<std::size_t> tetrahedra_, wedges_, pyramids_, faces_;  ///< their numbers in the file
   std::size_t left_out_ = 0;
 };
 

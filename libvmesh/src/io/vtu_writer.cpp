@@ -12,7 +12,8 @@
 namespace vmesh::io {
 namespace {
 
-constexpr int kVtkTriangle = 5, kVtkQuad = 9, kVtkTetra = 10, kVtkWedge = 13;  // vtkCellType.h
+constexpr int kVtkTriangle = 5, kVtkQuad = 9, kVtkTetra = 10, kVtkWedge = 13,
+              kVtkPyramid = 14;  // vtkCellType.h
 
 /// Calls `take` with the type of every cell of the file and its corners, in VTK's order.
 template <class Take>
@@ -23,6 +24,7 @@ void for_each_grid_cell(const VolumeMesh& mesh, bool with_faces, const Take& tak
     const Wedge turned = {a, c, b, d, f, e};
     take(kVtkWedge, std::span<const Index>(turned));
   }
+  for (const Pyramid& p : mesh.pyramids) take(kVtkPyramid, std::span<const Index>(p));
   if (!with_faces) return;
   for (const BoundaryFace& face : mesh.boundary) {
     const std::span<const Index> corners(face.corners);

@@ -42,12 +42,11 @@ std::string name_of(std::size_t face) { return "face " + std::to_string(face) + 
 template <class Take>
 void for_each_side(const VolumeMesh& mesh, const Take& take) {
   Index cell = 0;
-  const auto take_all = [&](const auto& faces) {
+  for_each_cell(mesh, [&](const auto& corners) {
+    const auto faces = faces_of(corners);
     for (Index f = 0; f < faces.size(); ++f) take(CellSide{cell, f}, faces[f]);
     ++cell;
-  };
-  for (const Tetrahedron& t : mesh.tetrahedra) take_all(faces_of(t));
-  for (const Wedge& w : mesh.wedges) take_all(faces_of(w));
+  });
 }
 
 template <class Cell>
@@ -86,7 +85,7 @@ std::vector<KeyedSide> sides_inside(const VolumeMesh& mesh) {
   outside.reserve(mesh.boundary.size());
   for (const BoundaryFace& face : mesh.boundary) outside.insert(key_of(face.corners));
   std::vector<KeyedSide> sides;
-  sides.reserve(4 * mesh.tetrahedra.size() + 5 * mesh.wedges.size());
+  sides.reserve(4 * mesh.tetrahedra.size() + 5 * (mesh.wedges.size() + mesh.pyramids.size()));
   for_each_side(mesh, [&](const CellSide& side, const CellFace& face) {
     const CellFace key = key_of(face);
     if (!outside.contains(key)) sides.push_back({key, face, side.cell});
@@ -113,6 +112,11 @@ std::array<CellFace, 4> faces_of(const Tetrahedron& cell) {
 std::array<CellFace, 5> faces_of(const Wedge& cell) {
   const auto& [a, b, c, d, e, f] = cell;
   return {{{a, c, b, kNone}, {d, e, f, kNone}, {a, b, e, d}, {b, c, f, e}, {c, a, d, f}}};
+}
+
+std::array<CellFace, 5> faces_of(const Pyramid& cell) {
+  const auto& [a, b, c, d, e] = cell;
+  return {{{a, d, c, b}, {a, b, e, kNone}, {b, c, e, kNone}, {c, d, e, kNone}, {d, a, e, kNone}}};
 }
 
 std::vector<CellSide> sides_of_boundary(const VolumeMesh& mesh) {
@@ -179,6 +183,7 @@ std::vector<InnerFace> inner_faces(const VolumeMesh& mesh) {
 void check_volume_mesh(const VolumeMesh& mesh) {
   check_corners(mesh.tetrahedra, mesh.points.size(), "tetrahedron");
   check_corners(mesh.wedges, mesh.points.size(), "wedge");
+  check_corners(mesh.pyramids, mesh.points.size(), "pyramid");
   check_patch_names(mesh.region_names, "region", "regions");
   check_patch_names(mesh.patch_names, "patch", "patches");
   check_boundary(mesh);

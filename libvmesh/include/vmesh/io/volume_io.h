@@ -22,7 +22,7 @@ struct VolumeFormat {
   std::vector<std::string> extensions =
       {};                   ///< lower case, with their dots; all of them are written, where there are more
   std::string folder = {};  ///< of formats that are a folder: what its name ends with
-  bool holds_wedges = true;
+  bool holds_wedges = true, holds_pyramids = true;
 
   /// Opens the next file of the mesh: "" for that of the format's only extension; another extension; a path within the
   /// folder.
@@ -66,7 +66,8 @@ struct VolumeMetadata {
 };
 
 struct VolumeWriteOptions {
-  bool split_wedges = false;  ///< into tetrahedra, see split_wedges(); without, formats that hold none refuse them
+  bool split_cells =
+      false;  ///< into tetrahedra, see split_cells(); else formats without wedges or pyramids refuse them
 };
 
 /// Writes a volume mesh (given in mm and LPS) in the format of the extension, in the unit and frame of `metadata`,
@@ -81,16 +82,16 @@ struct VolumeWriteOptions {
 ///   .msh           Gmsh 2.2, text; regions and patches are physical groups with their names, patches numbered from 1,
 ///                  regions after them; no attributes. .msh4: the same in 4.1, with an entity for each
 ///   .node, .ele, .face  TetGen, all three, from 0; regions are the attribute of tetrahedra, patches the marker of
-///                  faces, from 1; no wedges, no other attributes
-///   .inp           Abaqus and CalculiX: C3D4 and C3D6 from 1; for each region an ELSET, for each patch an NSET and a
-///                  SURFACE of its name; no attributes
+///                  faces, from 1; tetrahedra alone, no other attributes
+///   .inp           Abaqus and CalculiX: C3D4 and C3D6 from 1, no pyramids; for each region an ELSET, for each patch an
+///                  NSET and a SURFACE of its name; no attributes
 ///   polyMesh       OpenFOAM, text; patches whose names begin with "wall" are of type wall; a cellZone for each region
 ///                  if there are several; no attributes. OpenFOAM counts in metres: choose that unit
 ///   mesh-complete  SimVascular: mesh-complete.mesh.vtu, mesh-complete.exterior.vtp, walls_combined.vtp (patches whose
 ///                  names begin with "wall") and mesh-surfaces/PATCH.vtp, with GlobalNodeID and GlobalElementID from 1,
-///                  ModelRegionID and ModelFaceID; no wedges; attributes in the first two
+///                  ModelRegionID and ModelFaceID; tetrahedra alone; attributes in the first two
 /// Throws InvalidInput when the mesh or an attribute is not consistent (check_volume_mesh(), sides_of_boundary();
-/// polyMesh: inner_faces()), Unsupported (extension; wedges in a format that has none), WriteError.
+/// polyMesh: inner_faces()), Unsupported (extension; cells that a format does not have), WriteError.
 void write_volume(const std::filesystem::path& path, const VolumeMesh& mesh, const VolumeMetadata& metadata = {},
                   const VolumeAttributes& attributes = {}, const VolumeWriteOptions& options = {});
 
@@ -104,8 +105,8 @@ struct LoadedVolume {
 
 /// Reads a volume mesh by extension (.vtu). Cells whose corners are in an order that gives them a negative volume are
 /// turned, lines and loose points left out. Where the file has no faces, the outside of the cells is one patch, "wall".
-/// Throws ReadError (missing, a directory, unreadable), InvalidInput (content; cells that are neither tetrahedra nor
-/// wedges), Unsupported (extension).
+/// Throws ReadError (missing, a directory, unreadable), InvalidInput (content; cells that are neither tetrahedra,
+/// wedges nor pyramids), Unsupported (extension).
 LoadedVolume read_volume(const std::filesystem::path& path);
 
 /// read_volume() from memory; `source` names it in messages.

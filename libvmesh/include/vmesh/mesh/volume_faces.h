@@ -13,6 +13,16 @@ using CellFace = std::array<Index, 4>;
 std::array<CellFace, 4> faces_of(const Tetrahedron& cell);
 /// The two triangles first.
 std::array<CellFace, 5> faces_of(const Wedge& cell);
+/// The quadrilateral first.
+std::array<CellFace, 5> faces_of(const Pyramid& cell);
+
+/// Calls visit(cell) for every cell, in the order of their numbers.
+template <class Visit>
+void for_each_cell(const VolumeMesh& mesh, const Visit& visit) {
+  for (const Tetrahedron& cell : mesh.tetrahedra) visit(cell);
+  for (const Wedge& cell : mesh.wedges) visit(cell);
+  for (const Pyramid& cell : mesh.pyramids) visit(cell);
+}
 
 /// Face `face` of faces_of() of a cell.
 struct CellSide {

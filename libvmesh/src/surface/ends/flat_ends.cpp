@@ -11,7 +11,7 @@
 #include "vmesh/surface/branch_labels.h"
 #include "vmesh/surface/defects.h"
 
-#include "surface/ends/disc.h"
+#include "vmesh/surface/disc.h"
 #include "surface/ends/extension_room.h"
 #include "surface/ends/opening_extension.h"
 #include "surface/ends/ring_moves.h"

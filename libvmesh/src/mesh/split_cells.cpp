@@ -1,9 +1,10 @@
-#include "vmesh/mesh/split_wedges.h"
+#include "vmesh/mesh/split_cells.h"
 
 #include <algorithm>
 
 #include "vmesh/core/error.h"
 #include "vmesh/core/text.h"
+#include "vmesh/mesh/volume_faces.h"
 
 namespace vmesh {
 namespace {
@@ -29,39 +30,50 @@ std::array<Tetrahedron, 3> split(const Wedge& wedge) {
   return {{{a, b, c, e}, {a, e, c, f}, {a, e, f, d}}};
 }
 
+std::array<Tetrahedron, 2> split(const Pyramid& pyramid) {
+  const auto& [a, b, c, d, e] = pyramid;
+  if (std::min(a, c) < std::min(b, d)) return {{{a, b, c, e}, {a, c, d, e}}};
+  return {{{a, b, d, e}, {b, c, d, e}}};
+}
+
+std::array<Tetrahedron, 1> split(const Tetrahedron& cell) { return {cell}; }
+
 std::array<BoundaryFace, 2> split(const BoundaryFace& quad) {
   const auto& [a, b, c, d] = quad.corners;
   if (std::min(a, c) < std::min(b, d)) return {{{{a, b, c, kNone}, quad.patch}, {{a, c, d, kNone}, quad.patch}}};
   return {{{{a, b, d, kNone}, quad.patch}, {{b, c, d, kNone}, quad.patch}}};
 }
 
-void check_split(const VolumeMesh& mesh, std::size_t wedge, const Tetrahedron& cell) {
-  const Vec3& a = mesh.points[cell[0]];
-  const Vec3 &b = mesh.points[cell[1]], &c = mesh.points[cell[2]], &d = mesh.points[cell[3]];
-  if ((b - a).cross(c - a).dot(d - a) > 0) return;
-  throw InvalidInput(formatted("wedge %zu, at (%.4g, %.4g, %.4g) mm, cannot be split into tetrahedra: it is too skewed",
-                               wedge, a.x(), a.y(), a.z()));
+bool has_volume(const std::vector<Vec3>& points, const Tetrahedron& cell) {
+  const Vec3& a = points[cell[0]];
+  return (points[cell[1]] - a).cross(points[cell[2]] - a).dot(points[cell[3]] - a) > 0;
+}
+
+[[noreturn]] void refuse_skewed(const VolumeMesh& mesh, Index cell, Index corner) {
+  const Vec3& at = mesh.points[corner];
+  throw InvalidInput(formatted("cell %u, at (%.4g, %.4g, %.4g) mm, cannot be split into tetrahedra: it is too skewed",
+                               cell, at.x(), at.y(), at.z()));
 }
 
 }  // namespace
 
-SplitWedges split_wedges(const VolumeMesh& mesh) {
-  SplitWedges result;
+SplitCells split_cells(const VolumeMesh& mesh) {
+  SplitCells result;
   VolumeMesh& split_mesh = result.mesh;
   split_mesh.points = mesh.points;
   split_mesh.region_names = mesh.region_names;
   split_mesh.patch_names = mesh.patch_names;
-  split_mesh.tetrahedra = mesh.tetrahedra;
-  split_mesh.tetrahedra.reserve(mesh.tetrahedra.size() + 3 * mesh.wedges.size());
-  for (Index cell = 0; cell < mesh.tetrahedra.size(); ++cell) result.cell_origins.push_back(cell);
-  for (std::size_t w = 0; w < mesh.wedges.size(); ++w) {
-    for (const Tetrahedron& cell : split(mesh.wedges[w])) {
-      check_split(mesh, w, cell);
-      split_mesh.tetrahedra.push_back(cell);
-      result.cell_origins.push_back(static_cast<Index>(mesh.tetrahedra.size() + w));
+  split_mesh.tetrahedra.reserve(mesh.tetrahedra.size() + 3 * mesh.wedges.size() + 2 * mesh.pyramids.size());
+  Index origin = 0;
+  for_each_cell(mesh, [&](const auto& cell) {
+    for (const Tetrahedron& part : split(cell)) {
+      if (cell.size() > 4 && !has_volume(mesh.points, part)) refuse_skewed(mesh, origin, cell[0]);
+      split_mesh.tetrahedra.push_back(part);
+      result.cell_origins.push_back(origin);
     }
-  }
-  for (const Index origin : result.cell_origins) split_mesh.cell_region.push_back(mesh.cell_region[origin]);
+    ++origin;
+  });
+  for (const Index cell : result.cell_origins) split_mesh.cell_region.push_back(mesh.cell_region[cell]);
   for (const BoundaryFace& face : mesh.boundary) {
     if (face.is_triangle()) {
       split_mesh.boundary.push_back(face);

@@ -1,4 +1,4 @@
-#include "vmesh/mesh/split_wedges.h"
+#include "vmesh/mesh/split_cells.h"
 
 #include <numbers>
 
@@ -7,6 +7,7 @@
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/volume_faces.h"
 
+#include "mixed_cells.h"
 #include "tube_volume.h"
 
 namespace vmesh {
@@ -19,10 +20,10 @@ double volume_of_cell(const VolumeMesh& mesh, const Tetrahedron& t) {
   return (mesh.points[t[1]] - a).cross(mesh.points[t[2]] - a).dot(mesh.points[t[3]] - a) / 6;
 }
 
-TEST(SplitWedges, CellsMeetFaceToFaceAndFillTheSameVolume) {
+TEST(SplitCells, CellsMeetFaceToFaceAndFillTheSameVolume) {
   const testing::TubeSizes sizes = {.radius = 3, .length = 7, .around = 10, .along = 3, .rings = 2, .layers = 3};
   const VolumeMesh before = tube_volume(sizes);
-  const SplitWedges split = split_wedges(before);
+  const SplitCells split = split_cells(before);
   EXPECT_TRUE(split.mesh.wedges.empty());
   EXPECT_EQ(split.mesh.tetrahedra.size(), before.tetrahedra.size() + 3 * before.wedges.size());
   check_volume_mesh(split.mesh);
@@ -53,11 +54,11 @@ VolumeMesh prism(const std::array<Index, 6>& numbers) {
   return mesh;
 }
 
-TEST(SplitWedges, EveryNumberingOfTheCornersGivesTetrahedraOfTheWholePrism) {
+TEST(SplitCells, EveryNumberingOfTheCornersGivesTetrahedraOfTheWholePrism) {
   std::array<Index, 6> numbers = {0, 1, 2, 3, 4, 5};
   do {
     const VolumeMesh mesh = prism(numbers);
-    const SplitWedges split = split_wedges(mesh);
+    const SplitCells split = split_cells(mesh);
     double volume = 0;
     for (const Tetrahedron& t : split.mesh.tetrahedra) volume += volume_of_cell(split.mesh, t);
     EXPECT_NEAR(volume, 0.5, 1e-15);
@@ -67,13 +68,29 @@ TEST(SplitWedges, EveryNumberingOfTheCornersGivesTetrahedraOfTheWholePrism) {
   } while (std::next_permutation(numbers.begin(), numbers.end()));
 }
 
-TEST(SplitWedges, RegionsPatchesAndAttributesGoWithTheirCells) {
+TEST(SplitCells, EveryNumberingOfMixedCellsMeetsFaceToFace) {
+  std::array<Index, 8> numbers = {0, 1, 2, 3, 4, 5, 6, 7};
+  do {
+    const VolumeMesh mesh = testing::mixed_cells(numbers);
+    const SplitCells split = split_cells(mesh);
+    std::array<double, 3> volume = {};
+    for (std::size_t t = 0; t < split.mesh.tetrahedra.size(); ++t)
+      volume[split.cell_origins[t]] += volume_of_cell(split.mesh, split.mesh.tetrahedra[t]);
+    ASSERT_NEAR(volume[1], 1.0 / 2, 1e-15);
+    ASSERT_NEAR(volume[2], 1.0 / 6, 1e-15);
+    ASSERT_EQ(split.mesh.tetrahedra.size(), 6u);
+    ASSERT_EQ(inner_faces(split.mesh).size(), 6u);  // throws where two cells cut a quad differently
+    ASSERT_NO_THROW(sides_of_boundary(split.mesh));
+  } while (std::next_permutation(numbers.begin(), numbers.end()));
+}
+
+TEST(SplitCells, RegionsPatchesAndAttributesGoWithTheirCells) {
   VolumeMesh mesh = tube_volume();
   mesh.region_names = {"lumen", "layers"};
   for (std::size_t c = mesh.tetrahedra.size(); c < mesh.cell_count(); ++c) mesh.cell_region[c] = 1;
   MeshAttribute number{"number", {}, true};
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) number.values.push_back(static_cast<double>(c));
-  const SplitWedges split = split_wedges(mesh);
+  const SplitCells split = split_cells(mesh);
   const VolumeAttributes attributes = split_attributes({{}, {number}}, split.cell_origins);
   ASSERT_EQ(attributes.cell.size(), 1u);
   EXPECT_TRUE(attributes.cell[0].integer);
@@ -103,14 +120,14 @@ TEST(SplitWedges, RegionsPatchesAndAttributesGoWithTheirCells) {
   for (std::size_t p = 0; p < 3; ++p) EXPECT_NEAR(area_after[p], area_before[p], 1e-12 * area_before[p]) << p;
 }
 
-TEST(SplitWedges, AWedgeThatIsTurnedInsideOutIsRefused) {
+TEST(SplitCells, AWedgeThatIsTurnedInsideOutIsRefused) {
   VolumeMesh mesh = prism({0, 1, 2, 3, 4, 5});
   mesh.points[5] = {0, 1, -0.5};
   try {
-    split_wedges(mesh);
+    split_cells(mesh);
     FAIL() << "not refused";
   } catch (const InvalidInput& error) {
-    EXPECT_NE(std::string(error.what()).find("wedge 0, at ("), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("cell 0, at ("), std::string::npos) << error.what();
   }
 }
 

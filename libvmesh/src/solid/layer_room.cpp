@@ -1,0 +1,78 @@
+#include "solid/layer_room.h"
+
+#include "vmesh/mesh/topology.h"
+
+namespace vmesh {
+namespace {
+
+// The wall, the surface on which layers end, and between them the caps: a surface that crosses itself where layers have
+// no room.
+class LayerSurface {
+ public:
+  LayerSurface(const WallFrame& frame, const LayerStack& stack, double reach)
+      : frame_(frame), stack_(stack), reach_(reach), last_(static_cast<Index>(frame.position.size())) {
+    mesh_.vertices = frame.position;
+    for (Index v = 0; v < last_; ++v) mesh_.vertices.push_back(stack.at(frame, v, reach));
+    mesh_.faces = frame.faces;
+    for (const auto& [a, b, c] : frame.faces) {
+      if (moved(a) != a || moved(b) != b || moved(c) != c) mesh_.faces.push_back({moved(a), moved(b), moved(c)});
+    }
+    for (const Cap& cap : frame.caps) add_cap(cap);
+  }
+
+  /// Vertices of the wall whose layers a crossing face depends on.
+  std::vector<char> crossing_vertices() const {
+    std::vector<char> crosses(last_, 0);
+    for (const auto& [f, g] : self_intersections(mesh_)) {
+      for (const Index face : {f, g}) {
+        for (const Index v : mesh_.faces[face]) mark(v, crosses);
+      }
+    }
+    return crosses;
+  }
+
+ private:
+  // Where the layers at a vertex end: at itself if there are none.
+  Index moved(Index v) const { return stack_.ends_at(v) ? v : last_ + v; }
+
+  void mark(Index v, std::vector<char>& crosses) const {
+    if (v < last_) return;
+    if (v < 2 * last_) {
+      crosses[v - last_] = 1;
+    } else if (const Cap* cap = filled_cap_[v - 2 * last_]) {
+      for (const Index rim : cap->rim) crosses[rim] = 1;
+    }
+  }
+
+  void add_cap(const Cap& cap) {
+    for (std::size_t j = 0; j < cap.rim.size(); ++j) {
+      const Index a = cap.rim[j], b = cap.rim[(j + 1) % cap.rim.size()];
+      if (moved(b) != b) mesh_.faces.push_back({a, b, moved(b)});
+      if (moved(a) != a) mesh_.faces.push_back({a, moved(b), moved(a)});
+    }
+    const bool inside = stack_.side == LayerSide::inside;
+    std::vector<Vec3> ring;
+    for (const Index v : cap.rim) ring.push_back(stack_.at(frame_, v, reach_));
+    const Disc disc = inside ? fill_ring(ring, cap.normal) : cap.disc;
+    const auto added = static_cast<Index>(mesh_.vertices.size()), rim = static_cast<Index>(cap.rim.size());
+    mesh_.vertices.insert(mesh_.vertices.end(), disc.vertices.begin(), disc.vertices.end());
+    filled_cap_.resize(filled_cap_.size() + disc.vertices.size(), inside ? &cap : nullptr);
+    const auto number = [&](Index i) { return i >= rim ? added + i - rim : inside ? moved(cap.rim[i]) : cap.rim[i]; };
+    for (const auto& [a, b, c] : disc.faces) mesh_.faces.push_back({number(a), number(b), number(c)});
+  }
+
+  const WallFrame& frame_;
+  const LayerStack& stack_;
+  double reach_;
+  Index last_;  // where the vertices on which layers end begin
+  TriMesh mesh_;
+  std::vector<const Cap*> filled_cap_;  // of every vertex within caps; null where layers do not move it
+};
+
+}  // namespace
+
+std::vector<char> vertices_without_room(const WallFrame& frame, const LayerStack& stack, double reach) {
+  return LayerSurface(frame, stack, reach).crossing_vertices();
+}
+
+}  // namespace vmesh
