@@ -7,6 +7,7 @@
 #include "vmesh/core/version.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/io/volume_io.h"
 #include "vmesh/render/render.h"
 
 #include "command_line/usage_error.h"
@@ -22,6 +23,8 @@ const char* name_of(Kind kind) {
   switch (kind) {
     case Kind::surface:
       return "surface";
+    case Kind::volume:
+      return "volume mesh";
     case Kind::centerline:
       return "centerline";
     case Kind::picture:
@@ -53,6 +56,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
 void check_format(const PlannedOutput& output) {
   if (output.kind == Kind::summary) return;
   if (output.kind == Kind::surface) surface_output_format(output.path);
+  if (output.kind == Kind::volume) volume_output_format(output.path);
   if (output.kind == Kind::centerline) centerline_output_format(output.path);
   const std::string extension = extension_of(output.path);
   if (output.kind == Kind::report && extension != ".txt" && extension != ".md" && extension != ".csv" &&

@@ -14,9 +14,10 @@
 namespace vmesh {
 namespace {
 
-// -p a surface, -Y kept as it is, -q radius by shortest edge and least dihedral angle, -m sizes, -Q quiet.
+// -p a surface, -Y kept as it is, -q radius by shortest edge and least dihedral angle, -m sizes, -o/ the dihedral angle
+// above which cells are improved, -O how hard, -Q quiet.
 // -q and -m are left out if that fails: refinement may run into rounding.
-constexpr const char* kSwitches[] = {"pYQmq1.3/14O4/7", "pYQmq2/0", "pYQ"};
+constexpr const char* kSwitches[] = {"pYQmq1.3/14o/140O9/7", "pYQmq2/0", "pYQ"};
 
 void set_points(const CoreSurface& surface, tetgenio& in) {
   const std::vector<Vec3>& points = surface.mesh.vertices;

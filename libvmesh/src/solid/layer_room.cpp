@@ -1,6 +1,8 @@
 #include "solid/layer_room.h"
 
-#include "vmesh/mesh/topology.h"
+#include <algorithm>
+
+#include "vmesh/edit/crossing_guard.h"
 
 namespace vmesh {
 namespace {
@@ -9,13 +11,18 @@ namespace {
 // no room.
 class LayerSurface {
  public:
-  LayerSurface(const WallFrame& frame, const LayerStack& stack, double reach)
-      : frame_(frame), stack_(stack), reach_(reach), last_(static_cast<Index>(frame.position.size())) {
+  LayerSurface(const WallFrame& frame, const LayerStack& stack, double reach, const std::vector<char>& has_changed)
+      : frame_(frame),
+        stack_(stack),
+        reach_(reach),
+        has_changed_(has_changed),
+        last_(static_cast<Index>(frame.position.size())) {
     mesh_.vertices = frame.position;
     for (Index v = 0; v < last_; ++v) mesh_.vertices.push_back(stack.at(frame, v, reach));
     mesh_.faces = frame.faces;
     for (const auto& [a, b, c] : frame.faces) {
-      if (moved(a) != a || moved(b) != b || moved(c) != c) mesh_.faces.push_back({moved(a), moved(b), moved(c)});
+      if (moved(a) == a && moved(b) == b && moved(c) == c) continue;
+      add({moved(a), moved(b), moved(c)}, has_changed[a] || has_changed[b] || has_changed[c]);
     }
     for (const Cap& cap : frame.caps) add_cap(cap);
   }
@@ -23,7 +30,7 @@ class LayerSurface {
   /// Vertices of the wall whose layers a crossing face depends on.
   std::vector<char> crossing_vertices() const {
     std::vector<char> crosses(last_, 0);
-    for (const auto& [f, g] : self_intersections(mesh_)) {
+    for (const auto& [f, g] : crossing_pairs(mesh_.vertices, mesh_.faces, changed_)) {
       for (const Index face : {f, g}) {
         for (const Index v : mesh_.faces[face]) mark(v, crosses);
       }
@@ -32,6 +39,11 @@ class LayerSurface {
   }
 
  private:
+  void add(const Triangle& face, bool has_changed) {
+    if (has_changed) changed_.push_back(static_cast<Index>(mesh_.faces.size()));
+    mesh_.faces.push_back(face);
+  }
+
   // Where the layers at a vertex end: at itself if there are none.
   Index moved(Index v) const { return stack_.ends_at(v) ? v : last_ + v; }
 
@@ -47,8 +59,8 @@ class LayerSurface {
   void add_cap(const Cap& cap) {
     for (std::size_t j = 0; j < cap.rim.size(); ++j) {
       const Index a = cap.rim[j], b = cap.rim[(j + 1) % cap.rim.size()];
-      if (moved(b) != b) mesh_.faces.push_back({a, b, moved(b)});
-      if (moved(a) != a) mesh_.faces.push_back({a, moved(b), moved(a)});
+      if (moved(b) != b) add({a, b, moved(b)}, has_changed_[b]);
+      if (moved(a) != a) add({a, moved(b), moved(a)}, has_changed_[a] || has_changed_[b]);
     }
     const bool inside = stack_.side == LayerSide::inside;
     std::vector<Vec3> ring;
@@ -58,21 +70,26 @@ class LayerSurface {
     mesh_.vertices.insert(mesh_.vertices.end(), disc.vertices.begin(), disc.vertices.end());
     filled_cap_.resize(filled_cap_.size() + disc.vertices.size(), inside ? &cap : nullptr);
     const auto number = [&](Index i) { return i >= rim ? added + i - rim : inside ? moved(cap.rim[i]) : cap.rim[i]; };
-    for (const auto& [a, b, c] : disc.faces) mesh_.faces.push_back({number(a), number(b), number(c)});
+    const bool has_changed =
+        inside && std::any_of(cap.rim.begin(), cap.rim.end(), [&](Index v) { return has_changed_[v]; });
+    for (const auto& [a, b, c] : disc.faces) add({number(a), number(b), number(c)}, has_changed);
   }
 
   const WallFrame& frame_;
   const LayerStack& stack_;
   double reach_;
+  const std::vector<char>& has_changed_;
   Index last_;  // where the vertices on which layers end begin
   TriMesh mesh_;
+  std::vector<Index> changed_;          // faces
   std::vector<const Cap*> filled_cap_;  // of every vertex within caps; null where layers do not move it
 };
 
 }  // namespace
 
-std::vector<char> vertices_without_room(const WallFrame& frame, const LayerStack& stack, double reach) {
-  return LayerSurface(frame, stack, reach).crossing_vertices();
+std::vector<char> vertices_without_room(const WallFrame& frame, const LayerStack& stack, double reach,
+                                        const std::vector<char>& has_changed) {
+  return LayerSurface(frame, stack, reach, has_changed).crossing_vertices();
 }
 
 }  // namespace vmesh

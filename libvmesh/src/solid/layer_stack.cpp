@@ -4,6 +4,8 @@
 #include <cmath>
 #include <queue>
 
+#include "vmesh/core/text.h"
+
 #include "solid/fan_direction.h"
 #include "solid/layer_room.h"
 #include "solid/layer_shape.h"
@@ -54,11 +56,10 @@ class StackBuilder {
   LayerStack run() {
     limit_gradation();
     for (const double thickness : stack_.reached_mm) least_mm_.push_back(kLeastShare * thickness);
-    const double reach = stack_.side == LayerSide::inside ? kReachInside : kReachOutside;
     do {
       make_well_shaped();
       report_progress(progress_, "layers", 0);
-    } while (make_thinner(vertices_without_room(frame_, stack_, reach), LayerLimit::room));
+    } while (make_thinner(without_room(), LayerLimit::room));
     return std::move(stack_);
   }
 
@@ -105,6 +106,15 @@ class StackBuilder {
     return faces;
   }
 
+  // Among the layers that have changed since the last call.
+  std::vector<char> without_room() {
+    std::vector<char> has_changed(frame_.position.size(), 1);
+    for (Index v = 0; v < tested_mm_.size(); ++v) has_changed[v] = tested_mm_[v] != stack_.reached_mm[v];
+    tested_mm_ = stack_.reached_mm;
+    return vertices_without_room(frame_, stack_, stack_.side == LayerSide::inside ? kReachInside : kReachOutside,
+                                 has_changed);
+  }
+
   void end_at(Index v, LayerLimit why) {
     stack_.reached_mm[v] = 0;
     stack_.limit[v] = why;
@@ -149,7 +159,8 @@ class StackBuilder {
   const WallFrame& frame_;
   const Progress& progress_;
   LayerStack stack_;
-  std::vector<double> least_mm_;  // thickness of every vertex
+  std::vector<double> least_mm_;   // thickness of every vertex
+  std::vector<double> tested_mm_;  // thickness for which there was room, or was not
 };
 
 double area_at(const WallFrame& frame, Index v) {
@@ -160,6 +171,20 @@ double area_at(const WallFrame& frame, Index v) {
     area += (frame.position[b] - p).cross(frame.position[c] - p).norm() / 6;
   }
   return area;
+}
+
+const char* reason_of(LayerLimit limit) {
+  switch (limit) {
+    case LayerLimit::gradation:
+      return "those around are thinner";
+    case LayerLimit::shape:
+      return "cells would turn over there";
+    case LayerLimit::room:
+      return "others are in the way";
+    case LayerLimit::none:
+      break;
+  }
+  return "no reason";
 }
 
 }  // namespace
@@ -211,6 +236,24 @@ LayerSummary summarize(const WallFrame& frame, const LayerStack& stack) {
     return a.reached_mm * b.asked_mm < b.reached_mm * a.asked_mm;
   });
   return summary;
+}
+
+std::vector<std::string> sentences_of(const LayerSummary& summary, const std::string& what) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> sentences = {what + formatted(" have at least %g %% of their thickness on %.2f %% of the wall",
+                                                         100 * kFullLayers, 100 * summary.full_share)};
+  for (std::size_t i = 0; i < std::min(kNamed, summary.thin.size()); ++i) {
+    const ThinPlace& place = summary.thin[i];
+    const Vec3& p = place.position;
+    const std::string at = formatted(" at (%.3f, %.3f, %.3f): ", p.x(), p.y(), p.z()) + reason_of(place.limit);
+    sentences.push_back(place.reached_mm == 0
+                            ? what + " end" + at
+                            : what + formatted(" have %.0f %% of it", 100 * place.reached_mm / place.asked_mm) + at);
+  }
+  if (summary.thin.size() > kNamed)
+    sentences.push_back(what + " are thin at " +
+                        counted(summary.thin.size() - kNamed, "more place", "more places") + ", listed in the summary");
+  return sentences;
 }
 
 Disc disc_within(const WallFrame& frame, const Cap& cap, const LayerStack& stack) {

@@ -62,6 +62,10 @@ struct LayerSummary {
   std::vector<ThinPlace> thin;  ///< thinnest first, by share
 };
 
+/// How layers became, in a sentence each: the share of the wall where they are complete, and the thinnest places. `what`:
+/// of which layers.
+std::vector<std::string> sentences_of(const LayerSummary& summary, const std::string& what);
+
 /// A volume mesh. The vertices of the wall come first among its points, in their order in the surface. It is sound, or
 /// `defects` tell why not.
 struct VolumeResult {
