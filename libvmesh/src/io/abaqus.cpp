@@ -1,6 +1,7 @@
 // Input files of Abaqus and CalculiX (G. Dhondt, CalculiX CrunchiX USER'S MANUAL, "Input deck format").
 #include <algorithm>
 
+#include "vmesh/core/text.h"
 #include "vmesh/mesh/volume_faces.h"
 
 #include "comments.h"
@@ -9,6 +10,9 @@
 
 namespace vmesh::io {
 namespace {
+
+/// Both programs read at most 20 characters of a number.
+std::string short_number(double x) { return formatted("%.13g", x); }
 
 template <class Cell>
 void add_elements(TextRows& rows, const VolumeMesh& mesh, const std::vector<Cell>& cells, Index first, Index region,
@@ -51,7 +55,11 @@ void write_abaqus(const VolumeFormat::OpenFile& open, const VolumeMesh& mesh, co
   const std::vector<CellSide> sides = sides_of_boundary(mesh);
   TextRows rows(open(""), ", ");
   rows.line(comments(metadata, "** ") + "*NODE");
-  for (std::size_t i = 0; i < mesh.points.size(); ++i) rows.row(i + 1, mesh.points[i]);
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    rows.add(i + 1);
+    for (const double x : mesh.points[i]) rows.add(short_number(x));
+    rows.end_row();
+  }
   for (Index region = 0; region < mesh.region_names.size(); ++region) {
     add_elements(rows, mesh, mesh.tetrahedra, 0, region, "C3D4");
     add_elements(rows, mesh, mesh.wedges, static_cast<Index>(mesh.tetrahedra.size()), region, "C3D6");

@@ -84,7 +84,7 @@ struct VolumeWriteOptions {
 ///   .node, .ele, .face  TetGen, all three, from 0; regions are the attribute of tetrahedra, patches the marker of
 ///                  faces, from 1; tetrahedra alone, no other attributes
 ///   .inp           Abaqus and CalculiX: C3D4 and C3D6 from 1, no pyramids; for each region an ELSET, for each patch an
-///                  NSET and a SURFACE of its name; no attributes
+///                  NSET and a SURFACE of its name; positions with 13 digits, which is all that is read; no attributes
 ///   polyMesh       OpenFOAM, text; patches whose names begin with "wall" are of type wall; a cellZone for each region
 ///                  if there are several; no attributes. OpenFOAM counts in metres: choose that unit
 ///   mesh-complete  SimVascular: mesh-complete.mesh.vtu, mesh-complete.exterior.vtp, walls_combined.vtp (patches whose
