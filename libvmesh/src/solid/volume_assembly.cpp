@@ -197,15 +197,14 @@ class Assembly {
 
 }  // namespace
 
-CoreSurface core_surface(const VolumeParts& parts, double core_size) {
-  const WallFrame& frame = *parts.frame;
+CoreSurface core_surface(const WallFrame& frame, const LayerStack& layers, double core_size) {
   CoreSurface surface;
   for (Index v = 0; v < frame.position.size(); ++v)
-    surface.mesh.vertices.push_back(parts.layers.count() > 0 ? parts.layers.at(frame, v, 1) : frame.position[v]);
+    surface.mesh.vertices.push_back(layers.at(frame, v, 1));
   surface.mesh.faces = frame.faces;
   std::vector<double> radius = frame.radius;
   for (const Cap& cap : frame.caps) {
-    const Disc disc = disc_within(frame, cap, parts.layers);
+    const Disc disc = disc_within(frame, cap, layers);
     const auto added = static_cast<Index>(surface.mesh.vertices.size());
     const auto rim = static_cast<Index>(cap.rim.size());
     const auto number = [&](Index i) { return i < rim ? cap.rim[i] : added + i - rim; };
