@@ -70,11 +70,12 @@ VesselWall wall_of(const Production& production, const Centerline& centerline) {
 
 void print(const std::string& name, const VesselWall& wall, const VolumeResult& result, double seconds) {
   const VolumeMeasures measures = measure_volume(result.mesh);
-  std::printf("| %s | %zu | %zu | %zu | %zu | %.1f / %.2f | %.1f | %.1f | %.3f / %.3f | %.3f | %.2f |", name.c_str(),
+  std::printf("| %s | %zu | %zu | %zu | %zu | %.1f / %.2f | %.1f | %.1f | %.3f / %.3f | %.3f | (%.2f %.2f %.2f) | %.2f |", name.c_str(),
               wall.mesh.faces.size(), result.mesh.wedges.size(), result.mesh.pyramids.size(),
               result.mesh.tetrahedra.size(),              100 * result.layers.full_share, result.layers.least_share, measures.min_dihedral_deg,
               measures.max_dihedral_deg, measures.least_radius_ratio, measures.mean_radius_ratio,
-              measures.least_scaled_jacobian, seconds);
+              measures.least_scaled_jacobian, measures.worst_tetrahedron.x(), measures.worst_tetrahedron.y(),
+              measures.worst_tetrahedron.z(), seconds);
   for (const VolumeDefect& defect : result.defects) std::printf(" %s;", defect.message.c_str());
   std::printf("\n");
   std::fflush(stdout);
@@ -115,7 +116,7 @@ int main(int argc, char** argv) {
   Tally tally;
   std::printf(
       "| case | faces | wedges | pyramids | tetrahedra | full layers, %% of the wall / least | least angle | largest | radius ratio "
-      "least / mean | least Jacobian of wedges | s | defects |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n");
+      "least / mean | least Jacobian of wedges | worst tetrahedron | s | defects |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|--:|---|\n");
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--all") {

@@ -87,6 +87,8 @@ void add_options(CLI::App& verb, VolumeArguments& arguments) {
   surface.production.ends = EndShape::flat;
   add_growth(verb, surface.production);
   add_ends(verb, surface.production);
+  verb.add_option("--fit", surface.fitting.reference.path,
+                  "fit the surface to this surface or image, as generate does");
   add_fitting(verb, surface.fitting);
   add_extraction(verb, surface.extraction);
   group(verb, "Layers", {"--layers", "--layer-thickness", "--first-layer", "--layer-growth", "--core-size"});
@@ -144,9 +146,7 @@ struct VolumeSource {
 
 /// The surface in a file, if it is one with radii.
 std::optional<VolumeSource> read_source(const VolumeArguments& arguments, Console& console) {
-  if (!arguments.input.more.empty() || !find_surface_format(arguments.input.path) ||
-      may_be_centerline(arguments.input.path))
-    return std::nullopt;
+  if (!find_surface_format(arguments.input.path) || !is_segmentation(arguments.input)) return std::nullopt;
   StageClock clock;
   LoadedSurface surface = load_surface(arguments.input);
   if (!find_attribute(surface.attributes.vertex, "radius")) return std::nullopt;
@@ -173,8 +173,6 @@ std::optional<VolumeSource> grow_source(const VolumeArguments& arguments, Consol
   return VolumeSource{vessel_wall(grown->result().mesh, grown->attributes()), describe(grown->arguments),
                       grown->report.stages};
 }
-
-VolumeAttributes attributes_of(const VesselWall&) { return {}; }
 
 int run(const VolumeArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
@@ -212,8 +210,7 @@ int run(const VolumeArguments& arguments, Console& console) {
   StageClock clock;
   write_volume(arguments.output, result.mesh,
                {generator_name(), report.options, file_name_of(arguments.input), report.input_sha256,
-                arguments.writing.unit, arguments.writing.space},
-               attributes_of(source->wall));
+                arguments.writing.unit, arguments.writing.space});
   clock.lap("write", report.stages);
   log_volume(report, console);
   console.log("wrote " + arguments.output.string() + formatted(" after %.2f s", watch.lap()));

@@ -10,12 +10,13 @@
 namespace vmesh {
 namespace {
 
-// Tetrahedra with an angle below this, or above its supplement, are worth work: half of what a solver would like.
-constexpr double kGoodSine = 0.34;  // of 20 degrees
+// Tetrahedra of a worse shape than this (see BadPlaces; with an angle below 15 degrees) are worth work.
+constexpr double kGoodShape = 0.26;
 constexpr int kRounds = 8;
 // Steps of a search for the best position of a point: from this share of the edges around it, halved each time.
 constexpr double kFirstStep = 0.25;
-constexpr int kHalvings = 6;
+constexpr int kHalvings = 6, kTrialHalvings = 3;
+constexpr int kMostMoves = 4;  // of one length
 // A change must be worth its while, else rounds do not end.
 constexpr double kLeastGain = 1.02;
 
@@ -82,9 +83,13 @@ class Improver {
   double quality(const Tetrahedron& t) const {
     return shape_of({points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]});
   }
-  double worst(const std::vector<Tetrahedron>& cells) const {
+  // Of all cells, or of the first ones if that is below `enough` already.
+  double worst(const std::vector<Tetrahedron>& cells, double enough = -1) const {
     double least = 1;
-    for (const Tetrahedron& cell : cells) least = std::min(least, quality(cell));
+    for (const Tetrahedron& cell : cells) {
+      least = std::min(least, quality(cell));
+      if (least < enough) break;
+    }
     return least;
   }
 
@@ -93,7 +98,7 @@ class Improver {
     std::vector<std::pair<double, Index>> bad;
     for (Index t = 0; t < core_.tetrahedra.size(); ++t) {
       const double q = quality(core_.tetrahedra[t]);
-      if (q < kGoodSine) bad.emplace_back(q, t);
+      if (q < kGoodShape) bad.emplace_back(q, t);
     }
     std::sort(bad.begin(), bad.end());
     std::vector<Index> numbers;
@@ -103,10 +108,10 @@ class Improver {
 
   bool improve(Index t) {
     const Tetrahedron cell = core_.tetrahedra[t];
-    if (quality(cell) >= kGoodSine) return false;  // it has become better already
+    if (quality(cell) >= kGoodShape) return false;  // it has become better already
     bool any = false;
     for (const Index v : cell) any = (v >= fixed_ && move(v)) || any;
-    if (quality(core_.tetrahedra[t]) >= kGoodSine) return any;
+    if (quality(core_.tetrahedra[t]) >= kGoodShape) return any;
     return insert_a_point(t) || any;
   }
 
@@ -117,21 +122,22 @@ class Improver {
   }
 
   /// Moves a point so that the worst of these cells, all at it, becomes as good as a search finds. Returns how good.
-  double settle(Index v, const std::vector<Tetrahedron>& cells) {
+  double settle(Index v, const std::vector<Tetrahedron>& cells, int halvings) {
     double step = 0;
     for (const Tetrahedron& cell : cells) {
       for (const Index w : cell) step = std::max(step, (points_[w] - points_[v]).norm());
     }
     step *= kFirstStep;
     double best = worst(cells);
-    for (int halving = 0; halving < kHalvings; ++halving, step /= 2) {
-      for (bool moved = true; moved;) {
+    for (int halving = 0; halving < halvings; ++halving, step /= 2) {
+      bool moved = true;
+      for (int move = 0; moved && move < kMostMoves; ++move) {
         moved = false;
         for (const Vec3& way : kWays) {
           const Vec3 before = points_[v];
           points_[v] += step * way;
-          const double found = worst(cells);
-          if (found > best + (kLeastGain - 1) * std::abs(best)) {
+          const double needed = best + (kLeastGain - 1) * std::abs(best), found = worst(cells, needed);
+          if (found > needed) {
             best = found;
             moved = true;
           } else {
@@ -146,7 +152,7 @@ class Improver {
   bool move(Index v) {
     const std::vector<Tetrahedron> cells = cells_at(v);
     const double before = worst(cells);
-    return settle(v, cells) > before;
+    return settle(v, cells, kHalvings) > before;
   }
 
   // A point with which the faces of a cavity form new cells.
@@ -224,7 +230,7 @@ class Improver {
     for (const Index t : cavity) before = std::min(before, quality(core_.tetrahedra[t]));
     const auto m = static_cast<Index>(points_.size());
     points_.push_back(start);
-    const double after = settle(m, filled(cavity, m));
+    const double after = settle(m, filled(cavity, m), kTrialHalvings);
     if (after > kLeastGain * std::max(before, 0.0) && after > best.quality) best = {after, cavity, points_[m]};
     points_.pop_back();
   }
@@ -244,6 +250,7 @@ class Improver {
       core_.tetrahedra[t] = cells[i];
       enter(t);
     }
+    move(m);
   }
 
   static inline const std::array<Vec3, 6> kWays = {Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitY(),

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLeastGrowth = 0.5, kMostGrowth = 5;
 // Tetrahedra with an angle of less than 10 degrees, see BadPlaces, are worth thinner layers, that many times.
-constexpr double kGoodShape = 0.174;
+constexpr double kGoodEnough = 0.174;
 constexpr int kThinnings = 4;
 
 void check_layers(const LayerOptions& options, const std::string& what) {
@@ -101,7 +101,7 @@ class VolumeMaker {
     filling.core = fill_core(filling.surface);
     lap("core");
     improve_core(filling.surface, filling.core);
-    filling.bad = bad_places(filling.surface, filling.core, kGoodShape);
+    filling.bad = bad_places(filling.surface, filling.core, kGoodEnough);
     lap("improvement");
     return filling;
   }
