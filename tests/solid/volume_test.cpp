@@ -1,10 +1,9 @@
-#include "vmesh/solid/make_volume.h"
-
 #include <cstring>
 
 #include <tbb/global_control.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/solid/make_volume.h"
 #include "vmesh/synth/synthetic_tree.h"
 
 #include "random_vessels.h"

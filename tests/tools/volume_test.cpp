@@ -101,8 +101,7 @@ TEST_F(VolumeCommand, OfTheVesselsWall) {
 
 TEST_F(VolumeCommand, RefusesSurfacesThatAreOpen) {
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@open.vtp", "--ends", "open"}).exit_code, 0);
-  const Outcome run =
-      vmesh({"volume", "@open.vtp", "-o", "@y.vtu", "--wall-thickness", "0.2", "--wall-only"});
+  const Outcome run = vmesh({"volume", "@open.vtp", "-o", "@y.vtu", "--wall-thickness", "0.2", "--wall-only"});
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_NE(run.err.find("open.vtp"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("--ends flat"), std::string::npos) << run.err;

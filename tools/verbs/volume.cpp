@@ -31,7 +31,8 @@ void take_thickness(const std::string& text, LayerOptions& layers) {
   layers.in_mm = text.ends_with("mm");
   const std::string number = layers.in_mm ? text.substr(0, text.size() - 2) : text;
   if (!CLI::detail::lexical_cast(number, layers.thickness) || !(layers.thickness > 0 && layers.thickness < 1e9))
-    throw InvalidInput("\"" + text + "\" is neither a share of the local radius such as 0.2 nor a length such as 0.3mm");
+    throw InvalidInput("\"" + text +
+                       "\" is neither a share of the local radius such as 0.2 nor a length such as 0.3mm");
 }
 
 void take_first_layer(const std::string& text, LayerOptions& layers) {
@@ -132,8 +133,8 @@ std::string describe_volume(const VolumeOptions& options) {
     text += formatted(" --layer-growth %g --core-size %g", options.layers.growth, options.core_size);
   }
   if (options.shell.count > 0)
-    text += " --wall-thickness " + thickness_text(options.shell) + " --wall-layers " +
-            std::to_string(options.shell.count);
+    text +=
+        " --wall-thickness " + thickness_text(options.shell) + " --wall-layers " + std::to_string(options.shell.count);
   return options.shell_only ? text + " --wall-only" : text;
 }
 
@@ -152,8 +153,7 @@ std::optional<VolumeSource> read_source(const VolumeArguments& arguments, Consol
   if (!find_attribute(surface.attributes.vertex, "radius")) return std::nullopt;
   console.warn(surface.warnings);
   VolumeSource source;
-  source.wall = naming(arguments.input.path,
-                       [&] { return vessel_wall(std::move(surface.mesh), surface.attributes); });
+  source.wall = naming(arguments.input.path, [&] { return vessel_wall(std::move(surface.mesh), surface.attributes); });
   clock.lap("read", source.stages);
   return source;
 }
@@ -189,22 +189,23 @@ int run(const VolumeArguments& arguments, Console& console) {
   if (!source) return kDefective;
   stop_if_interrupted();
 
-  const VolumeResult result = naming(path, [&] {
-    return make_volume(source->wall, arguments.volume, console.progress());
-  });
+  const VolumeResult result =
+      naming(path, [&] { return make_volume(source->wall, arguments.volume, console.progress()); });
   if (!result.is_sound()) {
     std::vector<std::string> defects;
     for (const VolumeDefect& defect : result.defects)
       defects.push_back(std::string(to_string(defect.kind)) + ": " + defect.message);
     log_refusal(defects,
-                path.string() + ": no sound volume mesh was found, nothing is written: try fewer or thinner layers, or "
-                                "another --around",
+                path.string() +
+                    ": no sound volume mesh was found, nothing is written: try fewer or thinner layers, or "
+                    "another --around",
                 console);
     return kDefective;
   }
 
-  VolumeReport report = {path,   sha256_of(arguments.input), describe_volume(arguments.volume), &arguments.volume,
-                         &source->wall, &result, measure_volume(result.mesh), std::move(source->stages)};
+  VolumeReport report = {
+      path,    sha256_of(arguments.input),  describe_volume(arguments.volume), &arguments.volume, &source->wall,
+      &result, measure_volume(result.mesh), std::move(source->stages)};
   if (!source->how.empty()) report.options += " of " + source->how;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
   StageClock clock;

@@ -253,13 +253,13 @@ class Improver {
     move(m);
   }
 
-  static inline const std::array<Vec3, 6> kWays = {Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitY(),
-                                                   -Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitZ()};
+  static inline const std::array<Vec3, 6> kWays = {Vec3::UnitX(),  -Vec3::UnitX(), Vec3::UnitY(),
+                                                   -Vec3::UnitY(), Vec3::UnitZ(),  -Vec3::UnitZ()};
 
   Core& core_;
   Index fixed_;  // points of the surface
   std::vector<Vec3> points_;
-  std::vector<std::vector<Index>> around_;         // tetrahedra at every point
+  std::vector<std::vector<Index>> around_;     // tetrahedra at every point
   std::set<std::pair<Index, Index>> outside_;  // edges of the surface
 };
 

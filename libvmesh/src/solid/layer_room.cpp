@@ -7,8 +7,8 @@
 namespace vmesh {
 namespace {
 
-// The surface on which layers end, closed by the caps: it crosses itself where layers have no room. The wall is not part
-// of it: layers that ran into it would have run into those along it before.
+// The surface on which layers end, closed by the caps: it crosses itself where layers have no room. The wall is not
+// part of it: layers that ran into it would have run into those along it before.
 class LayerSurface {
  public:
   LayerSurface(const WallFrame& frame, const LayerStack& stack, double reach, const std::vector<char>& has_changed)

@@ -118,8 +118,7 @@ class StackBuilder {
   std::vector<Index> faces_at_changes(const std::vector<double>& before) const {
     std::vector<Index> faces;
     for (Index v = 0; v < before.size(); ++v) {
-      if (before[v] != stack_.reached_mm[v])
-        faces.insert(faces.end(), frame_.fan[v].begin(), frame_.fan[v].end());
+      if (before[v] != stack_.reached_mm[v]) faces.insert(faces.end(), frame_.fan[v].begin(), frame_.fan[v].end());
     }
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
@@ -253,8 +252,8 @@ LayerSummary summarize(const WallFrame& frame, const LayerStack& stack) {
         }
       }
     }
-    summary.thin.push_back({frame.position[thinnest], stack.asked_mm[thinnest], stack.reached_mm[thinnest], place.size(),
-                            stack.limit[thinnest]});
+    summary.thin.push_back({frame.position[thinnest], stack.asked_mm[thinnest], stack.reached_mm[thinnest],
+                            place.size(), stack.limit[thinnest]});
   }
   summary.full_share = full / area;
   std::stable_sort(summary.thin.begin(), summary.thin.end(), [](const ThinPlace& a, const ThinPlace& b) {
@@ -265,8 +264,9 @@ LayerSummary summarize(const WallFrame& frame, const LayerStack& stack) {
 
 std::vector<std::string> sentences_of(const LayerSummary& summary, const std::string& what) {
   constexpr std::size_t kNamed = 3;
-  std::vector<std::string> sentences = {what + formatted(" have at least %g %% of their thickness on %.2f %% of the wall",
-                                                         100 * kFullLayers, 100 * summary.full_share)};
+  std::vector<std::string> sentences = {what +
+                                        formatted(" have at least %g %% of their thickness on %.2f %% of the wall",
+                                                  100 * kFullLayers, 100 * summary.full_share)};
   for (std::size_t i = 0; i < std::min(kNamed, summary.thin.size()); ++i) {
     const ThinPlace& place = summary.thin[i];
     const Vec3& p = place.position;
@@ -276,8 +276,8 @@ std::vector<std::string> sentences_of(const LayerSummary& summary, const std::st
                             : what + formatted(" have %.0f %% of it", 100 * place.reached_mm / place.asked_mm) + at);
   }
   if (summary.thin.size() > kNamed)
-    sentences.push_back(what + " are thin at " +
-                        counted(summary.thin.size() - kNamed, "more place", "more places") + ", listed in the summary");
+    sentences.push_back(what + " are thin at " + counted(summary.thin.size() - kNamed, "more place", "more places") +
+                        ", listed in the summary");
   return sentences;
 }
 

@@ -12,16 +12,16 @@ namespace vmesh {
 /// On which side of the wall layers lie.
 enum class LayerSide { inside, outside };
 
-/// Layers along a wall: every vertex moves along a straight way, the same share of it for all layers. Where no layers fit
-/// the thickness is 0: they end there, in cells with fewer corners.
+/// Layers along a wall: every vertex moves along a straight way, the same share of it for all layers. Where no layers
+/// fit the thickness is 0: they end there, in cells with fewer corners.
 struct LayerStack {
   LayerSide side = LayerSide::inside;
   std::vector<double> level = {0};  ///< share of the thickness at which layers begin and end: 0, ..., 1
-  std::vector<Vec3> way;           ///< of every vertex of the wall, per thickness; about unit length
-  std::vector<double> asked_mm;    ///< thickness
-  std::vector<double> reached_mm;  ///< of it, what there is room for
-  std::vector<double> least_mm;    ///< thickness below which layers end
-  std::vector<LayerLimit> limit;   ///< why what is reached is less than what was asked for
+  std::vector<Vec3> way;            ///< of every vertex of the wall, per thickness; about unit length
+  std::vector<double> asked_mm;     ///< thickness
+  std::vector<double> reached_mm;   ///< of it, what there is room for
+  std::vector<double> least_mm;     ///< thickness below which layers end
+  std::vector<LayerLimit> limit;    ///< why what is reached is less than what was asked for
 
   bool ends_at(Index v) const { return reached_mm[v] == 0; }
   std::size_t count() const { return level.size() - 1; }

@@ -15,8 +15,8 @@ struct VolumeParts {
   bool with_lumen = true;
 };
 
-/// The surface that is left for the core: where layers end, and the caps within their rings. Vertices of the wall first,
-/// in the frame's numbers.
+/// The surface that is left for the core: where layers end, and the caps within their rings. Vertices of the wall
+/// first, in the frame's numbers.
 CoreSurface core_surface(const WallFrame& frame, const LayerStack& layers, double core_size);
 
 /// The mesh. `core`: of `surface`, which is core_surface() of the layers.
