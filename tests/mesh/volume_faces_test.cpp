@@ -4,6 +4,7 @@
 
 #include "vmesh/core/error.h"
 
+#include "mixed_cells.h"
 #include "tube_volume.h"
 
 namespace vmesh {
@@ -34,6 +35,11 @@ TEST(VolumeFaces, FacesOfCellsLookOutwards) {
   for (const Tetrahedron& t : mesh.tetrahedra) {
     for (const CellFace& face : faces_of(t)) EXPECT_GT(normal(mesh, face).dot(centre(mesh, face) - centre(mesh, t)), 0);
   }
+  const VolumeMesh mixed = testing::mixed_cells();
+  for_each_cell(mixed, [&](const auto& cell) {
+    for (const CellFace& face : faces_of(cell))
+      EXPECT_GT(normal(mixed, face).dot(centre(mixed, face) - centre(mixed, cell)), 0);
+  });
   ASSERT_FALSE(mesh.wedges.empty());
   for (const Wedge& w : mesh.wedges) {
     for (const CellFace& face : faces_of(w)) EXPECT_GT(normal(mesh, face).dot(centre(mesh, face) - centre(mesh, w)), 0);
@@ -42,26 +48,23 @@ TEST(VolumeFaces, FacesOfCellsLookOutwards) {
 
 TEST(VolumeFaces, TheCellBehindAFaceHasItsCorners) {
   const VolumeMesh mesh = tube_volume();
-  const std::vector<Index> behind = cells_behind_boundary(mesh);
+  const std::vector<CellSide> behind = sides_of_boundary(mesh);
   ASSERT_EQ(behind.size(), mesh.boundary.size());
   for (std::size_t f = 0; f < behind.size(); ++f) {
-    std::vector<Index> corners;
-    if (behind[f] < mesh.tetrahedra.size()) {
-      corners.assign(mesh.tetrahedra[behind[f]].begin(), mesh.tetrahedra[behind[f]].end());
-    } else {
-      const Wedge& w = mesh.wedges.at(behind[f] - mesh.tetrahedra.size());
-      corners.assign(w.begin(), w.end());
-    }
-    for (const Index v : mesh.boundary[f].corners) {
-      if (v == kNone) continue;
-      EXPECT_EQ(std::count(corners.begin(), corners.end(), v), 1) << f;
-    }
+    const auto [cell, side] = behind[f];
+    const bool is_tetrahedron = cell < mesh.tetrahedra.size();
+    CellFace there = is_tetrahedron ? faces_of(mesh.tetrahedra[cell]).at(side)
+                                    : faces_of(mesh.wedges.at(cell - mesh.tetrahedra.size())).at(side);
+    CellFace here = mesh.boundary[f].corners;
+    std::sort(there.begin(), there.end());
+    std::sort(here.begin(), here.end());
+    EXPECT_EQ(here, there) << f;
   }
 }
 
 std::string boundary_error(const VolumeMesh& mesh) {
   try {
-    cells_behind_boundary(mesh);
+    sides_of_boundary(mesh);
   } catch (const InvalidInput& error) {
     return error.what();
   }
@@ -83,6 +86,53 @@ TEST(VolumeFaces, ABoundaryThatIsNoneIsRefused) {
   EXPECT_NE(boundary_error(mesh).find("lies between two cells"), std::string::npos);
   mesh.boundary.back().corners = {0, 1, static_cast<Index>(mesh.points.size() - 1), kNone};
   EXPECT_NE(boundary_error(mesh).find("is no face of a cell"), std::string::npos);
+}
+
+TEST(VolumeFaces, InnerFacesArePassedFromOwnersToNeighbours) {
+  const VolumeMesh mesh = tube_volume();
+  const std::vector<InnerFace> faces = inner_faces(mesh);
+  EXPECT_EQ(2 * faces.size() + mesh.boundary.size(), 4 * mesh.tetrahedra.size() + 5 * mesh.wedges.size());
+  const auto centre_of = [&](Index cell) {
+    return cell < mesh.tetrahedra.size() ? centre(mesh, mesh.tetrahedra[cell])
+                                         : centre(mesh, mesh.wedges[cell - mesh.tetrahedra.size()]);
+  };
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    EXPECT_LT(faces[f].owner, faces[f].neighbour);
+    EXPECT_GT(normal(mesh, faces[f].corners).dot(centre_of(faces[f].neighbour) - centre_of(faces[f].owner)), 0);
+    if (f == 0) continue;
+    EXPECT_LT(std::pair(faces[f - 1].owner, faces[f - 1].neighbour), std::pair(faces[f].owner, faces[f].neighbour));
+  }
+}
+
+TEST(VolumeFaces, CellsThatDoNotMeetFaceToFaceAreRefused) {
+  const auto error_of = [](const VolumeMesh& mesh) -> std::string {
+    try {
+      inner_faces(mesh);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  VolumeMesh mesh = tube_volume();
+  mesh.boundary.pop_back();
+  EXPECT_NE(error_of(mesh).find("belongs to no other cell and is not in the boundary"), std::string::npos);
+  mesh = tube_volume();
+  mesh.tetrahedra.push_back(mesh.tetrahedra[0]);
+  EXPECT_NE(error_of(mesh).find("belongs to more than two cells"), std::string::npos);
+  mesh = tube_volume();
+  std::swap(mesh.tetrahedra[0][0], mesh.tetrahedra[0][1]);
+  EXPECT_NE(error_of(mesh).find("has its two cells on the same side"), std::string::npos);
+}
+
+TEST(VolumeFaces, TheOutsideIsTheBoundary) {
+  const VolumeMesh mesh = tube_volume();
+  std::vector<CellFace> outside = outer_faces(mesh), expected;
+  for (const BoundaryFace& face : mesh.boundary) expected.push_back(face.corners);
+  for (auto* faces : {&outside, &expected}) {
+    for (CellFace& face : *faces) std::sort(face.begin(), face.end());
+    std::sort(faces->begin(), faces->end());
+  }
+  EXPECT_EQ(outside, expected);
 }
 
 std::string mesh_error(const VolumeMesh& mesh) {
@@ -113,9 +163,16 @@ TEST(CheckVolumeMesh, NamesWhatDoesNotFit) {
             "face 4 of the volume's boundary is of patch 3, but there are names for 3");
   EXPECT_EQ(error_of([](VolumeMesh& m) { m.cell_region[7] = 1; }), "cell 7 is of region 1, but there are names for 1");
   EXPECT_NE(error_of([](VolumeMesh& m) { m.cell_region.pop_back(); }).find("but regions for"), std::string::npos);
-  EXPECT_EQ(error_of([](VolumeMesh& m) { m.patch_names[2] = "wall"; }), "two patches have the name \"wall\"");
-  EXPECT_EQ(error_of([](VolumeMesh& m) { m.patch_names[0].clear(); }), "a patch of the volume mesh has no name");
-  EXPECT_NE(error_of([](VolumeMesh& m) { m.patch_names[0] = "a\nb"; }).find("on one line"), std::string::npos);
+  EXPECT_EQ(error_of([](VolumeMesh& m) { m.patch_names[2] = "wall"; }),
+            "two patches have the name \"wall\", in upper or lower case");
+  EXPECT_NE(error_of([](VolumeMesh& m) { m.patch_names[1] = "WALL"; }).find("two patches"), std::string::npos);
+  const std::string longest(60, 'a');
+  EXPECT_EQ(error_of([&](VolumeMesh& m) { m.patch_names[0] = longest; }), "none");
+  for (const std::string& name : {std::string(), std::string("a b"), std::string("1a"), std::string("a/b"),
+                                  std::string("a\"b"), std::string("\xc3\xa4"), longest + "a"})
+    EXPECT_NE(error_of([&](VolumeMesh& m) { m.region_names[0] = name; }).find("cannot be the name of a region"),
+              std::string::npos)
+        << name;
 }
 
 }  // namespace

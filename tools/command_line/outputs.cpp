@@ -76,6 +76,11 @@ void check_format(const PlannedOutput& output) {
     throw Unsupported(output.path.string() + ": pictures are written as .png only");
 }
 
+/// An existing one, which is replaced if it holds nothing else.
+bool is_folder_of_volume(const PlannedOutput& output) {
+  return output.kind == Kind::volume && volume_output_format(output.path).is_folder() && fs::is_directory(output.path);
+}
+
 }  // namespace
 
 void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<fs::path>& inputs) {
@@ -90,7 +95,7 @@ void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<
       if (!needs_no_check(*other) && same_file(output->path, other->path))
         throw UsageError(name + ": given both for the " + name_of(other->kind) + " and for the " +
                          name_of(output->kind));
-    check_can_be_written(output->path);
+    if (!is_folder_of_volume(*output)) check_can_be_written(output->path);
   }
 }
 

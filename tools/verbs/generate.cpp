@@ -8,6 +8,7 @@
 #include "command_line/verb.h"
 #include "report/generate_log.h"
 #include "report/pages.h"
+#include "verbs/end_names.h"
 #include "verbs/extraction.h"
 #include "verbs/grown_surface.h"
 #include "verbs/part.h"
@@ -57,6 +58,7 @@ void add_options(CLI::App& verb, GenerateArguments& arguments) {
       ->excludes("--least-vertices")
       ->excludes("--ring-spacing");
   add_ends(verb, arguments.production);
+  add_end_names(verb, arguments.end_names);
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
                 "self-intersections, of the expected topology, and contains every centerline node");
@@ -75,7 +77,7 @@ void add_options(CLI::App& verb, GenerateArguments& arguments) {
         {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification", "--elongation",
          "--ring-spacing", "--least-vertices", "--deformable"});
   group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
-  group(verb, "Ends", {"--ends", "--open-ends", "--flow-extensions"});
+  group(verb, "Ends", {"--ends", "--open-ends", "--flow-extensions", "--name", "--names"});
   group(verb, "How it is made", {"--growth", "--beta", "--max-center-distance", "--sweeps", "--threads"});
   group(verb, "Checks", {"--check", "--allow-defects"});
 }
@@ -171,6 +173,7 @@ const VerbRegistration<GenerateArguments> kRegistration({
   vmesh generate portal.swc -o portal.ply --fit liver.nii.gz --label 2 --spacing 1 --smooth 1
   vmesh generate liver.nii.gz --label 2 --spacing 1 --smooth 1 --tree -o portal.ply --centerline-output portal.swc
   vmesh generate aorta.vtp -o aorta-flow.vtp --ends flat --flow-extensions auto --json caps.json
+  vmesh generate y.swc -o y.vtp --ends flat --name 0=inlet --name 3=outlet_left --name 5=outlet_right
   vmesh generate tree.swc tree.glb --bones
   vmesh generate tree.swc -o tree.ply --html tree.html
   vmesh generate crowded.swc -o crowded.ply --overlap separate --gap 0.2)",

@@ -1,3 +1,4 @@
+#include "verbs/end_names.h"
 #include "verbs/grown_surface.h"
 
 #include <charconv>
@@ -169,6 +170,8 @@ void settle_ends(ProductionOptions& options) {
 
 void check_growth(const GenerateArguments& arguments) {
   const GenerateOptions& options = arguments.production.growth;
+  if (!arguments.end_names.empty() && arguments.production.ends == EndShape::round)
+    throw UsageError("--name and --names are for ends that are not round: --ends flat, or --ends open");
   if (options.least_vertices > 0 && (options.elongation == 1 || options.deformable))
     throw UsageError("--least-vertices needs " + std::string(kElongationFlag) +
                      " above 1, and no --deformable: else no vertices are left out");
@@ -186,7 +189,7 @@ void check_growth(const GenerateArguments& arguments) {
 MeshAttributes GrownSurface::attributes() const {
   MeshAttributes attributes = surface_attributes(result().mesh, result().binding, result().radius, result().openings,
                                                  report.cleaned->centerline);
-  if (!report.ends.ends.empty()) add_cap_labels(report.ends, attributes);
+  if (!report.ends.ends.empty()) add_cap_labels(report.ends, attributes, report.end_names);
   return attributes;
 }
 
@@ -240,6 +243,7 @@ std::unique_ptr<GrownSurface> grow_surface(const GenerateArguments& given, Conso
   arguments.production.preparation.simplify = !arguments.budget;  // it decides for every trial
   const Centerline& centerline = loaded.cleaned.centerline;
   naming(arguments.input.path, [&] { check_ends(arguments.production, centerline); });
+  report.end_names = read_end_names(arguments.end_names, centerline);
   watch.lap();
   stop_if_interrupted();
   grown->production = produce(centerline, loaded.cleaned.end_sections, arguments.production, console.progress(), steps);

@@ -10,6 +10,7 @@
 #include "command_line/verb.h"
 #include "report/generate_log.h"
 #include "report/volume_report.h"
+#include "verbs/end_names.h"
 #include "verbs/extraction.h"
 #include "verbs/grown_surface.h"
 
@@ -21,6 +22,7 @@ struct VolumeArguments {
   InputArguments input;
   std::filesystem::path output;
   WritingArguments writing;
+  VolumeWriteOptions format;
   GenerateArguments growth;  ///< how it is made where the input is none; its input and output do not count
   VolumeOptions volume;
   bool has_shell_thickness = false;
@@ -79,15 +81,17 @@ void add_options(CLI::App& verb, VolumeArguments& arguments) {
   add_centerline_input(verb, arguments.input,
                        "surface with radii of vmesh generate (.vtp or .ply); or what that makes one of: a centerline, "
                        "an image, a wall");
-  const auto written = extensions_of(volume_formats(), [](const auto& f) { return f.is_written(); });
-  add_output_after_several(verb, arguments.output, kVolumeFile, "volume mesh (" + listed(written) + ")");
+  add_output_after_several(verb, arguments.output, kVolumeFile, "volume mesh (" + written_volume_files() + ")");
   add_output_frame(verb, arguments.writing);
+  verb.add_flag("--tetrahedra", arguments.format.split_cells,
+                "split wedges and pyramids into tetrahedra, for files and solvers that have none");
   add_layers(verb, arguments);
   add_shell(verb, arguments);
   GenerateArguments& surface = arguments.growth;
   surface.production.ends = EndShape::flat;
   add_growth(verb, surface.production);
   add_ends(verb, surface.production);
+  add_end_names(verb, surface.end_names);
   verb.add_option("--fit", surface.fitting.reference.path,
                   "fit the surface to this surface or image, as generate does");
   add_fitting(verb, surface.fitting);
@@ -97,7 +101,8 @@ void add_options(CLI::App& verb, VolumeArguments& arguments) {
   const char* grown = "The surface, where the input is none";
   group(verb, grown,
         {"--around", "--preset", "--max-vertices", "--simplification", "--elongation", "--blend", "--placement",
-         "--overlap", "--gap", "--ends", "--open-ends", "--flow-extensions", "--beta", "--max-center-distance",
+         "--overlap", "--gap", "--ends", "--open-ends", "--flow-extensions", "--name",
+         "--names", "--beta", "--max-center-distance",
          "--sweeps", "--threads"});
 }
 
@@ -211,7 +216,8 @@ int run(const VolumeArguments& arguments, Console& console) {
   StageClock clock;
   write_volume(arguments.output, result.mesh,
                {generator_name(), report.options, file_name_of(arguments.input), report.input_sha256,
-                arguments.writing.unit, arguments.writing.space});
+                arguments.writing.unit, arguments.writing.space},
+               {}, arguments.format);
   clock.lap("write", report.stages);
   log_volume(report, console);
   console.log("wrote " + arguments.output.string() + formatted(" after %.2f s", watch.lap()));

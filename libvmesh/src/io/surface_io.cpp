@@ -5,6 +5,7 @@
 #include "vmesh/core/input_file.h"
 
 #include "lengths.h"
+#include "named_patches.h"
 
 namespace vmesh {
 namespace {
@@ -32,6 +33,11 @@ void check(const std::filesystem::path& path, const TriMesh& mesh, const MeshAtt
   };
   check_all(attributes.vertex, mesh.vertices.size(), "vertex");
   check_all(attributes.face, mesh.faces.size(), "face");
+  try {
+    io::check_named_patches(attributes);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(name + ": " + error.what());
+  }
 }
 
 void check(const std::filesystem::path& path, const SurfaceFormat& format, const TriMesh& mesh,
@@ -118,15 +124,17 @@ void write_surface(const std::filesystem::path& path, const TriMesh& given, cons
 }
 
 LoadedSurface parse_surface(std::string_view content, const SurfaceFormat& format, const std::string& source) {
-  if (format.parse) return format.parse(content, source);
-  throw Unsupported(source + ": files of this kind are read by their names only");
+  if (!format.parse) throw Unsupported(source + ": files of this kind are read by their names only");
+  LoadedSurface surface = format.parse(content, source);
+  io::settle_patch_names(surface, source);
+  return surface;
 }
 
 LoadedSurface read_surface(const std::filesystem::path& path) {
   const SurfaceFormat& format = surface_format(path);
   if (format.read) return format.read(path);
   if (!format.parse) refuse_without(format.needs, path);
-  return format.parse(read_file(path), path.string());
+  return parse_surface(read_file(path), format, path.string());
 }
 
 void convert_to_internal(LoadedSurface& surface, const std::string& source, std::optional<LengthUnit> unit,

@@ -61,6 +61,7 @@ void write_surface_vtp(std::ostream& out, const TriMesh& mesh, const MeshAttribu
                        const SurfaceMetadata& metadata, const SurfaceWriteOptions&) {
   VtkXmlFile file("PolyData");
   file.open("FieldData");
+  if (!attributes.patch_names.empty()) file.add_texts("PatchNames", attributes.patch_names);
   add_metadata(file, metadata);
   file.close();
   file.open(piece(mesh.vertices.size(), 0, 0, mesh.faces.size()));

@@ -36,7 +36,8 @@ VesselWall vessel_wall(TriMesh mesh, const MeshAttributes& attributes) {
   VesselWall wall;
   wall.radius = radii_of(mesh, attributes);
   wall.patch.assign(mesh.faces.size(), 0);
-  wall.patch_names = {"wall"};
+  const std::vector<std::string>& names = attributes.patch_names;
+  wall.patch_names = {names.empty() ? "wall" : names[0]};
   if (const MeshAttribute* label = find_attribute(attributes.face, "ModelFaceID")) {
     std::vector<Index> number;
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) number.push_back(face_number(label->values[f], f));
@@ -44,7 +45,9 @@ VesselWall vessel_wall(TriMesh mesh, const MeshAttributes& attributes) {
     std::sort(caps.begin(), caps.end());
     caps.erase(std::unique(caps.begin(), caps.end()), caps.end());
     std::erase(caps, 1);
-    for (const Index cap : caps) wall.patch_names.push_back("cap_" + std::to_string(cap - 1));
+    for (const Index cap : caps) {
+      wall.patch_names.push_back(cap <= names.size() ? names[cap - 1] : "cap_" + std::to_string(cap - 1));
+    }
     for (std::size_t f = 0; f < number.size(); ++f) {
       if (number[f] == 1) continue;
       wall.patch[f] = static_cast<Index>(std::lower_bound(caps.begin(), caps.end(), number[f]) - caps.begin()) + 1;

@@ -24,12 +24,31 @@ void for_each_cell(const VolumeMesh& mesh, const Visit& visit) {
   for (const Pyramid& cell : mesh.pyramids) visit(cell);
 }
 
-/// The number of the cell to which each face of the boundary belongs. Throws InvalidInput, naming the face, if it is no
-/// face of a cell, of more than one, or seen from inside counter-clockwise.
-std::vector<Index> cells_behind_boundary(const VolumeMesh& mesh);
+/// Face `face` of faces_of() of a cell.
+struct CellSide {
+  Index cell = kNone;
+  Index face = 0;
+};
+
+/// The side of a cell that each face of the boundary is. Throws InvalidInput, naming the face, if it is no face of a
+/// cell, of more than one, or seen from inside counter-clockwise.
+std::vector<CellSide> sides_of_boundary(const VolumeMesh& mesh);
+
+/// The faces that belong to one cell alone, in the order of the cells.
+std::vector<CellFace> outer_faces(const VolumeMesh& mesh);
+
+/// A face between two cells.
+struct InnerFace {
+  CellFace corners;                        ///< counter-clockwise seen from `neighbour`
+  Index owner = kNone, neighbour = kNone;  ///< cells, owner < neighbour
+};
+
+/// All of them, ascending in owner, then neighbour. Throws InvalidInput, naming a cell, where cells do not meet face to
+/// face: a face of one cell that is not in the boundary, of more than two, or of two on the same side.
+std::vector<InnerFace> inner_faces(const VolumeMesh& mesh);
 
 /// Throws InvalidInput unless cells and faces name points, regions and patches that exist, every cell has a region, and
-/// the names of regions and patches are unique, not empty and on one line.
+/// the names of regions and patches are unique and good for every format (check_patch_names()).
 void check_volume_mesh(const VolumeMesh& mesh);
 
 }  // namespace vmesh
