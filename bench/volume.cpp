@@ -70,11 +70,13 @@ VesselWall wall_of(const Production& production, const Centerline& centerline) {
 
 void print(const std::string& name, const VesselWall& wall, const VolumeResult& result, double seconds) {
   const VolumeMeasures measures = measure_volume(result.mesh);
-  std::printf("| %s | %zu | %zu | %zu | %zu | %.1f / %.2f | %.1f | %.1f | %.3f / %.3f | %.3f | %.2f |", name.c_str(),
-              wall.mesh.faces.size(), result.mesh.wedges.size(), result.mesh.pyramids.size(),
-              result.mesh.tetrahedra.size(),              100 * result.layers.full_share, result.layers.least_share, measures.min_dihedral_deg,
-              measures.max_dihedral_deg, measures.least_radius_ratio, measures.mean_radius_ratio,
-              measures.least_scaled_jacobian, seconds);
+  std::printf(
+      "| %s | %zu | %zu | %zu | %zu | %.1f / %.2f | %.1f | %.1f | %.3f / %.3f | %.3f | (%.2f %.2f %.2f) | %.2f |",
+      name.c_str(), wall.mesh.faces.size(), result.mesh.wedges.size(), result.mesh.pyramids.size(),
+      result.mesh.tetrahedra.size(), 100 * result.layers.full_share, result.layers.least_share,
+      measures.min_dihedral_deg, measures.max_dihedral_deg, measures.least_radius_ratio, measures.mean_radius_ratio,
+      measures.least_scaled_jacobian, measures.worst_tetrahedron.x(), measures.worst_tetrahedron.y(),
+      measures.worst_tetrahedron.z(), seconds);
   for (const VolumeDefect& defect : result.defects) std::printf(" %s;", defect.message.c_str());
   std::printf("\n");
   std::fflush(stdout);
@@ -95,8 +97,7 @@ void examine(const std::string& name, const Centerline& centerline, const Produc
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     tally.seconds += seconds;
     tally.refused += !result.is_sound();
-    for (const VolumeDefect& defect : result.defects)
-      tally.failed += defect.kind != VolumeDefectKind::not_filled;
+    for (const VolumeDefect& defect : result.defects) tally.failed += defect.kind != VolumeDefectKind::not_filled;
     if (result.is_sound())
       tally.least_dihedral = std::min(tally.least_dihedral, measure_volume(result.mesh).min_dihedral_deg);
     if (show || !result.is_sound()) print(name, wall, result, seconds);
@@ -114,8 +115,10 @@ int main(int argc, char** argv) {
   settings.production.ends = EndShape::flat;
   Tally tally;
   std::printf(
-      "| case | faces | wedges | pyramids | tetrahedra | full layers, %% of the wall / least | least angle | largest | radius ratio "
-      "least / mean | least Jacobian of wedges | s | defects |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n");
+      "| case | faces | wedges | pyramids | tetrahedra | full layers, %% of the wall / least | least angle | largest | "
+      "radius ratio "
+      "least / mean | least Jacobian of wedges | worst tetrahedron | s | defects "
+      "|\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|--:|---|\n");
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--all") {
@@ -152,7 +155,8 @@ int main(int argc, char** argv) {
       }
     }
   }
-  std::printf("\n%zu cases, %zu surfaces not sound, %zu meshes refused, %zu of them wrong; least angle %.2f degrees; %.1f s\n",
-              tally.cases, tally.unsound_surfaces, tally.refused, tally.failed, tally.least_dihedral, tally.seconds);
+  std::printf(
+      "\n%zu cases, %zu surfaces not sound, %zu meshes refused, %zu of them wrong; least angle %.2f degrees; %.1f s\n",
+      tally.cases, tally.unsound_surfaces, tally.refused, tally.failed, tally.least_dihedral, tally.seconds);
   return tally.failed > 0 ? 1 : 0;
 }

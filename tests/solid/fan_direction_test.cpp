@@ -27,8 +27,8 @@ double best_sampled(const std::vector<Vec3>& normals, const Vec3* plane) {
     }
     for (int j = 0; j <= kSteps; ++j) {
       const double rise = std::numbers::pi * j / kSteps;
-      best = std::max(best, least_dot(normals, {std::sin(rise) * std::cos(turn), std::sin(rise) * std::sin(turn),
-                                                std::cos(rise)}));
+      best = std::max(
+          best, least_dot(normals, {std::sin(rise) * std::cos(turn), std::sin(rise) * std::sin(turn), std::cos(rise)}));
     }
   }
   return best;

@@ -64,8 +64,8 @@ inline double wedge_determinant(const VolumeMesh& mesh, const Wedge& wedge, doub
   const auto mix = [w](const Vec3& below, const Vec3& above) -> Vec3 { return (1 - w) * below + w * above; };
   const Vec3 along_s = mix(p[wedge[1]], p[wedge[4]]) - mix(p[wedge[0]], p[wedge[3]]);
   const Vec3 along_t = mix(p[wedge[2]], p[wedge[5]]) - mix(p[wedge[0]], p[wedge[3]]);
-  const Vec3 along_w = (1 - s - t) * (p[wedge[3]] - p[wedge[0]]) + s * (p[wedge[4]] - p[wedge[1]]) +
-                       t * (p[wedge[5]] - p[wedge[2]]);
+  const Vec3 along_w =
+      (1 - s - t) * (p[wedge[3]] - p[wedge[0]]) + s * (p[wedge[4]] - p[wedge[1]]) + t * (p[wedge[5]] - p[wedge[2]]);
   return along_s.cross(along_t).dot(along_w);
 }
 
@@ -76,8 +76,8 @@ inline double least_determinant(const VolumeMesh& mesh, const Wedge& wedge) {
   for (int i = 0; i <= kSteps; ++i) {
     for (int j = 0; i + j <= kSteps; ++j) {
       for (int k = 0; k <= kSteps; ++k)
-        least = std::min(least, wedge_determinant(mesh, wedge, double(i) / kSteps, double(j) / kSteps,
-                                                  double(k) / kSteps));
+        least =
+            std::min(least, wedge_determinant(mesh, wedge, double(i) / kSteps, double(j) / kSteps, double(k) / kSteps));
     }
   }
   return least;
@@ -165,7 +165,8 @@ inline double patch_area(const VolumeMesh& mesh, const std::string& name) {
 
 inline double cap_area(const VesselWall& wall, Index patch) {
   double area = 0;
-  for (Index f = 0; f < wall.patch.size(); ++f) area += wall.patch[f] == patch ? area_normal(wall.mesh, f).norm() / 2 : 0;
+  for (Index f = 0; f < wall.patch.size(); ++f)
+    area += wall.patch[f] == patch ? area_normal(wall.mesh, f).norm() / 2 : 0;
   return area;
 }
 

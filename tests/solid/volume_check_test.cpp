@@ -15,7 +15,7 @@ VolumeMesh three_cells() {
   mesh.region_names = {"lumen"};
   mesh.patch_names = {"wall"};
   mesh.cell_region = {0, 0, 0};
-  mesh.boundary = {{{0, 2, 1, kNone}, 0}, {{3, 4, 5, kNone}, 0}, {{1, 2, 5, 4}, 0},     {{2, 0, 3, 5}, 0},
+  mesh.boundary = {{{0, 2, 1, kNone}, 0}, {{3, 4, 5, kNone}, 0}, {{1, 2, 5, 4}, 0},    {{2, 0, 3, 5}, 0},
                    {{1, 4, 6, kNone}, 0}, {{3, 0, 6, kNone}, 0}, {{0, 1, 6, kNone}, 0}};
   return mesh;
 }

@@ -59,9 +59,10 @@ Json quality_json(const VolumeReport& report) {
   const VolumeMeasures& measures = report.measures;
   Json json = Json::object();
   if (!report.result->mesh.tetrahedra.empty()) {
-    json["tetrahedra"] = {{"dihedral_deg", {{"min", measures.min_dihedral_deg}, {"max", measures.max_dihedral_deg}}},
-                          {"radius_ratio", {{"min", measures.least_radius_ratio}, {"mean", measures.mean_radius_ratio}}},
-                          {"worst", tool::to_json(measures.worst_tetrahedron)}};
+    json["tetrahedra"] = {
+        {"dihedral_deg", {{"min", measures.min_dihedral_deg}, {"max", measures.max_dihedral_deg}}},
+        {"radius_ratio", {{"min", measures.least_radius_ratio}, {"mean", measures.mean_radius_ratio}}},
+        {"worst", tool::to_json(measures.worst_tetrahedron)}};
   }
   if (!report.result->mesh.wedges.empty())
     json["wedges"] = {{"scaled_jacobian", {{"min", measures.least_scaled_jacobian}}}};

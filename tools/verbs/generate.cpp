@@ -146,7 +146,8 @@ int run(const GenerateArguments& given, Console& console) {
   if (!arguments.common.json.empty()) write_json(arguments.common.json, to_json(report));
   if (!arguments.common.html.empty()) {
     const TriMesh* fitted_to = grown->input.reference ? &*grown->input.reference : nullptr;
-    write_page(arguments.common.html, page_of(report, grown->production.prepared.grown(), grown->attributes(), fitted_to), console);
+    write_page(arguments.common.html,
+               page_of(report, grown->production.prepared.grown(), grown->attributes(), fitted_to), console);
   }
   if (const auto& extraction = grown->input.extraction;
       extraction && !meets(arguments.required_coverage, *extraction, console))

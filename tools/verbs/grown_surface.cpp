@@ -224,7 +224,8 @@ std::unique_ptr<GrownSurface> grow_surface(const GenerateArguments& given, Conso
   };
   steps.grow = [&](const Centerline& centerline, const GenerateOptions& options) {
     return naming(arguments.input.path, [&] {
-      if (arguments.budget) return grow_within_budget(report, centerline, options, arguments, grown->kept_limits, console);
+      if (arguments.budget)
+        return grow_within_budget(report, centerline, options, arguments, grown->kept_limits, console);
       return generate_surface(centerline, options, console.progress());
     });
   };
@@ -233,7 +234,8 @@ std::unique_ptr<GrownSurface> grow_surface(const GenerateArguments& given, Conso
     report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
     for (const GrowthWarning& warning : result.warnings) warn(report, warning.message, console);
     warn_of_error(report, console);
-    if (input.reference && result.is_sound()) grown->kept_limits &= fit(report, result, prepared, *input.reference, console);
+    if (input.reference && result.is_sound())
+      grown->kept_limits &= fit(report, result, prepared, *input.reference, console);
     watch.lap();
     measure_distance(report, prepared.grown());
     return report.fit.has_value();
@@ -244,8 +246,7 @@ std::unique_ptr<GrownSurface> grow_surface(const GenerateArguments& given, Conso
   report.end_names = read_end_names(arguments.end_names, centerline);
   watch.lap();
   stop_if_interrupted();
-  grown->production =
-      produce(centerline, loaded.cleaned.end_sections, arguments.production, console.progress(), steps);
+  grown->production = produce(centerline, loaded.cleaned.end_sections, arguments.production, console.progress(), steps);
   auto& [result, ends, wall_vertices, prepared] = grown->production;
   report.result = &result;
   report.ends = ends;

@@ -33,7 +33,8 @@ void take_thickness(const std::string& text, LayerOptions& layers) {
   layers.in_mm = text.ends_with("mm");
   const std::string number = layers.in_mm ? text.substr(0, text.size() - 2) : text;
   if (!CLI::detail::lexical_cast(number, layers.thickness) || !(layers.thickness > 0 && layers.thickness < 1e9))
-    throw InvalidInput("\"" + text + "\" is neither a share of the local radius such as 0.2 nor a length such as 0.3mm");
+    throw InvalidInput("\"" + text +
+                       "\" is neither a share of the local radius such as 0.2 nor a length such as 0.3mm");
 }
 
 void take_first_layer(const std::string& text, LayerOptions& layers) {
@@ -91,6 +92,8 @@ void add_options(CLI::App& verb, VolumeArguments& arguments) {
   add_growth(verb, surface.production);
   add_ends(verb, surface.production);
   add_end_names(verb, surface.end_names);
+  verb.add_option("--fit", surface.fitting.reference.path,
+                  "fit the surface to this surface or image, as generate does");
   add_fitting(verb, surface.fitting);
   add_extraction(verb, surface.extraction);
   group(verb, "Layers", {"--layers", "--layer-thickness", "--first-layer", "--layer-growth", "--core-size"});
@@ -135,8 +138,8 @@ std::string describe_volume(const VolumeOptions& options) {
     text += formatted(" --layer-growth %g --core-size %g", options.layers.growth, options.core_size);
   }
   if (options.shell.count > 0)
-    text += " --wall-thickness " + thickness_text(options.shell) + " --wall-layers " +
-            std::to_string(options.shell.count);
+    text +=
+        " --wall-thickness " + thickness_text(options.shell) + " --wall-layers " + std::to_string(options.shell.count);
   return options.shell_only ? text + " --wall-only" : text;
 }
 
@@ -149,16 +152,13 @@ struct VolumeSource {
 
 /// The surface in a file, if it is one with radii.
 std::optional<VolumeSource> read_source(const VolumeArguments& arguments, Console& console) {
-  if (!arguments.input.more.empty() || !find_surface_format(arguments.input.path) ||
-      may_be_centerline(arguments.input.path))
-    return std::nullopt;
+  if (!find_surface_format(arguments.input.path) || !is_segmentation(arguments.input)) return std::nullopt;
   StageClock clock;
   LoadedSurface surface = load_surface(arguments.input);
   if (!find_attribute(surface.attributes.vertex, "radius")) return std::nullopt;
   console.warn(surface.warnings);
   VolumeSource source;
-  source.wall = naming(arguments.input.path,
-                       [&] { return vessel_wall(std::move(surface.mesh), surface.attributes); });
+  source.wall = naming(arguments.input.path, [&] { return vessel_wall(std::move(surface.mesh), surface.attributes); });
   clock.lap("read", source.stages);
   return source;
 }
@@ -179,8 +179,6 @@ std::optional<VolumeSource> grow_source(const VolumeArguments& arguments, Consol
                       grown->report.stages};
 }
 
-VolumeAttributes attributes_of(const VesselWall&) { return {}; }
-
 int run(const VolumeArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
@@ -196,29 +194,30 @@ int run(const VolumeArguments& arguments, Console& console) {
   if (!source) return kDefective;
   stop_if_interrupted();
 
-  const VolumeResult result = naming(path, [&] {
-    return make_volume(source->wall, arguments.volume, console.progress());
-  });
+  const VolumeResult result =
+      naming(path, [&] { return make_volume(source->wall, arguments.volume, console.progress()); });
   if (!result.is_sound()) {
     std::vector<std::string> defects;
     for (const VolumeDefect& defect : result.defects)
       defects.push_back(std::string(to_string(defect.kind)) + ": " + defect.message);
     log_refusal(defects,
-                path.string() + ": no sound volume mesh was found, nothing is written: try fewer or thinner layers, or "
-                                "another --around",
+                path.string() +
+                    ": no sound volume mesh was found, nothing is written: try fewer or thinner layers, or "
+                    "another --around",
                 console);
     return kDefective;
   }
 
-  VolumeReport report = {path,   sha256_of(arguments.input), describe_volume(arguments.volume), &arguments.volume,
-                         &source->wall, &result, measure_volume(result.mesh), std::move(source->stages)};
+  VolumeReport report = {
+      path,    sha256_of(arguments.input),  describe_volume(arguments.volume), &arguments.volume, &source->wall,
+      &result, measure_volume(result.mesh), std::move(source->stages)};
   if (!source->how.empty()) report.options += " of " + source->how;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
   StageClock clock;
   write_volume(arguments.output, result.mesh,
                {generator_name(), report.options, file_name_of(arguments.input), report.input_sha256,
                 arguments.writing.unit, arguments.writing.space},
-               attributes_of(source->wall), arguments.format);
+               {}, arguments.format);
   clock.lap("write", report.stages);
   log_volume(report, console);
   console.log("wrote " + arguments.output.string() + formatted(" after %.2f s", watch.lap()));

@@ -10,7 +10,7 @@ namespace vmesh {
 
 /// A closed surface to be filled with tetrahedra, and how long their edges are to be at every vertex (mm).
 struct CoreSurface {
-  TriMesh mesh;           ///< the last faces are those of caps
+  TriMesh mesh;            ///< the last faces are those of caps
   std::vector<Index> cap;  ///< patches of those
   std::vector<double> size;
 };

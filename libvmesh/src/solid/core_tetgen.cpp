@@ -1,10 +1,10 @@
 // TetGen (Hang Si, AGPL-3 or later): constrained Delaunay tetrahedra, refined where they are bad or large.
 #define TETLIBRARY
-#include <tetgen.h>
-
 #include <algorithm>
 #include <climits>
 #include <string>
+
+#include <tetgen.h>
 
 #include "vmesh/core/error.h"
 #include "vmesh/solid/make_volume.h"

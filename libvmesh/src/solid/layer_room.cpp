@@ -7,8 +7,8 @@
 namespace vmesh {
 namespace {
 
-// The wall, the surface on which layers end, and between them the caps: a surface that crosses itself where layers have
-// no room.
+// The surface on which layers end, closed by the caps: it crosses itself where layers have no room. The wall is not
+// part of it: layers that ran into it would have run into those along it before.
 class LayerSurface {
  public:
   LayerSurface(const WallFrame& frame, const LayerStack& stack, double reach, const std::vector<char>& has_changed)
@@ -18,10 +18,8 @@ class LayerSurface {
         has_changed_(has_changed),
         last_(static_cast<Index>(frame.position.size())) {
     mesh_.vertices = frame.position;
-    for (Index v = 0; v < last_; ++v) mesh_.vertices.push_back(stack.at(frame, v, reach));
-    mesh_.faces = frame.faces;
+    for (Index v = 0; v < last_; ++v) mesh_.vertices.push_back(stack.at(frame, v, reach_at(v)));
     for (const auto& [a, b, c] : frame.faces) {
-      if (moved(a) == a && moved(b) == b && moved(c) == c) continue;
       add({moved(a), moved(b), moved(c)}, has_changed[a] || has_changed[b] || has_changed[c]);
     }
     for (const Cap& cap : frame.caps) add_cap(cap);
@@ -39,6 +37,16 @@ class LayerSurface {
   }
 
  private:
+  // Beside vertices at which layers end, where the surface that they leave is folded most, they keep farther apart.
+  double reach_at(Index v) const {
+    constexpr double kFarther = 2.5;
+    for (const Index f : frame_.fan[v]) {
+      const auto& [a, b, c] = frame_.faces[f];
+      if (stack_.ends_at(a) || stack_.ends_at(b) || stack_.ends_at(c)) return kFarther * reach_;
+    }
+    return reach_;
+  }
+
   void add(const Triangle& face, bool has_changed) {
     if (has_changed) changed_.push_back(static_cast<Index>(mesh_.faces.size()));
     mesh_.faces.push_back(face);
@@ -64,7 +72,7 @@ class LayerSurface {
     }
     const bool inside = stack_.side == LayerSide::inside;
     std::vector<Vec3> ring;
-    for (const Index v : cap.rim) ring.push_back(stack_.at(frame_, v, reach_));
+    for (const Index v : cap.rim) ring.push_back(mesh_.vertices[last_ + v]);
     const Disc disc = inside ? fill_ring(ring, cap.normal) : cap.disc;
     const auto added = static_cast<Index>(mesh_.vertices.size()), rim = static_cast<Index>(cap.rim.size());
     mesh_.vertices.insert(mesh_.vertices.end(), disc.vertices.begin(), disc.vertices.end());

@@ -15,6 +15,7 @@ namespace {
 
 // Layers are made thinner in steps of this factor where they do not fit; idle .7 to .9.
 constexpr double kStep = 0.85;
+constexpr double kStepWhereBad = 0.6;  // where tetrahedra turned out bad
 // They end below this share of what the gradation leaves of what was asked for: cells would be flatter than any solver
 // likes.
 constexpr double kLeastShare = 0.02;
@@ -53,9 +54,29 @@ class StackBuilder {
     find_ways();
   }
 
+  StackBuilder(const WallFrame& frame, LayerStack stack, const Progress& progress)
+      : frame_(frame), progress_(progress), stack_(std::move(stack)) {}
+
   LayerStack run() {
     limit_gradation();
-    for (const double thickness : stack_.reached_mm) least_mm_.push_back(kLeastShare * thickness);
+    for (const double thickness : stack_.reached_mm) stack_.least_mm.push_back(kLeastShare * thickness);
+    return make_fit();
+  }
+
+  // They do not end for this.
+  LayerStack run_thinner(const std::vector<Index>& vertices) {
+    for (const Index v : vertices) {
+      const double thinner = std::max(stack_.least_mm[v], kStepWhereBad * stack_.reached_mm[v]);
+      if (!(thinner < stack_.reached_mm[v])) continue;
+      stack_.reached_mm[v] = thinner;
+      stack_.limit[v] = LayerLimit::shape;
+    }
+    limit_gradation();
+    return make_fit();
+  }
+
+ private:
+  LayerStack make_fit() {
     do {
       make_well_shaped();
       report_progress(progress_, "layers", 0);
@@ -63,7 +84,6 @@ class StackBuilder {
     return std::move(stack_);
   }
 
- private:
   void find_ways() {
     const std::vector<Vec3> normals = face_normals(frame_);
     const double sign = stack_.side == LayerSide::inside ? -1 : 1;
@@ -98,8 +118,7 @@ class StackBuilder {
   std::vector<Index> faces_at_changes(const std::vector<double>& before) const {
     std::vector<Index> faces;
     for (Index v = 0; v < before.size(); ++v) {
-      if (before[v] != stack_.reached_mm[v])
-        faces.insert(faces.end(), frame_.fan[v].begin(), frame_.fan[v].end());
+      if (before[v] != stack_.reached_mm[v]) faces.insert(faces.end(), frame_.fan[v].begin(), frame_.fan[v].end());
     }
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
@@ -128,7 +147,7 @@ class StackBuilder {
       any = true;
       stack_.reached_mm[v] *= kStep;
       stack_.limit[v] = why;
-      if (stack_.reached_mm[v] < least_mm_[v]) end_at(v, why);
+      if (stack_.reached_mm[v] < stack_.least_mm[v]) end_at(v, why);
     }
     if (any) limit_gradation();
     return any;
@@ -159,7 +178,6 @@ class StackBuilder {
   const WallFrame& frame_;
   const Progress& progress_;
   LayerStack stack_;
-  std::vector<double> least_mm_;   // thickness of every vertex
   std::vector<double> tested_mm_;  // thickness for which there was room, or was not
 };
 
@@ -193,6 +211,11 @@ LayerStack lay_layers(const WallFrame& frame, const LayerOptions& options, Layer
   return StackBuilder(frame, options, side, progress).run();
 }
 
+LayerStack thinned(const WallFrame& frame, const LayerStack& stack, const std::vector<Index>& vertices,
+                   const Progress& progress) {
+  return StackBuilder(frame, stack, progress).run_thinner(vertices);
+}
+
 LayerStack without_layers(const WallFrame& frame, LayerSide side) {
   LayerStack stack;
   stack.side = side;
@@ -204,6 +227,7 @@ LayerStack without_layers(const WallFrame& frame, LayerSide side) {
 
 LayerSummary summarize(const WallFrame& frame, const LayerStack& stack) {
   LayerSummary summary;
+  if (stack.count() == 0) return summary;
   const auto share = [&](Index v) { return stack.reached_mm[v] / stack.asked_mm[v]; };
   double area = 0, full = 0;
   std::vector<char> seen(frame.position.size(), 0);
@@ -228,8 +252,8 @@ LayerSummary summarize(const WallFrame& frame, const LayerStack& stack) {
         }
       }
     }
-    summary.thin.push_back({frame.position[thinnest], stack.asked_mm[thinnest], stack.reached_mm[thinnest], place.size(),
-                            stack.limit[thinnest]});
+    summary.thin.push_back({frame.position[thinnest], stack.asked_mm[thinnest], stack.reached_mm[thinnest],
+                            place.size(), stack.limit[thinnest]});
   }
   summary.full_share = full / area;
   std::stable_sort(summary.thin.begin(), summary.thin.end(), [](const ThinPlace& a, const ThinPlace& b) {
@@ -240,8 +264,9 @@ LayerSummary summarize(const WallFrame& frame, const LayerStack& stack) {
 
 std::vector<std::string> sentences_of(const LayerSummary& summary, const std::string& what) {
   constexpr std::size_t kNamed = 3;
-  std::vector<std::string> sentences = {what + formatted(" have at least %g %% of their thickness on %.2f %% of the wall",
-                                                         100 * kFullLayers, 100 * summary.full_share)};
+  std::vector<std::string> sentences = {what +
+                                        formatted(" have at least %g %% of their thickness on %.2f %% of the wall",
+                                                  100 * kFullLayers, 100 * summary.full_share)};
   for (std::size_t i = 0; i < std::min(kNamed, summary.thin.size()); ++i) {
     const ThinPlace& place = summary.thin[i];
     const Vec3& p = place.position;
@@ -251,8 +276,8 @@ std::vector<std::string> sentences_of(const LayerSummary& summary, const std::st
                             : what + formatted(" have %.0f %% of it", 100 * place.reached_mm / place.asked_mm) + at);
   }
   if (summary.thin.size() > kNamed)
-    sentences.push_back(what + " are thin at " +
-                        counted(summary.thin.size() - kNamed, "more place", "more places") + ", listed in the summary");
+    sentences.push_back(what + " are thin at " + counted(summary.thin.size() - kNamed, "more place", "more places") +
+                        ", listed in the summary");
   return sentences;
 }
 

@@ -12,15 +12,16 @@ namespace vmesh {
 /// On which side of the wall layers lie.
 enum class LayerSide { inside, outside };
 
-/// Layers along a wall: every vertex moves along a straight way, the same share of it for all layers. Where no layers fit
-/// the thickness is 0: they end there, in cells with fewer corners.
+/// Layers along a wall: every vertex moves along a straight way, the same share of it for all layers. Where no layers
+/// fit the thickness is 0: they end there, in cells with fewer corners.
 struct LayerStack {
   LayerSide side = LayerSide::inside;
   std::vector<double> level = {0};  ///< share of the thickness at which layers begin and end: 0, ..., 1
-  std::vector<Vec3> way;           ///< of every vertex of the wall, per thickness; about unit length
-  std::vector<double> asked_mm;    ///< thickness
-  std::vector<double> reached_mm;  ///< of it, what there is room for
-  std::vector<LayerLimit> limit;   ///< why that is less
+  std::vector<Vec3> way;            ///< of every vertex of the wall, per thickness; about unit length
+  std::vector<double> asked_mm;     ///< thickness
+  std::vector<double> reached_mm;   ///< of it, what there is room for
+  std::vector<double> least_mm;     ///< thickness below which layers end
+  std::vector<LayerLimit> limit;    ///< why what is reached is less than what was asked for
 
   bool ends_at(Index v) const { return reached_mm[v] == 0; }
   std::size_t count() const { return level.size() - 1; }
@@ -31,6 +32,10 @@ struct LayerStack {
 
 /// As thick as they are to be, or as there is room for. Throws Cancelled.
 LayerStack lay_layers(const WallFrame& frame, const LayerOptions& options, LayerSide side, const Progress& progress);
+
+/// The same, thinner at these vertices.
+LayerStack thinned(const WallFrame& frame, const LayerStack& stack, const std::vector<Index>& vertices,
+                   const Progress& progress);
 
 /// None anywhere.
 LayerStack without_layers(const WallFrame& frame, LayerSide side);

@@ -6,6 +6,7 @@
 #include "vmesh/core/text.h"
 
 #include "solid/core.h"
+#include "solid/core_improvement.h"
 #include "solid/layer_stack.h"
 #include "solid/volume_assembly.h"
 #include "solid/wall_frame.h"
@@ -14,6 +15,9 @@ namespace vmesh {
 namespace {
 
 constexpr double kLeastGrowth = 0.5, kMostGrowth = 5;
+// Tetrahedra with an angle of less than 10 degrees, see BadPlaces, are worth thinner layers, that many times.
+constexpr double kGoodEnough = 0.174;
+constexpr int kThinnings = 4;
 
 void check_layers(const LayerOptions& options, const std::string& what) {
   if (options.count < 0 || options.count > kMostLayers)
@@ -43,38 +47,75 @@ class VolumeMaker {
     parts_.wall = &wall_;
     parts_.frame = &frame_;
     parts_.with_lumen = !options.shell_only;
-    lap("surface");
+    lap("caps");
   }
 
   VolumeResult run() {
-    if (parts_.with_lumen) parts_.layers = lay(options_.layers, LayerSide::inside, result_.layers);
-    parts_.shell = lay(options_.shell, LayerSide::outside, result_.shell);
+    parts_.layers = lay(parts_.with_lumen ? options_.layers : LayerOptions{}, LayerSide::inside);
+    parts_.shell = lay(options_.shell, LayerSide::outside);
     lap("layers");
-    CoreSurface surface;
-    Core core;
-    if (parts_.with_lumen) {
-      report_progress(progress_, "core", 0);
-      surface = core_surface(parts_, options_.core_size);
-      core = fill_core(surface);
-      if (!core.failure.empty()) {
-        result_.defects.push_back({VolumeDefectKind::not_filled, surface.mesh.vertices[0], 1,
-                                   "the core could not be divided into tetrahedra: " + core.failure});
-        return std::move(result_);
-      }
-      lap("core");
+    Filling filling;
+    if (parts_.with_lumen) filling = fill();
+    result_.layers = summarize(frame_, parts_.layers);
+    result_.shell = summarize(frame_, parts_.shell);
+    if (!filling.core.failure.empty()) {
+      result_.defects.push_back({VolumeDefectKind::not_filled, filling.surface.mesh.vertices[0], 1,
+                                 "the core could not be divided into tetrahedra: " + filling.core.failure});
+      return std::move(result_);
     }
-    result_.mesh = assemble(parts_, surface, core);
+    result_.mesh = assemble(parts_, filling.surface, filling.core);
     check();
-    lap("check");
+    lap("proof");
     return std::move(result_);
   }
 
  private:
-  LayerStack lay(const LayerOptions& options, LayerSide side, LayerSummary& summary) {
-    if (options.count == 0) return without_layers(frame_, side);
-    LayerStack stack = lay_layers(frame_, options, side, progress_);
-    summary = summarize(frame_, stack);
-    return stack;
+  struct Filling {
+    CoreSurface surface;
+    Core core;
+    BadPlaces bad;
+  };
+
+  // Where tetrahedra are bad, layers are made thinner, as long as that helps.
+  Filling fill() {
+    Filling best = fill_once(parts_.layers);
+    LayerStack stack = parts_.layers;
+    Filling last = best;
+    for (int round = 0; round < kThinnings; ++round) {
+      const std::vector<Index> due = vertices_with_layers(stack, last.bad.vertices);
+      if (due.empty()) break;
+      stack = thinned(frame_, stack, due, progress_);
+      last = fill_once(stack);
+      if (last.core.failure.empty() && last.bad.least > best.bad.least) {
+        best = last;
+        parts_.layers = stack;
+      }
+    }
+    return best;
+  }
+
+  Filling fill_once(const LayerStack& stack) {
+    report_progress(progress_, "core", 0);
+    Filling filling;
+    filling.surface = core_surface(frame_, stack, options_.core_size);
+    filling.core = fill_core(filling.surface);
+    lap("core");
+    improve_core(filling.surface, filling.core);
+    filling.bad = bad_places(filling.surface, filling.core, kGoodEnough);
+    lap("improvement");
+    return filling;
+  }
+
+  std::vector<Index> vertices_with_layers(const LayerStack& stack, const std::vector<Index>& vertices) const {
+    std::vector<Index> due;
+    for (const Index v : vertices) {
+      if (v < frame_.position.size() && stack.count() > 0 && stack.reached_mm[v] > stack.least_mm[v]) due.push_back(v);
+    }
+    return due;
+  }
+
+  LayerStack lay(const LayerOptions& options, LayerSide side) const {
+    return options.count > 0 ? lay_layers(frame_, options, side, progress_) : without_layers(frame_, side);
   }
 
   void check() {

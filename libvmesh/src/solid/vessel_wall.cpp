@@ -18,8 +18,7 @@ std::vector<double> radii_of(const TriMesh& mesh, const MeshAttributes& attribut
         "as .vtp or .ply");
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const double r = radius->values[v];
-    if (!(r > 0 && std::isfinite(r)))
-      throw InvalidInput(formatted("vertex %zu: radius %g; it must be positive", v, r));
+    if (!(r > 0 && std::isfinite(r))) throw InvalidInput(formatted("vertex %zu: radius %g; it must be positive", v, r));
   }
   return radius->values;
 }

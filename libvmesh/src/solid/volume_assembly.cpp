@@ -64,8 +64,7 @@ class Assembly {
     for (Index v = 0; v < first.size(); ++v) {
       first[v] = stack.ends_at(v) ? v : static_cast<Index>(mesh_.points.size());
       if (stack.ends_at(v)) continue;
-      for (std::size_t k = 1; k < stack.level.size(); ++k)
-        mesh_.points.push_back(stack.at(frame_, v, stack.level[k]));
+      for (std::size_t k = 1; k < stack.level.size(); ++k) mesh_.points.push_back(stack.at(frame_, v, stack.level[k]));
     }
     return first;
   }
@@ -141,8 +140,8 @@ class Assembly {
   void add_boundary() {
     for (const auto& [a, b, c] : frame_.faces) {
       const std::size_t k = parts_.shell.count();
-      mesh_.boundary.push_back({{point(shell_point_, k, a), point(shell_point_, k, b), point(shell_point_, k, c), kNone},
-                                0});
+      mesh_.boundary.push_back(
+          {{point(shell_point_, k, a), point(shell_point_, k, b), point(shell_point_, k, c), kNone}, 0});
     }
     if (!parts_.with_lumen) {
       for (const auto& [a, b, c] : frame_.faces) mesh_.boundary.push_back({{a, c, b, kNone}, lumen_wall_});
@@ -189,23 +188,21 @@ class Assembly {
   VolumeMesh mesh_;
   struct {
     std::vector<Index> tetrahedra, wedges, pyramids;
-  } region_;                                        // of every cell
+  } region_;                                      // of every cell
   std::vector<Index> layer_point_, shell_point_;  // of add_levels()
-  Index core_point_ = 0;  // to be added to a vertex of the core that is none of the wall's
+  Index core_point_ = 0;                          // to be added to a vertex of the core that is none of the wall's
   Index lumen_wall_ = 0, first_shell_end_ = 0;
 };
 
 }  // namespace
 
-CoreSurface core_surface(const VolumeParts& parts, double core_size) {
-  const WallFrame& frame = *parts.frame;
+CoreSurface core_surface(const WallFrame& frame, const LayerStack& layers, double core_size) {
   CoreSurface surface;
-  for (Index v = 0; v < frame.position.size(); ++v)
-    surface.mesh.vertices.push_back(parts.layers.count() > 0 ? parts.layers.at(frame, v, 1) : frame.position[v]);
+  for (Index v = 0; v < frame.position.size(); ++v) surface.mesh.vertices.push_back(layers.at(frame, v, 1));
   surface.mesh.faces = frame.faces;
   std::vector<double> radius = frame.radius;
   for (const Cap& cap : frame.caps) {
-    const Disc disc = disc_within(frame, cap, parts.layers);
+    const Disc disc = disc_within(frame, cap, layers);
     const auto added = static_cast<Index>(surface.mesh.vertices.size());
     const auto rim = static_cast<Index>(cap.rim.size());
     const auto number = [&](Index i) { return i < rim ? cap.rim[i] : added + i - rim; };

@@ -15,11 +15,11 @@ struct VolumeParts {
   bool with_lumen = true;
 };
 
-/// The surface that is left for the core: where layers end, and the caps within their rings. Vertices of the wall first,
-/// in the frame's numbers.
-CoreSurface core_surface(const VolumeParts& parts, double core_size);
+/// The surface that is left for the core: where layers end, and the caps within their rings. Vertices of the wall
+/// first, in the frame's numbers.
+CoreSurface core_surface(const WallFrame& frame, const LayerStack& layers, double core_size);
 
-/// The mesh. `core`: of core_surface(), `surface`.
+/// The mesh. `core`: of `surface`, which is core_surface() of the layers.
 VolumeMesh assemble(const VolumeParts& parts, const CoreSurface& surface, const Core& core);
 
 }  // namespace vmesh

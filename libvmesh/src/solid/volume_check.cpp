@@ -60,8 +60,8 @@ bool is_positive(const VolumeMesh& mesh, const Pyramid& p) {
 bool is_positive(const VolumeMesh& mesh, const Wedge& wedge) {
   WedgeCorners p;
   for (std::size_t i = 0; i < p.size(); ++i) p[i] = mesh.points[wedge[i]];
-  const double base = std::max((p[1] - p[0]).norm(), (p[4] - p[3]).norm()) *
-                      std::max((p[2] - p[0]).norm(), (p[5] - p[3]).norm());
+  const double base =
+      std::max((p[1] - p[0]).norm(), (p[4] - p[3]).norm()) * std::max((p[2] - p[0]).norm(), (p[5] - p[3]).norm());
   const double height = std::max({(p[3] - p[0]).norm(), (p[4] - p[1]).norm(), (p[5] - p[2]).norm()});
   const auto coefficients = jacobian_coefficients(p);
   return *std::min_element(coefficients.begin(), coefficients.end()) > kRounding * base * height;

@@ -32,8 +32,7 @@ double dihedral_angle(const TetrahedronCorners& p, std::size_t i, std::size_t j)
 double radius_ratio(const TetrahedronCorners& p) {
   const Vec3 a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
   const double six_volumes = a.dot(b.cross(c));
-  const double twice_area =
-      a.cross(b).norm() + b.cross(c).norm() + c.cross(a).norm() + (b - a).cross(c - a).norm();
+  const double twice_area = a.cross(b).norm() + b.cross(c).norm() + c.cross(a).norm() + (b - a).cross(c - a).norm();
   const Vec3 center = a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b);
   // Inradius: 3 V / area; circumradius: |center| / (12 V).
   return center.norm() > 0 ? 6 * six_volumes * six_volumes / (twice_area * center.norm()) : 0;
@@ -96,9 +95,8 @@ VolumeMeasures measure_volume(const VolumeMesh& mesh) {
   }
   measures.region_volume_mm3.assign(mesh.region_names.size(), 0);
   std::size_t c = 0;
-  for_each_cell(mesh, [&](const auto& cell) {
-    measures.region_volume_mm3.at(mesh.cell_region[c++]) += volume_of(mesh, cell);
-  });
+  for_each_cell(
+      mesh, [&](const auto& cell) { measures.region_volume_mm3.at(mesh.cell_region[c++]) += volume_of(mesh, cell); });
   measures.patch_area_mm2.assign(mesh.patch_names.size(), 0);
   for (const BoundaryFace& face : mesh.boundary) measures.patch_area_mm2.at(face.patch) += area_of(mesh, face);
   return measures;

@@ -43,7 +43,8 @@ void check_surface(const TriMesh& mesh) {
   const auto crossings = self_intersections(mesh);
   if (!crossings.empty())
     throw InvalidInput(counted(crossings.size(), "pair", "pairs") + " of crossing faces, the first at " +
-                       place(mesh.vertices[mesh.faces[crossings[0].first][0]]) + ": the surface does not bound a volume");
+                       place(mesh.vertices[mesh.faces[crossings[0].first][0]]) +
+                       ": the surface does not bound a volume");
 }
 
 class FrameBuilder {
@@ -94,8 +95,9 @@ class FrameBuilder {
     cap.normal = area.normalized();
     cap.unevenness = unevenness(faces, cap.normal);
     if (cap.unevenness > kMostUneven * std::sqrt(area.norm()))
-      throw InvalidInput(name(patch) + " is not flat: " + formatted("its vertices differ from a plane by %g mm", cap.unevenness) +
-                         ", near " + place(wall_.mesh.vertices[rim[0]]) + "; vmesh generate --ends flat makes flat ones");
+      throw InvalidInput(
+          name(patch) + " is not flat: " + formatted("its vertices differ from a plane by %g mm", cap.unevenness) +
+          ", near " + place(wall_.mesh.vertices[rim[0]]) + "; vmesh generate --ends flat makes flat ones");
     for (const Index v : rim) claim(v, patch);
     for (const Index v : rim) cap.rim.push_back(number_[v]);
     frame_.caps.push_back(std::move(cap));

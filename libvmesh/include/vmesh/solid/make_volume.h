@@ -25,8 +25,8 @@ struct LayerOptions {
 
 struct VolumeOptions {
   LayerOptions layers = {.count = 4, .growth = 1.2};  ///< inside, of the lumen
-  LayerOptions shell = {.count = 0};  ///< outside: the vessel's own wall
-  bool shell_only = false;                                            ///< no mesh of the lumen
+  LayerOptions shell = {.count = 0};                  ///< outside: the vessel's own wall
+  bool shell_only = false;                            ///< no mesh of the lumen
   /// Length of edges in the core, in local radii; 0: as those of the surface.
   double core_size = 0;
 };
@@ -43,9 +43,10 @@ enum class LayerLimit {
 };
 std::string_view to_string(LayerLimit limit);
 
-/// Connected vertices of the wall at which layers end, or have less than kFullLayers of the thickness that was asked for.
+/// Connected vertices of the wall at which layers end, or have less than kFullLayers of the thickness that was asked
+/// for.
 struct ThinPlace {
-  Vec3 position = Vec3::Zero();  ///< where they are thinnest, mm
+  Vec3 position = Vec3::Zero();         ///< where they are thinnest, mm
   double asked_mm = 0, reached_mm = 0;  ///< 0: they end there
   std::size_t vertices = 0;
   LayerLimit limit = LayerLimit::none;  ///< where they are thinnest
@@ -57,13 +58,13 @@ inline constexpr double kFullLayers = 0.9;
 /// How thick layers became. They end where they do not fit at all, in pyramids and tetrahedra between those of wedges.
 /// Thickness is measured along the way of a vertex, in the mean of the heights over its faces.
 struct LayerSummary {
-  double full_share = 1;   ///< of the wall's area, with kFullLayers of the thickness that was asked for
-  double least_share = 1;  ///< of it anywhere
+  double full_share = 1;        ///< of the wall's area, with kFullLayers of the thickness that was asked for
+  double least_share = 1;       ///< of it anywhere
   std::vector<ThinPlace> thin;  ///< thinnest first, by share
 };
 
-/// How layers became, in a sentence each: the share of the wall where they are complete, and the thinnest places. `what`:
-/// of which layers.
+/// How layers became, in a sentence each: the share of the wall where they are complete, and the thinnest places.
+/// `what`: of which layers.
 std::vector<std::string> sentences_of(const LayerSummary& summary, const std::string& what);
 
 /// A volume mesh. The vertices of the wall come first among its points, in their order in the surface. It is sound, or

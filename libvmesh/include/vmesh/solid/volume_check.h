@@ -11,12 +11,12 @@ namespace vmesh {
 
 /// What a sound volume mesh must not have.
 enum class VolumeDefectKind {
-  not_filled,       ///< the core could not be divided into tetrahedra
-  inverted_cell,    ///< a tetrahedron or wedge without a positive volume everywhere
-  not_conforming,   ///< cells that do not meet face to face, or boundary faces that are not those of one cell
-  wrong_label,      ///< a region or patch that does not exist
-  crossing_faces,   ///< boundary faces that cross others
-  other_boundary    ///< volume or area of a cap is not that of the surface
+  not_filled,      ///< the core could not be divided into tetrahedra
+  inverted_cell,   ///< a tetrahedron or wedge without a positive volume everywhere
+  not_conforming,  ///< cells that do not meet face to face, or boundary faces that are not those of one cell
+  wrong_label,     ///< a region or patch that does not exist
+  crossing_faces,  ///< boundary faces that cross others
+  other_boundary   ///< volume or area of a cap is not that of the surface
 };
 std::string_view to_string(VolumeDefectKind kind);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vmesh/surface/disc.h"
+
 #include "surface/tubes/stitch.h"
 
 namespace vmesh {
