@@ -23,6 +23,7 @@ import itk_inputs  # noqa: E402
 import networkx_inputs  # noqa: E402
 import outputs  # noqa: E402
 import programs  # noqa: E402
+import volumes  # noqa: E402
 from report import Absent, Table, Vmesh  # noqa: E402
 
 PROGRAMS = ("vtk", "meshio", "assimp", "three", "meshlab", "gmsh", "tetgen", "h5py", "itk", "networkx", "pydicom",
@@ -34,6 +35,7 @@ def check(name, table, written, options, folder):
         vtk = programs.Vtk()
         outputs.check_vtk(table, vtk, written)
         inputs.check_vtk(table, vtk, written, options.shared_data)
+        volumes.check_vtk(table, vtk, written.volumes())
         images.check_vtk(table, vtk, written)
         if written.with_vtk:
             caps.check(table, vtk, written.vmesh, options.shared_data)
@@ -41,6 +43,7 @@ def check(name, table, written, options, folder):
         meshio = programs.Meshio()
         outputs.check_meshio(table, meshio, written)
         inputs.check_meshio(table, meshio, written)
+        volumes.check_meshio(table, meshio, written.volumes())
     elif name == "assimp":
         assimp = programs.Assimp(folder)
         outputs.check_assimp(table, assimp, written)
@@ -52,7 +55,9 @@ def check(name, table, written, options, folder):
         outputs.check_meshlab(table, meshlab, written)
         inputs.check_meshlab(table, meshlab, written)
     elif name in ("gmsh", "tetgen"):
-        outputs.check_mesher(table, programs.Gmsh(folder) if name == "gmsh" else programs.TetGen(folder), written)
+        mesher = programs.Gmsh(folder) if name == "gmsh" else programs.TetGen(folder)
+        outputs.check_mesher(table, mesher, written)
+        (volumes.check_gmsh if name == "gmsh" else volumes.check_tetgen)(table, mesher, written.volumes())
     elif name == "pydicom":
         images.check_pydicom(table, written)
     elif name == "tifffile":

@@ -4,6 +4,7 @@ import json
 
 import numpy
 
+import volumes
 from report import (
     CLEANED,
     DOUBLE,
@@ -42,6 +43,7 @@ class Written:
 
     def __init__(self, vmesh):
         self.vmesh, path = vmesh, vmesh.path
+        self.known_volumes = None
         vmesh("generate", path("tree.json"), path("wall.ply"), "--ends", "flat")
         vmesh("convert", path("wall.ply"), path("points.ply"), "--attributes", "vertex")
         vmesh("convert", path("wall.ply"), path("cm.ply"), "--output-unit", "cm", "--output-space", "RAS")
@@ -57,6 +59,11 @@ class Written:
         self.wall, self.skin = read_ply(path("wall.ply")), read_ply(path("skin.ply"))
         self.tree = read_json_tree(path("tree.json"))
         self.in_metres = Surface(y_up_metres(self.wall.points), self.wall.faces)
+
+    def volumes(self):
+        """Written when they are asked for."""
+        self.known_volumes = self.known_volumes or volumes.Volumes(self.vmesh)
+        return self.known_volumes
 
     def try_vtp(self):
         path = self.vmesh.path

@@ -37,8 +37,10 @@ TEST_F(Formats, AreListedAsTextAndJson) {
   EXPECT_NE(text.find("centerline .swc: SWC; read; written; --voxel-size, --radius, --tolerance, --unit, --space\n"),
             std::string::npos)
       << text;
+  EXPECT_NE(text.find("volume polyMesh: OpenFOAM; written\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("surface .smesh: TetGen; written; --unit"), std::string::npos) << text;
   EXPECT_NE(text.find("centerline .gxl .xml: VascuSynth; read; --voxel-size"), std::string::npos) << text;
-  for (const char* kind : {"centerline", "surface", "image"}) {
+  for (const char* kind : {"centerline", "surface", "volume", "image"}) {
     ASSERT_GE(formats.at(kind).size(), 7u);
     for (const Json& format : formats.at(kind))
       EXPECT_NE(text.find(format.at("name").get<std::string>()), std::string::npos) << format;

@@ -29,7 +29,7 @@ void add_output_after_several(CLI::App& verb, std::filesystem::path& output, con
 
 static constexpr const char* kWriting = "How to write the output";
 
-void add_writing_without_attributes(CLI::App& verb, WritingArguments& writing) {
+void add_output_frame(CLI::App& verb, WritingArguments& writing) {
   add_choice(
       verb, "--output-unit", {"nm", "um", "mm", "cm", "m"},
       [&writing](const std::string& text) { writing.unit = *parse_length_unit(text); }, "unit of the output")
@@ -38,6 +38,11 @@ void add_writing_without_attributes(CLI::App& verb, WritingArguments& writing) {
       verb, "--output-space", {"LPS", "RAS"},
       [&writing](const std::string& text) { writing.space = *parse_space(text); }, "patient frame of the output")
       ->default_str("LPS");
+  group(verb, kWriting, {"--output-unit", "--output-space"});
+}
+
+void add_writing_without_attributes(CLI::App& verb, WritingArguments& writing) {
+  add_output_frame(verb, writing);
   verb.add_flag_callback(
       "--ascii", [&writing] { writing.encoding = SurfaceEncoding::text; },
       "write the surface as text (" +
@@ -47,7 +52,7 @@ void add_writing_without_attributes(CLI::App& verb, WritingArguments& writing) {
           "compress a .glb for web pages and game engines (EXT_meshopt_compression), to about a third; positions are "
           "rounded to a millionth of the size")
       ->excludes("--ascii");
-  group(verb, kWriting, {"--output-unit", "--output-space", "--ascii", "--compress"});
+  group(verb, kWriting, {"--ascii", "--compress"});
 }
 
 void add_writing(CLI::App& verb, WritingArguments& writing) {

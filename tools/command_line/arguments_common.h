@@ -57,7 +57,10 @@ void settle_output(Arguments& arguments) {
   if (arguments.output.empty()) throw UsageError("name the file to write: at the end, or with -o");
 }
 
-/// Adds options for the unit, frame and encoding of the output.
+/// Adds options for the unit and frame of the output.
+void add_output_frame(CLI::App& verb, WritingArguments& writing);
+
+/// The same, and for its encoding.
 void add_writing_without_attributes(CLI::App& verb, WritingArguments& writing);
 
 /// The same, and one for the attributes of a surface.

@@ -6,6 +6,7 @@
 #include "vmesh/image/image_io.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/io/volume_io.h"
 #include "vmesh/parts/part_files.h"
 
 #include "command_line/file_types.h"
@@ -58,6 +59,7 @@ std::vector<std::string> listed_extensions(const std::string& type) {
 
 std::vector<std::string> extensions_of_type(const std::string& type) {
   const auto is_written = [](const auto& format) { return format.is_written(); };
+  if (type == kVolumeFile) return extensions_of(volume_formats(), is_written);
   if (type == kSurfaceFile) return extensions_of(surface_formats(), is_written);
   if (type == kCenterlineFile) return extensions_of(centerline_formats(), is_written);
   std::vector<std::string> extensions = listed_extensions(type);
@@ -74,7 +76,7 @@ Values values_of(const CLI::Option& option) {
   std::string type = option.get_type_name();
   if (type == "TEXT") type = kFile;  // as of paths by default; other options have other names
   if (type == kFolder) return {Values::Kind::folders, {}};
-  if (type.starts_with(kFile) || type == kSurfaceFile || type == kCenterlineFile)
+  if (type.starts_with(kFile) || type == kSurfaceFile || type == kCenterlineFile || type == kVolumeFile)
     return {Values::Kind::files, extensions_of_type(type)};
   return {};
 }

@@ -7,6 +7,7 @@ namespace vmesh::tool {
 inline constexpr const char* kFile = "FILE";
 inline constexpr const char* kSurfaceFile = "SURFACE";        ///< to be written
 inline constexpr const char* kCenterlineFile = "CENTERLINE";  ///< to be written
+inline constexpr const char* kVolumeFile = "VOLUME";          ///< to be written
 inline constexpr const char* kFolder = "FOLDER";
 
 }  // namespace vmesh::tool

@@ -7,6 +7,7 @@
 #include "vmesh/core/version.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/io/volume_io.h"
 #include "vmesh/render/render.h"
 
 #include "command_line/usage_error.h"
@@ -22,6 +23,8 @@ const char* name_of(Kind kind) {
   switch (kind) {
     case Kind::surface:
       return "surface";
+    case Kind::volume:
+      return "volume mesh";
     case Kind::centerline:
       return "centerline";
     case Kind::picture:
@@ -53,6 +56,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
 void check_format(const PlannedOutput& output) {
   if (output.kind == Kind::summary) return;
   if (output.kind == Kind::surface) surface_output_format(output.path);
+  if (output.kind == Kind::volume) volume_output_format(output.path);
   if (output.kind == Kind::centerline) centerline_output_format(output.path);
   const std::string extension = extension_of(output.path);
   if (output.kind == Kind::report && extension != ".txt" && extension != ".md" && extension != ".csv" &&
@@ -72,6 +76,11 @@ void check_format(const PlannedOutput& output) {
     throw Unsupported(output.path.string() + ": pictures are written as .png only");
 }
 
+/// An existing one, which is replaced if it holds nothing else.
+bool is_folder_of_volume(const PlannedOutput& output) {
+  return output.kind == Kind::volume && volume_output_format(output.path).is_folder() && fs::is_directory(output.path);
+}
+
 }  // namespace
 
 void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<fs::path>& inputs) {
@@ -86,7 +95,7 @@ void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<
       if (!needs_no_check(*other) && same_file(output->path, other->path))
         throw UsageError(name + ": given both for the " + name_of(other->kind) + " and for the " +
                          name_of(output->kind));
-    check_can_be_written(output->path);
+    if (!is_folder_of_volume(*output)) check_can_be_written(output->path);
   }
 }
 

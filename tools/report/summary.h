@@ -6,6 +6,7 @@
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/surface/deviation.h"
 #include "vmesh/surface/flat_ends.h"
+#include "vmesh/surface/surface_attributes.h"
 #include "vmesh/volume/contacts.h"
 
 #include "report/json.h"
@@ -24,6 +25,7 @@ struct GenerateReport {
   std::optional<SeparationReport> separation;  ///< when vessels that touch were narrowed or moved
   const GenerateResult* result = nullptr;
   FlatEnds ends;                      ///< the ends that are not round
+  std::vector<EndName> end_names;     ///< those that a user gave
   std::size_t wall_vertices = 0;      ///< before ends were capped or extended
   std::vector<OperatingPoint> tried;  ///< for a budget
   SurfaceMeasurement measurement;
@@ -46,7 +48,7 @@ Json to_json(const GrowthSummary& growth);
 Json to_json(const ExtractionReport& report);
 Json stages_json(const std::vector<StageTime>& stages);
 Json openings_json(const GenerateResult& result);
-Json caps_json(const FlatEnds& ends);
+Json caps_json(const FlatEnds& ends, const std::vector<EndName>& names);
 /// Without their rings.
 Json to_json(const std::vector<EndSection>& sections);
 Json to_json(const SurfaceMeasurement& measurement);

@@ -10,12 +10,21 @@
 
 namespace vmesh::tool {
 
+/// What ends are to be called.
+struct EndNameArguments {
+  std::vector<std::string> given;  ///< "3=inlet"
+  std::filesystem::path table;     ///< CSV; empty: none
+
+  bool empty() const { return given.empty() && table.empty(); }
+};
+
 struct GenerateArguments {
   CommonArguments common;
   InputArguments input;
   std::filesystem::path output;
   WritingArguments writing;
   ProductionOptions production;
+  EndNameArguments end_names;    ///< of flat ends
   std::optional<Budget> budget;  ///< chooses growth.around, and max_error for a budget of error
   bool bones = false;            ///< add bones along the centerline to a .glb
   bool check = false;            ///< exit code 1 unless the surface is flawless

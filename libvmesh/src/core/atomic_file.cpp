@@ -8,11 +8,12 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "vmesh/core/error.h"
+
+#include "replacing.h"
 
 namespace vmesh {
 
@@ -66,39 +67,6 @@ class AtomicFile::Buffer : public std::streambuf {
 };
 
 namespace {
-
-/// The target of `path` through all its links, whether it exists or not.
-fs::path behind_links(fs::path path) {
-  constexpr int kMostLinks = 40;  // like the kernel, which has found no cycle
-  for (int i = 0; i < kMostLinks; ++i) {
-    std::error_code no_link;
-    const fs::path target = fs::read_symlink(path, no_link);
-    if (no_link) break;
-    path = path.parent_path() / target;  // just the target if that is absolute
-  }
-  return path;
-}
-
-fs::path temporary_name(const fs::path& path) {
-  std::array<unsigned char, 16> random;
-  if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size()))
-    throw WriteError(path.string() + ": the system provides no random numbers for the name of a temporary file");
-  std::string name = ".vmesh-";
-  for (const unsigned char byte : random) {
-    constexpr const char* kDigits = "0123456789abcdef";
-    name += kDigits[byte >> 4];
-    name += kDigits[byte & 15];
-  }
-  return fs::path(path).replace_filename(name + ".tmp");
-}
-
-/// So that a crash of the machine does not undo the rename. Some file systems do not support it; that is not an error.
-void sync_folder(const fs::path& folder) {
-  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
 
 /// Passes on the permissions of the replaced file, and its owner and group as far as allowed. Bits that would give away
 /// another owner's rights are left out.

@@ -24,6 +24,15 @@ std::vector<Index> all_faces(const TriMesh& mesh) {
   return faces;
 }
 
+std::vector<Boundary> named_boundaries(const std::vector<std::string>& names, const MeshAttribute& labels) {
+  std::vector<Boundary> boundaries;
+  for (const std::string& name : names) boundaries.push_back({name, {}});
+  for (Index f = 0; f < labels.values.size(); ++f)
+    boundaries.at(static_cast<std::size_t>(labels.values[f]) - 1).faces.push_back(f);
+  std::erase_if(boundaries, [](const Boundary& boundary) { return boundary.faces.empty(); });
+  return boundaries;
+}
+
 std::map<double, std::vector<Index>> faces_by(const MeshAttribute& labels) {
   std::map<double, std::vector<Index>> faces;
   for (Index f = 0; f < labels.values.size(); ++f) {
@@ -37,7 +46,9 @@ std::map<double, std::vector<Index>> faces_by(const MeshAttribute& labels) {
 
 std::vector<Boundary> boundaries_of(const TriMesh& mesh, const MeshAttributes& attributes) {
   const MeshAttribute* caps = find_attribute(attributes.face, "CapID");
-  const MeshAttribute* labels = caps != nullptr ? caps : find_attribute(attributes.face, "ModelFaceID");
+  const MeshAttribute* numbers = find_attribute(attributes.face, "ModelFaceID");
+  if (numbers != nullptr && !attributes.patch_names.empty()) return named_boundaries(attributes.patch_names, *numbers);
+  const MeshAttribute* labels = caps != nullptr ? caps : numbers;
   if (labels == nullptr || mesh.faces.empty()) return {{"surface", all_faces(mesh)}};
   const char* word = caps != nullptr ? "cap_" : "face_";
   std::vector<Boundary> boundaries;

@@ -1,9 +1,10 @@
-// The readers and writers of the formats, for their tables: centerline_formats() and surface_formats(). Internal to the
-// module. Writers write to a stream whose state the caller checks.
+// The readers and writers of the formats, for their tables: centerline_formats(), surface_formats() and
+// volume_formats(). Internal to the module. Writers write to a stream whose state the caller checks.
 #pragma once
 
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/io/volume_io.h"
 
 namespace vmesh::io {
 
@@ -33,6 +34,12 @@ LoadedSurface read_scene(const std::filesystem::path& path);
 /// Ours by ourselves, others as a scene.
 LoadedSurface read_glb(const std::filesystem::path& path);
 
-SurfaceFormat::Write write_off, write_obj, write_stl, write_ply, write_glb, write_surface_vtp;
+SurfaceFormat::Write write_off, write_obj, write_stl, write_ply, write_glb, write_surface_vtp, write_smesh;
+
+VolumeFormat::Write write_volume_vtu, write_gmsh_2, write_gmsh_4, write_tetgen, write_abaqus, write_openfoam,
+    write_mesh_complete;
+VolumeFormat::Parse parse_volume_vtu;
+bool is_openfoam_file(std::string_view name);
+bool is_mesh_complete_file(std::string_view name);
 
 }  // namespace vmesh::io

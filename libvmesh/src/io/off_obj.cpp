@@ -3,6 +3,7 @@
 #include "boundaries.h"
 #include "comments.h"
 #include "formats.h"
+#include "named_patches.h"
 #include "poly_lines.h"
 #include "text.h"
 #include "triangulation.h"
@@ -120,6 +121,7 @@ class ObjReader {
       faces_.add({corners_.begin() + begin, corners_.begin() + end}, "line " + std::to_string(number));
     }
     faces_.finish();
+    groups_.finish(surface_, faces_.face_of_triangle());
     return std::move(surface_);
   }
 
@@ -178,6 +180,7 @@ class ObjReader {
     split_blank(line.substr(0, hash), fields_);
     if (fields_.empty()) return;
     if (fields_[0] == "v") read_vertex();
+    if (fields_[0] == "g") groups_.begin(fields_.size() > 1 ? std::string(fields_[1]) : std::string());
     if (for_lines_ && fields_[0] == "f") fail("it has faces, so this is a surface; a centerline has lines (l) only");
     if (fields_[0] == (for_lines_ ? "l" : "f")) read_face();
   }
@@ -203,12 +206,14 @@ class ObjReader {
       corners_.push_back(*corner > 0 ? *corner - 1
                                      : static_cast<std::int64_t>(surface_.mesh.vertices.size()) + *corner);
     }
+    groups_.add_face();
     polygons_.push_back({begin, static_cast<std::ptrdiff_t>(corners_.size()), lines_.number()});
   }
 
   LineReader lines_;
   const std::string& source_;
   LoadedSurface surface_;
+  FaceGroups groups_;
   FaceCollector faces_;
   std::vector<std::string_view> fields_;
   std::vector<std::int64_t> corners_;

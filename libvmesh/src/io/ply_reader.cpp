@@ -155,6 +155,7 @@ class PlyReader {
       } else if (fields_[0] == "comment" || fields_[0] == "obj_info") {
         read_tags(line, surface_.unit, surface_.space);
         if (trim(line) == kSkewnessComment) quality_is_skewness_ = true;
+        if (line.starts_with(kPatchComment)) read_patch_name();
       } else if (fields_[0] == "element") {
         read_element_line();
       } else if (fields_[0] == "property") {
@@ -164,6 +165,13 @@ class PlyReader {
       }
     }
     if (!has_format) fail("the header does not say its format (ascii, binary_little_endian, binary_big_endian)");
+  }
+
+  /// "comment patch 1 wall", in the order of their numbers.
+  void read_patch_name() {
+    std::vector<std::string>& names = surface_.attributes.patch_names;
+    if (fields_.size() == 4 && parse_integer(fields_[2]) == static_cast<std::int64_t>(names.size() + 1))
+      names.emplace_back(fields_[3]);
   }
 
   bool has(std::string_view element) const {

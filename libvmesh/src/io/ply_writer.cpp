@@ -86,6 +86,8 @@ std::string header_of(std::size_t vertices, std::size_t faces, const MeshAttribu
   for (const auto& a : attributes.face) {
     if (a.name == kSkewnessName) bytes += std::string(kSkewnessComment) + "\n";
   }
+  for (std::size_t p = 0; p < attributes.patch_names.size(); ++p)
+    bytes += std::string(kPatchComment) + std::to_string(p + 1) + " " + attributes.patch_names[p] + "\n";
   bytes += "element vertex " + std::to_string(vertices) + "\n";
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) bytes += std::string("property double ") + name + "\n";
   for (const auto& a : attributes.vertex) declare(bytes, a, word(a.name));

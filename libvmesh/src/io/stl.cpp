@@ -4,6 +4,7 @@
 #include "boundaries.h"
 #include "bytes.h"
 #include "formats.h"
+#include "named_patches.h"
 #include "text.h"
 #include "triangulation.h"
 
@@ -68,7 +69,8 @@ void parse_binary(std::string_view content, const std::string& source, LoadedSur
   }
 }
 
-void parse_text(std::string_view content, const std::string& source, LoadedSurface& surface, FaceCollector& faces) {
+void parse_text(std::string_view content, const std::string& source, LoadedSurface& surface, FaceCollector& faces,
+                FaceGroups& groups) {
   LineReader lines(content);
   VertexJoiner joiner(surface.mesh.vertices);
   std::vector<std::int64_t> corners;
@@ -80,6 +82,7 @@ void parse_text(std::string_view content, const std::string& source, LoadedSurfa
     if (fields.empty()) continue;
     const std::string word = lower(fields[0]);
     if (word == "solid" || word == "endsolid") read_tags(line, surface.unit, surface.space);
+    if (word == "solid") groups.begin(fields.size() > 1 ? std::string(fields[1]) : std::string());
     if (word == "vertex") {
       Vec3 p;
       for (std::size_t i = 0; i < 3; ++i) {
@@ -91,7 +94,7 @@ void parse_text(std::string_view content, const std::string& source, LoadedSurfa
       corners.push_back(joiner.add(p));
     }
     if (word == "endloop" || word == "endfacet") {
-      if (!corners.empty()) faces.add(corners, place());
+      if (!corners.empty()) faces.add(corners, place()), groups.add_face();
       corners.clear();
     }
   }
@@ -159,6 +162,7 @@ void write_text(std::ostream& out, const TriMesh& mesh, const MeshAttributes& at
 LoadedSurface parse_stl(std::string_view content, const std::string& source) {
   LoadedSurface surface;
   FaceCollector faces(surface, source);
+  FaceGroups groups;
   const bool says_solid = lower(content.substr(0, 5)) == "solid";
   const bool has_header = content.size() >= kHeaderSize + 4;
   // Some binary files begin with "solid", too; their size gives them away.
@@ -168,11 +172,12 @@ LoadedSurface parse_stl(std::string_view content, const std::string& source) {
   if (exact || (!says_solid && has_header)) {
     parse_binary(content, source, surface, faces);
   } else if (says_solid) {
-    parse_text(content, source, surface, faces);
+    parse_text(content, source, surface, faces, groups);
   } else {
     throw InvalidInput(source + ": this is not an STL file: it neither begins with \"solid\" nor has a binary header");
   }
   faces.finish();
+  groups.finish(surface, faces.face_of_triangle());
   return surface;
 }
 

@@ -22,6 +22,7 @@ const std::vector<SurfaceFormat>& surface_formats() {
       {.name = "STL", .extensions = {".stl"}, .has_text_form = true, .parse = parse_stl, .write = write_stl},
       {.name = "PLY", .extensions = {".ply"}, .has_text_form = true, .parse = parse_ply, .write = write_ply},
       {.name = "VTP", .extensions = {".vtp"}, .parse = parse_surface_vtp, .write = write_surface_vtp},
+      {.name = "TetGen", .extensions = {".smesh"}, .is_text = true, .write = write_smesh},
       {.name = "legacy VTK", .extensions = {".vtk"}, .parse = parse_surface_vtk},
       {.name = "GLB",
        .extensions = {".glb"},

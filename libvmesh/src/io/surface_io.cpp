@@ -4,6 +4,9 @@
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 
+#include "lengths.h"
+#include "named_patches.h"
+
 namespace vmesh {
 namespace {
 
@@ -30,6 +33,11 @@ void check(const std::filesystem::path& path, const TriMesh& mesh, const MeshAtt
   };
   check_all(attributes.vertex, mesh.vertices.size(), "vertex");
   check_all(attributes.face, mesh.faces.size(), "face");
+  try {
+    io::check_named_patches(attributes);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(name + ": " + error.what());
+  }
 }
 
 void check(const std::filesystem::path& path, const SurfaceFormat& format, const TriMesh& mesh,
@@ -65,21 +73,11 @@ void check(const std::filesystem::path& path, const SurfaceFormat& format, Surfa
                       "VMESH_WITH_MESHOPTIMIZER); write it uncompressed");
 }
 
-bool is_length(const std::string& attribute) {
-  return attribute == "radius" || attribute == "distance" || attribute == "displacement" ||
-         attribute == "volume_distance";
-}
-
 // Between LPS and another space; the same in both directions.
 void convert(TriMesh& mesh, MeshAttributes& attributes, double scale, Space space) {
-  const Vec3 axes = space == Space::ras ? Vec3(-scale, -scale, scale) : Vec3(scale, scale, scale);
-  for (Vec3& p : mesh.vertices) p = p.cwiseProduct(axes);
-  for (auto* list : {&attributes.vertex, &attributes.face}) {
-    for (MeshAttribute& a : *list) {
-      if (!is_length(a.name)) continue;
-      for (double& value : a.values) value *= scale;
-    }
-  }
+  io::move_points(mesh.vertices, scale, space);
+  io::scale_lengths(attributes.vertex, scale);
+  io::scale_lengths(attributes.face, scale);
 }
 
 }  // namespace
@@ -126,15 +124,17 @@ void write_surface(const std::filesystem::path& path, const TriMesh& given, cons
 }
 
 LoadedSurface parse_surface(std::string_view content, const SurfaceFormat& format, const std::string& source) {
-  if (format.parse) return format.parse(content, source);
-  throw Unsupported(source + ": files of this kind are read by their names only");
+  if (!format.parse) throw Unsupported(source + ": files of this kind are read by their names only");
+  LoadedSurface surface = format.parse(content, source);
+  io::settle_patch_names(surface, source);
+  return surface;
 }
 
 LoadedSurface read_surface(const std::filesystem::path& path) {
   const SurfaceFormat& format = surface_format(path);
   if (format.read) return format.read(path);
   if (!format.parse) refuse_without(format.needs, path);
-  return format.parse(read_file(path), path.string());
+  return parse_surface(read_file(path), format, path.string());
 }
 
 void convert_to_internal(LoadedSurface& surface, const std::string& source, std::optional<LengthUnit> unit,

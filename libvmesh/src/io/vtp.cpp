@@ -65,6 +65,7 @@ struct VtpData {
                                            ///< then of lines, polygons, strips
   ScalarArrays field_arrays;               ///< of flat ends
   VtpCells vertices, lines, polygons, strips;
+  std::vector<std::string> patch_names;
   LengthUnit unit = LengthUnit::unknown;
   Space space = Space::unknown;
 
@@ -102,6 +103,7 @@ class VtpReader {
     for (const pugi::xml_node array : field.children()) {
       const std::string name = array.attribute("Name").value();
       if (is_end_section_array(name)) data_.field_arrays[name] = arrays_.numbers(array, VtpArrays::kAll);
+      if (name == "PatchNames") data_.patch_names = arrays_.texts(array);
       if (name != "SPACE" && name != "UNIT") continue;
       const std::string text = arrays_.text(array);
       if (name == "SPACE") data_.space = parse_space(text).value_or(data_.space);
@@ -300,6 +302,7 @@ LoadedSurface parse_surface_vtp(std::string_view content, const std::string& sou
   LoadedSurface surface;
   surface.unit = data.unit;
   surface.space = data.space;
+  surface.attributes.patch_names = std::move(data.patch_names);
   surface.mesh.vertices = std::move(data.points);
   FaceCollector faces(surface, source);
   const std::vector<std::size_t> cell_of_face =

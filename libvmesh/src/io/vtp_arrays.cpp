@@ -194,16 +194,30 @@ std::vector<double> VtpArrays::numbers(pugi::xml_node array, std::uint64_t count
   return values;
 }
 
+/// Up to `most` bytes of texts; what is no ASCII ends a text.
+std::string VtpArrays::characters(pugi::xml_node array, std::uint64_t most) {
+  const std::string_view format = array.attribute("format").value();
+  if (format == "binary" || format == "appended") return bytes(array, most);
+  std::string result;
+  for (const double code : words(array, most)) result += code > 0 && code < 128 ? static_cast<char>(code) : '\0';
+  return result;
+}
+
 std::string VtpArrays::text(pugi::xml_node array) {
   constexpr std::uint64_t kLongest = 256;
-  std::string result;
-  const std::string_view format = array.attribute("format").value();
-  if (format == "binary" || format == "appended") {
-    result = bytes(array, kLongest);
-  } else {
-    for (const double code : words(array, kLongest)) result += code > 0 && code < 128 ? static_cast<char>(code) : '\0';
-  }
+  const std::string result = characters(array, kLongest);
   return result.substr(0, result.find('\0'));
+}
+
+std::vector<std::string> VtpArrays::texts(pugi::xml_node array) {
+  std::vector<std::string> result;
+  std::string all = characters(array, kAll);
+  for (std::size_t begin = 0; begin < all.size();) {
+    const std::size_t end = std::min(all.find('\0', begin), all.size());
+    result.push_back(all.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return result;
 }
 
 }  // namespace vmesh::io

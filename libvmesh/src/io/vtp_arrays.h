@@ -23,10 +23,14 @@ class VtpArrays {
   /// The first text of a <DataArray type="String">; empty when there is none or it cannot be read.
   std::string text(pugi::xml_node array);
 
+  /// All texts of it, each ended by a zero.
+  std::vector<std::string> texts(pugi::xml_node array);
+
  private:
   [[noreturn]] void fail(pugi::xml_node array, const std::string& what) const;
   std::string_view appended(pugi::xml_node array) const;
   std::string bytes(pugi::xml_node array, std::uint64_t most);
+  std::string characters(pugi::xml_node array, std::uint64_t most);
   std::string plain(pugi::xml_node array, std::string_view& stored, bool base64, std::uint64_t most) const;
   std::string unpacked(pugi::xml_node array, std::string_view& stored, bool base64, std::uint64_t most) const;
   std::uint64_t header_word(std::string_view bytes, std::size_t i) const;

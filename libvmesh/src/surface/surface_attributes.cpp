@@ -40,7 +40,14 @@ MeshAttributes surface_attributes(const TriMesh& mesh, const std::vector<Centerl
   return attributes;
 }
 
-void add_cap_labels(const FlatEnds& ends, MeshAttributes& attributes) {
+std::string name_of_end(const FlatEnd& end, const std::vector<EndName>& names) {
+  for (const EndName& given : names) {
+    if (given.node == end.node) return given.name;
+  }
+  return "cap_" + std::to_string(end.label);
+}
+
+void add_cap_labels(const FlatEnds& ends, MeshAttributes& attributes, const std::vector<EndName>& names) {
   MeshAttribute face{"ModelFaceID", {}, true}, cap{"CapID", {}, true};
   for (const Index label : ends.cap_label) {
     face.values.push_back(1.0 + label);
@@ -48,6 +55,12 @@ void add_cap_labels(const FlatEnds& ends, MeshAttributes& attributes) {
   }
   attributes.face.push_back(std::move(face));
   attributes.face.push_back(std::move(cap));
+  attributes.patch_names = {"wall"};
+  for (const FlatEnd& end : ends.ends) {
+    while (attributes.patch_names.size() < end.label)  // ends that are not flat
+      attributes.patch_names.push_back("cap_" + std::to_string(attributes.patch_names.size()));
+    attributes.patch_names.push_back(name_of_end(end, names));
+  }
 }
 
 }  // namespace vmesh

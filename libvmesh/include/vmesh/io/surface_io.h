@@ -80,24 +80,28 @@ struct SurfaceWriteOptions {
 /// Writes a surface (given in mm and LPS) in the format of the extension, in the unit and frame of `metadata`, which
 /// are recorded (SPACE=LPS, UNIT=mm). Attributes named radius, distance, displacement and volume_distance are lengths.
 /// The bytes depend on the arguments alone, and the file appears complete or not at all.
+/// Patches have names if MeshAttributes says so: good ones (check_patch_names()), one for every ModelFaceID.
 ///   PLY  binary little-endian, or text; positions and normals in double, so that they come back to the bit; every
 ///        attribute; the face attribute EquiangleSkewness is named "quality", which MeshLab shows; attributes named
-///        red, green and blue are bytes, which all programs take for a colour
+///        red, green and blue are bytes, which all programs take for a colour; names of patches are comments
 ///   VTP  packed by zlib; every attribute; "radius" is named MaximumInscribedSphereRadius, "distance" Distance,
-///        "group" GroupIds, face "quality" Quality; point array Normals; the first attributes are the active ones
+///        "group" GroupIds, face "quality" Quality; point array Normals; the first attributes are the active ones;
+///        names of patches are the field data PatchNames
 ///   OBJ, OFF  positions with the digits they need to come back to the bit; no attributes; OBJ has normals, and groups
-///        by CapID: wall, cap_1, ...; else by ModelFaceID: face_1, ...; without either, surface
+///        by the names of patches; without names by CapID: wall, cap_1, ...; else by ModelFaceID: face_1, ...; without
+///        either, surface
 ///   STL  binary, in float, or text, whose positions come back to the bit, with a solid for each group of OBJ; no
 ///        attributes
+///   .smesh  TetGen: facets with the numbers of the groups of OBJ, from 1, as markers; no other attributes
 ///   GLB  binary glTF 2.0 in metres, y up (superior), z towards the front (anterior); vertices are shared by faces;
 ///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; with
 ///        a skin, bones, around the origin of the frame. Compressed by EXT_meshopt_compression: positions are rounded
 ///        to two millionths of their greatest coordinate (from the middle of the surface, or the origin with bones),
 ///        normals to a 4,000th, attributes that are no integers to 31 millionths; triangles are in another order
 /// In text, numbers have the digits they need to come back to the bit.
-/// Throws InvalidInput when an attribute or the skin has a wrong length or a face names a vertex that does not exist,
-/// Unsupported (extension, an encoding that the format does not have, a skin in another format than GLB or of more than
-/// 65,535 joints), WriteError.
+/// Throws InvalidInput when an attribute or the skin has a wrong length, a ModelFaceID no good name or a face names a
+/// vertex that does not exist, Unsupported (extension, an encoding that the format does not have, a skin in another
+/// format than GLB or of more than 65,535 joints), WriteError.
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes = {},
                    const SurfaceMetadata& metadata = {}, const SurfaceWriteOptions& options = {});
 
@@ -110,7 +114,9 @@ struct LoadedSurface {
 };
 
 /// Reads a surface by extension. Polygons are triangulated (triangulate_polygon()), lines and loose points are left
-/// out, equal corners of an STL file become one vertex. Needs at most 128 times the size of the file (compressed VTP:
+/// out, equal corners of an STL file become one vertex. Several groups of an
+/// OBJ file or solids of an STL file become patches: ModelFaceID from 1, and their names. Names that are not good
+/// (check_patch_names()) are left out with a warning. Needs at most 128 times the size of the file (compressed VTP:
 /// of its uncompressed data) plus a megabyte of memory, whatever the file says. A GLB file of write_surface() comes
 /// back in mm and LPS, vertex by vertex, with its attributes in lower case, but not its colours. Other GLB files and
 /// scenes are read by assimp in a child process, as assimp may crash on damaged files, and without that bound: all

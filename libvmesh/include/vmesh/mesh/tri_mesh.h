@@ -27,6 +27,8 @@ struct MeshAttribute {
 struct MeshAttributes {
   std::vector<MeshAttribute> vertex;  ///< each as long as TriMesh::vertices
   std::vector<MeshAttribute> face;    ///< each as long as TriMesh::faces
+  /// Names of the patches to which the face attribute ModelFaceID assigns faces, from 1; empty: they have none.
+  std::vector<std::string> patch_names = {};
 };
 
 /// Normal of face `f`, its length twice the face's area (mm^2).

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "vmesh/centerline/centerline.h"
@@ -15,7 +16,17 @@ MeshAttributes surface_attributes(const TriMesh& mesh, const std::vector<Centerl
                                   const std::vector<double>& radius, const std::vector<Opening>& openings,
                                   const Centerline& centerline);
 
-/// Adds SimVascular's face labels: ModelFaceID, 1 for the wall and from 2 on for caps, and CapID, -1 for the wall.
-void add_cap_labels(const FlatEnds& ends, MeshAttributes& attributes);
+/// What a user calls the end of a vessel.
+struct EndName {
+  Index node = kNone;  ///< of the centerline
+  std::string name;
+};
+
+/// The name given to the end, or "cap_" and its label.
+std::string name_of_end(const FlatEnd& end, const std::vector<EndName>& names);
+
+/// Adds SimVascular's face labels: ModelFaceID, 1 for the wall and from 2 on for caps, and CapID, -1 for the wall; and
+/// the names of these patches: "wall", then name_of_end().
+void add_cap_labels(const FlatEnds& ends, MeshAttributes& attributes, const std::vector<EndName>& names = {});
 
 }  // namespace vmesh

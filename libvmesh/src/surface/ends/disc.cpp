@@ -1,4 +1,4 @@
-#include "surface/ends/disc.h"
+#include "vmesh/surface/disc.h"
 
 #include <algorithm>
 #include <array>

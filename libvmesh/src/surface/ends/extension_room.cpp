@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "surface/ends/disc.h"
+#include "vmesh/surface/disc.h"
 
 namespace vmesh {
 namespace {

@@ -10,8 +10,8 @@
 #include "vmesh/edit/crossing_guard.h"
 #include "vmesh/surface/branch_labels.h"
 #include "vmesh/surface/defects.h"
+#include "vmesh/surface/disc.h"
 
-#include "surface/ends/disc.h"
 #include "surface/ends/extension_room.h"
 #include "surface/ends/opening_extension.h"
 #include "surface/ends/ring_moves.h"

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "vmesh/surface/defects.h"
+#include "vmesh/surface/disc.h"
 
-#include "surface/ends/disc.h"
 #include "surface/ends/opening_extension.h"
 #include "surface/ends/ring_moves.h"
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surface/ends/disc.h"
+#include "vmesh/surface/disc.h"
+
 #include "surface/tubes/stitch.h"
 
 namespace vmesh {

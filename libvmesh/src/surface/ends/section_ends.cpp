@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "vmesh/core/text.h"
+#include "vmesh/surface/disc.h"
 #include "vmesh/surface/metric_skewness.h"
 
-#include "surface/ends/disc.h"
 #include "surface/ends/opening_extension.h"
 #include "surface/ends/ring_moves.h"
 

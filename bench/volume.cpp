@@ -1,0 +1,162 @@
+// Volume meshes around centerlines, over files and over random trees: a table in Markdown, and one closing line. Usage:
+//   bench_volume [--round] [--around N] [--layers N] [--shell N] [--rotate] [--all] [FILE...] [--plausible FIRST COUNT]
+// Ends are flat unless --round. --rotate makes each random tree with the next of a list of options for its surface and
+// its layers; of random trees, only those that were refused are listed, unless --all. A case that is not sound, or is
+// refused without a place, makes the exit code 1.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "vmesh/io/centerline_io.h"
+#include "vmesh/production/produce.h"
+#include "vmesh/solid/make_volume.h"
+#include "vmesh/surface/surface_attributes.h"
+
+#include "random_vessels.h"
+#include "rotated_options.h"
+
+namespace {
+
+using namespace vmesh;
+
+struct Settings {
+  bool all = false, rotate = false;
+  ProductionOptions production;
+  VolumeOptions volume;
+};
+
+struct Tally {
+  std::size_t cases = 0, unsound_surfaces = 0, refused = 0, failed = 0;
+  double least_dihedral = 180, seconds = 0;
+};
+
+/// In turn, with another period than that of rotated_options().
+VolumeOptions rotated_volume(std::uint32_t seed) {
+  VolumeOptions options;
+  switch (seed % 7) {
+    case 1:
+      options.layers.count = 1;
+      break;
+    case 2:
+      options.layers.count = 0;
+      break;
+    case 3:
+      options.layers = {.count = 8, .thickness = 0.4, .growth = 1.3};
+      break;
+    case 4:
+      options.shell.count = 2;
+      break;
+    case 5:
+      options.layers.first_mm = 0.02;
+      break;
+    case 6:
+      options.core_size = 0.5;
+      break;
+    default:
+      break;
+  }
+  return options;
+}
+
+VesselWall wall_of(const Production& production, const Centerline& centerline) {
+  const GenerateResult& result = production.result;
+  MeshAttributes attributes =
+      surface_attributes(result.mesh, result.binding, result.radius, result.openings, centerline);
+  if (!production.ends.ends.empty()) add_cap_labels(production.ends, attributes);
+  return vessel_wall(result.mesh, attributes);
+}
+
+void print(const std::string& name, const VesselWall& wall, const VolumeResult& result, double seconds) {
+  const VolumeMeasures measures = measure_volume(result.mesh);
+  std::printf(
+      "| %s | %zu | %zu | %zu | %zu | %.1f / %.2f | %.1f | %.1f | %.3f / %.3f | %.3f | (%.2f %.2f %.2f) | %.2f |",
+      name.c_str(), wall.mesh.faces.size(), result.mesh.wedges.size(), result.mesh.pyramids.size(),
+      result.mesh.tetrahedra.size(), 100 * result.layers.full_share, result.layers.least_share,
+      measures.min_dihedral_deg, measures.max_dihedral_deg, measures.least_radius_ratio, measures.mean_radius_ratio,
+      measures.least_scaled_jacobian, measures.worst_tetrahedron.x(), measures.worst_tetrahedron.y(),
+      measures.worst_tetrahedron.z(), seconds);
+  for (const VolumeDefect& defect : result.defects) std::printf(" %s;", defect.message.c_str());
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+void examine(const std::string& name, const Centerline& centerline, const ProductionOptions& production_options,
+             const VolumeOptions& options, bool show, Tally& tally) {
+  ++tally.cases;
+  try {
+    const Production production = produce(centerline, {}, production_options);
+    if (!production.result.is_sound()) {
+      ++tally.unsound_surfaces;
+      return;
+    }
+    const VesselWall wall = wall_of(production, centerline);
+    const auto start = std::chrono::steady_clock::now();
+    const VolumeResult result = make_volume(wall, options);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    tally.seconds += seconds;
+    tally.refused += !result.is_sound();
+    for (const VolumeDefect& defect : result.defects) tally.failed += defect.kind != VolumeDefectKind::not_filled;
+    if (result.is_sound())
+      tally.least_dihedral = std::min(tally.least_dihedral, measure_volume(result.mesh).min_dihedral_deg);
+    if (show || !result.is_sound()) print(name, wall, result, seconds);
+  } catch (const std::exception& error) {
+    ++tally.refused;
+    ++tally.failed;
+    std::printf("| %s | refused: %s |\n", name.c_str(), error.what());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  settings.production.ends = EndShape::flat;
+  Tally tally;
+  std::printf(
+      "| case | faces | wedges | pyramids | tetrahedra | full layers, %% of the wall / least | least angle | largest | "
+      "radius ratio "
+      "least / mean | least Jacobian of wedges | worst tetrahedron | s | defects "
+      "|\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|--:|---|\n");
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--all") {
+      settings.all = true;
+    } else if (word == "--rotate") {
+      settings.rotate = true;
+    } else if (word == "--round") {
+      settings.production.ends = EndShape::round;
+    } else if (word == "--around" && i + 1 < argc) {
+      settings.production.growth.around = std::atoi(argv[++i]);
+    } else if (word == "--layers" && i + 1 < argc) {
+      settings.volume.layers.count = std::atoi(argv[++i]);
+    } else if (word == "--shell" && i + 1 < argc) {
+      settings.volume.shell.count = std::atoi(argv[++i]);
+    } else if (word == "--plausible" && i + 2 < argc) {
+      const auto first = static_cast<std::uint32_t>(std::atoi(argv[i + 1]));
+      const auto count = static_cast<std::uint32_t>(std::atoi(argv[i + 2]));
+      for (std::uint32_t seed = first; seed < first + count; ++seed) {
+        ProductionOptions production = settings.production;
+        if (settings.rotate) {
+          production.growth = testing::rotated_options(seed);
+          production.growth.open_ends = {};
+        }
+        examine("plausible_" + std::to_string(seed), testing::plausible_tree(seed), production,
+                settings.rotate ? rotated_volume(seed) : settings.volume, settings.all, tally);
+      }
+      i += 2;
+    } else {
+      try {
+        const Centerline centerline = load_centerline(word).cleaned.centerline;
+        examine(word.substr(word.rfind('/') + 1), centerline, settings.production, settings.volume, true, tally);
+      } catch (const std::exception& error) {
+        std::printf("| %s | not read: %s |\n", word.c_str(), error.what());
+      }
+    }
+  }
+  std::printf(
+      "\n%zu cases, %zu surfaces not sound, %zu meshes refused, %zu of them wrong; least angle %.2f degrees; %.1f s\n",
+      tally.cases, tally.unsound_surfaces, tally.refused, tally.failed, tally.least_dihedral, tally.seconds);
+  return tally.failed > 0 ? 1 : 0;
+}

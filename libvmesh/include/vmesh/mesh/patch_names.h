@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vmesh {
+
+/// Whether a patch or a region can be called so in every file format: letters, digits, '_', '-' and '.', a letter
+/// first, at most 60 of them.
+bool is_patch_name(std::string_view name);
+
+/// Throws InvalidInput if a name is none, or differs from another one in case alone or not at all. `word` and `words`
+/// name the kind in the message: "patch", "patches".
+void check_patch_names(const std::vector<std::string>& names, const char* word, const char* words);
+
+}  // namespace vmesh

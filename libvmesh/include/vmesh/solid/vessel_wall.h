@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vmesh/mesh/tri_mesh.h"
+
+namespace vmesh {
+
+/// A closed surface around vessels, divided into patches: the wall, and flat caps over ends of vessels.
+struct VesselWall {
+  TriMesh mesh;
+  std::vector<double> radius;            ///< of the vessel at every vertex, mm
+  std::vector<Index> patch;              ///< of every face, in patch_names; 0: wall; all others are caps
+  std::vector<std::string> patch_names;  ///< "wall", then "cap_1" ...
+};
+
+/// A surface with the attributes of `vmesh generate`: "radius" of vertices, and "ModelFaceID" of faces, 1 for the wall,
+/// which all faces are without it. Patches have the names that the attributes give
+/// them; else the cap with number k + 1 is called cap_k. Throws InvalidInput without radii, for
+/// radii that are not positive and for numbers of faces that are not positive integers.
+VesselWall vessel_wall(TriMesh mesh, const MeshAttributes& attributes);
+
+}  // namespace vmesh

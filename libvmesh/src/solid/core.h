@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vmesh/mesh/tri_mesh.h"
+#include "vmesh/mesh/volume_mesh.h"
+
+namespace vmesh {
+
+/// A closed surface to be filled with tetrahedra, and how long their edges are to be at every vertex (mm).
+struct CoreSurface {
+  TriMesh mesh;            ///< the last faces are those of caps
+  std::vector<Index> cap;  ///< patches of those
+  std::vector<double> size;
+};
+
+/// Tetrahedra within a closed surface, whose faces are theirs.
+struct Core {
+  std::vector<Vec3> added;              ///< points inside
+  std::vector<Tetrahedron> tetrahedra;  ///< corners: vertices of the surface, then added points
+  std::string failure;                  ///< why there are none; else empty
+};
+
+/// By TetGen. Faces and vertices of the surface are kept. Throws Unsupported in a build without it.
+Core fill_core(const CoreSurface& surface);
+
+}  // namespace vmesh

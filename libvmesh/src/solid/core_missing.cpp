@@ -1,0 +1,15 @@
+#include "vmesh/core/error.h"
+#include "vmesh/solid/make_volume.h"
+
+#include "solid/core.h"
+
+namespace vmesh {
+
+bool can_mesh_lumen() { return false; }
+
+Core fill_core(const CoreSurface&) {
+  throw Unsupported(
+      "this build has no TetGen, which fills lumens with tetrahedra (libtet1.5-dev); a shell alone needs none");
+}
+
+}  // namespace vmesh

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "solid/layer_stack.h"
+
+namespace vmesh {
+
+/// For every vertex of the wall, whether the layers there, made `reach` times as thick, would run into those of another
+/// place, into the wall or into a cap. Only layers at vertices that `has_changed` are tested against all others. Exact
+/// predicates.
+std::vector<char> vertices_without_room(const WallFrame& frame, const LayerStack& stack, double reach,
+                                        const std::vector<char>& has_changed);
+
+}  // namespace vmesh

@@ -1,0 +1,160 @@
+#include "vmesh/solid/make_volume.h"
+
+#include <cmath>
+
+#include "vmesh/core/error.h"
+#include "vmesh/core/text.h"
+
+#include "solid/core.h"
+#include "solid/core_improvement.h"
+#include "solid/layer_stack.h"
+#include "solid/volume_assembly.h"
+#include "solid/wall_frame.h"
+
+namespace vmesh {
+namespace {
+
+constexpr double kLeastGrowth = 0.5, kMostGrowth = 5;
+// Tetrahedra with an angle of less than 10 degrees, see BadPlaces, are worth thinner layers, that many times.
+constexpr double kGoodEnough = 0.174;
+constexpr int kThinnings = 4;
+
+void check_layers(const LayerOptions& options, const std::string& what) {
+  if (options.count < 0 || options.count > kMostLayers)
+    throw InvalidInput(what + ": their number must be from 0 to " + std::to_string(kMostLayers));
+  if (options.count == 0) return;
+  if (!(options.growth >= kLeastGrowth && options.growth <= kMostGrowth))
+    throw InvalidInput(what + formatted(": their growth must be from %g to %g", kLeastGrowth, kMostGrowth));
+  if (!(options.first_mm >= 0 && std::isfinite(options.first_mm)))
+    throw InvalidInput(what + ": the thickness of the first must be positive");
+  if (!(options.first_mm > 0 || (options.thickness > 0 && std::isfinite(options.thickness))))
+    throw InvalidInput(what + ": their thickness must be positive");
+}
+
+void check_options(const VolumeOptions& options) {
+  check_layers(options.layers, "layers");
+  check_layers(options.shell, "layers of the shell");
+  if (options.shell_only && options.shell.count == 0) throw InvalidInput("a shell alone needs a layer at least");
+  if (!(options.core_size >= 0 && std::isfinite(options.core_size)))
+    throw InvalidInput("the size of cells in the core must be positive");
+  if (!options.shell_only && !can_mesh_lumen()) fill_core({});  // throws
+}
+
+class VolumeMaker {
+ public:
+  VolumeMaker(const VesselWall& wall, const VolumeOptions& options, const Progress& progress)
+      : wall_(wall), options_(options), progress_(progress), frame_(frame_of(wall)) {
+    parts_.wall = &wall_;
+    parts_.frame = &frame_;
+    parts_.with_lumen = !options.shell_only;
+    lap("caps");
+  }
+
+  VolumeResult run() {
+    parts_.layers = lay(parts_.with_lumen ? options_.layers : LayerOptions{}, LayerSide::inside);
+    parts_.shell = lay(options_.shell, LayerSide::outside);
+    lap("layers");
+    Filling filling;
+    if (parts_.with_lumen) filling = fill();
+    result_.layers = summarize(frame_, parts_.layers);
+    result_.shell = summarize(frame_, parts_.shell);
+    if (!filling.core.failure.empty()) {
+      result_.defects.push_back({VolumeDefectKind::not_filled, filling.surface.mesh.vertices[0], 1,
+                                 "the core could not be divided into tetrahedra: " + filling.core.failure});
+      return std::move(result_);
+    }
+    result_.mesh = assemble(parts_, filling.surface, filling.core);
+    check();
+    lap("proof");
+    return std::move(result_);
+  }
+
+ private:
+  struct Filling {
+    CoreSurface surface;
+    Core core;
+    BadPlaces bad;
+  };
+
+  // Where tetrahedra are bad, layers are made thinner, as long as that helps.
+  Filling fill() {
+    Filling best = fill_once(parts_.layers);
+    LayerStack stack = parts_.layers;
+    Filling last = best;
+    for (int round = 0; round < kThinnings; ++round) {
+      const std::vector<Index> due = vertices_with_layers(stack, last.bad.vertices);
+      if (due.empty()) break;
+      stack = thinned(frame_, stack, due, progress_);
+      last = fill_once(stack);
+      if (last.core.failure.empty() && last.bad.least > best.bad.least) {
+        best = last;
+        parts_.layers = stack;
+      }
+    }
+    return best;
+  }
+
+  Filling fill_once(const LayerStack& stack) {
+    report_progress(progress_, "core", 0);
+    Filling filling;
+    filling.surface = core_surface(frame_, stack, options_.core_size);
+    filling.core = fill_core(filling.surface);
+    lap("core");
+    improve_core(filling.surface, filling.core);
+    filling.bad = bad_places(filling.surface, filling.core, kGoodEnough);
+    lap("improvement");
+    return filling;
+  }
+
+  std::vector<Index> vertices_with_layers(const LayerStack& stack, const std::vector<Index>& vertices) const {
+    std::vector<Index> due;
+    for (const Index v : vertices) {
+      if (v < frame_.position.size() && stack.count() > 0 && stack.reached_mm[v] > stack.least_mm[v]) due.push_back(v);
+    }
+    return due;
+  }
+
+  LayerStack lay(const LayerOptions& options, LayerSide side) const {
+    return options.count > 0 ? lay_layers(frame_, options, side, progress_) : without_layers(frame_, side);
+  }
+
+  void check() {
+    report_progress(progress_, "check", 0);
+    result_.defects = find_volume_defects(result_.mesh);
+    if (!result_.defects.empty() || !parts_.with_lumen) return;
+    result_.defects = compare_with_wall(result_.mesh, "lumen", wall_);
+  }
+
+  void lap(const char* stage) { clock_.lap(stage, result_.stages); }
+
+  const VesselWall& wall_;
+  const VolumeOptions& options_;
+  const Progress& progress_;
+  StageClock clock_;
+  WallFrame frame_;
+  VolumeParts parts_;
+  VolumeResult result_;
+};
+
+}  // namespace
+
+std::string_view to_string(LayerLimit limit) {
+  switch (limit) {
+    case LayerLimit::gradation:
+      return "gradation";
+    case LayerLimit::shape:
+      return "shape";
+    case LayerLimit::room:
+      return "room";
+    case LayerLimit::none:
+      break;
+  }
+  return "none";
+}
+
+VolumeResult make_volume(const VesselWall& wall, const VolumeOptions& options, const Progress& progress) {
+  check_options(options);
+  return VolumeMaker(wall, options, progress).run();
+}
+
+}  // namespace vmesh

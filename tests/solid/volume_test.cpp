@@ -1,0 +1,144 @@
+#include <cstring>
+
+#include <tbb/global_control.h>
+
+#include "vmesh/core/error.h"
+#include "vmesh/solid/make_volume.h"
+#include "vmesh/synth/synthetic_tree.h"
+
+#include "random_vessels.h"
+#include "vessels.h"
+
+namespace vmesh {
+namespace {
+
+using namespace testing;
+
+/// Tests of lumens, which some builds cannot fill.
+class Volume : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!can_mesh_lumen()) GTEST_SKIP() << "built without TetGen";
+  }
+};
+
+TEST_F(Volume, OfATube) {
+  const VesselWall wall = grown_wall(tube());
+  const VolumeResult result = make_volume(wall);
+  expect_sound_lumen(wall, result);
+  const auto faces = static_cast<std::size_t>(std::count(wall.patch.begin(), wall.patch.end(), 0u));
+  EXPECT_EQ(result.mesh.wedges.size(), 4 * faces);
+  EXPECT_EQ(result.mesh.pyramids.size(), 0u);
+  EXPECT_EQ(result.mesh.region_names, std::vector<std::string>{"lumen"});
+  EXPECT_EQ(result.mesh.patch_names, (std::vector<std::string>{"wall", "cap_1", "cap_2"}));
+  EXPECT_EQ(result.layers.full_share, 1);
+}
+
+TEST_F(Volume, OfABend) {
+  const VesselWall wall = grown_wall(bend(), EndShape::flat, 12);
+  expect_sound_lumen(wall, make_volume(wall));
+}
+
+TEST_F(Volume, OfABifurcation) {
+  for (const int around : {4, 6, 12}) {
+    const VesselWall wall = grown_wall(bifurcation(), EndShape::flat, around);
+    const VolumeResult result = make_volume(wall);
+    expect_sound_lumen(wall, result);
+    EXPECT_GE(result.layers.full_share, 0.95) << around;
+  }
+}
+
+TEST_F(Volume, OfATaperingVessel) {
+  const VesselWall wall = grown_wall(taper());
+  expect_sound_lumen(wall, make_volume(wall));
+}
+
+TEST_F(Volume, OfTwoVesselsThatNearlyTouch) {
+  const VesselWall wall = grown_wall(neighbours());
+  expect_sound_lumen(wall, make_volume(wall));
+}
+
+TEST_F(Volume, OfRoundEnds) {
+  const VesselWall wall = grown_wall(bifurcation(), EndShape::round);
+  const VolumeResult result = make_volume(wall);
+  expect_sound_lumen(wall, result);
+  EXPECT_EQ(result.mesh.patch_names, std::vector<std::string>{"wall"});
+  for (const BoundaryFace& face : result.mesh.boundary) EXPECT_TRUE(face.is_triangle());
+}
+
+TEST_F(Volume, WithoutLayersCapsKeepTheirTriangles) {
+  const VesselWall wall = grown_wall(bifurcation());
+  const VolumeResult result = make_volume(wall, {.layers = {}});
+  expect_sound_lumen(wall, result);
+  EXPECT_TRUE(result.mesh.wedges.empty());
+  EXPECT_EQ(result.mesh.boundary.size(), wall.mesh.faces.size());
+}
+
+TEST_F(Volume, OfSyntheticTrees) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const VesselWall wall = grown_wall(synthetic_tree({.vertices = 60, .seed = seed}));
+    const VolumeResult result = make_volume(wall);
+    expect_sound_lumen(wall, result);
+    EXPECT_GE(result.layers.full_share, 0.95) << seed;
+  }
+}
+
+// Short, thick branches at all angles; some of their surfaces have vertices that no layer can leave.
+TEST_F(Volume, OfRandomTreesWithThickLayers) {
+  std::size_t pyramids = 0;
+  for (const std::uint32_t seed : {5002u, 5007u, 5014u, 5019u, 5033u, 5091u}) {
+    const VesselWall wall = grown_wall(plausible_tree(seed));
+    const VolumeResult result = make_volume(wall, {.layers = {.count = 5, .thickness = 0.45, .growth = 1.3}});
+    expect_sound_lumen(wall, result);
+    pyramids += result.mesh.pyramids.size();
+    for (const ThinPlace& place : result.layers.thin) {
+      EXPECT_LT(place.reached_mm, kFullLayers * place.asked_mm);
+      EXPECT_NE(place.limit, LayerLimit::none);
+    }
+  }
+  EXPECT_GT(pyramids, 0u);
+}
+
+TEST_F(Volume, TheWallKeepsItsVertices) {
+  const VesselWall wall = grown_wall(bifurcation(), EndShape::round);
+  const VolumeResult result = make_volume(wall);
+  ASSERT_GE(result.mesh.points.size(), wall.mesh.vertices.size());
+  for (std::size_t v = 0; v < wall.mesh.vertices.size(); ++v) EXPECT_EQ(result.mesh.points[v], wall.mesh.vertices[v]);
+}
+
+TEST_F(Volume, SmallerCellsOnRequest) {
+  const VesselWall wall = grown_wall(tube());
+  const std::size_t plain = make_volume(wall).mesh.tetrahedra.size();
+  const VolumeResult fine = make_volume(wall, {.core_size = 0.25});
+  expect_sound_lumen(wall, fine);
+  EXPECT_GT(fine.mesh.tetrahedra.size(), 4 * plain);
+}
+
+TEST_F(Volume, DoesNotDependOnTheNumberOfThreads) {
+  const VesselWall wall = grown_wall(plausible_tree(5003));
+  const auto make = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return make_volume(wall, {.shell = {.count = 2}}).mesh;
+  };
+  const VolumeMesh one = make(1), four = make(4);
+  ASSERT_EQ(one.points.size(), four.points.size());
+  EXPECT_EQ(std::memcmp(one.points.data(), four.points.data(), one.points.size() * sizeof(Vec3)), 0);
+  EXPECT_EQ(one.tetrahedra, four.tetrahedra);
+  EXPECT_EQ(one.wedges, four.wedges);
+  EXPECT_EQ(one.pyramids, four.pyramids);
+}
+
+TEST_F(Volume, StopsOnRequest) {
+  const VesselWall wall = grown_wall(tube());
+  EXPECT_THROW(make_volume(wall, {}, [](std::string_view, double) { return false; }), Cancelled);
+}
+
+TEST(VolumeWithoutTetGen, IsRefusedButShellsAreNot) {
+  if (can_mesh_lumen()) GTEST_SKIP() << "built with TetGen";
+  const VesselWall wall = grown_wall(tube());
+  EXPECT_THROW(make_volume(wall), Unsupported);
+  EXPECT_TRUE(make_volume(wall, {.shell = {.count = 1}, .shell_only = true}).is_sound());
+}
+
+}  // namespace
+}  // namespace vmesh
