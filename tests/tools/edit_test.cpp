@@ -2,8 +2,10 @@
 
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/io/volume_io.h"
 #include "vmesh/mesh/find_attribute.h"
 #include "vmesh/mesh/topology.h"
+#include "vmesh/solid/volume_check.h"
 
 #include "run_vmesh.h"
 
@@ -45,6 +47,28 @@ TEST_F(Edit, NarrowsAVesselAndItsSurfaceFollows) {
   ASSERT_EQ(vmesh({"generate", "@narrow.json", "-o", "@grown.ply", "--around", "24"}).exit_code, 0);
   const double volume = enclosed_volume(read_surface(path("grown.ply")).mesh);
   EXPECT_NEAR(enclosed_volume(after.mesh), volume, 0.02 * volume);  // what twelve around cut off: 4.5 %, and balance
+}
+
+TEST_F(Edit, AVolumeFollows) {
+  ASSERT_EQ(vmesh({"volume", "@line.swc", "-o", "@line.vtu", "--wall-thickness", "0.2", "--wall-only"}).exit_code, 0);
+  const Outcome run = vmesh({"edit", "@line.swc", "-o", "@narrow.json", "--stenosis", "2,16,0.5", "--follow",
+                             "@line.vtu", "--follow-output", "@narrow.vtu"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const VolumeMesh before = read_volume(path("line.vtu")).mesh, after = read_volume(path("narrow.vtu")).mesh;
+  EXPECT_EQ(after.wedges, before.wedges);
+  EXPECT_TRUE(find_volume_defects(after).empty());
+  ASSERT_EQ(after.points.size(), before.points.size());
+  for (std::size_t i = 0; i < before.points.size(); ++i) {
+    const double d = std::abs(before.points[i].z() - 20),
+                 factor = d < 8 ? 1 - 0.5 * (1 + std::cos(M_PI * d / 8)) / 2 : 1;
+    EXPECT_NEAR(after.points[i].head<2>().norm(), factor * before.points[i].head<2>().norm(), 1e-9);
+  }
+  const std::vector<std::string> files = this->files();
+  EXPECT_EQ(vmesh({"edit", "@line.swc", "-o", "@out.json", "--dilate", "2,1,10", "--dilate", "1,1,10", "--follow",
+                   "@line.vtu", "--follow-output", "@out.vtu"})
+                .exit_code,
+            7);
+  EXPECT_EQ(this->files(), files);
 }
 
 TEST_F(Edit, RemovesBranchesAndScales) {

@@ -1,9 +1,12 @@
 #include "vmesh/centerline/edits.h"
 #include "vmesh/core/text.h"
 #include "vmesh/io/sha256.h"
+#include "vmesh/io/volume_io.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/solid/volume_check.h"
 #include "vmesh/surface/followed_surface.h"
+#include "vmesh/volume/vessel_field.h"
 
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
@@ -57,10 +60,16 @@ void add_options(CLI::App& verb, EditArguments& arguments) {
       ->allow_extra_args(false);
   add_number(verb, "--scale", arguments.edit.scale, 1e-6, 1e6, "of all lengths, about the origin");
   verb.add_option("--follow", arguments.follow.path,
-                  "surface that vmesh grew around the centerline: moved with it, the triangles stay (.ply, .vtp)");
+                  "surface that vmesh grew around the centerline, or volume mesh: moved with it, faces and cells stay "
+                  "(.ply, .vtp, .vtu)");
   add_reading(verb, arguments.follow, "follow-");
   verb.add_option("--follow-output", arguments.follow_output, "where to write it")->type_name(kSurfaceFile);
   add_writing(verb, arguments.writing);
+}
+
+bool follows_volume(const EditArguments& arguments) {
+  const VolumeFormat* format = find_volume_format(arguments.follow.path);
+  return format != nullptr && format->is_read();
 }
 
 void check_arguments(const EditArguments& arguments) {
@@ -69,7 +78,7 @@ void check_arguments(const EditArguments& arguments) {
   check_writing(arguments.output, arguments.writing);
   std::vector<PlannedOutput> outputs;
   for (const std::filesystem::path& file : files_of(arguments.output)) outputs.push_back({file, Kind::centerline});
-  outputs.push_back({arguments.follow_output, Kind::surface});
+  outputs.push_back({arguments.follow_output, follows_volume(arguments) ? Kind::volume : Kind::surface});
   outputs.push_back({arguments.common.json, Kind::summary});
   check_outputs(outputs, files_of({&arguments.input, &arguments.follow}));
 }
@@ -112,6 +121,35 @@ MeshAttributes attributes_after(const LoadedSurface& surface, const TriMesh& mov
   return attributes;
 }
 
+/// The places of all points of a volume, those of the nearest vessels.
+std::vector<CenterlineBinding> nearest_places(const VolumeMesh& mesh, const Centerline& centerline) {
+  const VesselField field(centerline);
+  std::vector<CenterlineBinding> places;
+  for (const Vec3& p : mesh.points) {
+    const FieldSample sample = field.sample_global(p);
+    places.push_back({sample.cone, sample.t});
+  }
+  return places;
+}
+
+struct FollowedVolume {
+  LoadedVolume volume;
+  std::vector<std::string> problems;
+};
+
+FollowedVolume follow_volume(const EditArguments& arguments, const Centerline& centerline, Console& console) {
+  FollowedVolume followed{read_volume(arguments.follow.path), {}};
+  console.warn(followed.volume.warnings);
+  return naming(arguments.follow.path, [&] {
+    if (followed.volume.unit != LengthUnit::mm || followed.volume.space != Space::lps)
+      throw InvalidInput("volumes are followed in millimetres and LPS, as vmesh volume writes them by default");
+    VolumeMesh& mesh = followed.volume.mesh;
+    mesh.points = follow_edit(mesh.points, nearest_places(mesh, centerline), centerline, arguments.edit);
+    for (const VolumeDefect& defect : find_volume_defects(mesh)) followed.problems.push_back(defect.message);
+    return std::move(followed);
+  });
+}
+
 struct Followed {
   TriMesh mesh;
   MeshAttributes attributes;
@@ -139,10 +177,16 @@ int run(const EditArguments& arguments, Console& console) {
       arguments.input.path, [&] { return edit_centerline(centerline, arguments.edit, loaded.cleaned.end_sections); });
   stop_if_interrupted();
   Followed followed;
-  if (!arguments.follow.path.empty()) followed = follow(arguments, centerline, console);
+  std::optional<FollowedVolume> volume;
+  if (follows_volume(arguments)) {
+    volume = follow_volume(arguments, centerline, console);
+    followed.problems = volume->problems;
+  } else if (!arguments.follow.path.empty()) {
+    followed = follow(arguments, centerline, console);
+  }
   for (const std::string& problem : followed.problems)
     console.error(arguments.follow.path.string() + ": cannot follow: " + problem +
-                  "; nothing is written. Change less, or grow a surface around the edited centerline");
+                  "; nothing is written. Change less, or make a mesh of the edited centerline");
   if (!followed.problems.empty()) return kDefective;
 
   std::string options = "edit" + arguments.text;
@@ -155,9 +199,16 @@ int run(const EditArguments& arguments, Console& console) {
   console.log("wrote " + arguments.output.string() + ": " + std::to_string(edited.centerline.nodes().size()) +
               " nodes, were " + std::to_string(centerline.nodes().size()));
   if (arguments.follow.path.empty()) return kOk;
-  write_surface(arguments.follow_output, followed.mesh, followed.attributes,
-                {generator_name(), options, file_name_of(arguments.follow), sha256_of(arguments.follow)},
-                arguments.writing);
+  const std::string follow_name = file_name_of(arguments.follow), follow_sha256 = sha256_of(arguments.follow);
+  if (volume) {
+    write_volume(
+        arguments.follow_output, volume->volume.mesh,
+        {generator_name(), options, follow_name, follow_sha256, arguments.writing.unit, arguments.writing.space},
+        volume->volume.attributes);
+  } else {
+    write_surface(arguments.follow_output, followed.mesh, followed.attributes,
+                  {generator_name(), options, follow_name, follow_sha256}, arguments.writing);
+  }
   console.log("wrote " + arguments.follow_output.string());
   return kOk;
 }
