@@ -18,6 +18,8 @@ constexpr double kLeastGrowth = 0.5, kMostGrowth = 5;
 // Tetrahedra with an angle of less than 10 degrees, see BadPlaces, are worth thinner layers, that many times.
 constexpr double kGoodEnough = 0.174;
 constexpr int kThinnings = 4;
+// A thinning that makes the worst tetrahedron better by less than this is the last.
+constexpr double kLeastThinningGain = 1.05;
 
 void check_layers(const LayerOptions& options, const std::string& what) {
   if (options.count < 0 || options.count > kMostLayers)
@@ -86,10 +88,9 @@ class VolumeMaker {
       if (due.empty()) break;
       stack = thinned(frame_, stack, due, progress_);
       last = fill_once(stack);
-      if (last.core.failure.empty() && last.bad.least > best.bad.least) {
-        best = last;
-        parts_.layers = stack;
-      }
+      if (!last.core.failure.empty() || last.bad.least < kLeastThinningGain * best.bad.least) break;
+      best = last;
+      parts_.layers = stack;
     }
     return best;
   }
