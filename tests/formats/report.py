@@ -229,6 +229,7 @@ KINDS = {
         + (".graphml", ".gexf", ".tre")
     ),
     "image": (),
+    "volume": (),
 }
 
 
@@ -258,7 +259,7 @@ class Table:
         groups = {}
         for form, way, program, points, faces, names, place in self.rows:
             ways = way.split(", ")
-            kind = next((k for k in ("centerline", "image") if k in ways or form in KINDS.get(k, ())), "surface")
+            kind = next((k for k in KINDS if k in ways or form in KINDS.get(k, ())), "surface")
             details = ", ".join(w for w in ways[1:] if w != kind)
             group = groups.setdefault((ways[0], kind, form), {"programs": {}, "names": "-", "places": []})
             known = group["programs"].setdefault("files of others" if program.startswith("as ") else program, [])

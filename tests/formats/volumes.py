@@ -112,7 +112,7 @@ def check_vtk(table, vtk, volumes):
 
     table.check(".vtu", "out, volume", vtk.name, lambda: volume("tets.vtu", 1e-12))  # rounding
     # Quads within need not be plane, and VTK does not cut those of two neighbours alike.
-    table.check(".vtu", "out, volume with wedges", vtk.name, lambda: volume("bent.vtu", 1e-2))
+    table.check(".vtu", "out, volume, wedges", vtk.name, lambda: volume("bent.vtu", 1e-2))
     table.check("mesh-complete", "out, volume", vtk.name, mesh_complete)
 
 

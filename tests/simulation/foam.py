@@ -148,7 +148,7 @@ class Case:
 
 def check_tube(vmesh, folder, table):
     case = Case(os.path.join(folder, "tube"))
-    vmesh.volume("tube", case.mesh_folder, "--around", 24, "--output-unit", "m")
+    vmesh.volume("tube", case.mesh_folder, "--around", 32, "--output-unit", "m")
     figures = case.check_mesh()
     mesh, area, flow, pressure = case.flow()
     along = mesh.cell_centres()[:, 2]

@@ -353,9 +353,16 @@ Json openings_json(const GenerateResult& result) {
 
 Json caps_json(const FlatEnds& ends, const std::vector<EndName>& names) {
   return list_json(ends.ends, [&](const FlatEnd& end) {
-    return Json{{"name", name_of_end(end, names)}, {"cap_id", end.label},           {"model_face_id", end.label + 1}, {"node", end.node},
-                {"center", to_json(end.center)}, {"normal", to_json(end.normal)},  {"area_mm2", end.area},
-                {"capped", end.capped},          {"at_section", end.at_section},   {"extension_radii", end.extension}};
+    return Json{{"name", name_of_end(end, names)},
+                {"cap_id", end.label},
+                {"model_face_id", end.label + 1},
+                {"node", end.node},
+                {"center", to_json(end.center)},
+                {"normal", to_json(end.normal)},
+                {"area_mm2", end.area},
+                {"capped", end.capped},
+                {"at_section", end.at_section},
+                {"extension_radii", end.extension}};
   });
 }
 

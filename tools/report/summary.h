@@ -6,6 +6,7 @@
 #include "vmesh/fit/fit_surface.h"
 #include "vmesh/surface/deviation.h"
 #include "vmesh/surface/flat_ends.h"
+#include "vmesh/surface/surface_attributes.h"
 #include "vmesh/volume/contacts.h"
 
 #include "report/json.h"

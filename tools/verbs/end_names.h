@@ -17,8 +17,8 @@ namespace vmesh::tool {
 void add_end_names(CLI::App& verb, EndNameArguments& arguments);
 
 /// Reads the table, if any. Throws InvalidInput for what is neither "NODE=NAME" nor a row of the table, for nodes that
-/// are no ends, ends that are named twice, names that are not good (check_patch_names()) or that other patches have, and
-/// positions that are not at an end.
+/// are no ends, ends that are named twice, names that are not good (check_patch_names()) or that other patches have,
+/// and positions that are not at an end.
 std::vector<EndName> read_end_names(const EndNameArguments& arguments, const Centerline& centerline);
 
 }  // namespace vmesh::tool

@@ -58,7 +58,10 @@ std::string line_of(const std::string& kind, const Json& format) {
   std::string line = kind, options;
   for (const std::string extension : format["extensions"]) line += " " + extension;
   for (const std::string option : format["options"]) options += (options.empty() ? "; --" : ", --") + option;
-  return line + ": " + format["name"].get<std::string>() + (format["read"] ? "; read" : format["written"] ? "" : "; not built in") +
+  return line + ": " + format["name"].get<std::string>() +
+         (format["read"]      ? "; read"
+          : format["written"] ? ""
+                              : "; not built in") +
          (format["written"] ? "; written" : "") + options + "\n";
 }
 

@@ -24,7 +24,7 @@ struct GenerateArguments {
   std::filesystem::path output;
   WritingArguments writing;
   ProductionOptions production;
-  EndNameArguments end_names;  ///< of flat ends
+  EndNameArguments end_names;    ///< of flat ends
   std::optional<Budget> budget;  ///< chooses growth.around, and max_error for a budget of error
   bool bones = false;            ///< add bones along the centerline to a .glb
   bool check = false;            ///< exit code 1 unless the surface is flawless

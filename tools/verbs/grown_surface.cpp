@@ -1,4 +1,3 @@
-#include "verbs/end_names.h"
 #include "verbs/grown_surface.h"
 
 #include <charconv>
@@ -15,6 +14,7 @@
 #include "command_line/interrupt.h"
 #include "report/fit_report.h"
 #include "report/generate_log.h"
+#include "verbs/end_names.h"
 #include "verbs/fitting.h"
 
 namespace vmesh::tool {

@@ -101,9 +101,8 @@ void add_options(CLI::App& verb, VolumeArguments& arguments) {
   const char* grown = "The surface, where the input is none";
   group(verb, grown,
         {"--around", "--preset", "--max-vertices", "--simplification", "--elongation", "--blend", "--placement",
-         "--overlap", "--gap", "--ends", "--open-ends", "--flow-extensions", "--name",
-         "--names", "--beta", "--max-center-distance",
-         "--sweeps", "--threads"});
+         "--overlap", "--gap", "--ends", "--open-ends", "--flow-extensions", "--name", "--names", "--beta",
+         "--max-center-distance", "--sweeps", "--threads"});
 }
 
 void settle(VolumeArguments& arguments) {

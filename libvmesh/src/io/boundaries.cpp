@@ -47,8 +47,7 @@ std::map<double, std::vector<Index>> faces_by(const MeshAttribute& labels) {
 std::vector<Boundary> boundaries_of(const TriMesh& mesh, const MeshAttributes& attributes) {
   const MeshAttribute* caps = find_attribute(attributes.face, "CapID");
   const MeshAttribute* numbers = find_attribute(attributes.face, "ModelFaceID");
-  if (numbers != nullptr && !attributes.patch_names.empty())
-    return named_boundaries(attributes.patch_names, *numbers);
+  if (numbers != nullptr && !attributes.patch_names.empty()) return named_boundaries(attributes.patch_names, *numbers);
   const MeshAttribute* labels = caps != nullptr ? caps : numbers;
   if (labels == nullptr || mesh.faces.empty()) return {{"surface", all_faces(mesh)}};
   const char* word = caps != nullptr ? "cap_" : "face_";

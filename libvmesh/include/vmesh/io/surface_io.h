@@ -85,10 +85,11 @@ struct SurfaceWriteOptions {
 ///        attribute; the face attribute EquiangleSkewness is named "quality", which MeshLab shows; attributes named
 ///        red, green and blue are bytes, which all programs take for a colour; names of patches are comments
 ///   VTP  packed by zlib; every attribute; "radius" is named MaximumInscribedSphereRadius, "distance" Distance,
-///        "group" GroupIds, face "quality" Quality; point array Normals; the first attributes are the active ones; names
-///        of patches are the field data PatchNames
+///        "group" GroupIds, face "quality" Quality; point array Normals; the first attributes are the active ones;
+///        names of patches are the field data PatchNames
 ///   OBJ, OFF  positions with the digits they need to come back to the bit; no attributes; OBJ has normals, and groups
-///        by the names of patches; without names by CapID: wall, cap_1, ...; else by ModelFaceID: face_1, ...; without either, surface
+///        by the names of patches; without names by CapID: wall, cap_1, ...; else by ModelFaceID: face_1, ...; without
+///        either, surface
 ///   STL  binary, in float, or text, whose positions come back to the bit, with a solid for each group of OBJ; no
 ///        attributes
 ///   .smesh  TetGen: facets with the numbers of the groups of OBJ, from 1, as markers; no other attributes
@@ -98,9 +99,9 @@ struct SurfaceWriteOptions {
 ///        to two millionths of their greatest coordinate (from the middle of the surface, or the origin with bones),
 ///        normals to a 4,000th, attributes that are no integers to 31 millionths; triangles are in another order
 /// In text, numbers have the digits they need to come back to the bit.
-/// Throws InvalidInput when an attribute or the skin has a wrong length, a ModelFaceID no good name or a face names a vertex that does not exist,
-/// Unsupported (extension, an encoding that the format does not have, a skin in another format than GLB or of more than
-/// 65,535 joints), WriteError.
+/// Throws InvalidInput when an attribute or the skin has a wrong length, a ModelFaceID no good name or a face names a
+/// vertex that does not exist, Unsupported (extension, an encoding that the format does not have, a skin in another
+/// format than GLB or of more than 65,535 joints), WriteError.
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, const MeshAttributes& attributes = {},
                    const SurfaceMetadata& metadata = {}, const SurfaceWriteOptions& options = {});
 
