@@ -44,6 +44,9 @@ endif()
 if(VMESH_HAS_MESHOPTIMIZER)
   list(APPEND recommended libmeshoptimizer-dev)
 endif()
+if(VMESH_HAS_TETGEN)
+  list(APPEND recommended libtet1.5-dev)
+endif()
 list(JOIN recommended ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
   "Vessel centerlines to surfaces: library for C++

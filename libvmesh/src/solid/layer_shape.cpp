@@ -7,7 +7,7 @@
 namespace vmesh {
 namespace {
 
-// What is left, in a wedge, of the determinant that it would have if it did not narrow; idle 0.1 to 0.3.
+// What is left, in a wedge, of the determinant that it would have if it did not narrow.
 constexpr double kLeastDeterminant = 0.2;
 // The last layer's triangles, on which tetrahedra stand, have at most this skewness, or this more than the wall's.
 constexpr double kMostSkewness = 0.7, kMostAdded = 0.1;

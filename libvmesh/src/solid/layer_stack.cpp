@@ -13,7 +13,7 @@
 namespace vmesh {
 namespace {
 
-// Layers are made thinner in steps of this factor where they do not fit; idle .7 to .9.
+// Layers are made thinner in steps of this factor where they do not fit.
 constexpr double kStep = 0.85;
 constexpr double kStepWhereBad = 0.6;  // where tetrahedra turned out bad
 // They end below this share of what the gradation leaves of what was asked for: cells would be flatter than any solver

@@ -1,9 +1,12 @@
 #include "vmesh/solid/make_volume.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "vmesh/core/error.h"
 #include "vmesh/core/text.h"
+#include "vmesh/mesh/topology.h"
 
 #include "solid/core.h"
 #include "solid/core_improvement.h"
@@ -18,6 +21,8 @@ constexpr double kLeastGrowth = 0.5, kMostGrowth = 5;
 // Tetrahedra with an angle of less than 10 degrees, see BadPlaces, are worth thinner layers, that many times.
 constexpr double kGoodEnough = 0.174;
 constexpr int kThinnings = 4;
+// A thinning that makes the worst tetrahedron better by less than this is the last.
+constexpr double kLeastThinningGain = 1.05;
 
 void check_layers(const LayerOptions& options, const std::string& what) {
   if (options.count < 0 || options.count > kMostLayers)
@@ -40,6 +45,16 @@ void check_options(const VolumeOptions& options) {
   if (!options.shell_only && !can_mesh_lumen()) fill_core({});  // throws
 }
 
+VolumeDefect not_filled(const CoreSurface& surface, const Core& core) {
+  const auto crossings = self_intersections(surface.mesh);
+  const Index at = crossings.empty() ? 0 : surface.mesh.faces[crossings[0].first][0];
+  const Vec3& p = surface.mesh.vertices[at];
+  return {VolumeDefectKind::not_filled, p, std::max<std::size_t>(crossings.size(), 1),
+          "the core could not be divided into tetrahedra: " + core.failure + "; " +
+              counted(crossings.size(), "pair", "pairs") + " of its faces cross" +
+              formatted(", near (%.3f, %.3f, %.3f)", p.x(), p.y(), p.z())};
+}
+
 class VolumeMaker {
  public:
   VolumeMaker(const VesselWall& wall, const VolumeOptions& options, const Progress& progress)
@@ -58,9 +73,8 @@ class VolumeMaker {
     if (parts_.with_lumen) filling = fill();
     result_.layers = summarize(frame_, parts_.layers);
     result_.shell = summarize(frame_, parts_.shell);
-    if (!filling.core.failure.empty()) {
-      result_.defects.push_back({VolumeDefectKind::not_filled, filling.surface.mesh.vertices[0], 1,
-                                 "the core could not be divided into tetrahedra: " + filling.core.failure});
+    if (!filling.is_there()) {
+      result_.defects.push_back(not_filled(filling.surface, filling.core));
       return std::move(result_);
     }
     result_.mesh = assemble(parts_, filling.surface, filling.core);
@@ -74,22 +88,22 @@ class VolumeMaker {
     CoreSurface surface;
     Core core;
     BadPlaces bad;
+
+    bool is_there() const { return core.failure.empty(); }
+    double shape() const { return is_there() ? bad.least : 0; }
   };
 
-  // Where tetrahedra are bad, layers are made thinner, as long as that helps.
+  // Where tetrahedra are bad, or everywhere if there are none, layers are made thinner, as long as that helps.
   Filling fill() {
     Filling best = fill_once(parts_.layers);
-    LayerStack stack = parts_.layers;
-    Filling last = best;
     for (int round = 0; round < kThinnings; ++round) {
-      const std::vector<Index> due = vertices_with_layers(stack, last.bad.vertices);
+      const std::vector<Index> due = vertices_to_thin(best);
       if (due.empty()) break;
-      stack = thinned(frame_, stack, due, progress_);
-      last = fill_once(stack);
-      if (last.core.failure.empty() && last.bad.least > best.bad.least) {
-        best = last;
-        parts_.layers = stack;
-      }
+      const LayerStack stack = thinned(frame_, parts_.layers, due, progress_);
+      Filling next = fill_once(stack);
+      if (next.shape() < kLeastThinningGain * best.shape()) break;
+      best = std::move(next);
+      parts_.layers = stack;
     }
     return best;
   }
@@ -106,10 +120,17 @@ class VolumeMaker {
     return filling;
   }
 
-  std::vector<Index> vertices_with_layers(const LayerStack& stack, const std::vector<Index>& vertices) const {
+  std::vector<Index> vertices_to_thin(const Filling& filling) const {
+    const LayerStack& stack = parts_.layers;
     std::vector<Index> due;
-    for (const Index v : vertices) {
-      if (v < frame_.position.size() && stack.count() > 0 && stack.reached_mm[v] > stack.least_mm[v]) due.push_back(v);
+    if (stack.count() == 0) return due;
+    const auto add = [&](Index v) {
+      if (v < frame_.position.size() && stack.reached_mm[v] > stack.least_mm[v]) due.push_back(v);
+    };
+    if (filling.is_there()) {
+      for (const Index v : filling.bad.vertices) add(v);
+    } else {
+      for (Index v = 0; v < frame_.position.size(); ++v) add(v);
     }
     return due;
   }

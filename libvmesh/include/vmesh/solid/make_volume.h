@@ -83,9 +83,10 @@ bool can_mesh_lumen();
 
 /// Layers end on the planes of caps: there, caps are triangulated anew, with the traces of layers as rings of
 /// quadrilaterals. Regions are "lumen" and "wall"; patches those of the surface, and "cap_k_wall" for the ends of the
-/// shell, "lumen_wall" for its inside where the lumen is not meshed. Deterministic. Throws InvalidInput for options out
-/// of range, for a surface that is not closed, manifold and outward, that crosses itself or whose caps are not flat
-/// discs; Unsupported where can_mesh_lumen() is false; Cancelled when `progress` asks to stop.
+/// shell, "lumen_wall" for its inside where the lumen is not meshed. Deterministic. To be called from one thread at a
+/// time, as TetGen has state. Throws InvalidInput for options out of range, for a surface that is not closed, manifold
+/// and outward, that crosses itself or whose caps are not flat discs; Unsupported where can_mesh_lumen() is false;
+/// Cancelled when `progress` asks to stop, which it is not asked while TetGen works.
 VolumeResult make_volume(const VesselWall& wall, const VolumeOptions& options = {}, const Progress& progress = {});
 
 }  // namespace vmesh
