@@ -7,6 +7,8 @@
 #include "vmesh/image/image_io.h"
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/io/volume_io.h"
+#include "vmesh/mesh/volume_faces.h"
 
 namespace vmesh::testing {
 namespace {
@@ -89,6 +91,19 @@ Verdict read_surface_as(const SurfaceFormat& format, std::string_view content) {
   });
 }
 
+Verdict read_volume_as(const VolumeFormat& format, std::string_view content) {
+  const std::string source = "input.";
+  return verdict_of(source, [&] {
+    const LoadedVolume volume = parse_volume(content, format, source);
+    require(volume.mesh.cell_count() > 0, "a volume mesh without a cell");
+    for (const Vec3& p : volume.mesh.points) require(p.allFinite(), "a point that is not finite");
+    check_volume_mesh(volume.mesh);
+    sides_of_boundary(volume.mesh);
+    check(volume.attributes.point, volume.mesh.points.size());
+    check(volume.attributes.cell, volume.mesh.cell_count());
+  });
+}
+
 Verdict read_image_as(std::string_view content, std::string_view ending) {
   const std::string source = "input" + std::string(ending);
   return verdict_of(source, [&] {
@@ -125,6 +140,13 @@ std::vector<Reader> make_readers() {
     all.push_back({(find_centerline_format("t" + ending) ? "surface_" : "") + name_of(ending), ending,
                    [&format](auto content) { return read_surface_as(format, content); },
                    seeds_of(surface_seeds(), ending)});
+  }
+  for (const VolumeFormat& format : volume_formats()) {
+    if (!format.parse) continue;
+    const std::string& ending = format.extensions.front();
+    all.push_back({"volume_" + name_of(ending), ending,
+                   [&format](auto content) { return read_volume_as(format, content); },
+                   seeds_of(volume_seeds(), ending)});
   }
   for (const std::string& ending :
        extensions_of(image_formats(), [](const auto& f) { return (f.parse_header && !f.in_two_files) || f.read; }))

@@ -12,6 +12,7 @@ using MakeSeeds = std::vector<std::string> (*)();
 // By extension.
 std::map<std::string, MakeSeeds> centerline_seeds();
 std::map<std::string, MakeSeeds> surface_seeds();
+std::map<std::string, MakeSeeds> volume_seeds();
 std::map<std::string, MakeSeeds> image_seeds();
 
 }  // namespace vmesh::testing

@@ -16,6 +16,14 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 
 bool is_name_letter(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.'; }
 
+/// Of any bytes, for a message.
+std::string shown(std::string_view name) {
+  std::string text(name.substr(0, kLongestName));
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return "\"" + text + (name.size() > kLongestName ? "...\"" : "\"");
+}
+
 }  // namespace
 
 bool is_patch_name(std::string_view name) {
@@ -27,7 +35,7 @@ void check_patch_names(const std::vector<std::string>& names, const char* word, 
   std::set<std::string> seen;
   for (const std::string& name : names) {
     if (!is_patch_name(name))
-      throw InvalidInput("\"" + name + "\" cannot be the name of a " + word +
+      throw InvalidInput(shown(name) + " cannot be the name of a " + word +
                          "; names are letters, digits, _, - and ., a letter first, at most " +
                          std::to_string(kLongestName));
     if (!seen.insert(lower(name)).second)
