@@ -282,6 +282,7 @@ class Mender {
         return true;
       }
       case Kind::split: {
+        if (!surface_.may_split(mesh_.edge(step.edge))) return false;
         const Index hint = surface_[mesh_.target(step.edge)].cone;
         put(surface_.split_edge(mesh_.edge(step.edge)), belongs(step.place, hint, 0));
         return true;
