@@ -1,7 +1,7 @@
 // Counts sound and unsound surfaces, over files and over random trees. A table in Markdown of those that are not
 // (--all: of all) and one closing line. Usage:
-//   bench_soundness [--all] [--keep] [--growth METHOD] [--beta B] [--around N] [--blend B] [--elongation E] [--max-error LIMIT]
-//                   [--least-vertices N] [--rotate] [FILE...]
+//   bench_soundness [--all] [--keep] [--growth METHOD] [--beta B] [--around N] [--blend B] [--elongation E]
+//                   [--max-error LIMIT] [--least-vertices N] [--rotate] [FILE...]
 //                   [--noisy FIRST COUNT] [--plausible FIRST COUNT] [--looped FIRST COUNT]
 //                   [--short-thick FIRST COUNT]
 // --rotate grows each random tree with the next of a list of options, whatever --around and --blend; --keep does not

@@ -77,16 +77,20 @@ VesselField& make_field(std::optional<VesselField>& field, const Centerline& cen
   return *field;
 }
 
-// Skewness above which triangles are mended; with an error limit only those that are not sound, as mending moves
-// vertices off the boundary. As in pieces.
-double mended_above(const GenerateOptions& options) { return options.max_error.is_set() ? kWorstSkewness : 0.5; }
+constexpr double kMendedAsPublished = 0.5;  // skewness above which triangles are mended: as in pieces
+
+// With an error limit only those that are not sound: mending moves vertices off the boundary.
+double mended_above(const GenerateOptions& options) {
+  return options.max_error.is_set() ? kWorstSkewness : kMendedAsPublished;
+}
 
 // Ways to make a surface as published, the cheapest first.
 struct PaperRung {
   double more_attraction;  // added to the weight of Eq. 11: fronts take other ways where branching nodes crowd
   bool guarded;            // growth and optimisation take guarded steps only: several times as long
 };
-// Measured on 200 plausible random trees: @@@ are sound on the first, @@@ on the second, @@@ on the others.
+// Measured on plausible random trees: of numbers 0 to 99, 77 are sound on the first without mending, 98 after the second,
+// all after the third; 99 of another hundred after the last.
 constexpr PaperRung kPaperLadder[] = {{0, false}, {0, true}, {0.1, true}, {-0.05, true}};
 
 GenerateResult grow_paper(const Centerline& centerline, const GenerateOptions& options, const PaperRung& rung,

@@ -37,7 +37,7 @@ constexpr int kMostLiftDropRounds = 4;  // idle 3 to 6
 constexpr int kErrorRounds = 14;
 constexpr int kErrorSweeps = 4;       // safe 3 to 6
 // Target lengths from which on edges between rings are split. At six around, ten liver trees and tree1560 have none.
-constexpr double kStretched = 2;
+constexpr double kStretched = 1.6;
 constexpr int kStretchRounds = 4;  // each at least halves the longest
 constexpr int kSpotRounds = 10;       // each at most halves the edges; idle 7 to 14
 constexpr int kLeastWithLimit = 4;    // fewest vertices around with an error limit; idle 3 to 6

@@ -15,7 +15,7 @@ namespace {
 constexpr double kSeedFraction = 0.5;       // seed radius in vessel radii: "somewhat smaller than the vessel"
 constexpr double kSettledTolerance = 0.01;  // distance in vessel radii at which a vertex has reached the boundary
 constexpr double kMaxStep = 0.5;            // step in vessel radii
-constexpr int kAttempts = 3;                // at a step that other faces are in the way of, each half as long
+constexpr int kShorterSteps = 3;            // at a step that other faces are in the way of, each half as long
 constexpr int kMaxSteps = 100;              // of one vertex, before it is projected
 constexpr double kMaxFlight = 2;            // vessel radii a vertex may travel before only the boundary attracts it
 constexpr double kBehind = 0.1;             // vessel radii a crossing may lie behind its segment's front
@@ -107,7 +107,7 @@ class Growth {
 
   // As much of the way as other faces leave.
   void advance(Vertex v, const FieldSample& here, Vec3 way) {
-    for (int attempt = 0; attempt < kAttempts; ++attempt, way *= 0.5) {
+    for (int attempt = 0; attempt < kShorterSteps; ++attempt, way *= 0.5) {
       const Vec3 p = surface_.position(v) + way;
       if (!surface_.may_place(v, p)) continue;
       surface_.place(v, p, field_.sample(p, here.cone));
