@@ -321,7 +321,8 @@ TEST(EvenSurfaces, AreAsFineOnTheOutsideOfABendAsElsewhere) {
   std::vector<CenterlineNode> nodes = {{{-4, 0, 0}, 1}, {{0, 0, 0}, 1}};
   std::vector<CenterlineSegment> segments = {{0, 1}};
   double angle_deg = 0;
-  for (const auto& [turn_deg, step] : {std::pair(20.0, kStep), {36.0, kStep}, {36.0, kStep}, {20.0, kStep}, {0.0, 4.0}}) {
+  for (const auto& [turn_deg, step] :
+       {std::pair(20.0, kStep), {36.0, kStep}, {36.0, kStep}, {20.0, kStep}, {0.0, 4.0}}) {
     angle_deg += turn_deg;
     const double angle = angle_deg * std::numbers::pi / 180;
     nodes.push_back({nodes.back().position + step * Vec3(std::cos(angle), std::sin(angle), 0), 1});

@@ -42,8 +42,8 @@ TEST(Soundness, OfPlausibleTrees) {
   expect_sound_for_each(kCount / 2, [](Seed seed) { expect_sound(testing::plausible_tree(seed)); });
 }
 
-// Where branching nodes crowd, a single seed covers some vessels twice unless its steps are guarded: seeds 7, 20, 24, 27
-// and more. 48 and 61 take another weight of the boundary as well.
+// Where branching nodes crowd, a single seed covers some vessels twice unless its steps are guarded: seeds 7, 20, 24,
+// 27 and more. 48 and 61 take another weight of the boundary as well.
 TEST(Soundness, OfPlausibleTreesGrownAsPublished) {
   GenerateOptions options;
   options.growth = GrowthMethod::paper;

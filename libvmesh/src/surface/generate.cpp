@@ -89,8 +89,8 @@ struct PaperRung {
   double more_attraction;  // added to the weight of Eq. 11: fronts take other ways where branching nodes crowd
   bool guarded;            // growth and optimisation take guarded steps only: several times as long
 };
-// Measured on plausible random trees: of numbers 0 to 99, 77 are sound on the first without mending, 98 after the second,
-// all after the third; 99 of another hundred after the last.
+// Measured on plausible random trees: of numbers 0 to 99, 77 are sound on the first without mending, 98 after the
+// second, all after the third; 99 of another hundred after the last.
 constexpr PaperRung kPaperLadder[] = {{0, false}, {0, true}, {0.1, true}, {-0.05, true}};
 
 GenerateResult grow_paper(const Centerline& centerline, const GenerateOptions& options, const PaperRung& rung,

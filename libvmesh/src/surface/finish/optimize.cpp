@@ -35,10 +35,10 @@ constexpr double kGoodEnergy = 1.2, kGoodEnergyWithLimit = 1.1;
 constexpr int kMostLiftDropRounds = 4;  // idle 3 to 6
 // Patience: rounds without another face proven; the last one may need edges a seventh as long; idle 10 to 20.
 constexpr int kErrorRounds = 14;
-constexpr int kErrorSweeps = 4;       // safe 3 to 6
+constexpr int kErrorSweeps = 4;  // safe 3 to 6
 // Target lengths from which on edges between rings are split. At six around, ten liver trees and tree1560 have none.
 constexpr double kStretched = 1.6;
-constexpr int kStretchRounds = 4;  // each at least halves the longest
+constexpr int kStretchRounds = 4;     // each at least halves the longest
 constexpr int kSpotRounds = 10;       // each at most halves the edges; idle 7 to 14
 constexpr int kLeastWithLimit = 4;    // fewest vertices around with an error limit; idle 3 to 6
 constexpr double kMostRefined = 1.8;  // edge length before refinement relative to that after; idle 1.3 to 2.5
@@ -197,7 +197,8 @@ class Optimizer {
     bool any = false;
     for (const Edge e : state_.mesh.edges()) {
       const Vertex a = state_.mesh.vertex(e, 0), b = state_.mesh.vertex(e, 1);
-      if ((state_.surface.held(a) && state_.surface.held(b)) || state_.length(e) <= kStretched * state_.target_length(e))
+      if ((state_.surface.held(a) && state_.surface.held(b)) ||
+          state_.length(e) <= kStretched * state_.target_length(e))
         continue;
       state_.touch(a);
       state_.touch(b);

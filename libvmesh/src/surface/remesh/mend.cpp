@@ -11,8 +11,8 @@
 namespace vmesh {
 namespace {
 
-constexpr int kRounds = 20;          // through all bad faces; idle 14 to 28
-constexpr double kPaysOff = 0.998;   // ratio of the worst skewness around after a step to that before; safe 0.7 to 1.4
+constexpr int kRounds = 20;         // through all bad faces; idle 14 to 28
+constexpr double kPaysOff = 0.998;  // ratio of the worst skewness around after a step to that before; safe 0.7 to 1.4
 
 // Cosine between two faces down to which improving may fold their edge further; idle 0.5 to 0.85 on ten synthetic
 // trees.

@@ -12,7 +12,7 @@ namespace {
 constexpr double kPitch = 1.055;
 // Radii to either side over which the direction of the vessel is averaged; safe 0.42 to 0.84.
 constexpr double kSmoothing = 0.6;
-constexpr int kSteps = 8;             // of the search for the boundary along a ray; safe 6 to 11
+constexpr int kSteps = 8;  // of the search for the boundary along a ray; safe 6 to 11
 // Radii, up to twelve around and with an error limit; derived: a tenth of kOffBoundary, and at twelve around a 36th of
 // what edges cut off. Beyond twelve it shrinks as that does, down to what single precision tells.
 constexpr double kOnBoundary = 1e-3, kFullTolerance = 12;
