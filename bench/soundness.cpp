@@ -1,7 +1,7 @@
 // Counts sound and unsound surfaces, over files and over random trees. A table in Markdown of those that are not
 // (--all: of all) and one closing line. Usage:
-//   bench_soundness [--all] [--keep] [--around N] [--blend B] [--elongation E] [--max-error LIMIT]
-//                   [--least-vertices N] [--rotate] [FILE...]
+//   bench_soundness [--all] [--keep] [--growth METHOD] [--beta B] [--around N] [--blend B] [--elongation E]
+//                   [--max-error LIMIT] [--least-vertices N] [--rotate] [FILE...]
 //                   [--noisy FIRST COUNT] [--plausible FIRST COUNT] [--looped FIRST COUNT]
 //                   [--short-thick FIRST COUNT]
 // --rotate grows each random tree with the next of a list of options, whatever --around and --blend; --keep does not
@@ -70,9 +70,12 @@ void examine(const std::string& name, const Centerline& given, const GenerateOpt
   const auto crossings = self_intersections(result.mesh);
   const SkewnessSummary skewness = summarize_skewness(metric_skewness(result.mesh, result.elongation));
   const std::size_t outside = nodes_outside(result);
+  const bool guided = options.growth.growth == GrowthMethod::guided;
+  const std::size_t expected_components = guided ? result.growth.components : given.component_count();
+  const std::size_t expected_loops = guided ? result.growth.cycle_rank : given.cycle_rank();
   const bool topology_right = topology.closed && topology.manifold && topology.oriented && topology.outward &&
-                              topology.components == result.growth.components &&
-                              topology.genus == static_cast<std::int64_t>(result.growth.cycle_rank);
+                              topology.components == expected_components &&
+                              topology.genus == static_cast<std::int64_t>(expected_loops);
   const bool sound = topology_right && crossings.empty() && outside == 0 && skewness.max <= kWorstSkewness;
   tally.unsound += !sound;
   if (sound && !settings.all) return;
@@ -100,6 +103,8 @@ int main(int argc, char** argv) {
     for (std::uint32_t seed = first; seed < first + count; ++seed) {
       GenerateOptions options = settings.rotate ? testing::rotated_options(seed) : settings.options;
       options.threads = settings.options.threads;
+      options.beta = settings.options.beta;
+      options.growth = settings.options.growth;
       options.elongation = settings.options.elongation;
       if (settings.options.max_error.is_set()) options.max_error = settings.options.max_error;
       examine(std::string(name) + "_" + std::to_string(seed), make(seed), options, settings, tally);
@@ -114,6 +119,10 @@ int main(int argc, char** argv) {
       settings.keep = true;
     } else if (word == "--rotate") {
       settings.rotate = true;
+    } else if (word == "--growth" && i + 1 < argc) {
+      settings.options.growth = parse_growth_method(argv[++i]);
+    } else if (word == "--beta" && i + 1 < argc) {
+      settings.options.beta = std::atof(argv[++i]);
     } else if (word == "--around" && i + 1 < argc) {
       settings.options.around = std::atoi(argv[++i]);
     } else if (word == "--blend" && i + 1 < argc) {

@@ -56,6 +56,30 @@ TEST(CrossingGuard, AllowsExactlyTheMovesAfterWhichNothingCrosses) {
   EXPECT_EQ(spheres.crossings(), 0u);
 }
 
+// A face between an edge and a vertex on its midpoint, as rounding leaves it, has no halves.
+TEST(CrossingGuard, RefusesTheSplitsOfASliverAndAllowsOthers) {
+  TwoSpheres spheres(2.2);
+  BoundSurface& surface = spheres.surface;
+  const SurfaceMesh& mesh = surface.mesh;
+  const Halfedge h = mesh.halfedge(Face(17));
+  const Vertex a = mesh.source(h), b = mesh.target(h), c = mesh.target(mesh.next(h));
+  EXPECT_TRUE(surface.may_split(mesh.edge(h)) && surface.may_split_edge_centric(Face(17)));  // not guarded yet
+  const Vec3 middle = 0.5 * (surface.position(a) + surface.position(b));
+  surface.place(c, middle, spheres.field.sample(middle, surface[c].cone));
+  surface.guard_crossings();
+  EXPECT_FALSE(surface.may_split(mesh.edge(h)));
+  EXPECT_FALSE(surface.may_split_edge_centric(Face(17)));
+  for (const Edge e : mesh.edges()) {
+    const bool at_c = mesh.vertex(e, 0) == c || mesh.vertex(e, 1) == c;
+    if (at_c || e == mesh.edge(h) || surface[mesh.vertex(e, 0)].cone == 0) continue;
+    EXPECT_TRUE(surface.may_split(e));
+  }
+  for (const Face f : mesh.faces()) {
+    if (surface[surface.corners(f)[0]].cone == 0) continue;
+    EXPECT_TRUE(surface.may_split_edge_centric(f));
+  }
+}
+
 TEST(Mend, TakesNeedlesOutWithoutACrossing) {
   TwoSpheres spheres(2.3);
   Draw draw(6);

@@ -7,6 +7,7 @@
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/flat_ends.h"
 #include "vmesh/surface/generate.h"
+#include "vmesh/volume/vessel_field.h"
 
 #include "centerlines.h"
 
@@ -312,6 +313,38 @@ TEST_P(FlatEndsOf, AForkGoOnStraight) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Resolutions, FlatEndsOf, ::testing::Values(3, 4, 6, 9, 16, 40));
+
+// A vessel that turns by 112 degrees within two and a half radii. Rings around it are up to four times as far apart on
+// the outside as along its axis, however many vertices are around.
+TEST(EvenSurfaces, AreAsFineOnTheOutsideOfABendAsElsewhere) {
+  constexpr double kStep = 0.8;
+  std::vector<CenterlineNode> nodes = {{{-4, 0, 0}, 1}, {{0, 0, 0}, 1}};
+  std::vector<CenterlineSegment> segments = {{0, 1}};
+  double angle_deg = 0;
+  for (const auto& [turn_deg, step] :
+       {std::pair(20.0, kStep), {36.0, kStep}, {36.0, kStep}, {20.0, kStep}, {0.0, 4.0}}) {
+    angle_deg += turn_deg;
+    const double angle = angle_deg * std::numbers::pi / 180;
+    nodes.push_back({nodes.back().position + step * Vec3(std::cos(angle), std::sin(angle), 0), 1});
+    segments.push_back({segments.back().b, segments.back().b + 1});
+  }
+  const Centerline centerline(nodes, segments);
+  const VesselField field(centerline, 0.5);
+  GenerateOptions options;
+  for (const int around : {24, 48}) {
+    options.around = around;
+    const GenerateResult result = generate_surface(centerline, options);
+    EXPECT_TRUE(result.is_sound());
+    double farthest = 0;
+    for (const auto& [a, b, c] : result.mesh.faces) {
+      const Vec3 center = (result.mesh.vertices[a] + result.mesh.vertices[b] + result.mesh.vertices[c]) / 3;
+      farthest = std::max(farthest, std::abs(field.sample(center, result.binding[a].segment).distance));
+    }
+    // What an edge of twice the usual length cuts off a vessel of radius 1, all of it to one side.
+    const double edge = 2 * 2 * std::sin(std::numbers::pi / around);
+    EXPECT_LE(farthest, edge * edge / 8) << around;
+  }
+}
 
 TEST(FlatEnds, KeepTheirNumbersWhicheverAreCapped) {
   GenerateOptions options;

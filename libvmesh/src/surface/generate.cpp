@@ -19,6 +19,7 @@
 #include "surface/paper/paper_growth.h"
 #include "surface/pieces/grow_pieces.h"
 #include "surface/remesh/bound_surface.h"
+#include "surface/remesh/mend.h"
 
 namespace vmesh {
 namespace {
@@ -68,13 +69,6 @@ void add_warnings(const OptimizeReport& optimized, GenerateResult& result) {
        "for; expect folds");
 }
 
-void optimize_grown(BoundSurface& surface, const GenerateOptions& options, const GrownMesh& grown,
-                    const Progress& progress, GenerateResult& result) {
-  if (options.sweeps == 0) return;
-  const OptimizeReport report = optimize(surface, options, grown, progress);
-  add_warnings(report, result);
-}
-
 // Proofs of an error limit need more than single precision.
 VesselField& make_field(std::optional<VesselField>& field, const Centerline& centerline,
                         const GenerateOptions& options) {
@@ -83,16 +77,40 @@ VesselField& make_field(std::optional<VesselField>& field, const Centerline& cen
   return *field;
 }
 
-void generate_paper(const Centerline& centerline, const GenerateOptions& options, const Progress& progress,
-                    GenerateResult& result) {
+constexpr double kMendedAsPublished = 0.5;  // skewness above which triangles are mended: as in pieces
+
+// With an error limit only those that are not sound: mending moves vertices off the boundary.
+double mended_above(const GenerateOptions& options) {
+  return options.max_error.is_set() ? kWorstSkewness : kMendedAsPublished;
+}
+
+// Ways to make a surface as published, the cheapest first.
+struct PaperRung {
+  double more_attraction;  // added to the weight of Eq. 11: fronts take other ways where branching nodes crowd
+  bool guarded;            // growth and optimisation take guarded steps only: several times as long
+};
+// Measured on plausible random trees: of numbers 0 to 99, 77 are sound on the first without mending, 98 after the
+// second, all after the third; 99 of another hundred after the last.
+constexpr PaperRung kPaperLadder[] = {{0, false}, {0, true}, {0.1, true}, {-0.05, true}};
+
+GenerateResult grow_paper(const Centerline& centerline, const GenerateOptions& options, const PaperRung& rung,
+                          const Progress& progress) {
+  GenerateResult result;
   StageClock clock(result.stages);
   std::optional<VesselField> field;
   clock.time("volume", [&] { make_field(field, centerline, options); });
   BoundSurface surface(*field);
-  clock.time("grow", [&] { add_warnings(grow_from_single_seeds(surface, options.beta, progress), result); });
+  clock.time("grow", [&] {
+    const double beta = std::clamp(options.beta + rung.more_attraction, 0.0, 1.0);
+    add_warnings(grow_from_single_seeds(surface, beta, rung.guarded, progress), result);
+  });
   clock.time("optimize", [&] {
+    if (options.sweeps == 0) return;
+    if (rung.guarded) surface.guard_crossings(BoundSurface::Axes::all);
     const GrownMesh grown{kGrownAround, expected_vertices(centerline, options.around), GrownMesh::Stage::grown};
-    optimize_grown(surface, options, grown, progress, result);
+    const OptimizeReport optimized = optimize(surface, options, grown, progress);
+    add_warnings(optimized, result);
+    if (rung.guarded || !optimized.crosses) mend_worst_faces(surface, mended_above(options), progress);
   });
   surface.export_to(result);
   clock.time("check", [&] {
@@ -102,6 +120,18 @@ void generate_paper(const Centerline& centerline, const GenerateOptions& options
     }
     find_defects(centerline, self_intersections(result.mesh), result);
   });
+  return result;
+}
+
+// A single seed cannot close loops: with these no rung helps.
+GenerateResult generate_paper(const Centerline& centerline, const GenerateOptions& options, const Progress& progress) {
+  std::optional<GenerateResult> best;
+  for (const PaperRung& rung : kPaperLadder) {
+    GenerateResult result = grow_paper(centerline, options, rung, progress);
+    if (!best || result.defects.size() < best->defects.size()) best = std::move(result);
+    if (best->is_sound() || options.sweeps == 0 || centerline.cycle_rank() > 0) break;
+  }
+  return *std::move(best);
 }
 
 void check_open_ends(const Centerline& centerline, const GenerateOptions& options) {
@@ -232,7 +262,7 @@ GenerateResult generate_surface(const Centerline& centerline, const GenerateOpti
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   arena.execute([&] {
     if (options.growth == GrowthMethod::paper) {
-      generate_paper(centerline, options, progress, result);
+      result = generate_paper(centerline, options, progress);
     } else {
       result = generate_guided(centerline, options, progress);
     }

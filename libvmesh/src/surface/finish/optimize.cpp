@@ -35,7 +35,10 @@ constexpr double kGoodEnergy = 1.2, kGoodEnergyWithLimit = 1.1;
 constexpr int kMostLiftDropRounds = 4;  // idle 3 to 6
 // Patience: rounds without another face proven; the last one may need edges a seventh as long; idle 10 to 20.
 constexpr int kErrorRounds = 14;
-constexpr int kErrorSweeps = 4;       // safe 3 to 6
+constexpr int kErrorSweeps = 4;  // safe 3 to 6
+// Target lengths from which on edges between rings are split. At six around, ten liver trees and tree1560 have none.
+constexpr double kStretched = 1.6;
+constexpr int kStretchRounds = 4;     // each at least halves the longest
 constexpr int kSpotRounds = 10;       // each at most halves the edges; idle 7 to 14
 constexpr int kLeastWithLimit = 4;    // fewest vertices around with an error limit; idle 3 to 6
 constexpr double kMostRefined = 1.8;  // edge length before refinement relative to that after; idle 1.3 to 2.5
@@ -67,6 +70,7 @@ class Optimizer {
         state_.stir_all();
         refine();
       }
+      if (!with_limit) even_out_stretched();
     } else {
       even_out(grown.around);
       lift_limit();
@@ -172,7 +176,8 @@ class Optimizer {
     }
   }
 
-  void refine() {
+  // Sweeps towards the size field from what has been stirred.
+  void resize() {
     for (int sweep = 0; sweep < kErrorSweeps && state_.next_sweep() > 0; ++sweep) {
       state_.update_sizes(edge_per_radius_, options_.max_error);
       if (sweep == 0) remesher_.repair_strays();
@@ -180,6 +185,30 @@ class Optimizer {
       remesher_.collapse_short_edges();
       end_sweep(0);
     }
+  }
+
+  // A bend turns the rings around it, so on its outside they are farther apart than along the vessel, the more so the
+  // finer they are; and shape alone, which knows no size, makes the triangles between them wide as well.
+  void even_out_stretched() {
+    for (int round = 0; round < kStretchRounds && touch_stretched(); ++round) resize();
+  }
+
+  bool touch_stretched() {
+    bool any = false;
+    for (const Edge e : state_.mesh.edges()) {
+      const Vertex a = state_.mesh.vertex(e, 0), b = state_.mesh.vertex(e, 1);
+      if ((state_.surface.held(a) && state_.surface.held(b)) ||
+          state_.length(e) <= kStretched * state_.target_length(e))
+        continue;
+      state_.touch(a);
+      state_.touch(b);
+      any = true;
+    }
+    return any;
+  }
+
+  void refine() {
+    resize();
     if (balanced()) balance(state_, options_.max_error);
     state_.next_sweep();
     end_sweep(options_.sweeps);

@@ -15,6 +15,7 @@ namespace {
 constexpr double kSeedFraction = 0.5;       // seed radius in vessel radii: "somewhat smaller than the vessel"
 constexpr double kSettledTolerance = 0.01;  // distance in vessel radii at which a vertex has reached the boundary
 constexpr double kMaxStep = 0.5;            // step in vessel radii
+constexpr int kShorterSteps = 3;            // at a step that other faces are in the way of, each half as long
 constexpr int kMaxSteps = 100;              // of one vertex, before it is projected
 constexpr double kMaxFlight = 2;            // vessel radii a vertex may travel before only the boundary attracts it
 constexpr double kBehind = 0.1;             // vessel radii a crossing may lie behind its segment's front
@@ -23,11 +24,12 @@ constexpr double kSmallestFace = 0.02;  // longest edge, in radii of the crossin
 
 class Growth {
  public:
-  Growth(BoundSurface& surface, double beta, const Progress& progress)
+  Growth(BoundSurface& surface, double beta, bool guarded, const Progress& progress)
       : surface_(surface),
         mesh_(surface.mesh),
         field_(surface.field),
         beta_(beta),
+        guarded_(guarded),
         progress_(progress),
         paths_(surface.field.relations().centerline()),
         travelled_(mesh_.add_property_map<Vertex, double>("v:travelled", 0.0).first),
@@ -35,6 +37,7 @@ class Growth {
 
   PaperGrowthReport run() {
     plant_seeds();
+    if (guarded_) surface_.guard_crossings(BoundSurface::Axes::none);  // fronts are crossed by axes
     while (!moving_.empty()) {
       report_progress(progress_, "grow", fraction_reached());
       move_vertices();
@@ -82,19 +85,34 @@ class Growth {
       const double radius = field_.relations().radius_at(here.cone, here.t);
       const bool forced = ++steps_[v] > kMaxSteps;
       if (forced || here.distance >= -kSettledTolerance * radius) {  // outside: the midpoint of an edge over a crotch
-        surface_.place_on_boundary(v, surface_.position(v), here.cone);
-        steps_[v] = kSettled;
+        settle(v, here);
         report_.forced += forced;
-        settled_.push_back(v);
         continue;
       }
       const double step = std::min(-here.distance, kMaxStep * radius);
       travelled_[v] += step / radius;
-      const Vec3 p = surface_.position(v) + step * force(v, here, travelled_[v] > kMaxFlight ? 1 : beta_);
-      surface_.place(v, p, field_.sample(p, here.cone));
+      advance(v, here, step * force(v, here, travelled_[v] > kMaxFlight ? 1 : beta_));
       still_moving.push_back(v);
     }
     moving_.swap(still_moving);
+  }
+
+  // Onto the boundary; where other faces are in the way, the vertex stays where it is.
+  void settle(Vertex v, const FieldSample& here) {
+    const BoundaryPoint target = project_to_boundary(field_, {surface_.position(v), here}, 1e-6, 0);
+    if (surface_.may_place(v, target.position)) surface_.place(v, target.position, target.sample);
+    steps_[v] = kSettled;
+    settled_.push_back(v);
+  }
+
+  // As much of the way as other faces leave.
+  void advance(Vertex v, const FieldSample& here, Vec3 way) {
+    for (int attempt = 0; attempt < kShorterSteps; ++attempt, way *= 0.5) {
+      const Vec3 p = surface_.position(v) + way;
+      if (!surface_.may_place(v, p)) continue;
+      surface_.place(v, p, field_.sample(p, here.cone));
+      return;
+    }
   }
 
   // Direction of Eq. 11: F = (1 - beta) n + beta a, n the vertex normal, a towards the closest boundary point.
@@ -110,7 +128,7 @@ class Growth {
       faces_.assign(mesh_.faces_around_target(mesh_.halfedge(v)).begin(),
                     mesh_.faces_around_target(mesh_.halfedge(v)).end());
       for (const Face f : faces_) {
-        if (all_settled(f) && crossed(f)) split(f);
+        if (all_settled(f) && surface_.may_split_edge_centric(f) && crossed(f)) split(f);
       }
     }
   }
@@ -177,6 +195,7 @@ class Growth {
   SurfaceMesh& mesh_;
   const VesselField& field_;
   double beta_;
+  bool guarded_;
   const Progress& progress_;
   GrowthPaths paths_;
   SurfaceMesh::Property_map<Vertex, double> travelled_;  // in vessel radii
@@ -189,8 +208,8 @@ class Growth {
 
 }  // namespace
 
-PaperGrowthReport grow_from_single_seeds(BoundSurface& surface, double beta, const Progress& progress) {
-  return Growth(surface, beta, progress).run();
+PaperGrowthReport grow_from_single_seeds(BoundSurface& surface, double beta, bool guarded, const Progress& progress) {
+  return Growth(surface, beta, guarded, progress).run();
 }
 
 }  // namespace vmesh

@@ -16,7 +16,8 @@ struct PaperGrowthReport {
 
 /// Growth from a single seed per component (paper, section 4): a geodesic sphere at the widest branching node
 /// grows until every vertex has reached the vessel boundary and no face is crossed by the centerline.
-/// `beta`: weight of Eq. 11. Terminates for every input: see the guard in the .cpp.
-PaperGrowthReport grow_from_single_seeds(BoundSurface& surface, double beta, const Progress& progress);
+/// `beta`: weight of Eq. 11. `guarded`: no step is taken after which faces cross; vertices go as far as others let
+/// them. Terminates for every input: see the guard in the .cpp.
+PaperGrowthReport grow_from_single_seeds(BoundSurface& surface, double beta, bool guarded, const Progress& progress);
 
 }  // namespace vmesh

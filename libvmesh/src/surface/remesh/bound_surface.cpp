@@ -121,7 +121,7 @@ void BoundSurface::guard_crossings(Axes kept) {
   if (kept == Axes::all) {
     cones.resize(field.relations().centerline().segments().size());
     std::iota(cones.begin(), cones.end(), Index{0});
-  } else {
+  } else if (kept == Axes::bound) {
     for (const Vertex v : mesh.vertices()) cones.push_back(vertex_[v].cone);
     std::sort(cones.begin(), cones.end());
     cones.erase(std::unique(cones.begin(), cones.end()), cones.end());
@@ -194,6 +194,47 @@ SurfaceStep BoundSurface::flipping(Halfedge h) const {
   return {c, {position(c), sample(c)}, {mesh.face(h), mesh.face(o)}, {{c, d, b}, {d, c, a}}};
 }
 
+SurfaceStep BoundSurface::splitting(Edge e) const {
+  const Vertex added = SurfaceMesh::null_vertex();
+  SurfaceStep step{added, {middle_of(mesh.halfedge(e))}, {}, {}};
+  for (const Halfedge h : {mesh.halfedge(e), mesh.opposite(mesh.halfedge(e))}) {
+    step.gone.push_back(mesh.face(h));
+    if (is_lid(mesh.face(h))) continue;
+    const Vertex apex = mesh.target(mesh.next(h));
+    step.faces.push_back({mesh.source(h), added, apex});
+    step.faces.push_back({added, mesh.target(h), apex});
+  }
+  return step;
+}
+
+bool BoundSurface::may_split_edge_centric(Face f) const {
+  if (!guard_) return true;
+  struct Corner {
+    Index number;
+    Vec3 point;
+  };
+  std::vector<PlacedFace> faces;
+  std::vector<Index> gone = {f.idx()};
+  const auto add = [&](const Corner& a, const Corner& b, const Corner& c) {
+    faces.push_back({{a.number, b.number, c.number}, {a.point, b.point, c.point}});
+  };
+  std::array<Corner, 3> corner, middle;
+  Halfedge h = mesh.halfedge(f);
+  for (Index i = 0; i < 3; ++i, h = mesh.next(h)) {
+    const Vertex from = mesh.source(h), to = mesh.target(h), beyond = mesh.target(mesh.next(mesh.opposite(h)));
+    corner[i] = {from.idx(), mesh.point(from)};
+    middle[i] = {kNone - i, middle_of(h)};
+    gone.push_back(mesh.face(mesh.opposite(h)));
+    if (is_lid(mesh.face(mesh.opposite(h)))) continue;
+    const Corner apex{beyond.idx(), mesh.point(beyond)};
+    add(middle[i], corner[i], apex);
+    add({to.idx(), mesh.point(to)}, middle[i], apex);
+  }
+  add(middle[0], middle[1], middle[2]);
+  for (std::size_t i = 0; i < 3; ++i) add(corner[i], middle[i], middle[(i + 2) % 3]);
+  return guard_->allows(faces, gone);
+}
+
 void BoundSurface::place_on_boundary(Vertex v, const Vec3& p, Index hint) {
   const BoundaryPoint point = project_to_boundary(field, p, hint, 1e-6, vertex_[v].lift);
   place(v, point.position, point.sample);
@@ -218,7 +259,7 @@ Vec3 BoundSurface::vertex_normal(Vertex v) const {
 
 Vertex BoundSurface::halve(Halfedge h) {
   const Vertex a = mesh.source(h), b = mesh.target(h);
-  const Vec3 middle = 0.5 * (mesh.point(a) + mesh.point(b));
+  const Vec3 middle = middle_of(h);
   const Vertex v = mesh.target(CGAL::Euler::split_edge(h, mesh));
   mesh.point(v) = middle;
   vertex_[v] = BoundVertex::between(vertex_[a], vertex_[b]);

@@ -99,22 +99,28 @@ class BoundSurface {
   void close_with_lid(const std::vector<Vertex>& loop, const Vec3& center);
 
   enum class Axes {
+    none,   ///< while a surface grows over them
     bound,  ///< of the cones that vertices are bound to
     all     ///< for a surface around all vessels: the shortest cones may have no vertex
   };
-  /// From now on only guarded steps are taken (CrossingGuard), which keep these axes inside.
+  /// From now on only guarded steps are taken (CrossingGuard), which keep these axes inside. The surface has faces.
   void guard_crossings(Axes kept = Axes::bound);
   SurfaceStep moving(Vertex v, const BoundaryPoint& target) const;
   /// Collapses the edge ab; the vertex that is left is called a.
   SurfaceStep collapsing(Vertex a, Vertex b, const BoundaryPoint& target) const;
   /// Its vertex is one of those that become neighbours, and stays.
   SurfaceStep flipping(Halfedge h) const;
+  /// At the midpoint.
+  SurfaceStep splitting(Edge e) const;
 
   /// Whether a step is allowed: always, unless guarded.
   bool allows(const SurfaceStep& step) const;
   bool may_place(Vertex v, const Vec3& p) const { return !guard_ || allows(moving(v, {p})); }
   bool may_collapse(Vertex a, Vertex b, const Vec3& p) const { return !guard_ || allows(collapsing(a, b, {p})); }
   bool may_flip(Halfedge h) const { return !guard_ || allows(flipping(h)); }
+  /// Splits leave the surface where it is, but for rounding, which turns the halves of a sliver over.
+  bool may_split(Edge e) const { return !guard_ || allows(splitting(e)); }
+  bool may_split_edge_centric(Face f) const;
   /// The steps that were not.
   RefusedSteps refused() const { return guard_ ? guard_->refused() : RefusedSteps{}; }
 
@@ -159,6 +165,7 @@ class BoundSurface {
   std::vector<Index> export_to(GenerateResult& result) const;
 
  private:
+  Vec3 middle_of(Halfedge h) const { return 0.5 * (mesh.point(mesh.source(h)) + mesh.point(mesh.target(h))); }
   Vertex halve(Halfedge h);
   void touch_faces(Vertex v);
   std::optional<PlacedFace> placed(Face f) const;

@@ -6,12 +6,13 @@
 
 #include <CGAL/boost/graph/Euler_operations.h>
 
+#include "surface/remesh/sweep_state.h"
+
 namespace vmesh {
 namespace {
 
-constexpr int kRounds = 20;          // through all bad faces; idle 14 to 28
-constexpr double kPaysOff = 0.998;   // ratio of the worst skewness around after a step to that before; safe 0.7 to 1.4
-constexpr double kTolerance = 1e-3;  // vessel radii: distance of an improved vertex from its lift, as in all sweeps
+constexpr int kRounds = 20;         // through all bad faces; idle 14 to 28
+constexpr double kPaysOff = 0.998;  // ratio of the worst skewness around after a step to that before; safe 0.7 to 1.4
 
 // Cosine between two faces down to which improving may fold their edge further; idle 0.5 to 0.85 on ten synthetic
 // trees.
@@ -244,10 +245,11 @@ class Mender {
     return error_around(v, place) <= most;
   }
 
-  // Where a vertex with this lift ends up when moved towards `place`.
-  BoundaryPoint belongs(const Vec3& place, Index hint, double lift) const {
+  // Where `v` ends up with this lift when moved towards `place`.
+  BoundaryPoint belongs(Vertex v, const Vec3& place, double lift) const {
+    const Index hint = surface_[v].cone;
     if (keeps_ == Keeps::nothing) return {place, surface_.field.sample(place, hint)};
-    return project_to_boundary(surface_.field, place, hint, kTolerance, lift);
+    return project_to_boundary(surface_.field, place, hint, arrival_tolerance(surface_, v), lift);
   }
 
   void put(Vertex v, const BoundaryPoint& target) {
@@ -275,21 +277,22 @@ class Mender {
       case Kind::collapse: {
         const Vertex a = mesh_.source(step.edge), b = mesh_.target(step.edge);
         const double lift = 0.5 * (surface_[a].lift + surface_[b].lift);
-        const BoundaryPoint target = belongs(step.place, surface_[a].cone, lift);
+        const BoundaryPoint target = belongs(a, step.place, lift);
         if (worst_with_both(a, b, target.position) >= step.before) return false;
         if (!surface_.may_collapse(a, b, target.position)) return false;
         put(surface_.collapse_edge(mesh_.edge(step.edge), target), target);
         return true;
       }
       case Kind::split: {
-        const Index hint = surface_[mesh_.target(step.edge)].cone;
-        put(surface_.split_edge(mesh_.edge(step.edge)), belongs(step.place, hint, 0));
+        if (!surface_.may_split(mesh_.edge(step.edge))) return false;
+        const Vertex end = mesh_.target(step.edge);
+        put(surface_.split_edge(mesh_.edge(step.edge)), belongs(end, step.place, 0));
         return true;
       }
       case Kind::move:
         break;
     }
-    const BoundaryPoint target = belongs(step.place, surface_[step.vertex].cone, surface_[step.vertex].lift);
+    const BoundaryPoint target = belongs(step.vertex, step.place, surface_[step.vertex].lift);
     if (worst_with(step.vertex, step.vertex, target.position, step.before) >= step.before) return false;
     if (keeps_ == Keeps::to_boundary && !stays_near(step.vertex, target.position)) return false;
     if (!surface_.may_place(step.vertex, target.position)) return false;

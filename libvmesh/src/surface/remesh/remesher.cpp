@@ -37,6 +37,7 @@ void Remesher::split_long_edges() {
     const Edge e(index);
     if (state_.length(e) / state_.target_length(e) != excess)
       continue;  // outdated: it has changed and was pushed again
+    if (!surface_.may_split(e)) continue;
     if (full()) break;
     const Vertex v = split(e);
     for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
@@ -164,6 +165,7 @@ void Remesher::split_far_faces(double max_distance) {
       target = std::max(target, state_.target_length(mesh_.edge(h)));
     }
     if (longest < kSplitFar * target) continue;  // a web over a crotch: refinement would not bring it closer
+    if (!surface_.may_split_edge_centric(f)) continue;
     if (full()) break;
     for (const Vertex v : surface_.split_edge_centric(f)) {
       surface_[v].size = std::min({state_.size(corner[0]), state_.size(corner[1]), state_.size(corner[2])}) / 2;

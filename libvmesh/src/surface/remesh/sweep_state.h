@@ -17,6 +17,9 @@ struct Landing {
   const Vec3 position, normal;
 };
 
+/// Distance from its lift at which a projected vertex has arrived, in vessel radii.
+double arrival_tolerance(const BoundSurface& surface, Vertex v);
+
 /// What the steps of a sweep share: the surface, its size field, and which vertices are active.
 class SweepState {
  public:
@@ -119,18 +122,11 @@ class SweepState {
 
  private:
   static constexpr char kActive = 1, kStirred = 2;
-  static constexpr double kOffBoundary = 0.01;  // vessel radii; safe 0.007 to 0.014
-  // Distance from its lift at which a projected vertex has arrived, in vessel radii: at most the first (safe 0.0007 to
-  // 0.0014), and that share of what edges cut off, which is the first at twelve around; but no less than single
-  // precision tells (kRoughTolerance). With an error limit, the first: finer ones cost proofs, as what is made before
-  // the limit is known (share .0067) cost one of 5 % on a portal vein.
-  static constexpr double kProjectionTolerance = 1e-3, kProjectionShare = 0.029;
+  // Vessel radii; safe 0.007 to 0.014. A fourteenth of what edges cut off at six around, eighteen times that at 96: it
+  // tells a vertex that hangs somewhere from one that has arrived; how near that is, tolerance() tells.
+  static constexpr double kOffBoundary = 0.01;
 
-  double tolerance(Vertex v) const {
-    if (surface.has_limit || size(v) == 0) return kProjectionTolerance;
-    const double radius = surface.radius(v);
-    return std::clamp(kProjectionShare * cut_off(size(v), radius) / radius, kRoughTolerance, kProjectionTolerance);
-  }
+  double tolerance(Vertex v) const { return arrival_tolerance(surface, v); }
 
   static double agreement(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& gradient_sum);
 

@@ -12,8 +12,10 @@ namespace {
 constexpr double kPitch = 1.055;
 // Radii to either side over which the direction of the vessel is averaged; safe 0.42 to 0.84.
 constexpr double kSmoothing = 0.6;
-constexpr int kSteps = 8;             // of the search for the boundary along a ray; safe 6 to 11
-constexpr double kOnBoundary = 1e-3;  // radii; derived: a tenth of kOffBoundary
+constexpr int kSteps = 8;  // of the search for the boundary along a ray; safe 6 to 11
+// Radii, up to twelve around and with an error limit; derived: a tenth of kOffBoundary, and at twelve around a 36th of
+// what edges cut off. Beyond twelve it shrinks as that does, down to what single precision tells.
+constexpr double kOnBoundary = 1e-3, kFullTolerance = 12;
 // Radii between which the boundary must lie; kNearest: idle 0.35 to 0.7; kFarthest: safe 1.4 to 2.8.
 constexpr double kNearest = 0.5, kFarthest = 2;
 constexpr double kFacing = 0.5;    // cosine between ray and boundary normal; safe 0.35 to 0.7
@@ -40,6 +42,12 @@ double equilateral_height(int around) {
   const double edge = 2 * std::sin(std::numbers::pi / around);
   const double shift = 2 * std::sin(std::numbers::pi / (2 * around));  // of a vertex turned half a step
   return std::sqrt(edge * edge - shift * shift);
+}
+
+double on_boundary(const RingOptions& options) {
+  if (options.limit.is_set()) return kOnBoundary;
+  const double finer = std::max(1.0, options.around / kFullTolerance);
+  return std::max(kRoughTolerance, kOnBoundary / (finer * finer));
 }
 
 bool apart(const Ring& ring, const Ring& next, double gap) {
@@ -273,17 +281,18 @@ Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& s
 bool RingLayer::see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way,
                     BoundaryPoint& seen) const {
   const Index segment = axes_[branch].branch().segments[axis.nth];
+  const double near = on_boundary(options_) * ring.radius;
   double far = ring.radius;
   FieldSample s;
   for (int step = 0; step < kSteps; ++step) {
     s = field_.sample_fast(ring.center + far * way, segment);
-    if (std::abs(s.distance) < kOnBoundary * ring.radius) break;
+    if (std::abs(s.distance) < near) break;
     const double slope = s.gradient.dot(way);
     if (slope < kFacing) return false;
     far -= s.distance / slope;
     if (!(far > kNearest * ring.radius && far < kFarthest * ring.radius)) return false;
   }
-  if (!(std::abs(s.distance) < kOnBoundary * ring.radius) || s.gradient.dot(way) < kFacing) return false;
+  if (!(std::abs(s.distance) < near) || s.gradient.dot(way) < kFacing) return false;
   seen = {ring.center + far * way, s};
   return is_own(branch, ring, s);
 }
