@@ -30,10 +30,11 @@ class Names : public CommandTest {
   std::string at(std::size_t end, const std::string& name) const { return std::to_string(nodes_.at(end)) + "=" + name; }
 
   /// The node and name of every cap in a summary.
-  std::map<Index, std::string> caps(const std::string& summary) const {
+  std::map<Index, std::string> caps(const std::string& name) const {
     std::map<Index, std::string> names;
-    const json content = json::parse(read(summary));
-    for (const json& cap : content.at("caps")) names[cap.at("node").get<Index>()] = cap.at("name").get<std::string>();
+    const json summary = json::parse(read(name));
+    for (const json& cap : summary.at("caps"))
+      names[cap.at("node").get<Index>()] = cap.at("name").get<std::string>();
     return names;
   }
 
