@@ -20,8 +20,8 @@ class Names : public CommandTest {
     write_y("y.swc");
     const Outcome run = vmesh({"generate", "@y.swc", "@plain.vtp", "--ends", "flat", "--json", "@plain.json"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    const json plain = json::parse(read("plain.json"));
-    for (const json& cap : plain.at("caps")) {
+    const json summary = json::parse(read("plain.json"));
+    for (const json& cap : summary.at("caps")) {
       nodes_.push_back(cap.at("node").get<Index>());
       centers_.push_back(cap.at("center").get<std::array<double, 3>>());
     }
@@ -32,9 +32,8 @@ class Names : public CommandTest {
   /// The node and name of every cap in a summary.
   std::map<Index, std::string> caps(const std::string& summary) const {
     std::map<Index, std::string> names;
-    const json read_back = json::parse(read(summary));
-    for (const json& cap : read_back.at("caps"))
-      names[cap.at("node").get<Index>()] = cap.at("name").get<std::string>();
+    const json content = json::parse(read(summary));
+    for (const json& cap : content.at("caps")) names[cap.at("node").get<Index>()] = cap.at("name").get<std::string>();
     return names;
   }
 
