@@ -36,8 +36,10 @@ constexpr int kMostLiftDropRounds = 4;  // idle 3 to 6
 // Patience: rounds without another face proven; the last one may need edges a seventh as long; idle 10 to 20.
 constexpr int kErrorRounds = 14;
 constexpr int kErrorSweeps = 4;  // safe 3 to 6
-// Target lengths from which on edges between rings are split. At six around, ten liver trees and tree1560 have none.
+// Target lengths from which on edges between rings are split, with more vertices around than kFewAround: with these,
+// the maximum distance is elsewhere (a portal vein at 24 around: .011 radii, .010 with it; at 48 .037 and .003).
 constexpr double kStretched = 1.6;
+constexpr int kFewAround = 24;
 constexpr int kStretchRounds = 4;     // each at least halves the longest
 constexpr int kSpotRounds = 10;       // each at most halves the edges; idle 7 to 14
 constexpr int kLeastWithLimit = 4;    // fewest vertices around with an error limit; idle 3 to 6
@@ -70,7 +72,7 @@ class Optimizer {
         state_.stir_all();
         refine();
       }
-      if (!with_limit) even_out_stretched();
+      if (!with_limit && options_.around > kFewAround) even_out_stretched();
     } else {
       even_out(grown.around);
       lift_limit();

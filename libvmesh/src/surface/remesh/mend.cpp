@@ -6,13 +6,12 @@
 
 #include <CGAL/boost/graph/Euler_operations.h>
 
-#include "surface/remesh/sweep_state.h"
-
 namespace vmesh {
 namespace {
 
-constexpr int kRounds = 20;         // through all bad faces; idle 14 to 28
-constexpr double kPaysOff = 0.998;  // ratio of the worst skewness around after a step to that before; safe 0.7 to 1.4
+constexpr int kRounds = 20;          // through all bad faces; idle 14 to 28
+constexpr double kTolerance = 1e-3;  // vessel radii: distance of an improved vertex from its lift
+constexpr double kPaysOff = 0.998;   // ratio of the worst skewness around after a step to that before; safe 0.7 to 1.4
 
 // Cosine between two faces down to which improving may fold their edge further; idle 0.5 to 0.85 on ten synthetic
 // trees.
@@ -249,7 +248,7 @@ class Mender {
   BoundaryPoint belongs(Vertex v, const Vec3& place, double lift) const {
     const Index hint = surface_[v].cone;
     if (keeps_ == Keeps::nothing) return {place, surface_.field.sample(place, hint)};
-    return project_to_boundary(surface_.field, place, hint, arrival_tolerance(surface_, v), lift);
+    return project_to_boundary(surface_.field, place, hint, kTolerance, lift);
   }
 
   void put(Vertex v, const BoundaryPoint& target) {

@@ -13,9 +13,9 @@ constexpr double kPitch = 1.055;
 // Radii to either side over which the direction of the vessel is averaged; safe 0.42 to 0.84.
 constexpr double kSmoothing = 0.6;
 constexpr int kSteps = 8;  // of the search for the boundary along a ray; safe 6 to 11
-// Radii, up to twelve around and with an error limit; derived: a tenth of kOffBoundary, and at twelve around a 36th of
-// what edges cut off. Beyond twelve it shrinks as that does, down to what single precision tells.
-constexpr double kOnBoundary = 1e-3, kFullTolerance = 12;
+// Radii, up to 24 around and with an error limit; derived: a tenth of kOffBoundary, and at 24 around a ninth of
+// what edges cut off. Beyond that it shrinks as that does, down to what single precision tells.
+constexpr double kOnBoundary = 1e-3, kFullTolerance = 24;
 // Radii between which the boundary must lie; kNearest: idle 0.35 to 0.7; kFarthest: safe 1.4 to 2.8.
 constexpr double kNearest = 0.5, kFarthest = 2;
 constexpr double kFacing = 0.5;    // cosine between ray and boundary normal; safe 0.35 to 0.7
