@@ -33,8 +33,7 @@ class Names : public CommandTest {
   std::map<Index, std::string> caps(const std::string& name) const {
     std::map<Index, std::string> names;
     const json summary = json::parse(read(name));
-    for (const json& cap : summary.at("caps"))
-      names[cap.at("node").get<Index>()] = cap.at("name").get<std::string>();
+    for (const json& cap : summary.at("caps")) names[cap.at("node").get<Index>()] = cap.at("name").get<std::string>();
     return names;
   }
 

@@ -17,8 +17,8 @@ struct VesselWall {
 
 /// A surface with the attributes of `vmesh generate`: "radius" of vertices, and "ModelFaceID" of faces, 1 for the wall,
 /// which all faces are without it. Patches have the names that the attributes give them; else the cap with number k + 1
-/// is called cap_k. Throws InvalidInput without radii, for radii that are not positive and for numbers of faces that are
-/// not positive integers.
+/// is called cap_k. Throws InvalidInput without radii, for radii that are not positive and for numbers of faces that
+/// are not positive integers.
 VesselWall vessel_wall(TriMesh mesh, const MeshAttributes& attributes);
 
 }  // namespace vmesh
