@@ -92,8 +92,8 @@ struct PaperRung {
 // Measured on plausible random trees: of numbers 0 to 99, 77 are sound on the first without mending, 98 after the
 // second, all after the third; 99 of another hundred after the last.
 // Where more faces cross than this (at most 705 pairs on those trees), branching nodes crowd so that a single seed
-// covers vessels twice all over, and each rung would take minutes.
-constexpr std::size_t kMostCrossings = 1000;
+// covers vessels twice all over, and each rung would take minutes; as it does on larger surfaces.
+constexpr std::size_t kMostCrossings = 1000, kMostOnLadder = 20'000;  // the second: vertices
 constexpr PaperRung kPaperLadder[] = {{0, false}, {0, true}, {0.1, true}, {-0.05, true}};
 
 GenerateResult grow_paper(const Centerline& centerline, const GenerateOptions& options, const PaperRung& rung,
@@ -133,7 +133,7 @@ GenerateResult generate_paper(const Centerline& centerline, const GenerateOption
     GenerateResult result = grow_paper(centerline, options, rung, progress);
     if (!best || result.defects.size() < best->defects.size()) best = std::move(result);
     if (best->is_sound() || options.sweeps == 0 || centerline.cycle_rank() > 0) break;
-    if (best->check.crossing_pairs > kMostCrossings) break;
+    if (best->check.crossing_pairs > kMostCrossings || best->mesh.vertices.size() > kMostOnLadder) break;
   }
   return *std::move(best);
 }
