@@ -40,8 +40,7 @@ Json outside_json(const std::vector<Defect>& defects) {
 }
 
 std::string text_of(const UnmatchedPart& part) {
-  const Vec3& p = part.position;
-  return formatted("%.1f mm^2 as far as %.2f mm at (%.3f, %.3f, %.3f)", part.area, part.distance, p.x(), p.y(), p.z());
+  return formatted("%.1f mm^2 as far as %.2f mm at ", part.area, part.distance) + point_text(part.position);
 }
 
 void name_parts(const std::vector<UnmatchedPart>& parts, const std::string& what, std::vector<std::string>& warnings,

@@ -1,3 +1,6 @@
+#include <functional>
+#include <optional>
+
 #include "vmesh/centerline/edits.h"
 #include "vmesh/core/text.h"
 #include "vmesh/io/sha256.h"
@@ -86,21 +89,17 @@ void check_arguments(const EditArguments& arguments) {
 /// What is wrong with a surface that was moved, a sentence each.
 std::vector<std::string> problems_of(const TriMesh& before, const TriMesh& after) {
   std::vector<std::string> problems;
-  const auto at = [&](Index face) {
-    const Vec3& p = after.vertices[after.faces[face][0]];
-    return formatted("(%.3f, %.3f, %.3f)", p.x(), p.y(), p.z());
+  const auto tell = [&](std::size_t number, const char* what, Index face) {
+    problems.push_back(std::to_string(number) + what + point_text(after.vertices[after.faces[face][0]]));
   };
   std::vector<Index> turned;
   for (Index f = 0; f < after.faces.size(); ++f) {
     if (!(area_normal(before, f).dot(area_normal(after, f)) > 0)) turned.push_back(f);
   }
-  if (!turned.empty())
-    problems.push_back(std::to_string(turned.size()) + " of its faces would turn over, the first at " +
-                       at(turned.front()));
+  if (!turned.empty()) tell(turned.size(), " of its faces would turn over, the first at ", turned.front());
   const auto crossing = self_intersections(after);
   if (!crossing.empty())
-    problems.push_back(std::to_string(crossing.size()) + " pairs of its faces would cross, the first at " +
-                       at(crossing.front().first));
+    tell(crossing.size(), " pairs of its faces would cross, the first at ", crossing.front().first);
   return problems;
 }
 
@@ -132,41 +131,63 @@ std::vector<CenterlineBinding> nearest_places(const VolumeMesh& mesh, const Cent
   return places;
 }
 
-struct FollowedVolume {
-  LoadedVolume volume;
+/// A surface or volume that was moved: what is wrong with it, and how it is written.
+struct Followed {
   std::vector<std::string> problems;
+  std::function<void(const std::string& options)> write;
 };
 
-FollowedVolume follow_volume(const EditArguments& arguments, const Centerline& centerline, Console& console) {
-  FollowedVolume followed{read_volume(arguments.follow.path), {}};
-  console.warn(followed.volume.warnings);
-  return naming(arguments.follow.path, [&] {
-    if (followed.volume.unit != LengthUnit::mm || followed.volume.space != Space::lps)
-      throw InvalidInput("volumes are followed in millimetres and LPS, as vmesh volume writes them by default");
-    VolumeMesh& mesh = followed.volume.mesh;
-    mesh.points = follow_edit(mesh.points, nearest_places(mesh, centerline), centerline, arguments.edit);
-    for (const VolumeDefect& defect : find_volume_defects(mesh)) followed.problems.push_back(defect.message);
-    return std::move(followed);
-  });
+Followed follow_volume(const EditArguments& arguments, const Centerline& centerline, Console& console) {
+  LoadedVolume volume = read_volume(arguments.follow.path);
+  console.warn(volume.warnings);
+  if (volume.unit != LengthUnit::mm || volume.space != Space::lps)
+    throw InvalidInput("volumes are followed in millimetres and LPS, as vmesh volume writes them by default");
+  VolumeMesh& mesh = volume.mesh;
+  mesh.points = follow_edit(mesh.points, nearest_places(mesh, centerline), centerline, arguments.edit);
+  Followed followed;
+  for (const VolumeDefect& defect : find_volume_defects(mesh)) followed.problems.push_back(defect.message);
+  followed.write = [&arguments, volume = std::move(volume)](const std::string& options) {
+    write_volume(arguments.follow_output, volume.mesh,
+                 {generator_name(), options, file_name_of(arguments.follow), sha256_of(arguments.follow),
+                  arguments.writing.unit, arguments.writing.space},
+                 volume.attributes);
+  };
+  return followed;
 }
 
-struct Followed {
-  TriMesh mesh;
-  MeshAttributes attributes;
-  std::vector<std::string> problems;
-};
-
-Followed follow(const EditArguments& arguments, const Centerline& centerline, Console& console) {
+Followed follow_surface(const EditArguments& arguments, const Centerline& centerline, Console& console) {
   const LoadedSurface surface = load_surface(arguments.follow);
   console.warn(surface.warnings);
-  return naming(arguments.follow.path, [&] {
-    const std::vector<CenterlineBinding> binding = binding_of(surface, centerline);
-    TriMesh moved = surface.mesh;
-    moved.vertices = follow_edit(surface.mesh.vertices, binding, centerline, arguments.edit);
-    MeshAttributes attributes = attributes_after(surface, moved, binding, centerline, arguments.edit);
-    std::vector<std::string> problems = problems_of(surface.mesh, moved);
-    return Followed{std::move(moved), std::move(attributes), std::move(problems)};
+  const std::vector<CenterlineBinding> binding = binding_of(surface, centerline);
+  TriMesh moved = surface.mesh;
+  moved.vertices = follow_edit(surface.mesh.vertices, binding, centerline, arguments.edit);
+  MeshAttributes attributes = attributes_after(surface, moved, binding, centerline, arguments.edit);
+  Followed followed{problems_of(surface.mesh, moved), {}};
+  followed.write = [&arguments, moved = std::move(moved),
+                    attributes = std::move(attributes)](const std::string& options) {
+    write_surface(arguments.follow_output, moved, attributes,
+                  {generator_name(), options, file_name_of(arguments.follow), sha256_of(arguments.follow)},
+                  arguments.writing);
+  };
+  return followed;
+}
+
+Followed follow(const EditArguments& arguments, const Centerline& centerline, Console& console) {
+  Followed followed = naming(arguments.follow.path, [&] {
+    return follows_volume(arguments) ? follow_volume(arguments, centerline, console)
+                                     : follow_surface(arguments, centerline, console);
   });
+  for (const std::string& problem : followed.problems)
+    console.error(arguments.follow.path.string() + ": cannot follow: " + problem +
+                  "; nothing is written. Change less, or make a mesh of the edited centerline");
+  return followed;
+}
+
+std::string options_of(const EditArguments& arguments) {
+  std::string options = "edit" + arguments.text;
+  for (const Index branch : arguments.edit.removed_branches) options += " --remove " + std::to_string(branch);
+  if (arguments.edit.scale != 1) options += formatted(" --scale %.17g", arguments.edit.scale);
+  return options;
 }
 
 int run(const EditArguments& arguments, Console& console) {
@@ -176,40 +197,21 @@ int run(const EditArguments& arguments, Console& console) {
   const EditedCenterline edited = naming(
       arguments.input.path, [&] { return edit_centerline(centerline, arguments.edit, loaded.cleaned.end_sections); });
   stop_if_interrupted();
-  Followed followed;
-  std::optional<FollowedVolume> volume;
-  if (follows_volume(arguments)) {
-    volume = follow_volume(arguments, centerline, console);
-    followed.problems = volume->problems;
-  } else if (!arguments.follow.path.empty()) {
-    followed = follow(arguments, centerline, console);
-  }
-  for (const std::string& problem : followed.problems)
-    console.error(arguments.follow.path.string() + ": cannot follow: " + problem +
-                  "; nothing is written. Change less, or make a mesh of the edited centerline");
-  if (!followed.problems.empty()) return kDefective;
+  std::optional<Followed> followed;
+  if (!arguments.follow.path.empty()) followed = follow(arguments, centerline, console);
+  if (followed && !followed->problems.empty()) return kDefective;
 
-  std::string options = "edit" + arguments.text;
-  for (const Index branch : arguments.edit.removed_branches) options += " --remove " + std::to_string(branch);
-  if (arguments.edit.scale != 1) options += formatted(" --scale %.17g", arguments.edit.scale);
-  const std::string name = file_name_of(arguments.input), sha256 = sha256_of(arguments.input);
-  write_centerline(arguments.output, edited.centerline,
-                   {generator_name(), options, name, sha256, arguments.writing.unit, arguments.writing.space},
-                   edited.end_sections, console);
+  const std::string options = options_of(arguments), name = file_name_of(arguments.input);
+  write_centerline(
+      arguments.output, edited.centerline,
+      {generator_name(), options, name, sha256_of(arguments.input), arguments.writing.unit, arguments.writing.space},
+      edited.end_sections, console);
   console.log("wrote " + arguments.output.string() + ": " + std::to_string(edited.centerline.nodes().size()) +
               " nodes, were " + std::to_string(centerline.nodes().size()));
-  if (arguments.follow.path.empty()) return kOk;
-  const std::string follow_name = file_name_of(arguments.follow), follow_sha256 = sha256_of(arguments.follow);
-  if (volume) {
-    write_volume(
-        arguments.follow_output, volume->volume.mesh,
-        {generator_name(), options, follow_name, follow_sha256, arguments.writing.unit, arguments.writing.space},
-        volume->volume.attributes);
-  } else {
-    write_surface(arguments.follow_output, followed.mesh, followed.attributes,
-                  {generator_name(), options, follow_name, follow_sha256}, arguments.writing);
+  if (followed) {
+    followed->write(options);
+    console.log("wrote " + arguments.follow_output.string());
   }
-  console.log("wrote " + arguments.follow_output.string());
   return kOk;
 }
 

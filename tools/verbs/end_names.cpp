@@ -27,12 +27,6 @@ std::vector<Index> ends_of(const Centerline& centerline) {
   return ends;
 }
 
-std::string trimmed(const std::string& text) {
-  constexpr const char* kBlank = " \t\r";
-  const std::size_t begin = text.find_first_not_of(kBlank);
-  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(kBlank) + 1 - begin);
-}
-
 Index end_at_node(const std::string& text, const Centerline& centerline) {
   Index node = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), node);
@@ -106,7 +100,7 @@ class NameTable {
   static std::vector<std::string> fields_of(const std::string& line) {
     std::vector<std::string> fields;
     std::istringstream all(line.substr(0, line.find('#')));
-    for (std::string field; std::getline(all, field, ',');) fields.push_back(trimmed(field));
+    for (std::string field; std::getline(all, field, ',');) fields.emplace_back(trimmed(field));
     if (fields.size() == 1 && fields[0].empty()) fields.clear();
     return fields;
   }

@@ -1,6 +1,7 @@
 #include "vmesh/core/text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdarg>
 #include <cstdio>
 #include <utility>
@@ -15,6 +16,15 @@ std::string formatted(const char* format, ...) {
   std::vsnprintf(text.data(), text.size() + 1, format, again);
   va_end(again);
   va_end(values);
+  return text;
+}
+
+std::string point_text(const Vec3& p) { return formatted("(%.3f, %.3f, %.3f)", p.x(), p.y(), p.z()); }
+
+std::string_view trimmed(std::string_view text) {
+  const auto is_blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -10,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/text.h"
 #include "vmesh/mesh/topology.h"
 
 namespace vmesh::fitting {
@@ -27,12 +27,6 @@ struct HalfEdge {
   bool operator<(const HalfEdge& other) const { return key() < other.key(); }
   std::array<Index, 3> key() const { return {std::min(from, to), std::max(from, to), face}; }
 };
-
-std::string text_of(const Vec3& p) {
-  char text[128];
-  std::snprintf(text, sizeof text, "(%.3f, %.3f, %.3f)", p.x(), p.y(), p.z());
-  return text;
-}
 
 // Merges coincident vertices; removes faces that lose their area by that.
 TriMesh welded(const TriMesh& mesh) {
@@ -96,7 +90,7 @@ void FitReference::connect() {
     const HalfEdge &a = edges[first], &b = edges[first + 1];
     if (a.from == b.from)
       throw InvalidInput("the faces of the reference disagree about the outside, at " +
-                         text_of(mesh_.vertices[a.from]) + "; orient them first");
+                         point_text(mesh_.vertices[a.from]) + "; orient them first");
     across_[a.face][a.side] = b.face;
     across_[b.face][b.side] = a.face;
   }

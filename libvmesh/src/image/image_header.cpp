@@ -78,13 +78,6 @@ std::vector<double> numbers_in(std::string_view text, const std::string& name, s
   return numbers;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const auto is_blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 std::string folded(std::string_view text) { return lower(trimmed(text)); }
 
 std::string cited(std::string_view text) {

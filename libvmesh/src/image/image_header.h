@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vmesh/core/text.h"
 #include "vmesh/core/types.h"
 #include "vmesh/image/image_io.h"
 
@@ -60,10 +61,7 @@ std::filesystem::path other_of_pair(std::filesystem::path path, const char* lowe
 /// Numbers separated by blanks, commas and brackets. Throws InvalidInput citing `key`.
 std::vector<double> numbers_in(std::string_view text, const std::string& name, std::string_view key);
 
-/// `text` without blanks at its ends.
-std::string_view trimmed(std::string_view text);
-
-/// The same in lower case.
+/// Without blanks at its ends, in lower case.
 std::string folded(std::string_view text);
 
 /// `text` in quotes, on one line and shortened for a message.

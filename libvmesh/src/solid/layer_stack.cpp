@@ -269,8 +269,7 @@ std::vector<std::string> sentences_of(const LayerSummary& summary, const std::st
                                                   100 * kFullLayers, 100 * summary.full_share)};
   for (std::size_t i = 0; i < std::min(kNamed, summary.thin.size()); ++i) {
     const ThinPlace& place = summary.thin[i];
-    const Vec3& p = place.position;
-    const std::string at = formatted(" at (%.3f, %.3f, %.3f): ", p.x(), p.y(), p.z()) + reason_of(place.limit);
+    const std::string at = " at " + point_text(place.position) + ": " + reason_of(place.limit);
     sentences.push_back(place.reached_mm == 0
                             ? what + " end" + at
                             : what + formatted(" have %.0f %% of it", 100 * place.reached_mm / place.asked_mm) + at);

@@ -42,7 +42,6 @@ void check_options(const VolumeOptions& options) {
   if (options.shell_only && options.shell.count == 0) throw InvalidInput("a shell alone needs a layer at least");
   if (!(options.core_size >= 0 && std::isfinite(options.core_size)))
     throw InvalidInput("the size of cells in the core must be positive");
-  if (!options.shell_only && !can_mesh_lumen()) fill_core({});  // throws
 }
 
 VolumeDefect not_filled(const CoreSurface& surface, const Core& core) {
@@ -51,8 +50,7 @@ VolumeDefect not_filled(const CoreSurface& surface, const Core& core) {
   const Vec3& p = surface.mesh.vertices[at];
   return {VolumeDefectKind::not_filled, p, std::max<std::size_t>(crossings.size(), 1),
           "the core could not be divided into tetrahedra: " + core.failure + "; " +
-              counted(crossings.size(), "pair", "pairs") + " of its faces cross" +
-              formatted(", near (%.3f, %.3f, %.3f)", p.x(), p.y(), p.z())};
+              counted(crossings.size(), "pair", "pairs") + " of its faces cross, near " + point_text(p)};
 }
 
 class VolumeMaker {
@@ -66,6 +64,7 @@ class VolumeMaker {
   }
 
   VolumeResult run() {
+    if (parts_.with_lumen && !can_mesh_lumen()) fill_core({});  // throws
     parts_.layers = lay(parts_.with_lumen ? options_.layers : LayerOptions{}, LayerSide::inside);
     parts_.shell = lay(options_.shell, LayerSide::outside);
     lap("layers");

@@ -32,9 +32,7 @@ class Finding {
   }
   void add_to(std::vector<VolumeDefect>& defects) {
     if (defect_.count == 0) return;
-    const Vec3& p = defect_.position;
-    defect_.message = std::to_string(defect_.count) + " " + what_ +
-                      formatted(", the first at (%.3f, %.3f, %.3f)", p.x(), p.y(), p.z());
+    defect_.message = std::to_string(defect_.count) + " " + what_ + ", the first at " + point_text(defect_.position);
     defects.push_back(defect_);
   }
 

@@ -16,8 +16,6 @@ namespace {
 // files of single precision differ by 1e-6 where vessels lie within a metre of the origin.
 constexpr double kMostUneven = 1e-3;
 
-std::string place(const Vec3& p) { return formatted("(%.3f, %.3f, %.3f)", p.x(), p.y(), p.z()); }
-
 void check_sizes(const VesselWall& wall) {
   check_indices(wall.mesh);
   if (wall.radius.size() != wall.mesh.vertices.size() || wall.patch.size() != wall.mesh.faces.size())
@@ -39,11 +37,11 @@ void check_surface(const TriMesh& mesh) {
   const std::vector<Index> flat = degenerate_faces(mesh);
   if (!flat.empty())
     throw InvalidInput(counted(flat.size(), "face", "faces") + " without area, the first at " +
-                       place(mesh.vertices[mesh.faces[flat[0]][0]]) + ": remesh the surface");
+                       point_text(mesh.vertices[mesh.faces[flat[0]][0]]) + ": remesh the surface");
   const auto crossings = self_intersections(mesh);
   if (!crossings.empty())
     throw InvalidInput(counted(crossings.size(), "pair", "pairs") + " of crossing faces, the first at " +
-                       place(mesh.vertices[mesh.faces[crossings[0].first][0]]) +
+                       point_text(mesh.vertices[mesh.faces[crossings[0].first][0]]) +
                        ": the surface does not bound a volume");
 }
 
@@ -97,7 +95,7 @@ class FrameBuilder {
     if (cap.unevenness > kMostUneven * std::sqrt(area.norm()))
       throw InvalidInput(
           name(patch) + " is not flat: " + formatted("its vertices differ from a plane by %g mm", cap.unevenness) +
-          ", near " + place(wall_.mesh.vertices[rim[0]]) + "; vmesh generate --ends flat makes flat ones");
+          ", near " + point_text(wall_.mesh.vertices[rim[0]]) + "; vmesh generate --ends flat makes flat ones");
     for (const Index v : rim) claim(v, patch);
     for (const Index v : rim) cap.rim.push_back(number_[v]);
     frame_.caps.push_back(std::move(cap));
@@ -106,7 +104,7 @@ class FrameBuilder {
   void claim(Index v, Index patch) {
     const auto other = number_[v] == kNone ? kNone : frame_.cap_at[number_[v]];
     if (number_[v] == kNone || other != kNone)
-      throw InvalidInput(name(patch) + " touches another cap at " + place(wall_.mesh.vertices[v]) +
+      throw InvalidInput(name(patch) + " touches another cap at " + point_text(wall_.mesh.vertices[v]) +
                          "; there must be a wall between them");
     frame_.cap_at[number_[v]] = static_cast<Index>(frame_.caps.size());
   }

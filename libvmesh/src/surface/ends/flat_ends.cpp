@@ -188,8 +188,7 @@ class EndFinisher {
 std::string problem_of(const BlockedExtension& extension) {
   const std::string node = std::to_string(extension.node);
   const std::string obstacle =
-      "the vessel of branch " + std::to_string(extension.branch) +
-      formatted(" at (%.3f, %.3f, %.3f)", extension.at.x(), extension.at.y(), extension.at.z());
+      "the vessel of branch " + std::to_string(extension.branch) + " at " + point_text(extension.at);
   const double longest = std::floor(100 * extension.longest) / 100;  // not longer than fits
   if (extension.length == 0)
     return "the end at node " + node + " has no flow extension: " + obstacle +

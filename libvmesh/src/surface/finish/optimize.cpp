@@ -37,7 +37,7 @@ constexpr int kMostLiftDropRounds = 4;  // idle 3 to 6
 constexpr int kErrorRounds = 14;
 constexpr int kErrorSweeps = 4;  // safe 3 to 6
 // Target lengths from which on edges between rings are split, with more vertices around than kFewAround: with these,
-// the maximum distance is elsewhere (a portal vein at 24 around: .011 radii, .010 with it; at 48 .037 and .003).
+// the maximum distance is elsewhere (a portal vein at 24 around: .011 radii, .010 with it; at 48 .037 and .004).
 constexpr double kStretched = 1.6;
 constexpr int kFewAround = 24;
 constexpr int kStretchRounds = 4;     // each at least halves the longest
