@@ -1,5 +1,6 @@
 // Volume meshes around centerlines, over files and over random trees: a table in Markdown, and one closing line. Usage:
-//   bench_volume [--round] [--around N] [--layers N] [--shell N] [--rotate] [--all] [FILE...] [--plausible FIRST COUNT]
+//   bench_volume [--round] [--around N] [--layers N] [--shell N] [--merge] [--wall-only] [--rotate] [--all] [FILE...]
+//   [--plausible FIRST COUNT]
 // Ends are flat unless --round. --rotate makes each random tree with the next of a list of options for its surface and
 // its layers; of random trees, only those that were refused are listed, unless --all. A case that is not sound, or is
 // refused without a place, makes the exit code 1. Options apply to what follows them.
@@ -131,6 +132,10 @@ int main(int argc, char** argv) {
       settings.production.growth.around = std::atoi(argv[++i]);
     } else if (word == "--layers" && i + 1 < argc) {
       settings.volume.layers.count = std::atoi(argv[++i]);
+    } else if (word == "--merge") {
+      settings.volume.shell.merged = true;
+    } else if (word == "--wall-only") {
+      settings.volume.shell_only = true;
     } else if (word == "--shell" && i + 1 < argc) {
       settings.volume.shell.count = std::atoi(argv[++i]);
     } else if (word == "--plausible" && i + 2 < argc) {

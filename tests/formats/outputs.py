@@ -47,7 +47,7 @@ class Written:
         vmesh("generate", path("tree.json"), path("wall.ply"), "--ends", "flat")
         vmesh("convert", path("wall.ply"), path("points.ply"), "--attributes", "vertex")
         vmesh("convert", path("wall.ply"), path("cm.ply"), "--output-unit", "cm", "--output-space", "RAS")
-        for ending in ("stl", "obj", "off", "glb"):
+        for ending in ("stl", "obj", "off", "glb", "3mf"):
             vmesh("convert", path("wall.ply"), path("wall." + ending))
         vmesh("generate", path("tree.json"), path("skin.ply"))
         vmesh("generate", path("tree.json"), path("skin.glb"), "--bones")
@@ -156,6 +156,7 @@ def check_assimp(table, assimp, written):
 
     for ending in ("ply", "stl", "obj", "off"):
         table.check("." + ending, "out", assimp.name, lambda ending=ending: surface("wall." + ending, written.wall))
+    table.check(".3mf", "out", assimp.name, lambda: surface("wall.3mf", written.wall, "mm"))
     table.check(".glb", "out", assimp.name, lambda: surface("wall.glb", written.in_metres, "m, y up (the format's)"))
     table.check(".glb", "out, `--bones`", assimp.name, bones)
 

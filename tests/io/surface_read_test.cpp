@@ -287,6 +287,26 @@ TEST(ReadScene, TheUnitOfA3mfIsRead) {
   EXPECT_NEAR(inches.mesh.vertices.at(1).x(), 50.8, 1e-5) << "float";
 }
 
+TEST(ReadScene, A3mfThatWasWrittenComesBack) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = {{{0, 0, 0}, {1.5, 0, 0}, {0, 2.25, 0}, {0, 0, -3}},
+                        {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
+  SurfaceMetadata metadata;
+  metadata.generator = "a <generator> & more";
+  metadata.unit = LengthUnit::um;
+  write_surface(folder / "t.3mf", mesh, {}, metadata);
+  const LoadedSurface read = read_surface(folder / "t.3mf");
+  EXPECT_EQ(read.unit, LengthUnit::um);
+  const std::vector<Vec3> in_um = {{0, 0, 0}, {1500, 0, 0}, {0, 2250, 0}, {0, 0, -3000}};
+  EXPECT_EQ(read.mesh.vertices, in_um) << "numbers that floats have";
+  EXPECT_EQ(read.mesh.faces, mesh.faces);
+  const std::string bytes = testing::content_of(folder / "t.3mf");
+  write_surface(folder / "t.3mf", mesh, {}, metadata);
+  EXPECT_EQ(testing::content_of(folder / "t.3mf"), bytes);
+  metadata.unit = LengthUnit::nm;
+  EXPECT_THROW(write_surface(folder / "u.3mf", mesh, {}, metadata), Unsupported);
+}
+
 TEST(ReadScene, DamagedFilesAreRefusedOrRead) {
   const TemporaryFolder folder;
   write_surface(folder / "t.glb", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});

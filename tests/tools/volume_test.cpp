@@ -72,6 +72,35 @@ TEST_F(VolumeCommand, OfACenterlineIsThatOfItsSurface) {
   EXPECT_NE(one["options"].get<std::string>().find("--around 8"), std::string::npos);
 }
 
+TEST_F(VolumeCommand, OutsidesOfWallsAreClosedSurfacesToPrint) {
+  ASSERT_EQ(
+      vmesh({"volume", "@y.swc", "-o", "@wall.stl", "--wall-thickness", "0.3", "--wall-only", "--json", "@volume.json"})
+          .exit_code,
+      0);
+  const TriMesh wall = read_surface(path("wall.stl")).mesh;
+  const Topology topology = measure_topology(wall);
+  EXPECT_TRUE(topology.closed && topology.oriented);
+  EXPECT_EQ(topology.crowded_edges, 0u);
+  const double volume = summary()["regions"][0]["volume_mm3"];
+  // STL has floats, with 7 digits.
+  EXPECT_NEAR(enclosed_volume(wall), volume, 1e-5 * volume);
+  ASSERT_EQ(vmesh({"volume", "@y.swc", "-o", "@wall.3mf", "--wall-thickness", "0.3", "--wall-only"}).exit_code, 0);
+  EXPECT_EQ(read("wall.3mf").substr(0, 4), "PK\3\4");
+}
+
+TEST_F(VolumeCommand, MergesWallsOnRequest) {
+  EXPECT_NE(vmesh({"volume", "@y.swc", "-o", "@y.vtu", "--merge-walls"}).err.find("--wall-thickness"),
+            std::string::npos);
+  if (!can_mesh_lumens()) GTEST_SKIP() << "built without TetGen";
+  write("close.swc", "1 2 -12 0 0 2 -1\n2 2 12 0 0 2 1\n3 2 -12 4.2 0 2 -1\n4 2 12 4.2 0 2 3\n");
+  const Outcome run = vmesh({"volume", "@close.swc", "-o", "@close.vtu", "--around", "12", "--wall-thickness", "0.3",
+                             "--merge-walls", "--json", "@volume.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("walls are one at 1 place"), std::string::npos) << run.err;
+  ASSERT_EQ(summary()["merged_walls"].size(), 1u);
+  EXPECT_NEAR(summary()["merged_walls"][0]["position"][1], 2.1, 0.05);
+}
+
 TEST_F(VolumeCommand, TheSameBytesWhateverTheThreads) {
   if (!can_mesh_lumens()) GTEST_SKIP() << "built without TetGen";
   ASSERT_EQ(vmesh({"volume", "@y.swc", "@a.vtu", "--threads", "1", "--wall-thickness", "0.2"}).exit_code, 0);
@@ -121,7 +150,7 @@ TEST_F(VolumeCommand, RefusesOptionsThatMakeNoSense) {
   EXPECT_EQ(code({"--first-layer", "0.1mm", "--layer-thickness", "0.2"}), 2);
   EXPECT_EQ(code({"--ends", "open"}), 2);
   EXPECT_EQ(code({"--layers", "-1"}), 2);
-  EXPECT_EQ(vmesh({"volume", "@y.swc", "@y.stl"}).exit_code, 4);
+  EXPECT_EQ(vmesh({"volume", "@y.swc", "@y.dae"}).exit_code, 4);
   EXPECT_FALSE(exists("y.vtu"));
 }
 

@@ -18,6 +18,11 @@ Json to_json(const ThinPlace& place) {
           {"limit", to_string(place.limit)}};
 }
 
+Json to_json(const MergedPlace& place) {
+  return {
+      {"position", tool::to_json(place.position)}, {"volume_mm3", place.volume_mm3}, {"tetrahedra", place.tetrahedra}};
+}
+
 Json layers_json(const LayerOptions& options, const LayerSummary& summary) {
   if (options.count == 0) return {{"count", 0}};
   Json json = {{"count", options.count}};
@@ -94,6 +99,8 @@ Json to_json(const VolumeReport& report) {
   json["patches"] = patches_json(report);
   json["layers"] = layers_json(report.volume_options->layers, report.result->layers);
   json["wall_layers"] = layers_json(report.volume_options->shell, report.result->shell);
+  if (report.volume_options->shell.merged)
+    json["merged_walls"] = list_json(report.result->merged, [](const MergedPlace& place) { return to_json(place); });
   json["quality"] = quality_json(report);
   json["stages"] = stages_json(report.stages);
   return json;
@@ -115,6 +122,10 @@ void log_volume(const VolumeReport& report, Console& console) {
                           measures.least_radius_ratio));
   log_layers(report.volume_options->layers, report.result->layers, "layers", console);
   log_layers(report.volume_options->shell, report.result->shell, "layers of the vessel's wall", console);
+  const std::vector<MergedPlace>& merged = report.result->merged;
+  if (!merged.empty())
+    console.log("walls are one at " + counted(merged.size(), "place", "places") +
+                formatted(", the largest of %.3g mm^3 at ", merged[0].volume_mm3) + point_text(merged[0].position));
 }
 
 }  // namespace vmesh::tool

@@ -1,6 +1,8 @@
 #include "vmesh/core/text.h"
+#include "vmesh/io/surface_io.h"
 #include "vmesh/io/volume_io.h"
 #include "vmesh/mesh/find_attribute.h"
+#include "vmesh/mesh/volume_faces.h"
 #include "vmesh/solid/make_volume.h"
 
 #include "command_line/arguments_growth.h"
@@ -74,6 +76,9 @@ void add_shell(CLI::App& verb, VolumeArguments& arguments) {
       .type_name("SHARE|Xmm");
   add_number(verb, "--wall-layers", options.shell.count, 0, kMostLayers,
              "layers of wedges across it; 0: 2 with --wall-thickness");
+  verb.add_flag("--merge-walls", options.shell.merged,
+                "where the walls of two vessels meet, make them one, with tetrahedra between their layers; else both "
+                "are thinner there");
   verb.add_flag("--wall-only", options.shell_only, "mesh the wall only, not what is within");
 }
 
@@ -81,7 +86,9 @@ void add_options(CLI::App& verb, VolumeArguments& arguments) {
   add_centerline_input(verb, arguments.input,
                        "surface with radii of vmesh generate (.vtp or .ply); or what that makes one of: a centerline, "
                        "an image, a wall");
-  add_output_after_several(verb, arguments.output, kVolumeFile, "volume mesh (" + written_volume_files() + ")");
+  add_output_after_several(verb, arguments.output, kVolumeFile,
+                           "volume mesh (" + written_volume_files() +
+                               "), or its outside as a closed surface, to print for example (.stl, .3mf)");
   add_output_frame(verb, arguments.writing);
   verb.add_flag("--tetrahedra", arguments.format.split_cells,
                 "split wedges and pyramids into tetrahedra, for files and solvers that have none");
@@ -97,7 +104,7 @@ void add_options(CLI::App& verb, VolumeArguments& arguments) {
   add_fitting(verb, surface.fitting);
   add_extraction(verb, surface.extraction);
   group(verb, "Layers", {"--layers", "--layer-thickness", "--first-layer", "--layer-growth", "--core-size"});
-  group(verb, "The vessel's wall", {"--wall-thickness", "--wall-layers", "--wall-only"});
+  group(verb, "The vessel's wall", {"--wall-thickness", "--wall-layers", "--merge-walls", "--wall-only"});
   const char* grown = "The surface, where the input is none";
   group(verb, grown,
         {"--around", "--preset", "--max-vertices", "--simplification", "--elongation", "--blend", "--placement",
@@ -115,6 +122,8 @@ void settle(VolumeArguments& arguments) {
     throw UsageError("--wall-layers needs --wall-thickness: a share of the local radius such as 0.2, or 0.8mm");
   if (arguments.volume.shell_only && shell.count == 0)
     throw UsageError("--wall-only needs --wall-thickness: a share of the local radius such as 0.2, or 0.8mm");
+  if (arguments.volume.shell.merged && shell.count == 0)
+    throw UsageError("--merge-walls needs --wall-thickness: a share of the local radius such as 0.2, or 0.8mm");
   const ProductionOptions& production = arguments.growth.production;
   if (production.ends == EndShape::open || !production.growth.open_ends.nodes.empty())
     throw UsageError("the surface of a volume must be closed: --ends flat, or round");
@@ -139,6 +148,7 @@ std::string describe_volume(const VolumeOptions& options) {
   if (options.shell.count > 0)
     text +=
         " --wall-thickness " + thickness_text(options.shell) + " --wall-layers " + std::to_string(options.shell.count);
+  if (options.shell.merged) text += " --merge-walls";
   return options.shell_only ? text + " --wall-only" : text;
 }
 
@@ -178,15 +188,34 @@ std::optional<VolumeSource> grow_source(const VolumeArguments& arguments, Consol
                       grown->report.stages};
 }
 
+/// Whether the outside of the volume is to be written, as a surface.
+bool writes_outside(const VolumeArguments& arguments) {
+  const SurfaceFormat* format = find_surface_format(arguments.output);
+  return find_volume_format(arguments.output) == nullptr && format != nullptr && format->write != nullptr;
+}
+
+void write_outside(const VolumeArguments& arguments, const VolumeMesh& mesh, const VolumeReport& report) {
+  const BoundarySurface outside = boundary_surface(mesh);
+  MeshAttribute face{"ModelFaceID", {}, true};
+  for (const Index patch : outside.patch) face.values.push_back(1.0 + patch);
+  MeshAttributes attributes;
+  attributes.face.push_back(std::move(face));
+  attributes.patch_names = mesh.patch_names;
+  write_surface(arguments.output, outside.mesh, std::move(attributes),
+                {generator_name(), report.options, file_name_of(arguments.input), report.input_sha256},
+                arguments.writing);
+}
+
 int run(const VolumeArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
-  check_outputs({{arguments.output, Kind::volume}, {arguments.common.json, Kind::summary}},
+  check_outputs({{arguments.output, writes_outside(arguments) ? Kind::surface : Kind::volume},
+                 {arguments.common.json, Kind::summary}},
                 files_of({&arguments.input, &arguments.growth.fitting.reference}));
-  if (!arguments.volume.shell_only && !can_mesh_lumen())
+  if ((!arguments.volume.shell_only || arguments.volume.shell.merged) && !can_mesh_lumen())
     throw Unsupported(
         "this vmesh was built without TetGen, which fills lumens with tetrahedra; build it after "
-        "scripts/install-dependencies, with -DVMESH_WITH_TETGEN=ON, or give --wall-only");
+        "scripts/install-dependencies, with -DVMESH_WITH_TETGEN=ON, or give --wall-only without --merge-walls");
   Stopwatch watch;
   std::optional<VolumeSource> source = read_source(arguments, console);
   if (!source) source = grow_source(arguments, console);
@@ -213,10 +242,14 @@ int run(const VolumeArguments& arguments, Console& console) {
   if (!source->how.empty()) report.options += " of " + source->how;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
   StageClock clock;
-  write_volume(arguments.output, result.mesh,
-               {generator_name(), report.options, file_name_of(arguments.input), report.input_sha256,
-                arguments.writing.unit, arguments.writing.space},
-               {}, arguments.format);
+  if (writes_outside(arguments)) {
+    write_outside(arguments, result.mesh, report);
+  } else {
+    write_volume(arguments.output, result.mesh,
+                 {generator_name(), report.options, file_name_of(arguments.input), report.input_sha256,
+                  arguments.writing.unit, arguments.writing.space},
+                 {}, arguments.format);
+  }
   clock.lap("write", report.stages);
   log_volume(report, console);
   console.log("wrote " + arguments.output.string() + formatted(" after %.2f s", watch.lap()));
@@ -235,6 +268,7 @@ const VerbRegistration<VolumeArguments> kRegistration({
   vmesh volume aorta-flow.vtp -o aorta.vtu --layers 6 --first-layer 0.05mm --layer-growth 1.3 --json aorta.json
   vmesh volume tree.swc -o coupled.vtu --wall-thickness 0.8mm --wall-layers 3
   vmesh volume aorta-flow.vtp -o wall.vtu --wall-thickness 0.15 --wall-only
+  vmesh volume aorta.vtp -o print.3mf --wall-thickness 1.2mm --wall-only --merge-walls
 Where layers do not fit, they are thinner, or end; the messages and the summary name the places.)",
     .add_options = add_options,
     .settle = settle,

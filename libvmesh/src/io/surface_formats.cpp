@@ -33,7 +33,7 @@ const std::vector<SurfaceFormat>& surface_formats() {
        .read = read_glb,
        .write = write_glb},
       {.name = "glTF", .extensions = {".gltf"}, .needs = assimp, .read = kReadScene},
-      {.name = "3MF", .extensions = {".3mf"}, .needs = assimp, .read = kReadScene},
+      {.name = "3MF", .extensions = {".3mf"}, .needs = assimp, .read = kReadScene, .write = write_3mf},
       {.name = "COLLADA", .extensions = {".dae"}, .needs = assimp, .read = kReadScene},
       {.name = "X3D", .extensions = {".x3d"}, .needs = assimp, .read = kReadScene},
       {.name = "FBX", .extensions = {".fbx"}, .needs = assimp, .read = kReadScene},

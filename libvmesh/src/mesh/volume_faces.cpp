@@ -149,6 +149,31 @@ std::vector<CellSide> sides_of_boundary(const VolumeMesh& mesh) {
   return sides;
 }
 
+BoundarySurface boundary_surface(const VolumeMesh& mesh) {
+  BoundarySurface surface;
+  std::vector<Index> number(mesh.points.size(), kNone);
+  for (const BoundaryFace& face : mesh.boundary) {
+    for (const Index v : face.corners) {
+      if (v != kNone) number[v] = 0;
+    }
+  }
+  for (Index v = 0; v < number.size(); ++v) {
+    if (number[v] == kNone) continue;
+    number[v] = static_cast<Index>(surface.mesh.vertices.size());
+    surface.mesh.vertices.push_back(mesh.points[v]);
+  }
+  const auto add = [&](Index a, Index b, Index c, Index patch) {
+    surface.mesh.faces.push_back({number[a], number[b], number[c]});
+    surface.patch.push_back(patch);
+  };
+  for (const auto& [corners, patch] : mesh.boundary) {
+    const auto& [a, b, c, d] = corners;
+    add(a, b, c, patch);
+    if (d != kNone) add(a, c, d, patch);
+  }
+  return surface;
+}
+
 std::vector<CellFace> outer_faces(const VolumeMesh& mesh) {
   std::unordered_map<CellFace, int, FaceHash> count;
   for_each_side(mesh, [&](const CellSide&, const CellFace& face) { ++count[key_of(face)]; });

@@ -25,4 +25,8 @@ struct Core {
 /// By TetGen. Faces and vertices of the surface are kept. Throws Unsupported in a build without it.
 Core fill_core(const CoreSurface& surface);
 
+/// Tetrahedra between closed surfaces and a box around them, not refined. `within`: points in what the surfaces
+/// enclose, which is left empty. Throws Unsupported as above.
+Core fill_around(const TriMesh& surfaces, const std::vector<Vec3>& within);
+
 }  // namespace vmesh

@@ -27,33 +27,6 @@ double radius_ratio(const std::array<Vec3, 4>& p, double six_volumes, double twi
   return divisor > 0 ? 6 * six_volumes * six_volumes / divisor : 0;
 }
 
-/// The smaller of two measures, which find different faults: the smallest sine of an angle between two faces, and
-/// 3 inradius / circumradius, weighted so that both are about equal in shapes that are barely good. Negative if the
-/// corners are the wrong way round.
-double shape_of(const std::array<Vec3, 4>& p) {
-  constexpr double kWeight = 1.2;
-  std::array<Vec3, 4> normal;  // opposite to every corner
-  double twice_area = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3 &a = p[(i + 1) % 4], &b = p[(i + 2) % 4], &c = p[(i + 3) % 4];
-    normal[i] = (b - a).cross(c - a);
-    twice_area += normal[i].norm();
-  }
-  const double six_volumes = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
-  double least = kWeight * radius_ratio(p, six_volumes, twice_area);
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      // Faces opposite to i and j meet at the edge between the other two corners.
-      std::size_t k = 0;
-      while (k == i || k == j) ++k;
-      const std::size_t l = 6 - i - j - k;
-      const double areas = normal[i].norm() * normal[j].norm();
-      least = std::min(least, areas > 0 ? std::abs(six_volumes) * (p[k] - p[l]).norm() / areas : 0);
-    }
-  }
-  return six_volumes > 0 ? least : -least;
-}
-
 class Improver {
  public:
   Improver(const CoreSurface& surface, Core& core)
@@ -81,7 +54,7 @@ class Improver {
   }
 
   double quality(const Tetrahedron& t) const {
-    return shape_of({points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]});
+    return tetrahedron_shape({points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]});
   }
   // Of all cells, or of the first ones if that is below `enough` already.
   double worst(const std::vector<Tetrahedron>& cells, double enough = -1) const {
@@ -265,6 +238,30 @@ class Improver {
 
 }  // namespace
 
+double tetrahedron_shape(const std::array<Vec3, 4>& p) {
+  constexpr double kWeight = 1.2;
+  std::array<Vec3, 4> normal;  // opposite to every corner
+  double twice_area = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 &a = p[(i + 1) % 4], &b = p[(i + 2) % 4], &c = p[(i + 3) % 4];
+    normal[i] = (b - a).cross(c - a);
+    twice_area += normal[i].norm();
+  }
+  const double six_volumes = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
+  double least = kWeight * radius_ratio(p, six_volumes, twice_area);
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      // Faces opposite to i and j meet at the edge between the other two corners.
+      std::size_t k = 0;
+      while (k == i || k == j) ++k;
+      const std::size_t l = 6 - i - j - k;
+      const double areas = normal[i].norm() * normal[j].norm();
+      least = std::min(least, areas > 0 ? std::abs(six_volumes) * (p[k] - p[l]).norm() / areas : 0);
+    }
+  }
+  return six_volumes > 0 ? least : -least;
+}
+
 void improve_core(const CoreSurface& surface, Core& core) { Improver(surface, core).run(); }
 
 BadPlaces bad_places(const CoreSurface& surface, const Core& core, double limit) {
@@ -273,7 +270,7 @@ BadPlaces bad_places(const CoreSurface& surface, const Core& core, double limit)
   BadPlaces places;
   std::set<Index> vertices;
   for (const auto& [a, b, c, d] : core.tetrahedra) {
-    const double shape = shape_of({at(a), at(b), at(c), at(d)});
+    const double shape = tetrahedron_shape({at(a), at(b), at(c), at(d)});
     places.least = std::min(places.least, shape);
     if (shape >= limit) continue;
     for (const Index v : {a, b, c, d}) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "solid/core.h"
 
 namespace vmesh {
@@ -8,8 +10,12 @@ namespace vmesh {
 /// than the worst it replaces; the surface stays as it is. Deterministic.
 void improve_core(const CoreSurface& surface, Core& core);
 
-/// Tetrahedra whose shape is worse than `limit`. Shape: the smaller of the smallest sine of an angle between faces, and
-/// 1.2 times 3 inradius / circumradius.
+/// The smaller of the smallest sine of an angle between faces, and 1.2 times 3 inradius / circumradius: two measures,
+/// which find different faults, weighted so that both are about equal in shapes that are barely good. Negative if the
+/// corners are the wrong way round.
+double tetrahedron_shape(const std::array<Vec3, 4>& corners);
+
+/// Tetrahedra whose shape is worse than `limit`.
 struct BadPlaces {
   double least = 1;             ///< shape of any tetrahedron
   std::vector<Index> vertices;  ///< of the surface, at bad ones; ascending

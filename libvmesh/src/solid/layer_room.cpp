@@ -11,12 +11,8 @@ namespace {
 // part of it: layers that ran into it would have run into those along it before.
 class LayerSurface {
  public:
-  LayerSurface(const WallFrame& frame, const LayerStack& stack, double reach, const std::vector<char>& has_changed)
-      : frame_(frame),
-        stack_(stack),
-        reach_(reach),
-        has_changed_(has_changed),
-        last_(static_cast<Index>(frame.position.size())) {
+  LayerSurface(const WallFrame& frame, const LayerStack& stack, const std::vector<char>& has_changed)
+      : frame_(frame), stack_(stack), has_changed_(has_changed), last_(static_cast<Index>(frame.position.size())) {
     mesh_.vertices = frame.position;
     for (Index v = 0; v < last_; ++v) mesh_.vertices.push_back(stack.at(frame, v, reach_at(v)));
     for (const auto& [a, b, c] : frame.faces) {
@@ -37,14 +33,13 @@ class LayerSurface {
   }
 
  private:
-  // Beside vertices at which layers end, where the surface that they leave is folded most, they keep farther apart.
   double reach_at(Index v) const {
-    constexpr double kFarther = 2.5;
     for (const Index f : frame_.fan[v]) {
       const auto& [a, b, c] = frame_.faces[f];
-      if (stack_.ends_at(a) || stack_.ends_at(b) || stack_.ends_at(c)) return kFarther * reach_;
+      if (stack_.ends_at(a) || stack_.ends_at(b) || stack_.ends_at(c)) return stack_.reach_at_ends;
     }
-    return reach_;
+    constexpr double kThin = 0.5;
+    return stack_.reached_mm[v] < kThin * stack_.asked_mm[v] ? stack_.reach_if_thin : stack_.reach;
   }
 
   void add(const Triangle& face, bool has_changed) {
@@ -85,7 +80,6 @@ class LayerSurface {
 
   const WallFrame& frame_;
   const LayerStack& stack_;
-  double reach_;
   const std::vector<char>& has_changed_;
   Index last_;  // where the vertices on which layers end begin
   TriMesh mesh_;
@@ -95,9 +89,9 @@ class LayerSurface {
 
 }  // namespace
 
-std::vector<char> vertices_without_room(const WallFrame& frame, const LayerStack& stack, double reach,
+std::vector<char> vertices_without_room(const WallFrame& frame, const LayerStack& stack,
                                         const std::vector<char>& has_changed) {
-  return LayerSurface(frame, stack, reach, has_changed).crossing_vertices();
+  return LayerSurface(frame, stack, has_changed).crossing_vertices();
 }
 
 }  // namespace vmesh

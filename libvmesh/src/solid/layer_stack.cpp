@@ -24,8 +24,9 @@ constexpr double kLeastShare = 0.02;
 constexpr double kGradation = 0.2;
 // Ways are lengthened where they meet faces obliquely, so that layers keep their height; at most by this factor.
 constexpr double kLongest = 2;
-// Layers inside leave half as much again free, where tetrahedra have room; those outside only keep off each other.
-constexpr double kReachInside = 1.5, kReachOutside = 1.1;
+// Layers inside leave half as much again free, where tetrahedra have room; those outside only keep off each other,
+// unless what is between them is filled with tetrahedra too.
+constexpr double kReachInside = 1.5, kReachOutside = 1.1, kReachMerged = 2, kFarther = 2.5;
 
 std::vector<double> levels_of(const LayerOptions& options) {
   std::vector<double> level = {0};
@@ -47,6 +48,10 @@ class StackBuilder {
   StackBuilder(const WallFrame& frame, const LayerOptions& options, LayerSide side, const Progress& progress)
       : frame_(frame), progress_(progress) {
     stack_.side = side;
+    stack_.reach_if_thin = side == LayerSide::inside ? kReachInside : kReachOutside;
+    // The surface that they leave is folded most where they end.
+    stack_.reach_at_ends = kFarther * stack_.reach_if_thin;
+    stack_.reach = options.merged ? kReachMerged : stack_.reach_if_thin;
     stack_.level = levels_of(options);
     for (const double radius : frame.radius) stack_.asked_mm.push_back(asked_thickness(options, stack_.level, radius));
     stack_.reached_mm = stack_.asked_mm;
@@ -130,8 +135,7 @@ class StackBuilder {
     std::vector<char> has_changed(frame_.position.size(), 1);
     for (Index v = 0; v < tested_mm_.size(); ++v) has_changed[v] = tested_mm_[v] != stack_.reached_mm[v];
     tested_mm_ = stack_.reached_mm;
-    return vertices_without_room(frame_, stack_, stack_.side == LayerSide::inside ? kReachInside : kReachOutside,
-                                 has_changed);
+    return vertices_without_room(frame_, stack_, has_changed);
   }
 
   void end_at(Index v, LayerLimit why) {

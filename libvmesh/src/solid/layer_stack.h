@@ -16,6 +16,9 @@ enum class LayerSide { inside, outside };
 /// fit the thickness is 0: they end there, in cells with fewer corners.
 struct LayerStack {
   LayerSide side = LayerSide::inside;
+  double reach = 1;                 ///< this many times the thickness is kept free of those of other places
+  double reach_if_thin = 1;         ///< the same where they are thinner than a tenth of what was asked for
+  double reach_at_ends = 1;         ///< the same at faces where they end
   std::vector<double> level = {0};  ///< share of the thickness at which layers begin and end: 0, ..., 1
   std::vector<Vec3> way;            ///< of every vertex of the wall, per thickness; about unit length
   std::vector<double> asked_mm;     ///< thickness

@@ -12,6 +12,7 @@
 #include "solid/core_improvement.h"
 #include "solid/layer_stack.h"
 #include "solid/volume_assembly.h"
+#include "solid/wall_bridges.h"
 #include "solid/wall_frame.h"
 
 namespace vmesh {
@@ -37,6 +38,7 @@ void check_layers(const LayerOptions& options, const std::string& what) {
 }
 
 void check_options(const VolumeOptions& options) {
+  if (options.layers.merged) throw InvalidInput("layers inside cannot be merged, only those of the shell");
   check_layers(options.layers, "layers");
   check_layers(options.shell, "layers of the shell");
   if (options.shell_only && options.shell.count == 0) throw InvalidInput("a shell alone needs a layer at least");
@@ -65,9 +67,11 @@ class VolumeMaker {
 
   VolumeResult run() {
     if (parts_.with_lumen && !can_mesh_lumen()) fill_core({});  // throws
+    if (options_.shell.merged && !can_mesh_lumen()) fill_around({}, {});
     parts_.layers = lay(parts_.with_lumen ? options_.layers : LayerOptions{}, LayerSide::inside);
     parts_.shell = lay(options_.shell, LayerSide::outside);
     lap("layers");
+    if (options_.shell.merged && parts_.shell.count() > 0) merge_walls();
     Filling filling;
     if (parts_.with_lumen) filling = fill();
     result_.layers = summarize(frame_, parts_.layers);
@@ -76,6 +80,7 @@ class VolumeMaker {
       result_.defects.push_back(not_filled(filling.surface, filling.core));
       return std::move(result_);
     }
+    if (!result_.defects.empty()) return std::move(result_);
     result_.mesh = assemble(parts_, filling.surface, filling.core);
     check();
     lap("proof");
@@ -91,6 +96,17 @@ class VolumeMaker {
     bool is_there() const { return core.failure.empty(); }
     double shape() const { return is_there() ? bad.least : 0; }
   };
+
+  void merge_walls() {
+    report_progress(progress_, "merging", 0);
+    parts_.bridges = bridge_walls(frame_, parts_.shell);
+    if (!parts_.bridges.failure.empty())
+      result_.defects.push_back({VolumeDefectKind::not_filled, frame_.position[0], 1,
+                                 "what is between walls could not be divided into tetrahedra: " +
+                                     parts_.bridges.failure + "; leave them apart"});
+    result_.merged = merged_places(frame_, parts_.shell, parts_.bridges);
+    lap("merging");
+  }
 
   // Where tetrahedra are bad, or everywhere if there are none, layers are made thinner, as long as that helps.
   Filling fill() {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solid/wall_bridges.h"
+
 namespace vmesh {
 namespace {
 
@@ -37,14 +39,19 @@ class Assembly {
       add_core();
       add_layers(parts_.layers, layer_point_, kLumen);
     }
-    add_layers(parts_.shell, shell_point_, static_cast<Index>(mesh_.region_names.size()) - 1);
+    const Index last_region = static_cast<Index>(mesh_.region_names.size()) - 1;
+    add_layers(parts_.shell, shell_point_, last_region);
+    for (const Tetrahedron& t : parts_.bridges.tetrahedra)
+      mesh_.tetrahedra.push_back({bridge_point(t[0]), bridge_point(t[1]), bridge_point(t[2]), bridge_point(t[3])});
+    region_.tetrahedra.resize(mesh_.tetrahedra.size(), last_region);
     join_regions();
     add_boundary();
     return std::move(mesh_);
   }
 
  private:
-  // Vertices of the wall, then those of layers from the wall on, then those of the core; at last those of the shell.
+  // Vertices of the wall, then those of layers from the wall on, then those of the core; then those of the shell, at
+  // last those of bridges.
   void add_points() {
     mesh_.points = frame_.position;
     if (parts_.with_lumen) {
@@ -56,6 +63,8 @@ class Assembly {
       mesh_.points.insert(mesh_.points.end(), core_.added.begin(), core_.added.end());
     }
     shell_point_ = add_levels(parts_.shell);
+    first_bridge_point_ = static_cast<Index>(mesh_.points.size());
+    mesh_.points.insert(mesh_.points.end(), parts_.bridges.added.begin(), parts_.bridges.added.end());
   }
 
   // Returns, for every vertex, where its points at levels beyond the wall begin; itself where layers end.
@@ -76,6 +85,12 @@ class Assembly {
   // Of a vertex of the core's surface, or added.
   Index core_point(Index v) const {
     return v < frame_.position.size() ? point(layer_point_, parts_.layers.count(), v) : core_point_ + v;
+  }
+
+  Index outermost_point(Index v) const { return point(shell_point_, parts_.shell.count(), v); }
+  Index bridge_point(Index v) const {
+    const auto n = static_cast<Index>(frame_.position.size());
+    return v < n ? outermost_point(v) : first_bridge_point_ + v - n;
   }
 
   void name_patches() {
@@ -137,12 +152,19 @@ class Assembly {
       mesh_.cell_region.insert(mesh_.cell_region.end(), region->begin(), region->end());
   }
 
-  void add_boundary() {
-    for (const auto& [a, b, c] : frame_.faces) {
-      const std::size_t k = parts_.shell.count();
-      mesh_.boundary.push_back(
-          {{point(shell_point_, k, a), point(shell_point_, k, b), point(shell_point_, k, c), kNone}, 0});
+  void add_outside() {
+    const BridgeFaces bridges = faces_of_bridges(frame_, parts_.bridges);
+    for (std::size_t f = 0; f < frame_.faces.size(); ++f) {
+      const auto& [a, b, c] = frame_.faces[f];
+      if (!bridges.is_bridged[f])
+        mesh_.boundary.push_back({{outermost_point(a), outermost_point(b), outermost_point(c), kNone}, 0});
     }
+    for (const auto& [a, b, c] : bridges.free)
+      mesh_.boundary.push_back({{bridge_point(a), bridge_point(b), bridge_point(c), kNone}, 0});
+  }
+
+  void add_boundary() {
+    add_outside();
     if (!parts_.with_lumen) {
       for (const auto& [a, b, c] : frame_.faces) mesh_.boundary.push_back({{a, c, b, kNone}, lumen_wall_});
     }
@@ -190,7 +212,8 @@ class Assembly {
     std::vector<Index> tetrahedra, wedges, pyramids;
   } region_;                                      // of every cell
   std::vector<Index> layer_point_, shell_point_;  // of add_levels()
-  Index core_point_ = 0;                          // to be added to a vertex of the core that is none of the wall's
+  Index first_bridge_point_ = 0;
+  Index core_point_ = 0;  // to be added to a vertex of the core that is none of the wall's
   Index lumen_wall_ = 0, first_shell_end_ = 0;
 };
 

@@ -12,6 +12,7 @@ struct VolumeParts {
   const VesselWall* wall = nullptr;
   const WallFrame* frame = nullptr;
   LayerStack layers, shell;
+  Core bridges;  ///< between the shells of different places, see bridge_walls()
   bool with_lumen = true;
 };
 

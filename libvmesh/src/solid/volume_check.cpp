@@ -138,27 +138,8 @@ void find_unmatched(const VolumeMesh& mesh, Finding& finding) {
   }
 }
 
-/// Quadrilaterals are divided in two.
-TriMesh boundary_surface(const VolumeMesh& mesh) {
-  TriMesh surface;
-  std::vector<Index> number(mesh.points.size(), kNone);
-  const auto vertex = [&](Index v) {
-    if (number[v] == kNone) {
-      number[v] = static_cast<Index>(surface.vertices.size());
-      surface.vertices.push_back(mesh.points[v]);
-    }
-    return number[v];
-  };
-  for (const BoundaryFace& face : mesh.boundary) {
-    const auto& [a, b, c, d] = face.corners;
-    surface.faces.push_back({vertex(a), vertex(b), vertex(c)});
-    if (!face.is_triangle()) surface.faces.push_back({vertex(a), vertex(c), vertex(d)});
-  }
-  return surface;
-}
-
 void find_crossings(const VolumeMesh& mesh, Finding& crossing, Finding& unmatched) {
-  const TriMesh surface = boundary_surface(mesh);
+  const TriMesh surface = boundary_surface(mesh).mesh;
   for (const auto& [f, g] : self_intersections(surface)) crossing.add(surface.vertices[surface.faces[f][0]]);
   const Topology topology = measure_topology(surface);
   if (!topology.closed || topology.crowded_edges > 0 || !topology.oriented)

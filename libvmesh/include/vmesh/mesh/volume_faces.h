@@ -34,6 +34,13 @@ struct CellSide {
 /// cell, of more than one, or seen from inside counter-clockwise.
 std::vector<CellSide> sides_of_boundary(const VolumeMesh& mesh);
 
+/// The boundary as a surface, quadrilaterals in two, with the points that it uses in their order.
+struct BoundarySurface {
+  TriMesh mesh;
+  std::vector<Index> patch;  ///< of every face, in VolumeMesh::patch_names
+};
+BoundarySurface boundary_surface(const VolumeMesh& mesh);
+
 /// The faces that belong to one cell alone, in the order of the cells.
 std::vector<CellFace> outer_faces(const VolumeMesh& mesh);
 

@@ -21,6 +21,7 @@ struct LayerOptions {
   bool in_mm = false;
   double first_mm = 0;  ///< if positive, the thickness follows from that of the layer at the wall, whatever `thickness`
   double growth = 1;    ///< thickness of a layer by that of the one nearer to the wall
+  bool merged = false;  ///< outside: where layers meet, what is between them is filled, so that walls are one
 };
 
 struct VolumeOptions {
@@ -67,11 +68,19 @@ struct LayerSummary {
 /// `what`: of which layers.
 std::vector<std::string> sentences_of(const LayerSummary& summary, const std::string& what);
 
+/// Tetrahedra between the layers of walls that meet.
+struct MergedPlace {
+  Vec3 position = Vec3::Zero();  ///< their centre, mm
+  double volume_mm3 = 0;
+  std::size_t tetrahedra = 0;
+};
+
 /// A volume mesh. The vertices of the wall come first among its points, in their order in the surface. It is sound, or
 /// `defects` tell why not.
 struct VolumeResult {
   VolumeMesh mesh;
   LayerSummary layers, shell;
+  std::vector<MergedPlace> merged;  ///< with LayerOptions::merged; largest first
   std::vector<VolumeDefect> defects;
   std::vector<StageTime> stages;
 
@@ -85,7 +94,8 @@ bool can_mesh_lumen();
 /// quadrilaterals. Regions are "lumen" and "wall"; patches those of the surface, and "cap_k_wall" for the ends of the
 /// shell, "lumen_wall" for its inside where the lumen is not meshed. Deterministic. To be called from one thread at a
 /// time, as TetGen has state. Throws InvalidInput for options out of range, for a surface that is not closed, manifold
-/// and outward, that crosses itself or whose caps are not flat discs; Unsupported where can_mesh_lumen() is false;
+/// and outward, that crosses itself or whose caps are not flat discs; Unsupported where can_mesh_lumen() is false
+/// and a lumen is to be meshed or walls merged;
 /// Cancelled when `progress` asks to stop, which it is not asked while TetGen works.
 VolumeResult make_volume(const VesselWall& wall, const VolumeOptions& options = {}, const Progress& progress = {});
 
