@@ -15,6 +15,7 @@
 #include "surface/pieces/whole_tasks.h"
 #include "surface/proof/coarsening.h"
 #include "surface/proof/notches.h"
+#include "surface/proof/refinement.h"
 
 namespace vmesh {
 namespace {
@@ -25,11 +26,13 @@ constexpr double kNearSeam = 4.0;
 
 class PieceGrower {
  public:
+  /// `limit`: what the whole surface is refined to, if it is set; that of the options is proven piece by piece.
   PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
-              const Progress& progress)
+              const ErrorLimit& limit, const Progress& progress)
       : tubes_(field, RingOptions::of(options)),
         rings_(tubes_),
         options_(options),
+        limit_(limit),
         progress_(progress),
         context_{tubes_, open, options_, ask_},
         division_(divide(tubes_, options)) {}
@@ -45,6 +48,7 @@ class PieceGrower {
                                    Shells::along_normals);
       if (round == kRounds || !regroup()) break;
     }
+    if (limit_.is_set()) refine_to_limit();
     if (!unproven_.empty()) close_notches_left(result.error);
     if (may_be_coarser()) leave_out_vertices(result.error);
     tell(result);
@@ -117,8 +121,13 @@ class PieceGrower {
     return true;
   }
 
+  void refine_to_limit() {
+    unproven_ = refine(gathered_, tubes_.field(), limit_, options_.max_vertices, progress_);
+    if (!crossings_.empty()) crossings_ = self_intersections(gathered_.mesh);  // by their new numbers
+  }
+
   void close_notches_left(ErrorSummary& summary) {
-    summary = close_notches(gathered_, tubes_.field(), options_.max_error);
+    summary = close_notches(gathered_, tubes_.field(), limit_.is_set() ? limit_ : options_.max_error);
     crossings_ = self_intersections(gathered_.mesh);
   }
 
@@ -235,6 +244,7 @@ class PieceGrower {
   VesselRings tubes_;
   RingCounts rings_;
   const GenerateOptions& options_;
+  const ErrorLimit limit_;
   const Progress& progress_;
   std::mutex reporting_;
   std::size_t done_ = 0;
@@ -259,7 +269,24 @@ class PieceGrower {
 std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const std::vector<char>& open,
                                                  const GenerateOptions& options, const Progress& progress,
                                                  GenerateResult& result) {
-  return PieceGrower(field, open, options, progress).run(result);
+  if (!options.max_error.is_set() || options.elongation > 1)
+    return PieceGrower(field, open, options, {}, progress).run(result);
+  // An even surface is refined as a whole. What cannot be proven then may be where pieces are refined as they grow.
+  GenerateOptions even = options;
+  even.max_error = {};
+  GenerateResult refined = result;
+  std::vector<std::pair<Index, Index>> crossings =
+      PieceGrower(field, open, even, options.max_error, progress).run(refined);
+  if (refined.error.unproven_faces > 0) {
+    GenerateResult grown = result;
+    std::vector<std::pair<Index, Index>> others = PieceGrower(field, open, options, {}, progress).run(grown);
+    if (grown.error.unproven_faces < refined.error.unproven_faces) {
+      result = std::move(grown);
+      return others;
+    }
+  }
+  result = std::move(refined);
+  return crossings;
 }
 
 }  // namespace vmesh

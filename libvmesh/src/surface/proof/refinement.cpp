@@ -1,0 +1,473 @@
+#include "surface/proof/refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <tbb/parallel_for.h>
+
+#include "vmesh/edit/guarded_edit.h"
+#include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/surface/error_bound.h"
+#include "vmesh/surface/soundness.h"
+
+#include "surface/remesh/edge_lengths.h"
+
+namespace vmesh {
+namespace {
+
+// Of the limit: what is farther at the middle of an edge or a face is not worth a proof.
+constexpr double kWorthAProof = 0.97;
+// Rounds in which no area is proven.
+constexpr int kPatience = 6;
+constexpr int kMostSplitRounds = 12;  // each halves edges
+constexpr int kImprovements = 3;      // passes of flips and moves after splits
+// Of the square root of limit times radius, which edges of even surfaces have about three times: no edge becomes
+// shorter.
+constexpr double kShortest = 0.3;
+// Radii: beyond, the shell would reach the other side of the vessel.
+constexpr double kHighestShell = 0.5;
+constexpr double kTolerance = 1e-3;  // radii, of vertices on the boundary
+constexpr double kLeastGain = 1e-3;  // of skewness
+constexpr double kUpright = 0.3;     // least cosine between a face's normal and the gradient at its middle
+// Largest cosine between the gradients of two cones that meet in a crease.
+constexpr double kCrease = 0.9;
+constexpr int kNewtonSteps = 6;
+constexpr double kNearEnd = 0.2;  // share of an edge from its end within which its end is moved onto a crease instead
+constexpr double kSlides[] = {0.5, 0.4, 0.6};  // where edges are divided
+
+class Refinement {
+ public:
+  Refinement(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit, std::size_t most_vertices,
+             const Progress& progress)
+      : surface_(surface),
+        field_(field),
+        limit_(limit),
+        most_vertices_(most_vertices),
+        progress_(progress),
+        proof_(field),
+        mesh_(finished_mesh(surface)),
+        edit_(mesh_) {
+    held_.assign(mesh_.vertices().size(), 0);
+    crease_at_.resize(mesh_.vertices().size());
+    for (const Opening& opening : surface.openings) {
+      for (const Index v : opening.ring) held_[v] = 1;
+    }
+    for (Index f = 0; f < mesh_.faces().size(); ++f) due_.push_back(f);
+  }
+
+  std::vector<Index> run() {
+    for (int round = 0; round < kMostSplitRounds && split_where_far(); ++round) improve();
+    prove();
+    const double at_first = unproven_area();
+    double least = at_first;
+    std::vector<Index> best = unproven_;
+    std::optional<FinishedMesh::Transaction> since_best;
+    since_best.emplace(mesh_);
+    for (int round = 0, last = 0; !unproven_.empty() && round < last + kPatience; ++round) {
+      report_progress(progress_, "refine", 1 - least / at_first);
+      if (!split_unproven()) break;
+      improve();
+      prove();
+      if (unproven_area() >= least) continue;
+      least = unproven_area();
+      best = unproven_;
+      last = round + 1;
+      since_best->keep();
+      since_best.emplace(mesh_);
+    }
+    since_best.reset();
+    return finish(best);
+  }
+
+ private:
+  using Step = FinishedMesh::Step;
+  using Crease = std::pair<Index, Index>;  // two cones
+
+  const Vec3& point(Index v) const { return mesh_.position(v); }
+  Index cone(Index v) const { return mesh_.vertex(v).binding.segment; }
+  double limit_at(Index v) const {
+    const double radius = mesh_.vertex(v).radius;
+    return std::min(limit_.at(radius), kHighestShell * radius);
+  }
+  double limit_of(const MeshEdge& e) const { return std::min(limit_at(e.a), limit_at(e.b)); }
+  double length(const MeshEdge& e) const { return (point(e.a) - point(e.b)).norm(); }
+  static std::array<MeshEdge, 3> edges_of(const Triangle& f) {
+    return {MeshEdge{f[0], f[1]}, MeshEdge{f[1], f[2]}, MeshEdge{f[2], f[0]}};
+  }
+
+  // Signed distance at the middle of an edge, by its limit.
+  double off_at(const MeshEdge& e) const {
+    return std::abs(field_.sample(0.5 * (point(e.a) + point(e.b)), cone(e.a)).distance) / limit_of(e);
+  }
+  double off_at_center(const Triangle& f) const {
+    const Vec3 center = (point(f[0]) + point(f[1]) + point(f[2])) / 3;
+    return std::abs(field_.sample(center, cone(f[0])).distance) /
+           std::min({limit_at(f[0]), limit_at(f[1]), limit_at(f[2])});
+  }
+
+  double unproven_area() const {
+    double area = 0;
+    for (const Index f : unproven_) area += mesh_.area_normal(f).norm() / 2;
+    return area;
+  }
+
+  bool may_split(const MeshEdge& e) const {
+    if (!mesh_.is_inner(e) || (held_[e.a] && held_[e.b])) return false;
+    const double radius = std::min(mesh_.vertex(e.a).radius, mesh_.vertex(e.b).radius);
+    return length(e) > kShortest * std::sqrt(limit_of(e) * radius);
+  }
+
+  // What is worst among the edges of a face, or its longest edge if its middle is worst.
+  struct Candidate {
+    double off = 0;
+    MeshEdge edge;
+  };
+  Candidate worst_of(Index f) const {
+    const Triangle& face = mesh_.faces()[f];
+    Candidate worst;
+    MeshEdge longest = {face[0], face[1]};
+    for (const MeshEdge& e : edges_of(face)) {
+      if (length(e) > length(longest)) longest = e;
+      const double off = off_at(e);
+      if (off > worst.off) worst = {off, e};
+    }
+    const double center = off_at_center(face);
+    if (center > worst.off) worst = {center, longest};
+    return worst;
+  }
+
+  bool split_where_far() {
+    std::vector<Candidate> candidates(due_.size());
+    tbb::parallel_for(std::size_t{0}, due_.size(), [&](std::size_t i) {
+      if (mesh_.has_face(due_[i])) candidates[i] = worst_of(due_[i]);
+    });
+    due_.clear();
+    std::erase_if(candidates, [](const Candidate& c) { return c.off <= kWorthAProof; });
+    return split(std::move(candidates));
+  }
+
+  bool split_unproven() {
+    std::vector<Candidate> candidates;
+    for (const Index f : unproven_) {
+      Candidate c = worst_of(f);
+      // Nothing is far; long edges make proofs hard.
+      if (c.off <= kWorthAProof) {
+        for (const MeshEdge& e : edges_of(mesh_.faces()[f])) {
+          if (length(e) > length(c.edge)) c.edge = e;
+        }
+      }
+      candidates.push_back(c);
+    }
+    due_.clear();
+    return split(std::move(candidates));
+  }
+
+  // Farthest first.
+  bool split(std::vector<Candidate> candidates) {
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.off > b.off; });
+    changed_.clear();
+    for (const Candidate& c : candidates) {
+      if (mesh_.vertices().size() >= most_vertices_) break;
+      if (!may_split(c.edge)) continue;
+      divide(c.edge);
+    }
+    return !changed_.empty();
+  }
+
+  // Halves an edge on the boundary, or divides it where it meets a crease; a vertex near the crease is moved onto it.
+  void divide(const MeshEdge& e) {
+    if (const auto crease = crease_on(e)) {
+      const BoundaryPoint* on_crease = &crease->at;
+      const double share = (on_crease->position - point(e.a)).dot(point(e.b) - point(e.a)) / (length(e) * length(e));
+      const bool is_apart = (on_crease->position - middle_of(e)).norm() > length(e);
+      if (!is_apart && share > kNearEnd && share < 1 - kNearEnd) {
+        if (place({mesh_.splitting(e, finished_vertex(*on_crease, field_))}, crease->crease)) return;
+      } else if (!is_apart) {
+        const Index end = share <= kNearEnd ? e.a : e.b;
+        if (!held_[end] && !crease_at_[end] &&
+            place({mesh_.moving(end, finished_vertex(*on_crease, field_))}, crease->crease))
+          return;
+      }
+    }
+    std::vector<Step> steps;
+    const double lift = crease_at_[e.a] || crease_at_[e.b] ? 0 : 0.5 * (lift_of(e.a) + lift_of(e.b));
+    for (const double height : {lift, 0.0}) {
+      for (const double s : kSlides) {
+        const Vec3 p = point(e.a) + s * (point(e.b) - point(e.a));
+        const BoundaryPoint at = project_to_boundary(field_, p, cone(e.a), kTolerance, height);
+        steps.push_back(mesh_.splitting(e, finished_vertex(at, field_)));
+      }
+    }
+    place(steps, std::nullopt);
+  }
+
+  bool place(const std::vector<Step>& steps, const std::optional<Crease>& crease) {
+    const Index placed = take(steps, kWorstSkewness);
+    if (placed != kNone) crease_at_[placed] = crease;
+    return placed != kNone;
+  }
+
+  double lift_of(Index v) const { return field_.sample(point(v), cone(v)).distance; }
+  Vec3 middle_of(const MeshEdge& e) const { return 0.5 * (point(e.a) + point(e.b)); }
+
+  struct CreasePoint {
+    Crease crease;
+    BoundaryPoint at;
+  };
+
+  // Where the boundaries of two cones meet, near the middle of an edge that crosses there or runs along.
+  std::optional<CreasePoint> crease_on(const MeshEdge& e) const {
+    for (const Crease& crease : creases_between(e)) {
+      if (const auto at = onto(crease, middle_of(e), e)) return CreasePoint{crease, *at};
+    }
+    return std::nullopt;
+  }
+
+  // Pairs of cones of which one belongs to either end, with walls that look elsewhere.
+  std::vector<Crease> creases_between(const MeshEdge& e) const {
+    const auto cones_at = [&](Index v) {
+      if (crease_at_[v]) return std::vector<Index>{crease_at_[v]->first, crease_at_[v]->second};
+      return std::vector<Index>{field_.sample(point(v), cone(v)).cone};
+    };
+    const std::vector<Index> of_a = cones_at(e.a), of_b = cones_at(e.b);
+    const auto are_along = [&](Index c, Index d) {
+      return c == d ||
+             field_.sample_cone(point(e.a), c).gradient.dot(field_.sample_cone(point(e.b), d).gradient) > kCrease;
+    };
+    std::vector<Crease> pairs;
+    const auto add = [&](Index c, Index d) {
+      const Crease pair = std::minmax(c, d);
+      if (!are_along(c, d) && std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) pairs.push_back(pair);
+    };
+    const bool along = of_a.size() == 2 && of_b.size() == 2;
+    if (along) {
+      add(of_a[0], of_a[1]);
+      add(of_b[0], of_b[1]);
+    }
+    // From a crease to a wall beside it.
+    const bool beside = !along && std::any_of(of_a.begin(), of_a.end(), [&](Index c) {
+      return std::any_of(of_b.begin(), of_b.end(), [&](Index d) { return are_along(c, d); });
+    });
+    if (beside) return {};
+    for (const Index c : of_a) {
+      for (const Index d : of_b) add(c, d);
+    }
+    return pairs;
+  }
+
+  // The point of a crease near another one.
+  std::optional<BoundaryPoint> onto(const Crease& crease, Vec3 p, const MeshEdge& e) const {
+    const double tolerance = 0.01 * limit_of(e);
+    for (int step = 0; step < kNewtonSteps; ++step) {
+      const FieldSample a = field_.sample_cone(p, crease.first), b = field_.sample_cone(p, crease.second);
+      if (std::max(std::abs(a.distance), std::abs(b.distance)) < tolerance) {
+        const FieldSample s = field_.sample(p, crease.first);
+        return std::abs(s.distance) < 0.1 * limit_of(e) ? std::optional(BoundaryPoint{p, s}) : std::nullopt;
+      }
+      // The shortest way to both.
+      const double cosine = a.gradient.dot(b.gradient), divisor = 1 - cosine * cosine;
+      if (divisor < 1e-3) return std::nullopt;
+      p -= (a.distance - cosine * b.distance) / divisor * a.gradient +
+           (b.distance - cosine * a.distance) / divisor * b.gradient;
+    }
+    return std::nullopt;
+  }
+
+  Index take(const std::vector<Step>& steps, double worst) {
+    const Index placed = edit_.take_best(steps, worst);
+    if (placed == kNone) return placed;
+    held_.resize(mesh_.vertices().size(), 0);
+    crease_at_.resize(mesh_.vertices().size());
+    const auto& fan = mesh_.faces_around(placed);
+    changed_.insert(changed_.end(), fan.begin(), fan.end());
+    return placed;
+  }
+
+  double skewness(const PlacedFace& f) const { return equiangle_skewness(f.points[0], f.points[1], f.points[2]); }
+  double worst_skewness(const Step& step) const {
+    double worst = 0;
+    for (const Triangle& f : step.faces) worst = std::max(worst, skewness(mesh_.placed(f, step)));
+    return worst;
+  }
+  double worst_now(const Step& step) const {
+    double worst = 0;
+    for (const Index f : step.gone) worst = std::max(worst, skewness(mesh_.placed(f)));
+    return worst;
+  }
+
+  void improve() {
+    std::vector<Index> faces = changed_;
+    for (int pass = 0; pass < kImprovements && !faces.empty(); ++pass) {
+      std::sort(faces.begin(), faces.end());
+      faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+      due_.insert(due_.end(), faces.begin(), faces.end());
+      changed_.clear();
+      for (const Index f : faces) {
+        for (const std::size_t k : {0, 1, 2}) {
+          if (!mesh_.has_face(f)) continue;
+          const Triangle& face = mesh_.faces()[f];
+          flip({face[k], face[(k + 1) % 3]});
+        }
+      }
+      std::vector<Index> vertices;
+      for (const Index f : faces) {
+        if (mesh_.has_face(f)) vertices.insert(vertices.end(), mesh_.faces()[f].begin(), mesh_.faces()[f].end());
+      }
+      std::sort(vertices.begin(), vertices.end());
+      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      for (const Index v : vertices) move(v);
+      faces = changed_;
+    }
+    due_.insert(due_.end(), faces.begin(), faces.end());
+    std::sort(due_.begin(), due_.end());
+    due_.erase(std::unique(due_.begin(), due_.end()), due_.end());
+  }
+
+  void flip(const MeshEdge& e) {
+    if (!mesh_.is_inner(e) || !mesh_.may_flip(e)) return;
+    const Step step = mesh_.flipping(e);
+    const auto [c, d] = mesh_.opposite(e);
+    const double now = worst_now(step), then = worst_skewness(step), off_now = off_at(e), off_then = off_at({c, d});
+    const bool is_nearer = off_now > kWorthAProof && off_then < 0.7 * off_now && then < kWorstSkewness;
+    const bool is_better = then < now - kLeastGain && off_then < std::max(off_now, 0.7 * kWorthAProof);
+    if ((is_nearer || is_better) && stays_upright(step)) take({step}, kWorstSkewness);
+  }
+
+  bool stays_upright(const Step& step) const {
+    return std::all_of(step.faces.begin(), step.faces.end(), [&](const Triangle& f) {
+      const PlacedFace face = mesh_.placed(f, step);
+      const Vec3 normal = (face.points[1] - face.points[0]).cross(face.points[2] - face.points[0]);
+      const Vec3 center = (face.points[0] + face.points[1] + face.points[2]) / 3;
+      const Vec3 gradient =
+          field_.sample(center, step.vertex == kNone ? cone(f[0]) : step.target.binding.segment).gradient;
+      return normal.dot(gradient) > kUpright * normal.norm() * gradient.norm();
+    });
+  }
+
+  // Towards the middle of its faces, as high as balances them.
+  void move(Index v) {
+    if (!mesh_.has_vertex(v) || held_[v]) return;
+    Vec3 middle = Vec3::Zero();
+    double area = 0, sum = 0;
+    const double height = lift_of(v);
+    for (const Index f : mesh_.faces_around(v)) {
+      const auto [a, b, c] = mesh_.corners(f);
+      const double weight = (b - a).cross(c - a).norm();
+      const Vec3 center = (a + b + c) / 3;
+      middle += weight * center;
+      sum += weight * (0.75 * field_.sample(center, cone(v)).distance + 0.25 * height);
+      area += weight;
+    }
+    middle /= area;
+    const double limit = limit_at(v),
+                 lift = std::clamp(height - sum / area, -kShareOfLimit * limit, kShareOfLimit * limit);
+    const double now = off_around(v);
+    for (const Vec3& p : {middle, Vec3(0.5 * (middle + point(v))), point(v)}) {
+      const auto on_crease = crease_at_[v] ? onto(*crease_at_[v], p, {v, v}) : std::nullopt;
+      if (crease_at_[v] && !on_crease) continue;
+      const BoundaryPoint target = on_crease ? *on_crease : project_to_boundary(field_, p, cone(v), kTolerance, lift);
+      const Step step = mesh_.moving(v, finished_vertex(target, field_));
+      const double skew_now = worst_now(step), skew_then = worst_skewness(step);
+      const bool is_rounder = skew_then < skew_now - kLeastGain;
+      const bool is_lifted =
+          !crease_at_[v] && std::abs(lift - height) > 0.05 * limit && skew_then < std::max(skew_now, 0.5);
+      if (!(is_rounder || is_lifted) || !stays_upright(step)) continue;
+      const double then = off_around(v, target.position);
+      if (then > std::max(kWorthAProof * 0.9, now)) continue;
+      if (take({step}, std::max(skew_now, 0.5)) != kNone) break;
+    }
+  }
+
+  double off_around(Index v) const { return off_around(v, point(v)); }
+  double off_around(Index v, const Vec3& p) const {
+    double worst = 0;
+    for (const Index f : mesh_.faces_around(v)) {
+      Vec3 center = p / 3;
+      for (const Index w : mesh_.faces()[f]) {
+        if (w == v) continue;
+        center += point(w) / 3;
+        worst = std::max(worst, std::abs(field_.sample(0.5 * (p + point(w)), cone(w)).distance));
+      }
+      worst = std::max(worst, std::abs(field_.sample(center, cone(v)).distance));
+    }
+    return worst / limit_at(v);
+  }
+
+  void prove() {
+    const std::size_t n = mesh_.vertices().size();
+    corners_.resize(n);
+    known_.resize(mesh_.faces().size());
+    if (is_first_) {
+      for (Index v = 0; v < n; ++v) update_corner(v);
+    } else {
+      for (const Index f : due_) {
+        if (!mesh_.has_face(f)) continue;
+        for (const Index v : mesh_.faces()[f]) update_corner(v);
+      }
+    }
+    is_first_ = false;
+    std::vector<Index> faces;
+    std::vector<Triangle> triangles;
+    for (Index f = 0; f < mesh_.faces().size(); ++f) {
+      if (!mesh_.has_face(f)) continue;
+      faces.push_back(f);
+      triangles.push_back(mesh_.faces()[f]);
+    }
+    std::vector<ErrorProof::Shares> shares(faces.size());
+    tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
+      const auto& [a, b, c] = triangles[i];
+      const ErrorProof::Face face = {corners_[a], corners_[b], corners_[c]};
+      Known& known = known_[faces[i]];
+      if (known.face != face) known = {face, worst_of(faces[i]).off > 1 ? ErrorProof::Shares{} : proof_.shares(face)};
+      shares[i] = known.shares;
+    });
+    unproven_.clear();
+    for (const Index i : proof_.unproven(corners_, triangles, shares)) unproven_.push_back(faces[i]);
+  }
+
+  void update_corner(Index v) {
+    if (mesh_.has_vertex(v)) corners_[v] = {point(v), mesh_.vertex_normal(v), limit_at(v), cone(v)};
+  }
+
+  std::vector<Index> finish(const std::vector<Index>& unproven) {
+    std::vector<Index> number(mesh_.faces().size());
+    Index next = 0;
+    for (Index f = 0; f < number.size(); ++f) number[f] = mesh_.has_face(f) ? next++ : kNone;
+    std::vector<Index> left;
+    for (const Index f : unproven) left.push_back(number[f]);
+    put_back(std::move(mesh_), surface_);
+    return left;
+  }
+
+  FinishedSurface& surface_;
+  const VesselField& field_;
+  const ErrorLimit& limit_;
+  std::size_t most_vertices_;
+  const Progress& progress_;
+  ErrorProof proof_;
+  FinishedMesh mesh_;
+  GuardedEdit<FinishedVertex> edit_;
+  std::vector<char> held_;                        // by vertex
+  std::vector<std::optional<Crease>> crease_at_;  // of every vertex on one
+  std::vector<Index> changed_;                    // faces, by the steps of this pass
+  std::vector<Index> due_;                        // faces that are new or have moved
+  bool is_first_ = true;
+  std::vector<ErrorProof::Corner> corners_;  // by vertex
+  struct Known {
+    ErrorProof::Face face;
+    ErrorProof::Shares shares;
+  };
+  std::vector<Known> known_;  // by face
+  std::vector<Index> unproven_;
+};
+
+}  // namespace
+
+std::vector<Index> refine(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit,
+                          std::size_t most_vertices, const Progress& progress) {
+  return Refinement(surface, field, limit, most_vertices, progress).run();
+}
+
+}  // namespace vmesh
