@@ -122,7 +122,8 @@ class PieceGrower {
   }
 
   void refine_to_limit() {
-    unproven_ = refine(gathered_, tubes_.field(), limit_, options_.max_vertices, progress_);
+    unproven_ = refine(gathered_, tubes_.field(),
+                       {limit_, options_.placement, static_cast<std::size_t>(options_.max_vertices)}, progress_);
     if (!crossings_.empty()) crossings_ = self_intersections(gathered_.mesh);  // by their new numbers
   }
 

@@ -27,9 +27,11 @@ constexpr int kImprovements = 3;      // passes of flips and moves after splits
 constexpr double kShortest = 0.3;
 // Radii: beyond, the shell would reach the other side of the vessel.
 constexpr double kHighestShell = 0.5;
-constexpr double kTolerance = 1e-3;  // radii, of vertices on the boundary
-constexpr double kLeastGain = 1e-3;  // of skewness
-constexpr double kUpright = 0.3;     // least cosine between a face's normal and the gradient at its middle
+constexpr double kTolerance = 1e-3;   // radii, of vertices on the boundary
+constexpr double kLeastGain = 1e-3;   // of skewness
+constexpr double kRound = 0.5;        // skewness up to which triangles may become worse for the sake of balance
+constexpr double kWorthALift = 0.05;  // of the most, a change of height
+constexpr double kUpright = 0.3;      // least cosine between a face's normal and the gradient at its middle
 // Largest cosine between the gradients of two cones that meet in a crease.
 constexpr double kCrease = 0.9;
 constexpr int kNewtonSteps = 6;
@@ -38,12 +40,10 @@ constexpr double kSlides[] = {0.5, 0.4, 0.6};  // where edges are divided
 
 class Refinement {
  public:
-  Refinement(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit, std::size_t most_vertices,
-             const Progress& progress)
+  Refinement(FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal, const Progress& progress)
       : surface_(surface),
         field_(field),
-        limit_(limit),
-        most_vertices_(most_vertices),
+        goal_(goal),
         progress_(progress),
         proof_(field),
         mesh_(finished_mesh(surface)),
@@ -88,7 +88,7 @@ class Refinement {
   Index cone(Index v) const { return mesh_.vertex(v).binding.segment; }
   double limit_at(Index v) const {
     const double radius = mesh_.vertex(v).radius;
-    return std::min(limit_.at(radius), kHighestShell * radius);
+    return std::min(goal_.limit.at(radius), kHighestShell * radius);
   }
   double limit_of(const MeshEdge& e) const { return std::min(limit_at(e.a), limit_at(e.b)); }
   double length(const MeshEdge& e) const { return (point(e.a) - point(e.b)).norm(); }
@@ -169,7 +169,7 @@ class Refinement {
                      [](const Candidate& a, const Candidate& b) { return a.off > b.off; });
     changed_.clear();
     for (const Candidate& c : candidates) {
-      if (mesh_.vertices().size() >= most_vertices_) break;
+      if (mesh_.vertices().size() >= goal_.most_vertices) break;
       if (!may_split(c.edge)) continue;
       divide(c.edge);
     }
@@ -192,7 +192,7 @@ class Refinement {
       }
     }
     std::vector<Step> steps;
-    const double lift = crease_at_[e.a] || crease_at_[e.b] ? 0 : 0.5 * (lift_of(e.a) + lift_of(e.b));
+    const double lift = crease_at_[e.a] || crease_at_[e.b] || !is_balanced() ? 0 : 0.5 * (lift_of(e.a) + lift_of(e.b));
     for (const double height : {lift, 0.0}) {
       for (const double s : kSlides) {
         const Vec3 p = point(e.a) + s * (point(e.b) - point(e.a));
@@ -209,6 +209,7 @@ class Refinement {
     return placed != kNone;
   }
 
+  bool is_balanced() const { return goal_.placement == Placement::balanced; }
   double lift_of(Index v) const { return field_.sample(point(v), cone(v)).distance; }
   Vec3 middle_of(const MeshEdge& e) const { return 0.5 * (point(e.a) + point(e.b)); }
 
@@ -361,8 +362,8 @@ class Refinement {
       area += weight;
     }
     middle /= area;
-    const double limit = limit_at(v),
-                 lift = std::clamp(height - sum / area, -kShareOfLimit * limit, kShareOfLimit * limit);
+    const double most = kShareOfLimit * limit_at(v);
+    const double lift = is_balanced() ? std::clamp(height - sum / area, -most, most) : 0;
     const double now = off_around(v);
     for (const Vec3& p : {middle, Vec3(0.5 * (middle + point(v))), point(v)}) {
       const auto on_crease = crease_at_[v] ? onto(*crease_at_[v], p, {v, v}) : std::nullopt;
@@ -372,11 +373,11 @@ class Refinement {
       const double skew_now = worst_now(step), skew_then = worst_skewness(step);
       const bool is_rounder = skew_then < skew_now - kLeastGain;
       const bool is_lifted =
-          !crease_at_[v] && std::abs(lift - height) > 0.05 * limit && skew_then < std::max(skew_now, 0.5);
+          !crease_at_[v] && std::abs(lift - height) > kWorthALift * most && skew_then < std::max(skew_now, kRound);
       if (!(is_rounder || is_lifted) || !stays_upright(step)) continue;
       const double then = off_around(v, target.position);
       if (then > std::max(kWorthAProof * 0.9, now)) continue;
-      if (take({step}, std::max(skew_now, 0.5)) != kNone) break;
+      if (take({step}, std::max(skew_now, kRound)) != kNone) break;
     }
   }
 
@@ -443,8 +444,7 @@ class Refinement {
 
   FinishedSurface& surface_;
   const VesselField& field_;
-  const ErrorLimit& limit_;
-  std::size_t most_vertices_;
+  const RefinementGoal& goal_;
   const Progress& progress_;
   ErrorProof proof_;
   FinishedMesh mesh_;
@@ -465,9 +465,9 @@ class Refinement {
 
 }  // namespace
 
-std::vector<Index> refine(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit,
-                          std::size_t most_vertices, const Progress& progress) {
-  return Refinement(surface, field, limit, most_vertices, progress).run();
+std::vector<Index> refine(FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal,
+                          const Progress& progress) {
+  return Refinement(surface, field, goal, progress).run();
 }
 
 }  // namespace vmesh

@@ -1,0 +1,79 @@
+// Even surfaces that meet a limit on the error; that they do is measured in max_error_test.cpp.
+#include <gtest/gtest.h>
+
+#include "vmesh/surface/generate.h"
+#include "vmesh/volume/vessel_field.h"
+
+#include "centerlines.h"
+
+namespace vmesh {
+namespace {
+
+GenerateOptions within(double relative, double blend) {
+  GenerateOptions options;
+  options.max_error.relative = relative;
+  options.blend = blend;
+  return options;
+}
+
+// The plain union of a fork's vessels has creases, on which two of them have their boundary.
+TEST(Refinement, HasVerticesAndEdgesOnCreases) {
+  const Centerline centerline = testing::fork();
+  const GenerateResult result = generate_surface(centerline, within(0.02, 0));
+  EXPECT_TRUE(result.is_sound());
+  EXPECT_EQ(result.error.unproven_faces, 0u);
+  const VesselField field(centerline, 0);
+  // The daughters' first segments.
+  const auto is_on_crease = [&](const Vec3& p, double tolerance) {
+    return std::abs(field.sample_cone(p, 1).distance) < tolerance &&
+           std::abs(field.sample_cone(p, 3).distance) < tolerance;
+  };
+  std::size_t vertices = 0, edges = 0;
+  for (const Vec3& p : result.mesh.vertices) vertices += is_on_crease(p, 1e-3);
+  for (const Triangle& f : result.mesh.faces) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = result.mesh.vertices[f[k]], &b = result.mesh.vertices[f[(k + 1) % 3]];
+      // The middle of an edge on a curve is as far from it as the limit allows.
+      edges +=
+          f[k] < f[(k + 1) % 3] && is_on_crease(a, 1e-3) && is_on_crease(b, 1e-3) && is_on_crease((a + b) / 2, 0.02);
+    }
+  }
+  EXPECT_GE(vertices, 6u);
+  EXPECT_GE(edges, 5u);
+}
+
+TEST(Refinement, KeepsOpenEnds) {
+  GenerateOptions options = within(0.03, 0.5);
+  options.open_ends.nodes = {0, 3};
+  const GenerateResult result = generate_surface(testing::fork(), options);
+  EXPECT_TRUE(result.is_sound());
+  EXPECT_EQ(result.error.unproven_faces, 0u);
+  EXPECT_EQ(result.openings.size(), 2u);
+}
+
+TEST(Refinement, LeavesInscribedVerticesOnTheBoundary) {
+  GenerateOptions options = within(0.03, 0.5);
+  options.placement = Placement::inscribed;
+  const Centerline centerline = testing::fork();
+  const GenerateResult result = generate_surface(centerline, options);
+  EXPECT_EQ(result.error.unproven_faces, 0u);
+  const VesselField field(centerline, 0.5);
+  double farthest = 0;
+  for (Index v = 0; v < result.mesh.vertices.size(); ++v)
+    farthest = std::max(farthest, std::abs(field.sample_global(result.mesh.vertices[v]).distance) / result.radius[v]);
+  // Vertices are projected to .001 radii, and mended by a little more.
+  EXPECT_LT(farthest, 0.01);
+}
+
+TEST(Refinement, DoesNotDependOnTheNumberOfThreads) {
+  GenerateOptions options = within(0.02, 0);
+  options.threads = 1;
+  const GenerateResult one = generate_surface(testing::fork(50), options);
+  options.threads = 3;
+  const GenerateResult three = generate_surface(testing::fork(50), options);
+  EXPECT_EQ(one.mesh.vertices, three.mesh.vertices);
+  EXPECT_EQ(one.mesh.faces, three.mesh.faces);
+}
+
+}  // namespace
+}  // namespace vmesh
