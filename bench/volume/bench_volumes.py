@@ -10,7 +10,7 @@ import argparse
 import fnmatch
 import json
 import os
-import platform
+import signal
 import subprocess
 import sys
 import tempfile
@@ -53,6 +53,7 @@ class Bench:
     """What is compared, and where."""
 
     vmesh: Path
+    bench_volume: Path
     data: Path
     folder: Path
     vmtk_python: str | None
@@ -92,15 +93,32 @@ class Bench:
         output = surface.with_name(f"{'vmesh-tetrahedra' if mesher == 'vmesh' else mesher}.vtu")
         output.unlink(missing_ok=True)
         result = surface.with_name("run.json")
-        subprocess.run([sys.executable, str(HERE.parent / "centerline" / "measured_run.py"), str(result),
-                        str(self.timeout), *self.command(mesher, surface, output)], check=True)
+        call = subprocess.Popen([sys.executable, str(HERE.parent / "centerline" / "measured_run.py"), str(result),
+                                 str(self.timeout), *self.command(mesher, surface, output)])
+        try:
+            call.wait()
+        finally:
+            call.terminate()  # which ends what it runs
         run = json.loads(result.read_text())
         if run["timed_out"] or run["exit_code"] or not output.exists():
             return {"refused": f"not done after {self.timeout:g} s of CPU" if run["timed_out"]
                     else f"exit code {run['exit_code']}: {last_line(run['printed'])}",
                     "whole_cpu_seconds": run["cpu_seconds"], "whole_wall_seconds": run["wall_seconds"]}
         return {"whole_cpu_seconds": run["cpu_seconds"], "whole_wall_seconds": run["wall_seconds"],
-                "output": str(output)} | own_seconds(mesher, output)
+                "output": str(output)} | self.own_seconds(mesher, surface, output)
+
+    def own_seconds(self, mesher: str, surface: Path, output: Path) -> dict:
+        """Of meshing alone. For CPU seconds of ours, bench_volume makes the mesh once more."""
+        if mesher not in OURS:
+            measured = json.loads(output.with_suffix(".measured.json").read_text())
+            return {key: measured[key] for key in ("cpu_seconds", "wall_seconds", "versions")}
+        stages = json.loads(output.with_suffix(".json").read_text())["stages"]
+        printed = subprocess.run([str(self.bench_volume), *OURS[mesher], str(surface)], stdout=subprocess.PIPE,
+                                 text=True, check=True).stdout
+        header, _, row = [[cell.strip() for cell in line.split("|")] for line in printed.splitlines()
+                          if line.startswith("|")]
+        return {"cpu_seconds": float(row[header.index("CPU, s")]),
+                "wall_seconds": sum(value for stage, value in stages.items() if stage not in ("read", "write", "total"))}
 
     def run(self, mesher: str, surface: Path) -> dict:
         """The measures of a mesh, and the medians of its times."""
@@ -118,16 +136,6 @@ class Bench:
         return result | measure(read_surface(surface), points, cells)
 
 
-def own_seconds(mesher: str, output: Path) -> dict:
-    """Of meshing alone. vmesh knows wall seconds, which on one core are its CPU seconds or more."""
-    if mesher not in OURS:
-        measured = json.loads(output.with_suffix(".measured.json").read_text())
-        return {key: measured[key] for key in ("cpu_seconds", "wall_seconds", "versions")}
-    stages = json.loads(output.with_suffix(".json").read_text())["stages"]
-    seconds = sum(value for stage, value in stages.items() if stage not in ("read", "write", "total"))
-    return {"cpu_seconds": seconds, "wall_seconds": seconds}
-
-
 def last_line(text: str) -> str:
     lines = [line.strip() for line in text.replace("\r", "\n").splitlines() if line.strip()]
     return lines[-1] if lines else "no message"
@@ -139,7 +147,7 @@ def chosen(names, patterns: list[str] | None) -> list[str]:
 
 def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--vmesh", type=Path, default=ROOT / "build/release/bin/vmesh", help="the command")
+    parser.add_argument("--vmesh", type=Path, default=ROOT / "build/release/bin/vmesh", help="the command, beside bench_volume")
     parser.add_argument("--data", type=Path, default=ROOT.parent / "shared/data", help="folder of the test data")
     parser.add_argument("--surfaces", action="append", metavar="PATTERN", help=f"of {', '.join(SURFACES)}")
     parser.add_argument("--meshers", action="append", metavar="PATTERN", help=f"of {', '.join([*OURS, *MESHERS])}")
@@ -156,6 +164,9 @@ def main() -> None:
     options = parsed()
     if not os.access(options.vmesh, os.X_OK):
         sys.exit(f"{options.vmesh} is not there: scripts/build release vmesh, or --vmesh PATH")
+    bench_volume = options.vmesh.with_name("bench_volume")
+    if not os.access(bench_volume, os.X_OK):
+        sys.exit(f"{bench_volume} is not there: scripts/build release -DVMESH_BUILD_BENCH=ON bench_volume")
     if not options.data.is_dir():
         sys.exit(f"{options.data} is not there: --data names the folder of the test data")
     surfaces, meshers = chosen(SURFACES, options.surfaces), chosen([*OURS, *MESHERS], options.meshers)
@@ -165,20 +176,19 @@ def main() -> None:
         meshers.insert(0, "vmesh")  # whose tetrahedra carry its sizes
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     os.environ |= {"OMP_NUM_THREADS": "1", "VTK_SMP_MAX_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
-    results = {}
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     with tempfile.TemporaryDirectory(prefix="vmesh-volumes-") as folder:
-        bench = Bench(options.vmesh.resolve(), options.data.resolve(), (options.keep or Path(folder)).resolve(),
-                      options.vmtk_python, options.timeout, max(1, options.runs))
-        for name in surfaces:
-            surface = bench.make_surface(name)
-            results[name] = {"faces": len(read_surface(surface).faces), "meshes": {}}
-            for mesher in meshers:
-                result = bench.run(mesher, surface)
-                results[name]["meshes"][mesher] = result
+        bench = Bench(options.vmesh.resolve(), bench_volume.resolve(), options.data.resolve(),
+                      (options.keep or Path(folder)).resolve(), options.vmtk_python, options.timeout,
+                      max(1, options.runs))
+        made = {name: bench.make_surface(name) for name in surfaces}
+        results = {name: {"faces": len(read_surface(made[name]).faces), "meshes": {}} for name in surfaces}
+        for mesher in meshers:  # each on all surfaces, so that what is slow is last
+            for name in surfaces:
+                result = results[name]["meshes"][mesher] = bench.run(mesher, made[name])
                 print(f"{name}: {mesher}: " + (result.get("refused") or report.line(result)), file=sys.stderr, flush=True)
-    whole = {"machine": platform.processor() or platform.machine(), "surfaces": results}
-    if options.json:
-        options.json.write_text(json.dumps(whole, indent=1))
+                if options.json:
+                    options.json.write_text(json.dumps({"surfaces": results}, indent=1))
     text = report.markdown(results, meshers)
     print(text)
     if options.markdown:

@@ -210,9 +210,9 @@ MESHERS = {
     "gmsh-delaunay": (gmsh_delaunay, ["gmsh"]),
     "gmsh-hxt": (gmsh_hxt, ["gmsh"]),
     "tetgen": (tetgen, []),
-    "ftetwild": (ftetwild, ["pytetwild"]),
     "vmtk": (vmtk, ["vmtk"]),
     "vmtk-layers": (vmtk_layers, ["vmtk"]),
+    "ftetwild": (ftetwild, ["pytetwild"]),
 }
 
 

@@ -103,7 +103,7 @@ def versions(results: dict) -> str:
     for surface in results.values():
         for result in surface["meshes"].values():
             found |= result.get("versions", {})
-    return ", ".join(f"{package} {number_}" for package, number_ in sorted(found.items()))
+    return ", ".join(f"{package} {number}" for package, number in sorted(found.items()))
 
 
 def markdown(results: dict, meshers: list[str]) -> str:
