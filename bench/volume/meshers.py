@@ -8,6 +8,7 @@ where they are needed, for each environment may lack the others.
 from __future__ import annotations
 
 import json
+import os
 import re
 import resource
 import subprocess
@@ -225,9 +226,10 @@ def version_of(package: str) -> str:
 
 def main() -> None:
     mesher, packages = MESHERS[sys.argv[1]]
-    output = Path(sys.argv[3])
+    surface, output = Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve()
+    os.chdir(output.parent)  # where some leave files
     watch = Stopwatch()
-    grid = mesher(read_surface(Path(sys.argv[2])), watch, output)
+    grid = mesher(read_surface(surface), watch, output)
     write_grid(output, grid)
     used = resource.getrusage(resource.RUSAGE_SELF)
     measured = {"cpu_seconds": watch.cpu, "wall_seconds": watch.wall, "peak_mb": used.ru_maxrss / 1024,

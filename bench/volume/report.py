@@ -12,7 +12,16 @@ KEPT = 1e-9  # volumes and areas that differ by less are the surface's
 
 
 def off(value: float) -> str:
-    return "0" if value < KEPT else f"{100 * value:.2g} %"
+    percent = 100 * value
+    return "0" if value < KEPT else f"{percent:.0f} %" if percent >= 9.95 else f"{number(float(f'{percent:.2g}'))} %"
+
+
+def least_to_most(ratios: list[float]) -> str:
+    """Two digits that count, of the first and the last."""
+    if not ratios:
+        return DASH
+    least, most = (cpu(ratio) for ratio in (ratios[0], ratios[-1]))
+    return least if least == most else f"{least} to {most}"
 
 
 def seconds(value: float | None) -> str:
@@ -61,10 +70,10 @@ def in_all(results: dict, meshers: list[str]) -> list[str]:
               "times the CPU of ours"]
     rows = []
     for mesher in meshers:
-        made = [(name, surface["meshes"][mesher]) for name, surface in results.items()
-                if is_made(surface["meshes"].get(mesher, {"refused": ""}))]
+        tried = {name: surface["meshes"][mesher] for name, surface in results.items() if mesher in surface["meshes"]}
+        made = [(name, result) for name, result in tried.items() if is_made(result)]
         if not made:
-            rows.append([NAMES[mesher], f"0 of {len(results)}"] + [DASH] * (len(header) - 2))
+            rows.append([NAMES[mesher], f"0 of {len(tried)}"] + [DASH] * (len(header) - 2))
             continue
         every = [result for _, result in made]
 
@@ -78,11 +87,11 @@ def in_all(results: dict, meshers: list[str]) -> list[str]:
         ratios = sorted(result["cpu_seconds"] / results[name]["meshes"][ours]["cpu_seconds"] for name, result in made
                         if mesher != ours and is_made(results[name]["meshes"].get(ours, {"refused": ""})))
         rows.append([
-            NAMES[mesher], f"{len(made)} of {len(results)}", str(sum(result["inverted"] > 0 for result in every)),
+            NAMES[mesher], f"{len(made)} of {len(tried)}", str(sum(result["inverted"] > 0 for result in every)),
             worst_and_median("least_angle_deg", 1),
             number(sum(values("mean_angle_deg")) / len(every), 1), worst_and_median("least_radius_ratio", 3),
             number(values("least_scaled_jacobian")[0]), off(values("volume_off")[-1]), off(values("caps_off")[-1]),
-            f"{number(ratios[0], 2)} to {number(ratios[-1], 2)}" if ratios else DASH])
+            least_to_most(ratios)])
     return table(header, rows)
 
 
