@@ -219,6 +219,22 @@ def centerlines(bench: Bench) -> None:
     put("bench/README.md", "centerlines-all", in_all(cases, programs))
 
 
+def volumes(bench: Bench) -> None:
+    results = bench.folder / "volumes.json"
+    subprocess.run([str(ROOT / "bench" / "volume" / "run"), "--data", str(bench.data), "--json", str(results)],
+                   check=True)
+    write_volumes(json.loads(results.read_text())["surfaces"])
+
+
+def write_volumes(surfaces: dict) -> None:
+    sys.path.append(str(ROOT / "bench" / "volume"))
+    import report
+
+    meshers = list(dict.fromkeys(mesher for surface in surfaces.values() for mesher in surface["meshes"]))
+    put("bench/README.md", "volumes", report.in_all(surfaces, meshers))
+    put("bench/README.md", "volumes-each", report.times(surfaces, meshers))
+
+
 def masks(bench: Bench) -> None:
     rows = []
     for name, file, options in EXTRACTED:
@@ -266,7 +282,7 @@ def table2(bench: Bench) -> None:
 
 
 FIGURES = {figure.__name__: figure for figure in
-           (generate, scaling, million, tradeoffs, elongation, fit, centerlines, masks, deform, hausdorff, table2)}
+           (generate, scaling, million, tradeoffs, elongation, fit, centerlines, volumes, masks, deform, hausdorff, table2)}
 
 
 def main() -> None:

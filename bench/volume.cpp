@@ -1,9 +1,10 @@
 // Volume meshes around centerlines, over files and over random trees: a table in Markdown, and one closing line. Usage:
 //   bench_volume [--round] [--around N] [--layers N] [--shell N] [--merge] [--wall-only] [--rotate] [--all] [FILE...]
 //   [--plausible FIRST COUNT]
-// Ends are flat unless --round. --rotate makes each random tree with the next of a list of options for its surface and
-// its layers; of random trees, only those that were refused are listed, unless --all. A case that is not sound, or is
-// refused without a place, makes the exit code 1. Options apply to what follows them.
+// A file is a centerline, or a surface of vmesh generate with radii. Ends are flat unless --round. --rotate makes each
+// random tree with the next of a list of options for its surface and its layers; of random trees, only those that were
+// refused are listed, unless --all. A case that is not sound, or is refused without a place, makes the exit code 1.
+// Options apply to what follows them.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +12,8 @@
 #include <string>
 
 #include "vmesh/io/centerline_io.h"
+#include "vmesh/io/surface_io.h"
+#include "vmesh/mesh/find_attribute.h"
 #include "vmesh/production/produce.h"
 #include "vmesh/solid/make_volume.h"
 #include "vmesh/surface/surface_attributes.h"
@@ -72,7 +75,7 @@ VesselWall wall_of(const Production& production, const Centerline& centerline) {
 void print(const std::string& name, const VesselWall& wall, const VolumeResult& result, double seconds) {
   const VolumeMeasures measures = measure_volume(result.mesh);
   std::printf(
-      "| %s | %zu | %zu | %zu | %zu | %.1f / %.2f | %.1f | %.1f | %.3f / %.3f | %.3f | (%.2f %.2f %.2f) | %.2f |",
+      "| %s | %zu | %zu | %zu | %zu | %.1f / %.2f | %.1f | %.1f | %.3f / %.3f | %.3f | (%.2f %.2f %.2f) | %.3f |",
       name.c_str(), wall.mesh.faces.size(), result.mesh.wedges.size(), result.mesh.pyramids.size(),
       result.mesh.tetrahedra.size(), 100 * result.layers.full_share, result.layers.least_share,
       measures.min_dihedral_deg, measures.max_dihedral_deg, measures.least_radius_ratio, measures.mean_radius_ratio,
@@ -83,29 +86,58 @@ void print(const std::string& name, const VesselWall& wall, const VolumeResult& 
   std::fflush(stdout);
 }
 
-void examine(const std::string& name, const Centerline& centerline, const ProductionOptions& production_options,
-             const VolumeOptions& options, bool show, Tally& tally) {
+void mesh_wall(const std::string& name, const VesselWall& wall, const VolumeOptions& options, bool show, Tally& tally) {
+  const std::clock_t start = std::clock();
+  const VolumeResult result = make_volume(wall, options);
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  tally.seconds += seconds;
+  tally.refused += !result.is_sound();
+  for (const VolumeDefect& defect : result.defects) tally.failed += defect.kind != VolumeDefectKind::not_filled;
+  if (result.is_sound())
+    tally.least_dihedral = std::min(tally.least_dihedral, measure_volume(result.mesh).min_dihedral_deg);
+  if (show || !result.is_sound()) print(name, wall, result, seconds);
+}
+
+/// Does `work`, which is for one case. What is thrown has no place, and so is a failure.
+template <class Work>
+void examine(const std::string& name, Tally& tally, const Work& work) {
   ++tally.cases;
   try {
-    const Production production = produce(centerline, {}, production_options);
-    if (!production.result.is_sound()) {
-      ++tally.unsound_surfaces;
-      return;
-    }
-    const VesselWall wall = wall_of(production, centerline);
-    const std::clock_t start = std::clock();
-    const VolumeResult result = make_volume(wall, options);
-    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    tally.seconds += seconds;
-    tally.refused += !result.is_sound();
-    for (const VolumeDefect& defect : result.defects) tally.failed += defect.kind != VolumeDefectKind::not_filled;
-    if (result.is_sound())
-      tally.least_dihedral = std::min(tally.least_dihedral, measure_volume(result.mesh).min_dihedral_deg);
-    if (show || !result.is_sound()) print(name, wall, result, seconds);
+    work();
   } catch (const std::exception& error) {
     ++tally.refused;
     ++tally.failed;
     std::printf("| %s | refused: %s |\n", name.c_str(), error.what());
+  }
+}
+
+void examine_centerline(const std::string& name, const Centerline& centerline,
+                        const ProductionOptions& production_options, const VolumeOptions& options, bool show,
+                        Tally& tally) {
+  examine(name, tally, [&] {
+    const Production production = produce(centerline, {}, production_options);
+    if (production.result.is_sound()) {
+      mesh_wall(name, wall_of(production, centerline), options, show, tally);
+    } else {
+      ++tally.unsound_surfaces;
+    }
+  });
+}
+
+void examine_file(const std::string& path, const Settings& settings, Tally& tally) {
+  const std::string name = path.substr(path.rfind('/') + 1);
+  try {
+    if (find_surface_format(path)) {
+      LoadedSurface surface = read_surface(path);
+      if (find_attribute(surface.attributes.vertex, "radius")) {
+        const VesselWall wall = vessel_wall(std::move(surface.mesh), surface.attributes);
+        return examine(name, tally, [&] { mesh_wall(name, wall, settings.volume, true, tally); });
+      }
+    }
+    examine_centerline(name, load_centerline(path).cleaned.centerline, settings.production, settings.volume, true,
+                       tally);
+  } catch (const std::exception& error) {
+    std::printf("| %s | not read: %s |\n", path.c_str(), error.what());
   }
 }
 
@@ -147,17 +179,12 @@ int main(int argc, char** argv) {
           production.growth = testing::rotated_options(seed);
           production.growth.open_ends = {};
         }
-        examine("plausible_" + std::to_string(seed), testing::plausible_tree(seed), production,
-                settings.rotate ? rotated_volume(seed) : settings.volume, settings.all, tally);
+        examine_centerline("plausible_" + std::to_string(seed), testing::plausible_tree(seed), production,
+                           settings.rotate ? rotated_volume(seed) : settings.volume, settings.all, tally);
       }
       i += 2;
     } else {
-      try {
-        const Centerline centerline = load_centerline(word).cleaned.centerline;
-        examine(word.substr(word.rfind('/') + 1), centerline, settings.production, settings.volume, true, tally);
-      } catch (const std::exception& error) {
-        std::printf("| %s | not read: %s |\n", word.c_str(), error.what());
-      }
+      examine_file(word, settings, tally);
     }
   }
   std::printf(

@@ -68,10 +68,20 @@ class Table:
         return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in self.rows])
 
 
+def draw(results, folder):
+    """Needs VTK, which the checks do not."""
+    import pictures
+
+    os.makedirs(folder, exist_ok=True)
+    for path in pictures.draw_all(results, folder):
+        print(f"wrote {path}", file=sys.stderr)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--vmesh", required=True, help="the command")
     parser.add_argument("--program", choices=tuple(CHECKS), action="append", help="only this one; default: all")
+    parser.add_argument("--pictures", metavar="FOLDER", help="draw flow and stress; needs VTK (python3-vtk9) and a display")
     options = parser.parse_args()
     table, absent = Table(), []
     with tempfile.TemporaryDirectory(prefix="vmesh-simulation-") as folder:
@@ -85,6 +95,8 @@ def main():
                     break
                 except Wrong as wrong:
                     table.failures.append(f"{name}: {wrong}")
+        if options.pictures:
+            draw(folder, options.pictures)
     print(table.markdown())
     for line in absent:
         print(line, file=sys.stderr)

@@ -1,4 +1,5 @@
 """dolfinx (FEniCS): Stokes flow through a tube of tetrahedra, by way of a Gmsh file and its named patches."""
+import logging
 import os
 
 import numpy
@@ -19,6 +20,7 @@ def import_dolfinx():
         from dolfinx.io import gmshio
     except ImportError as error:
         raise Absent(f"dolfinx is not installed (Debian: python3-dolfinx, python3-gmsh): {error}") from None
+    logging.getLogger().setLevel(logging.WARNING)  # which it lowers, to tell of every form that it compiles
     return dolfinx, ufl, gmsh, gmshio
 
 

@@ -66,6 +66,53 @@ TEST_F(Volume, OfRoundEnds) {
   for (const BoundaryFace& face : result.mesh.boundary) EXPECT_TRUE(face.is_triangle());
 }
 
+/// A flat end of a fitted portal vein, in mm, the cap in the plane z = 0: the wall bulges over that, by .084 at the
+/// last vertex of the second ring. Continued downwards to a second cap.
+VesselWall bulging_over_its_cap() {
+  const std::vector<std::vector<Vec3>> rings = {{{-0.729, 0.590, 0},
+                                                 {-0.181, 0.917, 0},
+                                                 {0.713, 0.556, 0},
+                                                 {0.663, -0.746, 0},
+                                                 {0.095, -0.807, 0},
+                                                 {-0.562, -0.510, 0}},
+                                                {{-0.840, 0.837, -0.348},
+                                                 {-0.014, 0.582, -0.668},
+                                                 {0.557, -0.182, -1.112},
+                                                 {0.186, -0.909, -0.535},
+                                                 {-0.665, -1.014, -0.191},
+                                                 {-1.248, 0.008, 0.084}}};
+  VesselWall wall;
+  std::vector<Vec3>& vertices = wall.mesh.vertices;
+  for (const auto& ring : rings) vertices.insert(vertices.end(), ring.begin(), ring.end());
+  for (const Vec3& p : rings[1]) vertices.emplace_back(p.x(), p.y(), -3);
+  vertices.insert(vertices.end(), {{0, 0, 0}, {-0.3, -0.1, -3}});
+  wall.patch_names = {"wall", "top", "bottom"};
+  const auto add = [&](Index a, Index b, Index c, Index patch) {
+    wall.mesh.faces.push_back({a, b, c});
+    wall.patch.push_back(patch);
+  };
+  for (Index i = 0; i < 6; ++i) {
+    const Index j = (i + 1) % 6;
+    for (const Index above : {0u, 6u}) {
+      const Index below = above + 6;
+      add(above + j, below + i, above + i, 0);
+      add(above + j, below + j, below + i, 0);
+    }
+    add(j, i, 18, 1);
+    add(12 + i, 12 + j, 19, 2);
+  }
+  wall.radius.assign(vertices.size(), 0.9);
+  return wall;
+}
+
+TEST_F(Volume, WhereTheWallBulgesOverItsCap) {
+  const VesselWall wall = bulging_over_its_cap();
+  const VolumeResult result = make_volume(wall);
+  expect_sound_lumen(wall, result);
+  EXPECT_EQ(result.layers.least_share, 0);  // there is no way within the cap's plane
+  EXPECT_GT(result.layers.full_share, 0.3);
+}
+
 TEST_F(Volume, WithoutLayersCapsKeepTheirTriangles) {
   const VesselWall wall = grown_wall(bifurcation());
   const VolumeResult result = make_volume(wall, {.layers = {}});

@@ -1,6 +1,7 @@
 #include "solid/layer_stack.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <queue>
 
@@ -41,6 +42,15 @@ std::vector<double> levels_of(const LayerOptions& options) {
 double asked_thickness(const LayerOptions& options, const std::vector<double>& level, double radius) {
   if (options.first_mm > 0) return options.first_mm / level[1];
   return options.in_mm ? options.thickness : options.thickness * radius;
+}
+
+// Within the cap's plane, into the cap, across the edges of its rim before and after a vertex.
+std::array<Vec3, 2> ways_across_rim(const WallFrame& frame, const Cap& cap, Index v) {
+  const std::size_t n = cap.rim.size();
+  const auto at = static_cast<std::size_t>(std::find(cap.rim.begin(), cap.rim.end(), v) - cap.rim.begin());
+  const Vec3& p = frame.position[v];
+  const Vec3 before = p - frame.position[cap.rim[(at + n - 1) % n]], after = frame.position[cap.rim[(at + 1) % n]] - p;
+  return {cap.normal.cross(before).normalized(), cap.normal.cross(after).normalized()};
 }
 
 class StackBuilder {
@@ -95,14 +105,21 @@ class StackBuilder {
     for (Index v = 0; v < frame_.position.size(); ++v) {
       std::vector<Vec3> fan;
       for (const Index f : frame_.fan[v]) fan.push_back(sign * normals[f]);
-      const Index cap = frame_.cap_at[v];
       const FanDirection best =
-          cap == kNone ? best_direction(fan) : best_direction_in_plane(fan, frame_.caps[cap].normal);
+          frame_.cap_at[v] == kNone ? best_direction(fan) : best_within_cap(v, fan, frame_.caps[frame_.cap_at[v]]);
       if (!(best.least > 0)) end_at(v, LayerLimit::shape);
       double mean = 0;
       for (const Vec3& normal : fan) mean += best.way.dot(normal) / static_cast<double>(fan.size());
       stack_.way.push_back(best.way / std::max(mean, 1 / kLongest));
     }
+  }
+
+  // Where the wall bulges over the plane of its cap, what leads away from it leads out of the cap: there is no way
+  // then.
+  FanDirection best_within_cap(Index v, std::vector<Vec3> fan, const Cap& cap) const {
+    const double sign = stack_.side == LayerSide::inside ? 1 : -1;
+    for (const Vec3& way : ways_across_rim(frame_, cap, v)) fan.push_back(sign * way);
+    return best_direction_in_plane(fan, cap.normal);
   }
 
   void make_well_shaped() {

@@ -126,10 +126,23 @@ std::vector<Side> all_sides(const VolumeMesh& mesh) {
   return sides;
 }
 
+/// So that equal ones are neighbours: by their lowest corner, which few share, and then among these.
+std::vector<Side> sorted(const std::vector<Side>& sides, std::size_t points) {
+  std::vector<std::size_t> begin(points + 1, 0);
+  for (const Side& side : sides) ++begin[side.corners[0] + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Side> result(sides.size());
+  std::vector<std::size_t> next = begin;
+  for (const Side& side : sides) result[next[side.corners[0]]++] = side;
+  for (std::size_t v = 0; v < points; ++v)
+    std::sort(result.begin() + static_cast<std::ptrdiff_t>(begin[v]),
+              result.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]));
+  return result;
+}
+
 /// Every face must have a cell on one side, and a cell or the outside on the other.
 void find_unmatched(const VolumeMesh& mesh, Finding& finding) {
-  std::vector<Side> sides = all_sides(mesh);
-  std::sort(sides.begin(), sides.end());
+  const std::vector<Side> sides = sorted(all_sides(mesh), mesh.points.size());
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t end = i + 1;
     while (end < sides.size() && sides[end].corners == sides[i].corners) ++end;
