@@ -141,6 +141,9 @@ void check_end_names(const std::vector<EndName>& names, const Centerline& center
     if (std::find(nodes.begin(), nodes.end(), given.node) != nodes.end())
       throw InvalidInput("the end at node " + std::to_string(given.node) + " is named twice");
     nodes.push_back(given.node);
+    if (is_wall_name(given.name))
+      throw InvalidInput("the end at node " + std::to_string(given.node) + " cannot be called \"" + given.name +
+                         "\": patches whose names begin with \"wall\" are walls; choose another name");
   }
   std::vector<std::string> all = {"wall"};
   for (const Index node : ends_of(centerline)) {

@@ -31,6 +31,8 @@ bool is_patch_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), is_name_letter);
 }
 
+bool is_wall_name(std::string_view name) { return lower(name).starts_with("wall"); }
+
 void check_patch_names(const std::vector<std::string>& names, const char* word, const char* words) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
