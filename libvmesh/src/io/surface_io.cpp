@@ -132,7 +132,11 @@ LoadedSurface parse_surface(std::string_view content, const SurfaceFormat& forma
 
 LoadedSurface read_surface(const std::filesystem::path& path) {
   const SurfaceFormat& format = surface_format(path);
-  if (format.read) return format.read(path);
+  if (format.read) {
+    LoadedSurface surface = format.read(path);
+    io::settle_patch_names(surface, path.string());
+    return surface;
+  }
   if (!format.parse) refuse_without(format.needs, path);
   return parse_surface(read_file(path), format, path.string());
 }

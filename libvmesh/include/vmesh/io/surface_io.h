@@ -94,8 +94,9 @@ struct SurfaceWriteOptions {
 ///        attributes
 ///   .smesh  TetGen: facets with the numbers of the groups of OBJ, from 1, as markers; no other attributes
 ///   GLB  binary glTF 2.0 in metres, y up (superior), z towards the front (anterior); vertices are shared by faces;
-///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; with
-///        a skin, bones, around the origin of the frame. Compressed by EXT_meshopt_compression: positions are rounded
+///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; a
+///        primitive for each group of OBJ, with a material of its name, if there are several; with a skin, bones,
+///        around the origin of the frame. Compressed by EXT_meshopt_compression: positions are rounded
 ///        to two millionths of their greatest coordinate (from the middle of the surface, or the origin with bones),
 ///        normals to a 4,000th, attributes that are no integers to 31 millionths; triangles are in another order
 /// In text, numbers have the digits they need to come back to the bit.
