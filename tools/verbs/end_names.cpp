@@ -169,6 +169,11 @@ void add_end_names(CLI::App& verb, EndNameArguments& arguments) {
       ->type_name("FILE.csv");
 }
 
+void add_regions(CLI::App& verb, const std::function<void()>& take, const std::string& help) {
+  add_choice(
+      verb, "--regions", {"branches"}, [take](const std::string&) { take(); }, help);
+}
+
 std::vector<EndName> read_end_names(const EndNameArguments& arguments, const Centerline& centerline) {
   std::vector<EndName> names;
   if (!arguments.table.empty()) names = NameTable(arguments.table, centerline).read();

@@ -59,8 +59,7 @@ void add_options(CLI::App& verb, FitArguments& arguments) {
   add_html(verb, arguments.common);
 }
 
-/// The patches that a surface's file tells of, from 1, and which of them are caps: all whose names do not begin with
-/// "wall"; without names, all but number 1.
+/// The patches that a surface's file tells of, from 1, and which of them are caps: all that are no walls.
 std::optional<CappedPatches> patches_of(const MeshAttributes& attributes) {
   const MeshAttribute* numbers = find_attribute(attributes.face, "ModelFaceID");
   if (numbers == nullptr) return std::nullopt;
@@ -74,8 +73,7 @@ std::optional<CappedPatches> patches_of(const MeshAttributes& attributes) {
           formatted("face %zu: ModelFaceID %g; 1 is the wall, and caps are numbered from 2 on", f, number));
     const auto patch = static_cast<Index>(number);
     patches.patch.push_back(patch);
-    const bool is_named = patch <= attributes.patch_names.size();
-    if (is_named ? !is_wall_name(attributes.patch_names[patch - 1]) : patch != 1) caps.insert(patch);
+    if (!is_wall_patch(patch, attributes.patch_names)) caps.insert(patch);
   }
   patches.caps.assign(caps.begin(), caps.end());
   return patches;

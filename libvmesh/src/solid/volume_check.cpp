@@ -245,7 +245,7 @@ std::vector<VolumeDefect> compare_with_wall(const VolumeMesh& mesh, std::string_
                        what + formatted(" is %.12g, that of the surface %.12g", found, expected)});
   };
   double slack = 0;  // in the volume
-  for (Index patch = 1; patch < wall.patch_names.size(); ++patch) {
+  for (Index patch = wall.wall_patches; patch < wall.patch_names.size(); ++patch) {
     const PatchMeasures cap = measure_patch(wall, patch);
     slack += cap.area * cap.unevenness();
     const auto named = std::find(mesh.patch_names.begin(), mesh.patch_names.end(), wall.patch_names[patch]);
