@@ -138,6 +138,23 @@ TEST_F(Names, ArePatchesOfVolumes) {
   EXPECT_TRUE(exists("mesh-complete/mesh-surfaces/cap_3.vtp"));
 }
 
+TEST_F(Names, AreInSimVascularsModels) {
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@model.mdl", "--ends", "flat", "--name", at(0, "inlet"),
+                   "--output-unit", "cm"})
+                .exit_code,
+            0);
+  expect_in(read("model.mdl"), "<face id=\"2\" name=\"inlet\" type=\"cap\"");
+  expect_in(read("model.vtp.facenames"), "set gPolyDataFaceNames(2) {inlet}");
+  EXPECT_EQ(read_surface(path("model.vtp")).unit, LengthUnit::cm);
+  // What lies beside it is an output too.
+  const Outcome over = vmesh({"convert", "@plain.vtp", "-o", "@plain.mdl"});
+  EXPECT_EQ(over.exit_code, 2);
+  expect_in(over.err, "plain.vtp: would be written with");
+  EXPECT_FALSE(exists("plain.mdl"));
+  EXPECT_EQ(vmesh({"convert", "@plain.vtp", "-o", "@m.mdl", "--attributes", "none"}).exit_code, 2);
+  EXPECT_FALSE(exists("m.mdl"));
+}
+
 TEST_F(Names, ThatAreNoneAreRefused) {
   expect_in(refused({"--name", "999=inlet"}, 3), "--name 999=inlet: there is no node 999; the nodes are 0 to ");
   expect_in(refused({"--name", "inlet"}, 3), "give a node and a name: 3=inlet");

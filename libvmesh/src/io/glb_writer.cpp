@@ -192,16 +192,17 @@ class GlbWriter {
   void add_mesh(const OrderedJson& attributes) {
     std::vector<Boundary> boundaries = boundaries_of(mesh_, attributes_);
     if (boundaries.size() == 1) boundaries[0].name = "vessel";
-    OrderedJson primitives = OrderedJson::array();
+    OrderedJson primitives = OrderedJson::array(), materials = OrderedJson::array();
     for (const Boundary& boundary : boundaries) {
       primitives.push_back(
-          {{"attributes", attributes}, {"indices", indices(boundary.faces)}, {"material", primitives.size()}});
+          {{"attributes", attributes}, {"indices", indices(boundary.faces)}, {"material", materials.size()}});
       if (boundaries.size() > 1) primitives.back()["extras"] = {{"name", boundary.name}};
-      json_["materials"].push_back({{"name", boundary.name},
-                                    {"doubleSided", true},
-                                    {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.6}}}});
+      materials.push_back({{"name", boundary.name},
+                           {"doubleSided", true},
+                           {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.6}}}});
     }
     json_["meshes"].push_back({{"name", "surface"}, {"primitives", std::move(primitives)}});
+    json_["materials"] = std::move(materials);
   }
 
   void add_weights(OrderedJson& attributes) {
