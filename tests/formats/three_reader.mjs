@@ -44,7 +44,8 @@ function points(mesh) {
   return result;
 }
 
-function report(mesh) {
+// `more`: meshes of further patches, with the same vertices.
+function report(mesh, more = []) {
   const geometry = mesh.geometry;
   const attributes = {};
   for (const [name, attribute] of Object.entries(geometry.attributes)) {
@@ -53,6 +54,7 @@ function report(mesh) {
   if (geometry.attributes.color) attributes.color = Array.from(geometry.attributes.color.array);
   const count = geometry.attributes.position.count;
   const faces = geometry.index ? Array.from(geometry.index.array) : Array.from({length: count}, (_, i) => i);
+  for (const patch of more) faces.push(...Array.from(patch.geometry.index.array));
   print({points: points(mesh), faces, attributes, bones: mesh.skeleton ? mesh.skeleton.bones.length : 0});
 }
 
@@ -81,14 +83,17 @@ function reportGroups(group) {
 function reportScene(scene) {
   const meshes = [];
   scene.traverse((object) => object.isMesh && meshes.push(object));
-  if (meshes.length !== 1) throw new Error(`${meshes.length} meshes`);
+  const [first, ...more] = meshes;
+  const position = (mesh) => mesh.geometry.attributes.position;
+  if (meshes.length === 0 || more.some((mesh) => position(mesh) !== position(first)))
+    throw new Error(`${meshes.length} meshes that do not share their vertices`);
   scene.updateMatrixWorld(true);
   if (pose) {
-    bend(scene, meshes[0]);
+    bend(scene, first);
     scene.updateMatrixWorld(true);
   }
-  if (meshes[0].isSkinnedMesh) meshes[0].skeleton.update();
-  report(meshes[0]);
+  if (first.isSkinnedMesh) first.skeleton.update();
+  report(first, more);
 }
 
 if (task === 'version') {

@@ -107,8 +107,9 @@ struct Glb {
     return numbers<float>(primitive().at("attributes").at(attribute));
   }
   /// With the least corner first, in ascending order.
-  std::vector<std::array<unsigned, 3>> triangles() const {
-    const auto corners = numbers<unsigned>(primitive().at("indices"));
+  std::vector<std::array<unsigned, 3>> triangles() const { return triangles(primitive()); }
+  std::vector<std::array<unsigned, 3>> triangles(const json& of_primitive) const {
+    const auto corners = numbers<unsigned>(of_primitive.at("indices"));
     std::vector<std::array<unsigned, 3>> result;
     for (std::size_t i = 0; i < corners.size(); i += 3) {
       result.push_back({corners[i], corners[i + 1], corners[i + 2]});
@@ -178,6 +179,25 @@ TEST(CompressedGlb, IsLessThanHalfAsLargeAndTheSameTwice) {
   write_surface(folder / "b.glb", mesh, {}, {}, kCompressed);
   EXPECT_LT(2 * content_of(folder / "a.glb").size(), content_of(folder / "plain.glb").size());
   EXPECT_EQ(content_of(folder / "a.glb"), content_of(folder / "b.glb"));
+}
+
+TEST(CompressedGlb, KeepsPatches) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = tube();
+  MeshAttributes patches;
+  patches.face.push_back({"ModelFaceID", std::vector<double>(mesh.faces.size(), 1), true});
+  for (std::size_t f = 0; f < mesh.faces.size(); f += 3) patches.face[0].values[f] = 2;
+  patches.patch_names = {"wall", "inlet"};
+  write_surface(folder / "plain.glb", mesh, patches);
+  write_surface(folder / "packed.glb", mesh, patches, {}, kCompressed);
+  const Glb plain(content_of(folder / "plain.glb")), packed(content_of(folder / "packed.glb"));
+  EXPECT_EQ(packed.header.at("materials"), plain.header.at("materials"));
+  const json &some = plain.header.at("meshes").at(0).at("primitives"),
+             &same = packed.header.at("meshes").at(0).at("primitives");
+  ASSERT_EQ(some.size(), 2u);
+  ASSERT_EQ(same.size(), 2u);
+  for (std::size_t p = 0; p < 2; ++p) EXPECT_EQ(packed.triangles(same[p]), plain.triangles(some[p]));
+  EXPECT_EQ(plain.triangles(some[1]).size(), (mesh.faces.size() + 2) / 3);
 }
 
 TEST(CompressedGlb, KeepsBonesExactly) {

@@ -1,4 +1,6 @@
 // Names of the patches of surfaces, in the files that have room for them.
+#include <nlohmann/json.hpp>
+
 #include "vmesh/io/surface_io.h"
 #include "vmesh/mesh/find_attribute.h"
 
@@ -49,7 +51,8 @@ TEST(PatchNames, GroupsAndSolidsAreNumberedInTheirOrder) {
   const TemporaryFolder folder;
   write_surface(folder / "t.obj", tetrahedron(), named());
   write_surface(folder / "t.stl", tetrahedron(), named(), {}, {SurfaceEncoding::text});
-  for (const char* name : {"t.obj", "t.stl"}) {
+  write_surface(folder / "t.glb", tetrahedron(), named());
+  for (const char* name : {"t.obj", "t.stl", "t.glb"}) {
     SCOPED_TRACE(name);
     const LoadedSurface back = read_surface(folder / name);
     EXPECT_EQ(back.attributes.patch_names, (std::vector<std::string>{"wall", "inlet", "outlet.left-2"}));
@@ -61,6 +64,45 @@ TEST(PatchNames, GroupsAndSolidsAreNumberedInTheirOrder) {
   }
   expect_contains(content_of(folder / "t.obj"), "\ng outlet.left-2\n");
   expect_contains(content_of(folder / "t.stl"), "solid inlet\n");
+}
+
+/// The JSON of a GLB file.
+nlohmann::json header_of(const std::string& glb) {
+  const auto size = static_cast<unsigned char>(glb[12]) + 256 * static_cast<unsigned char>(glb[13]);
+  return nlohmann::json::parse(glb.substr(20, static_cast<std::size_t>(size)));
+}
+
+TEST(PatchNames, GlbHasAPrimitiveAndAMaterialForEach) {
+  const TemporaryFolder folder;
+  write_surface(folder / "t.glb", tetrahedron(), named());
+  const nlohmann::json glb = header_of(content_of(folder / "t.glb"));
+  const nlohmann::json& primitives = glb.at("meshes").at(0).at("primitives");
+  ASSERT_EQ(glb.at("meshes").size(), 1u);
+  ASSERT_EQ(primitives.size(), 3u);
+  ASSERT_EQ(glb.at("materials").size(), 3u);
+  const std::vector<std::pair<std::string, int>> expected = {{"wall", 2}, {"inlet", 1}, {"outlet.left-2", 1}};
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_EQ(primitives[p].at("material"), p);
+    EXPECT_EQ(primitives[p].at("extras").at("name"), expected[p].first);
+    EXPECT_EQ(glb.at("materials").at(p).at("name"), expected[p].first);
+    EXPECT_EQ(primitives[p].at("attributes"), primitives[0].at("attributes"));
+    EXPECT_EQ(glb.at("accessors").at(primitives[p].at("indices").get<std::size_t>()).at("count"),
+              3 * expected[p].second);
+  }
+  // Vertices are there once.
+  const auto positions = primitives[0].at("attributes").at("POSITION").get<std::size_t>();
+  EXPECT_EQ(glb.at("accessors").at(positions).at("count"), 4);
+  EXPECT_EQ(read_surface(folder / "t.glb").mesh.vertices.size(), 4u);
+}
+
+TEST(PatchNames, GlbWithoutPatchesHasOnePrimitive) {
+  const TemporaryFolder folder;
+  write_surface(folder / "t.glb", tetrahedron());
+  const nlohmann::json glb = header_of(content_of(folder / "t.glb"));
+  ASSERT_EQ(glb.at("meshes").at(0).at("primitives").size(), 1u);
+  EXPECT_FALSE(glb.at("meshes").at(0).at("primitives").at(0).contains("extras"));
+  EXPECT_EQ(glb.at("materials").at(0).at("name"), "vessel");
+  EXPECT_TRUE(read_surface(folder / "t.glb").attributes.patch_names.empty());
 }
 
 TEST(PatchNames, OneGroupIsNoPatch) {

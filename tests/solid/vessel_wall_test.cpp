@@ -33,6 +33,61 @@ TEST(VesselWall, TakesPatchesFromFaceNumbers) {
   EXPECT_EQ(wall.patch, (std::vector<Index>{2, 0, 1, 0}));
 }
 
+TEST(VesselWall, PatchesNamedWallAreTheWall) {
+  MeshAttributes attributes;
+  attributes.vertex = {{"radius", {1, 1, 1, 1}}};
+  attributes.face = {{"ModelFaceID", {1, 4, 2, 2}, true}};
+  attributes.patch_names = {"inlet", "wall_0", "outlet", "Wall_7"};
+  const VesselWall wall = vessel_wall(tetrahedron(), attributes);
+  EXPECT_EQ(wall.patch_names, (std::vector<std::string>{"wall_0", "Wall_7", "inlet"}));
+  EXPECT_EQ(wall.wall_patches, 2u);
+  EXPECT_EQ(wall.patch, (std::vector<Index>{2, 1, 0, 0}));
+  // Where no name tells, 1 is the wall.
+  attributes.patch_names = {"lumen", "in", "out", "side"};
+  EXPECT_EQ(vessel_wall(tetrahedron(), attributes).patch_names, (std::vector<std::string>{"lumen", "in", "side"}));
+  attributes.patch_names = {"inlet", "outlet", "wall", "side"};
+  EXPECT_THROW(vessel_wall(tetrahedron(), attributes), InvalidInput);
+}
+
+TEST(VesselWall, PartsOfTheWallAreApartInTheVolume) {
+  VesselWall wall = grown_wall(testing::tube());
+  const std::vector<double> whole = [&] {
+    VolumeOptions shell;
+    shell.shell = {.count = 1};
+    shell.shell_only = true;
+    return measure_volume(make_volume(wall, shell).mesh).patch_area_mm2;
+  }();
+  // The half beyond x = 10 is another patch.
+  wall.patch_names.insert(wall.patch_names.begin() + 1, "wall_far");
+  wall.wall_patches = 2;
+  for (std::size_t f = 0; f < wall.patch.size(); ++f) {
+    const bool is_far = wall.mesh.vertices[wall.mesh.faces[f][0]].x() > 10;
+    wall.patch[f] = wall.patch[f] > 0 ? wall.patch[f] + 1 : is_far ? 1 : 0;
+  }
+  VolumeOptions shell;
+  shell.shell = {.count = 1};
+  shell.shell_only = true;
+  const VolumeResult result = make_volume(wall, shell);
+  EXPECT_TRUE(result.is_sound());
+  EXPECT_EQ(result.mesh.patch_names,
+            (std::vector<std::string>{"wall", "wall_far", "cap_1", "cap_2", "lumen_wall", "cap_1_wall", "cap_2_wall"}));
+  const std::vector<double> area = measure_volume(result.mesh).patch_area_mm2;
+  EXPECT_NEAR(area[0] + area[1], whole[0], 1e-9 * whole[0]);
+  EXPECT_NEAR(area[0], area[1], 0.1 * area[0]);
+  for (const BoundaryFace& face : result.mesh.boundary) {
+    const Vec3 middle = (result.mesh.points[face.corners[0]] + result.mesh.points[face.corners[1]] +
+                         result.mesh.points[face.corners[2]]) /
+                        3;
+    if (face.patch == 0) {
+      EXPECT_LT(middle.x(), 12);
+    } else if (face.patch == 1) {
+      EXPECT_GT(middle.x(), 8);
+    }
+  }
+  if (!can_mesh_lumen()) return;
+  testing::expect_sound_lumen(wall, make_volume(wall));
+}
+
 TEST(VesselWall, NeedsRadiiAndGoodFaceNumbers) {
   EXPECT_THROW(vessel_wall(tetrahedron(), {}), InvalidInput);
   MeshAttributes attributes;

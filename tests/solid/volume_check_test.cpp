@@ -1,5 +1,7 @@
 #include "vmesh/solid/volume_check.h"
 
+#include "vmesh/core/error.h"
+
 #include "vessels.h"
 
 namespace vmesh {
@@ -48,6 +50,37 @@ TEST(VolumeCheck, FindsCellsThatAreTurnedOver) {
   mesh = with_tetrahedron_faces(three_cells());
   mesh.points[6] = {0.5, 0.1, 0.5};  // the tip of the pyramid on the other side of its base
   EXPECT_TRUE(has(find_volume_defects(mesh), VolumeDefectKind::inverted_cell));
+}
+
+TEST(VolumeCheck, InvertedCellsAloneAreThoseAmongTheDefects) {
+  VolumeMesh mesh = with_tetrahedron_faces(three_cells());
+  EXPECT_EQ(find_inverted_cells(mesh).count, 0u);
+  mesh.points[6] = {0.5, 0.1, 0.5};  // the tip of the pyramid, a corner of the tetrahedron
+  const VolumeDefect inverted = find_inverted_cells(mesh);
+  EXPECT_EQ(inverted.kind, VolumeDefectKind::inverted_cell);
+  EXPECT_EQ(inverted.count, testing::inverted_cells(mesh));
+  EXPECT_GT(inverted.count, 0u);
+  EXPECT_EQ(inverted.message, find_volume_defects(mesh).front().message);
+  mesh.tetrahedra[0][1] = 99;
+  EXPECT_THROW(find_inverted_cells(mesh), InvalidInput);
+}
+
+TEST(VolumeCheck, JacobiansAreTheLeastOfEveryCell) {
+  const VolumeMesh mesh = with_tetrahedron_faces(three_cells());
+  const std::vector<double> least = least_jacobians_mm3(mesh);
+  ASSERT_EQ(least.size(), 3u);
+  const auto& [a, b, c, d] = mesh.tetrahedra[0];
+  EXPECT_NEAR(least[0], testing::six_volumes(mesh, a, b, c, d), 1e-12);
+  // A right prism over half of a unit square: constant, twice its volume. The pyramid over a unit square of height 1:
+  // at every corner of its base 1.
+  EXPECT_NEAR(least[1], 1, 1e-12);
+  EXPECT_NEAR(least[2], 1, 1e-12);
+  VolumeMesh turned = mesh;
+  turned.points[7] = {0.5, -1, -2};
+  EXPECT_LT(least_jacobians_mm3(turned)[0], 0);
+  turned = mesh;
+  turned.points[5] = {0, 1, 0.25};  // there the prism is a quarter as high
+  EXPECT_NEAR(least_jacobians_mm3(turned)[1], testing::least_determinant(turned, turned.wedges[0]), 1e-12);
 }
 
 // Corners alone do not tell: all six determinants there are positive, one in between is not.

@@ -5,6 +5,7 @@
 
 #include "vmesh/io/surface_io.h"
 #include "vmesh/io/volume_io.h"
+#include "vmesh/mesh/find_attribute.h"
 
 #include "run_vmesh.h"
 
@@ -97,6 +98,32 @@ TEST_F(Names, GoFromFileToFile) {
   EXPECT_EQ(read_surface(path("frames/frame_000000.vtp")).attributes.patch_names, names);
 }
 
+TEST_F(Names, SurviveAFit) {
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "@y.ply", "--ends", "flat", "--name", at(0, "inlet"), "--name", at(2, "out"),
+                   "--flow-extensions", "2"})
+                .exit_code,
+            0);
+  LoadedSurface scan = read_surface(path("plain.vtp"));
+  for (Vec3& p : scan.mesh.vertices) p = Vec3(1.1 * p.x(), p.y(), p.z());
+  write_surface(path("scan.stl"), scan.mesh);
+  const Outcome run = vmesh({"fit", "@y.ply", "@scan.stl", "--reference-unit", "mm", "--reference-space", "LPS",
+                             "--centerline", "@y.swc", "-o", "@fitted.vtp"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const LoadedSurface fitted = read_surface(path("fitted.vtp"));
+  EXPECT_EQ(fitted.attributes.patch_names, (std::vector<std::string>{"wall", "inlet", "cap_2", "out"}));
+  const MeshAttribute* number = find_attribute(fitted.attributes.face, "ModelFaceID");
+  const MeshAttribute* cap = find_attribute(fitted.attributes.face, "CapID");
+  ASSERT_NE(number, nullptr);
+  ASSERT_NE(cap, nullptr);
+  std::map<double, double> cap_of_number;
+  for (std::size_t f = 0; f < number->values.size(); ++f) cap_of_number[number->values[f]] = cap->values[f];
+  EXPECT_EQ(cap_of_number, (std::map<double, double>{{1, -1}, {2, 1}, {3, 2}, {4, 3}}));
+  const Outcome volume = vmesh({"volume", "@fitted.vtp", "-o", "@y.vtu", "--wall-thickness", "0.2", "--wall-only"});
+  ASSERT_EQ(volume.exit_code, 0) << volume.err;
+  const std::vector<std::string> patches = read_volume(path("y.vtu")).mesh.patch_names;
+  EXPECT_NE(std::find(patches.begin(), patches.end(), "out_wall"), patches.end());
+}
+
 TEST_F(Names, ArePatchesOfVolumes) {
   const Outcome run = vmesh({"volume", "@y.swc", "@y.vtu", "--name", at(0, "inlet")});
   if (run.err.find("without TetGen") != std::string::npos) GTEST_SKIP() << "built without TetGen";
@@ -111,6 +138,23 @@ TEST_F(Names, ArePatchesOfVolumes) {
   EXPECT_TRUE(exists("mesh-complete/mesh-surfaces/cap_3.vtp"));
 }
 
+TEST_F(Names, AreInSimVascularsModels) {
+  ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@model.mdl", "--ends", "flat", "--name", at(0, "inlet"),
+                   "--output-unit", "cm"})
+                .exit_code,
+            0);
+  expect_in(read("model.mdl"), "<face id=\"2\" name=\"inlet\" type=\"cap\"");
+  expect_in(read("model.vtp.facenames"), "set gPolyDataFaceNames(2) {inlet}");
+  EXPECT_EQ(read_surface(path("model.vtp")).unit, LengthUnit::cm);
+  // What lies beside it is an output too.
+  const Outcome over = vmesh({"convert", "@plain.vtp", "-o", "@plain.mdl"});
+  EXPECT_EQ(over.exit_code, 2);
+  expect_in(over.err, "plain.vtp: would be written with");
+  EXPECT_FALSE(exists("plain.mdl"));
+  EXPECT_EQ(vmesh({"convert", "@plain.vtp", "-o", "@m.mdl", "--attributes", "none"}).exit_code, 2);
+  EXPECT_FALSE(exists("m.mdl"));
+}
+
 TEST_F(Names, ThatAreNoneAreRefused) {
   expect_in(refused({"--name", "999=inlet"}, 3), "--name 999=inlet: there is no node 999; the nodes are 0 to ");
   expect_in(refused({"--name", "inlet"}, 3), "give a node and a name: 3=inlet");
@@ -119,7 +163,8 @@ TEST_F(Names, ThatAreNoneAreRefused) {
   expect_in(refused({"--name", at(0, "in let")}, 3), "cannot be the name of a patch");
   expect_in(refused({"--name", at(0, "a"), "--name", at(1, "A")}, 3), "two patches have the name \"A\"");
   expect_in(refused({"--name", at(0, "a"), "--name", at(0, "b")}, 3), "is named twice");
-  expect_in(refused({"--name", at(0, "Wall")}, 3), "two patches have the name");
+  expect_in(refused({"--name", at(0, "Wall")}, 3), "cannot be called \"Wall\"");
+  expect_in(refused({"--name", at(0, "wall_inlet")}, 3), "names begin with \"wall\" are walls");
   expect_in(refused({"--name", at(0, "cap_2")}, 3), "two patches have the name \"cap_2\"");
   write("t.csv", "x,y,z,name\n1000,0,0,far\n");
   expect_in(refused({"--names", "@t.csv"}, 3), "t.csv: line 2: no end is near (1000, 0, 0) mm: the nearest, at node ");

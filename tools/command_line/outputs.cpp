@@ -76,6 +76,12 @@ void check_format(const PlannedOutput& output) {
     throw Unsupported(output.path.string() + ": pictures are written as .png only");
 }
 
+/// That are written under its name.
+std::vector<fs::path> files_of(const PlannedOutput& output) {
+  if (output.kind == Kind::surface) return files_of_surface(output.path);
+  return {output.path};
+}
+
 /// An existing one, which is replaced if it holds nothing else.
 bool is_folder_of_volume(const PlannedOutput& output) {
   return output.kind == Kind::volume && volume_output_format(output.path).is_folder() && fs::is_directory(output.path);
@@ -88,14 +94,21 @@ void check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<
     if (needs_no_check(*output)) continue;
     const std::string name = output->path.string();
     check_format(*output);
-    for (const fs::path& input : inputs)
-      if (same_file(output->path, input))
-        throw UsageError(name + ": is an input; choose another name for the " + name_of(output->kind));
-    for (auto other = outputs.begin(); other != output; ++other)
-      if (!needs_no_check(*other) && same_file(output->path, other->path))
-        throw UsageError(name + ": given both for the " + name_of(other->kind) + " and for the " +
-                         name_of(output->kind));
-    if (!is_folder_of_volume(*output)) check_can_be_written(output->path);
+    for (const fs::path& file : files_of(*output)) {
+      const std::string beside = file == output->path ? "" : ": would be written with " + name;
+      for (const fs::path& input : inputs)
+        if (same_file(file, input))
+          throw UsageError(file.string() + beside + (beside.empty() ? ": is an input" : ", and is an input") +
+                           "; choose another name for the " + name_of(output->kind));
+      for (auto other = outputs.begin(); other != output; ++other) {
+        if (needs_no_check(*other)) continue;
+        for (const fs::path& other_file : files_of(*other))
+          if (same_file(file, other_file))
+            throw UsageError(file.string() + ": given both for the " + name_of(other->kind) + " and for the " +
+                             name_of(output->kind));
+      }
+      if (!is_folder_of_volume(*output)) check_can_be_written(file);
+    }
   }
 }
 
@@ -184,6 +197,8 @@ void check_writing(const fs::path& path, const WritingArguments& writing) {
     throw UsageError(path.string() + ": --compress is for " +
                      listed(extensions_of(surface_formats(), [](const auto& f) { return f.has_compressed_form; })) +
                      " only");
+  if (format != nullptr && !format->beside.empty() && writing.attributes != "all")
+    throw UsageError(path.string() + ": " + format->name + " needs the attributes of faces; leave out --attributes");
   if (format == nullptr && writing.attributes != "all")
     throw UsageError(path.string() + ": --attributes is for surfaces; this is a centerline's");
   if (format != nullptr && format->has_own_frame && (writing.unit != LengthUnit::mm || writing.space != Space::lps))

@@ -277,7 +277,7 @@ Json to_json(const GenerateReport& report) {
   json["topology"]["expected_components"] = expected.components;
   json["topology"]["expected_genus"] = expected.genus;
   json["openings"] = openings_json(*report.result);
-  json["caps"] = caps_json(report.ends, report.end_names);
+  json["caps"] = caps_json(report.ends, report.end_names, report.wall_patches);
   json["growth"] = arguments.production.growth.growth == GrowthMethod::guided ? to_json(report.result->growth) : Json();
   json["nodes_inside"] = report.nodes_inside ? Json(*report.nodes_inside) : Json();
   json["nodes_inside_of"] = {{"centerline", measured_centerline(report)}, {"nodes", report.grown_nodes}};
@@ -351,11 +351,11 @@ Json openings_json(const GenerateResult& result) {
   return json;
 }
 
-Json caps_json(const FlatEnds& ends, const std::vector<EndName>& names) {
+Json caps_json(const FlatEnds& ends, const std::vector<EndName>& names, Index wall_patches) {
   return list_json(ends.ends, [&](const FlatEnd& end) {
     return Json{{"name", name_of_end(end, names)},
                 {"cap_id", end.label},
-                {"model_face_id", end.label + 1},
+                {"model_face_id", end.label + wall_patches},
                 {"node", end.node},
                 {"center", to_json(end.center)},
                 {"normal", to_json(end.normal)},
@@ -427,6 +427,7 @@ std::string describe(const GenerateArguments& arguments) {
   }
   for (const std::string& name : arguments.end_names.given) text << " --name " << name;
   if (!arguments.end_names.table.empty()) text << " --names " << arguments.end_names.table.filename().string();
+  if (arguments.wall_by_branch) text << " --regions branches";
   text << " --overlap " << overlap_of(arguments) << " --gap " << exact_text(arguments.production.preparation.gap);
   const std::filesystem::path& reference = arguments.fitting.reference.path;
   if (!reference.empty()) text << " --fit " << reference.string();

@@ -26,6 +26,7 @@ struct GenerateReport {
   const GenerateResult* result = nullptr;
   FlatEnds ends;                      ///< the ends that are not round
   std::vector<EndName> end_names;     ///< those that a user gave
+  Index wall_patches = 1;             ///< into which the wall is divided
   std::size_t wall_vertices = 0;      ///< before ends were capped or extended
   std::vector<OperatingPoint> tried;  ///< for a budget
   SurfaceMeasurement measurement;
@@ -48,7 +49,8 @@ Json to_json(const GrowthSummary& growth);
 Json to_json(const ExtractionReport& report);
 Json stages_json(const std::vector<StageTime>& stages);
 Json openings_json(const GenerateResult& result);
-Json caps_json(const FlatEnds& ends, const std::vector<EndName>& names);
+/// `wall_patches`: into which the wall is divided.
+Json caps_json(const FlatEnds& ends, const std::vector<EndName>& names, Index wall_patches);
 /// Without their rings.
 Json to_json(const std::vector<EndSection>& sections);
 Json to_json(const SurfaceMeasurement& measurement);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <sstream>
 
+#include "vmesh/core/text.h"
 #include "vmesh/deform/surface_binding.h"
 #include "vmesh/io/sha256.h"
 
@@ -11,6 +12,8 @@
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
 #include "report/pages.h"
+#include "verbs/frame_series.h"
+#include "verbs/moving_volume.h"
 #include "verbs/scene.h"
 
 namespace vmesh::tool::deform_verb {
@@ -22,9 +25,11 @@ struct DeformArguments {
   CommonArguments common;
   InputArguments input;
   InputArguments surface;
+  std::filesystem::path volume;  ///< mesh that follows, or empty
   std::filesystem::path script;
-  std::filesystem::path output;  ///< folder
-  std::string format = "vtp";    ///< extension of the frames
+  std::filesystem::path output, volume_output;  ///< folders
+  bool allow_defects = false;
+  std::string format = "vtp";  ///< extension of the frames
   WritingArguments writing;
 };
 
@@ -40,6 +45,12 @@ void add_options(CLI::App& verb, DeformArguments& arguments) {
   verb.add_option("--format", arguments.format, "of the frames")
       ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off", "glb"}))
       ->capture_default_str();
+  verb.add_option("--volume", arguments.volume,
+                  "volume mesh in the surface (" + read_volume_files() + "), moved with it; of vmesh volume or not")
+      ->type_name(kFile);
+  verb.add_option("--volume-output", arguments.volume_output, "new or empty folder for its frames")->type_name(kFolder);
+  verb.add_flag("--allow-defects", arguments.allow_defects,
+                "write frames even if cells of the volume mesh turn over; the summary tells how many, and where");
   add_writing(verb, arguments.writing);
   add_html(verb, arguments.common);
 }
@@ -71,40 +82,6 @@ std::vector<SurfacePlace> places_of(const Centerline& centerline, const LoadedSu
   console.log("the surface's file has no places on this centerline; every vertex is bound to the nearest segment");
   return nearest_places(centerline, surface.mesh.vertices);
 }
-
-/// Files of a series. All are removed again unless kept.
-class Series {
- public:
-  Series(fs::path folder, std::string extension) : folder_(std::move(folder)), extension_(std::move(extension)) {
-    std::error_code error;
-    made_folder_ = fs::create_directory(folder_, error);
-    if (!fs::is_directory(folder_, error))
-      throw WriteError(folder_.string() + ": is not a folder and cannot be made one");
-    if (!fs::is_empty(folder_, error) || error)
-      throw UsageError(folder_.string() + ": the folder is not empty; give an empty or a new one for the frames");
-  }
-  ~Series() {
-    if (kept_) return;
-    std::error_code ignored;
-    for (const fs::path& file : files_) fs::remove(file, ignored);
-    if (made_folder_) fs::remove(folder_, ignored);
-  }
-  Series(const Series&) = delete;
-  Series& operator=(const Series&) = delete;
-
-  fs::path next() {
-    files_.push_back(folder_ / (formatted("frame_%06zu", files_.size()) + extension_));
-    return files_.back();
-  }
-  std::size_t size() const { return files_.size(); }
-  void keep() { kept_ = true; }
-
- private:
-  fs::path folder_;
-  std::string extension_;
-  std::vector<fs::path> files_;
-  bool made_folder_ = false, kept_ = false;
-};
 
 /// Plays a scene on a simulation.
 class Stage {
@@ -227,14 +204,27 @@ std::vector<Vec3> node_positions(const CenterlineSimulation& simulation, std::si
   return positions;
 }
 
-/// Calls `show(time)` after every frame that is written.
+/// The surface's frames, and the volume's if there is one.
+struct Frames {
+  FrameWriter& writer;
+  FrameSeries& series;
+  MovingVolume* volume = nullptr;
+  FrameSeries* volume_series = nullptr;
+
+  void write(const DeformedSurface& surface, double time_s) {
+    writer.write(series.next(), surface);
+    if (volume != nullptr) volume->write(volume_series->next(), time_s);
+  }
+};
+
+/// Calls `show(time)` after every frame that is written, and stops early if that is false.
 template <class Show>
-Timing play(const Scene& scene, Stage& stage, const SurfaceBinding& binding, FrameWriter& writer, Series& series,
-            const Progress& progress, Show show) {
+Timing play(const Scene& scene, Stage& stage, const SurfaceBinding& binding, Frames& frames, const Progress& progress,
+            Show show) {
   Timing timing;
   DeformedSurface surface = binding.make_surface();
-  writer.write(series.next(), surface);
-  show(0.0);
+  frames.write(surface, 0);
+  if (!show(0.0)) return timing;
   const std::size_t steps = steps_of(scene);
   for (std::size_t i = 1; i <= steps; ++i) {
     report_progress(progress, "deforming", static_cast<double>(i - 1) / static_cast<double>(steps));
@@ -242,24 +232,87 @@ Timing play(const Scene& scene, Stage& stage, const SurfaceBinding& binding, Fra
     stage.step(static_cast<double>(i) * scene.options.step_s);
     timing.simulate_s += watch.lap();
     binding.apply(stage.simulation().pose(), stage.simulation().moved(), surface);
+    if (frames.volume != nullptr) frames.volume->follow(stage.simulation().pose(), stage.simulation().moved());
     stage.simulation().clear_moved();
     timing.synchronise_s += watch.lap();
     if (i % static_cast<std::size_t>(scene.frame_every) != 0 && i != steps) continue;
-    writer.write(series.next(), surface);
-    show(static_cast<double>(i) * scene.options.step_s);
+    const double time_s = static_cast<double>(i) * scene.options.step_s;
+    frames.write(surface, time_s);
+    if (!show(time_s)) return timing;
   }
   return timing;
 }
 
+/// Whether two folders, which need not exist, are one.
+bool same_folder(const fs::path& a, const fs::path& b) {
+  const auto full = [](const fs::path& path) { return fs::weakly_canonical(path / ""); };
+  return full(a) == full(b);
+}
+
 void check_files(const DeformArguments& arguments) {
+  if (arguments.volume.empty() != arguments.volume_output.empty())
+    throw UsageError("--volume names the mesh and --volume-output the folder for its frames: give both, or none");
+  if (arguments.volume.empty() && arguments.allow_defects)
+    throw UsageError("--allow-defects is about the cells of a --volume");
+  if (!arguments.volume.empty() && same_folder(arguments.output, arguments.volume_output))
+    throw UsageError(arguments.volume_output.string() +
+                     ": is the folder for the surface's frames; give another one for those of the volume");
   std::vector<fs::path> inputs = files_of(arguments.input.path);
   inputs.push_back(arguments.surface.path);
   inputs.push_back(arguments.script);
+  if (!arguments.volume.empty()) inputs.push_back(arguments.volume);
   check_outputs(
       {{arguments.common.json, PlannedOutput::Kind::summary}, {arguments.common.html, PlannedOutput::Kind::page}},
       inputs);
   surface_output_format("frame." + arguments.format);
   check_writing("frame." + arguments.format, arguments.writing);
+}
+
+/// The volume mesh, if there is one.
+std::optional<MovingVolume> load_moving_volume(const DeformArguments& arguments, const Centerline& centerline,
+                                               const RodTree& tree, const LoadedSurface& surface,
+                                               const std::vector<SurfacePlace>& places, Console& console) {
+  if (arguments.volume.empty()) return std::nullopt;
+  return naming(arguments.volume, [&] {
+    LoadedVolume volume = load_volume(arguments.volume, console);
+    const VolumePlaces at = volume_places(centerline, volume.mesh, surface.mesh.vertices, places, kFarthestPlace);
+    console.log(std::to_string(at.shared) + " points of the volume are vertices of the surface and stay on it; the " +
+                "others follow the nearest vessel");
+    const VolumeMetadata metadata = {generator_name(),
+                                     "deform --script " + arguments.script.filename().string(),
+                                     arguments.volume.filename().string(),
+                                     sha256_of_file(arguments.volume),
+                                     arguments.writing.unit,
+                                     arguments.writing.space};
+    return std::optional<MovingVolume>(std::in_place, std::move(volume), centerline, tree, at, metadata);
+  });
+}
+
+std::vector<double> times_of(const std::vector<VolumeFrame>& frames) {
+  std::vector<double> times;
+  for (const VolumeFrame& frame : frames) times.push_back(frame.time_s);
+  return times;
+}
+
+std::string inverted_text(const VolumeFrame& frame) {
+  return counted(frame.inverted_cells, "cell is", "cells are") + " flat or turned over somewhere at " +
+         formatted("%g s, the first at ", frame.time_s) + point_text(frame.first_inverted);
+}
+
+/// Whether frames may be written; tells of the first one in which cells turn over.
+bool is_good(const std::vector<VolumeFrame>& frames, const DeformArguments& arguments, Console& console) {
+  const auto first =
+      std::find_if(frames.begin(), frames.end(), [](const VolumeFrame& frame) { return frame.inverted_cells > 0; });
+  if (first == frames.end()) return true;
+  const std::string name = arguments.volume.string() + ": ", text = inverted_text(*first);
+  if (arguments.allow_defects) {
+    console.warn(name + text);
+    return true;
+  }
+  console.error(name + "cannot follow: " + text +
+                "; no frames are written. Bend less, make a mesh that is coarser there or has thinner layers, or have "
+                "frames written as they are with --allow-defects");
+  return false;
 }
 
 int run(const DeformArguments& arguments, Console& console) {
@@ -269,33 +322,48 @@ int run(const DeformArguments& arguments, Console& console) {
   console.warn(rest.warnings);
   const Scene scene = read_scene(arguments.script, centerline.nodes().size());
   Stage stage(centerline, scene);
-  const SurfaceBinding binding(centerline, stage.simulation().tree(), rest.mesh.vertices, vertex_normals(rest.mesh),
-                               places_of(centerline, rest, console));
+  const RodTree& tree = stage.simulation().tree();
+  const std::vector<SurfacePlace> places = places_of(centerline, rest, console);
+  const SurfaceBinding binding(centerline, tree, rest.mesh.vertices, vertex_normals(rest.mesh), places);
+  std::optional<MovingVolume> volume = load_moving_volume(arguments, centerline, tree, rest, places, console);
   stop_if_interrupted();
-  Series series(arguments.output, "." + arguments.format);
+  FrameSeries series(arguments.output, "." + arguments.format);
+  std::optional<FrameSeries> volume_series;
+  if (volume) volume_series.emplace(arguments.volume_output, ".vtu");
   FrameWriter writer(arguments, rest, binding);
+  Frames written{writer, series, volume ? &*volume : nullptr, volume_series ? &*volume_series : nullptr};
   const std::size_t nodes = centerline.nodes().size();
   std::optional<PageFrames> frames;
   if (!arguments.common.html.empty()) frames.emplace(rest.mesh, centerline, frames_of(scene));
   const auto show = [&](double time_s) {
     if (frames) frames->add(time_s, writer.mesh().vertices, node_positions(stage.simulation(), nodes));
+    return !volume || arguments.allow_defects || volume->frames().back().inverted_cells == 0;
   };
   const Timing timing =
-      naming(arguments.script, [&] { return play(scene, stage, binding, writer, series, console.progress(), show); });
+      naming(arguments.script, [&] { return play(scene, stage, binding, written, console.progress(), show); });
+  if (volume) {
+    if (!is_good(volume->frames(), arguments, console)) return kDefective;
+    volume_series->write_collection(times_of(volume->frames()));
+    volume_series->keep();
+  }
   series.keep();
   console.log("wrote " + std::to_string(series.size()) + " frames to " + arguments.output.string());
-  const Json summary = {{"schema", "vmesh.deform/1"},
-                        {"generator", generator_json()},
-                        {"centerline", to_json(centerline)},
-                        {"vertices", rest.mesh.vertices.size()},
-                        {"frames", series.size()},
-                        {"largest_displacement_mm", writer.largest_displacement_mm()},
-                        {"last_movement_mm", stage.last_movement_mm()},
-                        {"work_J", stage.work_J()},
-                        {"kinetic_energy_J", stage.simulation().kinetic_energy_J()},
-                        {"elastic_energy_J", stage.simulation().elastic_energy_J()},
-                        {"simulate_s", timing.simulate_s},
-                        {"synchronise_s", timing.synchronise_s}};
+  if (volume)
+    console.log("wrote " + std::to_string(volume_series->size()) + " frames of the volume to " +
+                arguments.volume_output.string());
+  Json summary = {{"schema", "vmesh.deform/1"},
+                  {"generator", generator_json()},
+                  {"centerline", to_json(centerline)},
+                  {"vertices", rest.mesh.vertices.size()},
+                  {"frames", series.size()},
+                  {"largest_displacement_mm", writer.largest_displacement_mm()},
+                  {"last_movement_mm", stage.last_movement_mm()},
+                  {"work_J", stage.work_J()},
+                  {"kinetic_energy_J", stage.simulation().kinetic_energy_J()},
+                  {"elastic_energy_J", stage.simulation().elastic_energy_J()},
+                  {"simulate_s", timing.simulate_s},
+                  {"synchronise_s", timing.synchronise_s}};
+  if (volume) summary["volume"] = volume->to_json();
   write_json(arguments.common.json, summary);
   if (frames)
     write_page(arguments.common.html,
@@ -311,6 +379,7 @@ const VerbRegistration<DeformArguments> kRegistration({
     .help = "Move a centerline under forces, and its surface with it",
     .examples = R"(Examples:
   vmesh deform tree.json tree.ply --script scene.json -o frames/
+  vmesh deform tree.swc tree.vtp --script scene.json -o frames/ --volume tree.vtu --volume-output cells/
   vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj --html moved.html)",
     .add_options = add_options,
     .settle = settle_output,

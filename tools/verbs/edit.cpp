@@ -15,6 +15,7 @@
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
 #include "verbs/bound_surface.h"
+#include "verbs/moving_volume.h"
 
 namespace vmesh::tool::edit_verb {
 namespace {
@@ -138,10 +139,7 @@ struct Followed {
 };
 
 Followed follow_volume(const EditArguments& arguments, const Centerline& centerline, Console& console) {
-  LoadedVolume volume = read_volume(arguments.follow.path);
-  console.warn(volume.warnings);
-  if (volume.unit != LengthUnit::mm || volume.space != Space::lps)
-    throw InvalidInput("volumes are followed in millimetres and LPS, as vmesh volume writes them by default");
+  LoadedVolume volume = load_volume(arguments.follow.path, console);
   VolumeMesh& mesh = volume.mesh;
   mesh.points = follow_edit(mesh.points, nearest_places(mesh, centerline), centerline, arguments.edit);
   Followed followed;

@@ -141,6 +141,9 @@ void check_end_names(const std::vector<EndName>& names, const Centerline& center
     if (std::find(nodes.begin(), nodes.end(), given.node) != nodes.end())
       throw InvalidInput("the end at node " + std::to_string(given.node) + " is named twice");
     nodes.push_back(given.node);
+    if (is_wall_name(given.name))
+      throw InvalidInput("the end at node " + std::to_string(given.node) + " cannot be called \"" + given.name +
+                         "\": patches whose names begin with \"wall\" are walls; choose another name");
   }
   std::vector<std::string> all = {"wall"};
   for (const Index node : ends_of(centerline)) {
@@ -164,6 +167,11 @@ void add_end_names(CLI::App& verb, EndNameArguments& arguments) {
                   "the same from a table: CSV with the columns node,name, or x,y,z,name for the end nearest to a "
                   "position (mm, LPS)")
       ->type_name("FILE.csv");
+}
+
+void add_regions(CLI::App& verb, const std::function<void()>& take, const std::string& help) {
+  add_choice(
+      verb, "--regions", {"branches"}, [take](const std::string&) { take(); }, help);
 }
 
 std::vector<EndName> read_end_names(const EndNameArguments& arguments, const Centerline& centerline) {

@@ -1,7 +1,14 @@
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
 #include <sstream>
 
+#include "vmesh/core/text.h"
+#include "vmesh/fit/fit_capped_surface.h"
 #include "vmesh/io/sha256.h"
+#include "vmesh/mesh/find_attribute.h"
+#include "vmesh/mesh/patch_names.h"
 #include "vmesh/surface/surface_attributes.h"
 
 #include "command_line/arguments_growth.h"
@@ -52,6 +59,60 @@ void add_options(CLI::App& verb, FitArguments& arguments) {
   add_html(verb, arguments.common);
 }
 
+/// The patches that a surface's file tells of, from 1, and which of them are caps: all that are no walls.
+std::optional<CappedPatches> patches_of(const MeshAttributes& attributes) {
+  const MeshAttribute* numbers = find_attribute(attributes.face, "ModelFaceID");
+  if (numbers == nullptr) return std::nullopt;
+  CappedPatches patches;
+  std::set<Index> caps;
+  for (std::size_t f = 0; f < numbers->values.size(); ++f) {
+    constexpr double kMost = 1e9;
+    const double number = numbers->values[f];
+    if (!(number >= 1 && number <= kMost && number == std::floor(number)))
+      throw InvalidInput(
+          formatted("face %zu: ModelFaceID %g; 1 is the wall, and caps are numbered from 2 on", f, number));
+    const auto patch = static_cast<Index>(number);
+    patches.patch.push_back(patch);
+    if (!is_wall_patch(patch, attributes.patch_names)) caps.insert(patch);
+  }
+  patches.caps.assign(caps.begin(), caps.end());
+  return patches;
+}
+
+/// The fitted surface, and the patches of its faces if it had some.
+struct FittedSurface {
+  FitResult fit;
+  std::vector<Index> patch;
+};
+
+FittedSurface fit_with_patches(const VesselSurface& surface, const std::optional<CappedPatches>& patches,
+                               const Centerline& centerline, const TriMesh& reference, const FitOptions& options,
+                               const Progress& progress) {
+  if (patches && !patches->caps.empty()) {
+    CappedFit capped = fit_capped_surface(surface, *patches, centerline, reference, options, progress);
+    return {std::move(capped.fit), std::move(capped.patch)};
+  }
+  FittedSurface fitted{fit_surface(surface, centerline, reference, options, progress), {}};
+  if (patches) fitted.patch = patches_by_branch(surface, patches->patch, fitted.fit.surface, centerline);
+  return fitted;
+}
+
+/// Adds the numbers of patches, as the surface's file had them, and their names.
+void add_patches(const std::vector<Index>& patch, const MeshAttributes& before, MeshAttributes& attributes) {
+  if (patch.empty()) return;
+  attributes.face.push_back({"ModelFaceID", {patch.begin(), patch.end()}, true});
+  attributes.patch_names = before.patch_names;
+  const MeshAttribute* numbers = find_attribute(before.face, "ModelFaceID");
+  const MeshAttribute* caps = find_attribute(before.face, "CapID");
+  if (caps == nullptr) return;
+  std::map<Index, double> cap_of_patch;
+  for (std::size_t f = 0; f < caps->values.size(); ++f)
+    cap_of_patch[static_cast<Index>(numbers->values[f])] = caps->values[f];
+  MeshAttribute cap{"CapID", {}, true};
+  for (const Index p : patch) cap.values.push_back(cap_of_patch.at(p));
+  attributes.face.push_back(std::move(cap));
+}
+
 int run(const FitArguments& arguments, Console& console) {
   using Kind = PlannedOutput::Kind;
   const std::filesystem::path& path = arguments.input.path;
@@ -70,8 +131,10 @@ int run(const FitArguments& arguments, Console& console) {
   const TriMesh reference = load_fit_reference(fitting, console);
   stop_if_interrupted();
   const FitOptions& wanted = fitting.options;
-  const FitResult result =
-      naming(path, [&] { return fit_surface(surface, centerline, reference, wanted, console.progress()); });
+  const FittedSurface with_patches = naming(path, [&] {
+    return fit_with_patches(surface, patches_of(loaded.attributes), centerline, reference, wanted, console.progress());
+  });
+  const FitResult& result = with_patches.fit;
   std::vector<std::string> warnings;
   log_fit(result.report, warnings, console);
   const bool near = keeps_error(result.report, wanted, warnings, console);
@@ -85,8 +148,9 @@ int run(const FitArguments& arguments, Console& console) {
                   " pairs of its faces cross; nothing is written");
     return kDefective;
   }
-  const MeshAttributes attributes =
+  MeshAttributes attributes =
       surface_attributes(fitted.mesh, fitted.binding, result.radius, fitted.openings, centerline);
+  add_patches(with_patches.patch, loaded.attributes, attributes);
   write_surface(arguments.output, fitted.mesh, attributes,
                 {generator_name(), options, path.filename().string(), sha256}, arguments.writing);
   console.log(std::to_string(result.surface.mesh.vertices.size()) + " vertices, skewness " +

@@ -59,6 +59,10 @@ void add_options(CLI::App& verb, GenerateArguments& arguments) {
       ->excludes("--ring-spacing");
   add_ends(verb, arguments.production);
   add_end_names(verb, arguments.end_names);
+  add_regions(
+      verb, [&arguments] { arguments.wall_by_branch = true; },
+      "divide the wall into a patch for each branch, wall_0, wall_1 ... by their numbers (branch); caps are numbered "
+      "after them");
   verb.add_flag("--check", arguments.check,
                 "exit with 1 unless the surface is closed, manifold, free of "
                 "self-intersections, of the expected topology, and contains every centerline node");
@@ -77,7 +81,7 @@ void add_options(CLI::App& verb, GenerateArguments& arguments) {
         {"--around", "--preset", "--max-error", "--budget", "--max-vertices", "--simplification", "--elongation",
          "--ring-spacing", "--least-vertices", "--deformable"});
   group(verb, "Shape", {"--blend", "--placement", "--overlap", "--gap"});
-  group(verb, "Ends", {"--ends", "--open-ends", "--flow-extensions", "--name", "--names"});
+  group(verb, "Ends", {"--ends", "--open-ends", "--flow-extensions", "--name", "--names", "--regions"});
   group(verb, "How it is made", {"--growth", "--beta", "--max-center-distance", "--sweeps", "--threads"});
   group(verb, "Checks", {"--check", "--allow-defects"});
 }

@@ -25,6 +25,7 @@ struct GenerateArguments {
   WritingArguments writing;
   ProductionOptions production;
   EndNameArguments end_names;    ///< of flat ends
+  bool wall_by_branch = false;   ///< divide the wall's patch
   std::optional<Budget> budget;  ///< chooses growth.around, and max_error for a budget of error
   bool bones = false;            ///< add bones along the centerline to a .glb
   bool check = false;            ///< exit code 1 unless the surface is flawless

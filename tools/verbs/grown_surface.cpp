@@ -1,10 +1,12 @@
 #include "verbs/grown_surface.h"
 
+#include <algorithm>
 #include <charconv>
 #include <sstream>
 #include <utility>
 
 #include "vmesh/core/text.h"
+#include "vmesh/mesh/patch_names.h"
 #include "vmesh/surface/flat_reference.h"
 #include "vmesh/surface/surface_attributes.h"
 #include "vmesh/volume/vessel_field.h"
@@ -128,6 +130,12 @@ void judge(GenerateReport& report, const Centerline& grown, Console& console) {
   for (const std::string& problem : report.problems) console.warn("surface: " + problem);
 }
 
+/// The number of patches that are walls.
+Index wall_patches_of(const MeshAttributes& attributes) {
+  const std::vector<std::string>& names = attributes.patch_names;
+  return static_cast<Index>(std::count_if(names.begin(), names.end(), is_wall_name));
+}
+
 /// Adds the nearest nodes (as named in the file) and branches.
 void name_nodes(std::vector<Defect>& defects, const LoadedCenterline& loaded) {
   for (Defect& defect : defects) {
@@ -190,6 +198,7 @@ MeshAttributes GrownSurface::attributes() const {
   MeshAttributes attributes = surface_attributes(result().mesh, result().binding, result().radius, result().openings,
                                                  report.cleaned->centerline);
   if (!report.ends.ends.empty()) add_cap_labels(report.ends, attributes, report.end_names);
+  if (arguments.wall_by_branch) divide_wall(attributes);
   return attributes;
 }
 
@@ -251,6 +260,7 @@ std::unique_ptr<GrownSurface> grow_surface(const GenerateArguments& given, Conso
   report.result = &result;
   report.ends = ends;
   report.wall_vertices = wall_vertices;
+  if (arguments.wall_by_branch) report.wall_patches = wall_patches_of(grown->attributes());
   refer_to_original(prepared, report.contacts);
   if (report.separation) refer_to_original(prepared, *report.separation);
   for (const std::string& problem : problems_of(report.ends)) warn(report, problem, console);

@@ -1,8 +1,10 @@
 #include "vmesh/core/text.h"
+#include "vmesh/deform/volume_places.h"
 #include "vmesh/io/surface_io.h"
 #include "vmesh/io/volume_io.h"
 #include "vmesh/mesh/find_attribute.h"
 #include "vmesh/mesh/volume_faces.h"
+#include "vmesh/solid/branch_regions.h"
 #include "vmesh/solid/make_volume.h"
 
 #include "command_line/arguments_growth.h"
@@ -28,6 +30,8 @@ struct VolumeArguments {
   GenerateArguments growth;  ///< how it is made where the input is none; its input and output do not count
   VolumeOptions volume;
   bool has_shell_thickness = false;
+  bool by_branch = false;     ///< divide regions
+  InputArguments centerline;  ///< for that, where the input is a surface
 };
 
 /// "0.3mm" is in mm, "0.2" in local radii. Throws InvalidInput.
@@ -94,6 +98,13 @@ void add_options(CLI::App& verb, VolumeArguments& arguments) {
                 "split wedges and pyramids into tetrahedra, for files and solvers that have none");
   add_layers(verb, arguments);
   add_shell(verb, arguments);
+  add_regions(
+      verb, [&arguments] { arguments.by_branch = true; },
+      "divide regions by the branch of the vessel nearest to a cell: lumen_0, lumen_1 ...");
+  verb.add_option("--centerline", arguments.centerline.path,
+                  "with --regions, if the input is a surface: around which it was grown")
+      ->type_name(kFile);
+  add_reading(verb, arguments.centerline, "centerline-");
   GenerateArguments& surface = arguments.growth;
   surface.production.ends = EndShape::flat;
   add_growth(verb, surface.production);
@@ -104,6 +115,7 @@ void add_options(CLI::App& verb, VolumeArguments& arguments) {
   add_fitting(verb, surface.fitting);
   add_extraction(verb, surface.extraction);
   group(verb, "Layers", {"--layers", "--layer-thickness", "--first-layer", "--layer-growth", "--core-size"});
+  group(verb, "Regions", {"--regions", "--centerline", "--centerline-unit", "--centerline-space"});
   group(verb, "The vessel's wall", {"--wall-thickness", "--wall-layers", "--merge-walls", "--wall-only"});
   const char* grown = "The surface, where the input is none";
   group(verb, grown,
@@ -124,6 +136,8 @@ void settle(VolumeArguments& arguments) {
     throw UsageError("--wall-only needs --wall-thickness: a share of the local radius such as 0.2, or 0.8mm");
   if (arguments.volume.shell.merged && shell.count == 0)
     throw UsageError("--merge-walls needs --wall-thickness: a share of the local radius such as 0.2, or 0.8mm");
+  if (!arguments.centerline.path.empty() && !arguments.by_branch)
+    throw UsageError("--centerline is for --regions branches");
   const ProductionOptions& production = arguments.growth.production;
   if (production.ends == EndShape::open || !production.growth.open_ends.nodes.empty())
     throw UsageError("the surface of a volume must be closed: --ends flat, or round");
@@ -157,6 +171,7 @@ struct VolumeSource {
   VesselWall wall;
   std::string how;  ///< empty for a surface as it was given
   std::vector<StageTime> stages;
+  std::optional<Centerline> centerline;  ///< if regions are divided
 };
 
 /// The surface in a file, if it is one with radii.
@@ -167,6 +182,10 @@ std::optional<VolumeSource> read_source(const VolumeArguments& arguments, Consol
   if (!find_attribute(surface.attributes.vertex, "radius")) return std::nullopt;
   console.warn(surface.warnings);
   VolumeSource source;
+  if (arguments.by_branch && arguments.centerline.path.empty())
+    throw UsageError(
+        "--regions branches of a surface needs the centerline around which it was grown: --centerline FILE");
+  if (arguments.by_branch) source.centerline = load_clean_centerline(arguments.centerline, console).cleaned.centerline;
   source.wall = naming(arguments.input.path, [&] { return vessel_wall(std::move(surface.mesh), surface.attributes); });
   clock.lap("read", source.stages);
   return source;
@@ -174,6 +193,8 @@ std::optional<VolumeSource> read_source(const VolumeArguments& arguments, Consol
 
 /// Of a surface that is grown; empty if it is not sound, after saying why.
 std::optional<VolumeSource> grow_source(const VolumeArguments& arguments, Console& console) {
+  if (!arguments.centerline.path.empty())
+    throw UsageError("--centerline is for surfaces of vmesh generate; here, the surface is made around one");
   GenerateArguments surface = arguments.growth;
   surface.input = arguments.input;
   surface.segmentation = is_segmentation(surface.input);
@@ -185,7 +206,13 @@ std::optional<VolumeSource> grow_source(const VolumeArguments& arguments, Consol
     return std::nullopt;
   }
   return VolumeSource{vessel_wall(grown->result().mesh, grown->attributes()), describe(grown->arguments),
-                      grown->report.stages};
+                      grown->report.stages, grown->report.cleaned->centerline};
+}
+
+void divide_by_branch(VolumeMesh& mesh, const Centerline& centerline, bool is_of_a_file) {
+  constexpr double kFarthest = 4;  // local radii: then, it is another centerline's mesh
+  if (is_of_a_file) volume_places(centerline, mesh, {}, {}, kFarthest);  // throws
+  divide_regions(mesh, branches_of_cells(mesh, centerline));
 }
 
 /// Whether the outside of the volume is to be written, as a surface.
@@ -211,7 +238,7 @@ int run(const VolumeArguments& arguments, Console& console) {
   const std::filesystem::path& path = arguments.input.path;
   check_outputs({{arguments.output, writes_outside(arguments) ? Kind::surface : Kind::volume},
                  {arguments.common.json, Kind::summary}},
-                files_of({&arguments.input, &arguments.growth.fitting.reference}));
+                files_of({&arguments.input, &arguments.centerline, &arguments.growth.fitting.reference}));
   if ((!arguments.volume.shell_only || arguments.volume.shell.merged) && !can_mesh_lumen())
     throw Unsupported(
         "this vmesh was built without TetGen, which fills lumens with tetrahedra; build it after "
@@ -222,8 +249,7 @@ int run(const VolumeArguments& arguments, Console& console) {
   if (!source) return kDefective;
   stop_if_interrupted();
 
-  const VolumeResult result =
-      naming(path, [&] { return make_volume(source->wall, arguments.volume, console.progress()); });
+  VolumeResult result = naming(path, [&] { return make_volume(source->wall, arguments.volume, console.progress()); });
   if (!result.is_sound()) {
     std::vector<std::string> defects;
     for (const VolumeDefect& defect : result.defects)
@@ -236,9 +262,12 @@ int run(const VolumeArguments& arguments, Console& console) {
     return kDefective;
   }
 
+  if (arguments.by_branch)
+    naming(path, [&] { divide_by_branch(result.mesh, *source->centerline, source->how.empty()); });
   VolumeReport report = {
       path,    sha256_of(arguments.input),  describe_volume(arguments.volume), &arguments.volume, &source->wall,
       &result, measure_volume(result.mesh), std::move(source->stages)};
+  if (arguments.by_branch) report.options += " --regions branches";
   if (!source->how.empty()) report.options += " of " + source->how;
   report.stages.insert(report.stages.end(), result.stages.begin(), result.stages.end());
   StageClock clock;
@@ -267,6 +296,7 @@ const VerbRegistration<VolumeArguments> kRegistration({
   vmesh generate aorta.vtp -o aorta-flow.vtp --ends flat --flow-extensions auto
   vmesh volume aorta-flow.vtp -o aorta.vtu --layers 6 --first-layer 0.05mm --layer-growth 1.3 --json aorta.json
   vmesh volume tree.swc -o coupled.vtu --wall-thickness 0.8mm --wall-layers 3
+  vmesh volume aorta-flow.vtp -o branches.vtu --regions branches --centerline aorta.vtp
   vmesh volume aorta-flow.vtp -o wall.vtu --wall-thickness 0.15 --wall-only
   vmesh volume aorta.vtp -o print.3mf --wall-thickness 1.2mm --wall-only --merge-walls
 Where layers do not fit, they are thinner, or end; the messages and the summary name the places.)",

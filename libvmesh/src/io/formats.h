@@ -34,7 +34,8 @@ LoadedSurface read_scene(const std::filesystem::path& path);
 /// Ours by ourselves, others as a scene.
 LoadedSurface read_glb(const std::filesystem::path& path);
 
-SurfaceFormat::Write write_off, write_obj, write_stl, write_ply, write_glb, write_surface_vtp, write_smesh, write_3mf;
+SurfaceFormat::Write write_off, write_obj, write_stl, write_ply, write_glb, write_surface_vtp, write_smesh, write_3mf,
+    write_model, write_model_surface, write_face_names;
 
 VolumeFormat::Write write_volume_vtu, write_gmsh_2, write_gmsh_4, write_tetgen, write_abaqus, write_openfoam,
     write_mesh_complete;

@@ -11,6 +11,7 @@
 
 #include "formats.h"
 #include "glb_colors.h"
+#include "named_patches.h"
 #include "text.h"
 #include "triangulation.h"
 
@@ -43,7 +44,7 @@ class GlbReader {
     if (attributes.contains("COLOR_0")) add_colors(index_in(attributes, "COLOR_0"), surface.attributes.vertex);
     for (const auto& [accessor, name] : custom_attributes(attributes))
       surface.attributes.vertex.push_back(attribute(name, accessor));
-    read_faces(index_in(primitive, "indices"), surface);
+    read_faces(member(element("meshes", 0), "primitives"), index_in(attributes, "POSITION"), surface);
     return surface;
   }
 
@@ -142,18 +143,36 @@ class GlbReader {
     }
   }
 
-  void read_faces(std::size_t accessor, LoadedSurface& surface) {
+  /// Of all primitives, which are patches under the names of their materials if there are several.
+  void read_faces(const nlohmann::json& primitives, std::size_t positions, LoadedSurface& surface) {
     for (const MeshAttribute& attribute : surface.attributes.vertex) {
       if (attribute.values.size() != surface.mesh.vertices.size())
         fail("the attribute " + cite(attribute.name) + " has not one number for every vertex");
     }
-    const std::vector<double> corners = numbers<std::uint32_t>(accessor, 1, "SCALAR");
     FaceCollector faces(surface, source_);
-    for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
-      faces.add({static_cast<std::int64_t>(corners[i]), static_cast<std::int64_t>(corners[i + 1]),
-                 static_cast<std::int64_t>(corners[i + 2])},
-                "face " + std::to_string(i / 3));
+    FaceGroups groups;
+    std::size_t number = 0;
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      const nlohmann::json& primitive = element(primitives, p);
+      if (index_in(member(primitive, "attributes"), "POSITION") != positions)
+        fail("its primitives have not the same vertices; get the file anew");
+      if (primitives.size() > 1) groups.begin(name_of_material(primitive));
+      const std::vector<double> corners = numbers<std::uint32_t>(index_in(primitive, "indices"), 1, "SCALAR");
+      for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+        faces.add({static_cast<std::int64_t>(corners[i]), static_cast<std::int64_t>(corners[i + 1]),
+                   static_cast<std::int64_t>(corners[i + 2])},
+                  "face " + std::to_string(number++));
+        groups.add_face();
+      }
+    }
     faces.finish();
+    groups.finish(surface, faces.face_of_triangle());
+  }
+
+  std::string name_of_material(const nlohmann::json& primitive) const {
+    const nlohmann::json& name = member(element("materials", index_in(primitive, "material")), "name");
+    if (!name.is_string()) fail("the name of a material is none; get the file anew");
+    return one_line(name.get<std::string>());
   }
 
   const nlohmann::json& document_;

@@ -9,6 +9,7 @@
 
 #include "vmesh/mesh/find_attribute.h"
 
+#include "boundaries.h"
 #include "bytes.h"
 #include "formats.h"
 #include "glb_colors.h"
@@ -90,11 +91,7 @@ class GlbWriter {
       if (std::ranges::find(channels, &a) == channels.end()) attributes[unique_name(a.name, attributes)] = scalars(a);
     }
     if (skin_) add_weights(attributes);
-    const OrderedJson primitive = {{"attributes", std::move(attributes)}, {"indices", indices()}, {"material", 0}};
-    json_["meshes"].push_back({{"name", "surface"}, {"primitives", OrderedJson::array({primitive})}});
-    json_["materials"].push_back({{"name", "vessel"},
-                                  {"doubleSided", true},
-                                  {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.6}}}});
+    add_mesh(attributes);
     add_nodes();
     json_["buffers"].push_back({{"byteLength", 0}});
     if (packs_) pack();
@@ -182,12 +179,30 @@ class GlbWriter {
     return number;
   }
 
-  std::size_t indices() {
+  std::size_t indices(const std::vector<Index>& faces) {
     const std::size_t at = view(kIndices);
-    for (const Triangle& face : mesh_.faces) {
-      for (const Index v : face) store(bytes_, v);
+    for (const Index f : faces) {
+      for (const Index v : mesh_.faces[f]) store(bytes_, v);
     }
-    return accessor(at, kUnsignedInt, "SCALAR", 3 * mesh_.faces.size());
+    return accessor(at, kUnsignedInt, "SCALAR", 3 * faces.size());
+  }
+
+  /// A primitive and a material for every patch, whose name both have; one of each if there is one patch. All
+  /// primitives have all vertices.
+  void add_mesh(const OrderedJson& attributes) {
+    std::vector<Boundary> boundaries = boundaries_of(mesh_, attributes_);
+    if (boundaries.size() == 1) boundaries[0].name = "vessel";
+    OrderedJson primitives = OrderedJson::array(), materials = OrderedJson::array();
+    for (const Boundary& boundary : boundaries) {
+      primitives.push_back(
+          {{"attributes", attributes}, {"indices", indices(boundary.faces)}, {"material", materials.size()}});
+      if (boundaries.size() > 1) primitives.back()["extras"] = {{"name", boundary.name}};
+      materials.push_back({{"name", boundary.name},
+                           {"doubleSided", true},
+                           {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.6}}}});
+    }
+    json_["meshes"].push_back({{"name", "surface"}, {"primitives", std::move(primitives)}});
+    json_["materials"] = std::move(materials);
   }
 
   void add_weights(OrderedJson& attributes) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "vmesh/mesh/patch_names.h"
 #include "vmesh/mesh/volume_faces.h"
 
 #include "formats.h"
@@ -84,7 +85,7 @@ void write_mesh_complete(const VolumeFormat::OpenFile& open, const VolumeMesh& m
     write_surface_vtp(open(name), selection.mesh, selection.attributes, of_faces, {});
   };
   write_faces("mesh-complete.exterior.vtp", attributes.point, [](Index) { return true; });
-  write_faces("walls_combined.vtp", {}, [&](Index patch) { return is_wall(mesh.patch_names[patch]); });
+  write_faces("walls_combined.vtp", {}, [&](Index patch) { return is_wall_name(mesh.patch_names[patch]); });
   for (Index p = 0; p < mesh.patch_names.size(); ++p)
     write_faces(std::string(kSurfaces) + mesh.patch_names[p] + ".vtp", {}, [&](Index patch) { return patch == p; });
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "vmesh/mesh/patch_names.h"
 #include "vmesh/mesh/volume_faces.h"
 
 #include "comments.h"
@@ -64,7 +65,8 @@ void write_patches(std::ostream& out, const VolumeMesh& mesh, std::size_t first_
     const auto count = std::count_if(mesh.boundary.begin(), mesh.boundary.end(),
                                      [&](const BoundaryFace& face) { return face.patch == p; });
     file.rows().line("    " + mesh.patch_names[p] + "\n    {");
-    file.rows().line(std::string("        type        ") + (is_wall(mesh.patch_names[p]) ? "wall" : "patch") + ";");
+    file.rows().line(std::string("        type        ") + (is_wall_name(mesh.patch_names[p]) ? "wall" : "patch") +
+                     ";");
     file.rows().line("        nFaces      " + std::to_string(count) + ";");
     file.rows().line("        startFace   " + std::to_string(first_face) + ";\n    }");
     first_face += static_cast<std::size_t>(count);

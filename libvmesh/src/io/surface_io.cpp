@@ -1,5 +1,7 @@
 #include "vmesh/io/surface_io.h"
 
+#include <list>
+
 #include "vmesh/core/atomic_file.h"
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
@@ -102,6 +104,17 @@ const SurfaceFormat& surface_output_format(const std::filesystem::path& path) {
                     listed(extensions_of(surface_formats(), [](const auto& f) { return f.is_written(); })));
 }
 
+std::vector<std::filesystem::path> files_of_surface(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files = {path};
+  if (const SurfaceFormat* format = find_surface_format(path)) {
+    for (const SurfaceFormat::FileBeside& beside : format->beside) {
+      files.push_back(path);
+      files.back().replace_extension(beside.extension);
+    }
+  }
+  return files;
+}
+
 void write_surface(const std::filesystem::path& path, const TriMesh& given, const MeshAttributes& given_attributes,
                    const SurfaceMetadata& metadata, const SurfaceWriteOptions& options) {
   const SurfaceFormat& format = surface_output_format(path);
@@ -118,9 +131,14 @@ void write_surface(const std::filesystem::path& path, const TriMesh& given, cons
   }
   const TriMesh& mesh = converts ? converted : given;
   const MeshAttributes& attributes = converts ? converted_attributes : given_attributes;
-  AtomicFile file(path);
-  format.write(file.stream(), mesh, attributes, metadata, options);
-  file.commit();
+  std::list<AtomicFile> files;
+  const std::vector<std::filesystem::path> paths = files_of_surface(path);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    SurfaceFormat::Write* const write = i == 0 ? format.write : format.beside[i - 1].write;
+    write(files.emplace_back(paths[i]).stream(), mesh, attributes, metadata, options);
+  }
+  // That which the others belong to comes last.
+  for (auto file = files.rbegin(); file != files.rend(); ++file) file->commit();
 }
 
 LoadedSurface parse_surface(std::string_view content, const SurfaceFormat& format, const std::string& source) {
@@ -132,7 +150,11 @@ LoadedSurface parse_surface(std::string_view content, const SurfaceFormat& forma
 
 LoadedSurface read_surface(const std::filesystem::path& path) {
   const SurfaceFormat& format = surface_format(path);
-  if (format.read) return format.read(path);
+  if (format.read) {
+    LoadedSurface surface = format.read(path);
+    io::settle_patch_names(surface, path.string());
+    return surface;
+  }
   if (!format.parse) refuse_without(format.needs, path);
   return parse_surface(read_file(path), format, path.string());
 }

@@ -1,16 +1,12 @@
 // What several formats of volume meshes have in common. Internal to the module.
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 #include "vmesh/io/volume_io.h"
 #include "vmesh/mesh/volume_faces.h"
 
 namespace vmesh::io {
-
-/// Whether a patch of this name is a wall, rather than an opening of the domain.
-inline bool is_wall(std::string_view patch) { return lower(patch).starts_with("wall"); }
 
 /// A VTU file of the cells, and of the faces of the boundary if their sides are given (sides_of_boundary()).
 void write_grid(std::ostream& out, const VolumeMesh& mesh, const std::vector<CellSide>& sides,

@@ -31,6 +31,13 @@ bool is_patch_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), is_name_letter);
 }
 
+bool is_wall_name(std::string_view name) { return lower(name).starts_with("wall"); }
+
+bool is_wall_patch(std::size_t number, const std::vector<std::string>& names) {
+  if (std::none_of(names.begin(), names.end(), is_wall_name)) return number == 1;
+  return number >= 1 && number <= names.size() && is_wall_name(names[number - 1]);
+}
+
 void check_patch_names(const std::vector<std::string>& names, const char* word, const char* words) {
   std::set<std::string> seen;
   for (const std::string& name : names) {

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "vmesh/core/error.h"
 #include "vmesh/core/text.h"
 #include "vmesh/mesh/find_attribute.h"
+#include "vmesh/mesh/patch_names.h"
 
 namespace vmesh {
 namespace {
+
+constexpr const char* kNoWall = "the surface has no faces of the wall, only caps";
 
 std::vector<double> radii_of(const TriMesh& mesh, const MeshAttributes& attributes) {
   const MeshAttribute* radius = find_attribute(attributes.vertex, "radius");
@@ -30,29 +34,44 @@ Index face_number(double value, std::size_t f) {
   return static_cast<Index>(value);
 }
 
+std::vector<Index> face_numbers(std::size_t faces, const MeshAttributes& attributes) {
+  const MeshAttribute* label = find_attribute(attributes.face, "ModelFaceID");
+  if (label == nullptr) return std::vector<Index>(faces, 1);
+  std::vector<Index> numbers;
+  for (std::size_t f = 0; f < faces; ++f) numbers.push_back(face_number(label->values[f], f));
+  return numbers;
+}
+
+/// Those that have faces, in ascending order but for that.
+std::vector<Index> patches_walls_first(std::vector<Index> numbers, const std::vector<std::string>& names) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  const auto is_wall = [&](Index number) { return is_wall_patch(number, names); };
+  if (std::none_of(numbers.begin(), numbers.end(), is_wall)) throw InvalidInput(kNoWall);
+  std::stable_partition(numbers.begin(), numbers.end(), is_wall);
+  return numbers;
+}
+
+std::string name_of(Index patch, const std::vector<std::string>& names) {
+  if (patch <= names.size()) return names[patch - 1];
+  return patch == 1 ? "wall" : "cap_" + std::to_string(patch - 1);
+}
+
 }  // namespace
 
 VesselWall vessel_wall(TriMesh mesh, const MeshAttributes& attributes) {
   VesselWall wall;
   wall.radius = radii_of(mesh, attributes);
-  wall.patch.assign(mesh.faces.size(), 0);
-  const std::vector<std::string>& names = attributes.patch_names;
-  wall.patch_names = {names.empty() ? "wall" : names[0]};
-  if (const MeshAttribute* label = find_attribute(attributes.face, "ModelFaceID")) {
-    std::vector<Index> number;
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f) number.push_back(face_number(label->values[f], f));
-    std::vector<Index> caps = number;
-    std::sort(caps.begin(), caps.end());
-    caps.erase(std::unique(caps.begin(), caps.end()), caps.end());
-    std::erase(caps, 1);
-    for (const Index cap : caps) {
-      wall.patch_names.push_back(cap <= names.size() ? names[cap - 1] : "cap_" + std::to_string(cap - 1));
-    }
-    for (std::size_t f = 0; f < number.size(); ++f) {
-      if (number[f] == 1) continue;
-      wall.patch[f] = static_cast<Index>(std::lower_bound(caps.begin(), caps.end(), number[f]) - caps.begin()) + 1;
-    }
+  const std::vector<Index> number = face_numbers(mesh.faces.size(), attributes);
+  const std::vector<Index> patches = patches_walls_first(number, attributes.patch_names);
+  wall.wall_patches = static_cast<Index>(std::count_if(
+      patches.begin(), patches.end(), [&](Index patch) { return is_wall_patch(patch, attributes.patch_names); }));
+  std::map<Index, Index> rank;
+  for (const Index patch : patches) {
+    rank[patch] = static_cast<Index>(wall.patch_names.size());
+    wall.patch_names.push_back(name_of(patch, attributes.patch_names));
   }
+  for (const Index patch : number) wall.patch.push_back(rank.at(patch));
   wall.mesh = std::move(mesh);
   return wall;
 }

@@ -152,12 +152,23 @@ class Assembly {
       mesh_.cell_region.insert(mesh_.cell_region.end(), region->begin(), region->end());
   }
 
+  // Of the frame's faces, which are those of the wall in their order.
+  std::vector<Index> wall_patches() const {
+    const VesselWall& wall = *parts_.wall;
+    std::vector<Index> patches;
+    for (std::size_t f = 0; f < wall.patch.size(); ++f) {
+      if (wall.is_wall(f)) patches.push_back(wall.patch[f]);
+    }
+    return patches;
+  }
+
   void add_outside() {
+    const std::vector<Index> patch = wall_patches();
     const BridgeFaces bridges = faces_of_bridges(frame_, parts_.bridges);
     for (std::size_t f = 0; f < frame_.faces.size(); ++f) {
       const auto& [a, b, c] = frame_.faces[f];
       if (!bridges.is_bridged[f])
-        mesh_.boundary.push_back({{outermost_point(a), outermost_point(b), outermost_point(c), kNone}, 0});
+        mesh_.boundary.push_back({{outermost_point(a), outermost_point(b), outermost_point(c), kNone}, patch[f]});
     }
     for (const auto& [a, b, c] : bridges.free)
       mesh_.boundary.push_back({{bridge_point(a), bridge_point(b), bridge_point(c), kNone}, 0});

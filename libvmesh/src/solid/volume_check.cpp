@@ -6,6 +6,7 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
+#include "vmesh/core/error.h"
 #include "vmesh/core/text.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/volume_faces.h"
@@ -81,6 +82,15 @@ void find_bad_corners(const VolumeMesh& mesh, Finding& finding) {
   };
   for_each_cell(mesh, examine);
   for (const BoundaryFace& face : mesh.boundary) examine(face);
+}
+
+/// Of a mesh with corners that exist.
+Finding inverted_cells_of(const VolumeMesh& mesh) {
+  Finding inverted(VolumeDefectKind::inverted_cell, "cells that are flat or turned over somewhere");
+  for_each_cell(mesh, [&](const auto& cell) {
+    if (!is_positive(mesh, cell)) inverted.add(mesh.points[cell[0]]);
+  });
+  return inverted;
 }
 
 void find_wrong_labels(const VolumeMesh& mesh, Finding& finding) {
@@ -219,10 +229,7 @@ std::vector<VolumeDefect> find_volume_defects(const VolumeMesh& mesh) {
   corners.add_to(defects);
   if (!defects.empty()) return defects;
 
-  Finding inverted(VolumeDefectKind::inverted_cell, "cells that are flat or turned over somewhere");
-  for_each_cell(mesh, [&](const auto& cell) {
-    if (!is_positive(mesh, cell)) inverted.add(mesh.points[cell[0]]);
-  });
+  Finding inverted = inverted_cells_of(mesh);
   Finding unmatched(VolumeDefectKind::not_conforming, "faces without exactly one cell on either side");
   Finding labels(VolumeDefectKind::wrong_label, "cells or faces without a region or patch");
   Finding crossing(VolumeDefectKind::crossing_faces, "pairs of boundary faces that cross");
@@ -231,6 +238,15 @@ std::vector<VolumeDefect> find_volume_defects(const VolumeMesh& mesh) {
   find_crossings(mesh, crossing, unmatched);
   for (Finding* finding : {&inverted, &unmatched, &labels, &crossing}) finding->add_to(defects);
   return defects;
+}
+
+VolumeDefect find_inverted_cells(const VolumeMesh& mesh) {
+  for_each_cell(mesh, [&](const auto& cell) {
+    if (!has_good_corners(mesh, cell)) throw InvalidInput("a cell has corners that do not exist");
+  });
+  std::vector<VolumeDefect> defects;
+  inverted_cells_of(mesh).add_to(defects);
+  return defects.empty() ? VolumeDefect{} : defects.front();
 }
 
 std::vector<VolumeDefect> compare_with_wall(const VolumeMesh& mesh, std::string_view region, const VesselWall& wall) {
@@ -242,7 +258,7 @@ std::vector<VolumeDefect> compare_with_wall(const VolumeMesh& mesh, std::string_
                        what + formatted(" is %.12g, that of the surface %.12g", found, expected)});
   };
   double slack = 0;  // in the volume
-  for (Index patch = 1; patch < wall.patch_names.size(); ++patch) {
+  for (Index patch = wall.wall_patches; patch < wall.patch_names.size(); ++patch) {
     const PatchMeasures cap = measure_patch(wall, patch);
     slack += cap.area * cap.unevenness();
     const auto named = std::find(mesh.patch_names.begin(), mesh.patch_names.end(), wall.patch_names[patch]);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -66,7 +67,29 @@ void measure_tetrahedra(const VolumeMesh& mesh, VolumeMeasures& measures) {
   if (!mesh.tetrahedra.empty()) measures.mean_radius_ratio = sum / static_cast<double>(mesh.tetrahedra.size());
 }
 
+double least_jacobian(const VolumeMesh& mesh, const Tetrahedron& cell) { return 6 * volume_of(mesh, cell); }
+
+double least_jacobian(const VolumeMesh& mesh, const Wedge& cell) {
+  const auto coefficients = jacobian_coefficients(corners_of(mesh, cell));
+  return *std::min_element(coefficients.begin(), coefficients.end());
+}
+
+double least_jacobian(const VolumeMesh& mesh, const Pyramid& cell) {
+  const auto& [a, b, c, d, e] = cell;
+  const std::array<Tetrahedron, 4> corners = {{{a, b, d, e}, {b, c, a, e}, {c, d, b, e}, {d, a, c, e}}};
+  double least = std::numeric_limits<double>::infinity();
+  for (const Tetrahedron& corner : corners) least = std::min(least, least_jacobian(mesh, corner));
+  return least;
+}
+
 }  // namespace
+
+std::vector<double> least_jacobians_mm3(const VolumeMesh& mesh) {
+  std::vector<double> jacobians;
+  jacobians.reserve(mesh.cell_count());
+  for_each_cell(mesh, [&](const auto& cell) { jacobians.push_back(least_jacobian(mesh, cell)); });
+  return jacobians;
+}
 
 double volume_of(const VolumeMesh& mesh, const Tetrahedron& cell) {
   const Vec3& a = mesh.points[cell[0]];

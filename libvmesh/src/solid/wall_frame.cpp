@@ -53,7 +53,7 @@ class FrameBuilder {
     add_wall();
     std::vector<std::vector<Index>> faces_of(wall_.patch_names.size());
     for (Index f = 0; f < wall_.patch.size(); ++f) faces_of[wall_.patch[f]].push_back(f);
-    for (Index patch = 1; patch < faces_of.size(); ++patch) {
+    for (Index patch = wall_.wall_patches; patch < faces_of.size(); ++patch) {
       if (!faces_of[patch].empty()) add_cap(patch, faces_of[patch]);
     }
     return std::move(frame_);
@@ -63,7 +63,7 @@ class FrameBuilder {
   void add_wall() {
     std::vector<char> is_of_wall(number_.size(), 0);
     for (Index f = 0; f < wall_.patch.size(); ++f) {
-      if (wall_.patch[f] > 0) continue;
+      if (!wall_.is_wall(f)) continue;
       for (const Index v : wall_.mesh.faces[f]) is_of_wall[v] = 1;
     }
     for (Index v = 0; v < number_.size(); ++v) {
@@ -76,7 +76,7 @@ class FrameBuilder {
     frame_.fan.resize(frame_.position.size());
     frame_.cap_at.assign(frame_.position.size(), kNone);
     for (Index f = 0; f < wall_.patch.size(); ++f) {
-      if (wall_.patch[f] > 0) continue;
+      if (!wall_.is_wall(f)) continue;
       const auto& [a, b, c] = wall_.mesh.faces[f];
       for (const Index v : {a, b, c}) frame_.fan[number_[v]].push_back(static_cast<Index>(frame_.faces.size()));
       frame_.faces.push_back({number_[a], number_[b], number_[c]});

@@ -1,5 +1,10 @@
 #include "vmesh/surface/surface_attributes.h"
 
+#include <algorithm>
+#include <map>
+
+#include "vmesh/core/error.h"
+#include "vmesh/mesh/find_attribute.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/branch_labels.h"
 
@@ -61,6 +66,34 @@ void add_cap_labels(const FlatEnds& ends, MeshAttributes& attributes, const std:
       attributes.patch_names.push_back("cap_" + std::to_string(attributes.patch_names.size()));
     attributes.patch_names.push_back(name_of_end(end, names));
   }
+}
+
+Index divide_wall(MeshAttributes& attributes) {
+  const MeshAttribute* branch = find_attribute(attributes.face, "branch");
+  if (branch == nullptr) throw InvalidInput("the wall cannot be divided: faces have no branch");
+  const std::vector<double> branches = branch->values;
+  if (find_attribute(attributes.face, "ModelFaceID") == nullptr)
+    attributes.face.push_back({"ModelFaceID", std::vector<double>(branches.size(), 1), true});
+  const auto numbers = std::find_if(attributes.face.begin(), attributes.face.end(),
+                                    [](const MeshAttribute& a) { return a.name == "ModelFaceID"; });
+  std::map<double, double> number_of_branch;
+  for (std::size_t f = 0; f < branches.size(); ++f) {
+    if (numbers->values[f] == 1) number_of_branch[branches[f]] = 0;
+  }
+  std::vector<std::string> names;
+  for (auto& [label, number] : number_of_branch) {
+    names.push_back("wall_" + std::to_string(static_cast<Index>(label)));
+    number = static_cast<double>(names.size());
+  }
+  const auto walls = static_cast<Index>(names.size());
+  for (std::size_t f = 0; f < branches.size(); ++f) {
+    double& number = numbers->values[f];
+    number = number == 1 ? number_of_branch.at(branches[f]) : number - 1 + walls;
+  }
+  if (!attributes.patch_names.empty())
+    names.insert(names.end(), attributes.patch_names.begin() + 1, attributes.patch_names.end());
+  attributes.patch_names = std::move(names);
+  return walls;
 }
 
 }  // namespace vmesh

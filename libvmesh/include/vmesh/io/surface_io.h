@@ -38,6 +38,12 @@ struct SurfaceFormat {
   Parse* parse = nullptr;
   LoadedSurface (*read)(const std::filesystem::path& path) = nullptr;
   Write* write = nullptr;
+  /// A file beside the one that `write` makes, its name ending differently, that is part of what is written.
+  struct FileBeside {
+    std::string extension;
+    Write* write;
+  };
+  std::vector<FileBeside> beside = {};
 
   bool is_written() const { return write != nullptr; }
 };
@@ -53,6 +59,9 @@ const SurfaceFormat& surface_format(const std::filesystem::path& path);
 
 /// The same for a file to be written: throws Unsupported, listing what can be written, for read-only formats too.
 const SurfaceFormat& surface_output_format(const std::filesystem::path& path);
+
+/// All files that write_surface() makes, the given one first.
+std::vector<std::filesystem::path> files_of_surface(const std::filesystem::path& path);
 
 /// Where a surface comes from; written as comments or field data where the format has room (all but STL; STL has 80
 /// bytes for frame, unit and generator).
@@ -92,10 +101,15 @@ struct SurfaceWriteOptions {
 ///        either, surface
 ///   STL  binary, in float, or text, whose positions come back to the bit, with a solid for each group of OBJ; no
 ///        attributes
+///   .mdl  SimVascular: the faces of the model by their numbers, names and types, cap or wall (is_wall_patch()); beside
+///   it
+///        the surface as VTP, with ModelFaceID, and for old versions the names as .vtp.facenames. Patches as the groups
+///        of OBJ, but for a surface without any, which is the wall
 ///   .smesh  TetGen: facets with the numbers of the groups of OBJ, from 1, as markers; no other attributes
 ///   GLB  binary glTF 2.0 in metres, y up (superior), z towards the front (anterior); vertices are shared by faces;
-///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; with
-///        a skin, bones, around the origin of the frame. Compressed by EXT_meshopt_compression: positions are rounded
+///        attributes of vertices, in capitals behind an underscore (_RADIUS), red, green and blue as its colour; a
+///        primitive for each group of OBJ, with a material of its name, if there are several; with a skin, bones,
+///        around the origin of the frame. Compressed by EXT_meshopt_compression: positions are rounded
 ///        to two millionths of their greatest coordinate (from the middle of the surface, or the origin with bones),
 ///        normals to a 4,000th, attributes that are no integers to 31 millionths; triangles are in another order
 /// In text, numbers have the digits they need to come back to the bit.

@@ -33,6 +33,10 @@ struct VolumeDefect {
 /// determinant of its map are (sufficient).
 std::vector<VolumeDefect> find_volume_defects(const VolumeMesh& mesh);
 
+/// The cells among these defects: those that are flat or turned over somewhere. Count 0 if there are none. Throws
+/// InvalidInput for cells with corners that do not exist.
+VolumeDefect find_inverted_cells(const VolumeMesh& mesh);
+
 /// Whether the cells of `region` fill what `wall` encloses: the volume and the areas of caps, which are equal but for
 /// rounding and for what caps differ from planes. Empty if so.
 std::vector<VolumeDefect> compare_with_wall(const VolumeMesh& mesh, std::string_view region, const VesselWall& wall);
@@ -47,6 +51,11 @@ struct VolumeMeasures {
   Vec3 worst_tetrahedron = Vec3::Zero();  ///< where min_dihedral_deg is
 };
 VolumeMeasures measure_volume(const VolumeMesh& mesh);
+
+/// For every cell the least determinant of its map that find_volume_defects() looks at, in mm^3: six volumes of a
+/// tetrahedron, the least of the four corners of a pyramid's base, the least Bezier coefficient of a wedge's. 0 or
+/// less: flat or turned over somewhere, but for rounding.
+std::vector<double> least_jacobians_mm3(const VolumeMesh& mesh);
 
 /// Volumes of cells, mm^3.
 double volume_of(const VolumeMesh& mesh, const Tetrahedron& cell);

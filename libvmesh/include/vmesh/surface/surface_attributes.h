@@ -29,4 +29,9 @@ std::string name_of_end(const FlatEnd& end, const std::vector<EndName>& names);
 /// the names of these patches: "wall", then name_of_end().
 void add_cap_labels(const FlatEnds& ends, MeshAttributes& attributes, const std::vector<EndName>& names = {});
 
+/// Divides the wall (all faces whose ModelFaceID is 1, or all faces if there is none) by the branches of its faces,
+/// their attribute "branch", into the patches "wall_0", "wall_2" ..., which are numbered from 1 in ascending order;
+/// caps follow. Returns how many parts the wall has.
+Index divide_wall(MeshAttributes& attributes);
+
 }  // namespace vmesh

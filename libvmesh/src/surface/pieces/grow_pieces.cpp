@@ -49,11 +49,14 @@ class PieceGrower {
       if (round == kRounds || !regroup()) break;
     }
     if (limit_.is_set()) refine_to_limit();
-    if (!unproven_.empty()) close_notches_left(result.error);
+    if (!unproven_.empty() || (limit_.is_set() && !gathered_.openings.empty())) close_notches_left(result.error);
     if (may_be_coarser()) leave_out_vertices(result.error);
     tell(result);
     return std::move(crossings_);
   }
+
+  /// After run(): whether the limit could not be proven, other than at openings.
+  bool fell_short(const GenerateResult& result) const { return !unproven_.empty() && result.error.unproven_faces > 0; }
 
  private:
   // Makes the pieces that are not in `known`.
@@ -276,9 +279,9 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
   GenerateOptions even = options;
   even.max_error = {};
   GenerateResult refined = result;
-  std::vector<std::pair<Index, Index>> crossings =
-      PieceGrower(field, open, even, options.max_error, progress).run(refined);
-  if (refined.error.unproven_faces > 0) {
+  PieceGrower grower(field, open, even, options.max_error, progress);
+  std::vector<std::pair<Index, Index>> crossings = grower.run(refined);
+  if (grower.fell_short(refined)) {
     GenerateResult grown = result;
     std::vector<std::pair<Index, Index>> others = PieceGrower(field, open, options, {}, progress).run(grown);
     if (grown.error.unproven_faces < refined.error.unproven_faces) {

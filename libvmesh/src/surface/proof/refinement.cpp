@@ -118,6 +118,11 @@ class Refinement {
     return length(e) > kShortest * std::sqrt(limit_of(e) * radius);
   }
 
+  bool is_at_opening(Index f) const {
+    const auto& [a, b, c] = mesh_.faces()[f];
+    return held_[a] || held_[b] || held_[c];
+  }
+
   // What is worst among the edges of a face, or its longest edge if its middle is worst.
   struct Candidate {
     double off = 0;
@@ -140,7 +145,7 @@ class Refinement {
   bool split_where_far() {
     std::vector<Candidate> candidates(due_.size());
     tbb::parallel_for(std::size_t{0}, due_.size(), [&](std::size_t i) {
-      if (mesh_.has_face(due_[i])) candidates[i] = worst_of(due_[i]);
+      if (mesh_.has_face(due_[i]) && !is_at_opening(due_[i])) candidates[i] = worst_of(due_[i]);
     });
     due_.clear();
     std::erase_if(candidates, [](const Candidate& c) { return c.off <= kWorthAProof; });
@@ -425,7 +430,9 @@ class Refinement {
       shares[i] = known.shares;
     });
     unproven_.clear();
-    for (const Index i : proof_.unproven(corners_, triangles, shares)) unproven_.push_back(faces[i]);
+    for (const Index i : proof_.unproven(corners_, triangles, shares)) {
+      if (!is_at_opening(faces[i])) unproven_.push_back(faces[i]);
+    }
   }
 
   void update_corner(Index v) {
