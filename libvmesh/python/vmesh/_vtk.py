@@ -72,7 +72,7 @@ def _import_vtk() -> Any:
         from vtkmodules import vtkCommonCore, vtkCommonDataModel, vtkFiltersCore
         from vtkmodules.util import numpy_support
     except ImportError as error:
-        raise ImportError("VTK for Python is needed: pip install vtk; for Debian's Python: apt install python3-vtk9") from error
+        raise ImportError("VTK for Python is needed: pip install vtk; on Debian: apt install python3-vtk9") from error
 
     class Names:
         vtkPolyData = vtkCommonDataModel.vtkPolyData
