@@ -84,5 +84,6 @@ def test_the_package_and_the_examples_are_typed(mypy, tmp_path):
     shutil.copytree(pathlib.Path(vmesh.__file__).parent, package, ignore=compiled)
     examples = sorted(str(path) for path in (ROOT / "examples").glob("*.py"))
     assert examples
-    run = mypy("mypy", "--strict", "--ignore-missing-imports", str(package), *examples)
+    # Calls of others: ours are all typed, VTK's are or not, by its version.
+    run = mypy("mypy", "--strict", "--allow-untyped-calls", "--ignore-missing-imports", str(package), *examples)
     assert run.returncode == 0, run.stdout + run.stderr
