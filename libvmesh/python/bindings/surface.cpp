@@ -309,7 +309,7 @@ whole numbers. With a centerline every vertex is bound to the nearest place on i
       .def(
           "_repr_html_",
           [](const py::object& self) { return py::module_::import("vmesh._notebook").attr("shown")(self); },
-          "The page (vmesh.page) for notebooks; None, which shows the text instead, without pages or for large surfaces.")
+          "The page (vmesh.page) for notebooks; None, so that they show the text, without pages or for large ones.")
       .def("__repr__", &describe_surface);
   bind_arrays(surface);
   module.def("read_surface", &read_surface_file, py::arg("path"), py::kw_only(), py::arg("centerline") = py::none(),
