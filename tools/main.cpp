@@ -32,6 +32,11 @@ int run_command(int argc, const char* const* argv) {
     catch_interrupts();
     verb->common().command_line = quoted_command(argc, argv);
     console.set_quiet(verb->common().quiet);
+    if (verb->common().slicer) {
+      if (verb->common().json == "-")
+        throw UsageError("--slicer uses stdout: write the summary to a file (--json FILE)");
+      console.tell_by_tags(verb->name());
+    }
     return run_limited(*verb, console);
   } catch (const UsageError& error) {
     return fail(kUsage, error.what());

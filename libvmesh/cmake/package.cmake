@@ -73,7 +73,7 @@ include(GNUInstallDirs)
 # Debian expects the license there.
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/libvmesh-dev"
   RENAME copyright COMPONENT development)
-if(VMESH_WITH_PYTHON)
+if(VMESH_WITH_PYTHON AND NOT SKBUILD)
   install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/python3-vmesh"
     RENAME copyright COMPONENT python)
 endif()

@@ -85,13 +85,13 @@ def members_with_arrays():
                     yield stub.name, member.name
 
 
-@pytest.mark.parametrize("owner, name", members_with_arrays())
+@pytest.mark.parametrize("owner, name", list(members_with_arrays()))
 def test_arrays_are_told_with_their_shape(owner, name):
     told = inspect.getdoc(getattr(getattr(vmesh, owner), name))
     assert re.search(r"\((\w+,|\w+, \d)\)", told), told
 
 
-@pytest.mark.parametrize("owner, name", members_with_arrays())
+@pytest.mark.parametrize("owner, name", list(members_with_arrays()))
 def test_positions_are_told_with_their_unit(owner, name):
     if name in ("nodes", "vertices", "radii", "radius", "position", "center", "from_point", "to_point", "max_at"):
         assert "mm" in inspect.getdoc(getattr(getattr(vmesh, owner), name))

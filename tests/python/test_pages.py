@@ -1,5 +1,6 @@
 """Pages that show a surface in a browser."""
 
+import html
 import json
 import re
 
@@ -69,3 +70,21 @@ def test_what_cannot_be_written_is_said(tmp_path):
     with pytest.raises(TypeError):
         vmesh.page(None, tmp_path / "page.html")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_notebooks_show_the_page(made):
+    surface = vmesh.generate(*FORK)
+    data = made(surface, title="surface")  # skips without pages
+    frame = surface._repr_html_()
+    assert re.fullmatch(r'<iframe srcdoc="[^"]*" style="[^"]*"></iframe>', frame)
+    page = html.unescape(re.search(r'srcdoc="([^"]*)"', frame).group(1))
+    assert json.loads(re.search(r'<script[^>]*id="page-data">(.*?)</script>', page, re.DOTALL).group(1)) == data
+
+
+def test_notebooks_show_the_text_of_what_is_large_or_empty(monkeypatch):
+    import vmesh._notebook
+
+    surface = vmesh.generate(*FORK)
+    monkeypatch.setattr(vmesh._notebook, "MOST_FACES", len(surface.faces) - 1)
+    assert surface._repr_html_() is None
+    assert vmesh.Surface(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))._repr_html_() is None

@@ -43,3 +43,17 @@ def test_vtk_can_work_with_it():
     mass.SetInputData(surface.to_vtk())
     assert mass.GetVolume() == pytest.approx(surface.volume, rel=1e-9)
     assert mass.GetSurfaceArea() == pytest.approx(surface.area, rel=1e-9)
+
+
+def test_goes_to_pyvista_and_back():
+    pyvista = pytest.importorskip("pyvista", reason="PyVista is missing")
+    surface = vmesh.generate(*FORK)
+    mesh = surface.to_pyvista()
+    assert isinstance(mesh, pyvista.PolyData) and mesh.is_all_triangles
+    np.testing.assert_array_equal(mesh.point_data["radius"], surface.radius)
+    np.testing.assert_array_equal(mesh.cell_data["branch"], surface.face_branch)
+    assert mesh.volume == pytest.approx(surface.volume, rel=1e-6)  # VTK sums in another order
+    for other in (mesh, pyvista.PolyData(surface.vertices, surface.padded_faces())):
+        again = vmesh.from_vtk(other)
+        np.testing.assert_array_equal(again.vertices, surface.vertices)
+        np.testing.assert_array_equal(again.faces, surface.faces)

@@ -16,6 +16,7 @@ namespace vmesh::tool {
 /// Options common to all verbs.
 struct CommonArguments {
   bool quiet = false;
+  bool slicer = false;         ///< called by 3D Slicer, see execution_model.h
   std::filesystem::path json;  ///< file for the summary; "-" for stdout, empty for none
   std::filesystem::path html;  ///< file for the page; empty for none. Not for all verbs
   std::string command_line;    ///< as it was typed, for the page

@@ -2,10 +2,16 @@
 
 #include <cmath>
 
+#include "command_line/execution_model.h"
+
 namespace vmesh::tool {
 
 void add_common(CLI::App& verb, CommonArguments& common, bool with_json) {
   verb.add_flag("-q,--quiet", common.quiet, "only warnings and errors on stderr");
+  verb.add_flag(
+      kSlicerFlag, common.slicer,
+      "called by 3D Slicer: progress as tags on stdout; _ for - in options; options that have their defaults are "
+      "as if not given");
   if (with_json)
     verb.add_option("--json", common.json, "write a summary to this file; - for stdout")->type_name("FILE.json");
 }

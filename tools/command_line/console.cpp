@@ -17,7 +17,14 @@ constexpr std::chrono::seconds kBetweenLines(3);
 
 Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
 
+Console::~Console() {
+  clear_bar();
+  end_tags();
+}
+
 void Console::set_quiet(bool quiet) { quiet_ = quiet; }
+
+void Console::tell_by_tags(const std::string& verb) { tagged_verb_ = verb; }
 
 std::string printable(std::string_view text) {
   std::string shown;
@@ -56,10 +63,14 @@ void Console::error(std::string_view line) { print("vmesh: ", line); }
 Progress Console::progress() {
   return [this](std::string_view stage, double fraction) {
     if (stage != stage_) {
+      end_tags();
       stage_ = stage;
       stage_began_ = std::chrono::steady_clock::now();
     }
-    if (!quiet_) terminal_ ? draw_bar(stage, fraction) : tell_progress(stage, fraction);
+    if (!tagged_verb_.empty()) {
+      tell_tags(fraction);
+    } else if (!quiet_)
+      terminal_ ? draw_bar(stage, fraction) : tell_progress(stage, fraction);
     return !interrupted();
   };
 }
@@ -71,6 +82,28 @@ void Console::tell_progress(std::string_view stage, double fraction) {
   next_draw_ = now + kBetweenLines;
   const double done = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
   print("", std::string(stage) + ": " + std::to_string(static_cast<int>(100 * done)) + " %" + time_left(done));
+}
+
+void Console::tell_tags(double fraction) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!tags_open_) {
+    std::printf("<filter-start><filter-name>vmesh %s</filter-name><filter-comment>%s</filter-comment></filter-start>\n",
+                tagged_verb_.c_str(), stage_.c_str());
+    tags_open_ = true;
+  } else if (now < next_draw_) {
+    return;
+  }
+  next_draw_ = now + std::chrono::milliseconds(100);
+  const double done = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
+  std::printf("<filter-progress>%.3f</filter-progress>\n", done);
+  std::fflush(stdout);
+}
+
+void Console::end_tags() {
+  if (!tags_open_) return;
+  std::printf("<filter-end><filter-comment>%s</filter-comment></filter-end>\n", stage_.c_str());
+  std::fflush(stdout);
+  tags_open_ = false;
 }
 
 std::string Console::time_left(double done) const {

@@ -19,11 +19,13 @@ class Console {
  public:
   /// Quiet: neither log lines nor progress; warnings and errors remain.
   explicit Console(bool quiet = false);
-  ~Console() { clear_bar(); }
+  ~Console();
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
   void set_quiet(bool quiet);
+  /// Progress as tags of 3D Slicer's execution model on stdout, each stage as a filter, instead.
+  void tell_by_tags(const std::string& verb);
   void log(std::string_view line);
   /// Every warning is shown once, however often it occurs.
   void warn(std::string_view line);
@@ -37,12 +39,16 @@ class Console {
  private:
   void draw_bar(std::string_view stage, double fraction);
   void tell_progress(std::string_view stage, double fraction);
+  void tell_tags(double fraction);
+  void end_tags();
   /// ", about 12 s left", once the speed of a stage is known; else nothing.
   std::string time_left(double done) const;
   void clear_bar();
   void print(std::string_view prefix, std::string_view line);
 
   bool quiet_;
+  std::string tagged_verb_;  // empty without tags
+  bool tags_open_ = false;
   bool terminal_;
   bool bar_drawn_ = false;
   std::string bar_;

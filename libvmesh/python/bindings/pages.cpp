@@ -106,6 +106,15 @@ void bind_pages(py::module_& module) {
       },
       py::arg("surface").none(false), py::arg("path"), py::kw_only(), py::arg("reference"), py::arg("title"),
       "vmesh.page() for a Surface.");
+  module.def(
+      "page_text",
+      [](const SurfacePtr& surface, const std::string& title) {
+        std::string html;
+        run(py::none(), [&](const Progress&) { html = page_about(*surface, nullptr, title); });
+        return html;
+      },
+      py::arg("surface").none(false), py::arg("title"),
+      "The page of a Surface as text. Raises Unsupported in a build without pages.");
 }
 
 }  // namespace vmesh::python

@@ -297,7 +297,19 @@ whole numbers. With a centerline every vertex is bound to the nearest place on i
            "Unsupported.")
       .def(
           "to_vtk", [](const py::object& self) { return py::module_::import("vmesh._vtk").attr("to_vtk")(self); },
-          "A vtkPolyData with the attributes as arrays; needs python3-vtk9. pyvista.wrap(surface.to_vtk()).")
+          "A vtkPolyData with the attributes as arrays; needs VTK (Debian: python3-vtk9; pip install vtk).")
+      .def(
+          "to_pyvista",
+          [](const py::object& self) { return py::module_::import("vmesh._vtk").attr("to_pyvista")(self); },
+          "A pyvista.PolyData with the attributes as arrays; needs PyVista (pip install pyvista).")
+      .def(
+          "to_trimesh",
+          [](const py::object& self) { return py::module_::import("vmesh._trimesh").attr("to_trimesh")(self); },
+          "A trimesh.Trimesh with the attributes, vertices and faces as they are; needs trimesh (pip install trimesh).")
+      .def(
+          "_repr_html_",
+          [](const py::object& self) { return py::module_::import("vmesh._notebook").attr("shown")(self); },
+          "The page (vmesh.page) for notebooks; None, so that they show the text, without pages or for large ones.")
       .def("__repr__", &describe_surface);
   bind_arrays(surface);
   module.def("read_surface", &read_surface_file, py::arg("path"), py::kw_only(), py::arg("centerline") = py::none(),

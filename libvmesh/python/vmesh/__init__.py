@@ -56,7 +56,8 @@ from ._core import (
     synthetic_tree,
 )
 from ._functions import evaluate, fit, generate, hausdorff, page, render
-from ._vtk import from_vtk, to_vtk
+from ._trimesh import from_trimesh, to_trimesh
+from ._vtk import from_vtk, to_pyvista, to_vtk
 
 __all__ = [
     "__version__",
@@ -77,6 +78,7 @@ __all__ = [
     "FitDistance",
     "FitReport",
     "FlatEnd",
+    "from_trimesh",
     "from_vtk",
     "generate",
     "Hausdorff",
@@ -97,6 +99,8 @@ __all__ = [
     "Surface",
     "SurfaceWarning",
     "synthetic_tree",
+    "to_pyvista",
+    "to_trimesh",
     "to_vtk",
     "Topology",
     "UnmatchedPart",

@@ -11,7 +11,7 @@ from ._core import Surface
 
 
 def to_vtk(surface: Surface) -> Any:
-    """The surface as a vtkPolyData, its attributes as arrays. PyVista: pyvista.wrap(vmesh.to_vtk(surface)).
+    """The surface as a vtkPolyData, its attributes as arrays.
 
     Points and arrays are copied. Raises ImportError without VTK.
     """
@@ -30,6 +30,18 @@ def to_vtk(surface: Surface) -> Any:
     _add(convert, poly.GetPointData(), surface.vertex_attributes)
     _add(convert, poly.GetCellData(), surface.face_attributes)
     return poly
+
+
+def to_pyvista(surface: Surface) -> Any:
+    """The surface as a pyvista.PolyData, its attributes as arrays; points and arrays are copied.
+
+    Raises ImportError without PyVista.
+    """
+    try:
+        import pyvista
+    except ImportError as error:
+        raise ImportError("PyVista is needed: pip install pyvista") from error
+    return pyvista.wrap(to_vtk(surface))
 
 
 def from_vtk(poly: Any) -> Surface:
@@ -60,7 +72,7 @@ def _import_vtk() -> Any:
         from vtkmodules import vtkCommonCore, vtkCommonDataModel, vtkFiltersCore
         from vtkmodules.util import numpy_support
     except ImportError as error:
-        raise ImportError("VTK for Python is needed; on Debian: apt install python3-vtk9") from error
+        raise ImportError("VTK for Python is needed: pip install vtk; on Debian: apt install python3-vtk9") from error
 
     class Names:
         vtkPolyData = vtkCommonDataModel.vtkPolyData
