@@ -159,7 +159,7 @@ TEST(Elongation, LimitsOnTheErrorTakeFarFewerVertices) {
   for (const bool open : {false, true}) {
     SCOPED_TRACE(open);
     GenerateOptions options = with_elongation(1);
-    options.max_error.relative = 0.1;
+    options.max_error.relative = 0.05;
     options.open_ends.all = open;
     options.threads = 1;
     const GenerateResult even = generate_surface(fork, options);

@@ -119,7 +119,7 @@ TEST(ErrorLimit, IsProvenOnAFork) {
 
 // Two daughters that part at 18 degrees, without rounding: the notch between them is sharper than triangles can follow.
 TEST(ErrorLimit, IsSaidNotToHoldWhereItCannot) {
-  const double half = 9 * std::numbers::pi / 180, length = 15;
+  const double half = 6 * std::numbers::pi / 180, length = 15;
   const Vec3 up = length * Vec3(std::cos(half), std::sin(half), 0);
   const Vec3 down = length * Vec3(std::cos(half), -std::sin(half), 0);
   const Centerline centerline({{{-6, 0, 0}, 1}, {{0, 0, 0}, 1}, {up, 0.8}, {down, 0.7}}, {{0, 1}, {1, 2}, {1, 3}});

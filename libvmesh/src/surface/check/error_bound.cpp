@@ -41,8 +41,28 @@ struct ConeBounds {
   double at_center = 0;                      // the signed distance at the centroid
   double least_radius = 0, most_radius = 0;  // of the sphere that touches the boundary
   double least_reach = 0, most_reach = 0;    // of the blend
-  double turn = 0;               // bound on the difference of the gradient from that at the centroid, at most 2
-  Vec3 gradient = Vec3::Zero();  // at the centroid
+  double turn = 0;                     // bound on the difference of the gradient from that at the centroid, at most 2
+  Vec3 gradient = Vec3::Zero();        // at the centroid
+  std::array<double, 3> tangent = {};  // the tangent of the distance at the centroid, at the corners
+  std::array<FieldSample, 3> at = {};  // the corners
+  // Bounds on the first and the second derivative of the gradient along any line, and on the jump of the first where
+  // the triangle may lie on two parts of the cone, its side and a cap; else 0. Infinite too near to the axis.
+  double rate = 0, bend = 0, jump = 0;
+};
+
+/// The smooth minimum of two distances, blended over `width`. It grows with the distances, falls with the width and is
+/// jointly concave in all three: (a + b) / 2 less width psi(|a - b| / width), the perspective of a convex psi.
+struct SmoothMinimum {
+  double value, by_a, by_b, by_width;  // and its derivatives
+
+  SmoothMinimum(double a, double b, double width) {
+    const double low = std::min(a, b), gap = std::abs(a - b);
+    const double h = gap < width ? 1 - gap / width : 0;
+    value = low - h * h * width / 4;
+    (a <= b ? by_a : by_b) = 1 - h / 2;
+    (a <= b ? by_b : by_a) = h / 2;
+    by_width = gap < width ? (gap * gap / (width * width) - 1) / 4 : 0;
+  }
 };
 
 // Bound on how much the radius of the touching sphere changes per distance moved: the tangent of the cone's half angle.
@@ -53,12 +73,7 @@ double radius_slope(double first, double last, double length) {
   return sine / std::sqrt(1 - sine * sine);
 }
 
-double smooth_minimum(double a, double b, double width) {
-  const double low = std::min(a, b), gap = std::abs(a - b);
-  if (gap >= width) return low;
-  const double h = 1 - gap / width;
-  return low - h * h * width / 4;
-}
+double smooth_minimum(double a, double b, double width) { return SmoothMinimum(a, b, width).value; }
 
 // Decides for triangles whether they are inside or outside the volume of a few cones.
 class TriangleTest {
@@ -142,8 +157,13 @@ class TriangleTest {
     b.cone = cone;
     b.at_center = b.low = s.distance;
     b.gradient = s.gradient;
-    for (const Vec3& p : q) b.low = std::min(b.low, s.distance + s.gradient.dot(p - center));
-    b.high = highest(q, cone);
+    b.high = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      b.at[k] = field_.sample_cone(q[k], cone);
+      b.tangent[k] = s.distance + s.gradient.dot(q[k] - center);
+      b.low = std::min(b.low, b.tangent[k]);
+      b.high = std::max(b.high, b.at[k].distance);
+    }
     if (field_.relations().blend() == 0) return b;
     const double first = field_.relations().radius_at(cone, 0), last = field_.relations().radius_at(cone, 1),
                  radius = field_.relations().radius_at(cone, s.t);
@@ -157,7 +177,84 @@ class TriangleTest {
     // The gradient turns by the distance moved divided by the distance from the touching sphere's centre.
     const double from_center = radius + s.distance - reach_ - change;
     b.turn = from_center > 0.5 * reach_ ? reach_ / from_center : 2;
+    set_curvature(b, center, from_center);
     return b;
+  }
+
+  // On the side of a cone, the gradient turns around the axis by the way across it over the distance from the touching
+  // sphere's centre, D: its first derivative is at most 1 / D, and so it is on a cap. Of a planar turn by v_t / r, with
+  // speeds v_t across and v_r along the ray, the second is the root of (2 v_r v_t)^2 + v_t^4 over r^2, at most the root
+  // of 4/3; the distance from the axis r is D times the cosine of the half angle. Between side and cap, the part along
+  // the axis jumps by up to 1 / D.
+  void set_curvature(ConeBounds& b, const Vec3& center, double from_center) const {
+    b.rate = b.bend = b.jump = std::numeric_limits<double>::infinity();
+    const auto& relations = field_.relations();
+    const Vec3 first = relations.axis_point(b.cone, 0), axis = relations.axis_point(b.cone, 1) - first;
+    const double length = axis.norm(), widening = relations.radius_at(b.cone, 1) - relations.radius_at(b.cone, 0);
+    if (from_center <= 0.5 * reach_ || std::abs(widening) >= length) return;
+    const double sine = widening / length, cosine = std::sqrt(1 - sine * sine);
+    b.rate = 1 / from_center;
+    b.bend = std::sqrt(4.0 / 3) / (cosine * from_center * from_center);
+    // Where the touching sphere would be on the line of the axis, and by how far it may be off on the triangle.
+    const double along = (center - first).dot(axis) / length, across = (center - first).cross(axis).norm() / length,
+                 foot = along + across * sine / cosine, change = reach_ / cosine;
+    const bool is_one_part =
+        foot + change <= 0 || foot - change >= length || (foot - change >= 0 && foot + change <= length);
+    b.jump = is_one_part ? 0 : b.rate;
+  }
+
+  // 1 - cos of the angle between two gradients, at the corners, and by how much linear interpolation may be wrong. With
+  // a bound K on its second derivative and one J on jumps of the first, at p = sum l_k q_k it is by at most
+  // sum l_k (K |q_k - p|^2 / 2 + J |q_k - p|), which is K R^2 / 2 + J R with the largest distance R of a corner from
+  // the centroid. Derivatives of a gradient are across it, so that jumps count by the sine of the angle.
+  struct Opening {
+    std::array<double, 3> at;
+    double tolerance;
+  };
+  Opening opening_of(const ConeBounds& a, const ConeBounds& b) const {
+    Opening opening;
+    for (std::size_t k = 0; k < 3; ++k) opening.at[k] = 1 - a.at[k].gradient.dot(b.at[k].gradient);
+    const double sine = std::min(1.0, (a.gradient - b.gradient).norm() + a.turn + b.turn);
+    opening.tolerance =
+        (a.bend + b.bend + 2 * a.rate * b.rate) * reach_ * reach_ / 2 + (a.jump + b.jump) * sine * reach_;
+    return opening;
+  }
+
+  // Below: tangents of the convex distances, and a linear bound on the width. A concave function of linear ones is
+  // least at a corner.
+  double second_order_low(const ConeBounds& a, const ConeBounds& b) const {
+    const Opening opening = opening_of(a, b);
+    if (!std::isfinite(opening.tolerance)) return -std::numeric_limits<double>::infinity();
+    const double reach = std::min(a.most_reach, b.most_reach);
+    double low = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double width = reach * std::max(0.0, opening.at[k] + opening.tolerance);
+      low = std::min(low, smooth_minimum(a.tangent[k], b.tangent[k], width));
+    }
+    return low;
+  }
+
+  // Above: distances at the corners, linear between them, and a linear bound on the width. A concave function is below
+  // its tangent, here at the means.
+  double second_order_high(const ConeBounds& a, const ConeBounds& b) const {
+    const Opening opening = opening_of(a, b);
+    if (!std::isfinite(opening.tolerance)) return std::numeric_limits<double>::infinity();
+    const double reach = std::min(a.least_reach, b.least_reach);
+    std::array<double, 3> width;
+    for (std::size_t k = 0; k < 3; ++k) {
+      width[k] = reach * (opening.at[k] - opening.tolerance);
+      if (width[k] < 0) return std::numeric_limits<double>::infinity();
+    }
+    const auto mean = [](double x, double y, double z) { return (x + y + z) / 3; };
+    const double of_a = mean(a.at[0].distance, a.at[1].distance, a.at[2].distance),
+                 of_b = mean(b.at[0].distance, b.at[1].distance, b.at[2].distance),
+                 of_width = mean(width[0], width[1], width[2]);
+    const SmoothMinimum middle(of_a, of_b, of_width);
+    double high = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k)
+      high = std::max(high, middle.value + middle.by_a * (a.at[k].distance - of_a) +
+                                middle.by_b * (b.at[k].distance - of_b) + middle.by_width * (width[k] - of_width));
+    return high;
   }
 
   // Least and greatest share of the blend left to a cone on the triangle. The touching sphere moves along the axis by
@@ -203,16 +300,19 @@ class TriangleTest {
           const double low = std::min(a.low, b.low);
           if (gap >= widest) return low;
           const double h = 1 - gap / widest;
-          return std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+          const double bound = std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+          return bound >= 0 ? bound : std::max(bound, second_order_low(a, b));
         });
   }
 
   double upper_bound(Range range) const {
     return least(
         range, [](const ConeBounds& b) { return b.high; },
-        [](const ConeBounds& a, const ConeBounds& b) {
+        [this](const ConeBounds& a, const ConeBounds& b) {
           const double difference = (a.gradient - b.gradient).norm() - a.turn - b.turn;
-          return smooth_minimum(a.high, b.high, width(std::min(a.least_reach, b.least_reach), difference));
+          const double bound =
+              smooth_minimum(a.high, b.high, width(std::min(a.least_reach, b.least_reach), difference));
+          return bound <= 0 ? bound : std::min(bound, second_order_high(a, b));
         });
   }
 
