@@ -194,6 +194,10 @@ TEST_P(NarrowNotch, IsWithinTheLimit) {
   const GenerateResult result = generate(centerline, relative, blend);
   EXPECT_EQ(result.error.unproven_faces, 0u);
   EXPECT_TRUE(result.is_sound());
+  // Where few vessels part, vertices on creases are enough.
+  if (centerline.nodes().size() > 1000) {
+    EXPECT_FALSE(result.error.closed_notches.empty());
+  }
   EXPECT_LE(worst_deviation(result, VesselField(centerline, blend), limit_of(relative)), 1);
 }
 
@@ -270,8 +274,6 @@ TEST_P(NarrowFork, KeepsWhatItClosesWithinTheLimit) {
   const VesselField field(centerline, blend);
   if (blend > 0) {
     EXPECT_TRUE(result.error.closed_notches.empty());  // rounded, it is wide enough
-  } else if (angle < 40 && relative > 0.05) {
-    EXPECT_FALSE(result.error.closed_notches.empty());  // within a twentieth vertices on the crease are enough
   }
   const SurfaceDistance distance(result, limit_of(relative));
   for (const ClosedNotch& notch : result.error.closed_notches) {

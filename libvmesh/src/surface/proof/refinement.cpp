@@ -4,9 +4,11 @@
 #include <cmath>
 #include <optional>
 
+#include <Eigen/LU>
 #include <tbb/parallel_for.h>
 
 #include "vmesh/edit/guarded_edit.h"
+#include "vmesh/mesh/triangle_energy.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/error_bound.h"
 #include "vmesh/surface/soundness.h"
@@ -28,7 +30,8 @@ constexpr double kShortest = 0.3;
 // Radii: beyond, the shell would reach the other side of the vessel.
 constexpr double kHighestShell = 0.5;
 constexpr double kTolerance = 1e-3;   // radii, of vertices on the boundary
-constexpr double kLeastGain = 1e-3;   // of skewness
+constexpr double kLeastGain = 1e-3;   // of skewness, and relative of energy
+constexpr double kLongestMove = 0.3;  // in edges
 constexpr double kRound = 0.5;        // skewness up to which triangles may become worse for the sake of balance
 constexpr double kWorthALift = 0.05;  // of the most, a change of height
 constexpr double kUpright = 0.3;      // least cosine between a face's normal and the gradient at its middle
@@ -338,7 +341,26 @@ class Refinement {
     const double now = worst_now(step), then = worst_skewness(step), off_now = off_at(e), off_then = off_at({c, d});
     const bool is_nearer = off_now > kWorthAProof && off_then < 0.7 * off_now && then < kWorstSkewness;
     const bool is_better = then < now - kLeastGain && off_then < std::max(off_now, 0.7 * kWorthAProof);
-    if ((is_nearer || is_better) && stays_upright(step)) take({step}, kWorstSkewness);
+    const bool is_regular = then < kRound && off_then < kWorthAProof * 0.9 && irregularity_after(e, c, d) < 0;
+    if ((is_nearer || is_better || is_regular) && stays_upright(step)) take({step}, kWorstSkewness);
+  }
+
+  // How the squares of the differences from six edges at a vertex change by a flip.
+  int irregularity_after(const MeshEdge& e, Index c, Index d) const {
+    const auto change = [&](Index v, int by) {
+      const int difference = static_cast<int>(mesh_.faces_around(v).size()) - 6;
+      return (difference + by) * (difference + by) - difference * difference;
+    };
+    return change(e.a, -1) + change(e.b, -1) + change(c, 1) + change(d, 1);
+  }
+
+  double energy(const Step& step) const {
+    double sum = 0;
+    for (const Triangle& f : step.faces) {
+      const PlacedFace face = mesh_.placed(f, step);
+      sum += squared_inverse_mean_ratio(face.points[0], face.points[1], face.points[2]);
+    }
+    return sum;
   }
 
   bool stays_upright(const Step& step) const {
@@ -352,38 +374,48 @@ class Refinement {
     });
   }
 
-  // Towards the middle of its faces, as high as balances them.
+  // To where its triangles have the best shape, as high as balances them.
   void move(Index v) {
     if (!mesh_.has_vertex(v) || held_[v]) return;
-    Vec3 middle = Vec3::Zero();
     double area = 0, sum = 0;
     const double height = lift_of(v);
+    PlanarEnergy shape;
+    const Vec3 normal = mesh_.vertex_normal(v), u = normal.unitOrthogonal(), w = normal.cross(u);
     for (const Index f : mesh_.faces_around(v)) {
-      const auto [a, b, c] = mesh_.corners(f);
+      auto face = mesh_.faces()[f];
+      while (face[0] != v) std::rotate(face.begin(), face.begin() + 1, face.end());
+      const Vec3 &a = point(v), &b = point(face[1]), &c = point(face[2]);
       const double weight = (b - a).cross(c - a).norm();
-      const Vec3 center = (a + b + c) / 3;
-      middle += weight * center;
-      sum += weight * (0.75 * field_.sample(center, cone(v)).distance + 0.25 * height);
+      sum += weight * (0.75 * field_.sample((a + b + c) / 3, cone(v)).distance + 0.25 * height);
       area += weight;
+      shape.add(a, b, c, u, w);
     }
-    middle /= area;
     const double most = kShareOfLimit * limit_at(v);
     const double lift = is_balanced() ? std::clamp(height - sum / area, -most, most) : 0;
-    const double now = off_around(v);
-    for (const Vec3& p : {middle, Vec3(0.5 * (middle + point(v))), point(v)}) {
+    const double off_now = off_around(v);
+    const Vec3 way = best_way(shape, u, w, kLongestMove * mesh_.mean_edge(v));
+    for (const double share : {1.0, 0.5, 0.0}) {
+      const Vec3 p = point(v) + share * way;
       const auto on_crease = crease_at_[v] ? onto(*crease_at_[v], p, {v, v}) : std::nullopt;
       if (crease_at_[v] && !on_crease) continue;
       const BoundaryPoint target = on_crease ? *on_crease : project_to_boundary(field_, p, cone(v), kTolerance, lift);
       const Step step = mesh_.moving(v, finished_vertex(target, field_));
-      const double skew_now = worst_now(step), skew_then = worst_skewness(step);
-      const bool is_rounder = skew_then < skew_now - kLeastGain;
-      const bool is_lifted =
-          !crease_at_[v] && std::abs(lift - height) > kWorthALift * most && skew_then < std::max(skew_now, kRound);
-      if (!(is_rounder || is_lifted) || !stays_upright(step)) continue;
-      const double then = off_around(v, target.position);
-      if (then > std::max(kWorthAProof * 0.9, now)) continue;
-      if (take({step}, std::max(skew_now, kRound)) != kNone) break;
+      const double worst = std::max(worst_now(step), kRound);
+      const bool is_rounder = energy(step) < (1 - kLeastGain) * shape.value;
+      const bool is_lifted = !crease_at_[v] && std::abs(lift - height) > kWorthALift * most;
+      if (!(is_rounder || is_lifted) || worst_skewness(step) > worst || !stays_upright(step)) continue;
+      if (off_around(v, target.position) > std::max(kWorthAProof * 0.9, off_now)) continue;
+      if (take({step}, worst) != kNone) break;
     }
+  }
+
+  // One Newton step, no longer than `longest`.
+  static Vec3 best_way(const PlanarEnergy& shape, const Vec3& u, const Vec3& w, double longest) {
+    if (!std::isfinite(shape.value)) return Vec3::Zero();
+    const Eigen::Vector2d step = -shape.hessian.inverse() * shape.gradient;
+    const double length = step.norm();
+    if (!std::isfinite(length)) return Vec3::Zero();
+    return std::min(1.0, longest / length) * (step.x() * u + step.y() * w);
   }
 
   double off_around(Index v) const { return off_around(v, point(v)); }
