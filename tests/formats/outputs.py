@@ -115,7 +115,7 @@ def check_vtk(table, vtk, written):
         ".glb",
         "out",
         vtk.name,
-        lambda: plain("vtkGLTFReader", "wall.glb", 2 * FLOAT, True, written.in_metres, (), "m, y up (the format's)"),
+        lambda: plain("vtkGLTFReader", "wall.glb", 2 * FLOAT, False, written.in_metres, (), "m, y up (the format's)"),
     )
 
 

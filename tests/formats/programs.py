@@ -39,8 +39,13 @@ class Vtk:
         reader.Update()
         data = reader.GetOutput()
         if isinstance(data, self.vtk.vtkMultiBlockDataSet):
-            blocks = data.NewIterator()
-            data = blocks.GetCurrentDataObject()
+            # A block for every primitive, that is for every patch.
+            joined, blocks = self.vtk.vtkAppendPolyData(), data.NewIterator()
+            while not blocks.IsDoneWithTraversal():
+                joined.AddInputData(blocks.GetCurrentDataObject())
+                blocks.GoToNextItem()
+            joined.Update()
+            data = joined.GetOutput()
         return data
 
     def values(self, data):
