@@ -77,7 +77,12 @@ double distance_all_around(const VesselField& field, const Vec3& x, Index hint, 
     for (int k = 1; k <= kSteps; ++k) {
       const double distance = reach * k / kSteps;
       if ((field.sample(x + distance * way, hint).distance > 0) == outside) continue;
-      reach = distance;
+      double low = reach * (k - 1) / kSteps, high = distance;  // it changes between these
+      for (int halving = 0; halving < 20; ++halving) {
+        const double middle = (low + high) / 2;
+        ((field.sample(x + middle * way, hint).distance > 0) == outside ? low : high) = middle;
+      }
+      reach = high;
       break;
     }
   }
@@ -110,7 +115,10 @@ void for_surface_points(const GenerateResult& result, const VesselField& field, 
     for (int i = 0; i <= 6; ++i) {
       for (int j = 0; i + j <= 6; ++j) {
         const Vec3 x = (i * p + j * q + (6 - i - j) * r) / 6;
-        visit(distance_to_boundary(field, x, result.binding[a].segment) / allowed);
+        const Index hint = result.binding[a].segment;
+        double distance = distance_to_boundary(field, x, hint);  // at most
+        if (distance > allowed) distance = distance_all_around(field, x, hint, distance);
+        visit(distance / allowed);
       }
     }
   }
