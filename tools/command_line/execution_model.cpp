@@ -5,6 +5,7 @@
 #include <cctype>
 #include <optional>
 
+#include "vmesh/core/text.h"
 #include "vmesh/core/version.h"
 
 #include "command_line/completion.h"
@@ -27,26 +28,10 @@ struct Parameter {
   std::string constraints;  // or the elements of an enumeration
 };
 
-std::string xml_escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else if (c == '>') {
-      result += "&gt;";
-    } else if (c == '"') {
-      result += "&quot;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
+constexpr std::string_view kXml = "&<>\"";
 
 std::string tagged(const std::string& tag, const std::string& text) {
-  return "<" + tag + ">" + xml_escaped(text) + "</" + tag + ">";
+  return "<" + tag + ">" + xml_escaped(text, kXml) + "</" + tag + ">";
 }
 
 std::string with_replaced(std::string text, char from, char to) {

@@ -1,6 +1,8 @@
 // 3MF, for printing (3MF Core Specification 1.3).
 #include <ostream>
 
+#include "vmesh/core/text.h"
+
 #include "formats.h"
 #include "text.h"
 #include "zip_archive.h"
@@ -40,25 +42,9 @@ std::string_view unit_of(LengthUnit unit) {
   return "millimeter";  // also what readers take for it if there is none
 }
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else if (c == '>') {
-      result += "&gt;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
-
 void add_metadata(std::string& xml, std::string_view name, std::string_view value) {
   if (!value.empty())
-    xml += "<metadata name=\"" + std::string(name) + "\">" + escaped(one_line(value)) + "</metadata>\n";
+    xml += "<metadata name=\"" + std::string(name) + "\">" + xml_escaped(one_line(value), "&<>") + "</metadata>\n";
 }
 
 std::string model_of(const TriMesh& mesh, const SurfaceMetadata& metadata) {

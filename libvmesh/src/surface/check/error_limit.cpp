@@ -8,13 +8,6 @@
 
 namespace vmesh {
 
-namespace {
-
-// Radii: beyond, the shell would reach the other side of the vessel; idle 0.35 to 0.7.
-constexpr double kHighestShell = 0.5;
-
-}  // namespace
-
 std::vector<Face> ErrorLimitCheck::unproven_faces(const SweepState& state) {
   const BoundSurface& surface = state.surface;
   std::vector<ErrorProof::Corner> vertices(state.mesh.num_vertices());

@@ -8,6 +8,9 @@
 
 namespace vmesh {
 
+/// Radii: beyond, the shell would reach the other side of the vessel; idle 0.35 to 0.7.
+inline constexpr double kHighestShell = 0.5;
+
 /// Checks a surface under construction against a limit, again and again.
 class ErrorLimitCheck {
  public:

@@ -13,6 +13,8 @@
 #include "vmesh/surface/error_bound.h"
 #include "vmesh/surface/soundness.h"
 
+#include "surface/check/error_limit.h"
+#include "surface/proof/crease.h"
 #include "surface/remesh/edge_lengths.h"
 
 namespace vmesh {
@@ -27,17 +29,12 @@ constexpr int kImprovements = 3;      // passes of flips and moves after splits
 // Of the square root of limit times radius, which edges of even surfaces have about three times: no edge becomes
 // shorter.
 constexpr double kShortest = 0.3;
-// Radii: beyond, the shell would reach the other side of the vessel.
-constexpr double kHighestShell = 0.5;
 constexpr double kTolerance = 1e-3;   // radii, of vertices on the boundary
 constexpr double kLeastGain = 1e-3;   // of skewness, and relative of energy
 constexpr double kLongestMove = 0.3;  // in edges
 constexpr double kRound = 0.5;        // skewness up to which triangles may become worse for the sake of balance
 constexpr double kWorthALift = 0.05;  // of the most, a change of height
 constexpr double kUpright = 0.3;      // least cosine between a face's normal and the gradient at its middle
-// Largest cosine between the gradients of two cones that meet in a crease.
-constexpr double kCrease = 0.9;
-constexpr int kNewtonSteps = 6;
 constexpr double kNearEnd = 0.2;  // share of an edge from its end within which its end is moved onto a crease instead
 constexpr double kSlides[] = {0.5, 0.4, 0.6};  // where edges are divided
 
@@ -85,7 +82,6 @@ class Refinement {
 
  private:
   using Step = FinishedMesh::Step;
-  using Crease = std::pair<Index, Index>;  // two cones
 
   const Vec3& point(Index v) const { return mesh_.position(v); }
   Index cone(Index v) const { return mesh_.vertex(v).binding.segment; }
@@ -229,59 +225,17 @@ class Refinement {
   // Where the boundaries of two cones meet, near the middle of an edge that crosses there or runs along.
   std::optional<CreasePoint> crease_on(const MeshEdge& e) const {
     for (const Crease& crease : creases_between(e)) {
-      if (const auto at = onto(crease, middle_of(e), e)) return CreasePoint{crease, *at};
+      if (const auto at = onto_crease(field_, crease, middle_of(e), limit_of(e))) return CreasePoint{crease, *at};
     }
     return std::nullopt;
   }
 
-  // Pairs of cones of which one belongs to either end, with walls that look elsewhere.
   std::vector<Crease> creases_between(const MeshEdge& e) const {
     const auto cones_at = [&](Index v) {
       if (crease_at_[v]) return std::vector<Index>{crease_at_[v]->first, crease_at_[v]->second};
       return std::vector<Index>{field_.sample(point(v), cone(v)).cone};
     };
-    const std::vector<Index> of_a = cones_at(e.a), of_b = cones_at(e.b);
-    const auto are_along = [&](Index c, Index d) {
-      return c == d ||
-             field_.sample_cone(point(e.a), c).gradient.dot(field_.sample_cone(point(e.b), d).gradient) > kCrease;
-    };
-    std::vector<Crease> pairs;
-    const auto add = [&](Index c, Index d) {
-      const Crease pair = std::minmax(c, d);
-      if (!are_along(c, d) && std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) pairs.push_back(pair);
-    };
-    const bool along = of_a.size() == 2 && of_b.size() == 2;
-    if (along) {
-      add(of_a[0], of_a[1]);
-      add(of_b[0], of_b[1]);
-    }
-    // From a crease to a wall beside it.
-    const bool beside = !along && std::any_of(of_a.begin(), of_a.end(), [&](Index c) {
-      return std::any_of(of_b.begin(), of_b.end(), [&](Index d) { return are_along(c, d); });
-    });
-    if (beside) return {};
-    for (const Index c : of_a) {
-      for (const Index d : of_b) add(c, d);
-    }
-    return pairs;
-  }
-
-  // The point of a crease near another one.
-  std::optional<BoundaryPoint> onto(const Crease& crease, Vec3 p, const MeshEdge& e) const {
-    const double tolerance = 0.01 * limit_of(e);
-    for (int step = 0; step < kNewtonSteps; ++step) {
-      const FieldSample a = field_.sample_cone(p, crease.first), b = field_.sample_cone(p, crease.second);
-      if (std::max(std::abs(a.distance), std::abs(b.distance)) < tolerance) {
-        const FieldSample s = field_.sample(p, crease.first);
-        return std::abs(s.distance) < 0.1 * limit_of(e) ? std::optional(BoundaryPoint{p, s}) : std::nullopt;
-      }
-      // The shortest way to both.
-      const double cosine = a.gradient.dot(b.gradient), divisor = 1 - cosine * cosine;
-      if (divisor < 1e-3) return std::nullopt;
-      p -= (a.distance - cosine * b.distance) / divisor * a.gradient +
-           (b.distance - cosine * a.distance) / divisor * b.gradient;
-    }
-    return std::nullopt;
+    return vmesh::creases_between(field_, {point(e.a), cones_at(e.a)}, {point(e.b), cones_at(e.b)});
   }
 
   Index take(const std::vector<Step>& steps, double worst) {
@@ -396,7 +350,7 @@ class Refinement {
     const Vec3 way = best_way(shape, u, w, kLongestMove * mesh_.mean_edge(v));
     for (const double share : {1.0, 0.5, 0.0}) {
       const Vec3 p = point(v) + share * way;
-      const auto on_crease = crease_at_[v] ? onto(*crease_at_[v], p, {v, v}) : std::nullopt;
+      const auto on_crease = crease_at_[v] ? onto_crease(field_, *crease_at_[v], p, limit_at(v)) : std::nullopt;
       if (crease_at_[v] && !on_crease) continue;
       const BoundaryPoint target = on_crease ? *on_crease : project_to_boundary(field_, p, cone(v), kTolerance, lift);
       const Step step = mesh_.moving(v, finished_vertex(target, field_));

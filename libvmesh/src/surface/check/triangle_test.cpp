@@ -1,0 +1,340 @@
+#include "surface/check/triangle_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vmesh {
+namespace {
+
+constexpr int kMaxDepth = 5;  // of further subdivision, into four each; safe 4 to 7
+
+using Points = TrianglePoints;
+
+std::array<Points, 4> quarters(const Points& q) {
+  const Vec3 a = 0.5 * (q[1] + q[2]), b = 0.5 * (q[2] + q[0]), c = 0.5 * (q[0] + q[1]);
+  return {Points{q[0], c, b}, Points{c, q[1], a}, Points{b, a, q[2]}, Points{a, b, c}};
+}
+
+// Bounds on a cone's field over a triangle.
+struct ConeBounds {
+  Index cone = kNone;
+  double low = 0, high = 0;                  // of the signed distance
+  double at_center = 0;                      // the signed distance at the centroid
+  double least_radius = 0, most_radius = 0;  // of the sphere that touches the boundary
+  double least_reach = 0, most_reach = 0;    // of the blend
+  double turn = 0;                     // bound on the difference of the gradient from that at the centroid, at most 2
+  Vec3 gradient = Vec3::Zero();        // at the centroid
+  std::array<double, 3> tangent = {};  // the tangent of the distance at the centroid, at the corners
+  std::array<FieldSample, 3> at = {};  // the corners
+  // Bounds on the first and the second derivative of the gradient along any line, and on the jump of the first where
+  // the triangle may lie on two parts of the cone, its side and a cap; else 0. Infinite too near to the axis.
+  double rate = 0, bend = 0, jump = 0;
+};
+
+/// The smooth minimum of two distances, blended over `width`. It grows with the distances, falls with the width and is
+/// jointly concave in all three: (a + b) / 2 less width psi(|a - b| / width), the perspective of a convex psi.
+struct SmoothMinimum {
+  double value, by_a, by_b, by_width;  // and its derivatives
+
+  SmoothMinimum(double a, double b, double width) {
+    const double low = std::min(a, b), gap = std::abs(a - b);
+    const double h = gap < width ? 1 - gap / width : 0;
+    value = low - h * h * width / 4;
+    (a <= b ? by_a : by_b) = 1 - h / 2;
+    (a <= b ? by_b : by_a) = h / 2;
+    by_width = gap < width ? (gap * gap / (width * width) - 1) / 4 : 0;
+  }
+};
+
+// Bound on how much the radius of the touching sphere changes per distance moved: the tangent of the cone's half angle.
+double radius_slope(double first, double last, double length) {
+  const double change = std::abs(last - first);
+  if (change >= length) return std::numeric_limits<double>::infinity();
+  const double sine = change / length;
+  return sine / std::sqrt(1 - sine * sine);
+}
+
+double smooth_minimum(double a, double b, double width) { return SmoothMinimum(a, b, width).value; }
+
+// Decides for triangles whether they are inside or outside the volume of a few cones.
+class TriangleTest {
+ public:
+  explicit TriangleTest(const VesselField& field) : field_(field) {}
+
+  bool outside(const Points& q, const std::vector<Index>& cones) {
+    return starting_with(cones, q, &TriangleTest::is_outside);
+  }
+  bool inside(const Points& q, const std::vector<Index>& cones) {
+    return starting_with(cones, q, &TriangleTest::is_inside);
+  }
+
+ private:
+  // The bounds for a triangle and all triangles that contain it lie on a stack; a subtriangle considers only the cones
+  // kept for the containing one.
+  struct Range {
+    std::size_t begin, end;
+  };
+
+  bool starting_with(const std::vector<Index>& cones, const Points& q,
+                     bool (TriangleTest::*test)(const Points&, Range, int)) {
+    stack_.clear();
+    for (const Index cone : cones) stack_.push_back({.cone = cone});
+    return (this->*test)(q, {0, stack_.size()}, kMaxDepth);
+  }
+
+  bool is_outside(const Points& q, Range whole, int depth) {
+    const Range range = measure(q, whole);
+    bool result = lower_bound(range) >= 0;
+    if (!result && depth > 0 && value_at_center(range) >= 0) {
+      const auto parts = quarters(q);
+      result =
+          std::all_of(parts.begin(), parts.end(), [&](const Points& p) { return is_outside(p, range, depth - 1); });
+    }
+    stack_.resize(range.begin);
+    return result;
+  }
+
+  bool is_inside(const Points& q, Range whole, int depth) {
+    for (std::size_t i = whole.begin; i < whole.end; ++i) {
+      if (highest(q, stack_[i].cone) <= 0) return true;
+    }
+    const Range range = measure(q, whole);
+    bool result = upper_bound(range) <= 0;
+    if (!result && depth > 0 && value_at_center(range) <= 0) {
+      const auto parts = quarters(q);
+      result = std::all_of(parts.begin(), parts.end(), [&](const Points& p) { return is_inside(p, range, depth - 1); });
+    }
+    stack_.resize(range.begin);
+    return result;
+  }
+
+  // The distance is convex, so it is largest at a corner.
+  double highest(const Points& q, Index cone) const {
+    double high = field_.sample_cone(q[0], cone).distance;
+    for (int k = 1; k < 3; ++k) high = std::max(high, field_.sample_cone(q[k], cone).distance);
+    return high;
+  }
+
+  // Pushes bounds for those cones of `whole` that can matter on the triangle.
+  Range measure(const Points& q, Range whole) {
+    const Vec3 center = triangle_center(q);
+    reach_ = triangle_reach(q, center);
+    const std::size_t begin = stack_.size();
+    double least_high = std::numeric_limits<double>::infinity();
+    for (std::size_t i = whole.begin; i < whole.end; ++i) {
+      stack_.push_back(bounds_of(stack_[i].cone, q, center));
+      least_high = std::min(least_high, stack_.back().high);
+    }
+    const auto too_far = [&](const ConeBounds& b) {
+      return b.low > least_high + 2 * field_.relations().blend() * b.most_radius;
+    };
+    stack_.erase(std::remove_if(stack_.begin() + begin, stack_.end(), too_far), stack_.end());
+    return {begin, stack_.size()};
+  }
+
+  ConeBounds bounds_of(Index cone, const Points& q, const Vec3& center) const {
+    const FieldSample s = field_.sample_cone(center, cone);
+    ConeBounds b;
+    b.cone = cone;
+    b.at_center = b.low = s.distance;
+    b.gradient = s.gradient;
+    b.high = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      b.at[k] = field_.sample_cone(q[k], cone);
+      b.tangent[k] = s.distance + s.gradient.dot(q[k] - center);
+      b.low = std::min(b.low, b.tangent[k]);
+      b.high = std::max(b.high, b.at[k].distance);
+    }
+    if (field_.relations().blend() == 0) return b;
+    const double first = field_.relations().radius_at(cone, 0), last = field_.relations().radius_at(cone, 1),
+                 radius = field_.relations().radius_at(cone, s.t);
+    const double length = (field_.relations().axis_point(cone, 1) - field_.relations().axis_point(cone, 0)).norm();
+    const double change = std::min(radius_slope(first, last, length) * reach_, std::abs(last - first));
+    b.least_radius = std::max(std::min(first, last), radius - change);
+    b.most_radius = std::min(std::max(first, last), radius + change);
+    const auto [least_share, most_share] = shares_of(cone, s.t, length, radius_slope(first, last, length));
+    b.least_reach = field_.relations().blend() * b.least_radius * least_share;
+    b.most_reach = field_.relations().blend() * b.most_radius * most_share;
+    // The gradient turns by the distance moved divided by the distance from the touching sphere's centre.
+    const double from_center = radius + s.distance - reach_ - change;
+    b.turn = from_center > 0.5 * reach_ ? reach_ / from_center : 2;
+    set_curvature(b, center, from_center);
+    return b;
+  }
+
+  // On the side of a cone, the gradient turns around the axis by the way across it over the distance from the touching
+  // sphere's centre, D: its first derivative is at most 1 / D, and so it is on a cap. Of a planar turn by v_t / r, with
+  // speeds v_t across and v_r along the ray, the second is the root of (2 v_r v_t)^2 + v_t^4 over r^2, at most the root
+  // of 4/3; the distance from the axis r is D times the cosine of the half angle. Between side and cap, the part along
+  // the axis jumps by up to 1 / D.
+  void set_curvature(ConeBounds& b, const Vec3& center, double from_center) const {
+    b.rate = b.bend = b.jump = std::numeric_limits<double>::infinity();
+    const auto& relations = field_.relations();
+    const Vec3 first = relations.axis_point(b.cone, 0), axis = relations.axis_point(b.cone, 1) - first;
+    const double length = axis.norm(), widening = relations.radius_at(b.cone, 1) - relations.radius_at(b.cone, 0);
+    if (from_center <= 0.5 * reach_ || std::abs(widening) >= length) return;
+    const double sine = widening / length, cosine = std::sqrt(1 - sine * sine);
+    b.rate = 1 / from_center;
+    b.bend = std::sqrt(4.0 / 3) / (cosine * from_center * from_center);
+    // Where the touching sphere would be on the line of the axis, and by how far it may be off on the triangle.
+    const double along = (center - first).dot(axis) / length, across = (center - first).cross(axis).norm() / length,
+                 foot = along + across * sine / cosine, change = reach_ / cosine;
+    const bool is_one_part =
+        foot + change <= 0 || foot - change >= length || (foot - change >= 0 && foot + change <= length);
+    b.jump = is_one_part ? 0 : b.rate;
+  }
+
+  // 1 - cos of the angle between two gradients, at the corners, and by how much linear interpolation may be wrong. With
+  // a bound K on its second derivative and one J on jumps of the first, at p = sum l_k q_k it is by at most
+  // sum l_k (K |q_k - p|^2 / 2 + J |q_k - p|), which is K R^2 / 2 + J R with the largest distance R of a corner from
+  // the centroid. Derivatives of a gradient are across it, so that jumps count by the sine of the angle.
+  struct Opening {
+    std::array<double, 3> at;
+    double tolerance;
+  };
+  Opening opening_of(const ConeBounds& a, const ConeBounds& b) const {
+    Opening opening;
+    for (std::size_t k = 0; k < 3; ++k) opening.at[k] = 1 - a.at[k].gradient.dot(b.at[k].gradient);
+    const double sine = std::min(1.0, (a.gradient - b.gradient).norm() + a.turn + b.turn);
+    opening.tolerance =
+        (a.bend + b.bend + 2 * a.rate * b.rate) * reach_ * reach_ / 2 + (a.jump + b.jump) * sine * reach_;
+    return opening;
+  }
+
+  // Below: tangents of the convex distances, and a linear bound on the width. A concave function of linear ones is
+  // least at a corner.
+  double second_order_low(const ConeBounds& a, const ConeBounds& b) const {
+    const Opening opening = opening_of(a, b);
+    if (!std::isfinite(opening.tolerance)) return -std::numeric_limits<double>::infinity();
+    const double reach = std::min(a.most_reach, b.most_reach);
+    double low = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double width = reach * std::max(0.0, opening.at[k] + opening.tolerance);
+      low = std::min(low, smooth_minimum(a.tangent[k], b.tangent[k], width));
+    }
+    return low;
+  }
+
+  // Above: distances at the corners, linear between them, and a linear bound on the width. A concave function is below
+  // its tangent, here at the means.
+  double second_order_high(const ConeBounds& a, const ConeBounds& b) const {
+    const Opening opening = opening_of(a, b);
+    if (!std::isfinite(opening.tolerance)) return std::numeric_limits<double>::infinity();
+    const double reach = std::min(a.least_reach, b.least_reach);
+    std::array<double, 3> width;
+    for (std::size_t k = 0; k < 3; ++k) {
+      width[k] = reach * (opening.at[k] - opening.tolerance);
+      if (width[k] < 0) return std::numeric_limits<double>::infinity();
+    }
+    const auto mean = [](double x, double y, double z) { return (x + y + z) / 3; };
+    const double of_a = mean(a.at[0].distance, a.at[1].distance, a.at[2].distance),
+                 of_b = mean(b.at[0].distance, b.at[1].distance, b.at[2].distance),
+                 of_width = mean(width[0], width[1], width[2]);
+    const SmoothMinimum middle(of_a, of_b, of_width);
+    double high = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k)
+      high = std::max(high, middle.value + middle.by_a * (a.at[k].distance - of_a) +
+                                middle.by_b * (b.at[k].distance - of_b) + middle.by_width * (width[k] - of_width));
+    return high;
+  }
+
+  // Least and greatest share of the blend left to a cone on the triangle. The touching sphere moves along the axis by
+  // the distance moved divided by the cosine of the cone's half angle.
+  std::pair<double, double> shares_of(Index cone, double t, double length, double slope) const {
+    const auto [least, most] =
+        std::minmax({field_.relations().rounding_at(cone, 0), field_.relations().rounding_at(cone, 1)});
+    if (least == most) return {least, most};
+    const double share = field_.relations().rounding_at(cone, t);
+    const double change = std::min(std::sqrt(1 + slope * slope) * reach_ / length, 1.0) * (most - least);
+    return {std::max(least, share - change), std::min(most, share + change)};
+  }
+
+  // Width over which two cones are blended when their gradients differ by `difference`: 1 - cos = difference^2 / 2.
+  static double width(double reach, double difference) {
+    const double d = std::clamp(difference, 0.0, 2.0);
+    return reach * d * d / 2;
+  }
+
+  // Calls visit for every cone and combine for every pair that may be blended; returns the least value.
+  template <class Visit, class Combine>
+  double least(Range range, Visit&& visit, Combine&& combine) const {
+    double result = std::numeric_limits<double>::infinity();
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      result = std::min(result, visit(stack_[i]));
+      if (field_.relations().blend() == 0) continue;
+      for (std::size_t j = range.begin; j < i; ++j) {
+        if (field_.are_blended(stack_[i].cone, stack_[j].cone))
+          result = std::min(result, combine(stack_[i], stack_[j]));
+      }
+    }
+    return result;
+  }
+
+  // The smooth minimum grows with either distance and falls with the width.
+  double lower_bound(Range range) const {
+    return least(
+        range, [](const ConeBounds& b) { return b.low; },
+        [this](const ConeBounds& a, const ConeBounds& b) {
+          const double difference = (a.gradient - b.gradient).norm() + a.turn + b.turn;
+          const double widest = width(std::min(a.most_reach, b.most_reach), difference);
+          const double gap = std::max(0.0, std::abs(a.at_center - b.at_center) - 2 * reach_);
+          const double low = std::min(a.low, b.low);
+          if (gap >= widest) return low;
+          const double h = 1 - gap / widest;
+          const double bound = std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+          return bound >= 0 ? bound : std::max(bound, second_order_low(a, b));
+        });
+  }
+
+  double upper_bound(Range range) const {
+    return least(
+        range, [](const ConeBounds& b) { return b.high; },
+        [this](const ConeBounds& a, const ConeBounds& b) {
+          const double difference = (a.gradient - b.gradient).norm() - a.turn - b.turn;
+          const double bound =
+              smooth_minimum(a.high, b.high, width(std::min(a.least_reach, b.least_reach), difference));
+          return bound <= 0 ? bound : std::min(bound, second_order_high(a, b));
+        });
+  }
+
+  // Approximate field at the centroid: if its sign is wrong already, subtriangles need not be considered.
+  double value_at_center(Range range) const {
+    return least(
+        range, [](const ConeBounds& b) { return b.at_center; },
+        [](const ConeBounds& a, const ConeBounds& b) {
+          const double reach = 0.5 * std::min(a.least_reach + a.most_reach, b.least_reach + b.most_reach);
+          return smooth_minimum(a.at_center, b.at_center, width(reach, (a.gradient - b.gradient).norm()));
+        });
+  }
+
+  const VesselField& field_;
+  std::vector<ConeBounds> stack_;
+  double reach_ = 0;
+};
+
+}  // namespace
+
+Vec3 triangle_center(const TrianglePoints& q) { return (q[0] + q[1] + q[2]) / 3; }
+
+double triangle_reach(const TrianglePoints& q, const Vec3& center) {
+  double farthest = 0;
+  for (const Vec3& p : q) farthest = std::max(farthest, (p - center).norm());
+  return farthest;
+}
+
+bool are_outside(const VesselField& field, const std::vector<TrianglePoints>& triangles,
+                 const std::vector<Index>& cones) {
+  TriangleTest test(field);
+  return std::all_of(triangles.begin(), triangles.end(),
+                     [&](const TrianglePoints& q) { return test.outside(q, cones); });
+}
+
+bool are_inside(const VesselField& field, const std::vector<TrianglePoints>& triangles,
+                const std::vector<Index>& cones) {
+  TriangleTest test(field);
+  return std::all_of(triangles.begin(), triangles.end(),
+                     [&](const TrianglePoints& q) { return test.inside(q, cones); });
+}
+
+}  // namespace vmesh

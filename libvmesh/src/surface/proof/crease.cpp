@@ -1,0 +1,57 @@
+#include "surface/proof/crease.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vmesh {
+namespace {
+
+// Largest cosine between the gradients of two cones that meet in a crease.
+constexpr double kCrease = 0.9;
+constexpr int kNewtonSteps = 6;
+
+}  // namespace
+
+std::vector<Crease> creases_between(const VesselField& field, const CreaseEnd& a, const CreaseEnd& b) {
+  const auto are_along = [&](Index c, Index d) {
+    return c == d || field.sample_cone(a.position, c).gradient.dot(field.sample_cone(b.position, d).gradient) > kCrease;
+  };
+  std::vector<Crease> pairs;
+  const auto add = [&](Index c, Index d) {
+    const Crease pair = std::minmax(c, d);
+    if (!are_along(c, d) && std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) pairs.push_back(pair);
+  };
+  const bool along = a.cones.size() == 2 && b.cones.size() == 2;
+  if (along) {
+    add(a.cones[0], a.cones[1]);
+    add(b.cones[0], b.cones[1]);
+  }
+  // From a crease to a wall beside it.
+  const bool beside = !along && std::any_of(a.cones.begin(), a.cones.end(), [&](Index c) {
+    return std::any_of(b.cones.begin(), b.cones.end(), [&](Index d) { return are_along(c, d); });
+  });
+  if (beside) return {};
+  for (const Index c : a.cones) {
+    for (const Index d : b.cones) add(c, d);
+  }
+  return pairs;
+}
+
+std::optional<BoundaryPoint> onto_crease(const VesselField& field, const Crease& crease, Vec3 p, double limit) {
+  const double tolerance = 0.01 * limit;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    const FieldSample a = field.sample_cone(p, crease.first), b = field.sample_cone(p, crease.second);
+    if (std::max(std::abs(a.distance), std::abs(b.distance)) < tolerance) {
+      const FieldSample s = field.sample(p, crease.first);
+      return std::abs(s.distance) < 0.1 * limit ? std::optional(BoundaryPoint{p, s}) : std::nullopt;
+    }
+    // The shortest way to both.
+    const double cosine = a.gradient.dot(b.gradient), divisor = 1 - cosine * cosine;
+    if (divisor < 1e-3) return std::nullopt;
+    p -= (a.distance - cosine * b.distance) / divisor * a.gradient +
+         (b.distance - cosine * a.distance) / divisor * b.gradient;
+  }
+  return std::nullopt;
+}
+
+}  // namespace vmesh
