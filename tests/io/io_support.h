@@ -10,8 +10,13 @@
 
 #include "vmesh/centerline/centerline.h"
 #include "vmesh/core/error.h"
+#include "vmesh/mesh/tri_mesh.h"
 
 namespace vmesh::testing {
+
+inline TriMesh tetrahedron() {
+  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
 
 /// A folder of its own for a test, removed at the end.
 class TemporaryFolder {

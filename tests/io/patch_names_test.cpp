@@ -13,10 +13,7 @@ using testing::content_of;
 using testing::expect_contains;
 using testing::message_of;
 using testing::TemporaryFolder;
-
-TriMesh tetrahedron() {
-  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-}
+using testing::tetrahedron;
 
 /// No face has the second name.
 MeshAttributes named() {

@@ -17,10 +17,7 @@ using testing::content_of;
 using testing::expect_contains;
 using testing::message_of;
 using testing::TemporaryFolder;
-
-TriMesh small_model() {
-  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-}
+using testing::tetrahedron;
 
 /// No face has the second name.
 MeshAttributes faces_with_names() {
@@ -76,14 +73,14 @@ std::map<int, std::string> names_in(const std::string& text) {
 
 TEST(SimVascularModel, NamesTheFacesOfTheSurfaceBesideIt) {
   const TemporaryFolder folder;
-  write_surface(folder / "m.mdl", small_model(), faces_with_names());
+  write_surface(folder / "m.mdl", tetrahedron(), faces_with_names());
   EXPECT_EQ(folder.file_count(), 3u);
   EXPECT_EQ(faces_of_model(content_of(folder / "m.mdl")),
             (std::map<int, Face>{{1, {"wall_0", "wall"}}, {3, {"inlet", "cap"}}, {4, {"outlet.left-2", "cap"}}}));
   EXPECT_EQ(names_in(content_of(folder / "m.vtp.facenames")),
             (std::map<int, std::string>{{1, "wall_0"}, {3, "inlet"}, {4, "outlet.left-2"}}));
   const LoadedSurface surface = read_surface(folder / "m.vtp");
-  EXPECT_EQ(surface.mesh.faces, small_model().faces);
+  EXPECT_EQ(surface.mesh.faces, tetrahedron().faces);
   EXPECT_EQ(find_attribute(surface.attributes.face, "ModelFaceID")->values, (std::vector<double>{3, 1, 1, 4}));
 }
 
@@ -91,12 +88,12 @@ TEST(SimVascularModel, WithoutNumbersOfFacesGetsThem) {
   const TemporaryFolder folder;
   MeshAttributes caps;
   caps.face.push_back({"CapID", {-1, 2, -1, 5}, true});
-  write_surface(folder / "m.mdl", small_model(), caps);
+  write_surface(folder / "m.mdl", tetrahedron(), caps);
   EXPECT_EQ(faces_of_model(content_of(folder / "m.mdl")),
             (std::map<int, Face>{{1, {"wall", "wall"}}, {2, {"cap_2", "cap"}}, {3, {"cap_5", "cap"}}}));
   EXPECT_EQ(find_attribute(read_surface(folder / "m.vtp").attributes.face, "ModelFaceID")->values,
             (std::vector<double>{1, 2, 1, 3}));
-  write_surface(folder / "m.mdl", small_model());
+  write_surface(folder / "m.mdl", tetrahedron());
   EXPECT_EQ(faces_of_model(content_of(folder / "m.mdl")), (std::map<int, Face>{{1, {"wall", "wall"}}}));
   EXPECT_EQ(find_attribute(read_surface(folder / "m.vtp").attributes.face, "ModelFaceID")->values,
             (std::vector<double>{1, 1, 1, 1}));
@@ -107,13 +104,13 @@ TEST(SimVascularModel, HasEveryNumberThatFacesHave) {
   MeshAttributes several;  // walls, as SimVascular numbers them
   several.face.push_back({"ModelFaceID", {7, 4, 5, 9}, true});
   several.face.push_back({"CapID", {-1, 2, -1, 3}, true});
-  write_surface(folder / "m.mdl", small_model(), several);
+  write_surface(folder / "m.mdl", tetrahedron(), several);
   EXPECT_EQ(faces_of_model(content_of(folder / "m.mdl")),
             (std::map<int, Face>{
                 {4, {"cap_2", "cap"}}, {5, {"wall_5", "wall"}}, {7, {"wall_7", "wall"}}, {9, {"cap_3", "cap"}}}));
   several.face.pop_back();
   several.face[0].values = {1, 1, 2, 1};
-  write_surface(folder / "m.mdl", small_model(), several);
+  write_surface(folder / "m.mdl", tetrahedron(), several);
   EXPECT_EQ(faces_of_model(content_of(folder / "m.mdl")),
             (std::map<int, Face>{{1, {"face_1", "wall"}}, {2, {"face_2", "cap"}}}));
 }
@@ -122,7 +119,7 @@ TEST(SimVascularModel, ThatCannotBeWrittenLeavesNothing) {
   const TemporaryFolder folder;
   MeshAttributes attributes;
   attributes.face.push_back({"ModelFaceID", {0, 1, 1, 2}, true});
-  expect_contains(message_of<InvalidInput>([&] { write_surface(folder / "m.mdl", small_model(), attributes); }),
+  expect_contains(message_of<InvalidInput>([&] { write_surface(folder / "m.mdl", tetrahedron(), attributes); }),
                   "ModelFaceID");
   EXPECT_EQ(folder.file_count(), 0u);
 }
