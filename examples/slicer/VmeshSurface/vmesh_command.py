@@ -1,0 +1,1 @@
+../../vmesh_command.py

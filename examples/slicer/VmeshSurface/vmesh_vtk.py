@@ -1,0 +1,1 @@
+../../vmesh_vtk.py
