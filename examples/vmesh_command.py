@@ -25,6 +25,7 @@ _SHAPING = {
 }
 _SHAPING["flow_extensions"] = "flow_extension"
 _WARNING = "warning: "
+_ERROR = "vmesh: "
 _HELP = "Run with --help"
 _TAG = re.compile(r"<filter-(progress|comment)>([^<]*)</")
 
@@ -90,8 +91,7 @@ def run(words, progress=None, warn=None, command="", environment=None):
         lines = messages.read().splitlines()
     _tell([line[len(_WARNING) :] for line in lines if line.startswith(_WARNING)], warn)
     if code != 0:
-        told = "\n".join(line for line in lines if not line.startswith((_WARNING, "cleaning: ", _HELP)))
-        raise VmeshError(told.replace("vmesh: ", "", 1) or f"{program} ended with the exit code {code}")
+        raise VmeshError(_error_in(lines) or f"{program} ended with the exit code {code}")
 
 
 def generate(inputs, output, options, **how):
@@ -116,6 +116,13 @@ def convert_centerline(inputs, output, options, **how):
         _convert_here(inputs, output, given)
     else:
         run(["convert", *inputs, "-o", output, *_words(given)], **how)
+
+
+def _error_in(lines):
+    """What is wrong begins with the program's name, behind what it told before."""
+    told = [line for line in lines if not line.startswith((_WARNING, "cleaning: ", _HELP))]
+    begin = next((i for i, line in enumerate(told) if line.startswith(_ERROR)), 0)
+    return "\n".join(told[begin:]).replace(_ERROR, "", 1)
 
 
 def _given(options):
@@ -166,8 +173,9 @@ def _refuse_unknown(given, known):
         raise VmeshError(f"{', '.join(unknown)}: this needs the command vmesh, which is not beside the Python package")
 
 
-def _read_here(vmesh, inputs, given):
-    return vmesh.read_centerline(list(inputs), **{name: given[name] for name in sorted(_READING & set(given))})
+def _read_here(vmesh, inputs, given, **more):
+    options = {name: given[name] for name in _READING if name in given}
+    return vmesh.read_centerline(list(inputs), **options, **more)
 
 
 def _generate_here(inputs, output, given, how):
@@ -194,6 +202,6 @@ def _convert_here(inputs, output, given):
 
     _refuse_unknown(given, _READING)
     try:
-        _read_here(vmesh, inputs, given).save(output)
+        _read_here(vmesh, inputs, given, canonical_order=False).save(output)
     except vmesh.Error as error:
         raise VmeshError(str(error)) from None

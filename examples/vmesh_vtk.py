@@ -104,11 +104,17 @@ def surface_of_segmentation(voxels, ijk_to_ras, options, **how):
         raise vmesh_command.VmeshError("the segmentation is empty; choose a segment with voxels")
     with tempfile.TemporaryDirectory(prefix="vmesh-") as folder:
         image = os.path.join(folder, "segmentation.nrrd")
-        _write_nrrd(voxels != 0, numpy.asarray(ijk_to_ras, float), image)
+        _write_nrrd(*_cropped(voxels != 0, numpy.asarray(ijk_to_ras, float)), image)
         centerline = os.path.join(folder, "centerline.vtp")
         more = {"label": 1, "centerline_output": centerline, "output_space": "RAS"}
-        surface = _generated([image], folder, {**options, **more}, how)
-        return surface, _read(centerline)
+        try:
+            surface = _generated([image], folder, {**options, **more}, how)
+        except vmesh_command.VmeshError as error:
+            raise vmesh_command.VmeshError(str(error).replace(image, "the segmentation")) from None
+        # It is written in LPS, with whatever it says of ends.
+        turned = os.path.join(folder, "turned.vtp")
+        vmesh_command.run(["convert", centerline, "-o", turned, "--output-space", "RAS"], **how)
+        return surface, _read(turned)
 
 
 def _generated(files, folder, options, how):
@@ -142,6 +148,18 @@ def _write_lines(poly, path):
     writer.SetDataModeToBinary()
     if writer.Write() != 1:
         raise vmesh_command.VmeshError(f"{path}: the centerline could not be written; is there room on the disk?")
+
+
+def _cropped(mask, ijk_to_ras):
+    """To what is inside, and a voxel around it, but not beyond the border, which cuts vessels."""
+    begins, ends = [], []
+    for axis in range(3):
+        used = numpy.flatnonzero(mask.any(axis=tuple({0, 1, 2} - {axis})))
+        begins.append(max(used[0] - 1, 0))
+        ends.append(used[-1] + 2)
+    moved = ijk_to_ras.copy()
+    moved[:3, 3] += ijk_to_ras[:3, :3] @ begins[::-1]
+    return mask[begins[0] : ends[0], begins[1] : ends[1], begins[2] : ends[2]], moved
 
 
 def _write_nrrd(mask, ijk_to_ras, path):

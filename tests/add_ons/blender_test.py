@@ -217,7 +217,7 @@ def draw(path):
     sun.data.energy, sun.rotation_euler = 3, (0.9, 0.2, 0.5)
     scene.collection.objects.link(sun)
     scene.camera, scene.render.engine = camera, "CYCLES"
-    scene.cycles.samples, scene.cycles.device = 16, "CPU"
+    scene.cycles.samples, scene.cycles.device, scene.cycles.use_denoising = 32, "CPU", False
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
     scene.render.resolution_x, scene.render.resolution_y = 700, 600
     scene.world = bpy.data.worlds.new("world")

@@ -31,7 +31,8 @@ class Options:
     unit: EnumProperty(
         name="Unit",
         description="Unit of the numbers in the file",
-        items=[(_AS_TOLD, "As the file says", "mm if it does not say")] + [(u, u, "") for u in ("nm", "um", "mm", "cm", "m")],
+        items=[(_AS_TOLD, "As the file says", "mm if it does not say")]
+        + [(u, u, "") for u in ("nm", "um", "mm", "cm", "m")],
     )
     radius_array: StringProperty(
         name="Radius array", description="Array or column that holds the radius; empty: the one that is called so"
@@ -63,7 +64,7 @@ class Options:
     )
 
     def draw_options(self, layout):
-        layout.use_property_split = True
+        layout.use_property_split, layout.use_property_decorate = True, False
         for name in ("unit", "radius_array", "around", "max_error", "blend", "elongation", "ends", "armature", "scale"):
             layout.prop(self, name)
 
@@ -112,6 +113,7 @@ class _Work(threading.Thread):
         self.surface, self.error, self.warnings = None, None, []
 
     def run(self):
+        output = ""
         try:
             with tempfile.TemporaryDirectory(prefix="vmesh-") as folder:
                 output = os.path.join(folder, "surface.glb")
@@ -125,6 +127,8 @@ class _Work(threading.Thread):
                 )
                 with open(output, "rb") as file:
                     self.surface = glb.Surface(file.read())
+        except vmesh_command.VmeshError as error:
+            self.error = str(error).replace(output + ": ", "")  # of which the user knows nothing
         except Exception as error:  # told by who waits for it
             self.error = error
 
@@ -173,7 +177,13 @@ class _Growing:
             return {"CANCELLED"}
         for line in work.warnings:
             self.report({"WARNING"}, f"vmesh: {line}")
-        self._finish(context, work.surface)
+        try:
+            if context.mode != "OBJECT":  # while vmesh was at work
+                bpy.ops.object.mode_set(mode="OBJECT")
+            self._finish(context, work.surface)
+        except ReferenceError:
+            self.report({"ERROR"}, "vmesh: the object was removed in the meantime")
+            return {"CANCELLED"}
         return {"FINISHED"}
 
 
