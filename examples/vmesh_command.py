@@ -26,6 +26,7 @@ _SHAPING = {
 _SHAPING["flow_extensions"] = "flow_extension"
 _WARNING = "warning: "
 _ERROR = "vmesh: "
+_NOT_AS_CLOSE = 6  # of the exit codes in tools/README.md
 _HELP = "Run with --help"
 _TAG = re.compile(r"<filter-(progress|comment)>([^<]*)</")
 
@@ -90,7 +91,9 @@ def run(words, progress=None, warn=None, command="", environment=None):
         messages.seek(0)
         lines = messages.read().splitlines()
     _tell([line[len(_WARNING) :] for line in lines if line.startswith(_WARNING)], warn)
-    if code != 0:
+    if code == _NOT_AS_CLOSE:  # as asked for; that is a result
+        _tell([line[len(_ERROR) :] for line in lines if line.startswith(_ERROR)], warn)
+    elif code != 0:
         raise VmeshError(_error_in(lines) or f"{program} ended with the exit code {code}")
 
 

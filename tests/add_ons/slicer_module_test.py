@@ -181,6 +181,13 @@ def test_mistakes_are_told_without_names_of_temporary_files():
     refused("curve 2", vmesh_vtk.surface_around, [line, bad], {})
 
 
+def test_a_surface_beyond_its_budget_is_one_with_a_warning():
+    told = []
+    surface = vmesh_vtk.surface_of_files([TREE], {"budget": "vertices=50"}, warn=told.append)
+    expect_closed(surface)
+    assert len([line for line in told if "nothing is within the budget vertices=50" in line]) == 1, told
+
+
 def test_progress_is_told_and_work_cancelled(folder):
     tree = os.path.join(folder, "tree.swc")
     subprocess.run([VMESH, "synth", "--vertices", "1560", "-o", tree, "--quiet"], check=True)

@@ -96,7 +96,6 @@ def make_bones(slots, edit_bones, scale):
         _place(helper, at, at + numpy.array(before.tail - before.head))
         helper.roll = before.roll
         helper.parent = bone
-        helper.use_inherit_rotation = False
 
 
 def make_helpers_follow(slots, armature_object):
