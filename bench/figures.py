@@ -193,6 +193,7 @@ def write_fits(text: str) -> None:
 
 def fit(bench: Bench) -> None:
     write_fits(bench.run("bench_fit")[0])
+    bench.run("bench_fit", ROOT / ".assets" / "tradeoff-fit.svg")
     others = []
     for name, file, options in FITTED:
         centerline = bench.folder / "centerline.swc"

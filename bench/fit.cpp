@@ -1,8 +1,10 @@
 // Gain and cost of fitting, with even and with long triangles, beside edge collapse of the reference to as many
 // vertices (Garland and Heckbert by CGAL and by VTK; Lindstrom and Turk by CGAL): a table in Markdown. Distances are
 // the larger of both directions, mm; time is user CPU on one thread, including the report's own measurements. Usage:
-//   bench_fit; cases are those of ../shared/data named below.
+//   bench_fit            the table; cases are those of ../shared/data named below
+//   bench_fit CHART.svg  mean distance against CPU time and vertices, from coarse to fine, for the second case
 #include <cstdio>
+#include <fstream>
 #include <optional>
 #include <string>
 
@@ -17,6 +19,7 @@
 #include "vmesh/reference/reference_surface.h"
 #include "vmesh/skeleton/extract_centerline.h"
 #include "vmesh/surface/metric_skewness.h"
+#include "vmesh/tuning/plot.h"
 #include "vmesh/volume/contacts.h"
 
 #include "peers.h"
@@ -96,22 +99,29 @@ std::size_t print_fitted(const char* method, const GenerateResult& grown, const 
   return result.mesh.vertices.size();
 }
 
-void measure(const Case& c) {
-  const TriMesh reference = reference_of(c);
+Centerline centerline_of(const TriMesh& reference, const Case& c) {
   ExtractOptions extraction;
   extraction.tree = c.label.has_value();
   const ExtractedCenterline extracted = extract_centerline(reference, extraction);
-  const Centerline centerline =
-      separate_contacts(with_round_ends(extracted.centerline, extracted.end_sections)).centerline;
+  return separate_contacts(with_round_ends(extracted.centerline, extracted.end_sections)).centerline;
+}
+
+FitOptions elongated_to(std::size_t vertices) {
+  FitOptions options;
+  options.elongation = kMostElongation;
+  options.max_vertices = vertices;
+  return options;
+}
+
+void measure(const Case& c) {
+  const TriMesh reference = reference_of(c);
+  const Centerline centerline = centerline_of(reference, c);
   GenerateOptions options;
   options.around = c.around;
   const GenerateResult grown = generate_surface(centerline, options);
   print(c.name, "round cones", grown.mesh, distances(grown.mesh, reference), 0);
   const std::size_t vertices = print_fitted("fitted", grown, centerline, reference, {});
-  FitOptions elongated;
-  elongated.elongation = kMostElongation;
-  elongated.max_vertices = vertices;
-  print_fitted("fitted, long triangles", grown, centerline, reference, elongated);
+  print_fitted("fitted, long triangles", grown, centerline, reference, elongated_to(vertices));
   const double share = static_cast<double>(vertices) / static_cast<double>(reference.vertices.size());
   const bench::CgalMesh peer(reference);
   print_collapsed("quadric decimation, CGAL", peer.quadric_decimated(share), reference);
@@ -120,9 +130,79 @@ void measure(const Case& c) {
   print_collapsed("edge collapse, Lindstrom and Turk", peer.decimated(share), reference);
 }
 
+struct Point {
+  double seconds;
+  std::size_t vertices;
+  double mean;
+};
+
+struct Curve {
+  const char* name;
+  std::vector<Point> points{};
+};
+
+template <class Make>
+Point timed(const TriMesh& reference, Make&& make) {
+  const double begin = user_seconds();
+  const TriMesh mesh = make();
+  const double seconds = user_seconds() - begin;
+  return {seconds, mesh.vertices.size(), distances(mesh, reference).mean};
+}
+
+// Time from the centerline, or the reference, on.
+std::vector<Curve> sweep(const Case& c) {
+  const TriMesh reference = reference_of(c);
+  const Centerline centerline = centerline_of(reference, c);
+  const bench::CgalMesh peer(reference);
+  Curve cones{"round cones"}, even{"fitted"}, elongated{"fitted, elongation 16"}, quadric{"quadric decimation"},
+      collapsed{"edge collapse, Lindstrom and Turk"};
+  for (const int around : {5, 6, 8, 12, 16}) {
+    GenerateOptions options;
+    options.around = around;
+    options.threads = 1;
+    const auto fitted = [&](FitOptions fit) {
+      return timed(reference, [&] {
+        GenerateResult result = generate_surface(centerline, options);
+        fit.threads = 1;
+        fit_surface(result, centerline, reference, fit);
+        return result.mesh;
+      });
+    };
+    cones.points.push_back(timed(reference, [&] { return generate_surface(centerline, options).mesh; }));
+    even.points.push_back(fitted({}));
+    const std::size_t vertices = even.points.back().vertices;
+    elongated.points.push_back(fitted(elongated_to(vertices)));
+    const double share = static_cast<double>(vertices) / static_cast<double>(reference.vertices.size());
+    quadric.points.push_back(timed(reference, [&] { return peer.quadric_decimated(share); }));
+    collapsed.points.push_back(timed(reference, [&] { return peer.decimated(share); }));
+  }
+  return {cones, even, elongated, quadric, collapsed};
+}
+
+template <class Cost>
+LogPlot plot_of(const std::vector<Curve>& curves, const char* title, const char* label, Cost&& cost) {
+  LogPlot plot{title, label, "mean distance, mm", {}};
+  for (const Curve& curve : curves) {
+    plot.curves.push_back({curve.name, {}});
+    for (const Point& point : curve.points) plot.curves.back().points.emplace_back(cost(point), point.mean);
+  }
+  return plot;
+}
+
+void draw(const std::vector<Curve>& curves, const char* file) {
+  std::ofstream(file) << svg_of(
+      {plot_of(curves, "Distance against time", "CPU time, s", [](const Point& p) { return p.seconds; }),
+       plot_of(curves, "Distance against vertices", "vertices",
+               [](const Point& p) { return static_cast<double>(p.vertices); })});
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc > 1) {
+    draw(sweep(kCases[1]), argv[1]);
+    return 0;
+  }
   std::printf(
       "| vessels | surface | vertices | Hausdorff | mean | 95 %% | skewness mean / max | closed, crossing pairs | "
       "CPU, s |\n|---|---|--:|--:|--:|--:|--:|--:|--:|\n");

@@ -48,15 +48,15 @@ class PieceGrower {
                                    Shells::along_normals);
       if (round == kRounds || !regroup()) break;
     }
-    if (limit_.is_set()) refine_to_limit();
-    if (!unproven_.empty() || (limit_.is_set() && !gathered_.openings.empty())) close_notches_left(result.error);
+    if (limit_.is_set()) refine_whole(result.error);
+    if (!unproven_.empty()) result.error = close_notches_left();
     if (may_be_coarser()) leave_out_vertices(result.error);
     tell(result);
     return std::move(crossings_);
   }
 
-  /// After run(): whether the limit could not be proven, other than at openings.
-  bool fell_short(const GenerateResult& result) const { return !unproven_.empty() && result.error.unproven_faces > 0; }
+  /// After run(): whether the whole surface was refined to the limit, but at openings.
+  bool has_met_limit() const { return has_met_limit_; }
 
  private:
   // Makes the pieces that are not in `known`.
@@ -124,15 +124,18 @@ class PieceGrower {
     return true;
   }
 
-  void refine_to_limit() {
-    unproven_ = refine(gathered_, tubes_.field(),
-                       {limit_, options_.placement, static_cast<std::size_t>(options_.max_vertices)}, progress_);
+  void refine_whole(ErrorSummary& summary) {
+    const RefinementGoal goal{limit_, options_.placement, static_cast<std::size_t>(options_.max_vertices)};
+    const RefinedError error = refine_to_limit(gathered_, tubes_.field(), goal, progress_);
+    summary = error.summary;
+    has_met_limit_ = error.is_met;
     if (!crossings_.empty()) crossings_ = self_intersections(gathered_.mesh);  // by their new numbers
   }
 
-  void close_notches_left(ErrorSummary& summary) {
-    summary = close_notches(gathered_, tubes_.field(), limit_.is_set() ? limit_ : options_.max_error);
+  ErrorSummary close_notches_left() {
+    ErrorSummary summary = close_notches(gathered_, tubes_.field(), options_.max_error);
     crossings_ = self_intersections(gathered_.mesh);
+    return summary;
   }
 
   // Not with a ring at every node.
@@ -264,6 +267,7 @@ class PieceGrower {
   GatheredSurface gathered_;
   std::vector<std::pair<Index, Index>> crossings_;
   std::vector<Index> unproven_;
+  bool has_met_limit_ = false;
   bool coarsened_ = false;
   RefusedSteps refused_;  // of steps on the whole surface
 };
@@ -281,7 +285,7 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
   GenerateResult refined = result;
   PieceGrower grower(field, open, even, options.max_error, progress);
   std::vector<std::pair<Index, Index>> crossings = grower.run(refined);
-  if (grower.fell_short(refined)) {
+  if (!grower.has_met_limit()) {
     GenerateResult grown = result;
     std::vector<std::pair<Index, Index>> others = PieceGrower(field, open, options, {}, progress).run(grown);
     if (grown.error.unproven_faces < refined.error.unproven_faces) {

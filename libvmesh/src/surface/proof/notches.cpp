@@ -11,6 +11,7 @@
 #include "vmesh/surface/soundness.h"
 
 #include "surface/check/error_limit.h"
+#include "surface/proof/gap.h"
 
 namespace vmesh {
 namespace {
@@ -18,9 +19,6 @@ namespace {
 // Height of a vertex above the gap's end, in limits: leaves room for the surface between vertices. 0.1 to 0.5 work as
 // well; idle 0.17 to 0.35.
 constexpr double kFilled = 0.25;
-constexpr int kSteps = 12;  // of Newton's method; three or four usually suffice; idle 8 to 17
-// Length of the sum of two walls' normals below which they are parallel; idle 0.014 to 0.028.
-constexpr double kSharp = 0.02;
 // Cosine between the wall normals at an edge's ends above which it lies along a single wall; idle 0.35 to 0.7.
 constexpr double kFacing = 0.5;
 // Difference between an edge midpoint's distances from the two walls up to which it is in the gap; idle 0.17 to 0.35.
@@ -40,52 +38,6 @@ struct Way {
   double least_move;           // of a vertex into the notch, in limits
 };
 const Way kWays[] = {{{kFilled}, 0.25}, {{kFilled, 2 * kFilled, 3 * kFilled}, 0.1}, {{0.4}, 0.1}};
-
-// The two walls that face each other at a point: the nearest cones with gradients to either side of a direction.
-struct Walls {
-  double first = std::numeric_limits<double>::infinity(), second = first;  // signed distances
-  Vec3 first_normal = Vec3::Zero(), second_normal = Vec3::Zero();
-
-  Vec3 up() const { return first_normal + second_normal; }
-};
-
-class Gaps {
- public:
-  explicit Gaps(const VesselField& field) : field_(field) {}
-
-  Walls walls_at(const Vec3& p, const Vec3& across, Index hint) const {
-    Walls walls;
-    for (const Index cone : field_.relations().local_cones(field_.sample(p, hint).cone)) {
-      const FieldSample s = field_.sample_cone(p, cone);
-      const bool first = s.gradient.dot(across) > 0;
-      double& least = first ? walls.first : walls.second;
-      if (s.distance >= least) continue;
-      least = s.distance;
-      (first ? walls.first_normal : walls.second_normal) = s.gradient;
-    }
-    return walls;
-  }
-
-  // The point reached from p down the middle of the gap, at the height `filled` above its end.
-  std::optional<BoundaryPoint> end_from(Vec3 p, const Vec3& across, Index hint, double filled, double tolerance) const {
-    FieldSample s = field_.sample(p, hint);
-    for (int step = 0; step < kSteps; ++step) {
-      const Walls walls = walls_at(p, across, s.cone);
-      if (std::isinf(walls.first) || std::isinf(walls.second) || walls.up().norm() < kSharp) return std::nullopt;
-      const Vec3 apart = walls.first_normal - walls.second_normal;
-      p -= (walls.first - walls.second) / apart.squaredNorm() * apart;
-      s = field_.sample(p, s.cone);
-      const double off = s.distance / (0.5 * walls.up().norm()) - filled;
-      if (std::abs(off) < tolerance) return BoundaryPoint{p, s};
-      p -= off * walls.up().normalized();
-      s = field_.sample(p, s.cone);
-    }
-    return std::nullopt;
-  }
-
- private:
-  const VesselField& field_;
-};
 
 // Closes the notches of a surface with one strategy.
 class Closing {

@@ -15,6 +15,7 @@
 
 #include "surface/check/error_limit.h"
 #include "surface/proof/crease.h"
+#include "surface/proof/gap.h"
 #include "surface/remesh/edge_lengths.h"
 
 namespace vmesh {
@@ -24,6 +25,7 @@ namespace {
 constexpr double kWorthAProof = 0.97;
 // Rounds in which no area is proven.
 constexpr int kPatience = 6;
+constexpr std::size_t kMany = 100;    // one of so many faces is unproven: shells are not bent yet
 constexpr int kMostSplitRounds = 12;  // each halves edges
 constexpr int kImprovements = 3;      // passes of flips and moves after splits
 // Of the square root of limit times radius, which edges of even surfaces have about three times: no edge becomes
@@ -34,18 +36,34 @@ constexpr double kLeastGain = 1e-3;   // of skewness, and relative of energy
 constexpr double kLongestMove = 0.3;  // in edges
 constexpr double kRound = 0.5;        // skewness up to which triangles may become worse for the sake of balance
 constexpr double kWorthALift = 0.05;  // of the most, a change of height
-constexpr double kUpright = 0.3;      // least cosine between a face's normal and the gradient at its middle
+constexpr double kFacing = 0.5;       // cosine between walls below which they face each other
 constexpr double kNearEnd = 0.2;  // share of an edge from its end within which its end is moved onto a crease instead
 constexpr double kSlides[] = {0.5, 0.4, 0.6};  // where edges are divided
 
+struct RefinementWay {
+  bool into_gaps;                        // ends of gaps are looked for where no crease is known
+  bool descends;                         // edges far above a crease are divided on the way down
+  std::array<double, 2> upright_splits;  // least cosines between faces' normals and the gradient, tried one by one
+  double upright;                        // the same for flips and moves
+};
+
+// Of little consequence for most places; where walls meet at small angles, one finds a way where another is stuck.
+constexpr double kAny = -2;
+const RefinementWay kWays[] = {{true, false, {0, 0}, 0},           {false, false, {0.3, 0}, 0},
+                               {false, false, {0.15, 0.15}, 0.15}, {true, false, {kAny, kAny}, 0},
+                               {false, true, {0, 0}, 0},           {false, false, {0, 0}, 0}};
+
 class Refinement {
  public:
-  Refinement(FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal, const Progress& progress)
+  Refinement(FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal,
+             const std::vector<HardPlace>& hard, const Progress& progress)
       : surface_(surface),
         field_(field),
         goal_(goal),
+        hard_(hard),
         progress_(progress),
         proof_(field),
+        gaps_(field),
         mesh_(finished_mesh(surface)),
         edit_(mesh_) {
     held_.assign(mesh_.vertices().size(), 0);
@@ -180,20 +198,16 @@ class Refinement {
     return !changed_.empty();
   }
 
+  struct CreasePoint {
+    Crease crease;
+    BoundaryPoint at;
+  };
+
   // Halves an edge on the boundary, or divides it where it meets a crease; a vertex near the crease is moved onto it.
   void divide(const MeshEdge& e) {
-    if (const auto crease = crease_on(e)) {
-      const BoundaryPoint* on_crease = &crease->at;
-      const double share = (on_crease->position - point(e.a)).dot(point(e.b) - point(e.a)) / (length(e) * length(e));
-      const bool is_apart = (on_crease->position - middle_of(e)).norm() > length(e);
-      if (!is_apart && share > kNearEnd && share < 1 - kNearEnd) {
-        if (place({mesh_.splitting(e, finished_vertex(*on_crease, field_))}, crease->crease)) return;
-      } else if (!is_apart) {
-        const Index end = share <= kNearEnd ? e.a : e.b;
-        if (!held_[end] && !crease_at_[end] &&
-            place({mesh_.moving(end, finished_vertex(*on_crease, field_))}, crease->crease))
-          return;
-      }
+    const RefinementWay& way = way_at(middle_of(e));
+    if (const auto crease = crease_on(e, way)) {
+      if (divide_at(*crease, e, way)) return;
     }
     std::vector<Step> steps;
     const double lift = crease_at_[e.a] || crease_at_[e.b] || !is_balanced() ? 0 : 0.5 * (lift_of(e.a) + lift_of(e.b));
@@ -204,11 +218,42 @@ class Refinement {
         steps.push_back(mesh_.splitting(e, finished_vertex(at, field_)));
       }
     }
-    place(steps, std::nullopt);
+    place(steps, std::nullopt, way);
   }
 
-  bool place(const std::vector<Step>& steps, const std::optional<Crease>& crease) {
-    const Index placed = take(steps, kWorstSkewness);
+  bool divide_at(const CreasePoint& crease, const MeshEdge& e, const RefinementWay& way) {
+    const BoundaryPoint& at = crease.at;
+    const double share = (at.position - point(e.a)).dot(point(e.b) - point(e.a)) / (length(e) * length(e));
+    if ((at.position - middle_of(e)).norm() > length(e)) {
+      if (!way.descends) return false;
+      const BoundaryPoint lower = towards(at, middle_of(e), length(e));
+      return place({mesh_.splitting(e, finished_vertex(lower, field_))}, crease.crease, way);
+    }
+    if (share > kNearEnd && share < 1 - kNearEnd)
+      return place({mesh_.splitting(e, finished_vertex(at, field_))}, crease.crease, way);
+    const Index end = share <= kNearEnd ? e.a : e.b;
+    return !held_[end] && !crease_at_[end] &&
+           place({mesh_.moving(end, finished_vertex(at, field_))}, crease.crease, way);
+  }
+
+  // The way of the hard place around `p`.
+  const RefinementWay& way_at(const Vec3& p) const {
+    const auto it = std::find_if(hard_.begin(), hard_.end(), [&](const HardPlace& place) {
+      return (p - place.center).squaredNorm() < place.reach * place.reach;
+    });
+    return kWays[it == hard_.end() ? 0 : it->way];
+  }
+
+  // Takes the best of the steps by which no triangle turns over.
+  bool place(std::vector<Step> steps, const std::optional<Crease>& crease, const RefinementWay& way) {
+    Index placed = kNone;
+    for (const double least : way.upright_splits) {
+      std::vector<Step> upright;
+      std::copy_if(steps.begin(), steps.end(), std::back_inserter(upright),
+                   [&](const Step& step) { return stays_upright(step, least); });
+      placed = take(upright, kWorstSkewness);
+      if (placed != kNone) break;
+    }
     if (placed != kNone) crease_at_[placed] = crease;
     return placed != kNone;
   }
@@ -217,17 +262,30 @@ class Refinement {
   double lift_of(Index v) const { return field_.sample(point(v), cone(v)).distance; }
   Vec3 middle_of(const MeshEdge& e) const { return 0.5 * (point(e.a) + point(e.b)); }
 
-  struct CreasePoint {
-    Crease crease;
-    BoundaryPoint at;
-  };
-
   // Where the boundaries of two cones meet, near the middle of an edge that crosses there or runs along.
-  std::optional<CreasePoint> crease_on(const MeshEdge& e) const {
+  std::optional<CreasePoint> crease_on(const MeshEdge& e, const RefinementWay& way) const {
     for (const Crease& crease : creases_between(e)) {
       if (const auto at = onto_crease(field_, crease, middle_of(e), limit_of(e))) return CreasePoint{crease, *at};
     }
-    return std::nullopt;
+    return way.into_gaps ? end_of_gap(e) : std::nullopt;
+  }
+
+  // Of an edge from wall to wall across a gap: the end of the gap.
+  std::optional<CreasePoint> end_of_gap(const MeshEdge& e) const {
+    const FieldSample a = field_.sample(point(e.a), cone(e.a)), b = field_.sample(point(e.b), cone(e.b));
+    if (a.gradient.dot(b.gradient) > kFacing) return std::nullopt;
+    const Vec3 across = a.gradient - b.gradient;
+    const auto end = gaps_.end_from(middle_of(e), across, a.cone, 0, kTolerance * limit_of(e));
+    if (!end) return std::nullopt;
+    const Walls walls = gaps_.walls_at(end->position, across, end->sample.cone);
+    return CreasePoint{std::minmax(walls.first_cone, walls.second_cone), *end};
+  }
+
+  // The point on the way from p to a target, no farther than `most`.
+  BoundaryPoint towards(const BoundaryPoint& target, const Vec3& p, double most) const {
+    const Vec3 way = target.position - p;
+    const Vec3 at = p + std::min(1.0, most / way.norm()) * way;
+    return {at, field_.sample(at, target.sample.cone)};
   }
 
   std::vector<Crease> creases_between(const MeshEdge& e) const {
@@ -296,7 +354,8 @@ class Refinement {
     const bool is_nearer = off_now > kWorthAProof && off_then < 0.7 * off_now && then < kWorstSkewness;
     const bool is_better = then < now - kLeastGain && off_then < std::max(off_now, 0.7 * kWorthAProof);
     const bool is_regular = then < kRound && off_then < kWorthAProof * 0.9 && irregularity_after(e, c, d) < 0;
-    if ((is_nearer || is_better || is_regular) && stays_upright(step)) take({step}, kWorstSkewness);
+    if ((is_nearer || is_better || is_regular) && stays_upright(step, way_at(point(e.a)).upright))
+      take({step}, kWorstSkewness);
   }
 
   // How the squares of the differences from six edges at a vertex change by a flip.
@@ -317,14 +376,14 @@ class Refinement {
     return sum;
   }
 
-  bool stays_upright(const Step& step) const {
+  bool stays_upright(const Step& step, double least) const {
     return std::all_of(step.faces.begin(), step.faces.end(), [&](const Triangle& f) {
       const PlacedFace face = mesh_.placed(f, step);
       const Vec3 normal = (face.points[1] - face.points[0]).cross(face.points[2] - face.points[0]);
       const Vec3 center = (face.points[0] + face.points[1] + face.points[2]) / 3;
       const Vec3 gradient =
           field_.sample(center, step.vertex == kNone ? cone(f[0]) : step.target.binding.segment).gradient;
-      return normal.dot(gradient) > kUpright * normal.norm() * gradient.norm();
+      return normal.dot(gradient) > least * normal.norm() * gradient.norm();
     });
   }
 
@@ -346,18 +405,21 @@ class Refinement {
     }
     const double most = kShareOfLimit * limit_at(v);
     const double lift = is_balanced() ? std::clamp(height - sum / area, -most, most) : 0;
-    const double off_now = off_around(v);
+    const double off_now = off_around(v), upright = way_at(point(v)).upright;
     const Vec3 way = best_way(shape, u, w, kLongestMove * mesh_.mean_edge(v));
     for (const double share : {1.0, 0.5, 0.0}) {
       const Vec3 p = point(v) + share * way;
       const auto on_crease = crease_at_[v] ? onto_crease(field_, *crease_at_[v], p, limit_at(v)) : std::nullopt;
       if (crease_at_[v] && !on_crease) continue;
-      const BoundaryPoint target = on_crease ? *on_crease : project_to_boundary(field_, p, cone(v), kTolerance, lift);
+      const BoundaryPoint target = on_crease ? towards(*on_crease, p, mesh_.mean_edge(v))
+                                             : project_to_boundary(field_, p, cone(v), kTolerance, lift);
+      const bool is_lower = on_crease && height > most && target.sample.distance < 0.9 * height;
       const Step step = mesh_.moving(v, finished_vertex(target, field_));
       const double worst = std::max(worst_now(step), kRound);
       const bool is_rounder = energy(step) < (1 - kLeastGain) * shape.value;
       const bool is_lifted = !crease_at_[v] && std::abs(lift - height) > kWorthALift * most;
-      if (!(is_rounder || is_lifted) || worst_skewness(step) > worst || !stays_upright(step)) continue;
+      if (!(is_rounder || is_lifted || is_lower) || worst_skewness(step) > worst || !stays_upright(step, upright))
+        continue;
       if (off_around(v, target.position) > std::max(kWorthAProof * 0.9, off_now)) continue;
       if (take({step}, worst) != kNone) break;
     }
@@ -416,7 +478,10 @@ class Refinement {
       shares[i] = known.shares;
     });
     unproven_.clear();
-    for (const Index i : proof_.unproven(corners_, triangles, shares)) {
+    std::vector<Index> left = proof_.unproven(corners_, triangles, shares);
+    if (!left.empty() && left.size() < faces.size() / kMany)
+      left = proof_.unproven_if_bent(corners_, triangles, shares);
+    for (const Index i : left) {
       if (!is_at_opening(faces[i])) unproven_.push_back(faces[i]);
     }
   }
@@ -438,8 +503,10 @@ class Refinement {
   FinishedSurface& surface_;
   const VesselField& field_;
   const RefinementGoal& goal_;
+  const std::vector<HardPlace>& hard_;
   const Progress& progress_;
   ErrorProof proof_;
+  Gaps gaps_;
   FinishedMesh mesh_;
   GuardedEdit<FinishedVertex> edit_;
   std::vector<char> held_;                        // by vertex
@@ -458,9 +525,11 @@ class Refinement {
 
 }  // namespace
 
+int refinement_ways() { return static_cast<int>(std::size(kWays)); }
+
 std::vector<Index> refine(FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal,
-                          const Progress& progress) {
-  return Refinement(surface, field, goal, progress).run();
+                          const std::vector<HardPlace>& hard, const Progress& progress) {
+  return Refinement(surface, field, goal, hard, progress).run();
 }
 
 }  // namespace vmesh
