@@ -49,9 +49,10 @@ struct RefinementWay {
 
 // Of little consequence for most places; where walls meet at small angles, one finds a way where another is stuck.
 constexpr double kAny = -2;
-const RefinementWay kWays[] = {{true, false, {0, 0}, 0},           {false, false, {0.3, 0}, 0},
-                               {false, false, {0.15, 0.15}, 0.15}, {true, false, {kAny, kAny}, 0},
-                               {false, true, {0, 0}, 0},           {false, false, {0, 0}, 0}};
+const RefinementWay kWays[] = {{true, false, {0, 0}, 0},       {false, false, {kAny, kAny}, 0.3},
+                               {false, false, {0.3, 0}, 0},    {false, false, {0.15, 0.15}, 0.15},
+                               {true, false, {kAny, kAny}, 0}, {false, true, {0, 0}, 0},
+                               {false, false, {0, 0}, 0}};
 
 class Refinement {
  public:
