@@ -15,6 +15,9 @@ namespace {
 constexpr double kNeighbours = 3;
 /// The slack with which pairs are looked for, at least: in mean radii; and in largest movements of the last step.
 constexpr double kSlackInRadii = 0.25, kSlackInSteps = 3;
+/// Stiffness of barriers, in E A / r of the segment: that of a bent vessel about ten radii long, as vessels give way by
+/// bending. What presses harder comes nearer. At least what stops the segment's mass within a step.
+constexpr double kBarrier = 1e-3;
 /// Jaws are this much stiffer than the segment that they hold.
 constexpr double kJawFactor = 100;
 
@@ -85,8 +88,8 @@ Surroundings::Surroundings(const RodScene& scene, const ContactOptions& options)
     const Rod& rod = scene.rods[j];
     parent_.push_back(rod.parent == kNone ? j : rod.parent);
     radius_.push_back(rod.radius);
-    // E A / r, or what stops the node's mass within a step.
-    stiffness_.push_back(std::max(rod.stretch * std::max(rod.length / rod.radius, 1e-3), rod.mass / (step * step)));
+    const double section = rod.stretch * std::max(rod.length / rod.radius, 1e-3);  // E A / r
+    stiffness_.push_back(std::max(kBarrier * section, rod.mass / (step * step)));
   }
   present_ = trial_ = start_ = scene.pose.position;
   slot_boxes_.resize(scene.size());
