@@ -36,8 +36,8 @@ struct Slipping {
     if (way >= yield) return way - yield / 3;
     return way * way / yield * (1 - way / (3 * yield));
   }
-  /// The slope over the way: never larger than at 0, so that it bounds the curvature.
   double slope_over_way(double way) const { return way >= yield ? 1 / way : (2 - way / yield) / yield; }
+  double curvature(double way) const { return way >= yield ? 0 : 2 * (1 - way / yield) / yield; }
 };
 
 }  // namespace vmesh

@@ -14,8 +14,6 @@ constexpr int kMostTries = 40;
 constexpr int kChainedTries = 4;
 /// After an iteration that got less far, the next one relaxes without going on.
 constexpr double kStuck = 0.1;
-/// Converged: nothing moved by more than this share of the smallest reach of a barrier.
-constexpr double kConverged = 1e-2;
 
 }  // namespace
 
@@ -55,7 +53,7 @@ bool ImplicitRods::is_done(const RodScene& scene, const StepReport& report, bool
   if (report.movement_mm == 0 && stands) return true;
   if (report.iterations < scene.options.iterations) return false;
   if (report.iterations >= scene.options.iterations + around_->options().iterations) return true;
-  return left_ == 0 && (!around_->acts() || report.movement_mm <= kConverged * around_->smallest_reach());
+  return left_ == 0 && (!around_->acts() || report.movement_mm <= around_->precision());
 }
 
 /// One Gauss-Newton iteration, in which instruments and what is dragged go on if `goes` is 1, as far as there is room.

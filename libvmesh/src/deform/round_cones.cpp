@@ -9,9 +9,9 @@ namespace {
 
 /// Parallel lines have no point where they are nearest; from this sine squared on, the edges are tried, too.
 constexpr double kNearlyParallel = 1e-6;
-/// An advance ends where the gap is below this share of what it was, and never goes below half of that.
-constexpr double kKeptGap = 0.2;
-constexpr int kMostAdvances = 64;
+/// An advance keeps at least this share of the gap, of a narrow one nearly all, and ends once nearly there.
+constexpr double kKeptGap = 0.1, kKeptNarrow = 0.999, kNearlyThere = 0.1;
+constexpr int kMostAdvances = 128;
 
 /// Minimises |p + s q| - slope s for s in [0, 1]: convex.
 double best_on_edge(const Vec3& p, const Vec3& q, double slope) {
@@ -76,14 +76,15 @@ ConeGap gap_between(const RoundCone& first, const RoundCone& second) {
   return best;
 }
 
-double free_part(const ConeMotion& first, const ConeMotion& second, double gap) {
+double free_part(const ConeMotion& first, const ConeMotion& second, double gap, double least) {
   std::array<Vec3, 4> way{first.to.a - first.from.a, first.to.b - first.from.b, second.to.a - second.from.a,
                           second.to.b - second.from.b};
   const Vec3 common = 0.25 * (way[0] + way[1] + way[2] + way[3]);
   const auto longest = [&](std::size_t i) {
     return std::sqrt(std::max((way[i] - common).squaredNorm(), (way[i + 1] - common).squaredNorm()));
   };
-  const double most = longest(0) + longest(2), kept = kKeptGap * gap;
+  const double most = longest(0) + longest(2);
+  const double kept = gap > 2 * least ? std::max(kKeptGap * gap, least) : kKeptNarrow * gap;
   if (most <= gap - kept) return 1;
   const auto cone_at = [](const ConeMotion& m, double part) {
     return RoundCone{m.from.a + part * (m.to.a - m.from.a), m.from.b + part * (m.to.b - m.from.b), m.from.radius_a,
@@ -91,10 +92,10 @@ double free_part(const ConeMotion& first, const ConeMotion& second, double gap) 
   };
   double part = 0, now = gap;
   for (int i = 0; i < kMostAdvances; ++i) {
-    part += (now - 0.5 * kept) / most;
+    part += (now - kept) / most;
     if (part >= 1) return 1;
     now = gap_between(cone_at(first, part), cone_at(second, part)).gap;
-    if (now < kept) return part;
+    if (now - kept < kNearlyThere * (gap - kept)) return part;
   }
   return part;
 }

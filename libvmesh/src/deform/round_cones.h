@@ -22,11 +22,11 @@ struct ConeGap {
 ConeGap gap_between(const RoundCone& first, const RoundCone& second);
 
 /// How far two cones whose ends move along lines, both from `from` to `to`, can go without their gap, now `gap`,
-/// falling to a tenth: the part of the way, 1 for all of it. By conservative advancement: no gap changes by more than
-/// the ends move relative to each other.
+/// falling to a tenth, nor below `least` if it is above twice that: the part of the way, 1 for all of it. By
+/// conservative advancement: no gap changes by more than the ends move relative to each other.
 struct ConeMotion {
   RoundCone from, to;
 };
-double free_part(const ConeMotion& first, const ConeMotion& second, double gap);
+double free_part(const ConeMotion& first, const ConeMotion& second, double gap, double least);
 
 }  // namespace vmesh

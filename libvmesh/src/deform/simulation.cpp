@@ -146,6 +146,10 @@ void CenterlineSimulation::move_instrument(Index instrument, const InstrumentPos
   state_->touching.move_instrument(instrument, pose);
 }
 
+InstrumentPose CenterlineSimulation::instrument_pose(Index instrument) const {
+  return state_->touching.instrument_pose(instrument);
+}
+
 Index CenterlineSimulation::grasp(Index segment, double t, double slips_N) {
   return state_->touching.grasp(segment, t, slips_N);
 }

@@ -96,11 +96,12 @@ class Surroundings {
   double end(const RodScene& scene);
   /// Energy of barriers and jaws at the present, uJ.
   double stored() const;
+  const InstrumentPose& instrument_pose(Index instrument) const { return instruments_[instrument].at; }
   HandForce instrument_force(Index instrument) const { return instruments_[instrument].force; }
   HandForce jaw_force(Index jaw) const;
   Vec3 slope_at(Index slot) const;  ///< of the potential in a slot's position, mN
   double smallest_gap() const;      ///< of the pairs that are near; infinite if there is none
-  double smallest_reach() const;    ///< of their barriers; infinite if there is none
+  double precision() const;         ///< with which positions should be found, mm; infinite if nothing is near
   bool acts() const;                ///< some pair repels each other
 
  private:

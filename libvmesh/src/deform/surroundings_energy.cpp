@@ -10,8 +10,10 @@ namespace {
 /// What will come within reach is pushed ahead, to this share of the reach.
 constexpr double kAhead = 0.5;
 
+/// A step has converged when nothing moves by more than this share of a barrier's reach, or by what friction yields.
+constexpr double kConverged = 1e-2;
+
 Mat3 along(const Vec3& n, double stiffness) { return stiffness * n * n.transpose(); }
-Mat3 across(const Vec3& n, double stiffness) { return stiffness * (Mat3::Identity() - n * n.transpose()); }
 Vec3 across(const Vec3& n, const Vec3& v) { return v - n.dot(v) * n; }
 
 }  // namespace
@@ -109,19 +111,25 @@ Vec3 Surroundings::slipped(const Rub& rub, const std::vector<Vec3>& positions, S
   return across(rub.normal, Vec3(on_slot(rub.slot, rub.first_t, positions) - rub.first_start - second));
 }
 
+/// Stiff across the way, soft along it, where friction hardly grows any more.
 void Surroundings::add_friction(double part) {
   for (const Rub& rub : rubs_) {
     const Vec3 way = slipped(rub, present_, State::present);
-    const double stiffness = rub.load * Slipping{rub.yield}.slope_over_way(way.norm());
+    const double length = way.norm(), sideways = rub.load * Slipping{rub.yield}.slope_over_way(length);
+    const double lengthwise = rub.load * Slipping{rub.yield}.curvature(length);
+    const Vec3 x = length > 0 ? Vec3(way / length) : rub.normal.unitOrthogonal(), y = rub.normal.cross(x);
     if (rub.is_part) {
+      const Mat3 stiffness = along(x, lengthwise) + along(y, sideways);
       const Vec3 goes =
           part * (on_part(rub.other, rub.second_t, points_.aim) - on_part(rub.other, rub.second_t, points_.present));
-      press(rub.slot, rub.first_t, across(rub.normal, stiffness), stiffness * (way - across(rub.normal, goes)));
+      press(rub.slot, rub.first_t, stiffness, sideways * way - stiffness * goes);
       continue;
     }
-    const Vec3 x = rub.normal.unitOrthogonal(), y = rub.normal.cross(x);
-    for (const Vec3& axis : {x, y})
-      links_.push_back({rub.slot, rub.other, rub.first_t, rub.second_t, axis, stiffness, stiffness * axis.dot(way)});
+    // A link needs some stiffness; a thousandth of that at rest does not show.
+    const double least = 1e-3 * rub.load / rub.yield;
+    links_.push_back(
+        {rub.slot, rub.other, rub.first_t, rub.second_t, x, std::max(lengthwise, least), sideways * length});
+    links_.push_back({rub.slot, rub.other, rub.first_t, rub.second_t, y, std::max(sideways, least), 0});
   }
 }
 
@@ -178,10 +186,11 @@ double Surroundings::smallest_gap() const {
   return smallest;
 }
 
-double Surroundings::smallest_reach() const {
-  double smallest = HUGE_VAL;
-  for (const ContactPair& pair : pairs_) smallest = std::min(smallest, pair.barrier.reach);
-  return smallest;
+double Surroundings::precision() const {
+  double precision = HUGE_VAL;
+  for (const ContactPair& pair : pairs_) precision = std::min(precision, kConverged * pair.barrier.reach);
+  for (const Rub& rub : rubs_) precision = std::min(precision, rub.yield);
+  return precision;
 }
 
 bool Surroundings::acts() const {

@@ -117,6 +117,11 @@ HandForce Touching::drag_force(Index slot) const {
   return force;
 }
 
+InstrumentPose Touching::instrument_pose(Index instrument) const {
+  require_index(instrument, around_ ? around_->instrument_count() : 0, "instrument");
+  return around_->instrument_pose(instrument);
+}
+
 HandForce Touching::instrument_force(Index instrument) const {
   require_index(instrument, around_ ? around_->instrument_count() : 0, "instrument");
   return around_->instrument_force(instrument);

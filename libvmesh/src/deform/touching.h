@@ -24,6 +24,7 @@ class Touching {
   void open_jaw(Index jaw);
   void set_tissue(Index segment, const TissueProperties& tissue);
 
+  InstrumentPose instrument_pose(Index instrument) const;
   Vec3 jaw_position(Index jaw) const;
   HandForce drag_force(Index slot) const;
   HandForce instrument_force(Index instrument) const;

@@ -87,6 +87,7 @@ class CenterlineSimulation {
   Index add_instrument(const InstrumentShape& shape, const InstrumentPose& pose);
   /// The next step moves it there, as far as there is room: HandForce::behind_mm.
   void move_instrument(Index instrument, const InstrumentPose& pose);
+  InstrumentPose instrument_pose(Index instrument) const;
   /// Jaws close on a segment at `t` in [0, 1] from its node a. Above `slips_N` the vessel slips through them, until
   /// they lose it at its end or sideways.
   Index grasp(Index segment, double t, double slips_N = std::numeric_limits<double>::infinity());
