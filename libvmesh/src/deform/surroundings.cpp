@@ -19,7 +19,7 @@ constexpr double kSlackInRadii = 0.25, kSlackInSteps = 3;
 /// bending. What presses harder comes nearer. At least what stops the segment's mass within a step.
 constexpr double kBarrier = 1e-3;
 /// Gaps narrower than this share of a barrier's reach, which holds a hundred times what crushes a vessel, are kept.
-constexpr double kNarrowest = 1e-5;
+constexpr double kNarrowestGap = 1e-5;
 /// Jaws are this much stiffer than the segment that they hold.
 constexpr double kJawFactor = 100;
 
@@ -381,7 +381,7 @@ double Surroundings::free_part(const RodScene& scene) {
     ConeMotion first{cone_of(pair.slot, present_), cone_of(pair.slot, trial_)};
     const ConeMotion second{second_cone(pair, present_, points_.present), second_cone(pair, trial_, points_.trial)};
     first.from.radius_a -= pair.rest_excess, first.from.radius_b -= pair.rest_excess;
-    part = std::min(part, vmesh::free_part(first, second, pair.now.gap, kNarrowest * pair.barrier.reach));
+    part = std::min(part, vmesh::free_part(first, second, pair.now.gap, kNarrowestGap * pair.barrier.reach));
   }
   return part;
 }
