@@ -10,6 +10,8 @@ namespace {
 /// Relative rounding of the energy's sum of terms, and attempts at a move.
 constexpr double kRoundingOfEnergy = 1e-12;
 constexpr int kMostTries = 40;
+/// Solutions in an iteration with more and more pairs stopped.
+constexpr int kMostStops = 3;
 /// Tries after which nodes move along straight lines, so that a shorter move is part of a longer one.
 constexpr int kChainedTries = 4;
 /// After an iteration that got less far, the next one relaxes without going on.
@@ -68,8 +70,7 @@ double ImplicitRods::iterate_among(RodScene& scene, bool first, double goes, Ste
   }
   aim_held(scene, goes);
   RodMove by{pose_, pose_ == 1 ? std::size_t{2} : std::size_t{1}};
-  move_sums_ = {};
-  solve(scene, &by);
+  solve_among(scene, by, goes);
   standing += sum(begin_sums_.value);
   if (first) energy_bound_ = around_->moves() ? HUGE_VAL : standing_energy(scene, standing, goes) + tissue_offset_;
   double free = look_at(scene, by, goes);
@@ -87,6 +88,30 @@ double ImplicitRods::iterate_among(RodScene& scene, bool first, double goes, Ste
   if (goes > 0) left_ = by.part == 1 ? 0 : left_ * (1 - by.part);
   aim_held(scene, 1);
   return by.part * std::sqrt(largest(move_sums_.largest));
+}
+
+/// Solves and moves. What the solution lets run into each other is stopped, and it is solved again.
+void ImplicitRods::solve_among(const RodScene& scene, const RodMove& by, double goes) {
+  move_sums_ = {};
+  if (!around_->is_near()) return solve(scene, &by);
+  for (int i = 0;; ++i) {
+    solve(scene, nullptr);
+    if (i == kMostStops) break;
+    for (const Index batch : visited_batches_) {
+      const RodBatch& b = batches_.batches[batch];
+      for (std::size_t l = 0; l < kLanes; ++l)
+        if (visited_[batch * kLanes + l])
+          around_->trial()[b.slot[l]] =
+              around_->present()[b.slot[l]] + Vec3(b.x.linear.x[l], b.x.linear.y[l], b.x.linear.z[l]);
+    }
+    around_->try_part(goes);
+    if (!around_->stop(goes)) break;
+    const std::size_t count = around_->loaded_slots().size();
+    if (loaded_.size() < count) loaded_.resize(count);
+    eliminated_ = false;
+    for (Loaded& loaded : loaded_) loaded.done = false;
+  }
+  move(by);
 }
 
 /// How much of a move is free.

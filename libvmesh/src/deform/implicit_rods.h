@@ -59,6 +59,7 @@ class ImplicitRods {
   void begin_slots(RodScene& scene);
   void begin_batch(const RodScene& scene, Index batch, const char* active);
   bool is_done(const RodScene& scene, const StepReport& report, bool stands) const;
+  void solve_among(const RodScene& scene, const RodMove& by, double goes);
   double look_at(const RodScene& scene, const RodMove& by, double goes);
   bool is_lower(const RodScene& scene, const RodMove& by, double standing, double goes);
   static void shorten(RodMove& by, double free, int attempt);

@@ -76,6 +76,11 @@ ConeGap gap_between(const RoundCone& first, const RoundCone& second) {
   return best;
 }
 
+RoundCone between(const ConeMotion& m, double part) {
+  return {m.from.a + part * (m.to.a - m.from.a), m.from.b + part * (m.to.b - m.from.b), m.from.radius_a,
+          m.from.radius_b};
+}
+
 double free_part(const ConeMotion& first, const ConeMotion& second, double gap, double least) {
   std::array<Vec3, 4> way{first.to.a - first.from.a, first.to.b - first.from.b, second.to.a - second.from.a,
                           second.to.b - second.from.b};
@@ -86,15 +91,11 @@ double free_part(const ConeMotion& first, const ConeMotion& second, double gap, 
   const double most = longest(0) + longest(2);
   const double kept = gap > 2 * least ? std::max(kKeptGap * gap, least) : kKeptNarrow * gap;
   if (most <= gap - kept) return 1;
-  const auto cone_at = [](const ConeMotion& m, double part) {
-    return RoundCone{m.from.a + part * (m.to.a - m.from.a), m.from.b + part * (m.to.b - m.from.b), m.from.radius_a,
-                     m.from.radius_b};
-  };
   double part = 0, now = gap;
   for (int i = 0; i < kMostAdvances; ++i) {
     part += (now - kept) / most;
     if (part >= 1) return 1;
-    now = gap_between(cone_at(first, part), cone_at(second, part)).gap;
+    now = gap_between(between(first, part), between(second, part)).gap;
     if (now - kept < kNearlyThere * (gap - kept)) return part;
   }
   return part;

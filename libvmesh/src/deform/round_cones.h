@@ -27,6 +27,7 @@ ConeGap gap_between(const RoundCone& first, const RoundCone& second);
 struct ConeMotion {
   RoundCone from, to;
 };
+RoundCone between(const ConeMotion& motion, double part);
 double free_part(const ConeMotion& first, const ConeMotion& second, double gap, double least);
 
 }  // namespace vmesh

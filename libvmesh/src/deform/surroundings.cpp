@@ -16,8 +16,10 @@ constexpr double kNeighbours = 3;
 /// The slack with which pairs are looked for, at least: in mean radii; and in largest movements of the last step.
 constexpr double kSlackInRadii = 0.25, kSlackInSteps = 3;
 /// Stiffness of barriers, in E A / r of the segment: that of a bent vessel about ten radii long, as vessels give way by
-/// bending. What presses harder comes nearer. At least what stops the segment's mass within a step.
+/// bending. What presses harder comes nearer. At least what stops the mass of everything below within a step.
 constexpr double kBarrier = 1e-3;
+/// Stiffness of what stops pairs that run into each other, in the larger of E A / r and what stops the mass below.
+constexpr double kStop = 100;
 /// Gaps narrower than this share of a barrier's reach, which holds a hundred times what crushes a vessel, are kept.
 constexpr double kNarrowestGap = 1e-5;
 /// Jaws are this much stiffer than the segment that they hold.
@@ -86,12 +88,18 @@ InstrumentPose InstrumentPath::at(double time) const {
 
 Surroundings::Surroundings(const RodScene& scene, const ContactOptions& options) : boxes_(scene.size()) {
   const double step = scene.options.step_s;
+  std::vector<double> mass(scene.size(), 0);  // of everything below a slot
+  for (Index j = static_cast<Index>(scene.size()); j-- > 0;) {
+    mass[j] += scene.rods[j].mass;
+    if (!scene.is_root(j)) mass[scene.rods[j].parent] += mass[j];
+  }
   for (Index j = 0; j < scene.size(); ++j) {
     const Rod& rod = scene.rods[j];
     parent_.push_back(rod.parent == kNone ? j : rod.parent);
     radius_.push_back(rod.radius);
     const double section = rod.stretch * std::max(rod.length / rod.radius, 1e-3);  // E A / r
-    stiffness_.push_back(std::max(kBarrier * section, rod.mass / (step * step)));
+    stiffness_.push_back(std::max(kBarrier * section, mass[j] / (step * step)));
+    stop_stiffness_.push_back(kStop * std::max(section, mass[j] / (step * step)));
   }
   present_ = trial_ = start_ = scene.pose.position;
   slot_boxes_.resize(scene.size());
@@ -256,10 +264,17 @@ void Surroundings::begin(const RodScene& scene) {
 
 /// Finds pairs anew if this step may go farther than the slack of those found before.
 void Surroundings::expect(const RodScene& scene) {
-  double way = 0;
-  for (std::size_t j = 0; j < present_.size(); ++j) way = std::max(way, (present_[j] - start_[j]).squaredNorm());
+  double way = 0, speed = 0, pulled = 0;
+  for (std::size_t j = 0; j < present_.size(); ++j) {
+    way = std::max(way, (present_[j] - start_[j]).squaredNorm());
+    speed = std::max(speed, scene.velocity[j].squaredNorm());
+    if (scene.hold[j] != Hold::free) pulled = std::max(pulled, (scene.target[j] - present_[j]).squaredNorm());
+  }
+  for (std::size_t p = 0; p < points_.aim.size(); ++p)
+    pulled = std::max(pulled, (points_.aim[p] - points_.present[p]).squaredNorm());
+  for (const Jaw& jaw : jaws_) pulled = std::max(pulled, (jaw.aim - jaw.at).squaredNorm());
   start_ = present_;
-  last_way_ = std::max(std::sqrt(way), 0.5 * last_way_);
+  last_way_ = std::max({std::sqrt(way), scene.options.step_s * std::sqrt(speed), std::sqrt(pulled), 0.5 * last_way_});
   if (slack_ >= 0 && farthest(present_, points_.aim) + last_way_ <= slack_) {
     for (ContactPair& pair : pairs_) pair.now = gap_of(pair, present_, points_.present);
     return;
@@ -267,7 +282,8 @@ void Surroundings::expect(const RodScene& scene) {
   double mean = 0;
   for (const double r : radius_) mean += r;
   mean /= static_cast<double>(radius_.size());
-  find_pairs(scene, std::max(kSlackInRadii * mean, kSlackInSteps * last_way_));
+  expected_way_ = std::max(kSlackInRadii * mean, last_way_);
+  find_pairs(scene, std::max(kSlackInRadii * mean, 1.5 * last_way_));
 }
 
 /// The profile may widen a vessel only as far as there is room: a fifth of every gap remains.
@@ -370,19 +386,28 @@ void Surroundings::try_part(double part) {
   for (std::size_t i = 0; i < jaws_.size(); ++i) jaw_trial_[i] = jaws_[i].at + part * (jaws_[i].aim - jaws_[i].at);
 }
 
+Surroundings::PairMotion Surroundings::motion_of(const ContactPair& pair) const {
+  PairMotion motion{{cone_of(pair.slot, present_), cone_of(pair.slot, trial_)},
+                    {second_cone(pair, present_, points_.present), second_cone(pair, trial_, points_.trial)}};
+  motion.first.from.radius_a -= pair.rest_excess, motion.first.from.radius_b -= pair.rest_excess;
+  return motion;
+}
+
+double Surroundings::free_part_of(const ContactPair& pair) const {
+  const PairMotion motion = motion_of(pair);
+  return vmesh::free_part(motion.first, motion.second, pair.now.gap, kNarrowestGap * pair.barrier.reach);
+}
+
 double Surroundings::free_part(const RodScene& scene) {
+  double part = 1;
   if (farthest(trial_, points_.trial) > slack_) {
     double way = 0;
     for (std::size_t j = 0; j < present_.size(); ++j) way = std::max(way, (trial_[j] - present_[j]).norm());
-    find_pairs(scene, std::max(slack_, kSlackInSteps * way));
+    find_pairs(scene, std::max(slack_, std::min(1.5 * way, kSlackInSteps * expected_way_)));
+    const double far = farthest(trial_, points_.trial);
+    if (far > slack_) part = slack_ / far;
   }
-  double part = 1;
-  for (const ContactPair& pair : pairs_) {
-    ConeMotion first{cone_of(pair.slot, present_), cone_of(pair.slot, trial_)};
-    const ConeMotion second{second_cone(pair, present_, points_.present), second_cone(pair, trial_, points_.trial)};
-    first.from.radius_a -= pair.rest_excess, first.from.radius_b -= pair.rest_excess;
-    part = std::min(part, vmesh::free_part(first, second, pair.now.gap, kNarrowestGap * pair.barrier.reach));
-  }
+  for (const ContactPair& pair : pairs_) part = std::min(part, free_part_of(pair));
   return part;
 }
 

@@ -69,6 +69,7 @@ class Surroundings {
   void begin(const RodScene& scene);
   bool moves() const { return moves_; }  ///< some instrument or jaw is not where it aims
   bool couples() const { return options_.self; }
+  bool is_near() const { return !pairs_.empty(); }  ///< some pair may come within reach
   /// Slots that what moves may touch in this step, or that a jaw holds.
   const std::vector<Index>& near_slots() const { return near_slots_; }
 
@@ -82,6 +83,9 @@ class Surroundings {
   const std::vector<SegmentLoad>& loads() const { return loads_; }
   Index load_index(Index slot) const { return load_of_slot_[slot]; }  ///< kNone: nothing acts on it
   const std::vector<VesselLink>& links() const { return links_; }
+  /// Adds what stops pairs that would run into each other if slots went straight to the trial's positions, and
+  /// everything `part` of the rest of its way. False if there is none but those stopped already since linearise().
+  bool stop(double part);
 
   /// Puts instruments and jaws on trial that go `part` of the rest of their way.
   void try_part(double part);
@@ -126,6 +130,7 @@ class Surroundings {
     Barrier barrier;
     double rest_excess;  // the gap counts as larger by this: the two were nearer at rest
     ConeGap now, next;
+    bool stopped = false;
   };
   /// Friction at a contact of the step's start.
   struct Rub {
@@ -160,6 +165,11 @@ class Surroundings {
   ConeGap gap_of(const ContactPair& pair, const std::vector<Vec3>& positions, const std::vector<Vec3>& points) const;
   Vec3 on_slot(Index slot, double t, const std::vector<Vec3>& positions) const;
   Vec3 on_part(Index part, double t, const std::vector<Vec3>& points) const;
+  struct PairMotion {
+    ConeMotion first, second;
+  };
+  PairMotion motion_of(const ContactPair& pair) const;
+  double free_part_of(const ContactPair& pair) const;
   Vec3 surface_way(const Rub& rub, State state) const;
   Vec3 slipped(const Rub& rub, const std::vector<Vec3>& positions, State state) const;
   SegmentLoad& load(Index slot);
@@ -176,7 +186,7 @@ class Surroundings {
 
   ContactOptions options_;
   std::vector<Index> parent_;
-  std::vector<double> radius_, stiffness_;  // by slot
+  std::vector<double> radius_, stiffness_, stop_stiffness_;  // by slot
   std::vector<Instrument> instruments_;
   std::vector<Part> parts_;
   Points points_;
@@ -188,7 +198,7 @@ class Surroundings {
   SlotBoxes boxes_;
   std::vector<SlotBox> slot_boxes_;
   std::vector<Vec3> found_at_, points_found_at_, points_found_aim_;
-  double slack_ = -1, last_way_ = 0;
+  double slack_ = -1, last_way_ = 0, expected_way_ = 0;
   bool moves_ = false;
   std::vector<ContactPair> pairs_;
   std::vector<Rub> rubs_;

@@ -10,6 +10,8 @@ namespace {
 /// What will come within reach is pushed ahead, to this share of the reach.
 constexpr double kAhead = 0.5;
 
+/// Where what runs into each other is stopped, as a share of the gap, or of the barrier's reach if that is less.
+constexpr double kStopsAt = 0.3;
 /// A step has converged when nothing moves by more than this share of a barrier's reach, or by what friction yields.
 constexpr double kConverged = 1e-2;
 
@@ -36,6 +38,7 @@ void Surroundings::press(Index slot, double t, const Mat3& stiffness, const Vec3
 }
 
 void Surroundings::linearise(double part) {
+  for (ContactPair& pair : pairs_) pair.stopped = false;
   for (const Index slot : loaded_slots_) load_of_slot_[slot] = kNone;
   loaded_slots_.clear();
   links_.clear();
@@ -63,6 +66,37 @@ void Surroundings::add_contacts(double part) {
     else if (stiffness > 0)
       links_.push_back({pair.slot, pair.other, s, t, n, stiffness, slope});
   }
+}
+
+/// Barriers are soft from afar. What would run into each other in a long step is stopped a share of the gap before,
+/// along the direction in which it meets.
+bool Surroundings::stop(double part) {
+  bool found = false;
+  for (ContactPair& pair : pairs_) {
+    if (pair.stopped) continue;
+    const double free = free_part_of(pair);
+    if (free >= 1) continue;
+    const PairMotion motion = motion_of(pair);
+    const ConeGap meets = gap_between(between(motion.first, free), between(motion.second, free));
+    const Vec3& n = meets.direction;
+    const double s = meets.first_t, t = meets.second_t;
+    const Vec3 first = on_slot(pair.slot, s, trial_) - on_slot(pair.slot, s, present_);
+    const Vec3 goes = pair.is_part
+                          ? Vec3(part * (on_part(pair.other, t, points_.aim) - on_part(pair.other, t, points_.present)))
+                          : Vec3::Zero();
+    const Vec3 second = pair.is_part ? goes : Vec3(on_slot(pair.other, t, trial_) - on_slot(pair.other, t, present_));
+    const double left = kStopsAt * std::min(pair.now.gap, pair.barrier.reach);
+    // The way of the first relative to the second along n, so that the gap ends at `left`.
+    const double way = left - meets.gap + free * n.dot(first - second);
+    const double stiffness =
+        pair.is_part ? stop_stiffness_[pair.slot] : std::min(stop_stiffness_[pair.slot], stop_stiffness_[pair.other]);
+    pair.stopped = found = true;
+    if (pair.is_part)
+      press(pair.slot, s, along(n, stiffness), -stiffness * (way + n.dot(goes)) * n);
+    else
+      links_.push_back({pair.slot, pair.other, s, t, n, stiffness, -stiffness * way});
+  }
+  return found;
 }
 
 void Surroundings::note_friction(const RodScene& scene) {
