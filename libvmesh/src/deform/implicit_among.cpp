@@ -11,7 +11,7 @@ namespace {
 constexpr double kRoundingOfEnergy = 1e-12;
 constexpr int kMostTries = 40;
 /// Solutions in an iteration with more and more pairs stopped.
-constexpr int kMostStops = 3;
+constexpr int kMostStops = 5;
 /// Tries after which nodes move along straight lines, so that a shorter move is part of a longer one.
 constexpr int kChainedTries = 4;
 /// After an iteration that got less far, the next one relaxes without going on.

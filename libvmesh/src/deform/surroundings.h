@@ -168,6 +168,18 @@ class Surroundings {
   struct PairMotion {
     ConeMotion first, second;
   };
+  /// Two that would meet: the first may go no less than `way` relative to the second (of a part: relative to where it
+  /// is now) along the direction, which points to the first.
+  struct Stop {
+    Index slot, other;
+    bool is_part;
+    double first_t, second_t;
+    Vec3 direction;
+    double stiffness, way;
+  };
+  double way_at(const Stop& stop, const std::vector<Vec3>& positions) const;
+  void add_stop(ContactPair& pair, double free, double part);
+  void linearise_again(double part);
   PairMotion motion_of(const ContactPair& pair) const;
   double free_part_of(const ContactPair& pair) const;
   Vec3 surface_way(const Rub& rub, State state) const;
@@ -202,6 +214,7 @@ class Surroundings {
   bool moves_ = false;
   std::vector<ContactPair> pairs_;
   std::vector<Rub> rubs_;
+  std::vector<Stop> stops_;
   std::vector<Index> near_slots_;
 
   std::vector<SegmentLoad> loads_;

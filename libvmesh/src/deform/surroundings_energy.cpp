@@ -12,6 +12,8 @@ constexpr double kAhead = 0.5;
 
 /// Where what runs into each other is stopped, as a share of the gap, or of the barrier's reach if that is less.
 constexpr double kStopsAt = 0.3;
+/// What meets within this many times the way to where the first meet is stopped with these.
+constexpr double kSoon = 2;
 /// A step has converged when nothing moves by more than this share of a barrier's reach, or by what friction yields.
 constexpr double kConverged = 1e-2;
 
@@ -39,6 +41,7 @@ void Surroundings::press(Index slot, double t, const Mat3& stiffness, const Vec3
 
 void Surroundings::linearise(double part) {
   for (ContactPair& pair : pairs_) pair.stopped = false;
+  stops_.clear();
   for (const Index slot : loaded_slots_) load_of_slot_[slot] = kNone;
   loaded_slots_.clear();
   links_.clear();
@@ -69,34 +72,61 @@ void Surroundings::add_contacts(double part) {
 }
 
 /// Barriers are soft from afar. What would run into each other in a long step is stopped a share of the gap before,
-/// along the direction in which it meets.
+/// along the direction in which it meets: first what meets first. A stop that pulls is left out again.
 bool Surroundings::stop(double part) {
-  bool found = false;
-  for (ContactPair& pair : pairs_) {
-    if (pair.stopped) continue;
-    const double free = free_part_of(pair);
-    if (free >= 1) continue;
-    const PairMotion motion = motion_of(pair);
-    const ConeGap meets = gap_between(between(motion.first, free), between(motion.second, free));
-    const Vec3& n = meets.direction;
-    const double s = meets.first_t, t = meets.second_t;
-    const Vec3 first = on_slot(pair.slot, s, trial_) - on_slot(pair.slot, s, present_);
-    const Vec3 goes = pair.is_part
-                          ? Vec3(part * (on_part(pair.other, t, points_.aim) - on_part(pair.other, t, points_.present)))
-                          : Vec3::Zero();
-    const Vec3 second = pair.is_part ? goes : Vec3(on_slot(pair.other, t, trial_) - on_slot(pair.other, t, present_));
-    const double left = kStopsAt * std::min(pair.now.gap, pair.barrier.reach);
-    // The way of the first relative to the second along n, so that the gap ends at `left`.
-    const double way = left - meets.gap + free * n.dot(first - second);
-    const double stiffness =
-        pair.is_part ? stop_stiffness_[pair.slot] : std::min(stop_stiffness_[pair.slot], stop_stiffness_[pair.other]);
-    pair.stopped = found = true;
-    if (pair.is_part)
-      press(pair.slot, s, along(n, stiffness), -stiffness * (way + n.dot(goes)) * n);
-    else
-      links_.push_back({pair.slot, pair.other, s, t, n, stiffness, -stiffness * way});
+  const std::size_t before = stops_.size();
+  std::erase_if(stops_, [&](const Stop& stop) { return way_at(stop, trial_) > stop.way + 1e-9 * std::abs(stop.way); });
+  const bool left_out = stops_.size() < before;
+  std::vector<double> free(pairs_.size(), 1);
+  double first = 1;
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    if (!pairs_[i].stopped) first = std::min(first, free[i] = free_part_of(pairs_[i]));
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    if (free[i] < 1 && free[i] <= kSoon * first) add_stop(pairs_[i], free[i], part);
+  if (first >= 1 && !left_out) return false;
+  linearise_again(part);
+  return true;
+}
+
+double Surroundings::way_at(const Stop& stop, const std::vector<Vec3>& positions) const {
+  const auto way = [&](Index slot, double t) { return Vec3(on_slot(slot, t, positions) - on_slot(slot, t, present_)); };
+  const Vec3 first = way(stop.slot, stop.first_t);
+  return stop.direction.dot(stop.is_part ? first : Vec3(first - way(stop.other, stop.second_t)));
+}
+
+void Surroundings::add_stop(ContactPair& pair, double free, double part) {
+  pair.stopped = true;
+  const PairMotion motion = motion_of(pair);
+  const ConeGap meets = gap_between(between(motion.first, free), between(motion.second, free));
+  const double stiffness =
+      pair.is_part ? stop_stiffness_[pair.slot] : std::min(stop_stiffness_[pair.slot], stop_stiffness_[pair.other]);
+  Stop stop{pair.slot, pair.other, pair.is_part, meets.first_t, meets.second_t, meets.direction, stiffness, 0};
+  const double left = kStopsAt * std::min(pair.now.gap, pair.barrier.reach);
+  // The way of the first relative to the second along the direction, at whose end the gap is `left`.
+  stop.way = left - meets.gap - pair.rest_excess + free * way_at(stop, trial_);
+  if (pair.is_part) {
+    const Vec3 goes =
+        part * (on_part(pair.other, stop.second_t, points_.aim) - on_part(pair.other, stop.second_t, points_.present));
+    stop.way += (1 - free) * stop.direction.dot(goes);
   }
-  return found;
+  stops_.push_back(stop);
+}
+
+void Surroundings::linearise_again(double part) {
+  const std::vector<Stop> stops = stops_;
+  std::vector<char> stopped;
+  for (const ContactPair& pair : pairs_) stopped.push_back(pair.stopped ? 1 : 0);
+  linearise(part);
+  stops_ = stops;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) pairs_[i].stopped = stopped[i] != 0;
+  for (const Stop& stop : stops_) {
+    if (stop.is_part)
+      press(stop.slot, stop.first_t, along(stop.direction, stop.stiffness),
+            -stop.stiffness * stop.way * stop.direction);
+    else
+      links_.push_back({stop.slot, stop.other, stop.first_t, stop.second_t, stop.direction, stop.stiffness,
+                        -stop.stiffness * stop.way});
+  }
 }
 
 void Surroundings::note_friction(const RodScene& scene) {
