@@ -242,8 +242,8 @@ class ContactScene {
 };
 
 TEST(ContactScenes, NothingOverlapsAndNoEnergyFromNowhere) {
-  const int first = number_from("VMESH_CONTACT_FIRST", 1), scenes = number_from("VMESH_CONTACT_SCENES", 24);
-  const int steps = number_from("VMESH_CONTACT_STEPS", 100);
+  const int first = number_from("VMESH_CONTACT_FIRST", 1), scenes = number_from("VMESH_CONTACT_SCENES", 16);
+  const int steps = number_from("VMESH_CONTACT_STEPS", 50);
   int touched = 0;
   for (int seed = first; seed < first + scenes; ++seed) {
     SCOPED_TRACE("scene " + std::to_string(seed));

@@ -14,6 +14,9 @@ constexpr int kMostTries = 40;
 constexpr int kMostStops = 5;
 /// Tries after which nodes move along straight lines, so that a shorter move is part of a longer one.
 constexpr int kChainedTries = 4;
+/// The part of its way for which everything is made to go at once, at least; it is shorter after one that was too long
+/// for what is linear.
+constexpr double kLeastStride = 1e-3;
 /// After an iteration that got less far, the next one relaxes without going on.
 constexpr double kStuck = 0.1;
 
@@ -36,13 +39,13 @@ StepReport ImplicitRods::step_among(RodScene& scene) {
   tissue_offset_ = around_work_ = 0;
   around_before_ = around_->stored();
   around_->try_part(1);
-  linearise(1);
+  linearise(stride_);
   begin_slots(scene);
   left_ = around_->moves() || !pulled_places_.empty() ? 1 : 0;
   bool relaxes = false, done = false;
   for (int i = 0; !done; ++i) {
     const double left = left_;
-    report.movement_mm = iterate_among(scene, i == 0, relaxes ? 0 : 1, report);
+    report.movement_mm = iterate_among(scene, i == 0, relaxes ? 0 : stride_, report);
     ++report.iterations;
     relaxes = !relaxes && left_ > 0 && left_ > (1 - kStuck) * left;
     done = is_done(scene, report, left == left_ && !relaxes);
@@ -69,6 +72,7 @@ double ImplicitRods::iterate_among(RodScene& scene, bool first, double goes, Ste
     linearise(goes);
   }
   aim_held(scene, goes);
+  if (goes < 1) eliminated_ = false;
   RodMove by{pose_, pose_ == 1 ? std::size_t{2} : std::size_t{1}};
   solve_among(scene, by, goes);
   standing += sum(begin_sums_.value);
@@ -85,7 +89,10 @@ double ImplicitRods::iterate_among(RodScene& scene, bool first, double goes, Ste
   }
   around_->accept();
   pose_ = by.to;
-  if (goes > 0) left_ = by.part == 1 ? 0 : left_ * (1 - by.part);
+  if (goes > 0) {
+    left_ = goes * by.part == 1 ? 0 : left_ * (1 - goes * by.part);
+    stride_ = std::clamp(by.part < 0.5 ? 2 * goes * by.part : 4 * goes, kLeastStride, 1.0);
+  }
   aim_held(scene, 1);
   return by.part * std::sqrt(largest(move_sums_.largest));
 }

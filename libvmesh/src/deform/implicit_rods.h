@@ -135,6 +135,7 @@ class ImplicitRods {
   Surroundings* around_ = nullptr;
   double around_before_ = 0, around_after_ = 0, around_work_ = 0;
   double tissue_offset_ = 0;  // of the objective, left out of its sums
+  double stride_ = 1;         // part of the rest of its way that everything is to go in an iteration
   double left_ = 0;           // of the way of what is dragged and of instruments, in this step
   std::vector<Loaded> loaded_;
   std::vector<VesselLink> links_;

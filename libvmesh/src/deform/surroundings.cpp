@@ -423,8 +423,8 @@ HandForce Surroundings::jaw_force(Index jaw) const {
   const Jaw& j = jaws_[jaw];
   HandForce force;
   force.holds = j.holds;
-  force.behind_mm = (j.aim - j.at).norm();
   if (!j.holds) return force;
+  force.behind_mm = (j.aim - j.at).norm();
   const Vec3 way = on_slot(j.slot, j.t, present_) - j.at;
   force.force_N = 1e-3 * j.slope_over_way(way.norm()) * way;
   return force;
