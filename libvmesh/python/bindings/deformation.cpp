@@ -267,7 +267,7 @@ void bind_hands(DeformationClass& deformation) {
           "Lets go of the vessel.")
       .def(
           "jaw_position", [](Deformation& d, Index jaw) { return array_of(d.simulation().jaw_position(jaw)); },
-          py::arg("jaw"), "Where jaws are, mm.")
+          py::arg("jaw"), "Where jaws are, (3,) mm.")
       .def(
           "set_tissue",
           [](Deformation& d, Index segment, double stiffness, double tear) {
@@ -333,10 +333,10 @@ void bind_deformation(py::module_& module) {
       .def_readonly("awake", &StepReport::awake, "Nodes that are not at rest.");
   py::class_<HandForce>(module, "HandForce", "What pulls at a hand at the end of a step.")
       .def_property_readonly(
-          "force", [](const HandForce& f) { return array_of(f.force_N); }, "N.")
+          "force", [](const HandForce& f) { return array_of(f.force_N); }, "(3,), N.")
       .def_property_readonly(
           "torque", [](const HandForce& f) { return array_of(f.torque_N_mm); },
-          "N mm, of an instrument about its position.")
+          "(3,), N mm, of an instrument about its position.")
       .def_readonly("contacts", &HandForce::contacts,
                     "Pairs of an instrument's part and a segment that repel each other.")
       .def_readonly("behind", &HandForce::behind_mm, "How far it still is from where it should be, mm.")
