@@ -7,8 +7,9 @@
 namespace vmesh {
 namespace {
 
-/// Relative rounding of the energy's sum of terms, and attempts at a move.
-constexpr double kRoundingOfEnergy = 1e-12;
+/// Relative rounding of the energy's sum of terms, and of positions, which stretches segments of a tree at rest.
+constexpr double kRoundingOfEnergy = 1e-12, kRoundingOfPosition = 1e-15;
+/// Attempts at a move.
 constexpr int kMostTries = 40;
 /// Solutions in an iteration with more and more pairs stopped.
 constexpr int kMostStops = 5;
@@ -22,8 +23,11 @@ constexpr double kStuck = 0.1;
 
 }  // namespace
 
-void ImplicitRods::attach(Surroundings& around) {
+void ImplicitRods::attach(const RodScene& scene, Surroundings& around) {
   around_ = &around;
+  rounding_ = 0;
+  for (Index j = 0; j < scene.size(); ++j)
+    rounding_ += scene.rods[j].stretch * std::pow(kRoundingOfPosition, 2) * scene.tree.position[j].squaredNorm();
   wake_all();
 }
 
@@ -135,7 +139,7 @@ bool ImplicitRods::is_lower(const RodScene& scene, const RodMove& by, double sta
   pose_ = by.to;
   const double energy = sum(move_sums_.value) + tie_energy(scene, 0) + around;
   pose_ = by.from;
-  return energy <= reference + kRoundingOfEnergy * std::abs(reference);
+  return energy <= reference + kRoundingOfEnergy * std::abs(reference) + rounding_;
 }
 
 void ImplicitRods::shorten(RodMove& by, double free, int attempt) {

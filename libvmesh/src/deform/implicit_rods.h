@@ -38,7 +38,7 @@ class ImplicitRods {
   StepReport step(RodScene& scene) noexcept;
 
   /// From now on, slots meet these. They must outlive this.
-  void attach(Surroundings& around);
+  void attach(const RodScene& scene, Surroundings& around);
   /// Sets the spring of a slot to the tissue around it.
   void set_tissue(const RodScene& scene, Index slot, const TissueSpring& spring);
   /// The force with which a held slot is held, as of the last step, mN.
@@ -135,6 +135,7 @@ class ImplicitRods {
   Surroundings* around_ = nullptr;
   double around_before_ = 0, around_after_ = 0, around_work_ = 0;
   double tissue_offset_ = 0;  // of the objective, left out of its sums
+  double rounding_ = 0;       // of the energy of a tree at rest, uJ
   double stride_ = 1;         // part of the rest of its way that everything is to go in an iteration
   double left_ = 0;           // of the way of what is dragged and of instruments, in this step
   std::vector<Loaded> loaded_;

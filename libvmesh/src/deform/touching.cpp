@@ -29,7 +29,7 @@ Surroundings& Touching::around() {
     fail_touching("contact, jaws and tissue need the integrator implicit; the paper's procedure has none of them");
   if (!around_) {
     around_ = std::make_unique<Surroundings>(scene_, ContactOptions{});
-    rods_.attach(*around_);
+    rods_.attach(scene_, *around_);
   }
   return *around_;
 }
