@@ -14,8 +14,9 @@ constexpr double kAhead = 0.5;
 constexpr double kStopsAt = 0.3;
 /// What meets within this many times the way to where the first meet is stopped with these.
 constexpr double kSoon = 2;
-/// A step has converged when nothing moves by more than this share of a barrier's reach, or by what friction yields.
-constexpr double kConverged = 1e-2;
+/// A step has converged when nothing moves by more than this share of a barrier's reach, and times what friction
+/// yields.
+constexpr double kConverged = 4e-2, kFrictionConverged = 5;
 
 Mat3 along(const Vec3& n, double stiffness) { return stiffness * n * n.transpose(); }
 Vec3 across(const Vec3& n, const Vec3& v) { return v - n.dot(v) * n; }
@@ -253,7 +254,7 @@ double Surroundings::smallest_gap() const {
 double Surroundings::precision() const {
   double precision = HUGE_VAL;
   for (const ContactPair& pair : pairs_) precision = std::min(precision, kConverged * pair.barrier.reach);
-  for (const Rub& rub : rubs_) precision = std::min(precision, rub.yield);
+  for (const Rub& rub : rubs_) precision = std::min(precision, kFrictionConverged * rub.yield);
   return precision;
 }
 
