@@ -1,7 +1,7 @@
 """A tree that is pulled at, live: python3 examples/live_deformation.py [--show] [--frames N] [--save FILE.ply]
 
 One twig is dragged along a circle while the inlet is held; the tree hangs on to it. With --instrument, a shaft sweeps
-through the tree at the same time, vessels touch each other, and the forces on both hands are told. With --show in a
+through the tree at the same time, and the forces on both hands are told. With --show in a
 window (it needs python3-vtk9), otherwise it tells how long a frame takes.
 """
 
@@ -42,7 +42,6 @@ class Shaft:
         self.outside = 0.5 * (low + high)
         self.outside[0] = low[0] - 4 * self.radius
         self.way = np.array([0.5 * (high[0] - low[0]), 0, 0])
-        deformation.set_contact(self_contact=True, friction=0.2)
         self.number = deformation.add_instrument(
             [[0, -half, 0], [0, half, 0]], self.radius, self.outside, friction=0.2
         )
