@@ -7,6 +7,8 @@
 namespace vmesh {
 namespace {
 
+/// Pairs that are as near at rest as their barriers reach are within it by rounding.
+constexpr double kHardly = 1e-6;
 /// What will come within reach is pushed ahead, to this share of the reach.
 constexpr double kAhead = 0.5;
 
@@ -60,6 +62,7 @@ void Surroundings::add_contacts(double part) {
                           ? Vec3(part * (on_part(pair.other, t, points_.aim) - on_part(pair.other, t, points_.present)))
                           : Vec3::Zero();
     const double push = n.dot(goes);
+    if (std::abs(gap - reach) <= kHardly * reach && push <= 0) continue;
     if (gap >= reach && gap - push >= kAhead * reach) continue;
     const bool ahead = gap >= reach;
     const double stiffness = pair.barrier.curvature(ahead ? kAhead * reach : gap);
