@@ -1,7 +1,8 @@
 """A tree that is pulled at, live: python3 examples/live_deformation.py [--show] [--frames N] [--save FILE.ply]
 
-One twig is dragged along a circle while the inlet is held; the tree hangs on to it. With --show in a window (it needs
-python3-vtk9), otherwise it tells how long a frame takes.
+One twig is dragged along a circle while the inlet is held; the tree hangs on to it. With --instrument, a shaft sweeps
+through the tree at the same time, and the forces on both hands are told. With --show in a
+window (it needs python3-vtk9), otherwise it tells how long a frame takes.
 """
 
 import argparse
@@ -28,6 +29,31 @@ def pull(deformation: vmesh.Deformation, node: int, start: NDArray[np.float64], 
     angle = 2 * np.pi * frame / 180
     deformation.drag(node, start + 12 * np.array([np.cos(angle) - 1, 0, np.sin(angle)]))
     deformation.step()
+
+
+class Shaft:
+    """An instrument that goes through the middle of the tree and back, once in 360 frames."""
+
+    def __init__(self, deformation: vmesh.Deformation) -> None:
+        self.deformation = deformation
+        low, high = deformation.nodes.min(axis=0), deformation.nodes.max(axis=0)
+        self.radius = 0.02 * float(np.linalg.norm(high - low))
+        half = 0.6 * (high[1] - low[1])
+        self.outside = 0.5 * (low + high)
+        self.outside[0] = low[0] - 4 * self.radius
+        self.way = np.array([0.5 * (high[0] - low[0]), 0, 0])
+        self.number = deformation.add_instrument(
+            [[0, -half, 0], [0, half, 0]], self.radius, self.outside, friction=0.2
+        )
+        self.largest = 0.0
+
+    def sweep(self, frame: int) -> None:
+        part = 0.5 - 0.5 * np.cos(2 * np.pi * frame / 360)
+        self.deformation.move_instrument(self.number, self.outside + part * self.way)
+
+    def feel(self) -> None:
+        force = self.deformation.instrument_force(self.number)
+        self.largest = max(self.largest, float(np.linalg.norm(force.force)))
 
 
 class Window:
@@ -82,6 +108,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="A tree that is pulled at.")
     parser.add_argument("--show", action="store_true", help="in a window")
     parser.add_argument("--save", help="the surface of the last frame, a .ply")
+    parser.add_argument("--instrument", action="store_true", help="a shaft sweeps through the tree")
     parser.add_argument("--frames", type=int, default=180)
     parser.add_argument("--nodes", type=int, default=400)
     arguments = parser.parse_args()
@@ -89,10 +116,22 @@ def main() -> None:
     deformation, node = make_scene(arguments.nodes)
     start = deformation.nodes[node].copy()
     window = Window(deformation) if arguments.show else None
-    seconds = play(arguments.frames, lambda frame: pull(deformation, node, start, frame), window)
+    shaft = Shaft(deformation) if arguments.instrument else None
+
+    def step(frame: int) -> None:
+        if shaft is not None:
+            shaft.sweep(frame)
+        pull(deformation, node, start, frame)
+        if shaft is not None:
+            shaft.feel()
+
+    seconds = play(arguments.frames, step, window)
     print(f"{len(deformation.vertices)} vertices: {1000 * seconds:.2f} ms a frame, without drawing")
     moved = np.linalg.norm(deformation.vertices - deformation.rest.vertices, axis=1)
     print(f"after {deformation.time:.2f} s: {moved.mean():.1f} mm from rest in the mean, {moved.max():.1f} at most")
+    if shaft is not None:
+        hand = np.linalg.norm(deformation.drag_force(node).force)
+        print(f"the shaft felt up to {1000 * shaft.largest:.2f} mN; at the end, {1000 * hand:.2f} mN pull at the twig")
     if arguments.save:
         deformation.surface().save(arguments.save)
 

@@ -143,3 +143,44 @@ def test_any_mesh_follows_the_centerline_that_it_is_bound_to():
     deformation.drag(3, [27, 9, 0])
     deformation.step(30)
     assert deformation.vertices[:, 1].max() > grown.vertices[:, 1].max() + 1
+
+
+def test_an_instrument_pushes_and_is_felt(rod):
+    deformation = vmesh.Deformation(rod, damping_s=0.05, drag_per_s=5)
+    deformation.clamp(0)
+    deformation.set_contact(friction=0.1)
+    with pytest.raises(vmesh.InvalidInput, match="overlaps"):
+        deformation.add_instrument([[0, 0, 0]], 1, [30, 0, 1.5])
+    shaft = deformation.add_instrument([[0, -5, 0], [0, 5, 0]], 1.5, [30, 0, 2.6])
+    seen = []
+
+    def look():
+        force = deformation.instrument_force(shaft)
+        assert force.behind == 0
+        seen.append((force.contacts, force.force[2]))
+        deformation.move_instrument(shaft, [30, 0, max(1.5, 2.6 - 0.02 * len(seen))])
+
+    deformation.step(300, look)
+    assert len(seen) == 300 and seen[-1][0] >= 1
+    # What a cantilever resists with, pressed at 30 mm by as far as the node there went.
+    way = -deformation.nodes[30, 2]
+    assert 0.99 <= way <= 1.06
+    assert seen[-1][1] == pytest.approx(3 * np.pi / 4 * way / 30**3, rel=0.05)
+    assert deformation.contact_energy > 0
+
+
+def test_jaws_and_tissue(rod):
+    deformation = vmesh.Deformation(rod, damping_s=0.05, drag_per_s=5)
+    deformation.clamp(0)
+    for segment in range(40):
+        deformation.set_tissue(segment, 1e-3, 1e-3)  # tears at 1 mm
+    jaw = deformation.grasp(39, 0.5)
+    start = deformation.jaw_position(jaw)
+    for i in range(100):
+        deformation.move_jaw(jaw, start + [0, 0, 0.03 * i])
+        deformation.step()
+    np.testing.assert_allclose(deformation.jaw_position(jaw), start + [0, 0, 2.97])
+    assert deformation.jaw_force(jaw).force[2] < 0 and deformation.jaw_force(jaw).holds
+    assert 0 < deformation.torn < 40
+    deformation.open_jaw(jaw)
+    assert not deformation.jaw_force(jaw).holds

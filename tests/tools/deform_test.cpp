@@ -1,4 +1,5 @@
 #include <cmath>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -73,6 +74,22 @@ TEST_F(Deform, ErrorsNameTheElementAndLeaveNothing) {
       {R"({"schema": "vmesh.scene/1", "clamp": [0], "material": {"young_Pa": 1e-3},
            "force": [{"node": 3, "force_N": [[0, 1e9, 0, 0]]}]})",
        "physical range at 0.02 s"},
+      {R"({"schema": "vmesh.scene/1", "contact": {"self": 1}})", "contact.self"},
+      {R"({"schema": "vmesh.scene/1", "instruments": [{"points_mm": [[0, 0, 0]], "radius_mm": [1, 2],
+           "path": [[0, 0, 0, 0]]}]})",
+       "instruments[0].radius_mm"},
+      {R"({"schema": "vmesh.scene/1", "instruments": [{"points_mm": [[0, 0, 0]], "radius_mm": 1,
+           "path": [[0, 0, 0, 90], [1, 0, 0, 0, 2, 0, 0, 0]]}]})",
+       "instruments[0].path[1]"},
+      {R"({"schema": "vmesh.scene/1", "instruments": [{"name": "probe", "points_mm": [[0, 0, 0]], "radius_mm": 1e3,
+           "path": [[0, 0, 0, 0]]}]})",
+       "instruments[0] (probe)"},
+      {R"({"schema": "vmesh.scene/1", "grasp": [{"segment": 99, "path": [[0, 0, 0, 0]]}]})", "grasp[0].segment"},
+      {R"({"schema": "vmesh.scene/1", "grasp": [{"segment": 1, "release_s": 0, "path": [[0, 0, 0, 0]]}]})",
+       "grasp[0].release_s"},
+      {R"({"schema": "vmesh.scene/1", "tissue": [{"stiffness_N_mm2": 1, "segments": [0], "branches": [0]}]})",
+       "tissue[0]"},
+      {R"({"schema": "vmesh.scene/1", "integrator": "paper", "contact": {}})", "implicit"},
   };
   for (const auto& [scene, named] : wrong) {
     const Outcome run = deform(scene);
@@ -81,6 +98,31 @@ TEST_F(Deform, ErrorsNameTheElementAndLeaveNothing) {
     EXPECT_NE(run.err.find(named), std::string::npos) << run.err;
     EXPECT_FALSE(exists("frames")) << scene;
   }
+}
+
+TEST_F(Deform, ForcesOnHandsAreWritten) {
+  write("scene.json", R"({"schema": "vmesh.scene/1", "clamp": [0], "duration_s": 0.2, "frame_every": 10,
+    "instruments": [{"name": "far, away", "points_mm": [[0, 0, 0]], "radius_mm": 1, "path": [[0, 0, 0, 500]]}],
+    "grasp": [{"segment": 1, "t": 1, "path": [[0, 0, 0, 0], [0.2, 0, 2, 0]]}],
+    "tissue": [{"stiffness_N_mm2": 1e-6}]})");
+  const Outcome run = vmesh({"deform", "@y.swc", "@y.ply", "--script", "@scene.json", "-o", "@frames", "--format",
+                             "ply", "--json", "-", "--forces", "@forces.csv"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json hands = json::parse(run.out)["hands"];
+  ASSERT_EQ(hands.size(), 2);
+  EXPECT_EQ(hands[0]["hand"], "grasp 0");
+  // The vessel pulls back.
+  EXPECT_LT(hands[0]["last_force_N"][1], 0);
+  EXPECT_EQ(hands[1]["hand"], "far, away");
+  EXPECT_EQ(hands[1]["largest_force_N"], 0);
+  std::istringstream csv(read("forces.csv"));
+  std::string line, last;
+  std::getline(csv, line);
+  EXPECT_EQ(line.find("time_s,hand,force_x_N,"), 0);
+  int lines = 0;
+  for (; std::getline(csv, line); ++lines) last = line;
+  EXPECT_EQ(lines, 20);  // ten steps of 20 ms, two hands
+  EXPECT_EQ(last.find("0.2,\"far, away\",0,0,0,"), 0) << last;
 }
 
 TEST_F(Deform, KeepsWhatIsInTheFolder) {

@@ -28,6 +28,7 @@ struct DeformArguments {
   std::filesystem::path volume;  ///< mesh that follows, or empty
   std::filesystem::path script;
   std::filesystem::path output, volume_output;  ///< folders
+  std::filesystem::path forces;                 ///< CSV, or empty
   bool allow_defects = false;
   std::string format = "vtp";  ///< extension of the frames
   WritingArguments writing;
@@ -49,6 +50,9 @@ void add_options(CLI::App& verb, DeformArguments& arguments) {
                   "volume mesh in the surface (" + read_volume_files() + "), moved with it; of vmesh volume or not")
       ->type_name(kFile);
   verb.add_option("--volume-output", arguments.volume_output, "new or empty folder for its frames")->type_name(kFolder);
+  verb.add_option("--forces", arguments.forces,
+                  "force and torque on what is dragged, on jaws and on instruments after every step, as CSV")
+      ->type_name("FILE.csv");
   verb.add_flag("--allow-defects", arguments.allow_defects,
                 "write frames even if cells of the volume mesh turn over; the summary tells how many, and where");
   add_writing(verb, arguments.writing);
@@ -91,6 +95,7 @@ class Stage {
     for (const Index node : scene.fix) simulation_.fix(node);
     for (const Index node : scene.clamp) simulation_.clamp(node);
     for (const Scene::Drag& drag : scene.drags) dragged_from_.push_back(simulation_.position(drag.node));
+    if (scene.touching.exists()) touching_.emplace(scene.touching, centerline, simulation_);
   }
 
   void step(double time) {
@@ -98,8 +103,10 @@ class Stage {
     for (const Scene::Force& force : scene_.forces) simulation_.set_force(force.node, force.force_N.at(time));
     for (const Scene::Profile& scale : scene_.scales) simulation_.set_radial_scale(scale.node, scale.value.at(time));
     for (const Scene::Profile& squeeze : scene_.squeezes) simulation_.set_squeeze(squeeze.node, squeeze.value.at(time));
+    if (touching_) touching_->act(simulation_, time);
     const StepReport report = simulation_.step();
     check_range(time);
+    note_forces(time);
     work_J_ += report.work_J;
     last_movement_mm_ = report.movement_mm;
   }
@@ -107,8 +114,20 @@ class Stage {
   CenterlineSimulation& simulation() { return simulation_; }
   double work_J() const { return work_J_; }
   double last_movement_mm() const { return last_movement_mm_; }
+  const HandForces& forces() const { return forces_; }
 
  private:
+  void note_forces(double time) {
+    for (const Scene::Drag& drag : scene_.drags)
+      forces_.add(time, "node " + std::to_string(drag.node), simulation_.drag_force(drag.node));
+    const SceneTouching& touching = scene_.touching;
+    for (std::size_t i = 0; i < touching.grasps.size(); ++i)
+      if (touching_->jaws()[i] != kNone)
+        forces_.add(time, touching.grasps[i].name, simulation_.jaw_force(touching_->jaws()[i]));
+    for (std::size_t i = 0; i < touching.instruments.size(); ++i)
+      forces_.add(time, touching.instruments[i].name, simulation_.instrument_force(static_cast<Index>(i)));
+  }
+
   void pull(const Scene::Drag& drag, const Vec3& from, double time) {
     const double step = scene_.options.step_s;
     if (time <= drag.release_s)
@@ -145,6 +164,8 @@ class Stage {
   const Scene& scene_;
   CenterlineSimulation simulation_;
   std::vector<Vec3> dragged_from_;
+  std::optional<TouchingStage> touching_;
+  HandForces forces_;
   double work_J_ = 0, last_movement_mm_ = 0;
 };
 
@@ -261,9 +282,10 @@ void check_files(const DeformArguments& arguments) {
   inputs.push_back(arguments.surface.path);
   inputs.push_back(arguments.script);
   if (!arguments.volume.empty()) inputs.push_back(arguments.volume);
-  check_outputs(
-      {{arguments.common.json, PlannedOutput::Kind::summary}, {arguments.common.html, PlannedOutput::Kind::page}},
-      inputs);
+  check_outputs({{arguments.common.json, PlannedOutput::Kind::summary},
+                 {arguments.common.html, PlannedOutput::Kind::page},
+                 {arguments.forces, PlannedOutput::Kind::report}},
+                inputs);
   surface_output_format("frame." + arguments.format);
   check_writing("frame." + arguments.format, arguments.writing);
 }
@@ -320,8 +342,8 @@ int run(const DeformArguments& arguments, Console& console) {
   const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
   const LoadedSurface rest = load_surface(arguments.surface);
   console.warn(rest.warnings);
-  const Scene scene = read_scene(arguments.script, centerline.nodes().size());
-  Stage stage(centerline, scene);
+  const Scene scene = read_scene(arguments.script, centerline.nodes().size(), centerline.segments().size());
+  Stage stage = naming(arguments.script, [&] { return Stage(centerline, scene); });
   const RodTree& tree = stage.simulation().tree();
   const std::vector<SurfacePlace> places = places_of(centerline, rest, console);
   const SurfaceBinding binding(centerline, tree, rest.mesh.vertices, vertex_normals(rest.mesh), places);
@@ -363,6 +385,12 @@ int run(const DeformArguments& arguments, Console& console) {
                   {"elastic_energy_J", stage.simulation().elastic_energy_J()},
                   {"simulate_s", timing.simulate_s},
                   {"synchronise_s", timing.synchronise_s}};
+  if (scene.touching.exists()) {
+    summary["contact_energy_J"] = stage.simulation().contact_energy_J();
+    summary["torn_nodes"] = stage.simulation().torn();
+  }
+  if (scene.touching.exists() || !arguments.forces.empty()) summary["hands"] = stage.forces().to_json();
+  if (!arguments.forces.empty()) write_text(arguments.forces, stage.forces().csv());
   if (volume) summary["volume"] = volume->to_json();
   write_json(arguments.common.json, summary);
   if (frames)

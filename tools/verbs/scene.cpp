@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "vmesh/core/error.h"
 #include "vmesh/core/input_file.h"
 
 #include "report/json.h"
+#include "verbs/scene_element.h"
 
 namespace vmesh::tool {
 namespace {
@@ -17,114 +17,7 @@ constexpr const char* kSchema = "vmesh.scene/1";
 /// Limit on a scene's length, so that a mistyped digit gives an error instead of an overnight run.
 constexpr double kMostSteps = 10e6;
 
-/// An element of the document and its name for messages: "drag[0].path".
-class Element {
- public:
-  Element(const Json& json, std::string name, const std::string& source)
-      : json_(json), name_(std::move(name)), source_(source) {}
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InvalidInput(source_ + ": " + (name_.empty() ? "" : name_ + ": ") + what);
-  }
-
-  /// Refuses members that are not listed, as a misspelt one would go unnoticed.
-  void allow(std::initializer_list<const char*> known) const {
-    if (!json_.is_object()) fail("it must be an object {...}");
-    for (const auto& [key, value] : json_.items()) {
-      std::string list;
-      bool found = false;
-      for (const char* name : known) {
-        found = found || key == name;
-        list += (list.empty() ? "" : ", ") + std::string(name);
-      }
-      if (!found) fail("\"" + key + "\" is not known; there are " + list);
-    }
-  }
-
-  bool has(const char* key) const { return json_.contains(key); }
-
-  Element member(const char* key) const {
-    if (!has(key)) fail("\"" + std::string(key) + "\" is missing");
-    return {json_[key], name_.empty() ? key : name_ + "." + key, source_};
-  }
-
-  std::vector<Element> items() const {
-    if (!json_.is_array()) fail("it must be an array [...]");
-    std::vector<Element> all;
-    for (std::size_t i = 0; i < json_.size(); ++i)
-      all.emplace_back(json_[i], name_ + "[" + std::to_string(i) + "]", source_);
-    return all;
-  }
-  std::vector<Element> items(const char* key) const { return has(key) ? member(key).items() : std::vector<Element>(); }
-
-  double number(double low, double high) const {
-    if (!json_.is_number()) fail("it must be a number");
-    const double value = json_.get<double>();
-    if (!(value >= low && value <= high)) {
-      std::ostringstream range;
-      range << "it is " << value << "; it must be in [" << low << ", " << high << "]";
-      fail(range.str());
-    }
-    return value;
-  }
-
-  /// Overwrites `value` if there is such a member.
-  void take(const char* key, double low, double high, double& value) const {
-    if (has(key)) value = member(key).number(low, high);
-  }
-  void take(const char* key, double low, double high, int& value) const {
-    if (!has(key)) return;
-    const double number = member(key).number(low, high);
-    if (number != std::floor(number)) member(key).fail("it must be an integer");
-    value = static_cast<int>(number);
-  }
-
-  std::string text() const {
-    if (!json_.is_string()) fail("it must be a string");
-    return json_.get<std::string>();
-  }
-
-  Index node(std::size_t nodes) const {
-    const double value = number(0, static_cast<double>(nodes) - 1);
-    if (value != std::floor(value)) fail("it must be an integer, the number of a node of the centerline");
-    return static_cast<Index>(value);
-  }
-
-  std::vector<double> numbers(std::size_t count, const char* form) const {
-    const std::vector<Element> all = items();
-    if (all.size() != count) fail(std::string("it must be ") + form);
-    std::vector<double> values;
-    for (const Element& item : all) values.push_back(item.number(-1e12, 1e12));
-    return values;
-  }
-
- private:
-  const Json& json_;
-  std::string name_;
-  const std::string& source_;
-};
-
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-template <class Value, class Read>
-Course<Value> read_course(const Element& element, Read&& read) {
-  Course<Value> course;
-  for (const Element& item : element.items()) {
-    const auto [time, value] = read(item);
-    if (!course.time_s.empty() && time <= course.time_s.back()) item.fail("times must ascend");
-    course.time_s.push_back(time);
-    course.value.push_back(value);
-  }
-  if (course.time_s.empty()) element.fail("it must have at least one point");
-  return course;
-}
-
-Course<Vec3> vector_course(const Element& element) {
-  return read_course<Vec3>(element, [](const Element& item) {
-    const std::vector<double> v = item.numbers(4, "[time_s, x, y, z]");
-    return std::pair(v[0], Vec3(v[1], v[2], v[3]));
-  });
-}
 
 Course<double> number_course(const Element& element, double low) {
   return read_course<double>(element, [low](const Element& item) {
@@ -192,9 +85,11 @@ void check_drag(const Element& element, const Scene& scene) {
   if (dragged > 1) element.member("node").fail(name + " is dragged already; make one path of both");
 }
 
-Scene read(const Element& root, std::size_t nodes) {
-  root.allow({"schema", "material", "integrator", "step_s", "iterations", "drag_per_s", "squeeze_response_s",
-              "duration_s", "frame_every", "gravity_m_s2", "fix", "clamp", "drag", "force", "radial_scale", "squeeze"});
+Scene read(const Element& root, std::size_t nodes, std::size_t segments) {
+  root.allow(
+      {"schema",       "material",    "integrator",   "step_s",      "iterations", "drag_per_s", "squeeze_response_s",
+       "duration_s",   "frame_every", "gravity_m_s2", "fix",         "clamp",      "drag",       "force",
+       "radial_scale", "squeeze",     "contact",      "instruments", "grasp",      "tissue"});
   if (root.member("schema").text() != kSchema)
     root.member("schema").fail(std::string("this version reads \"") + kSchema + "\"");
   Scene scene;
@@ -218,23 +113,26 @@ Scene read(const Element& root, std::size_t nodes) {
     item.allow({"node", "force_N"});
     scene.squeezes.push_back({item.member("node").node(nodes), number_course(item.member("force_N"), -1e12)});
   }
+  scene.touching = read_touching(root, segments);
+  if (scene.touching.exists() && scene.options.integrator == Integrator::paper)
+    root.fail("contact, instruments, grasp and tissue need the integrator \"implicit\"");
   return scene;
 }
 
 }  // namespace
 
-Scene read_scene(const std::filesystem::path& path, std::size_t nodes) {
-  return parse_scene(read_file(path), path.string(), nodes);
+Scene read_scene(const std::filesystem::path& path, std::size_t nodes, std::size_t segments) {
+  return parse_scene(read_file(path), path.string(), nodes, segments);
 }
 
-Scene parse_scene(const std::string& text, const std::string& source, std::size_t nodes) {
+Scene parse_scene(const std::string& text, const std::string& source, std::size_t nodes, std::size_t segments) {
   Json document;
   try {
     document = Json::parse(text);
   } catch (const Json::exception& error) {
     throw InvalidInput(source + ": this is not valid JSON: " + error.what());
   }
-  return read(Element(document, "", source), nodes);
+  return read(Element(document, "", source), nodes, segments);
 }
 
 }  // namespace vmesh::tool

@@ -6,23 +6,10 @@
 
 #include "vmesh/deform/simulation.h"
 
+#include "verbs/course.h"
+#include "verbs/scene_touching.h"
+
 namespace vmesh::tool {
-
-/// A quantity over time: linear between its points, constant before the first and after the last.
-template <class Value>
-struct Course {
-  std::vector<double> time_s;  ///< ascending, at least one
-  std::vector<Value> value;
-
-  Value at(double time) const {
-    std::size_t next = 0;
-    while (next < time_s.size() && time_s[next] <= time) ++next;
-    if (next == 0) return value.front();
-    if (next == time_s.size()) return value.back();
-    const double part = (time - time_s[next - 1]) / (time_s[next] - time_s[next - 1]);
-    return value[next - 1] + part * (value[next] - value[next - 1]);
-  }
-};
 
 /// The contents of a scene file, which tools/README.md describes: what happens to a vessel tree.
 struct Scene {
@@ -49,13 +36,15 @@ struct Scene {
   std::vector<Drag> drags;
   std::vector<Force> forces;
   std::vector<Profile> scales, squeezes;
+  SceneTouching touching;
 };
 
 /// Throws ReadError, and InvalidInput naming the file, the element, what is wrong and what to do. Node numbers must be
-/// below `nodes`.
-Scene read_scene(const std::filesystem::path& path, std::size_t nodes);
+/// below `nodes`, those of segments below
+/// `segments`.
+Scene read_scene(const std::filesystem::path& path, std::size_t nodes, std::size_t segments);
 
 /// The same from text; `source` names it in messages.
-Scene parse_scene(const std::string& text, const std::string& source, std::size_t nodes);
+Scene parse_scene(const std::string& text, const std::string& source, std::size_t nodes, std::size_t segments);
 
 }  // namespace vmesh::tool

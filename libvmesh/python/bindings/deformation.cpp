@@ -1,4 +1,8 @@
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 #include "vmesh/deform/simulation.h"
 #include "vmesh/deform/surface_binding.h"
@@ -84,8 +88,24 @@ class Deformation {
   std::vector<Vec3> vertices_, normals_, nodes_;
 };
 
+/// Steps, with a call after each.
+StepReport step_with(Deformation& self, std::size_t count, const py::function& then) {
+  StepReport last;
+  for (std::size_t i = 0; i < count; ++i) {
+    {
+      const py::gil_scoped_release release;
+      last = self.advance();
+      self.synchronise();
+    }
+    then();
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  return last;
+}
+
 /// Steps, checking for signals now and then.
-StepReport step(Deformation& self, std::size_t count) {
+StepReport step(Deformation& self, std::size_t count, const std::optional<py::function>& then) {
+  if (then) return step_with(self, count, *then);
   constexpr std::chrono::milliseconds kBetweenLooks(50);
   StepReport last;
   std::size_t done = 0;
@@ -179,6 +199,99 @@ void bind_actions(DeformationClass& deformation) {
           py::arg("gravity_mm_s2"), "(3,) mm/s^2.");
 }
 
+InstrumentPose pose_of(const py::object& position, const std::array<double, 4>& rotation) {
+  InstrumentPose pose;
+  pose.position_mm = to_point(position, "position");
+  pose.rotation = Eigen::Quaterniond(rotation[0], rotation[1], rotation[2], rotation[3]);
+  if (!(std::abs(pose.rotation.norm() - 1) < 1e-3)) throw InvalidInput("rotation: a quaternion of length 1 is needed");
+  pose.rotation.normalize();
+  return pose;
+}
+
+constexpr std::array<double, 4> kUpright{1, 0, 0, 0};
+
+InstrumentShape shape_of(const std::vector<std::array<double, 3>>& points, const py::object& radius, double friction) {
+  InstrumentShape shape;
+  for (const auto& [x, y, z] : points) shape.points_mm.emplace_back(x, y, z);
+  if (py::isinstance<py::float_>(radius) || py::isinstance<py::int_>(radius))
+    shape.radii_mm.assign(points.size(), radius.cast<double>());
+  else
+    shape.radii_mm = radius.cast<std::vector<double>>();
+  shape.friction = friction;
+  return shape;
+}
+
+void bind_hands(DeformationClass& deformation) {
+  deformation
+      .def(
+          "set_contact",
+          [](Deformation& d, bool self, double friction, double gap_ratio, int iterations) {
+            ContactOptions options;
+            options.self = self, options.friction = friction, options.gap_ratio = gap_ratio;
+            options.iterations = iterations;
+            d.simulation().set_contact(options);
+          },
+          py::kw_only(), py::arg("self_contact") = false, py::arg("friction") = 0.0,
+          py::arg("gap_ratio") = ContactOptions{}.gap_ratio, py::arg("iterations") = ContactOptions{}.iterations,
+          "How things touch: whether vessels touch vessels, with which friction, and from which gap on, in radii.")
+      .def(
+          "add_instrument",
+          [](Deformation& d, const std::vector<std::array<double, 3>>& points, const py::object& radius,
+             const py::object& position, const std::array<double, 4>& rotation, double friction) {
+            return d.simulation().add_instrument(shape_of(points, radius, friction), pose_of(position, rotation));
+          },
+          py::arg("points"), py::arg("radius"), py::arg("position"), py::kw_only(), py::arg("rotation") = kUpright,
+          py::arg("friction") = 0.0,
+          "A chain of round cones that pushes vessels: points (k, 3) mm in its own frame, radius one or k, mm; the "
+          "frame's position (3,) mm and rotation, a quaternion (w, x, y, z). Returns its number.")
+      .def(
+          "move_instrument",
+          [](Deformation& d, Index instrument, const py::object& position, const std::array<double, 4>& rotation) {
+            d.simulation().move_instrument(instrument, pose_of(position, rotation));
+          },
+          py::arg("instrument"), py::arg("position"), py::arg("rotation") = kUpright,
+          "The next step moves it there, as far as there is room.")
+      .def(
+          "grasp",
+          [](Deformation& d, Index segment, double t, double slips) { return d.simulation().grasp(segment, t, slips); },
+          py::arg("segment"), py::arg("t"), py::arg("slips_N") = std::numeric_limits<double>::infinity(),
+          "Jaws close on a segment at t, 0 to 1; above slips_N the vessel slips through them. Returns their number.")
+      .def(
+          "move_jaw",
+          [](Deformation& d, Index jaw, const py::object& to) {
+            d.simulation().move_jaw(jaw, to_point(to, "position"));
+          },
+          py::arg("jaw"), py::arg("position"), "The next step moves jaws there, (3,) mm.")
+      .def(
+          "open_jaw", [](Deformation& d, Index jaw) { d.simulation().open_jaw(jaw); }, py::arg("jaw"),
+          "Lets go of the vessel.")
+      .def(
+          "jaw_position", [](Deformation& d, Index jaw) { return array_of(d.simulation().jaw_position(jaw)); },
+          py::arg("jaw"), "Where jaws are, (3,) mm.")
+      .def(
+          "set_tissue",
+          [](Deformation& d, Index segment, double stiffness, double tear) {
+            d.simulation().set_tissue(segment, {stiffness, tear});
+          },
+          py::arg("segment"), py::arg("stiffness_N_mm2"),
+          py::arg("tear_N_mm") = std::numeric_limits<double>::infinity(),
+          "Springs along a segment to where it rests, which tear above a force per mm.")
+      .def(
+          "drag_force", [](Deformation& d, Index node) { return d.simulation().drag_force(node); }, py::arg("node"),
+          "What pulls at the hand that drags a node.")
+      .def(
+          "instrument_force", [](Deformation& d, Index i) { return d.simulation().instrument_force(i); },
+          py::arg("instrument"), "What pulls at the hand that holds an instrument.")
+      .def(
+          "jaw_force", [](Deformation& d, Index jaw) { return d.simulation().jaw_force(jaw); }, py::arg("jaw"),
+          "What pulls at jaws.")
+      .def_property_readonly(
+          "contact_energy", [](Deformation& d) { return d.simulation().contact_energy_J(); },
+          "In contacts, jaws and tissue, J.")
+      .def_property_readonly(
+          "torn", [](Deformation& d) { return d.simulation().torn(); }, "Nodes whose tissue tore.");
+}
+
 void bind_state(DeformationClass& deformation) {
   deformation
       .def_property_readonly(
@@ -218,6 +331,16 @@ void bind_deformation(py::module_& module) {
       .def_readonly("movement", &StepReport::movement_mm,
                     "Largest movement in the last iteration, mm: a measure of convergence.")
       .def_readonly("awake", &StepReport::awake, "Nodes that are not at rest.");
+  py::class_<HandForce>(module, "HandForce", "What pulls at a hand at the end of a step.")
+      .def_property_readonly(
+          "force", [](const HandForce& f) { return array_of(f.force_N); }, "(3,), N.")
+      .def_property_readonly(
+          "torque", [](const HandForce& f) { return array_of(f.torque_N_mm); },
+          "(3,), N mm, of an instrument about its position.")
+      .def_readonly("contacts", &HandForce::contacts,
+                    "Pairs of an instrument's part and a segment that repel each other.")
+      .def_readonly("behind", &HandForce::behind_mm, "How far it still is from where it should be, mm.")
+      .def_readonly("holds", &HandForce::holds, "Of jaws: not lost.");
   const Material material;
   const SimulationOptions options;
   DeformationClass deformation(module, "Deformation",
@@ -253,9 +376,12 @@ Use it from one thread at a time.)");
                   py::arg("drag_per_s") = options.drag_per_s,
                   py::arg("squeeze_response_s") = options.squeeze_response_s,
                   py::arg("rest_tolerance") = options.rest_tolerance);
-  deformation.def("step", &step, py::arg("count") = 1,
-                  "Advances by `count` steps, then updates the surface. Returns the StepReport of the last step.");
+  deformation.def(
+      "step", &step, py::arg("count") = 1, py::arg("then") = py::none(),
+      "Advances by `count` steps, then updates the surface; with `then`, a function, it does so and calls it "
+      "after every step. Returns the StepReport of the last step.");
   bind_actions(deformation);
+  bind_hands(deformation);
   bind_state(deformation);
 }
 

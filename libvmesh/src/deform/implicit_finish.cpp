@@ -22,6 +22,7 @@ void ImplicitRods::finish(RodScene& scene, StepReport& report) {
     for (std::size_t i = 0; i < kLanes; ++i)
       if (awake_[batch * kLanes + i]) settle(scene, static_cast<Index>(batch * kLanes + i), quiet[i]);
   }
+  if (around_) end_among(scene);
   report.work_J = 1e-6 * govern(scene, sums);
   pose_ = 0;
   if (awake_count_ < awake_before) std::erase_if(awake_places_, [this](Index place) { return !awake_[place]; });
@@ -33,8 +34,10 @@ void ImplicitRods::finish(RodScene& scene, StepReport& report) {
 /// end of the step account for, because a slot was dragged far or the minimum was not reached, the work is that
 /// difference: at most the energy of dragging first with everything else standing still.
 double ImplicitRods::govern(RodScene& scene, const FinishSums& sums) const {
-  const double before = start_tie_energy_ + sum(begin_sums_.energy), work = sum(sums.work);
-  const double elastic = tie_energy(scene, false) + sum(sums.elastic), free = sum(sums.free), held = sum(sums.held);
+  const double before = start_tie_energy_ + sum(begin_sums_.energy) + around_before_;
+  const double work = sum(sums.work) + around_work_;
+  const double elastic = tie_energy(scene, 0) + sum(sums.elastic) + around_after_;
+  const double free = sum(sums.free), held = sum(sums.held);
   const double allowed = std::max(0.0, std::min(before + work - held, energy_bound_) - elastic);
   if (free > allowed) {
     const double factor = std::sqrt(allowed / free);

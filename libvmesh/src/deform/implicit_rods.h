@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "deform/rod_batch.h"
 #include "deform/rod_kernels.h"
 #include "deform/rod_scene.h"
+#include "deform/surroundings.h"
 
 namespace vmesh {
 
@@ -12,6 +14,12 @@ inline double sum(const Lanes& lanes) {
   double total = 0;
   for (std::size_t i = 0; i < kLanes; ++i) total += lanes[i];
   return total;
+}
+
+inline double largest(const Lanes& lanes) {
+  double most = 0;
+  for (std::size_t i = 0; i < kLanes; ++i) most = std::max(most, lanes[i]);
+  return most;
 }
 
 /// Implicit Euler on the energy of the springs: every step minimises
@@ -29,8 +37,45 @@ class ImplicitRods {
   void wake_all();
   StepReport step(RodScene& scene) noexcept;
 
+  /// From now on, slots meet these. They must outlive this.
+  void attach(const RodScene& scene, Surroundings& around);
+  /// Sets the spring of a slot to the tissue around it.
+  void set_tissue(const RodScene& scene, Index slot, const TissueSpring& spring);
+  /// The force with which a held slot is held, as of the last step, mN.
+  Vec3 holding_force(const RodScene& scene, Index slot) const;
+
  private:
   using FourFlags = std::array<char, kLanes>;
+  /// The elimination of a slot that something acts on.
+  struct Loaded {
+    bool done = false;
+    Eigen::Matrix<double, 6, 6> own;  // of y: own stiffness and that across to the parent
+    Eigen::Matrix<double, 6, 1> gradient;
+    Eigen::LDLT<Eigen::Matrix<double, 6, 6>> sum;
+  };
+
+  StepReport step_among(RodScene& scene);
+  double iterate_among(RodScene& scene, bool first, double goes, StepReport& report);
+  void begin_slots(RodScene& scene);
+  void begin_batch(const RodScene& scene, Index batch, const char* active);
+  bool is_done(const RodScene& scene, const StepReport& report, bool stands) const;
+  void solve_among(const RodScene& scene, const RodMove& by, double goes);
+  double look_at(const RodScene& scene, const RodMove& by, double goes);
+  bool is_lower(const RodScene& scene, const RodMove& by, double standing, double goes);
+  static void shorten(RodMove& by, double free, int attempt);
+  void bind_to_tissue(Index batch, const char* active);
+  void linearise(double part);
+  void eliminate_loaded(Index batch);
+  void eliminate_loaded(const SegmentLoad& load, Index place, Loaded& loaded);
+  void substitute_loaded(const RodScene& scene, Index batch, const FourFlags& rests);
+  void solve_links(const RodScene& scene, const RodMove* then);
+  void solve_linked(const RodScene& scene, const Eigen::VectorXd& force, Eigen::VectorXd& opening, const RodMove* then);
+  void collect_links(const RodScene& scene);
+  void aim_held(const RodScene& scene, double part);
+  void read_positions(std::size_t pose, std::vector<Vec3>& into) const;
+  double standing_energy(const RodScene& scene, double standing, double goes);
+  void end_among(RodScene& scene);
+  void tear(const RodScene& scene);
 
   void wake_place(Index place);
   void choose_visited();
@@ -61,9 +106,9 @@ class ImplicitRods {
   void move(const RodMove& by);
 
   Vec3 position(Index place, std::size_t pose) const;
-  Vec3 pull(Index place) const;
-  double drag_energy() const;
-  double tie_energy(const RodScene& scene, bool pulled) const;
+  Vec3 pull(Index place, std::size_t pose) const;
+  double drag_energy(std::size_t pose, double part) const;
+  double tie_energy(const RodScene& scene, double pulled) const;
 
   void finish(RodScene& scene, StepReport& report);
   double govern(RodScene& scene, const FinishSums& sums) const;
@@ -85,6 +130,17 @@ class ImplicitRods {
   double energy_bound_ = 0;  // of the step: the value for standing still
   double start_tie_energy_ = 0;
   std::size_t steps_ = 0;
+
+  // With surroundings: what they add to the energies and the work of govern(), uJ.
+  Surroundings* around_ = nullptr;
+  double around_before_ = 0, around_after_ = 0, around_work_ = 0;
+  double tissue_offset_ = 0;  // of the objective, left out of its sums
+  double rounding_ = 0;       // of the energy of a tree at rest, uJ
+  double stride_ = 1;         // part of the rest of its way that everything is to go in an iteration
+  double left_ = 0;           // of the way of what is dragged and of instruments, in this step
+  std::vector<Loaded> loaded_;
+  std::vector<VesselLink> links_;
+  std::vector<Vec3> standing_;
 
   std::vector<Vec3> tie_load_, tie_residual_, tie_direction_, tie_image_, tie_opening_;
 };

@@ -29,13 +29,18 @@ bool is_zero(const LanesSpatial& x, std::size_t lane) {
 }  // namespace
 
 void ImplicitRods::solve(const RodScene& scene, const RodMove* then) {
-  if (scene.tree.ties.empty())
+  if (around_ && !around_->links().empty())
+    solve_links(scene, then);
+  else if (scene.tree.ties.empty())
     solve_tree(scene, then);
   else
     solve_ties(scene, then);
 }
 
-void ImplicitRods::eliminate(Index batch) { kernels_->eliminate(batches_, batch, pose_, &visited_[batch * kLanes]); }
+void ImplicitRods::eliminate(Index batch) {
+  kernels_->eliminate(batches_, batch, pose_, &visited_[batch * kLanes]);
+  if (around_) eliminate_loaded(batch);
+}
 
 void ImplicitRods::solve_tree(const RodScene& scene, const RodMove* then) {
   if (!eliminated_)
@@ -63,7 +68,7 @@ void ImplicitRods::solve_growing(const RodScene& scene, const RodMove* then) {
     }
     char* fresh = &fresh_[batch * kLanes];
     if (std::any_of(fresh, fresh + kLanes, [](char f) { return f != 0; })) {
-      kernels_->begin(batches_.batches[batch], fresh, scene, begin_sums_);
+      begin_batch(scene, batch, fresh);
       std::fill_n(fresh, kLanes, char{0});
     }
     solve_batch(scene, batch, then);
@@ -76,6 +81,7 @@ void ImplicitRods::solve_batch(const RodScene& scene, Index batch, const RodMove
   const char* active = &visited_[batch * kLanes];
   const FourFlags rests = resting(scene, batch);
   kernels_->substitute(batches_, batch, pose_, active, rests.data(), scene.options.rest_tolerance);
+  if (around_) substitute_loaded(scene, batch, rests);
   if (then) kernels_->move(batches_, batch, active, *then, move_sums_);
 }
 

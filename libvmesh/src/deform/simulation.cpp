@@ -9,6 +9,7 @@
 #include "deform/paper_rods.h"
 #include "deform/profile.h"
 #include "deform/rod_scene.h"
+#include "deform/touching.h"
 
 namespace vmesh {
 namespace {
@@ -38,7 +39,8 @@ struct CenterlineSimulation::State {
       : scene(make_rod_scene(centerline, properties, options)),
         implicit(scene),
         paper(scene),
-        profile(centerline, properties, options) {}
+        profile(centerline, properties, options),
+        touching(centerline, scene, implicit) {}
 
   Index slot(Index node) const {
     if (node >= scene.tree.slot_of_node.size())
@@ -74,6 +76,7 @@ struct CenterlineSimulation::State {
   ImplicitRods implicit;
   PaperRods paper;
   Profile profile;
+  Touching touching;
 };
 
 CenterlineSimulation::CenterlineSimulation(const Centerline& centerline,
@@ -132,6 +135,48 @@ void CenterlineSimulation::set_gravity(const Vec3& gravity_mm_s2) {
   state_->scene.options.gravity_mm_s2 = gravity_mm_s2;
   state_->implicit.wake_all();
 }
+
+void CenterlineSimulation::set_contact(const ContactOptions& options) { state_->touching.set_contact(options); }
+
+Index CenterlineSimulation::add_instrument(const InstrumentShape& shape, const InstrumentPose& pose) {
+  return state_->touching.add_instrument(shape, pose);
+}
+
+void CenterlineSimulation::move_instrument(Index instrument, const InstrumentPose& pose) {
+  state_->touching.move_instrument(instrument, pose);
+}
+
+InstrumentPose CenterlineSimulation::instrument_pose(Index instrument) const {
+  return state_->touching.instrument_pose(instrument);
+}
+
+Index CenterlineSimulation::grasp(Index segment, double t, double slips_N) {
+  return state_->touching.grasp(segment, t, slips_N);
+}
+
+void CenterlineSimulation::move_jaw(Index jaw, const Vec3& position_mm) { state_->touching.move_jaw(jaw, position_mm); }
+
+void CenterlineSimulation::open_jaw(Index jaw) { state_->touching.open_jaw(jaw); }
+
+Vec3 CenterlineSimulation::jaw_position(Index jaw) const { return state_->touching.jaw_position(jaw); }
+
+void CenterlineSimulation::set_tissue(Index segment, const TissueProperties& tissue) {
+  state_->touching.set_tissue(segment, tissue);
+}
+
+std::size_t CenterlineSimulation::torn() const { return state_->touching.torn(); }
+
+HandForce CenterlineSimulation::drag_force(Index node) const { return state_->touching.drag_force(state_->slot(node)); }
+
+HandForce CenterlineSimulation::instrument_force(Index instrument) const {
+  return state_->touching.instrument_force(instrument);
+}
+
+HandForce CenterlineSimulation::jaw_force(Index jaw) const { return state_->touching.jaw_force(jaw); }
+
+double CenterlineSimulation::contact_energy_J() const { return state_->touching.energy_J(); }
+
+double CenterlineSimulation::smallest_gap_mm() const { return state_->touching.smallest_gap_mm(); }
 
 StepReport CenterlineSimulation::step() noexcept {
   const bool implicit = state_->scene.options.integrator == Integrator::implicit;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "vmesh/deform/contact.h"
 #include "vmesh/deform/material.h"
 #include "vmesh/deform/rod_tree.h"
 
@@ -44,7 +45,7 @@ struct SimulationOptions {
 struct StepReport {
   int iterations = 0;      ///< Gauss-Newton iterations, or substeps
   int rejections = 0;      ///< Gauss-Newton updates, or parts of them, rejected for raising the energy
-  double work_J = 0;       ///< by forces, gravity and, implicit, dragged nodes
+  double work_J = 0;       ///< by forces, gravity and, implicit, dragged nodes, instruments and jaws
   double movement_mm = 0;  ///< largest movement of a node in the last iteration: a measure of convergence
   std::size_t awake = 0;   ///< slots that are not at rest
 };
@@ -78,7 +79,36 @@ class CenterlineSimulation {
   void set_velocity(Index node, const Vec3& velocity_mm_s);
   void set_gravity(const Vec3& gravity_mm_s2);
 
-  /// Advances by SimulationOptions::step_s. Allocates nothing. Returns at once when everything is at rest.
+  /// The following are for Integrator::implicit and throw InvalidInput with the other. Without them, nothing touches
+  /// anything, and nothing is spent on it.
+  void set_contact(const ContactOptions& options);
+  /// Instruments and vessels never overlap at the end of a step; one that starts within a vessel is refused. The
+  /// vessel's surface is that of its round cones with the profile's radii.
+  Index add_instrument(const InstrumentShape& shape, const InstrumentPose& pose);
+  /// The next step moves it there, as far as there is room: HandForce::behind_mm.
+  void move_instrument(Index instrument, const InstrumentPose& pose);
+  InstrumentPose instrument_pose(Index instrument) const;
+  /// Jaws close on a segment at `t` in [0, 1] from its node a. Above `slips_N` the vessel slips through them, until
+  /// they lose it at its end or sideways.
+  Index grasp(Index segment, double t, double slips_N = std::numeric_limits<double>::infinity());
+  void move_jaw(Index jaw, const Vec3& position_mm);
+  void open_jaw(Index jaw);
+  Vec3 jaw_position(Index jaw) const;
+  /// Springs along a segment to where it rests; sets torn ones again.
+  void set_tissue(Index segment, const TissueProperties& tissue);
+  std::size_t torn() const;  ///< nodes whose tissue tore
+
+  /// Of the last step, what pulls at the hand that drags (or fixes) a node; zero for the paper's integrator.
+  HandForce drag_force(Index node) const;
+  HandForce instrument_force(Index instrument) const;
+  HandForce jaw_force(Index jaw) const;
+  /// In barriers of contacts, jaws and tissue.
+  double contact_energy_J() const;
+  /// Of what is near each other; infinite if nothing is. Never 0 or less.
+  double smallest_gap_mm() const;
+
+  /// Advances by SimulationOptions::step_s. Allocates nothing without contact. Returns at once when everything is at
+  /// rest.
   StepReport step() noexcept;
 
   const RodTree& tree() const;
