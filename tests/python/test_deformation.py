@@ -145,6 +145,51 @@ def test_any_mesh_follows_the_centerline_that_it_is_bound_to():
     assert deformation.vertices[:, 1].max() > grown.vertices[:, 1].max() + 1
 
 
+def test_a_rod_is_cut(rod):
+    deformation = vmesh.Deformation(rod)
+    deformation.clamp(0)
+    deformation.step()
+    before, nodes = deformation.vertices, deformation.nodes.copy()
+    kept = before.copy()
+    a, b = deformation.cut(20, 0.3)
+    # Nothing moves but the vertices that went along the wall into the plane; views of before are still there.
+    np.testing.assert_array_equal(before, kept)
+    moved = np.linalg.norm(deformation.vertices[: len(kept)] - kept, axis=1)
+    assert moved.max() < 0.3 and np.count_nonzero(moved > 1e-5) < 30
+    np.testing.assert_allclose(deformation.nodes[:41], nodes, atol=1e-12)
+    np.testing.assert_allclose(deformation.nodes[[a, b]], [[20.3, 0, 0]] * 2, atol=1e-12)
+    assert deformation.rest is not rod and len(deformation.faces) > len(rod.faces)
+    assert len(deformation.rest.vertices) == len(deformation.vertices)
+    # The part that hangs on nothing flies away, the other one stays.
+    deformation.set_velocity(40, [100, 0, 0])
+    deformation.step(100)
+    assert deformation.nodes[b, 0] > 21 and deformation.nodes[a, 0] == pytest.approx(20.3, abs=1e-6)
+    with pytest.raises(ValueError, match="ends"):
+        deformation.cut(20, 1.0)
+    with pytest.raises(ValueError, match="no segment"):
+        deformation.cut(99, 0.5)
+    assert deformation.surface().vertices.shape == deformation.vertices.shape
+
+
+def test_a_rod_is_clipped(rod):
+    deformation = vmesh.Deformation(rod)
+    kept = deformation.vertices.copy()
+    nodes = deformation.clip(20, 0.5, width_mm=1.5, closing_s=0.2)
+    assert min(deformation.nodes[nodes, 0]) == pytest.approx(20.5 - 0.75 - 0.5, abs=0.51)
+    np.testing.assert_allclose(deformation.vertices, kept, atol=20 * 2**-22)
+    deformation.step(5)  # half of the way
+    within = np.abs(kept[:, 0] - 20.5) < 0.5
+    assert within.sum() >= 6
+    radius = np.linalg.norm(deformation.vertices[within, 1:], axis=1) / np.linalg.norm(kept[within, 1:], axis=1)
+    np.testing.assert_allclose(radius, 1 - 0.95 / 2, rtol=0.02)
+    deformation.step(20)
+    radius = np.linalg.norm(deformation.vertices[within, 1:], axis=1) / np.linalg.norm(kept[within, 1:], axis=1)
+    np.testing.assert_allclose(radius, 0.05, rtol=0.02)
+    np.testing.assert_allclose(deformation.nodes[:41], rod.centerline.nodes, atol=1e-9)
+    with pytest.raises(vmesh.InvalidInput, match="no room"):
+        deformation.clip(39, 0.5)
+
+
 def test_an_instrument_pushes_and_is_felt(rod):
     deformation = vmesh.Deformation(rod, damping_s=0.05, drag_per_s=5)
     deformation.clamp(0)

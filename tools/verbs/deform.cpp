@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -12,6 +14,7 @@
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
 #include "report/pages.h"
+#include "verbs/cut_plan.h"
 #include "verbs/frame_series.h"
 #include "verbs/moving_volume.h"
 #include "verbs/scene.h"
@@ -87,6 +90,12 @@ std::vector<SurfacePlace> places_of(const Centerline& centerline, const LoadedSu
   return nearest_places(centerline, surface.mesh.vertices);
 }
 
+BoundTree bound_tree(const Centerline& centerline, LoadedSurface surface, Console& console) {
+  std::vector<CenterlineBinding> binding;
+  for (const auto& [segment, t] : places_of(centerline, surface, console)) binding.push_back({segment, t});
+  return {centerline, std::move(surface.mesh), std::move(surface.attributes), std::move(binding)};
+}
+
 /// Plays a scene on a simulation.
 class Stage {
  public:
@@ -103,12 +112,22 @@ class Stage {
     for (const Scene::Force& force : scene_.forces) simulation_.set_force(force.node, force.force_N.at(time));
     for (const Scene::Profile& scale : scene_.scales) simulation_.set_radial_scale(scale.node, scale.value.at(time));
     for (const Scene::Profile& squeeze : scene_.squeezes) simulation_.set_squeeze(squeeze.node, squeeze.value.at(time));
-    if (touching_) touching_->act(simulation_, time);
+    if (touching_) touching_->act(simulation_, time, [this](const SegmentPlace& place) { return now(place); });
     const StepReport report = simulation_.step();
     check_range(time);
     note_forces(time);
     work_J_ += report.work_J;
     last_movement_mm_ = report.movement_mm;
+  }
+
+  /// Numbers of the scene still are those of the centerline of before.
+  void cut(const CenterlineCut& cut) {
+    simulation_.cut(cut);
+    since_.push_back([cut](const SegmentPlace& place) { return cut.after(place); });
+  }
+  void divide(const InsertedNode& node) {
+    simulation_.divide(node);
+    since_.push_back([node](const SegmentPlace& place) { return node.after(place); });
   }
 
   CenterlineSimulation& simulation() { return simulation_; }
@@ -117,6 +136,11 @@ class Stage {
   const HandForces& forces() const { return forces_; }
 
  private:
+  SegmentPlace now(SegmentPlace place) const {
+    for (const auto& step : since_) place = step(place);
+    return place;
+  }
+
   void note_forces(double time) {
     for (const Scene::Drag& drag : scene_.drags)
       forces_.add(time, "node " + std::to_string(drag.node), simulation_.drag_force(drag.node));
@@ -164,6 +188,7 @@ class Stage {
   const Scene& scene_;
   CenterlineSimulation simulation_;
   std::vector<Vec3> dragged_from_;
+  std::vector<std::function<SegmentPlace(const SegmentPlace&)>> since_;  // cuts and divisions
   std::optional<TouchingStage> touching_;
   HandForces forces_;
   double work_J_ = 0, last_movement_mm_ = 0;
@@ -173,22 +198,34 @@ struct Timing {
   double simulate_s = 0, synchronise_s = 0;
 };
 
+std::vector<SurfacePlace> places_on(const std::vector<CenterlineBinding>& binding) {
+  std::vector<SurfacePlace> places;
+  for (const CenterlineBinding& b : binding) places.push_back({b.segment, b.t});
+  return places;
+}
+
 /// Writes the moved input surface with the displacements of its vertices.
 class FrameWriter {
  public:
-  FrameWriter(const DeformArguments& arguments, const LoadedSurface& rest, const SurfaceBinding& binding)
-      : rest_(rest), binding_(binding), writing_(arguments.writing), mesh_(rest.mesh), attributes_(rest.attributes) {
-    std::erase_if(attributes_.vertex, [](const MeshAttribute& a) { return a.name == "displacement"; });
-    attributes_.vertex.push_back({"displacement", std::vector<double>(mesh_.vertices.size())});
+  explicit FrameWriter(const DeformArguments& arguments) : writing_(arguments.writing) {
     metadata_ = {generator_name(), "deform --script " + arguments.script.filename().string(),
                  arguments.surface.path.filename().string(), sha256_of_file(arguments.surface.path)};
   }
 
-  void write(const fs::path& path, const DeformedSurface& surface) {
+  /// The surface that moves from now on, at rest; it is to outlive this.
+  void begin(const BoundTree& rest) {
+    rest_ = &rest.mesh;
+    mesh_ = rest.mesh;
+    attributes_ = rest.attributes;
+    std::erase_if(attributes_.vertex, [](const MeshAttribute& a) { return a.name == "displacement"; });
+    attributes_.vertex.push_back({"displacement", std::vector<double>(mesh_.vertices.size())});
+  }
+
+  void write(const fs::path& path, const DeformedSurface& surface, const std::vector<Index>& lane_of_vertex) {
     std::vector<double>& displacement = attributes_.vertex.back().values;
     for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
-      mesh_.vertices[v] = surface.position(binding_.lane_of_vertex()[v]);
-      displacement[v] = (mesh_.vertices[v] - rest_.mesh.vertices[v]).norm();
+      mesh_.vertices[v] = surface.position(lane_of_vertex[v]);
+      displacement[v] = (mesh_.vertices[v] - rest_->vertices[v]).norm();
       largest_mm_ = std::max(largest_mm_, displacement[v]);
     }
     write_surface(path, mesh_, attributes_, metadata_, writing_);
@@ -200,8 +237,7 @@ class FrameWriter {
   const MeshAttributes& attributes() const { return attributes_; }
 
  private:
-  const LoadedSurface& rest_;
-  const SurfaceBinding& binding_;
+  const TriMesh* rest_ = nullptr;
   const WritingArguments& writing_;
   TriMesh mesh_;
   MeshAttributes attributes_;
@@ -219,46 +255,116 @@ std::size_t frames_of(const Scene& scene) {
   return 1 + (steps_of(scene) + every - 1) / every;
 }
 
-std::vector<Vec3> node_positions(const CenterlineSimulation& simulation, std::size_t nodes) {
-  std::vector<Vec3> positions;
-  for (Index n = 0; n < nodes; ++n) positions.push_back(simulation.position(n));
-  return positions;
-}
+/// The surface that moves with a stage, cut when it is time.
+class MovingSurface {
+ public:
+  MovingSurface(const CutPlan& plan, Stage& stage, FrameWriter& writer) : plan_(plan), stage_(stage), writer_(writer) {
+    begin();
+  }
+
+  /// Makes the cuts that are due; the surface stays where it is.
+  void cut_until(double time_s) {
+    const std::size_t before = cuts_;
+    for (; cuts_ < plan_.cuts().size() && plan_.cuts()[cuts_].time_s <= time_s; ++cuts_) {
+      const CutPlan::Made& made = plan_.cuts()[cuts_];
+      naming(made.element, [&] { stage_.cut(made.cut); });
+    }
+    if (cuts_ > before) begin();
+  }
+  void follow() { binding_->apply(stage_.simulation().pose(), stage_.simulation().moved(), lanes_); }
+  void write(const fs::path& path) { writer_.write(path, lanes_, binding_->lane_of_vertex()); }
+
+  /// The last of all stages where it is now, before it was cut.
+  std::vector<Vec3> last_vertices() {
+    if (plan_.cuts().empty()) return writer_.mesh().vertices;
+    if (!last_) {
+      const BoundTree &tree = plan_.stages()[cuts_], &last = plan_.stages().back();
+      last_.emplace(tree.centerline, stage_.simulation().tree(), last.mesh.vertices, vertex_normals(last.mesh),
+                    places_on(plan_.last_on(cuts_)));
+    }
+    DeformedSurface lanes = last_->make_surface();
+    last_->apply(stage_.simulation().pose(), lanes);
+    std::vector<Vec3> vertices;
+    for (const Index lane : last_->lane_of_vertex()) vertices.push_back(lanes.position(lane));
+    return vertices;
+  }
+  std::vector<Vec3> last_nodes() const {
+    const Centerline& now = plan_.stages()[cuts_].centerline;
+    const CenterlineSimulation& simulation = stage_.simulation();
+    std::vector<Vec3> positions;
+    for (Index n = 0; n < plan_.stages().back().centerline.nodes().size(); ++n) {
+      if (n < now.nodes().size()) {
+        positions.push_back(simulation.position(n));
+        continue;
+      }
+      const auto [segment, t] = plan_.place_of_node(n, cuts_);
+      const auto& [a, b] = now.segment(segment);
+      positions.push_back((1 - t) * simulation.position(a) + t * simulation.position(b));
+    }
+    return positions;
+  }
+
+ private:
+  void begin() {
+    const BoundTree& tree = plan_.stages()[cuts_];
+    binding_.emplace(tree.centerline, stage_.simulation().tree(), tree.mesh.vertices, vertex_normals(tree.mesh),
+                     places_on(tree.binding));
+    lanes_ = binding_->make_surface();
+    if (cuts_ > 0) binding_->apply(stage_.simulation().pose(), lanes_);
+    writer_.begin(tree);
+    last_.reset();
+  }
+
+  const CutPlan& plan_;
+  Stage& stage_;
+  FrameWriter& writer_;
+  std::size_t cuts_ = 0;
+  std::optional<SurfaceBinding> binding_, last_;
+  DeformedSurface lanes_;
+};
 
 /// The surface's frames, and the volume's if there is one.
 struct Frames {
-  FrameWriter& writer;
+  MovingSurface& surface;
   FrameSeries& series;
   MovingVolume* volume = nullptr;
   FrameSeries* volume_series = nullptr;
+  std::vector<double> times_s = {};
 
-  void write(const DeformedSurface& surface, double time_s) {
-    writer.write(series.next(), surface);
+  void write(double time_s) {
+    surface.write(series.next());
+    times_s.push_back(time_s);
     if (volume != nullptr) volume->write(volume_series->next(), time_s);
   }
 };
 
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
 /// Calls `show(time)` after every frame that is written, and stops early if that is false.
 template <class Show>
-Timing play(const Scene& scene, Stage& stage, const SurfaceBinding& binding, Frames& frames, const Progress& progress,
-            Show show) {
+Timing play(const Scene& scene, Stage& stage, Frames& frames, const Progress& progress, Show show) {
   Timing timing;
-  DeformedSurface surface = binding.make_surface();
-  frames.write(surface, 0);
-  if (!show(0.0)) return timing;
   const std::size_t steps = steps_of(scene);
+  // A cut is due in the step that reaches its time, but for rounding; in the last one at the latest.
+  const auto due = [&](std::size_t i) {
+    return i == steps ? kNever : (static_cast<double>(i) + 1e-6) * scene.options.step_s;
+  };
+  frames.surface.cut_until(due(0));
+  frames.write(0);
+  if (!show(0.0)) return timing;
   for (std::size_t i = 1; i <= steps; ++i) {
     report_progress(progress, "deforming", static_cast<double>(i - 1) / static_cast<double>(steps));
     Stopwatch watch;
     stage.step(static_cast<double>(i) * scene.options.step_s);
     timing.simulate_s += watch.lap();
-    binding.apply(stage.simulation().pose(), stage.simulation().moved(), surface);
+    frames.surface.follow();
     if (frames.volume != nullptr) frames.volume->follow(stage.simulation().pose(), stage.simulation().moved());
     stage.simulation().clear_moved();
     timing.synchronise_s += watch.lap();
+    frames.surface.cut_until(due(i));
     if (i % static_cast<std::size_t>(scene.frame_every) != 0 && i != steps) continue;
     const double time_s = static_cast<double>(i) * scene.options.step_s;
-    frames.write(surface, time_s);
+    frames.write(time_s);
     if (!show(time_s)) return timing;
   }
   return timing;
@@ -292,12 +398,12 @@ void check_files(const DeformArguments& arguments) {
 
 /// The volume mesh, if there is one.
 std::optional<MovingVolume> load_moving_volume(const DeformArguments& arguments, const Centerline& centerline,
-                                               const RodTree& tree, const LoadedSurface& surface,
-                                               const std::vector<SurfacePlace>& places, Console& console) {
+                                               const RodTree& tree, const BoundTree& surface, Console& console) {
   if (arguments.volume.empty()) return std::nullopt;
   return naming(arguments.volume, [&] {
     LoadedVolume volume = load_volume(arguments.volume, console);
-    const VolumePlaces at = volume_places(centerline, volume.mesh, surface.mesh.vertices, places, kFarthestPlace);
+    const VolumePlaces at =
+        volume_places(centerline, volume.mesh, surface.mesh.vertices, places_on(surface.binding), kFarthestPlace);
     console.log(std::to_string(at.shared) + " points of the volume are vertices of the surface and stay on it; the " +
                 "others follow the nearest vessel");
     const VolumeMetadata metadata = {generator_name(),
@@ -340,34 +446,40 @@ bool is_good(const std::vector<VolumeFrame>& frames, const DeformArguments& argu
 int run(const DeformArguments& arguments, Console& console) {
   check_files(arguments);
   const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
-  const LoadedSurface rest = load_surface(arguments.surface);
-  console.warn(rest.warnings);
-  const Scene scene = read_scene(arguments.script, centerline.nodes().size(), centerline.segments().size());
+  LoadedSurface loaded = load_surface(arguments.surface);
+  console.warn(loaded.warnings);
+  Scene scene = read_scene(arguments.script, centerline.nodes().size(), centerline.segments().size());
+  if (!scene.cuts.empty() && !arguments.volume.empty())
+    throw InvalidInput(arguments.script.string() + ": " + scene.cuts.front().place.element +
+                       ": the cells of a --volume cannot be cut; leave out one of the two");
+  const CutPlan plan(scene, arguments.script.string(), bound_tree(centerline, std::move(loaded), console));
+  const BoundTree& rest = plan.stages().front();
+  scene.scales.insert(scene.scales.end(), plan.profiles().begin(), plan.profiles().end());
   Stage stage = naming(arguments.script, [&] { return Stage(centerline, scene); });
-  const RodTree& tree = stage.simulation().tree();
-  const std::vector<SurfacePlace> places = places_of(centerline, rest, console);
-  const SurfaceBinding binding(centerline, tree, rest.mesh.vertices, vertex_normals(rest.mesh), places);
-  std::optional<MovingVolume> volume = load_moving_volume(arguments, centerline, tree, rest, places, console);
+  for (const InsertedNode& node : plan.inserted()) stage.divide(node);
+  std::optional<MovingVolume> volume =
+      load_moving_volume(arguments, rest.centerline, stage.simulation().tree(), rest, console);
   stop_if_interrupted();
   FrameSeries series(arguments.output, "." + arguments.format);
   std::optional<FrameSeries> volume_series;
   if (volume) volume_series.emplace(arguments.volume_output, ".vtu");
-  FrameWriter writer(arguments, rest, binding);
-  Frames written{writer, series, volume ? &*volume : nullptr, volume_series ? &*volume_series : nullptr};
-  const std::size_t nodes = centerline.nodes().size();
+  FrameWriter writer(arguments);
+  MovingSurface moving(plan, stage, writer);
+  Frames written{moving, series, volume ? &*volume : nullptr, volume_series ? &*volume_series : nullptr};
+  const BoundTree& last = plan.stages().back();
   std::optional<PageFrames> frames;
-  if (!arguments.common.html.empty()) frames.emplace(rest.mesh, centerline, frames_of(scene));
+  if (!arguments.common.html.empty()) frames.emplace(last.mesh, last.centerline, frames_of(scene));
   const auto show = [&](double time_s) {
-    if (frames) frames->add(time_s, writer.mesh().vertices, node_positions(stage.simulation(), nodes));
+    if (frames) frames->add(time_s, moving.last_vertices(), moving.last_nodes());
     return !volume || arguments.allow_defects || volume->frames().back().inverted_cells == 0;
   };
-  const Timing timing =
-      naming(arguments.script, [&] { return play(scene, stage, binding, written, console.progress(), show); });
+  const Timing timing = naming(arguments.script, [&] { return play(scene, stage, written, console.progress(), show); });
   if (volume) {
     if (!is_good(volume->frames(), arguments, console)) return kDefective;
     volume_series->write_collection(times_of(volume->frames()));
     volume_series->keep();
   }
+  if (!plan.cuts().empty() && arguments.format == "vtp") series.write_collection(written.times_s);
   series.keep();
   console.log("wrote " + std::to_string(series.size()) + " frames to " + arguments.output.string());
   if (volume)
@@ -385,6 +497,8 @@ int run(const DeformArguments& arguments, Console& console) {
                   {"elastic_energy_J", stage.simulation().elastic_energy_J()},
                   {"simulate_s", timing.simulate_s},
                   {"synchronise_s", timing.synchronise_s}};
+  if (!plan.cuts().empty()) summary["cuts"] = plan.cuts_json();
+  if (!scene.clips.empty()) summary["clips"] = plan.clips_json();
   if (scene.touching.exists()) {
     summary["contact_energy_J"] = stage.simulation().contact_energy_J();
     summary["torn_nodes"] = stage.simulation().torn();
@@ -395,8 +509,8 @@ int run(const DeformArguments& arguments, Console& console) {
   write_json(arguments.common.json, summary);
   if (frames)
     write_page(arguments.common.html,
-               page_of(arguments.common, arguments.script, summary, rest.mesh, writer.mesh(), writer.attributes(),
-                       centerline, std::move(*frames)),
+               page_of(arguments.common, arguments.script, summary, last.mesh, writer.mesh(), writer.attributes(),
+                       last.centerline, std::move(*frames)),
                console);
   return kOk;
 }

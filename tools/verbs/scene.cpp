@@ -85,11 +85,46 @@ void check_drag(const Element& element, const Scene& scene) {
   if (dragged > 1) element.member("node").fail(name + " is dragged already; make one path of both");
 }
 
+Scene::Place read_place(const Element& element, std::size_t nodes) {
+  Scene::Place place{element.name()};
+  if (element.has("node") + element.has("segment") + element.has("position_mm") != 1)
+    element.fail("give one place: \"node\", \"segment\" with \"parameter\", or \"position_mm\"");
+  if (element.has("parameter") != element.has("segment"))
+    element.fail("\"parameter\", from 0 to 1 along the \"segment\", is given with it and only with it");
+  if (element.has("node")) place.node = element.member("node").node(nodes);
+  if (element.has("position_mm")) {
+    const std::vector<double> p = element.member("position_mm").numbers(3, "[x, y, z]");
+    place.position_mm = Vec3(p[0], p[1], p[2]);
+  }
+  if (!element.has("segment")) return place;
+  const double segment = element.member("segment").number(0, kNone - 1.0);
+  if (segment != std::floor(segment)) element.member("segment").fail("it must be an integer, the number of a segment");
+  place.segment = static_cast<Index>(segment);
+  element.take("parameter", 0, 1, place.t);
+  return place;
+}
+
+void read_cuts(const Element& root, std::size_t nodes, Scene& scene) {
+  for (const Element& item : root.items("cut")) {
+    item.allow({"time_s", "node", "segment", "parameter", "position_mm"});
+    scene.cuts.push_back({read_place(item, nodes), item.member("time_s").number(0, scene.duration_s)});
+  }
+  for (const Element& item : root.items("clip")) {
+    item.allow({"time_s", "closing_s", "scale", "width_mm", "node", "segment", "parameter", "position_mm"});
+    Scene::Clip clip{read_place(item, nodes), item.member("time_s").number(0, scene.duration_s)};
+    item.take("closing_s", 1e-6, 1e6, clip.closing_s);
+    item.take("scale", 1e-3, 1, clip.scale);
+    item.take("width_mm", 1e-6, 1e6, clip.width_mm);
+    scene.clips.push_back(clip);
+  }
+}
+
 Scene read(const Element& root, std::size_t nodes, std::size_t segments) {
   root.allow(
       {"schema",       "material",    "integrator",   "step_s",      "iterations", "drag_per_s", "squeeze_response_s",
        "duration_s",   "frame_every", "gravity_m_s2", "fix",         "clamp",      "drag",       "force",
-       "radial_scale", "squeeze",     "contact",      "instruments", "grasp",      "tissue"});
+       "radial_scale", "squeeze",     "contact",      "instruments", "grasp",      "tissue",     "cut",
+       "clip"});
   if (root.member("schema").text() != kSchema)
     root.member("schema").fail(std::string("this version reads \"") + kSchema + "\"");
   Scene scene;
@@ -113,6 +148,7 @@ Scene read(const Element& root, std::size_t nodes, std::size_t segments) {
     item.allow({"node", "force_N"});
     scene.squeezes.push_back({item.member("node").node(nodes), number_course(item.member("force_N"), -1e12)});
   }
+  read_cuts(root, nodes, scene);
   scene.touching = read_touching(root, segments);
   if (scene.touching.exists() && scene.options.integrator == Integrator::paper)
     root.fail("contact, instruments, grasp and tissue need the integrator \"implicit\"");

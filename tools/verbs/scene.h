@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,25 @@ struct Scene {
     Course<double> value;
   };
 
+  /// Of these, one: a node, a segment and a place along it, or the nearest place to a position at rest (mm).
+  struct Place {
+    std::string element;  ///< for messages: "cut[0]"
+    Index node = kNone, segment = kNone;
+    double t = 0;
+    std::optional<Vec3> position_mm = {};
+  };
+  struct Cut {
+    Place place;
+    double time_s;
+  };
+  /// Narrows the profile to `scale` between `time_s` and `closing_s` later.
+  struct Clip {
+    Place place;
+    double time_s;
+    double closing_s = 0.2, scale = 0.05;
+    double width_mm = 0;  ///< 0: the radius
+  };
+
   Material material;
   SimulationOptions options;
   double duration_s = 1;
@@ -36,6 +56,8 @@ struct Scene {
   std::vector<Drag> drags;
   std::vector<Force> forces;
   std::vector<Profile> scales, squeezes;
+  std::vector<Cut> cuts;
+  std::vector<Clip> clips;
   SceneTouching touching;
 };
 

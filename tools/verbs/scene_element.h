@@ -39,6 +39,7 @@ class Element {
     }
   }
 
+  const std::string& name() const { return name_; }
   bool has(const char* key) const { return json_.contains(key); }
 
   Element member(const char* key) const {

@@ -185,14 +185,16 @@ TouchingStage::TouchingStage(const SceneTouching& scene, const Centerline& cente
       simulation.set_tissue(s, scene.tissues[i].properties);
 }
 
-void TouchingStage::act(CenterlineSimulation& simulation, double time_s) {
+void TouchingStage::act(CenterlineSimulation& simulation, double time_s,
+                        const std::function<SegmentPlace(const SegmentPlace&)>& now) {
   for (std::size_t i = 0; i < scene_.instruments.size(); ++i)
     simulation.move_instrument(static_cast<Index>(i), scene_.instruments[i].path.at(time_s));
   for (std::size_t i = 0; i < scene_.grasps.size(); ++i) {
     const SceneTouching::Grasp& grasp = scene_.grasps[i];
     if (open_[i] || time_s < grasp.close_s) continue;
     if (jaws_[i] == kNone) {
-      jaws_[i] = simulation.grasp(grasp.segment, grasp.t, grasp.slips_N);
+      const SegmentPlace place = now({grasp.segment, grasp.t});
+      jaws_[i] = simulation.grasp(place.segment, place.t, grasp.slips_N);
       closed_at_[i] = simulation.jaw_position(jaws_[i]);
     }
     if (time_s > grasp.release_s) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -57,8 +58,9 @@ class TouchingStage {
   /// Throws InvalidInput naming the instrument that starts in a vessel, and the branch that does not exist.
   TouchingStage(const SceneTouching& scene, const Centerline& centerline, CenterlineSimulation& simulation);
 
-  /// To be called before each step.
-  void act(CenterlineSimulation& simulation, double time_s);
+  /// To be called before each step. `now`: where a place of the scene's centerline is on the one that moves.
+  void act(CenterlineSimulation& simulation, double time_s,
+           const std::function<SegmentPlace(const SegmentPlace&)>& now);
 
   const std::vector<Index>& jaws() const { return jaws_; }  ///< kNone: not closed yet
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -6,6 +7,7 @@
 
 #include "vmesh/deform/simulation.h"
 #include "vmesh/deform/surface_binding.h"
+#include "vmesh/surface/cut_surface.h"
 
 #include "arrays.h"
 #include "binding.h"
@@ -34,6 +36,43 @@ const Centerline& centerline_of(const SurfaceObject& surface) {
   return surface.centerline->centerline;
 }
 
+/// The labels of caps go on with those of the cut.
+FlatEnds ends_of_cut(const FlatEnds& before, const CutSurface& cut, const CenterlineCut& at) {
+  if (before.cap_label.empty()) return {};
+  FlatEnds after = before;
+  const Index last = *std::max_element(before.cap_label.begin(), before.cap_label.end());
+  after.cap_label.clear();
+  for (Index f = 0; f < cut.face_origin.size(); ++f) {
+    const Index from = cut.face_origin[f];
+    const Index of_cap = last + (f >= cut.cap[1].first_face ? 2 : 1);
+    after.cap_label.push_back(from == kNone ? of_cap : before.cap_label[from]);
+  }
+  for (Index side = 0; side < 2; ++side) {
+    FlatEnd end;
+    end.label = last + 1 + side;
+    end.node = at.end[side];
+    end.center = at.position;
+    end.normal = side == 0 ? at.direction : Vec3(-at.direction);
+    end.capped = true;
+    after.ends.push_back(end);
+  }
+  return after;
+}
+
+/// The surface at rest after a cut, bound to the centerline after it.
+SurfacePtr cut_apart(const SurfaceObject& before, const CenterlineCut& cut) {
+  CutSurface made = cut_surface(before.mesh(), before.result.binding, centerline_of(before), cut);
+  auto after = std::make_shared<SurfaceObject>();
+  after->centerline = std::make_shared<CenterlineObject>(CenterlineObject{cut.centerline, {}, {}, {}});
+  after->ends = ends_of_cut(before.ends, made, cut);
+  for (const auto& [a, b, share] : made.vertex_origin)
+    after->result.radius.push_back((1 - share) * before.result.radius[a] + share * before.result.radius[b]);
+  after->result.openings = before.result.openings;
+  after->result.binding = std::move(made.binding);
+  after->result.mesh = std::move(made.mesh);
+  return after;
+}
+
 /// vmesh.Deformation: a centerline that moves, and its surface.
 class Deformation {
  public:
@@ -60,8 +99,40 @@ class Deformation {
   /// Advances without updating the surface.
   StepReport advance() {
     ++steps_;
+    close_clips();
     return simulation_.step();
   }
+  /// Cuts centerline and surface; both stay where they are. Returns the nodes at the cut.
+  std::array<Index, 2> cut(const CenterlineCut& cut) {
+    SurfacePtr after = cut_apart(*surface_, cut);
+    simulation_.cut(cut);
+    begin_again(std::move(after));
+    return cut.end;
+  }
+
+  /// Clips a vessel within some time. Returns the nodes at which the profile narrows.
+  std::vector<Index> clip(const SegmentPlace& place, const Clip& clip, double closing_s) {
+    if (!(closing_s >= 0 && std::isfinite(closing_s)))
+      throw InvalidInput("the time in which a clip closes must be finite and at least 0");
+    const ClippedVessel clipped = clip_vessel(centerline_of(*surface_), place, clip);
+    auto after = std::make_shared<SurfaceObject>(*surface_);
+    for (const InsertedNode& node : clipped.inserted) {
+      simulation_.divide(node);
+      for (CenterlineBinding& binding : after->result.binding) {
+        const SegmentPlace now = node.after({binding.segment, binding.t});
+        binding = {now.segment, now.t};
+      }
+      after->centerline = std::make_shared<CenterlineObject>(CenterlineObject{node.centerline, {}, {}, {}});
+    }
+    if (!clipped.inserted.empty()) begin_again(std::move(after));
+    std::vector<Index> nodes;
+    for (const auto& [node, scale] : clipped.scales) {
+      closing_.push_back({node, scale, time(), closing_s});
+      nodes.push_back(node);
+    }
+    return nodes;
+  }
+
   /// Updates the surface.
   void synchronise() {
     binding_.apply(simulation_.pose(), simulation_.moved(), lanes_);
@@ -70,6 +141,36 @@ class Deformation {
   }
 
  private:
+  /// A node whose profile narrows to `scale`.
+  struct Closing {
+    Index node;
+    double scale, from_s, duration_s;
+  };
+
+  void close_clips() {
+    std::erase_if(closing_, [this](const Closing& c) {
+      const double part = c.duration_s > 0 ? std::min(1.0, (time() - c.from_s) / c.duration_s) : 1;
+      simulation_.set_radial_scale(c.node, 1 + part * (c.scale - 1));
+      return part == 1;
+    });
+  }
+
+  /// Goes on with another surface at rest around the centerline that the simulation has now.
+  void begin_again(SurfacePtr surface) {
+    surface_ = std::move(surface);
+    const std::vector<Vec3>& rest = surface_->mesh().vertices;
+    binding_ = SurfaceBinding(centerline_of(*surface_), simulation_.tree(), rest, vertex_normals(surface_->mesh()),
+                              places_of(*surface_));
+    lanes_ = binding_.make_surface(SurfaceBinding::Normals::with);
+    binding_.apply(simulation_.pose(), lanes_);
+    // Views of the arrays until now must outlive the change.
+    for (std::vector<Vec3>* array : {&vertices_, &normals_, &nodes_}) former_.push_back(std::move(*array));
+    vertices_.assign(rest.size(), Vec3::Zero());
+    normals_ = vertices_;
+    nodes_.assign(centerline_of(*surface_).nodes().size(), Vec3::Zero());
+    gather();
+  }
+
   void gather() {
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
       const Index lane = binding_.lane_of_vertex()[v];
@@ -86,6 +187,8 @@ class Deformation {
   double step_s_;
   std::size_t steps_ = 0;
   std::vector<Vec3> vertices_, normals_, nodes_;
+  std::vector<Closing> closing_;
+  std::vector<std::vector<Vec3>> former_;  // arrays of before cuts and clips
 };
 
 /// Steps, with a call after each.
@@ -193,6 +296,29 @@ void bind_actions(DeformationClass& deformation) {
             d.simulation().set_velocity(node, to_point(v, "velocity_mm_s"));
           },
           py::arg("node"), py::arg("velocity_mm_s"), "Sets the velocity of a node, (3,) mm/s.")
+      .def(
+          "cut",
+          [](Deformation& d, Index segment, double parameter) {
+            const auto ends = d.cut(cut_centerline(centerline_of(*d.surface()), {segment, parameter}));
+            return py::make_tuple(ends[0], ends[1]);
+          },
+          py::arg("segment"), py::arg("parameter"),
+          "Cuts the vessel across a segment of rest.centerline, at a parameter from 0 to 1 along it, and the surface "
+          "with "
+          "two flat caps. Nothing moves; vertices, faces, nodes and segments keep their numbers, new ones come last. "
+          "`rest` and all arrays are new; views of those before stay as they are. Returns the two nodes at the cut.")
+      .def(
+          "clip",
+          [](Deformation& d, Index segment, double parameter, double width, double scale, double closing) {
+            return d.clip({segment, parameter}, Clip{width, scale}, closing);
+          },
+          py::arg("segment"), py::arg("parameter"), py::kw_only(), py::arg("width_mm") = Clip{}.width_mm,
+          py::arg("scale") = Clip{}.scale, py::arg("closing_s") = 0.2,
+          "Narrows the vessel at a place, given as for cut(): its profile goes to `scale` over `width_mm` (0: the "
+          "radius) "
+          "within `closing_s` of the following steps, and stays so. New nodes come last; `rest` and all arrays are "
+          "new. "
+          "Returns the nodes at which the profile narrows.")
       .def(
           "set_gravity",
           [](Deformation& d, const py::object& g) { d.simulation().set_gravity(to_point(g, "gravity_mm_s2")); },

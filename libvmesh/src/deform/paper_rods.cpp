@@ -81,6 +81,14 @@ StepReport PaperRods::step(RodScene& scene) noexcept {
   return report;
 }
 
+void PaperRods::carry_on(const PaperRods& before, const RodScene& old, const RodScene& scene,
+                         const std::vector<SlotOrigin>& origin) {
+  for (Index j = 0; j < scene.size(); ++j) {
+    const Index from = origin[j].frame;
+    tip_velocity_[j] = before.tip_velocity_[from] * old.tree.frame[from].transpose() * scene.tree.frame[j];
+  }
+}
+
 void PaperRods::add_forces(const RodScene& scene) {
   for (Index j = 0; j < scene.size(); ++j) {
     const Rod& rod = scene.rods[j];

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "deform/rod_scene.h"
+#include "deform/slot_origin.h"
 
 namespace vmesh {
 
@@ -13,6 +14,9 @@ class PaperRods {
   explicit PaperRods(const RodScene& scene);
 
   StepReport step(RodScene& scene) noexcept;
+  /// Goes on where another one is, after a cut of its scene `old`.
+  void carry_on(const PaperRods& before, const RodScene& old, const RodScene& scene,
+                const std::vector<SlotOrigin>& origin);
 
  private:
   void add_forces(const RodScene& scene);

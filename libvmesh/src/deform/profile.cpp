@@ -20,6 +20,14 @@ Profile::Profile(const Centerline& centerline, const std::vector<SegmentProperti
   set_area_and_stiffness(centerline, properties);
 }
 
+void Profile::carry_on(const Profile& before, const std::vector<SlotOrigin>& origin) {
+  settled_ = before.settled_;
+  if (before.scale_.empty()) return;
+  scale_ = carried(before.scale_, origin);
+  squeezed_ = carried(before.squeezed_, origin);
+  goal_ = carried(before.goal_, origin);
+}
+
 void Profile::set_area_and_stiffness(const Centerline& centerline, const std::vector<SegmentProperties>& properties) {
   area_mm2_.assign(centerline.nodes().size(), 0);
   stiffness_N_mm2_ = area_mm2_;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "deform/rod_scene.h"
+#include "deform/slot_origin.h"
 
 namespace vmesh {
 
@@ -13,6 +14,9 @@ class Profile {
  public:
   Profile(const Centerline& centerline, const std::vector<SegmentProperties>& properties,
           const SimulationOptions& options);
+
+  /// Goes on where another one is, after a cut.
+  void carry_on(const Profile& before, const std::vector<SlotOrigin>& origin);
 
   void set_scale(Index slot, double scale, RodScene& scene);
   void set_squeeze(Index slot, double force_N, RodScene& scene);

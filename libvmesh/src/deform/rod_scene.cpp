@@ -96,13 +96,13 @@ void set_ties(RodScene& scene) {
 }  // namespace
 
 RodScene make_rod_scene(const Centerline& centerline, const std::vector<SegmentProperties>& properties,
-                        const SimulationOptions& options) {
+                        const SimulationOptions& options, std::span<const Index> roots) {
   if (properties.size() != centerline.segments().size())
     throw InvalidInput("there are " + std::to_string(properties.size()) + " segment properties for " +
                        std::to_string(centerline.segments().size()) + " segments; give one each");
   for (Index s = 0; s < properties.size(); ++s) check(properties[s], s);
   RodScene scene;
-  scene.tree = make_rod_tree(centerline);
+  scene.tree = make_rod_tree(centerline, roots);
   scene.options = options;
   const std::size_t n = scene.tree.size();
   scene.rods.resize(n);

@@ -40,9 +40,9 @@ struct RodScene {
   bool is_root(Index j) const { return rods[j].parent == kNone; }
 };
 
-/// A scene at rest with nothing held. Throws InvalidInput for properties out of range.
+/// A scene at rest with nothing held; `roots` as in make_rod_tree(). Throws InvalidInput for properties out of range.
 RodScene make_rod_scene(const Centerline& centerline, const std::vector<SegmentProperties>& properties,
-                        const SimulationOptions& options);
+                        const SimulationOptions& options, std::span<const Index> roots = {});
 
 /// Deviation of slot j's segment from its z axis times its rest length: zero if straight and of rest length.
 inline Vec3 misfit(const RodScene& scene, Index j) {

@@ -34,7 +34,9 @@ class Builder {
     tree_.slot_of_segment.assign(centerline.segments().size(), kNone);
   }
 
-  RodTree run() {
+  RodTree run(std::span<const Index> roots) {
+    for (const Index n : roots)
+      if (tree_.slot_of_node[n] == kNone) visit_component(n);
     for (Index n = 0; n < centerline_.nodes().size(); ++n)
       if (tree_.slot_of_node[n] == kNone) visit_component(n);
     return std::move(tree_);
@@ -107,7 +109,9 @@ class Builder {
 
 }  // namespace
 
-RodTree make_rod_tree(const Centerline& centerline) { return Builder(centerline).run(); }
+RodTree make_rod_tree(const Centerline& centerline, std::span<const Index> roots) {
+  return Builder(centerline).run(roots);
+}
 
 Pose rest_pose(const RodTree& tree) { return {tree.position, tree.frame, {}}; }
 

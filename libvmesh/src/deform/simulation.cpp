@@ -5,6 +5,7 @@
 
 #include "vmesh/core/error.h"
 
+#include "deform/cut_rods.h"
 #include "deform/implicit_rods.h"
 #include "deform/paper_rods.h"
 #include "deform/profile.h"
@@ -34,13 +35,27 @@ void require_finite(const Vec3& v, const char* name) {
 }  // namespace
 
 struct CenterlineSimulation::State {
-  State(const Centerline& centerline, const std::vector<SegmentProperties>& properties,
+  State(const Centerline& centerline, const std::vector<SegmentProperties>& of_segments,
         const SimulationOptions& options)
-      : scene(make_rod_scene(centerline, properties, options)),
+      : properties(of_segments),
+        scene(make_rod_scene(centerline, properties, options)),
         implicit(scene),
         paper(scene),
         profile(centerline, properties, options),
         touching(centerline, scene, implicit) {}
+
+  State(const State& before, const CenterlineCut& cut)
+      : properties(cut_properties(before.properties, cut)),
+        scene(cut_scene(before.scene, cut, properties)),
+        implicit(scene),
+        paper(scene),
+        profile(cut.centerline, properties, scene.options),
+        touching(cut.centerline, scene, implicit) {
+    const std::vector<SlotOrigin> origin = slot_origins(before.scene.tree, scene.tree, cut);
+    profile.carry_on(before.profile, origin);
+    paper.carry_on(before.paper, before.scene, scene, origin);
+    touching.carry_on(before.touching, cut, origin);
+  }
 
   Index slot(Index node) const {
     if (node >= scene.tree.slot_of_node.size())
@@ -72,6 +87,7 @@ struct CenterlineSimulation::State {
     if (how == Hold::clamped) scene.spin[j].setZero();
   }
 
+  std::vector<SegmentProperties> properties;
   RodScene scene;
   ImplicitRods implicit;
   PaperRods paper;
@@ -134,6 +150,17 @@ void CenterlineSimulation::set_gravity(const Vec3& gravity_mm_s2) {
   require_finite(gravity_mm_s2, "gravity");
   state_->scene.options.gravity_mm_s2 = gravity_mm_s2;
   state_->implicit.wake_all();
+}
+
+void CenterlineSimulation::cut(const CenterlineCut& cut) {
+  require_cut(state_->scene, cut);
+  state_ = std::make_unique<State>(*state_, cut);
+}
+
+void CenterlineSimulation::divide(const InsertedNode& node) {
+  const CenterlineCut within = uncut(node);
+  require_cut(state_->scene, within);
+  state_ = std::make_unique<State>(*state_, within);
 }
 
 void CenterlineSimulation::set_contact(const ContactOptions& options) { state_->touching.set_contact(options); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 
 #include "vmesh/core/error.h"
@@ -105,6 +106,25 @@ Surroundings::Surroundings(const RodScene& scene, const ContactOptions& options)
   slot_boxes_.resize(scene.size());
   load_of_slot_.assign(scene.size(), kNone);
   set_options(scene, options);
+}
+
+void Surroundings::carry_on(const Surroundings& before, const std::vector<SlotOrigin>& origin) {
+  instruments_ = before.instruments_;
+  parts_ = before.parts_;
+  points_ = before.points_;
+  jaws_ = before.jaws_;
+  jaw_trial_ = before.jaw_trial_;
+  last_way_ = before.last_way_;
+  radius_ = carried(before.radius_, origin);
+  std::map<std::pair<Index, Index>, double> excess;
+  for (const RestPair& pair : before.rest_pairs_) excess[std::minmax(pair.a, pair.b)] = pair.excess;
+  for (RestPair& pair : rest_pairs_) {
+    const Index a = origin[pair.a].frame, b = origin[pair.b].frame;
+    const auto found = excess.find(std::minmax(a, b));
+    // Both were one segment, or as near as they were: parts of segments may be farther from each other at rest.
+    if (a == b) pair.excess = HUGE_VAL;
+    if (found != excess.end()) pair.excess = found->second;
+  }
 }
 
 void Surroundings::set_options(const RodScene& scene, const ContactOptions& options) {

@@ -8,6 +8,7 @@
 #include "deform/rod_scene.h"
 #include "deform/round_cones.h"
 #include "deform/slot_boxes.h"
+#include "deform/slot_origin.h"
 #include "deform/tissue.h"
 
 namespace vmesh {
@@ -54,6 +55,10 @@ class Surroundings {
   enum class State { present, trial };
 
   Surroundings(const RodScene& scene, const ContactOptions& options);
+
+  /// Goes on with the instruments and jaws of another one, after a cut; jaws still name slots of before. What never
+  /// touched never will.
+  void carry_on(const Surroundings& before, const std::vector<SlotOrigin>& origin);
 
   void set_options(const RodScene& scene, const ContactOptions& options);
   const ContactOptions& options() const { return options_; }

@@ -34,6 +34,36 @@ Surroundings& Touching::around() {
   return *around_;
 }
 
+void Touching::carry_on(const Touching& before, const CenterlineCut& cut, const std::vector<SlotOrigin>& origin) {
+  if (!before.around_) return;
+  around_ = std::make_unique<Surroundings>(scene_, before.around_->options());
+  rods_.attach(*around_);
+  around_->carry_on(*before.around_, origin);
+  for (Jaw& jaw : around_->jaws()) put_jaw(before, cut, jaw);
+  carry_tissue(before, cut, origin);
+}
+
+void Touching::put_jaw(const Touching& before, const CenterlineCut& cut, Jaw& jaw) const {
+  const Index segment = before.scene_.tree.segment[jaw.slot];
+  const SegmentPlace place = cut.after({segment, before.backwards_[segment] ? 1 - jaw.t : jaw.t});
+  jaw.slot = scene_.tree.slot_of_segment[place.segment];
+  jaw.t = backwards_[place.segment] ? 1 - place.t : place.t;
+}
+
+bool Touching::is_torn(Index slot) const { return spring_of(slot).exists() && !around_->tissue.springs[slot].exists(); }
+
+/// Both parts of a segment have its tissue. What has torn stays so; a new end is torn if both of its neighbours are.
+void Touching::carry_tissue(const Touching& before, const CenterlineCut& cut, const std::vector<SlotOrigin>& origin) {
+  tissue_ = before.tissue_;
+  if (before.around_->tissue.springs.empty()) return;
+  if (!cut.between_segments) tissue_.push_back(tissue_[cut.at.segment]);
+  around_->tissue.torn = before.around_->tissue.torn;
+  for (Index j = 0; j < scene_.size(); ++j) {
+    const bool torn = before.is_torn(origin[j].a) && before.is_torn(origin[j].b);
+    rods_.set_tissue(scene_, j, torn ? TissueSpring{} : spring_of(j));
+  }
+}
+
 Index Touching::slot_of(Index segment) const {
   require_index(segment, backwards_.size(), "segment");
   return scene_.tree.slot_of_segment[segment];

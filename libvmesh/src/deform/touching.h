@@ -3,9 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "vmesh/centerline/centerline.h"
+#include "vmesh/centerline/cut.h"
 
 #include "deform/implicit_rods.h"
+#include "deform/slot_origin.h"
 #include "deform/surroundings.h"
 
 namespace vmesh {
@@ -15,6 +16,10 @@ namespace vmesh {
 class Touching {
  public:
   Touching(const Centerline& centerline, RodScene& scene, ImplicitRods& rods);
+
+  /// Goes on where another one is, after a cut. The neighbourhoods of the two new ends never touch each other, as they
+  /// did not before.
+  void carry_on(const Touching& before, const CenterlineCut& cut, const std::vector<SlotOrigin>& origin);
 
   void set_contact(const ContactOptions& options);
   Index add_instrument(const InstrumentShape& shape, const InstrumentPose& pose);
@@ -38,6 +43,9 @@ class Touching {
   Index slot_of(Index segment) const;
   const Jaw& jaw(Index number) const;
   TissueSpring spring_of(Index slot) const;
+  bool is_torn(Index slot) const;
+  void put_jaw(const Touching& before, const CenterlineCut& cut, Jaw& jaw) const;
+  void carry_tissue(const Touching& before, const CenterlineCut& cut, const std::vector<SlotOrigin>& origin);
 
   RodScene& scene_;
   ImplicitRods& rods_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "vmesh/centerline/centerline.h"
@@ -32,8 +33,9 @@ struct RodTree {
   std::size_t size() const { return parent.size(); }
 };
 
-/// Cuts `centerline` into trees, rooted at the lowest node of every component. O(n), deterministic.
-RodTree make_rod_tree(const Centerline& centerline);
+/// Cuts `centerline` into trees, rooted at the first of `roots` in every component, or else at its lowest node. O(n),
+/// deterministic.
+RodTree make_rod_tree(const Centerline& centerline, std::span<const Index> roots = {});
 
 /// The state of a rod tree: one entry per slot of a RodTree.
 struct Pose {

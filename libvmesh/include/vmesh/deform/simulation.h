@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "vmesh/centerline/cut.h"
 #include "vmesh/deform/contact.h"
 #include "vmesh/deform/material.h"
 #include "vmesh/deform/rod_tree.h"
@@ -78,6 +79,15 @@ class CenterlineSimulation {
   void set_squeeze(Index node, double force_N);
   void set_velocity(Index node, const Vec3& velocity_mm_s);
   void set_gravity(const Vec3& gravity_mm_s2);
+
+  /// Parts a vessel; `cut` is of the centerline that moves, which becomes cut.centerline. Everything keeps its
+  /// position, orientation, velocity, loads and holds; masses and springs of the segment cut are divided, its new ends
+  /// are free. Momentum is kept, and energy does not grow, but for a loop: where the springs that closed it held its
+  /// ends together, they are one now, and resist bending. Throws InvalidInput for a node that is held or loaded, and
+  /// for a cut of another centerline.
+  void cut(const CenterlineCut& cut);
+  /// Puts a node on a segment in the same way; everything goes on as it was, but that the segment can bend there.
+  void divide(const InsertedNode& node);
 
   /// The following are for Integrator::implicit and throw InvalidInput with the other. Without them, nothing touches
   /// anything, and nothing is spent on it.
