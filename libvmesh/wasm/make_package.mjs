@@ -51,7 +51,7 @@ function makePage() {
   page = replaced(page, "@STYLE@", text(`${pageFolder}/page.css`) + text(`${wasmFolder}/page/live.css`));
   page = replaced(page, '<aside id="panel">\n', `<aside id="panel">\n${text(`${wasmFolder}/page/live.html`)}`);
   page = replaced(page, '  <div id="picture">\n',
-    '  <div id="picture">\n  <div id="welcome"><b>From a centerline to a surface</b><span>Drop a file anywhere on this page.</span></div>\n');
+    '  <div id="picture">\n  <div id="welcome"><b>From a centerline to a surface</b><span>Drop a file anywhere on this page, or choose one.</span></div>\n');
   const data = `null</script>
 <script type="text/plain" id="example-file">${text(`${project}/examples/small_tree.swc`)}</script>
 <script type="text/plain" id="worker">${embedded(engine + text(`${wasmFolder}/page/worker.js`))}</script>

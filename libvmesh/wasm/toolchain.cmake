@@ -16,7 +16,8 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE BOTH)
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 # Exceptions and vectors of WebAssembly's own: browsers of 2022 and later, Node from 17.
 set(CMAKE_C_FLAGS_INIT "-msimd128")
-set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fwasm-exceptions -include ${CMAKE_CURRENT_LIST_DIR}/libcxx.h")
+string(CONCAT CMAKE_CXX_FLAGS_INIT "-msimd128 -msse2 -fwasm-exceptions -isystem ${CMAKE_CURRENT_LIST_DIR}/sse "
+  "-include ${CMAKE_CURRENT_LIST_DIR}/libcxx.h -include ${CMAKE_CURRENT_LIST_DIR}/eigen.h")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-fwasm-exceptions")
 set(VMESH_WASM_SOURCES "${CMAKE_CURRENT_LIST_DIR}/../../build/wasm-sources" CACHE PATH
     "zlib and pugixml, which scripts/wasm gets")
