@@ -1,5 +1,5 @@
 // Eigen with packets of SSE2, which emscripten makes those of WebAssembly; included before everything. So sums are in the
-// order that they have on x86-64, (x + y) + z and not x + (y + z), and surfaces have the same bytes.
+// order that they have on x86-64, (x + y) + z and not x + (y + z).
 #pragma once
 #if defined(__cplusplus) && __cplusplus >= 202002L && !defined(EIGEN_CORE_H)
 
@@ -24,7 +24,7 @@
 #undef __SSE2__
 
 #ifndef EIGEN_VECTORIZE_SSE2
-#error "Eigen does not use SSE2: surfaces would not have the bytes of other builds"
+#error "Eigen does not use SSE2: sums would be in another order than in other builds"
 #endif
 
 #endif

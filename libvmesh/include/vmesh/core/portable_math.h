@@ -1,6 +1,6 @@
 // Functions of <cmath> whose last bits depend on the C library, and in glibc also on the processor: it has others for
-// those with fused multiply-adds. These depend on IEEE arithmetic alone, so that a surface has the same bytes on all
-// machines and in the browser. Within three units in the last place of the true value.
+// those with fused multiply-adds. These depend on IEEE arithmetic alone, so that surfaces do not
+// depend on either. Within three units in the last place of the true value.
 #pragma once
 
 namespace vmesh {
