@@ -1,5 +1,5 @@
-// Eigen with packets of SSE2, which emscripten makes those of WebAssembly; included before everything. So sums are in the
-// order that they have on x86-64, (x + y) + z and not x + (y + z).
+// Eigen with packets of SSE2, which emscripten makes those of WebAssembly; included before everything. So sums are in
+// the order that they have on x86-64, (x + y) + z and not x + (y + z).
 #pragma once
 #if defined(__cplusplus) && __cplusplus >= 202002L && !defined(EIGEN_CORE_H)
 
