@@ -81,7 +81,8 @@ class Browser:
             self.problems.append(str([argument.get("value") or argument.get("description") for argument in what["args"]]))
         elif method == "Log.entryAdded" and what["entry"]["level"] in ("error", "warning"):
             self.problems.append(what["entry"]["text"])
-        elif method == "Network.requestWillBeSent" and not what["request"]["url"].startswith(("file:", "data:", "about:")):
+        elif method == "Network.requestWillBeSent" and not what["request"]["url"].startswith(
+                ("file:", "data:", "about:", "blob:")):
             self.problems.append("asked for " + what["request"]["url"])
 
     def open(self, path, fragment=""):
@@ -100,6 +101,24 @@ class Browser:
         if "exceptionDetails" in answer:
             raise RuntimeError(str(answer["exceptionDetails"]))
         return answer["result"].get("value")
+
+    def wait_for(self, expression, seconds=120):
+        """Until a JavaScript expression holds."""
+        end = time.monotonic() + seconds
+        while not self.ask(expression):
+            if time.monotonic() > end:
+                raise RuntimeError(f"after {seconds} s still not: {expression}")
+            time.sleep(0.05)
+
+    def drop(self, x, y, *paths):
+        """Files on the page, as from a file manager."""
+        data = {"items": [], "files": list(paths), "dragOperationsMask": 1}
+        for kind in ("dragEnter", "dragOver", "drop"):
+            self._call("Input.dispatchDragEvent", type=kind, x=x, y=y, data=data)
+
+    def download_to(self, folder):
+        """What the page saves goes there."""
+        self._call("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder)
 
     def settle(self):
         """Waits until no flight is on and two frames are drawn."""

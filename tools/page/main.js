@@ -270,19 +270,19 @@ class Viewer {
   }
 }
 
-function addKeys(viewer) {
-  const { scene } = viewer;
+function toggleHelp() {
   const help = byId("help");
-  const toggleHelp = () => {
-    help.hidden = !help.hidden;
-    if (!help.hidden) byId("help-close").focus();
-  };
-  byId("help-open").addEventListener("click", toggleHelp);
-  byId("help-close").addEventListener("click", toggleHelp);
+  help.hidden = !help.hidden;
+  if (!help.hidden) byId("help-close").focus();
+}
+
+/** What keys do to a viewer. */
+function keysOf(viewer) {
+  const { scene } = viewer;
   const frame = (by) => {
     if (viewer.player) viewer.player.stopAt(viewer.player.frame + by);
   };
-  const keys = {
+  return {
     e: () => viewer.toggle("edges"), c: () => viewer.toggle("centerline"), r: () => viewer.toggle("reference"),
     g: () => viewer.toggle("glass"), x: () => viewer.toggle("cut"), m: () => viewer.toggle("ruler"),
     Home: () => viewer.viewAll(), 0: () => viewer.viewAll(),
@@ -293,14 +293,20 @@ function addKeys(viewer) {
     ArrowUp: () => scene.turn(0, -0.12), ArrowDown: () => scene.turn(0, 0.12),
     "+": () => scene.zoom(0.85), "-": () => scene.zoom(1 / 0.85),
     Escape: () => {
-      if (!help.hidden) toggleHelp();
+      if (!byId("help").hidden) toggleHelp();
       else {
         viewer.unpick();
         viewer.ruler.clear();
       }
     },
   };
+}
+
+/** For the viewer that is there when a key is pressed. */
+function addKeys() {
   document.addEventListener("keydown", (event) => {
+    if (!window.vmesh) return;
+    const keys = keysOf(window.vmesh);
     const own = event.target.closest("input, select, textarea, summary, .scroll, button");
     const action = keys[event.key] || keys[event.key.toLowerCase()];
     const typed = own && (event.key.startsWith("Arrow") || event.key === " " || event.key === "Home");
@@ -310,25 +316,32 @@ function addKeys(viewer) {
   });
 }
 
-function start() {
-  const page = JSON.parse(byId("page-data").textContent);
+/** Fills the page, which is as it was loaded. */
+function show(page) {
   document.body.classList.toggle("figures-first", page.surfaces.length === 0);
   fillHeader(page);
   fillHistograms(page);
   fillReport(page);
+  byId("help-open").addEventListener("click", toggleHelp);
+  byId("help-close").addEventListener("click", toggleHelp);
   try {
     const viewer = new Viewer(page);
     viewer.look("A", true);
     viewer.follow(location.hash);
-    window.addEventListener("hashchange", () => viewer.follow(location.hash));
-    addKeys(viewer);
-    window.vmesh = viewer;  // for the console
+    window.vmesh = viewer;  // for keys and the console
   } catch (error) {
     console.error(error);
     byId("no-picture").hidden = false;
     if (byId("places").children.length === 0) fillPlaces(page, () => {});
     document.body.classList.add("without-picture");
   }
+}
+
+function start() {
+  addKeys();
+  window.addEventListener("hashchange", () => window.vmesh && window.vmesh.follow(location.hash));
+  const page = JSON.parse(byId("page-data").textContent);
+  if (page) show(page);  // there is none yet in a page that makes them
   document.body.dataset.ready = "1";
 }
 

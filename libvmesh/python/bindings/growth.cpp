@@ -1,35 +1,17 @@
 #include "growth.h"
 
 #include <algorithm>
+#include <iterator>
+
+#include "vmesh/production/notes.h"
 
 #include "text.h"
 
 namespace vmesh::python {
 namespace {
 
-constexpr std::size_t kNamed = 5;  // places, in a warning
-
-void warn_of_contacts_left(const std::vector<Contact>& left, std::vector<std::string>& warnings) {
-  for (std::size_t c = 0; c < std::min(kNamed, left.size()); ++c)
-    warnings.push_back("vessels still touch " + describe(left[c]) +
-                       "; neither narrowing nor a small move can part them: "
-                       "move nodes of one, or join them if they are one vessel");
-  if (left.size() > kNamed) warnings.push_back("vessels still touch in " + counted(left.size(), "place"));
-}
-
-void warn_of_contacts(const std::vector<Contact>& contacts, std::vector<std::string>& warnings) {
-  if (contacts.empty()) return;
-  warnings.push_back("vessels that are not neighbours touch in " + counted(contacts.size(), "place") +
-                     ", the deepest " + describe(contacts.front()) +
-                     "; there the surface intersects itself (overlap=\"separate\", the default, moves them apart)");
-}
-
-void warn_of_error(const ErrorSummary& error, const ErrorLimit& limit, std::vector<std::string>& warnings) {
-  if (error.unproven_faces == 0) return;
-  warnings.push_back("the surface may be farther than " + to_string(limit) +
-                     " from the boundary, or the boundary from it, at " + counted(error.unproven_faces, "face") +
-                     " in " + counted(error.unproven_places.size(), "place") +
-                     ": triangles are already as small as allowed; allow a larger error there, or check the radii");
+void add(std::vector<std::string> notes, std::vector<std::string>& warnings) {
+  std::move(notes.begin(), notes.end(), std::back_inserter(warnings));
 }
 
 void warn_of_budget(const Budget& budget, const std::vector<OperatingPoint>& tried,
@@ -57,14 +39,7 @@ SurfacePtr grow(const CenterlinePtr& centerline, ProductionOptions options, cons
   std::vector<std::string>& warnings = surface->warnings;
   surface->centerline = centerline;
   ProductionSteps steps;
-  steps.prepared = [&](const PreparedCenterline& prepared) {
-    warnings.clear();
-    if (prepared.separated) {
-      warn_of_contacts_left(prepared.separated->report.left, warnings);
-    } else {
-      warn_of_contacts(prepared.contacts(), warnings);
-    }
-  };
+  steps.prepared = [&](const PreparedCenterline& prepared) { warnings = notes_on(prepared); };
   if (budget) {
     steps.grow = [&](const Centerline& grown, const GenerateOptions& growth) {
       BudgetedSurface within = generate_within(*budget, grown, growth, progress);
@@ -79,8 +54,8 @@ SurfacePtr grow(const CenterlinePtr& centerline, ProductionOptions options, cons
   surface->ends = std::move(production.ends);
   GenerateResult& result = surface->result;
   for (const GrowthWarning& warning : result.warnings) warnings.push_back(warning.message);
-  warn_of_error(result.error, options.growth.max_error, warnings);
-  for (const std::string& problem : problems_of(surface->ends)) warnings.push_back(problem);
+  add(notes_on(result.error, options.growth.max_error), warnings);
+  add(problems_of(surface->ends), warnings);
   name_nodes(*centerline, result.defects);
   return surface;
 }

@@ -10,6 +10,7 @@
 #include "vmesh/volume/vessel_field.h"
 
 #if VMESH_PYTHON_WITH_PAGES
+#include "report/growth_content.h"
 #include "report/page_content.h"
 #endif
 
@@ -23,13 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 #if VMESH_PYTHON_WITH_PAGES
-
-void add_defects(tool::Page& page, const std::vector<Defect>& defects) {
-  constexpr std::size_t kMost = 10;
-  for (std::size_t i = 0; i < std::min(kMost, defects.size()); ++i)
-    page.places.push_back({"Defect: " + std::string(to_string(defects[i].kind)), std::to_string(defects[i].count),
-                           defects[i].position, "", ""});
-}
 
 void add_facts(tool::Page& page, const SurfaceObject& surface) {
   const SkewnessSummary skewness = summarize_skewness(surface.mesh());
@@ -64,7 +58,7 @@ std::string page_about(const SurfaceObject& surface, const SurfaceObject* refere
   if (surface.centerline) page.centerline = surface.centerline->centerline;
   page.warnings = surface.warnings;
   add_facts(page, surface);
-  add_defects(page, surface.result.defects);
+  tool::add_defects(page, surface.result.defects);
   const tool::PageSurface shown = page.surfaces.front();
   tool::add_largest(page, shown, "distance", "Vertex far from the reference", " mm", tool::kMarksOfEach);
   tool::add_largest(page, shown, "volume_distance", "Vertex far from the vessels", " mm", tool::kMarksOfEach);

@@ -7,10 +7,6 @@ namespace vmesh::python {
 
 std::string generator_name() { return "vmesh " + std::string(version()) + ", Python"; }
 
-std::string counted(std::size_t count, const std::string& word, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? word : many.empty() ? word + "s" : many);
-}
-
 LengthUnit unit_of(const std::string& text) {
   if (const auto unit = parse_length_unit(text)) return *unit;
   throw InvalidInput("unit: \"" + text + "\" is not known; there are nm, um, mm, cm, m");

@@ -95,8 +95,10 @@ void AtomicFolder::commit() {
 /// Leaves what was there under the temporary name.
 void AtomicFolder::put_in_place() const {
   if (::rename(temporary_.c_str(), path_.c_str()) == 0) return;  // there was none, or an empty one
+#ifdef RENAME_EXCHANGE
   if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0) return;
-  // Some file systems cannot exchange.
+#endif
+  // Some systems and file systems cannot exchange.
   const fs::path aside = temporary_name(path_);
   if (::rename(path_.c_str(), aside.c_str()) != 0) fail("", "cannot be replaced");
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) {

@@ -56,11 +56,16 @@ std::uint64_t left_by_groups() {
   return least;
 }
 
+#ifdef __GLIBC__
+using LimitedResource = __rlimit_resource;
+#else
+using LimitedResource = int;
+#endif
+
 /// What remains of the limit `resource` when `used` is spent.
-std::uint64_t left_by_limit(int resource, std::uint64_t used) {
+std::uint64_t left_by_limit(LimitedResource resource, std::uint64_t used) {
   rlimit limit = {};
-  if (::getrlimit(static_cast<__rlimit_resource>(resource), &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-    return kUnlimited;
+  if (::getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
   return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used);
 }
 

@@ -27,7 +27,7 @@ fs::path behind_links(fs::path path) {
 
 fs::path temporary_name(const fs::path& path) {
   std::array<unsigned char, 16> random;
-  if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size()))
+  if (::getentropy(random.data(), random.size()) != 0)
     throw WriteError(path.string() + ": the system provides no random numbers for the name of a temporary file");
   std::string name = ".vmesh-";
   for (const unsigned char byte : random) {

@@ -257,7 +257,7 @@ class GradedLattice::Maker {
       find_around_edge(a, b);
       i = begin;
     }
-    const std::span<const Index> around(around_.begin() + begin, around_.end());
+    const std::span<const Index> around = std::span(around_).subspan(begin);
     const auto middle = static_cast<Index>(at_.size());
     at_.push_back(0.5 * (at_[a] + at_[b]));
     lattice_.at_border_.push_back(lattice_.at_border_[a] && lattice_.at_border_[b] && !closes_around(a, b, around));

@@ -185,7 +185,7 @@ std::vector<Stretch> stretches_between(const RingCounts& rings, const std::vecto
   auto first = seams.begin();
   for (Index b = 0; b < rings.branch_count(); ++b) {
     const auto last = std::find_if(first, seams.end(), [&](const RingPlace& seam) { return seam.branch != b; });
-    add_stretches(rings, b, std::span(first, last), stretches);
+    add_stretches(rings, b, std::span(seams).subspan(first - seams.begin(), last - first), stretches);
     first = last;
   }
   return stretches;

@@ -1,0 +1,11 @@
+# Compiled here, from what scripts/wasm got.
+if(NOT TARGET pugixml::pugixml)
+  if(NOT EXISTS "${VMESH_WASM_SOURCES}/pugixml/pugixml.cpp")
+    message(FATAL_ERROR "No pugixml in ${VMESH_WASM_SOURCES}: build by scripts/wasm, which gets it")
+  endif()
+  add_library(vmesh_pugixml STATIC "${VMESH_WASM_SOURCES}/pugixml/pugixml.cpp")
+  target_compile_options(vmesh_pugixml PRIVATE -w)
+  target_include_directories(vmesh_pugixml SYSTEM PUBLIC "${VMESH_WASM_SOURCES}/pugixml")
+  add_library(pugixml::pugixml ALIAS vmesh_pugixml)
+endif()
+set(pugixml_FOUND TRUE)

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace tbb {
+
+struct simple_partitioner {};
+
+}  // namespace tbb
