@@ -37,7 +37,7 @@ Surroundings& Touching::around() {
 void Touching::carry_on(const Touching& before, const CenterlineCut& cut, const std::vector<SlotOrigin>& origin) {
   if (!before.around_) return;
   around_ = std::make_unique<Surroundings>(scene_, before.around_->options());
-  rods_.attach(*around_);
+  rods_.attach(scene_, *around_);
   around_->carry_on(*before.around_, origin);
   for (Jaw& jaw : around_->jaws()) put_jaw(before, cut, jaw);
   carry_tissue(before, cut, origin);
