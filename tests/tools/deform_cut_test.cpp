@@ -150,7 +150,7 @@ TEST_F(DeformCut, JawsThatCloseLaterHoldTheirPart) {
       R"("tissue": [{"stiffness_N_mm2": 1e-4, "segments": [0]}],
       "clip": [{"time_s": 0, "closing_s": 0.1, "segment": 0, "parameter": 0.25, "width_mm": 1}],
       "cut": [{"time_s": 0.1, "segment": 0, "parameter": 0.5}],
-      "grasp": [{"segment": 0, "t": 0.75, "close_s": 0.2, "path": [[0.2, 0, 0, 0], [0.3, 0, 0, 10]]}])");
+      "grasp": [{"segment": 0, "parameter": 0.75, "close_s": 0.2, "path": [[0.2, 0, 0, 0], [0.3, 0, 0, 10]]}])");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json summary = json::parse(run.out);
   EXPECT_TRUE(summary["hands"][0]["holds"].get<bool>());

@@ -103,7 +103,7 @@ TEST_F(Deform, ErrorsNameTheElementAndLeaveNothing) {
 TEST_F(Deform, ForcesOnHandsAreWritten) {
   write("scene.json", R"({"schema": "vmesh.scene/1", "clamp": [0], "duration_s": 0.2, "frame_every": 10,
     "instruments": [{"name": "far, away", "points_mm": [[0, 0, 0]], "radius_mm": 1, "path": [[0, 0, 0, 500]]}],
-    "grasp": [{"segment": 1, "t": 1, "path": [[0, 0, 0, 0], [0.2, 0, 2, 0]]}],
+    "grasp": [{"segment": 1, "parameter": 1, "path": [[0, 0, 0, 0], [0.2, 0, 2, 0]]}],
     "tissue": [{"stiffness_N_mm2": 1e-6}]})");
   const Outcome run = vmesh({"deform", "@y.swc", "@y.ply", "--script", "@scene.json", "-o", "@frames", "--format",
                              "ply", "--json", "-", "--forces", "@forces.csv"});

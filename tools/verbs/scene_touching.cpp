@@ -85,7 +85,7 @@ SceneTouching::Instrument read_instrument(const Element& element, std::size_t nu
 }
 
 SceneTouching::Grasp read_grasp(const Element& element, std::size_t number, std::size_t segments) {
-  element.allow({"name", "segment", "t", "slips_N", "close_s", "release_s", "path"});
+  element.allow({"name", "segment", "parameter", "slips_N", "close_s", "release_s", "path"});
   SceneTouching::Grasp grasp{"grasp " + std::to_string(number),
                              integer(element.member("segment"), segments, "segment of the centerline"),
                              0.5,
@@ -94,7 +94,7 @@ SceneTouching::Grasp read_grasp(const Element& element, std::size_t number, std:
                              kNever,
                              vector_course(element.member("path"))};
   if (element.has("name")) grasp.name = element.member("name").text();
-  element.take("t", 0, 1, grasp.t);
+  element.take("parameter", 0, 1, grasp.t);
   element.take("slips_N", 1e-12, 1e12, grasp.slips_N);
   element.take("close_s", 0, 1e6, grasp.close_s);
   element.take("release_s", 0, 1e6, grasp.release_s);

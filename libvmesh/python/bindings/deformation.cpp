@@ -380,8 +380,8 @@ void bind_hands(DeformationClass& deformation) {
       .def(
           "grasp",
           [](Deformation& d, Index segment, double t, double slips) { return d.simulation().grasp(segment, t, slips); },
-          py::arg("segment"), py::arg("t"), py::arg("slips_N") = std::numeric_limits<double>::infinity(),
-          "Jaws close on a segment at t, 0 to 1; above slips_N the vessel slips through them. Returns their number.")
+          py::arg("segment"), py::arg("parameter"), py::arg("slips_N") = std::numeric_limits<double>::infinity(),
+          "Jaws close on a segment at a parameter, 0 to 1; above slips_N the vessel slips through them. Returns their number.")
       .def(
           "move_jaw",
           [](Deformation& d, Index jaw, const py::object& to) {
