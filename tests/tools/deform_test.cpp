@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -131,6 +132,85 @@ TEST_F(Deform, KeepsWhatIsInTheFolder) {
   EXPECT_EQ(again.exit_code, 2) << again.err;
   EXPECT_TRUE(exists("frames/frame_000000.ply"));
 }
+
+/// Displacements in the last frame, of the vertex that moved farthest.
+double farthest_in(const std::filesystem::path& frame) {
+  const LoadedSurface surface = read_surface(frame);
+  const MeshAttribute* displacement = find_attribute(surface.attributes.vertex, "displacement");
+  return *std::max_element(displacement->values.begin(), displacement->values.end());
+}
+
+TEST_F(Deform, ADragStartsWhenItIsTold) {
+  const Outcome run = deform(R"({"schema": "vmesh.scene/1", "clamp": [0], "duration_s": 0.4, "frame_every": 10,
+    "drag": [{"node": 3, "path": [[0, 0, 5, 0]], "start_s": 0.21}]})");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_LT(farthest_in(path("frames/frame_000001.ply")), 1e-5) << "not before";
+  EXPECT_GT(farthest_in(path("frames/frame_000002.ply")), 2.5);
+}
+
+TEST_F(Deform, ANodeIsDraggedAgainAfterItWasReleased) {
+  const std::string again = R"({"schema": "vmesh.scene/1", "clamp": [0], "duration_s": 0.4, "frame_every": 20, "drag": [
+    {"node": 3, "path": [[0, 0, 5, 0]], "release_s": 0.1},
+    {"node": 3, "path": [[0, 0, 0, 0]], "start_s": START}]})";
+  const auto starting = [&](const std::string& start) {
+    std::string scene = again;
+    return deform(scene.replace(scene.find("START"), 5, start));
+  };
+  const Outcome early = starting("0.09");
+  EXPECT_EQ(early.exit_code, 3);
+  for (const char* word : {"drag[1].node", "dragged already", "start_s"})
+    EXPECT_NE(early.err.find(word), std::string::npos) << early.err;
+  const Outcome run = starting("0.1");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  // The second drag brings the node back; what bends beyond it is within a radius.
+  EXPECT_LT(farthest_in(path("frames/frame_000001.ply")), 2.5);
+}
+
+TEST_F(Deform, ScenesPagesAndFoldersGoTogether) {
+  write("scene.json", kPull);
+  const std::vector<std::pair<std::vector<std::string>, const char*>> wrong = {
+      {{"-o", "@frames"}, "--live"},
+      {{"--live", "@live.html", "-o", "@frames"}, "--script"},
+      {{"--live", "@live.html", "--json", "-"}, "-o"},
+      {{"--live", "@live.html", "--script", "@scene.json", "--html", "@page.html"}, "-o"}};
+  const auto before = files();
+  for (const auto& [more, named] : wrong) {
+    std::vector<std::string> command = {"deform", "@y.swc", "@y.ply"};
+    command.insert(command.end(), more.begin(), more.end());
+    const Outcome run = vmesh(command);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_NE(run.err.find(named), std::string::npos) << run.err;
+  }
+  EXPECT_EQ(files(), before);
+}
+
+#if VMESH_HAS_LIVE
+TEST_F(Deform, APageThatMovesTakesMaterialAndHeldNodesOfAScene) {
+  write("scene.json", kPull);
+  const Outcome run = vmesh({"deform", "@y.swc", "@y.ply", "--live", "@live.html", "--script", "@scene.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("to your hands"), std::string::npos) << run.err;
+  EXPECT_FALSE(exists("frames"));
+  const std::string page = read("live.html");
+  EXPECT_NE(page.find(R"("clamp":[0])"), std::string::npos);
+  for (const char* address : {"src=\"", "<link", "@import", "url("})
+    EXPECT_EQ(page.find(address), std::string::npos) << address;
+
+  write("paper.json", R"({"schema": "vmesh.scene/1", "integrator": "paper"})");
+  const Outcome paper = vmesh({"deform", "@y.swc", "@y.ply", "--live", "@other.html", "--script", "@paper.json"});
+  EXPECT_EQ(paper.exit_code, 3);
+  EXPECT_NE(paper.err.find("paper.json: integrator"), std::string::npos) << paper.err;
+  EXPECT_FALSE(exists("other.html"));
+}
+#else
+TEST_F(Deform, WithoutEmscriptenPagesThatMoveAreRefused) {
+  const Outcome run = vmesh({"deform", "@y.swc", "@y.ply", "--live", "@live.html"});
+  EXPECT_EQ(run.exit_code, 4);
+  for (const char* word : {"--live", "--with-wasm", "VMESH_WITH_LIVE"})
+    EXPECT_NE(run.err.find(word), std::string::npos) << run.err;
+  EXPECT_FALSE(exists("live.html"));
+}
+#endif
 
 }  // namespace
 }  // namespace vmesh::testing

@@ -36,6 +36,7 @@ const char* name_of(Kind kind) {
     case Kind::plot:
       return "plot";
     case Kind::page:
+    case Kind::live_page:
       return "page";
   }
   return "";
@@ -64,9 +65,13 @@ void check_format(const PlannedOutput& output) {
     throw Unsupported(output.path.string() + ": reports are written as .txt, .md, .csv or .json");
   if (output.kind == Kind::plot && extension != ".svg")
     throw Unsupported(output.path.string() + ": plots are written as .svg only");
-  if (output.kind == Kind::page) {
+  if (output.kind == Kind::page || output.kind == Kind::live_page) {
     if (extension != ".html" && extension != ".htm")
       throw Unsupported(output.path.string() + ": pages are written as .html or .htm");
+    if (output.kind == Kind::live_page && !VMESH_TOOL_WITH_LIVE)
+      throw Unsupported(
+          "--live: this vmesh was built without pages that move; build it after scripts/install-dependencies "
+          "--with-wasm, with -DVMESH_WITH_HTML=ON -DVMESH_WITH_LIVE=ON");
     if (!VMESH_TOOL_WITH_HTML)
       throw Unsupported(
           "--html: this vmesh was built without pages; build it after scripts/install-dependencies, with "

@@ -15,7 +15,7 @@ namespace vmesh::tool {
 
 /// A file a command is going to write.
 struct PlannedOutput {
-  enum class Kind { surface, volume, centerline, picture, summary, report, plot, page };
+  enum class Kind { surface, volume, centerline, picture, summary, report, plot, page, live_page };
   std::filesystem::path path;
   Kind kind;
 };

@@ -1,6 +1,6 @@
 # Writes OUTPUT, a script that defines THREE: those parts of three.js, a package of npm in the folder PACKAGE, that our
-# scripts in FOLDER use, bundled by ESBUILD. A part that the package has not stops the build.
-file(GLOB scripts "${FOLDER}/*.js")
+# scripts in FOLDER and the script MORE, if any, use, bundled by ESBUILD. A part that the package has not stops the build.
+file(GLOB scripts "${FOLDER}/*.js" ${MORE})
 set(names "")
 foreach(script ${scripts})
   file(READ "${script}" text)

@@ -13,6 +13,7 @@
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
+#include "page/live/live_page.h"
 #include "report/pages.h"
 #include "verbs/cut_plan.h"
 #include "verbs/frame_series.h"
@@ -28,8 +29,8 @@ struct DeformArguments {
   CommonArguments common;
   InputArguments input;
   InputArguments surface;
-  std::filesystem::path volume;  ///< mesh that follows, or empty
-  std::filesystem::path script;
+  std::filesystem::path volume;                 ///< mesh that follows, or empty
+  std::filesystem::path script, live;           ///< either may be empty
   std::filesystem::path output, volume_output;  ///< folders
   std::filesystem::path forces;                 ///< CSV, or empty
   bool allow_defects = false;
@@ -43,8 +44,11 @@ void add_options(CLI::App& verb, DeformArguments& arguments) {
   verb.add_option("SURFACE", arguments.surface.path, "surface around it, grown by vmesh or not")->required();
   add_reading(verb, arguments.surface, "surface-");
   verb.add_option("--script", arguments.script, "scene: what is held, dragged and pushed (tools/README.md, Scenes)")
-      ->required()
       ->type_name("FILE.json");
+  verb.add_option("--live", arguments.live,
+                  "write a page to this file in which the tree moves under your hands, for any browser, without a "
+                  "network (.html); with material, options and held nodes of the --script, if any")
+      ->type_name("FILE.html|.htm");
   add_output(verb, arguments.output, kFolder, "new or empty folder for the frames");
   verb.add_option("--format", arguments.format, "of the frames")
       ->check(CLI::IsMember({"vtp", "obj", "ply", "stl", "off", "glb"}))
@@ -154,6 +158,7 @@ class Stage {
 
   void pull(const Scene::Drag& drag, const Vec3& from, double time) {
     const double step = scene_.options.step_s;
+    if (time < drag.start_s) return;
     if (time <= drag.release_s)
       simulation_.drag(drag.node, from + drag.offset_mm.at(time));
     else if (time - step <= drag.release_s)
@@ -376,7 +381,24 @@ bool same_folder(const fs::path& a, const fs::path& b) {
   return full(a) == full(b);
 }
 
-void check_files(const DeformArguments& arguments) {
+/// Frames are written where there is a folder for them, and always without --live.
+void settle(DeformArguments& arguments) {
+  if (arguments.live.empty()) {
+    if (arguments.script.empty())
+      throw UsageError("give the scene to play (--script FILE.json), or a page to pull vessels in (--live FILE.html)");
+    settle_output(arguments);
+    return;
+  }
+  if (!arguments.output.empty()) {
+    if (arguments.script.empty()) throw UsageError("-o is for the frames of a scene: give one (--script FILE.json)");
+  } else if (!arguments.volume.empty() || !arguments.volume_output.empty() || !arguments.common.html.empty() ||
+             !arguments.common.json.empty() || !arguments.forces.empty()) {
+    throw UsageError(
+        "--volume, --volume-output, --forces, --html and --json are about frames: give a --script, and -o for them");
+  }
+}
+
+void check_frames(const DeformArguments& arguments) {
   if (arguments.volume.empty() != arguments.volume_output.empty())
     throw UsageError("--volume names the mesh and --volume-output the folder for its frames: give both, or none");
   if (arguments.volume.empty() && arguments.allow_defects)
@@ -384,16 +406,21 @@ void check_files(const DeformArguments& arguments) {
   if (!arguments.volume.empty() && same_folder(arguments.output, arguments.volume_output))
     throw UsageError(arguments.volume_output.string() +
                      ": is the folder for the surface's frames; give another one for those of the volume");
+  surface_output_format("frame." + arguments.format);
+  check_writing("frame." + arguments.format, arguments.writing);
+}
+
+void check_files(const DeformArguments& arguments) {
+  if (!arguments.output.empty()) check_frames(arguments);
   std::vector<fs::path> inputs = files_of(arguments.input.path);
   inputs.push_back(arguments.surface.path);
-  inputs.push_back(arguments.script);
+  if (!arguments.script.empty()) inputs.push_back(arguments.script);
   if (!arguments.volume.empty()) inputs.push_back(arguments.volume);
   check_outputs({{arguments.common.json, PlannedOutput::Kind::summary},
                  {arguments.common.html, PlannedOutput::Kind::page},
+                 {arguments.live, PlannedOutput::Kind::live_page},
                  {arguments.forces, PlannedOutput::Kind::report}},
                 inputs);
-  surface_output_format("frame." + arguments.format);
-  check_writing("frame." + arguments.format, arguments.writing);
 }
 
 /// The volume mesh, if there is one.
@@ -443,16 +470,58 @@ bool is_good(const std::vector<VolumeFrame>& frames, const DeformArguments& argu
   return false;
 }
 
-int run(const DeformArguments& arguments, Console& console) {
-  check_files(arguments);
-  const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
-  LoadedSurface loaded = load_surface(arguments.surface);
-  console.warn(loaded.warnings);
+/// What pages begin with where no scene says otherwise: a step for every frame of a usual screen, and the lowest node
+/// of every component clamped, as vessels hang from something.
+Scene scene_of_hands(const Centerline& centerline) {
+  Scene scene;
+  scene.options.step_s = 1.0 / 60;
+  std::vector<char> seen(centerline.component_count());
+  for (Index n = 0; n < centerline.nodes().size(); ++n) {
+    char& has_one = seen[centerline.component_of_node()[n]];
+    if (!has_one && centerline.degree(n) > 0) scene.clamp.push_back(n);
+    has_one = 1;
+  }
+  return scene;
+}
+
+/// The material, the options and what is held from the start.
+Scene live_scene(const DeformArguments& arguments, const Centerline& centerline, Console& console) {
+  if (arguments.script.empty()) return scene_of_hands(centerline);
+  Scene scene = read_scene(arguments.script, centerline.nodes().size(), centerline.segments().size());
+  const std::string name = arguments.script.string();
+  if (scene.options.integrator != Integrator::implicit)
+    throw InvalidInput(name + ": integrator: pages that move have \"implicit\" only; leave \"paper\" out for --live");
+  if (scene.touching.exists() || !scene.cuts.empty() || !scene.clips.empty())
+    throw InvalidInput(name +
+                       ": pages that move have no contact, instruments, grasp, tissue, cut and clip; leave them " +
+                       "out for --live");
+  if (!scene.drags.empty() || !scene.forces.empty() || !scene.scales.empty() || !scene.squeezes.empty())
+    console.warn(name + ": the page leaves drag, force, radial_scale and squeeze to your hands; it takes the rest");
+  return scene;
+}
+
+/// The page that moves; empty if none is asked for.
+std::string live_page(const DeformArguments& arguments, const BoundTree& tree, Console& console) {
+  if (arguments.live.empty()) return {};
+  const Scene scene = live_scene(arguments, tree.centerline, console);
+  return to_html(LivePage{arguments.input.path, arguments.surface.path, tree.centerline, tree.mesh,
+                          vertex_normals(tree.mesh), places_on(tree.binding), scene.material, scene.options, scene.fix,
+                          scene.clamp});
+}
+
+void write_live_page(const std::filesystem::path& path, const std::string& html, Console& console) {
+  write_text(path, html);
+  console.log("wrote " + path.string() + formatted(", %.1f MB", static_cast<double>(html.size()) / 1e6) +
+              ": open it in a browser");
+}
+
+int play_scene(const DeformArguments& arguments, BoundTree bound, Console& console) {
+  const Centerline centerline = bound.centerline;
   Scene scene = read_scene(arguments.script, centerline.nodes().size(), centerline.segments().size());
   if (!scene.cuts.empty() && !arguments.volume.empty())
     throw InvalidInput(arguments.script.string() + ": " + scene.cuts.front().place.element +
                        ": the cells of a --volume cannot be cut; leave out one of the two");
-  const CutPlan plan(scene, arguments.script.string(), bound_tree(centerline, std::move(loaded), console));
+  const CutPlan plan(scene, arguments.script.string(), std::move(bound));
   const BoundTree& rest = plan.stages().front();
   scene.scales.insert(scene.scales.end(), plan.profiles().begin(), plan.profiles().end());
   Stage stage = naming(arguments.script, [&] { return Stage(centerline, scene); });
@@ -515,6 +584,18 @@ int run(const DeformArguments& arguments, Console& console) {
   return kOk;
 }
 
+int run(const DeformArguments& arguments, Console& console) {
+  check_files(arguments);
+  const Centerline centerline = load_clean_centerline(arguments.input, console).cleaned.centerline;
+  LoadedSurface loaded = load_surface(arguments.surface);
+  console.warn(loaded.warnings);
+  BoundTree bound = bound_tree(centerline, std::move(loaded), console);
+  const std::string page = live_page(arguments, bound, console);
+  const int code = arguments.output.empty() ? kOk : play_scene(arguments, std::move(bound), console);
+  if (code == kOk && !page.empty()) write_live_page(arguments.live, page, console);
+  return code;
+}
+
 const VerbRegistration<DeformArguments> kRegistration({
     .rank = 120,
     .name = "deform",
@@ -522,9 +603,10 @@ const VerbRegistration<DeformArguments> kRegistration({
     .examples = R"(Examples:
   vmesh deform tree.json tree.ply --script scene.json -o frames/
   vmesh deform tree.swc tree.vtp --script scene.json -o frames/ --volume tree.vtu --volume-output cells/
-  vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj --html moved.html)",
+  vmesh deform tree.swc scan.stl --script scene.json -o frames/ --format obj --html moved.html
+  vmesh deform tree.json tree.ply --live pull.html)",
     .add_options = add_options,
-    .settle = settle_output,
+    .settle = settle,
     .run = run,
 });
 

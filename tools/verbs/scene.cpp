@@ -66,9 +66,10 @@ void read_options(const Element& root, Scene& scene) {
 }
 
 Scene::Drag read_drag(const Element& element, std::size_t nodes) {
-  element.allow({"node", "path", "release_s"});
-  Scene::Drag drag{element.member("node").node(nodes), vector_course(element.member("path")), kInfinite};
-  element.take("release_s", 0, 1e6, drag.release_s);
+  element.allow({"node", "path", "start_s", "release_s"});
+  Scene::Drag drag{element.member("node").node(nodes), vector_course(element.member("path")), 0, kInfinite};
+  element.take("start_s", 0, 1e6, drag.start_s);
+  element.take("release_s", drag.start_s, 1e6, drag.release_s);
   return drag;
 }
 
@@ -80,9 +81,10 @@ void check_drag(const Element& element, const Scene& scene) {
     return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
   };
   if (holds(scene.fix)) element.member("node").fail(name + " is fixed, too; leave out one of the two");
-  const auto dragged =
-      std::count_if(scene.drags.begin(), scene.drags.end(), [&](const auto& d) { return d.node == node; });
-  if (dragged > 1) element.member("node").fail(name + " is dragged already; make one path of both");
+  for (auto earlier = scene.drags.begin(); earlier + 1 != scene.drags.end(); ++earlier)
+    if (earlier->node == node && earlier->release_s > scene.drags.back().start_s)
+      element.member("node").fail(name + " is dragged already; make one path of both, or start (start_s) after the " +
+                                  "release (release_s) of the one before");
 }
 
 Scene::Place read_place(const Element& element, std::size_t nodes) {

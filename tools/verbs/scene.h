@@ -17,6 +17,7 @@ struct Scene {
   struct Drag {
     Index node;
     Course<Vec3> offset_mm;  ///< from the node's position at rest
+    double start_s = 0;      ///< not before
     double release_s;        ///< infinite: never
   };
   struct Force {

@@ -1,0 +1,225 @@
+"""Pulls vessels in a page of `vmesh deform --live`, in a headless Chromium, by pointer events: live_test.py VMESH. Exits
+with 77, loudly, where there is none. VMESH_TEST_PICTURES: a folder for pictures of it."""
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.dont_write_bytecode = True  # next to the sources
+if not shutil.which("chromium"):
+    print("SKIPPED: no Chromium; scripts/install-dependencies --with-browser")
+    sys.exit(77)
+try:
+    from browser import Browser
+except ImportError:
+    print("SKIPPED: no python3-websocket; scripts/install-dependencies --with-browser")
+    sys.exit(77)
+
+VMESH = os.path.abspath(sys.argv[1])
+PICTURES = os.environ.get("VMESH_TEST_PICTURES")
+# Where a leaf far from what is held is on the screen, if it is what a pointer there meets: [node, x, y].
+LEAF = """(() => { const { tree, scene } = vmesh, degree = new Map(), box = scene.canvas.getBoundingClientRect();
+  for (const n of tree.ends) degree.set(n, (degree.get(n) || 0) + 1);
+  const root = vmesh.nodePosition(vmesh.stage.settings.clamp[0]);
+  const leaves = [...degree.keys()].filter(n => degree.get(n) === 1)
+    .sort((a, b) => vmesh.nodePosition(b).distanceTo(root) - vmesh.nodePosition(a).distanceTo(root));
+  for (const n of leaves) { const p = scene.onScreen(vmesh.nodePosition(n));
+    const [x, y] = [Math.round(p.x + box.left), Math.round(p.y + box.top)];
+    const found = vmesh.under({ clientX: x, clientY: y }); if (found && found.node === n) return [n, x, y]; }
+  return null; })()"""
+NODE = "(n => { const p = vmesh.scene.onScreen(vmesh.nodePosition(n)), b = vmesh.scene.canvas.getBoundingClientRect();" \
+       "return [p.x + b.left, p.y + b.top]; })"
+POSITIONS = "(() => { const o = vmesh.stage.deformer.origin; vmesh.stage.deformer.follow();" \
+            "return Array.from(vmesh.stage.deformer.positions(), (x, i) => x + o[i % 3]); })()"
+CAMERA = "vmesh.scene.camera.position.toArray()"
+# Pixels that are not the ground's, of those that are drawn.
+DRAWN = """(() => { vmesh.scene.render(); const gl = vmesh.scene.renderer.getContext();
+  const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight]; const p = new Uint8Array(4 * w * h);
+  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
+  let n = 0; for (let i = 3; i < p.length; i += 4) n += p[i] > 0; return n / (w * h); })()"""
+
+
+def positions_in(path):
+    """Of a binary PLY; its vertices begin with three doubles."""
+    with open(path, "rb") as file:
+        header, body = file.read().split(b"end_header\n", 1)
+    lines = [line.split() for line in header.decode().split("\n")]
+    count = next(int(words[2]) for words in lines if words[:2] == ["element", "vertex"])
+    sizes = {"double": 8, "int": 4, "uchar": 1}
+    before_faces = lines[:next(i for i, words in enumerate(lines) if words[:2] == ["element", "face"])]
+    stride = sum(sizes[words[1]] for words in before_faces if words and words[0] == "property")
+    return [x for v in range(count) for x in struct.unpack_from("<3d", body, v * stride)]
+
+
+class Hand:
+    """One pointer, mouse or finger."""
+
+    def __init__(self, browser):
+        self.browser = browser
+
+    def send(self, kind, x, y):
+        if self.browser.touch:
+            name = {"down": "touchStart", "move": "touchMove", "up": "touchEnd"}[kind]
+            points = [] if kind == "up" else [{"x": x, "y": y}]
+            self.browser._call("Input.dispatchTouchEvent", type=name, touchPoints=points)
+        else:
+            name = {"down": "mousePressed", "move": "mouseMoved", "up": "mouseReleased"}[kind]
+            self.browser._call("Input.dispatchMouseEvent", type=name, x=x, y=y, button="left",
+                               buttons=0 if kind == "up" else 1, clickCount=1)
+
+    def pull(self, x, y, dx, dy, seconds=1.0, events=20):
+        """Down, there in even steps, and still down."""
+        self.send("down", x, y)
+        for i in range(1, events + 1):
+            self.send("move", x + dx * i / events, y + dy * i / events)
+            time.sleep(seconds / events)
+
+
+class PageThatMoves(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="vmesh-live-")
+        cls.vmesh("synth", "--vertices", "1560", "--seed", "1", "-o", "tree.json")
+        cls.vmesh("generate", "tree.json", "-o", "tree.ply", "--around", "4")  # 12,531 vertices
+        cls.vmesh("deform", "tree.json", "tree.ply", "--live", "live.html")
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def vmesh(cls, *arguments):
+        subprocess.run([VMESH, *arguments, "-q"], cwd=cls.folder, check=True, stdout=subprocess.DEVNULL)
+
+    def open(self, width=1280, height=800, touch=False):
+        browser = Browser(width, height, touch=touch)
+        self.addCleanup(browser.__exit__)
+        self.addCleanup(lambda: self.assertEqual(browser.problems, []))
+        browser.download_to(self.folder)
+        self.seconds = browser.open(os.path.join(self.folder, "live.html"))
+        self.assertTrue(browser.ask("vmesh instanceof Live"))
+        return browser
+
+    def picture(self, browser, name):
+        if PICTURES:
+            browser.picture(os.path.join(PICTURES, name + ".png"))
+
+    def saved(self, browser):
+        """The scene that the button saves."""
+        path = os.path.join(self.folder, "scene.json")
+        if os.path.exists(path):
+            os.remove(path)
+        browser.click_on("#save")
+        end = time.monotonic() + 20
+        while not (os.path.exists(path) and os.path.getsize(path) > 0):
+            self.assertLess(time.monotonic(), end, "nothing was saved")
+            time.sleep(0.05)
+        return path
+
+    def played(self):
+        """Where the command ends when it plays the scene."""
+        frames = os.path.join(self.folder, "frames")
+        shutil.rmtree(frames, ignore_errors=True)
+        self.vmesh("deform", "tree.json", "tree.ply", "--script", "scene.json", "-o", "frames", "--format", "ply")
+        return positions_in(os.path.join(frames, sorted(f for f in os.listdir(frames) if f.endswith(".ply"))[-1]))
+
+    def stop(self, browser):
+        """No step is taken after this."""
+        browser.ask("(() => { const stage = vmesh.stage; stage.step = () => false; })()")
+
+    def test_a_vessel_follows_the_pointer_and_the_command_plays_what_was_done(self):
+        browser = self.open()
+        self.assertGreater(browser.ask(DRAWN), 0.02)
+        self.picture(browser, "live-rest")
+        camera = browser.ask(CAMERA)
+        node, x, y = browser.ask(LEAF)
+        hand = Hand(browser)
+        hand.pull(x, y, -120, -60, seconds=2)
+        browser.settle()
+        self.picture(browser, "live-pulled")
+        at = browser.ask(f"{NODE}({node})")
+        self.assertLess(abs(at[0] - (x - 120)) + abs(at[1] - (y - 60)), 4, "the node is where the pointer is")
+        self.assertEqual(browser.ask(CAMERA), camera)
+        cost = browser.ask("[vmesh.cost.milliseconds / vmesh.cost.steps, vmesh.framesPerSecond(), vmesh.cost.steps]")
+        print(f"first picture {browser.ask('vmesh.firstPicture_ms') / 1e3:.2f} s, {self.seconds:.2f} s with the browser's "
+              f"work; {cost[0]:.2f} ms a step with the surface, {cost[1]:.0f} frames/s")
+        hand.send("up", x - 120, y - 60)
+        browser.ask("new Promise(done => setTimeout(done, 400))")
+        self.stop(browser)
+        shown = browser.ask(POSITIONS)
+        with open(self.saved(browser), encoding="utf-8") as file:
+            scene = json.load(file)
+        self.assertEqual([drag["node"] for drag in scene["drag"]], [node])
+        self.assertIn("release_s", scene["drag"][0])
+        played = self.played()
+        rest = positions_in(os.path.join(self.folder, "tree.ply"))
+        self.assertGreater(max(abs(a - b) for a, b in zip(shown, rest)), 1)
+        least_radius = browser.ask("Math.min(...vmesh.tree.radii)")
+        farthest = max(abs(a - b) for a, b in zip(shown, played))
+        print(f"farthest from the command's: {farthest / least_radius:.2g} of the least radius")
+        self.assertLess(farthest, 1e-6 * least_radius)
+
+    def test_replay_ends_where_the_motion_did(self):
+        browser = self.open()
+        node, x, y = browser.ask(LEAF)
+        hand = Hand(browser)
+        hand.pull(x, y, 60, 80, seconds=0.5)
+        hand.send("up", x + 60, y + 80)
+        browser.ask("(() => { const s = vmesh.stage, step = s.step; s.step = () => step.call(s) &&"
+                    "  (s.playing || (s.step = () => false, true)); })()")
+        browser.settle()
+        steps, shown = browser.ask("vmesh.stage.steps"), browser.ask(POSITIONS)
+        browser.ask("(() => { delete vmesh.stage.step; const s = vmesh.stage, step = s.step;"
+                    "  s.step = () => (s.playing ? step.call(s) : false); })()")
+        browser.click_on("#replay")
+        browser.wait_for(f"vmesh.stage.steps === {steps} && !vmesh.stage.playing")
+        self.assertEqual(browser.ask(POSITIONS), shown)
+
+    def test_pins_hold_and_rest_forgets(self):
+        browser = self.open()
+        node, x, y = browser.ask(LEAF)
+        browser.click_on("#pin")
+        browser.click(x, y)
+        self.assertTrue(browser.ask(f"vmesh.stage.held.get({node}).pinned"))
+        at = browser.ask(f"vmesh.nodePosition({node}).toArray()")
+        browser.ask("(() => { const s = document.getElementById('gravity'); s.value = 9.8;"
+                    "s.dispatchEvent(new Event('input')); s.dispatchEvent(new Event('change')); })()")
+        browser.wait_for("vmesh.stage.steps > 40 && !vmesh.stage.playing")
+        self.picture(browser, "live-pinned")
+        held = browser.ask(f"vmesh.nodePosition({node}).toArray()")
+        self.assertLess(max(abs(a - b) for a, b in zip(at, held)), 1e-5, "the pinned node does not fall")
+        self.assertGreater(browser.ask("vmesh.stage.deformer.elastic_J()"), 0)
+        browser.click_on("#rest")
+        self.assertEqual(browser.ask("[vmesh.stage.motion.holds.length, vmesh.stage.held.size]"), [0, 0])
+
+    def test_beside_a_vessel_the_picture_rotates(self):
+        browser = self.open()
+        before = browser.ask(CAMERA)
+        box = browser.ask("(() => { const b = vmesh.scene.canvas.getBoundingClientRect(); return [b.left, b.top]; })()")
+        browser.drag(box[0] + 8, box[1] + 60, box[0] + 120, box[1] + 70)
+        self.assertNotEqual(browser.ask(CAMERA), before)
+        self.assertEqual(browser.ask("vmesh.stage.motion.holds.length"), 0)
+
+    def test_a_finger_pulls_on_a_phone(self):
+        browser = self.open(390, 844, touch=True)
+        self.picture(browser, "live-phone-rest")
+        node, x, y = browser.ask(LEAF)
+        hand = Hand(browser)
+        hand.pull(x, y, 40, 30)
+        browser.settle()
+        self.picture(browser, "live-phone")
+        at = browser.ask(f"{NODE}({node})")
+        self.assertLess(abs(at[0] - (x + 40)) + abs(at[1] - (y + 30)), 4)
+        hand.send("up", 0, 0)
+        browser.settle()
+        self.assertEqual(browser.ask("vmesh.stage.held.size"), 0)
+        self.assertLessEqual(browser.ask("document.documentElement.scrollWidth"), 390)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,27 @@
+# Texts as C++ literals, in the file OUTPUT.new.
+
+# A raw string literal of at most 64 kB each: compilers need take no more.
+function(append_literal text)
+  string(LENGTH "${text}" length)
+  set(begin 0)
+  set(literal "")
+  while(begin LESS length)
+    string(SUBSTRING "${text}" ${begin} 16000 piece)
+    string(APPEND literal "R\"vmesh_part(${piece})vmesh_part\"\n")
+    math(EXPR begin "${begin} + 16000")
+  endwhile()
+  if(length EQUAL 0)
+    set(literal "\"\"")
+  endif()
+  set(literal "${literal}" PARENT_SCOPE)
+endfunction()
+
+function(add_part name)
+  set(text "")
+  foreach(file ${ARGN})
+    file(READ "${file}" content)
+    string(APPEND text "${content}")
+  endforeach()
+  append_literal("${text}")
+  file(APPEND "${OUTPUT}.new" "constexpr char ${name}[] =\n${literal};\n")
+endfunction()
