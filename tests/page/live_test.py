@@ -145,6 +145,8 @@ class PageThatMoves(unittest.TestCase):
         at = browser.ask(f"{NODE}({node})")
         self.assertLess(abs(at[0] - (x - 120)) + abs(at[1] - (y - 60)), 4, "the node is where the pointer is")
         self.assertEqual(browser.ask(CAMERA), camera)
+        self.assertGreater(browser.ask(f"vmesh.stage.deformer.pull_N({node})"), 1e-6)
+        self.assertRegex(browser.ask("document.getElementById('status').textContent"), r"steps.* m?N$")
         cost = browser.ask("[vmesh.cost.milliseconds / vmesh.cost.steps, vmesh.framesPerSecond(), vmesh.cost.steps]")
         print(f"first picture {browser.ask('vmesh.firstPicture_ms') / 1e3:.2f} s, {self.seconds:.2f} s with the browser's "
               f"work; {cost[0]:.2f} ms a step with the surface, {cost[1]:.0f} frames/s")

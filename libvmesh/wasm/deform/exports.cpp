@@ -210,6 +210,10 @@ EMSCRIPTEN_KEEPALIVE std::size_t vmesh_deform_step(vmesh_Deformer* deformer) {
 
 /// Of the last step.
 EMSCRIPTEN_KEEPALIVE double vmesh_deform_work_J(vmesh_Deformer* deformer) { return deformer->report.work_J; }
+/// Of the last step, of what drags or fixes a node.
+EMSCRIPTEN_KEEPALIVE double vmesh_deform_pull_N(vmesh_Deformer* deformer, Index node) {
+  return guarded([&] { return deformer->simulation().drag_force(node).force_N.norm(); });
+}
 EMSCRIPTEN_KEEPALIVE double vmesh_deform_elastic_J(vmesh_Deformer* deformer) {
   return deformer->simulation().elastic_energy_J();
 }

@@ -77,6 +77,11 @@ class Deformer {
     this.require(this.module._vmesh_deform_follow(this.pointer));
   }
 
+  /** The force on what holds a node. */
+  pull_N(node) {
+    return this.module._vmesh_deform_pull_N(this.pointer, node);
+  }
+
   elastic_J() {
     return this.module._vmesh_deform_elastic_J(this.pointer);
   }

@@ -11,6 +11,7 @@ function pressureText(pascal) {
   return `${Number((pascal / scale).toPrecision(3))} ${unit}`;
 }
 
+const forceText = (newton) => (newton < 0.9995 ? `${Number((1e3 * newton).toPrecision(2))} mN` : `${Number(newton.toPrecision(3))} N`);
 const secondsText = (s) => (s < 0.9995 ? `${Number((1e3 * s).toPrecision(3))} ms` : `${Number(s.toPrecision(3))} s`);
 
 /** White, opaque within a circle. */
@@ -150,9 +151,15 @@ class Live {
     const fps = this.framesPerSecond();
     byId("status").textContent = stage.steps === 0 ? "" :
       `${stage.playing ? "replay, " : ""}${(stage.steps * stage.settings.step_s).toFixed(1)} s, ${stage.steps} steps` +
-      (fps > 0 ? `, ${Math.round(fps)} frames/s` : "");
+      (fps > 0 ? `, ${Math.round(fps)} frames/s` : "") + this.forcesText();
     byId("save").disabled = stage.playing || stage.motion.holds.length === 0 || stage.steps === 0;
     byId("replay").disabled = stage.playing || stage.steps === 0;
+  }
+
+  /** Of hands and pins, the strongest ones. */
+  forcesText() {
+    const forces = [...this.stage.held.keys()].map((node) => this.stage.deformer.pull_N(node)).sort((a, b) => b - a);
+    return forces.length === 0 ? "" : `, ${forces.slice(0, 3).map(forceText).join(", ")}`;
   }
 
   note(text) {
