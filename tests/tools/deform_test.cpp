@@ -200,6 +200,10 @@ TEST_F(Deform, APageThatMovesTakesMaterialAndHeldNodesOfAScene) {
   const Outcome paper = vmesh({"deform", "@y.swc", "@y.ply", "--live", "@other.html", "--script", "@paper.json"});
   EXPECT_EQ(paper.exit_code, 3);
   EXPECT_NE(paper.err.find("paper.json: integrator"), std::string::npos) << paper.err;
+  write("cut.json", R"({"schema": "vmesh.scene/1", "cut": [{"segment": 1, "parameter": 0.5, "time_s": 0.1}]})");
+  const Outcome cut = vmesh({"deform", "@y.swc", "@y.ply", "--live", "@other.html", "--script", "@cut.json"});
+  EXPECT_EQ(cut.exit_code, 3);
+  EXPECT_NE(cut.err.find("cut.json: pages that move"), std::string::npos) << cut.err;
   EXPECT_FALSE(exists("other.html"));
 }
 #else
