@@ -381,7 +381,8 @@ void bind_hands(DeformationClass& deformation) {
           "grasp",
           [](Deformation& d, Index segment, double t, double slips) { return d.simulation().grasp(segment, t, slips); },
           py::arg("segment"), py::arg("parameter"), py::arg("slips_N") = std::numeric_limits<double>::infinity(),
-          "Jaws close on a segment at a parameter, 0 to 1; above slips_N the vessel slips through them. Returns their number.")
+          "Jaws close on a segment at a parameter, 0 to 1; above slips_N the vessel slips through them. Returns their "
+          "number.")
       .def(
           "move_jaw",
           [](Deformation& d, Index jaw, const py::object& to) {
