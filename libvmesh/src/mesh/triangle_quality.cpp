@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "vmesh/core/portable_math.h"
-
 namespace vmesh {
 namespace {
 
@@ -26,9 +24,9 @@ struct TriangleShape {
 
   bool corners_coincide() const { return !(squared[shortest] > 0); }
   // The least angle is acute; the largest is not small. An arc tangent costs half as much as one of two arguments.
-  double min_angle() const { return corners_coincide() ? 0 : portable_atan(twice_area / dot_at_min); }
+  double min_angle() const { return corners_coincide() ? 0 : std::atan(twice_area / dot_at_min); }
   double max_angle() const {
-    return corners_coincide() ? std::numbers::pi : std::numbers::pi / 2 - portable_atan(dot_at_max / twice_area);
+    return corners_coincide() ? std::numbers::pi : std::numbers::pi / 2 - std::atan(dot_at_max / twice_area);
   }
 
   static constexpr int kNext[4] = {1, 2, 0, 1};

@@ -13,16 +13,16 @@ namespace vmesh {
 /// Proves that a surface is close to the boundary of the vessel volume, and the boundary to the surface.
 ///
 /// Every face spans a shell between two copies of itself whose corners are moved outwards and inwards along their
-/// normals by no more than the limit (normals and heights are interpolated, on edges from their ends alone, so the
-/// shells of neighbours meet). If no point of the outer copy is inside the volume and none of the inner copy outside,
-/// every point of the face is within the limit of the boundary. If that holds for all faces of a closed surface, the
-/// shell separates the volume's inside from its outside, so every point of the boundary lies in the shell, within the
-/// limit of a face. (The wall of a cavity wholly within the surface is not covered.) Normals are not essential: any
-/// directions will do on which neighbours agree. If a point of the boundary were not in the shell, the surface could be
-/// moved from one copy to the other without passing over it; yet the outer copy, which never enters the volume, winds
-/// around the inside next to the point, and the inner copy, which never leaves the volume, does not wind around the
-/// outside next to it. Where walls are near each other, a shell as high as the limit would reach into the next vessel;
-/// lower ones are tried there.
+/// normals by no more than the limit (normals and heights are interpolated, at bent corners their product, on edges
+/// from their ends alone, so the shells of neighbours meet). If no point of the outer copy is inside the volume and
+/// none of the inner copy outside, every point of the face is within the limit of the boundary. If that holds for all
+/// faces of a closed surface, the shell separates the volume's inside from its outside, so every point of the boundary
+/// lies in the shell, within the limit of a face. (The wall of a cavity wholly within the surface is not covered.)
+/// Normals are not essential: any directions will do on which neighbours agree. If a point of the boundary were not in
+/// the shell, the surface could be moved from one copy to the other without passing over it; yet the outer copy, which
+/// never enters the volume, winds around the inside next to the point, and the inner copy, which never leaves the
+/// volume, does not wind around the outside next to it. Where walls are near each other, a shell as high as the limit
+/// would reach into the next vessel; lower ones are tried there.
 ///
 /// Whether a copy is inside or outside is decided for whole triangles. The signed distance to a round cone is convex:
 /// over a triangle it is at most its largest value at a corner, and at least that of any of its tangent planes. Where
@@ -35,6 +35,7 @@ class ErrorProof {
     Vec3 normal = Vec3::Zero();  ///< out of the surface, unit
     double limit = 0;            ///< greatest height of the shell, mm
     Index cone = kNone;          ///< a cone of the field near the corner
+    bool is_bent = false;        ///< `normal` is another way out
 
     bool operator==(const Corner&) const = default;
   };

@@ -32,18 +32,23 @@ void find_cones(const VesselField& field, const Vec3& center, double radius, Ind
   });
 }
 
-// One side of a face's shell, on a grid of kPieces along each edge. Points on an edge depend on its ends alone.
+// One side of a face's shell, on a grid of kPieces along each edge. Points on an edge depend on its ends alone. Heights
+// and normals are interpolated, to follow the boundary around a vessel, but where a corner is bent the ways of corners:
+// out of a notch, one may be many times as long as the other and across it.
 std::vector<Points> shell(const ErrorProof::Face& face, const std::array<double, 3>& heights, double side) {
   const auto point = [&](int i, int j) {
     const double w[3] = {1 - double(i + j) / kPieces, double(i) / kPieces, double(j) / kPieces};
-    Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
+    Vec3 position = Vec3::Zero(), normal = Vec3::Zero(), way = Vec3::Zero();
     double height = 0;
+    bool is_bent = false;
     for (int k = 0; k < 3; ++k) {
       position += w[k] * face[k].position;
       normal += w[k] * face[k].normal;
+      way += w[k] * heights[k] * face[k].normal;
       height += w[k] * heights[k];
+      is_bent = is_bent || (w[k] > 0 && face[k].is_bent);
     }
-    return Vec3(position + side * height * normal.normalized());
+    return Vec3(position + side * (is_bent ? way : Vec3(height * normal.normalized())));
   };
   std::vector<Points> parts;
   for (int i = 0; i < kPieces; ++i) {
@@ -134,6 +139,7 @@ class BentCopy {
     if (bent_[v]) return false;
     bent_[v] = 1;
     ErrorProof::Corner& corner = corners_[v];
+    corner.is_bent = true;
     const double sign = sign_of(side_);
     const Vec3 normal = corner.normal;
     double farthest = -std::numeric_limits<double>::infinity();

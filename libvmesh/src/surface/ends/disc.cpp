@@ -6,7 +6,6 @@
 #include <map>
 #include <numbers>
 
-#include "vmesh/core/portable_math.h"
 #include "vmesh/mesh/polygon_triangulation.h"
 
 #include "surface/tubes/stitch.h"
@@ -103,7 +102,7 @@ class DiscBuilder {
 
   double angle(Index at, Index a, Index b) const {
     const Vec3 u = all_[a] - all_[at], v = all_[b] - all_[at];
-    return portable_angle(u.cross(v).norm(), u.dot(v));
+    return std::atan2(u.cross(v).norm(), u.dot(v));
   }
 
   // Flips edges whose opposite angles add up to more than pi (Delaunay).

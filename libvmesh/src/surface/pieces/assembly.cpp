@@ -2,8 +2,6 @@
 
 #include <numbers>
 
-#include "vmesh/core/portable_math.h"
-
 #include "surface/tubes/stitch.h"
 
 namespace vmesh {
@@ -145,12 +143,12 @@ void Assembly::cap(const Ring& ring, double side, std::vector<Index> loop) {
   };
   for (int k = 1; k < bands; ++k) {
     const double latitude = quarter * k / bands;
-    const int count = std::max(kFewestOnCap, static_cast<int>(std::round(around * portable_cos(latitude))));
+    const int count = std::max(kFewestOnCap, static_cast<int>(std::round(around * std::cos(latitude))));
     std::vector<Index> next;
     for (int j = 0; j < count; ++j) {
       const double angle = 2 * std::numbers::pi * (j + 0.5 * (k % 2)) / count;
-      next.push_back(add(portable_sin(latitude) * pole +
-                         portable_cos(latitude) * (portable_cos(angle) * across + portable_sin(angle) * up)));
+      next.push_back(
+          add(std::sin(latitude) * pole + std::cos(latitude) * (std::cos(angle) * across + std::sin(angle) * up)));
     }
     band(loop, next);
     loop = std::move(next);

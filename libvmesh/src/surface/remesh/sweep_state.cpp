@@ -2,8 +2,6 @@
 
 #include <numbers>
 
-#include "vmesh/core/portable_math.h"
-
 namespace vmesh {
 namespace {
 
@@ -24,12 +22,12 @@ constexpr double kProjectionTolerance = 1e-3, kProjectionShare = 0.029;
 }  // namespace
 
 double balanced_ring_radius(double around) {
-  const double half_edge = portable_sin(std::numbers::pi / around);
+  const double half_edge = std::sin(std::numbers::pi / around);
   return 1 + half_edge * half_edge / 4;
 }
 
 double edge_length_per_radius(double around) {
-  return kEdgeFactor * balanced_ring_radius(around) * 2 * portable_sin(std::numbers::pi / around);
+  return kEdgeFactor * balanced_ring_radius(around) * 2 * std::sin(std::numbers::pi / around);
 }
 
 // An edge of length h across a vessel of radius r cuts off h^2 / (8 r); balanced, half of that is outside.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmesh/core/portable_math.h"
-
 namespace vmesh {
 namespace {
 
@@ -13,7 +11,7 @@ constexpr double kFlat = 1e-9;  // derived: relative taper below which the angle
 // Integral of ds / r over a segment whose radius runs from r0 to r1.
 double radii_along(double length, double r0, double r1) {
   const double taper = (r1 - r0) / r0;
-  return std::abs(taper) < kFlat ? length / r0 : length * portable_log1p(taper) / (r1 - r0);
+  return std::abs(taper) < kFlat ? length / r0 : length * std::log1p(taper) / (r1 - r0);
 }
 
 }  // namespace
@@ -95,7 +93,7 @@ double BranchAxis::place_at_radii(double radii) const {
   const double r1 = centerline_->node(branch_->nodes[nth + 1]).radius;
   const double length = places_[nth + 1] - places_[nth], slope = (r1 - r0) / length;
   const double rest = radii - radii_[nth];
-  const double along = std::abs(r1 - r0) < kFlat * r0 ? rest * r0 : r0 * portable_expm1(slope * rest) / slope;
+  const double along = std::abs(r1 - r0) < kFlat * r0 ? rest * r0 : r0 * std::expm1(slope * rest) / slope;
   return places_[nth] + std::clamp(along, 0.0, length);
 }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmesh/core/portable_math.h"
-
 #include "surface/remesh/edge_lengths.h"
 #include "surface/tubes/vessel_rings.h"
 
@@ -126,7 +124,7 @@ std::vector<double> ElongationProfile::spread(double step) const {
   for (std::size_t i = 1; i < radii_.size(); ++i) {
     const double way = (radii_[i] - radii_[i - 1]) / step, rise = elongation_[i] - elongation_[i - 1];
     const double mean =
-        std::abs(rise) < kFlatSlope ? elongation_[i] : rise / portable_log(elongation_[i] / elongation_[i - 1]);
+        std::abs(rise) < kFlatSlope ? elongation_[i] : rise / std::log(elongation_[i] / elongation_[i - 1]);
     rings.push_back(rings.back() + way / mean);
   }
   const double bands = std::max(1.0, std::round(rings.back()));
@@ -137,9 +135,8 @@ std::vector<double> ElongationProfile::spread(double step) const {
     while (i + 1 < rings.size() && rings[i] < until) ++i;
     const double way = radii_[i] - radii_[i - 1], slope = step * (elongation_[i] - elongation_[i - 1]) / way;
     const double rest = until - rings[i - 1];
-    const double along = std::abs(slope) < kFlatSlope
-                             ? step * elongation_[i - 1] * rest
-                             : step * elongation_[i - 1] * portable_expm1(slope * rest) / slope;
+    const double along = std::abs(slope) < kFlatSlope ? step * elongation_[i - 1] * rest
+                                                      : step * elongation_[i - 1] * std::expm1(slope * rest) / slope;
     places.push_back(radii_[i - 1] + std::clamp(along, 0.0, way));
   }
   places.push_back(radii_.back());

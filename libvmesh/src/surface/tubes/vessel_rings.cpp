@@ -2,8 +2,6 @@
 
 #include <numbers>
 
-#include "vmesh/core/portable_math.h"
-
 #include "surface/remesh/edge_lengths.h"
 
 namespace vmesh {
@@ -41,8 +39,8 @@ constexpr double kMinSpacing = 0.2;     // least distance between two rings, in 
 
 // Height of the band of triangles between two rings, in ring radii, when all its edges are as long as the ring's.
 double equilateral_height(int around) {
-  const double edge = 2 * portable_sin(std::numbers::pi / around);
-  const double shift = 2 * portable_sin(std::numbers::pi / (2 * around));  // of a vertex turned half a step
+  const double edge = 2 * std::sin(std::numbers::pi / around);
+  const double shift = 2 * std::sin(std::numbers::pi / (2 * around));  // of a vertex turned half a step
   return std::sqrt(edge * edge - shift * shift);
 }
 
@@ -269,7 +267,7 @@ Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& s
   for (int j = 0; j < options_.around; ++j) {
     const double angle = 2 * std::numbers::pi * (j + phase) / options_.around;
     BoundaryPoint seen;
-    if (!see(branch, ring, axis, portable_cos(angle) * side + portable_sin(angle) * up, seen)) {
+    if (!see(branch, ring, axis, std::cos(angle) * side + std::sin(angle) * up, seen)) {
       points.resize(first);
       return ring;
     }
@@ -337,7 +335,7 @@ bool RingLayer::is_clear(Index branch, const CrossSection& section, const Branch
   }
   for (int j = 0; j < kDirections && !others.empty(); ++j) {
     const double angle = 2 * std::numbers::pi * j / kDirections;
-    const Vec3 way = portable_cos(angle) * side + portable_sin(angle) * up;
+    const Vec3 way = std::cos(angle) * side + std::sin(angle) * up;
     for (const auto& [far, space] : kClearances) {
       const Vec3 p = section.center + far * section.radius * way;
       for (const Index cone : others) {
