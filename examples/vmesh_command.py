@@ -5,6 +5,8 @@ nor its memory get in the way of the program's. Where there is none, the Python 
 imported.
 """
 
+from __future__ import annotations
+
 import importlib.util
 import os
 import re
@@ -12,6 +14,12 @@ import shutil
 import subprocess
 import tempfile
 import warnings
+from typing import Any, Callable, Dict, Sequence
+
+Progress = Callable[[str, float], Any]  # told the stage and its share; may raise Cancelled
+Warn = Callable[[str], Any]
+Options = Dict[str, Any]
+Paths = Sequence[str]
 
 # Options of the command, and what the package calls them.
 _READING = {"unit", "space", "radius_array", "radius", "voxel_size"}
@@ -39,7 +47,7 @@ class Cancelled(Exception):
     """By the function that is told of progress."""
 
 
-def find_command(path=""):
+def find_command(path: str = "") -> str | None:
     """The program: `path` or $VMESH_COMMAND if given, else that of a wheel in this Python, else the one in PATH; None if
     there is none of these. VmeshError where a given one is none."""
     given = path or os.environ.get("VMESH_COMMAND", "")
@@ -55,7 +63,13 @@ def find_command(path=""):
     return shutil.which("vmesh")
 
 
-def run(words, progress=None, warn=None, command="", environment=None):
+def run(
+    words: Sequence[str],
+    progress: Progress | None = None,
+    warn: Warn | None = None,
+    command: str = "",
+    environment: dict[str, str] | None = None,
+) -> None:
     """`vmesh WORDS...`, a verb that takes --slicer.
 
     progress     called with a stage and a fraction in [0, 1]; returning False ends the program and raises Cancelled
@@ -80,6 +94,7 @@ def run(words, progress=None, warn=None, command="", environment=None):
             universal_newlines=True,
             env=environment,
         )
+        assert process.stdout is not None
         try:
             _pass_on(process.stdout, progress)
         except BaseException:
@@ -97,7 +112,7 @@ def run(words, progress=None, warn=None, command="", environment=None):
         raise VmeshError(_error_in(lines) or f"{program} ended with the exit code {code}")
 
 
-def generate(inputs, output, options, **how):
+def generate(inputs: Paths, output: str, options: Options, **how: Any) -> None:
     """The surface around a centerline as the file `output`.
 
     inputs   names of files that form one centerline, or of one segmentation
@@ -112,7 +127,7 @@ def generate(inputs, output, options, **how):
         run(["generate", *inputs, "-o", output, *_words(given)], **how)
 
 
-def convert_centerline(inputs, output, options, **how):
+def convert_centerline(inputs: Paths, output: str, options: Options, **how: Any) -> None:
     """The centerline that files form, as the file `output`; options: those for reading. Others as for generate()."""
     given = _given(options)
     if _has_only_package(how):
@@ -121,18 +136,18 @@ def convert_centerline(inputs, output, options, **how):
         run(["convert", *inputs, "-o", output, *_words(given)], **how)
 
 
-def _error_in(lines):
+def _error_in(lines: list[str]) -> str:
     """What is wrong begins with the program's name, behind what it told before."""
     told = [line for line in lines if not line.startswith((_WARNING, "cleaning: ", _HELP))]
     begin = next((i for i, line in enumerate(told) if line.startswith(_ERROR)), 0)
     return "\n".join(told[begin:]).replace(_ERROR, "", 1)
 
 
-def _given(options):
+def _given(options: Options) -> Options:
     return {name: value for name, value in options.items() if value is not None and value != "" and value is not False}
 
 
-def _words(given):
+def _words(given: Options) -> list[str]:
     words = []
     for name, value in given.items():
         words.append("--" + name.replace("_", "-"))
@@ -141,17 +156,17 @@ def _words(given):
     return words
 
 
-def _has_only_package(how):
+def _has_only_package(how: dict[str, Any]) -> bool:
     return find_command(how.get("command", "")) is None and importlib.util.find_spec("vmesh") is not None
 
 
-def _tell(warnings, warn):
+def _tell(warnings: Any, warn: Warn | None) -> None:
     if warn is not None:
         for line in warnings:
             warn(line)
 
 
-def _pass_on(lines, progress):
+def _pass_on(lines: Any, progress: Progress | None) -> None:
     stage = ""
     for line in lines:
         for kind, text in _TAG.findall(line):
@@ -161,7 +176,7 @@ def _pass_on(lines, progress):
                 raise Cancelled(stage)
 
 
-def _end(process):
+def _end(process: Any) -> None:
     process.terminate()
     try:
         process.wait(10)
@@ -170,18 +185,18 @@ def _end(process):
         process.wait()
 
 
-def _refuse_unknown(given, known):
+def _refuse_unknown(given: Options, known: Any) -> None:
     unknown = sorted(set(given) - known)
     if unknown:
         raise VmeshError(f"{', '.join(unknown)}: this needs the command vmesh, which is not beside the Python package")
 
 
-def _read_here(vmesh, inputs, given, **more):
+def _read_here(vmesh: Any, inputs: Paths, given: Options, **more: Any) -> Any:
     options = {name: given[name] for name in _READING if name in given}
     return vmesh.read_centerline(list(inputs), **options, **more)
 
 
-def _generate_here(inputs, output, given, how):
+def _generate_here(inputs: Paths, output: str, given: Options, how: dict[str, Any]) -> None:
     """By the Python package."""
     import vmesh
 
@@ -200,7 +215,7 @@ def _generate_here(inputs, output, given, how):
     _tell([*tree.warnings, *surface.warnings], how.get("warn"))
 
 
-def _convert_here(inputs, output, given):
+def _convert_here(inputs: Paths, output: str, given: Options) -> None:
     import vmesh
 
     _refuse_unknown(given, _READING)

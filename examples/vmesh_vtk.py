@@ -6,11 +6,14 @@ vmesh's .vtp files: MaximumInscribedSphereRadius, segment, parameter and branch 
 cells. Options, progress and errors are those of vmesh_command.
 """
 
+from __future__ import annotations
+
 import gzip
 import os
 import struct
 import tempfile
 import zlib
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy
@@ -22,7 +25,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 import vmesh_command
 
 
-def curve(points, radii, closed=False):
+def curve(points: Any, radii: Any, closed: bool = False) -> Any:
     """A polyline through `points`, (n, 3), with the radii of its points, (n,)."""
     points, radii = numpy.array(points, float).reshape(-1, 3), numpy.array(radii, float)
     if len(points) < 2 or len(points) != len(radii):
@@ -45,20 +48,20 @@ def curve(points, radii, closed=False):
     return poly
 
 
-def text_of(poly, name):
+def text_of(poly: Any, name: str) -> str | None:
     """What a field of the data says, as vmesh's files have UNIT and SPACE; "" without it."""
     array = poly.GetFieldData().GetAbstractArray(name)
     text = array.GetValue(0) if array is not None and array.GetNumberOfValues() > 0 else ""
     return text if isinstance(text, str) else ""
 
 
-def surface_of_files(files, options, **how):
+def surface_of_files(files: list[str], options: dict[str, Any], **how: Any) -> Any:
     """The surface around the centerline that `files` form together, in mm and LPS unless the options tell otherwise."""
     with tempfile.TemporaryDirectory(prefix="vmesh-") as folder:
         return _generated(files, folder, options, how)
 
 
-def centerline_of_files(files, reading=None, **how):
+def centerline_of_files(files: list[str], reading: dict[str, Any] | None = None, **how: Any) -> Any:
     """The centerline in `files`, cleaned, with radii, in mm and LPS; reading: those of the options that are for reading."""
     with tempfile.TemporaryDirectory(prefix="vmesh-") as folder:
         path = os.path.join(folder, "centerline.vtp")
@@ -66,7 +69,9 @@ def centerline_of_files(files, reading=None, **how):
         return _read(path)
 
 
-def surface_around(centerlines, options, unit="", space="", **how):
+def surface_around(
+    centerlines: list[Any], options: dict[str, Any], unit: str = "", space: str = "", **how: Any
+) -> Any:
     """The surface around the lines of vtkPolyData, one or several that form a centerline together, each with an array of
     its points' radii, where the lines are.
 
@@ -90,7 +95,7 @@ def surface_around(centerlines, options, unit="", space="", **how):
             raise vmesh_command.VmeshError(_without_files(str(error), files)) from None
 
 
-def surface_of_segmentation(voxels, ijk_to_ras, options, **how):
+def surface_of_segmentation(voxels: Any, ijk_to_ras: Any, options: dict[str, Any], **how: Any) -> Any:
     """The surface on the wall of the voxels that are not 0, and the centerline in it, both in RAS, mm.
 
     voxels      (k, j, i), as VTK and Slicer order them
@@ -104,7 +109,8 @@ def surface_of_segmentation(voxels, ijk_to_ras, options, **how):
         raise vmesh_command.VmeshError("the segmentation is empty; choose a segment with voxels")
     with tempfile.TemporaryDirectory(prefix="vmesh-") as folder:
         image = os.path.join(folder, "segmentation.nrrd")
-        _write_nrrd(*_cropped(voxels != 0, numpy.asarray(ijk_to_ras, float)), image)
+        mask, placed = _cropped(voxels != 0, numpy.asarray(ijk_to_ras, float))
+        _write_nrrd(mask, placed, image)
         centerline = os.path.join(folder, "centerline.vtp")
         more = {"label": 1, "centerline_output": centerline, "output_space": "RAS"}
         try:
@@ -117,20 +123,20 @@ def surface_of_segmentation(voxels, ijk_to_ras, options, **how):
         return surface, _read(turned)
 
 
-def _generated(files, folder, options, how):
+def _generated(files: list[str], folder: str, options: dict[str, Any], how: dict[str, Any]) -> Any:
     path = os.path.join(folder, "surface.vtp")
     vmesh_command.generate(files, path, options, **how)
     return _read(path)
 
 
-def _without_files(message, files):
+def _without_files(message: str, files: list[str]) -> str:
     """The user has not seen the temporary files."""
     for number, file in enumerate(files):
         message = message.replace(file, "the centerline" if len(files) == 1 else f"curve {number + 1}")
     return message
 
 
-def _write_lines(poly, path):
+def _write_lines(poly: Any, path: str) -> None:
     lines = vtkPolyData()
     lines.SetPoints(poly.GetPoints())
     lines.SetLines(poly.GetLines())
@@ -150,7 +156,7 @@ def _write_lines(poly, path):
         raise vmesh_command.VmeshError(f"{path}: the centerline could not be written; is there room on the disk?")
 
 
-def _cropped(mask, ijk_to_ras):
+def _cropped(mask: Any, ijk_to_ras: Any) -> Any:
     """To what is inside, and a voxel around it, but not beyond the border, which cuts vessels."""
     begins, ends = [], []
     for axis in range(3):
@@ -162,7 +168,7 @@ def _cropped(mask, ijk_to_ras):
     return mask[begins[0] : ends[0], begins[1] : ends[1], begins[2] : ends[2]], moved
 
 
-def _write_nrrd(mask, ijk_to_ras, path):
+def _write_nrrd(mask: Any, ijk_to_ras: Any, path: str) -> None:
     to_lps = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ ijk_to_ras
     vector = lambda v: "(" + ",".join(repr(float(x)) for x in v) + ")"
     header = "\n".join(
@@ -182,14 +188,14 @@ def _write_nrrd(mask, ijk_to_ras, path):
         file.write(gzip.compress(numpy.ascontiguousarray(mask, dtype=numpy.uint8).tobytes(), 1))
 
 
-def _read(path):
+def _read(path: str) -> Any:
     """A .vtp of vmesh. Not by VTK's reader: of ParaView 5.11 with Debian 12's libexpat1 of 2025, that reads no file with
     appended data, ParaView's own neither."""
     with open(path, "rb") as file:
         content = file.read()
     begin = content.index(b"<AppendedData")
     blocks = memoryview(content)[content.index(b"_", begin) + 1 :]
-    data = ElementTree.fromstring(content[:begin] + b"</VTKFile>").find("PolyData")
+    data: Any = ElementTree.fromstring(content[:begin] + b"</VTKFile>").find("PolyData")
     piece = data.find("Piece")
     arrays = lambda name: (
         {} if piece.find(name) is None else {a.get("Name"): _array(a, blocks) for a in piece.find(name)}
@@ -224,7 +230,7 @@ _TYPES = {
 }
 
 
-def _array(element, blocks):
+def _array(element: Any, blocks: Any) -> Any:
     """The values of a DataArray: text, or zlib blocks behind their number, their size, that of the last and the packed
     ones."""
     kind = numpy.dtype(_TYPES[element.get("type")])
@@ -243,7 +249,7 @@ def _array(element, blocks):
     return values.reshape(-1, components) if components > 1 else values
 
 
-def _cells(offsets, connectivity):
+def _cells(offsets: Any, connectivity: Any) -> Any:
     cells = vtkCellArray()
     starts = numpy.concatenate([[0], offsets]).astype(numpy.int64)
     cells.SetData(
@@ -253,13 +259,13 @@ def _cells(offsets, connectivity):
     return cells
 
 
-def _add(target, name, values):
+def _add(target: Any, name: str, values: Any) -> None:
     array = numpy_support.numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
     array.SetName(name)
     target.AddArray(array)
 
 
-def _add_field(target, element, blocks):
+def _add_field(target: Any, element: Any, blocks: Any) -> None:
     """Of texts, each ends with a zero."""
     if element.get("type") != "String":
         _add(target, element.get("Name"), _array(element, blocks))

@@ -58,7 +58,7 @@ def test_defects_are_places(made):
     with pytest.warns(vmesh.SurfaceWarning):
         surface = vmesh.generate(nodes, [2] * 4, [[0, 1], [2, 3]], overlap="keep", allow_defects=True)
     page = made(surface)
-    assert page["places"][0]["label"].startswith("Defect: crossing_faces")
+    assert page["places"][0]["label"].startswith("Defect: crossing faces")
     assert page["warnings"] == surface.warnings
 
 
