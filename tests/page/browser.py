@@ -1,13 +1,28 @@
-"""Drives a headless Chromium by its DevTools protocol: opens pages from files, clicks, types, takes pictures."""
+"""Drives a headless Chromium by its DevTools protocol: opens pages from files, clicks, types, takes pictures. A program
+that imports this exits with 77, loudly, where there is none."""
 import base64
 import json
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 
-import websocket
+if not shutil.which("chromium"):
+    print("SKIPPED: no Chromium; scripts/install-dependencies --with-browser")
+    sys.exit(77)
+try:
+    import websocket
+except ImportError:
+    print("SKIPPED: no python3-websocket; scripts/install-dependencies --with-browser")
+    sys.exit(77)
+
+# Pixels of a page's scene that are not the ground's, of those that are drawn.
+DRAWN = """(() => { vmesh.scene.render(); const gl = vmesh.scene.renderer.getContext();
+  const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight]; const p = new Uint8Array(4 * w * h);
+  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
+  let n = 0; for (let i = 3; i < p.length; i += 4) n += p[i] > 0; return n / (w * h); })()"""
 
 FLAGS = ["--headless=new", "--no-sandbox", "--hide-scrollbars", "--use-angle=swiftshader",
          "--enable-unsafe-swiftshader", "--disable-extensions", "--no-first-run", "--remote-debugging-port=0",

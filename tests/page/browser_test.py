@@ -10,21 +10,9 @@ import tempfile
 import unittest
 
 sys.dont_write_bytecode = True  # next to the sources
-if not shutil.which("chromium"):
-    print("SKIPPED: no Chromium; scripts/install-dependencies --with-browser")
-    sys.exit(77)
-try:
-    from browser import Browser
-except ImportError:
-    print("SKIPPED: no python3-websocket; scripts/install-dependencies --with-browser")
-    sys.exit(77)
+from browser import DRAWN, Browser
 
 VMESH, EXAMPLES = map(os.path.abspath, sys.argv[1:3])
-# Pixels that are not the ground's, of those that are drawn.
-DRAWN = """(() => { vmesh.scene.render(); const gl = vmesh.scene.renderer.getContext();
-  const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight]; const p = new Uint8Array(4 * w * h);
-  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
-  let n = 0; for (let i = 3; i < p.length; i += 4) n += p[i] > 0; return n / (w * h); })()"""
 CAMERA = "vmesh.scene.camera.position.toArray().concat(vmesh.scene.controls.target.toArray())"
 # Where a vertex in front of all others is on the screen.
 FRONT = """(() => { const s = vmesh.shown.surface; let best = 0, near = Infinity; const c = vmesh.scene.camera.position;

@@ -11,14 +11,7 @@ import time
 import unittest
 
 sys.dont_write_bytecode = True  # next to the sources
-if not shutil.which("chromium"):
-    print("SKIPPED: no Chromium; scripts/install-dependencies --with-browser")
-    sys.exit(77)
-try:
-    from browser import Browser
-except ImportError:
-    print("SKIPPED: no python3-websocket; scripts/install-dependencies --with-browser")
-    sys.exit(77)
+from browser import DRAWN, Browser
 
 VMESH = os.path.abspath(sys.argv[1])
 PICTURES = os.environ.get("VMESH_TEST_PICTURES")
@@ -37,11 +30,6 @@ NODE = "(n => { const p = vmesh.scene.onScreen(vmesh.nodePosition(n)), b = vmesh
 POSITIONS = "(() => { const o = vmesh.stage.deformer.origin; vmesh.stage.deformer.follow();" \
             "return Array.from(vmesh.stage.deformer.positions(), (x, i) => x + o[i % 3]); })()"
 CAMERA = "vmesh.scene.camera.position.toArray()"
-# Pixels that are not the ground's, of those that are drawn.
-DRAWN = """(() => { vmesh.scene.render(); const gl = vmesh.scene.renderer.getContext();
-  const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight]; const p = new Uint8Array(4 * w * h);
-  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
-  let n = 0; for (let i = 3; i < p.length; i += 4) n += p[i] > 0; return n / (w * h); })()"""
 
 
 def positions_in(path):

@@ -11,6 +11,7 @@
 #include "vmesh/surface/generate.h"
 #include "vmesh/volume/vessel_field.h"
 
+#include "random_vessels.h"
 #include "shared_data.h"
 
 namespace vmesh {
@@ -296,6 +297,28 @@ TEST_P(NarrowFork, KeepsWhatItClosesWithinTheLimit) {
     EXPECT_GT(points, 10000u);
     EXPECT_LE(worst, 1);
   }
+}
+
+// Corners out of a notch lead different ways: a wall's along its normal, that at the end up the middle. In between, the
+// shell must not cross to the other wall.
+TEST(NarrowNotches, OfVesselsThatHardlyPartAreProven) {
+  const Centerline centerline = narrow_fork(22);
+  for (const double relative : {0.05, 0.02}) {
+    const GenerateResult result = generate(centerline, relative, 0);
+    EXPECT_EQ(result.error.unproven_faces, 0u) << relative;
+    EXPECT_TRUE(result.is_sound());
+    // At 2 % triangles are smaller than what is measured with.
+    if (relative == 0.05) {
+      EXPECT_LE(worst_deviation(result, VesselField(centerline, 0), limit_of(relative)), 1);
+    }
+  }
+}
+
+TEST(NarrowNotches, OfVesselsSideBySideAreProven) {
+  const Centerline centerline = testing::plausible_tree(7001);
+  const GenerateResult result = generate(centerline, 0.01, 0);
+  EXPECT_EQ(result.error.unproven_faces, 0u);
+  EXPECT_TRUE(result.is_sound());
 }
 
 #define TREE(name) "liver_portal_centerlines/liverModelPatient1__" name "_1.swc"

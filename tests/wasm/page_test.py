@@ -10,24 +10,13 @@ import unittest
 
 sys.dont_write_bytecode = True  # next to the sources
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "page"))
-if not shutil.which("chromium"):
-    print("SKIPPED: no Chromium; scripts/install-dependencies --with-browser")
-    sys.exit(77)
-try:
-    from browser import Browser
-except ImportError:
-    print("SKIPPED: no python3-websocket; scripts/install-dependencies --with-browser")
-    sys.exit(77)
+from browser import DRAWN, Browser
 
 PAGE, VMESH = map(os.path.abspath, sys.argv[1:3])
 PROJECT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 TREE = os.path.join(PROJECT, "examples", "small_tree.swc")
 PICTURES = os.environ.get("VMESH_TEST_PICTURES")
 MADE = "document.body.dataset.made === '1'"
-DRAWN = """(() => { vmesh.scene.render(); const gl = vmesh.scene.renderer.getContext();
-  const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight]; const p = new Uint8Array(4 * w * h);
-  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
-  let n = 0; for (let i = 3; i < p.length; i += 4) n += p[i] > 0; return n / (w * h); })()"""
 
 
 def counts_in_ply(path):

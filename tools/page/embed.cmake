@@ -6,18 +6,13 @@ include("${CMAKE_CURRENT_LIST_DIR}/literals.cmake")
 
 list(TRANSFORM scripts PREPEND "${FOLDER}/")
 list(TRANSFORM scripts APPEND ".js")
-file(WRITE "${OUTPUT}.new" "#include \"page/page_parts.h\"\n\nnamespace vmesh::tool {\nnamespace {\n\n")
+file(WRITE "${OUTPUT}.new" "#include \"page/page_parts.h\"\n#include \"page/literal_view.h\"\n\nnamespace vmesh::tool {\nnamespace {\n\n")
 add_part(kPage "${FOLDER}/page.html")
 add_part(kStyle "${FOLDER}/page.css")
 add_part(kScript ${scripts})
 add_part(kThree ${THREE})
 add_part(kLicense ${LICENSE})
 file(APPEND "${OUTPUT}.new" "\n}  // namespace\n
-template <std::size_t size>
-constexpr std::string_view view(const char (&text)[size]) {
-  return {text, size - 1};
-}
-
 const PageParts& page_parts() {
   static constexpr PageParts kParts{view(kPage), view(kStyle), view(kScript), view(kThree), view(kLicense)};
   return kParts;

@@ -8,17 +8,10 @@
 #include "vmesh/surface/cut_surface.h"
 
 #include "report/json.h"
+#include "verbs/bound_tree.h"
 #include "verbs/scene.h"
 
 namespace vmesh::tool {
-
-/// A surface bound to a centerline, at rest.
-struct BoundTree {
-  Centerline centerline;
-  TriMesh mesh;
-  MeshAttributes attributes;
-  std::vector<CenterlineBinding> binding;
-};
 
 /// All cuts of a scene, made at rest, in the order of their times, and the nodes that clips need.
 class CutPlan {

@@ -1,10 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <functional>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include "vmesh/core/text.h"
 #include "vmesh/deform/surface_binding.h"
@@ -15,10 +12,11 @@
 #include "command_line/verb.h"
 #include "page/live/live_page.h"
 #include "report/pages.h"
-#include "verbs/cut_plan.h"
+#include "verbs/bound_tree.h"
 #include "verbs/frame_series.h"
+#include "verbs/live_scene.h"
+#include "verbs/moving_surface.h"
 #include "verbs/moving_volume.h"
-#include "verbs/scene.h"
 
 namespace vmesh::tool::deform_verb {
 namespace {
@@ -66,188 +64,8 @@ void add_options(CLI::App& verb, DeformArguments& arguments) {
   add_html(verb, arguments.common);
 }
 
-/// A vertex farther from its place than this many local radii must be bound to another centerline.
-constexpr double kFarthestPlace = 4;
-
-bool is_place(const Centerline& centerline, double segment, double t, const Vec3& vertex) {
-  if (!(segment >= 0 && segment < static_cast<double>(centerline.segments().size()) && t >= 0 && t <= 1)) return false;
-  const Index s = static_cast<Index>(segment);
-  return (vertex - centerline.point_at(s, t)).norm() <= kFarthestPlace * centerline.radius_at(s, t);
-}
-
-/// The places on the centerline stored in the surface's file, if they belong to this centerline.
-std::optional<std::vector<SurfacePlace>> places_in_file(const Centerline& centerline, const LoadedSurface& surface) {
-  const MeshAttribute* segment = find_attribute(surface.attributes.vertex, "segment");
-  const MeshAttribute* t = find_attribute(surface.attributes.vertex, "parameter");
-  if (!segment || !t) return std::nullopt;
-  std::vector<SurfacePlace> places;
-  for (std::size_t v = 0; v < surface.mesh.vertices.size(); ++v) {
-    if (!is_place(centerline, segment->values[v], t->values[v], surface.mesh.vertices[v])) return std::nullopt;
-    places.push_back({static_cast<Index>(segment->values[v]), t->values[v]});
-  }
-  return places;
-}
-
-std::vector<SurfacePlace> places_of(const Centerline& centerline, const LoadedSurface& surface, Console& console) {
-  if (auto places = places_in_file(centerline, surface)) return *places;
-  console.log("the surface's file has no places on this centerline; every vertex is bound to the nearest segment");
-  return nearest_places(centerline, surface.mesh.vertices);
-}
-
-BoundTree bound_tree(const Centerline& centerline, LoadedSurface surface, Console& console) {
-  std::vector<CenterlineBinding> binding;
-  for (const auto& [segment, t] : places_of(centerline, surface, console)) binding.push_back({segment, t});
-  return {centerline, std::move(surface.mesh), std::move(surface.attributes), std::move(binding)};
-}
-
-/// Plays a scene on a simulation.
-class Stage {
- public:
-  Stage(const Centerline& centerline, const Scene& scene)
-      : scene_(scene), simulation_(centerline, segment_properties(centerline, scene.material), scene.options) {
-    for (const Index node : scene.fix) simulation_.fix(node);
-    for (const Index node : scene.clamp) simulation_.clamp(node);
-    for (const Scene::Drag& drag : scene.drags) dragged_from_.push_back(simulation_.position(drag.node));
-    if (scene.touching.exists()) touching_.emplace(scene.touching, centerline, simulation_);
-  }
-
-  void step(double time) {
-    for (std::size_t i = 0; i < scene_.drags.size(); ++i) pull(scene_.drags[i], dragged_from_[i], time);
-    for (const Scene::Force& force : scene_.forces) simulation_.set_force(force.node, force.force_N.at(time));
-    for (const Scene::Profile& scale : scene_.scales) simulation_.set_radial_scale(scale.node, scale.value.at(time));
-    for (const Scene::Profile& squeeze : scene_.squeezes) simulation_.set_squeeze(squeeze.node, squeeze.value.at(time));
-    if (touching_) touching_->act(simulation_, time, [this](const SegmentPlace& place) { return now(place); });
-    const StepReport report = simulation_.step();
-    check_range(time);
-    note_forces(time);
-    work_J_ += report.work_J;
-    last_movement_mm_ = report.movement_mm;
-  }
-
-  /// Numbers of the scene still are those of the centerline of before.
-  void cut(const CenterlineCut& cut) {
-    simulation_.cut(cut);
-    since_.push_back([cut](const SegmentPlace& place) { return cut.after(place); });
-  }
-  void divide(const InsertedNode& node) {
-    simulation_.divide(node);
-    since_.push_back([node](const SegmentPlace& place) { return node.after(place); });
-  }
-
-  CenterlineSimulation& simulation() { return simulation_; }
-  double work_J() const { return work_J_; }
-  double last_movement_mm() const { return last_movement_mm_; }
-  const HandForces& forces() const { return forces_; }
-
- private:
-  SegmentPlace now(SegmentPlace place) const {
-    for (const auto& step : since_) place = step(place);
-    return place;
-  }
-
-  void note_forces(double time) {
-    for (const Scene::Drag& drag : scene_.drags)
-      forces_.add(time, "node " + std::to_string(drag.node), simulation_.drag_force(drag.node));
-    const SceneTouching& touching = scene_.touching;
-    for (std::size_t i = 0; i < touching.grasps.size(); ++i)
-      if (touching_->jaws()[i] != kNone)
-        forces_.add(time, touching.grasps[i].name, simulation_.jaw_force(touching_->jaws()[i]));
-    for (std::size_t i = 0; i < touching.instruments.size(); ++i)
-      forces_.add(time, touching.instruments[i].name, simulation_.instrument_force(static_cast<Index>(i)));
-  }
-
-  void pull(const Scene::Drag& drag, const Vec3& from, double time) {
-    const double step = scene_.options.step_s;
-    if (time < drag.start_s) return;
-    if (time <= drag.release_s)
-      simulation_.drag(drag.node, from + drag.offset_mm.at(time));
-    else if (time - step <= drag.release_s)
-      simulation_.release(drag.node);
-  }
-
-  /// Segments stretched to more than this many times their length or radius, whichever is longer, are no longer
-  /// vessels.
-  static constexpr double kMostStretched = 100;
-
-  void check_range(double time) const {
-    const RodTree& tree = simulation_.tree();
-    const std::vector<Vec3>& position = simulation_.pose().position;
-    for (Index j = 0; j < tree.size(); ++j) {
-      const Index parent = tree.parent[j];
-      const bool is_root = parent == kNone;
-      const double stretch =
-          is_root ? 0 : (position[j] - position[parent]).norm() / std::max(tree.length[j], tree.radius[j]);
-      if (position[j].allFinite() && stretch <= kMostStretched) continue;
-      std::ostringstream text;
-      text << "the motion leaves its physical range at " << time << " s, at node " << tree.node[j] << ": ";
-      if (position[j].allFinite()) {
-        text << "segment " << tree.segment[j] << " is stretched to " << stretch << " times its length or radius";
-      } else {
-        text << "its position is not finite";
-      }
-      text << "; shorten step_s, or check the forces, the paths and the material";
-      throw InvalidInput(text.str());
-    }
-  }
-
-  const Scene& scene_;
-  CenterlineSimulation simulation_;
-  std::vector<Vec3> dragged_from_;
-  std::vector<std::function<SegmentPlace(const SegmentPlace&)>> since_;  // cuts and divisions
-  std::optional<TouchingStage> touching_;
-  HandForces forces_;
-  double work_J_ = 0, last_movement_mm_ = 0;
-};
-
 struct Timing {
   double simulate_s = 0, synchronise_s = 0;
-};
-
-std::vector<SurfacePlace> places_on(const std::vector<CenterlineBinding>& binding) {
-  std::vector<SurfacePlace> places;
-  for (const CenterlineBinding& b : binding) places.push_back({b.segment, b.t});
-  return places;
-}
-
-/// Writes the moved input surface with the displacements of its vertices.
-class FrameWriter {
- public:
-  explicit FrameWriter(const DeformArguments& arguments) : writing_(arguments.writing) {
-    metadata_ = {generator_name(), "deform --script " + arguments.script.filename().string(),
-                 arguments.surface.path.filename().string(), sha256_of_file(arguments.surface.path)};
-  }
-
-  /// The surface that moves from now on, at rest; it is to outlive this.
-  void begin(const BoundTree& rest) {
-    rest_ = &rest.mesh;
-    mesh_ = rest.mesh;
-    attributes_ = rest.attributes;
-    std::erase_if(attributes_.vertex, [](const MeshAttribute& a) { return a.name == "displacement"; });
-    attributes_.vertex.push_back({"displacement", std::vector<double>(mesh_.vertices.size())});
-  }
-
-  void write(const fs::path& path, const DeformedSurface& surface, const std::vector<Index>& lane_of_vertex) {
-    std::vector<double>& displacement = attributes_.vertex.back().values;
-    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
-      mesh_.vertices[v] = surface.position(lane_of_vertex[v]);
-      displacement[v] = (mesh_.vertices[v] - rest_->vertices[v]).norm();
-      largest_mm_ = std::max(largest_mm_, displacement[v]);
-    }
-    write_surface(path, mesh_, attributes_, metadata_, writing_);
-  }
-
-  double largest_displacement_mm() const { return largest_mm_; }
-  /// The mesh of the last frame written.
-  const TriMesh& mesh() const { return mesh_; }
-  const MeshAttributes& attributes() const { return attributes_; }
-
- private:
-  const TriMesh* rest_ = nullptr;
-  const WritingArguments& writing_;
-  TriMesh mesh_;
-  MeshAttributes attributes_;
-  SurfaceMetadata metadata_;
-  double largest_mm_ = 0;
 };
 
 std::size_t steps_of(const Scene& scene) {
@@ -259,74 +77,6 @@ std::size_t frames_of(const Scene& scene) {
   const auto every = static_cast<std::size_t>(scene.frame_every);
   return 1 + (steps_of(scene) + every - 1) / every;
 }
-
-/// The surface that moves with a stage, cut when it is time.
-class MovingSurface {
- public:
-  MovingSurface(const CutPlan& plan, Stage& stage, FrameWriter& writer) : plan_(plan), stage_(stage), writer_(writer) {
-    begin();
-  }
-
-  /// Makes the cuts that are due; the surface stays where it is.
-  void cut_until(double time_s) {
-    const std::size_t before = cuts_;
-    for (; cuts_ < plan_.cuts().size() && plan_.cuts()[cuts_].time_s <= time_s; ++cuts_) {
-      const CutPlan::Made& made = plan_.cuts()[cuts_];
-      naming(made.element, [&] { stage_.cut(made.cut); });
-    }
-    if (cuts_ > before) begin();
-  }
-  void follow() { binding_->apply(stage_.simulation().pose(), stage_.simulation().moved(), lanes_); }
-  void write(const fs::path& path) { writer_.write(path, lanes_, binding_->lane_of_vertex()); }
-
-  /// The last of all stages where it is now, before it was cut.
-  std::vector<Vec3> last_vertices() {
-    if (plan_.cuts().empty()) return writer_.mesh().vertices;
-    if (!last_) {
-      const BoundTree &tree = plan_.stages()[cuts_], &last = plan_.stages().back();
-      last_.emplace(tree.centerline, stage_.simulation().tree(), last.mesh.vertices, vertex_normals(last.mesh),
-                    places_on(plan_.last_on(cuts_)));
-    }
-    DeformedSurface lanes = last_->make_surface();
-    last_->apply(stage_.simulation().pose(), lanes);
-    std::vector<Vec3> vertices;
-    for (const Index lane : last_->lane_of_vertex()) vertices.push_back(lanes.position(lane));
-    return vertices;
-  }
-  std::vector<Vec3> last_nodes() const {
-    const Centerline& now = plan_.stages()[cuts_].centerline;
-    const CenterlineSimulation& simulation = stage_.simulation();
-    std::vector<Vec3> positions;
-    for (Index n = 0; n < plan_.stages().back().centerline.nodes().size(); ++n) {
-      if (n < now.nodes().size()) {
-        positions.push_back(simulation.position(n));
-        continue;
-      }
-      const auto [segment, t] = plan_.place_of_node(n, cuts_);
-      const auto& [a, b] = now.segment(segment);
-      positions.push_back((1 - t) * simulation.position(a) + t * simulation.position(b));
-    }
-    return positions;
-  }
-
- private:
-  void begin() {
-    const BoundTree& tree = plan_.stages()[cuts_];
-    binding_.emplace(tree.centerline, stage_.simulation().tree(), tree.mesh.vertices, vertex_normals(tree.mesh),
-                     places_on(tree.binding));
-    lanes_ = binding_->make_surface();
-    if (cuts_ > 0) binding_->apply(stage_.simulation().pose(), lanes_);
-    writer_.begin(tree);
-    last_.reset();
-  }
-
-  const CutPlan& plan_;
-  Stage& stage_;
-  FrameWriter& writer_;
-  std::size_t cuts_ = 0;
-  std::optional<SurfaceBinding> binding_, last_;
-  DeformedSurface lanes_;
-};
 
 /// The surface's frames, and the volume's if there is one.
 struct Frames {
@@ -470,40 +220,10 @@ bool is_good(const std::vector<VolumeFrame>& frames, const DeformArguments& argu
   return false;
 }
 
-/// What pages begin with where no scene says otherwise: a step for every frame of a usual screen, and the lowest node
-/// of every component clamped, as vessels hang from something.
-Scene scene_of_hands(const Centerline& centerline) {
-  Scene scene;
-  scene.options.step_s = 1.0 / 60;
-  std::vector<char> seen(centerline.component_count());
-  for (Index n = 0; n < centerline.nodes().size(); ++n) {
-    char& has_one = seen[centerline.component_of_node()[n]];
-    if (!has_one && centerline.degree(n) > 0) scene.clamp.push_back(n);
-    has_one = 1;
-  }
-  return scene;
-}
-
-/// The material, the options and what is held from the start.
-Scene live_scene(const DeformArguments& arguments, const Centerline& centerline, Console& console) {
-  if (arguments.script.empty()) return scene_of_hands(centerline);
-  Scene scene = read_scene(arguments.script, centerline.nodes().size(), centerline.segments().size());
-  const std::string name = arguments.script.string();
-  if (scene.options.integrator != Integrator::implicit)
-    throw InvalidInput(name + ": integrator: pages that move have \"implicit\" only; leave \"paper\" out for --live");
-  if (scene.touching.exists() || !scene.cuts.empty() || !scene.clips.empty())
-    throw InvalidInput(name +
-                       ": pages that move have no contact, instruments, grasp, tissue, cut and clip; leave them " +
-                       "out for --live");
-  if (!scene.drags.empty() || !scene.forces.empty() || !scene.scales.empty() || !scene.squeezes.empty())
-    console.warn(name + ": the page leaves drag, force, radial_scale and squeeze to your hands; it takes the rest");
-  return scene;
-}
-
 /// The page that moves; empty if none is asked for.
 std::string live_page(const DeformArguments& arguments, const BoundTree& tree, Console& console) {
   if (arguments.live.empty()) return {};
-  const Scene scene = live_scene(arguments, tree.centerline, console);
+  const Scene scene = live_scene(arguments.script, tree.centerline, console);
   return to_html(LivePage{arguments.input.path, arguments.surface.path, tree.centerline, tree.mesh,
                           vertex_normals(tree.mesh), places_on(tree.binding), scene.material, scene.options, scene.fix,
                           scene.clamp});
@@ -524,7 +244,8 @@ int play_scene(const DeformArguments& arguments, BoundTree bound, Console& conso
   const CutPlan plan(scene, arguments.script.string(), std::move(bound));
   const BoundTree& rest = plan.stages().front();
   scene.scales.insert(scene.scales.end(), plan.profiles().begin(), plan.profiles().end());
-  Stage stage = naming(arguments.script, [&] { return Stage(centerline, scene); });
+  const bool with_forces = scene.touching.exists() || !arguments.forces.empty();
+  Stage stage = naming(arguments.script, [&] { return Stage(centerline, scene, with_forces); });
   for (const InsertedNode& node : plan.inserted()) stage.divide(node);
   std::optional<MovingVolume> volume =
       load_moving_volume(arguments, rest.centerline, stage.simulation().tree(), rest, console);
@@ -532,7 +253,9 @@ int play_scene(const DeformArguments& arguments, BoundTree bound, Console& conso
   FrameSeries series(arguments.output, "." + arguments.format);
   std::optional<FrameSeries> volume_series;
   if (volume) volume_series.emplace(arguments.volume_output, ".vtu");
-  FrameWriter writer(arguments);
+  FrameWriter writer({generator_name(), "deform --script " + arguments.script.filename().string(),
+                      arguments.surface.path.filename().string(), sha256_of_file(arguments.surface.path)},
+                     arguments.writing);
   MovingSurface moving(plan, stage, writer);
   Frames written{moving, series, volume ? &*volume : nullptr, volume_series ? &*volume_series : nullptr};
   const BoundTree& last = plan.stages().back();
@@ -572,7 +295,7 @@ int play_scene(const DeformArguments& arguments, BoundTree bound, Console& conso
     summary["contact_energy_J"] = stage.simulation().contact_energy_J();
     summary["torn_nodes"] = stage.simulation().torn();
   }
-  if (scene.touching.exists() || !arguments.forces.empty()) summary["hands"] = stage.forces().to_json();
+  if (with_forces) summary["hands"] = stage.forces().to_json();
   if (!arguments.forces.empty()) write_text(arguments.forces, stage.forces().csv());
   if (volume) summary["volume"] = volume->to_json();
   write_json(arguments.common.json, summary);

@@ -58,8 +58,8 @@ CenterlinePtr clean_arrays(const py::object& nodes, const py::object& radii, con
   RawCenterline raw;
   raw.nodes = nodes_from(nodes, radii);
   raw.segments = segments_from(segments);
-  raw.unit = unit_of(unit);
-  raw.space = space_of(space);
+  raw.unit = require_length_unit(unit);
+  raw.space = require_space(space);
   raw.source = "arrays";
   const py::gil_scoped_release release;
   std::vector<std::string> warnings;
@@ -104,8 +104,8 @@ std::vector<py::array> branches_of(const CenterlineObject& self) {
 void save(const CenterlineObject& self, const fs::path& path, const std::string& unit, const std::string& space) {
   CenterlineMetadata metadata;
   metadata.generator = generator_name();
-  metadata.unit = unit_of(unit);
-  metadata.space = space_of(space);
+  metadata.unit = require_length_unit(unit);
+  metadata.space = require_space(space);
   const py::gil_scoped_release release;
   write_centerline(path, self.centerline, metadata, self.end_sections);
 }
@@ -269,8 +269,8 @@ nodes.)");
         if (const auto* radii = std::get_if<double>(&join_ends)) options.read.tolerance = radii_of(*radii);
         if (const auto* text = std::get_if<std::string>(&join_ends))
           options.read.tolerance = parse_end_tolerance(*text);
-        if (unit) options.unit = unit_of(*unit);
-        if (space) options.space = space_of(*space);
+        if (unit) options.unit = require_length_unit(*unit);
+        if (space) options.space = require_space(*space);
         options.cleaning = cleaning_options(tolerance, overlap_tolerance, join_gaps, round, canonical_order);
         const auto* one = std::get_if<fs::path>(&path);
         return read(one != nullptr ? std::vector<fs::path>{*one} : std::get<std::vector<fs::path>>(path), options);

@@ -41,8 +41,8 @@ SurfacePtr read_surface_file(const fs::path& path, const CenterlinePtr& centerli
                              const std::optional<std::string>& unit, const std::optional<std::string>& space) {
   std::optional<LengthUnit> unit_given;
   std::optional<Space> space_given;
-  if (unit) unit_given = unit_of(*unit);
-  if (space) space_given = space_of(*space);
+  if (unit) unit_given = require_length_unit(*unit);
+  if (space) space_given = require_space(*space);
   const py::gil_scoped_release release;
   LoadedSurface loaded = read_surface(path);
   convert_to_internal(loaded, path.string(), unit_given, space_given);
@@ -61,8 +61,8 @@ void save_surface(const SurfaceObject& self, const fs::path& path, const std::st
                   bool bones, bool ascii, bool compress) {
   SurfaceMetadata metadata;
   metadata.generator = generator_name();
-  metadata.unit = unit_of(unit);
-  metadata.space = space_of(space);
+  metadata.unit = require_length_unit(unit);
+  metadata.space = require_space(space);
   if (bones && !self.centerline) throw InvalidInput("bones need a centerline, and this surface is not bound to one");
   if (ascii && compress) throw InvalidInput("ascii, compress: a file is one or the other");
   const py::gil_scoped_release release;

@@ -248,4 +248,14 @@ RawCenterline convert_to_internal(RawCenterline raw, std::optional<LengthUnit> u
   return raw;
 }
 
+LengthUnit require_length_unit(const std::string& text) {
+  if (const auto unit = parse_length_unit(text)) return *unit;
+  throw InvalidInput("unit: \"" + text + "\" is not known; there are nm, um, mm, cm, m");
+}
+
+Space require_space(const std::string& text) {
+  if (const auto space = parse_space(text)) return *space;
+  throw InvalidInput("space: \"" + text + "\" is not known; there are LPS and RAS");
+}
+
 }  // namespace vmesh

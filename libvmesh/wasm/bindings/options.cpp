@@ -9,16 +9,6 @@
 namespace vmesh::wasm {
 namespace {
 
-LengthUnit unit_of(const std::string& text) {
-  if (const auto unit = parse_length_unit(text)) return *unit;
-  throw InvalidInput("unit: \"" + text + "\" is not known; there are nm, um, mm, cm, m");
-}
-
-Space space_of(const std::string& text) {
-  if (const auto space = parse_space(text)) return *space;
-  throw InvalidInput("space: \"" + text + "\" is not known; there are LPS and RAS");
-}
-
 /// A number without fraction that `Number` can hold.
 template <class Number>
 bool holds(const Json& value) {
@@ -110,8 +100,8 @@ ReadRequest read_request(const char* json) {
   std::vector<std::string> files;
   given.take("files", files);
   request.paths.assign(files.begin(), files.end());
-  take_parsed(given, "unit", options.unit, unit_of);
-  take_parsed(given, "space", options.space, space_of);
+  take_parsed(given, "unit", options.unit, require_length_unit);
+  take_parsed(given, "space", options.space, require_space);
   given.take("radiusArray", options.read.radius_array);
   double radius = 0;
   given.take("radius", radius);
@@ -152,8 +142,8 @@ WriteRequest write_request(const char* json) {
   GivenOptions given(json, "write()");
   WriteRequest request;
   request.metadata.generator = "vmesh " + std::string(version()) + ", WebAssembly";
-  take_parsed(given, "unit", request.metadata.unit, unit_of);
-  take_parsed(given, "space", request.metadata.space, space_of);
+  take_parsed(given, "unit", request.metadata.unit, require_length_unit);
+  take_parsed(given, "space", request.metadata.space, require_space);
   bool ascii = false;
   given.take("ascii", ascii);
   if (ascii) request.encoding = SurfaceEncoding::text;

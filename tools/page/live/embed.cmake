@@ -3,7 +3,7 @@
 include("${FOLDER}/literals.cmake")
 set(live "${FOLDER}/live")
 
-file(WRITE "${OUTPUT}.new" "#include \"page/live/live_parts.h\"\n\nnamespace vmesh::tool {\nnamespace {\n\n")
+file(WRITE "${OUTPUT}.new" "#include \"page/live/live_parts.h\"\n#include \"page/literal_view.h\"\n\nnamespace vmesh::tool {\nnamespace {\n\n")
 add_part(kLivePage "${live}/live.html")
 add_part(kLiveStyle "${FOLDER}/page.css" "${live}/live.css")
 add_part(kLiveScript "${live}/deformer.js" "${live}/motion.js" "${live}/stage.js" "${FOLDER}/scene.js" "${live}/live.js")
@@ -11,14 +11,9 @@ add_part(kLiveThree ${THREE})
 add_part(kLiveLicense ${LICENSE})
 add_part(kLiveDeformer ${DEFORMER})
 file(APPEND "${OUTPUT}.new" "\n}  // namespace\n
-template <std::size_t size>
-constexpr std::string_view view_of(const char (&text)[size]) {
-  return {text, size - 1};
-}
-
 const LiveParts& live_parts() {
-  static constexpr LiveParts kParts{view_of(kLivePage),  view_of(kLiveStyle),   view_of(kLiveScript),
-                                    view_of(kLiveThree), view_of(kLiveLicense), view_of(kLiveDeformer)};
+  static constexpr LiveParts kParts{view(kLivePage),  view(kLiveStyle),   view(kLiveScript),
+                                    view(kLiveThree), view(kLiveLicense), view(kLiveDeformer)};
   return kParts;
 }
 

@@ -23,6 +23,9 @@ std::string_view to_string(Space space);
 /// The reverse, in any case, also of names ("micrometer", "micron", "millimeter" ...); nullopt when not understood.
 std::optional<LengthUnit> parse_length_unit(std::string_view text);
 std::optional<Space> parse_space(std::string_view text);
+/// The same of an option; throws InvalidInput with what there is.
+LengthUnit require_length_unit(const std::string& text);
+Space require_space(const std::string& text);
 
 /// Millimetres in one unit. Throws InvalidInput for LengthUnit::unknown.
 double millimetres_per(LengthUnit unit);

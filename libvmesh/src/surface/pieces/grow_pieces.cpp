@@ -15,7 +15,7 @@
 #include "surface/pieces/whole_tasks.h"
 #include "surface/proof/coarsening.h"
 #include "surface/proof/notches.h"
-#include "surface/proof/refinement.h"
+#include "surface/proof/refine_to_limit.h"
 
 namespace vmesh {
 namespace {

@@ -8,6 +8,7 @@ namespace {
 constexpr int kSteps = 12;  // of Newton's method; three or four usually suffice; idle 8 to 17
 // Length of the sum of two walls' normals below which they are parallel; idle 0.014 to 0.028.
 constexpr double kSharp = 0.02;
+constexpr double kFacingWalls = 0.5;  // cosine between walls below which they face each other
 
 }  // namespace
 
@@ -40,6 +41,15 @@ std::optional<BoundaryPoint> Gaps::end_from(Vec3 p, const Vec3& across, Index hi
     s = field_.sample(p, s.cone);
   }
   return std::nullopt;
+}
+
+std::optional<Notch> Gaps::notch_below(const Vec3& p, const FieldSample& a, const FieldSample& b,
+                                       double tolerance) const {
+  if (a.gradient.dot(b.gradient) > kFacingWalls) return std::nullopt;
+  const Vec3 across = a.gradient - b.gradient;
+  const auto end = end_from(p, across, a.cone, 0, tolerance);
+  if (!end) return std::nullopt;
+  return Notch{*end, walls_at(end->position, across, end->sample.cone)};
 }
 
 }  // namespace vmesh

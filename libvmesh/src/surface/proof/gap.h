@@ -18,6 +18,12 @@ struct Walls {
   Vec3 up() const { return first_normal + second_normal; }
 };
 
+/// The end of a gap, and its walls there.
+struct Notch {
+  BoundaryPoint end;
+  Walls walls;
+};
+
 /// Gaps between walls, and the notches in which they end.
 class Gaps {
  public:
@@ -27,6 +33,9 @@ class Gaps {
 
   /// The point reached from p down the middle of the gap, at the height `filled` above its end.
   std::optional<BoundaryPoint> end_from(Vec3 p, const Vec3& across, Index hint, double filled, double tolerance) const;
+
+  /// The notch below p, between two points of walls that face each other; nothing if they do not.
+  std::optional<Notch> notch_below(const Vec3& p, const FieldSample& a, const FieldSample& b, double tolerance) const;
 
  private:
   const VesselField& field_;

@@ -1,9 +1,10 @@
+#include "surface/proof/refine_to_limit.h"
+
 #include <algorithm>
 #include <utility>
 
 #include "surface/check/error_limit.h"
 #include "surface/proof/notches.h"
-#include "surface/proof/refinement.h"
 
 namespace vmesh {
 namespace {

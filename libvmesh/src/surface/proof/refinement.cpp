@@ -16,6 +16,7 @@
 #include "surface/check/error_limit.h"
 #include "surface/proof/crease.h"
 #include "surface/proof/gap.h"
+#include "surface/proof/refined_proof.h"
 #include "surface/remesh/edge_lengths.h"
 
 namespace vmesh {
@@ -25,7 +26,6 @@ namespace {
 constexpr double kWorthAProof = 0.97;
 // Rounds in which no area is proven.
 constexpr int kPatience = 6;
-constexpr std::size_t kMany = 100;    // one of so many faces is unproven: shells are not bent yet
 constexpr int kMostSplitRounds = 12;  // each halves edges
 constexpr int kImprovements = 3;      // passes of flips and moves after splits
 // Of the square root of limit times radius, which edges of even surfaces have about three times: no edge becomes
@@ -36,23 +36,8 @@ constexpr double kLeastGain = 1e-3;   // of skewness, and relative of energy
 constexpr double kLongestMove = 0.3;  // in edges
 constexpr double kRound = 0.5;        // skewness up to which triangles may become worse for the sake of balance
 constexpr double kWorthALift = 0.05;  // of the most, a change of height
-constexpr double kFacing = 0.5;       // cosine between walls below which they face each other
 constexpr double kNearEnd = 0.2;  // share of an edge from its end within which its end is moved onto a crease instead
 constexpr double kSlides[] = {0.5, 0.4, 0.6};  // where edges are divided
-
-struct RefinementWay {
-  bool into_gaps;                        // ends of gaps are looked for where no crease is known
-  bool descends;                         // edges far above a crease are divided on the way down
-  std::array<double, 2> upright_splits;  // least cosines between faces' normals and the gradient, tried one by one
-  double upright;                        // the same for flips and moves
-};
-
-// Of little consequence for most places; where walls meet at small angles, one finds a way where another is stuck.
-constexpr double kAny = -2;
-const RefinementWay kWays[] = {{true, false, {0, 0}, 0},       {false, false, {kAny, kAny}, 0.3},
-                               {false, false, {0.3, 0}, 0},    {false, false, {0.15, 0.15}, 0.15},
-                               {true, false, {kAny, kAny}, 0}, {false, true, {0, 0}, 0},
-                               {false, false, {0, 0}, 0}};
 
 class Refinement {
  public:
@@ -206,7 +191,7 @@ class Refinement {
 
   // Halves an edge on the boundary, or divides it where it meets a crease; a vertex near the crease is moved onto it.
   void divide(const MeshEdge& e) {
-    const RefinementWay& way = way_at(middle_of(e));
+    const RefinementWay& way = way_around(hard_, middle_of(e));
     if (const auto crease = crease_on(e, way)) {
       if (divide_at(*crease, e, way)) return;
     }
@@ -235,14 +220,6 @@ class Refinement {
     const Index end = share <= kNearEnd ? e.a : e.b;
     return !held_[end] && !crease_at_[end] &&
            place({mesh_.moving(end, finished_vertex(at, field_))}, crease.crease, way);
-  }
-
-  // The way of the hard place around `p`.
-  const RefinementWay& way_at(const Vec3& p) const {
-    const auto it = std::find_if(hard_.begin(), hard_.end(), [&](const HardPlace& place) {
-      return (p - place.center).squaredNorm() < place.reach * place.reach;
-    });
-    return kWays[it == hard_.end() ? 0 : it->way];
   }
 
   // Takes the best of the steps by which no triangle turns over.
@@ -274,12 +251,9 @@ class Refinement {
   // Of an edge from wall to wall across a gap: the end of the gap.
   std::optional<CreasePoint> end_of_gap(const MeshEdge& e) const {
     const FieldSample a = field_.sample(point(e.a), cone(e.a)), b = field_.sample(point(e.b), cone(e.b));
-    if (a.gradient.dot(b.gradient) > kFacing) return std::nullopt;
-    const Vec3 across = a.gradient - b.gradient;
-    const auto end = gaps_.end_from(middle_of(e), across, a.cone, 0, kTolerance * limit_of(e));
-    if (!end) return std::nullopt;
-    const Walls walls = gaps_.walls_at(end->position, across, end->sample.cone);
-    return CreasePoint{std::minmax(walls.first_cone, walls.second_cone), *end};
+    const auto notch = gaps_.notch_below(middle_of(e), a, b, kTolerance * limit_of(e));
+    if (!notch) return std::nullopt;
+    return CreasePoint{std::minmax(notch->walls.first_cone, notch->walls.second_cone), notch->end};
   }
 
   // The point on the way from p to a target, no farther than `most`.
@@ -355,7 +329,7 @@ class Refinement {
     const bool is_nearer = off_now > kWorthAProof && off_then < 0.7 * off_now && then < kWorstSkewness;
     const bool is_better = then < now - kLeastGain && off_then < std::max(off_now, 0.7 * kWorthAProof);
     const bool is_regular = then < kRound && off_then < kWorthAProof * 0.9 && irregularity_after(e, c, d) < 0;
-    if ((is_nearer || is_better || is_regular) && stays_upright(step, way_at(point(e.a)).upright))
+    if ((is_nearer || is_better || is_regular) && stays_upright(step, way_around(hard_, point(e.a)).upright))
       take({step}, kWorstSkewness);
   }
 
@@ -406,7 +380,7 @@ class Refinement {
     }
     const double most = kShareOfLimit * limit_at(v);
     const double lift = is_balanced() ? std::clamp(height - sum / area, -most, most) : 0;
-    const double off_now = off_around(v), upright = way_at(point(v)).upright;
+    const double off_now = off_around(v), upright = way_around(hard_, point(v)).upright;
     const Vec3 way = best_way(shape, u, w, kLongestMove * mesh_.mean_edge(v));
     for (const double share : {1.0, 0.5, 0.0}) {
       const Vec3 p = point(v) + share * way;
@@ -451,44 +425,9 @@ class Refinement {
   }
 
   void prove() {
-    const std::size_t n = mesh_.vertices().size();
-    corners_.resize(n);
-    known_.resize(mesh_.faces().size());
-    if (is_first_) {
-      for (Index v = 0; v < n; ++v) update_corner(v);
-    } else {
-      for (const Index f : due_) {
-        if (!mesh_.has_face(f)) continue;
-        for (const Index v : mesh_.faces()[f]) update_corner(v);
-      }
-    }
-    is_first_ = false;
-    std::vector<Index> faces;
-    std::vector<Triangle> triangles;
-    for (Index f = 0; f < mesh_.faces().size(); ++f) {
-      if (!mesh_.has_face(f)) continue;
-      faces.push_back(f);
-      triangles.push_back(mesh_.faces()[f]);
-    }
-    std::vector<ErrorProof::Shares> shares(faces.size());
-    tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
-      const auto& [a, b, c] = triangles[i];
-      const ErrorProof::Face face = {corners_[a], corners_[b], corners_[c]};
-      Known& known = known_[faces[i]];
-      if (known.face != face) known = {face, worst_of(faces[i]).off > 1 ? ErrorProof::Shares{} : proof_.shares(face)};
-      shares[i] = known.shares;
-    });
-    unproven_.clear();
-    std::vector<Index> left = proof_.unproven(corners_, triangles, shares);
-    if (!left.empty() && left.size() < faces.size() / kMany)
-      left = proof_.unproven_if_bent(corners_, triangles, shares);
-    for (const Index i : left) {
-      if (!is_at_opening(faces[i])) unproven_.push_back(faces[i]);
-    }
-  }
-
-  void update_corner(Index v) {
-    if (mesh_.has_vertex(v)) corners_[v] = {point(v), mesh_.vertex_normal(v), limit_at(v), cone(v)};
+    unproven_ = proof_.unproven(
+        mesh_, due_, [this](Index v) { return limit_at(v); }, [this](Index f) { return worst_of(f).off > 1; });
+    std::erase_if(unproven_, [this](Index f) { return is_at_opening(f); });
   }
 
   std::vector<Index> finish(const std::vector<Index>& unproven) {
@@ -506,7 +445,7 @@ class Refinement {
   const RefinementGoal& goal_;
   const std::vector<HardPlace>& hard_;
   const Progress& progress_;
-  ErrorProof proof_;
+  RefinedProof proof_;
   Gaps gaps_;
   FinishedMesh mesh_;
   GuardedEdit<FinishedVertex> edit_;
@@ -514,19 +453,10 @@ class Refinement {
   std::vector<std::optional<Crease>> crease_at_;  // of every vertex on one
   std::vector<Index> changed_;                    // faces, by the steps of this pass
   std::vector<Index> due_;                        // faces that are new or have moved
-  bool is_first_ = true;
-  std::vector<ErrorProof::Corner> corners_;  // by vertex
-  struct Known {
-    ErrorProof::Face face;
-    ErrorProof::Shares shares;
-  };
-  std::vector<Known> known_;  // by face
   std::vector<Index> unproven_;
 };
 
 }  // namespace
-
-int refinement_ways() { return static_cast<int>(std::size(kWays)); }
 
 std::vector<Index> refine(FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal,
                           const std::vector<HardPlace>& hard, const Progress& progress) {

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "vmesh/surface/error_bound.h"
+
+#include "surface/proof/finished_surface.h"
+
+namespace vmesh {
+
+/// The proof of a surface that is refined. What has not changed is not proven again.
+class RefinedProof {
+ public:
+  /// Keeps a reference to `field`.
+  explicit RefinedProof(const VesselField& field) : proof_(field) {}
+
+  /// Faces that are not proven, ascending. `changed`: those that are new or have moved since the last call; the first
+  /// looks at all. `limit_at`: mm, of a vertex; `is_far`: whether a face is known to be beyond it.
+  std::vector<Index> unproven(const FinishedMesh& mesh, const std::vector<Index>& changed,
+                              const std::function<double(Index)>& limit_at, const std::function<bool(Index)>& is_far);
+
+ private:
+  struct Known {
+    ErrorProof::Face face;
+    ErrorProof::Shares shares;
+  };
+
+  ErrorProof proof_;
+  bool is_first_ = true;
+  std::vector<ErrorProof::Corner> corners_;  // by vertex
+  std::vector<Known> known_;                 // by face
+};
+
+}  // namespace vmesh

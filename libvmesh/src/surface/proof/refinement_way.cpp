@@ -1,0 +1,26 @@
+#include "surface/proof/refinement_way.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace vmesh {
+namespace {
+
+constexpr double kAny = -2;  // no cosine is less
+const RefinementWay kWays[] = {{true, false, {0, 0}, 0},       {false, false, {kAny, kAny}, 0.3},
+                               {false, false, {0.3, 0}, 0},    {false, false, {0.15, 0.15}, 0.15},
+                               {true, false, {kAny, kAny}, 0}, {false, true, {0, 0}, 0},
+                               {false, false, {0, 0}, 0}};
+
+}  // namespace
+
+int refinement_ways() { return static_cast<int>(std::size(kWays)); }
+
+const RefinementWay& way_around(const std::vector<HardPlace>& hard, const Vec3& p) {
+  const auto it = std::find_if(hard.begin(), hard.end(), [&](const HardPlace& place) {
+    return (p - place.center).squaredNorm() < place.reach * place.reach;
+  });
+  return kWays[it == hard.end() ? 0 : it->way];
+}
+
+}  // namespace vmesh
