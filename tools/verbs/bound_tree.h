@@ -5,6 +5,8 @@
 #include "vmesh/centerline/centerline.h"
 #include "vmesh/deform/surface_binding.h"
 #include "vmesh/io/surface_io.h"
+#include "vmesh/mesh/find_attribute.h"
+#include "vmesh/surface/generate.h"
 
 #include "command_line/console.h"
 

@@ -4,6 +4,9 @@
 
 #include "vmesh/mesh/triangle_quality.h"
 
+#include "command_line/inputs.h"
+#include "command_line/outputs.h"
+
 namespace vmesh::tool {
 
 void FrameWriter::begin(const BoundTree& rest) {
