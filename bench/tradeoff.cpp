@@ -18,7 +18,7 @@ using namespace vmesh;
 using bench::mesh_3;
 
 void add_mesh_3(std::vector<TradeoffPoint>& points, const Centerline& centerline) {
-  for (const int around : {4, 6, 8, 12}) {
+  for (const int around : {4, 6, 8, 12, 24, 48}) {
     TradeoffPoint point;
     point.curve = "CGAL Mesh_3";
     point.setting = std::to_string(around) + " around";
@@ -69,6 +69,7 @@ int main(int argc, char** argv) {
   const Centerline centerline = argc > 2 ? load_centerline(argv[2]).cleaned.centerline : synthetic_tree();
   TradeoffOptions options;
   options.generate.threads = 1;
+  options.fine = true;
   std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, options);
   add_mesh_3(points, centerline);
   mark_best(points);

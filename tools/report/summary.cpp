@@ -384,6 +384,13 @@ Json to_json(const GrowthSummary& growth) {
                 {"segments", s.segments},
                 {"message", s.message}};
   };
+  const auto of_slow_piece = [](const SlowPiece& s) {
+    return Json{{"position", to_json(s.position)},
+                {"vertices", s.vertices},
+                {"seconds", s.seconds},
+                {"times_median", s.times},
+                {"reason", s.reason}};
+  };
   return {{"junctions", growth.junctions},
           {"tubes", growth.tubes},
           {"components", growth.components},
@@ -394,6 +401,7 @@ Json to_json(const GrowthSummary& growth) {
            {{"degenerate", growth.refused.degenerate},
             {"axis", growth.refused.axis},
             {"crossing", growth.refused.crossing}}},
+          {"slow_pieces", list_json(growth.slow_pieces, of_slow_piece)},
           {"simplifications", list_json(growth.simplifications, of_simplification)}};
 }
 

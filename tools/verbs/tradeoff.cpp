@@ -24,6 +24,8 @@ void add_options(CLI::App& verb, TradeoffArguments& arguments) {
       ->type_name("FILE.svg");
   add_number(verb, "--samples", arguments.options.samples, std::size_t{1}, std::size_t{10'000'000},
              "points on each surface and on the vessels");
+  verb.add_flag("--fine", arguments.options.fine,
+                "also the accurate end: up to 96 around, limits down to .25 %, finer voxels; many times as long");
   add_number(verb, "--threads", arguments.options.generate.threads, 0, 4096, "to work on; 0: all");
   add_html(verb, arguments.common);
 }

@@ -18,4 +18,5 @@ PYBIND11_MODULE(_core, module) {
   bind_pages(module);
   bind_pictures(module);
   bind_deformation(module);
+  bind_solid(module);
 }

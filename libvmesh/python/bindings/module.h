@@ -17,5 +17,6 @@ void bind_images(py::module_& module);
 void bind_pages(py::module_& module);
 void bind_pictures(py::module_& module);
 void bind_deformation(py::module_& module);
+void bind_solid(py::module_& module);
 
 }  // namespace vmesh::python

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, List, Sequence
 
 if TYPE_CHECKING:
-    from ._core import Defect, Surface
+    from ._core import Defect, Surface, VolumeDefect, VolumeMesh
 
 
 class Error(Exception):
@@ -41,11 +41,32 @@ class DefectiveSurface(Error):
         super().__init__(_message(self.defects))
 
 
+class DefectiveVolume(Error):
+    """No sound volume mesh was found. `volume` is what was, `defects` what is wrong with it."""
+
+    def __init__(self, volume: VolumeMesh) -> None:
+        self.volume = volume
+        self.defects: List[VolumeDefect] = volume.defects
+        lines = [f"{defect.kind}: {defect.message}" for defect in self.defects]
+        lines.append("no sound volume mesh was found: try fewer or thinner layers, or another around")
+        super().__init__("\n".join(lines))
+
+
 class SurfaceWarning(UserWarning):
     """Something about a result that its user should know."""
 
 
-for _error in (Error, InvalidInput, ReadError, WriteError, Unsupported, Cancelled, DefectiveSurface, SurfaceWarning):
+for _error in (
+    Error,
+    InvalidInput,
+    ReadError,
+    WriteError,
+    Unsupported,
+    Cancelled,
+    DefectiveSurface,
+    DefectiveVolume,
+    SurfaceWarning,
+):
     _error.__module__ = "vmesh"  # as users know it
 
 

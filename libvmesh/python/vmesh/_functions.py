@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._core import Centerline, Evaluation, Hausdorff, Surface
-from ._errors import DefectiveSurface, InvalidInput, SurfaceWarning
+from ._core import Centerline, Evaluation, Hausdorff, Surface, VolumeMesh
+from ._errors import DefectiveSurface, DefectiveVolume, InvalidInput, SurfaceWarning
 
 Progress = Optional[Callable[[str, float], Any]]
 SurfaceLike = Union[Surface, Tuple[ArrayLike, ArrayLike]]
@@ -327,3 +327,73 @@ def page(
     _core.page(
         _as_surface(surface), path, reference=None if reference is None else _as_surface(reference), title=title
     )
+
+
+def volume(
+    surface: Surface,
+    *,
+    layers: int = 4,
+    layer_thickness: Union[float, str] = 0.2,
+    first_layer: float = 0.0,
+    layer_growth: float = 1.2,
+    core_size: float = 0.0,
+    wall_thickness: Union[None, float, str] = None,
+    wall_layers: int = 2,
+    merge_walls: bool = False,
+    wall_only: bool = False,
+    allow_defects: bool = False,
+    progress: Progress = None,
+) -> VolumeMesh:
+    """A mesh of what a closed surface encloses, for solvers; of the vessel's own wall too, if asked for.
+
+    surface          closed, with radii: of generate() with ends="flat" or "round", or read from a file that has them
+    layers           of wedges along the wall, 0 to 100
+    layer_thickness  of all of them together: local radii as a number, or "0.3mm"
+    first_layer      thickness of that at the wall, mm, from which that of all follows; 0: by layer_thickness
+    layer_growth     thickness of a layer by that of the one nearer to the wall, 0.5 to 5
+    core_size        length of edges of tetrahedra within, in local radii; 0: as those of the surface
+    wall_thickness   mesh the vessel's own wall, outwards from the surface: local radii, or "0.8mm"; None: not
+    wall_layers      of wedges across it
+    merge_walls      where the walls of two vessels meet, make them one; else both are thinner there
+    wall_only        not what is within
+    allow_defects    return a mesh that is not sound instead of raising
+    progress         a function of a stage and a fraction in [0, 1]; returning False cancels
+
+    The mesh is that of the command `vmesh volume`. Where layers do not fit they are thinner, or end:
+    VolumeMesh.layers lists the places. Lumens are filled by TetGen, whose license is AGPL-3; builds without it, as
+    wheels are, mesh walls alone. One at a time: TetGen has state. Raises InvalidInput, Unsupported, DefectiveVolume,
+    Cancelled.
+    """
+    thickness, in_mm = _as_thickness(layer_thickness, "layer_thickness")
+    wall, wall_in_mm = (0.0, False) if wall_thickness is None else _as_thickness(wall_thickness, "wall_thickness")
+    if wall_thickness is None and (merge_walls or wall_only):
+        raise InvalidInput("merge_walls and wall_only need a wall_thickness: 0.2 of the local radius, or '0.8mm'")
+    mesh = _core.volume(
+        surface,
+        progress=progress,
+        layers=layers,
+        layer_thickness=thickness,
+        layer_thickness_in_mm=in_mm,
+        first_layer=first_layer,
+        layer_growth=layer_growth,
+        core_size=core_size,
+        wall_layers=0 if wall_thickness is None else wall_layers,
+        wall_thickness=wall,
+        wall_thickness_in_mm=wall_in_mm,
+        merge_walls=merge_walls,
+        wall_only=wall_only,
+    )
+    if mesh.defects and not allow_defects:
+        raise DefectiveVolume(mesh)
+    return mesh
+
+
+def _as_thickness(value: Union[float, str], name: str) -> Tuple[float, bool]:
+    if not isinstance(value, str):
+        return float(value), False
+    try:
+        if value.endswith("mm"):
+            return float(value[:-2]), True
+    except ValueError:
+        pass
+    raise InvalidInput(f"{name}: {value!r} is neither a share of the local radius such as 0.2 nor a length as '0.3mm'")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict
+from typing import Any, Dict, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import Surface
+from ._core import Surface, VolumeMesh
 
 
 def to_vtk(surface: Surface) -> Any:
@@ -44,6 +44,46 @@ def to_pyvista(surface: Surface) -> Any:
     return pyvista.wrap(to_vtk(surface))
 
 
+def volume_to_vtk(volume: VolumeMesh) -> Any:
+    """The mesh as a vtkUnstructuredGrid, ModelRegionID (from 1) of its cells as an array; points are copied.
+
+    Raises ImportError without VTK.
+    """
+    vtk, convert = _import_vtk()
+    grid = vtk.vtkUnstructuredGrid()
+    points = vtk.vtkPoints()
+    points.SetData(convert.numpy_to_vtk(np.ascontiguousarray(volume.points), deep=True))
+    grid.SetPoints(points)
+    # VTK's wedges have their first triangle look outwards.
+    parts: Sequence[Tuple[int, NDArray[Any]]] = (
+        (vtk.VTK_TETRA, volume.tetrahedra),
+        (vtk.VTK_WEDGE, volume.wedges[:, [0, 2, 1, 3, 5, 4]]),
+        (vtk.VTK_PYRAMID, volume.pyramids),
+    )
+    sizes = np.concatenate([np.full(len(cells), cells.shape[1], dtype=np.int64) for _, cells in parts])
+    cells = vtk.vtkCellArray()
+    cells.SetData(
+        convert.numpy_to_vtkIdTypeArray(np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64), deep=True),
+        convert.numpy_to_vtkIdTypeArray(np.concatenate([part.astype(np.int64).ravel() for _, part in parts]), deep=True),
+    )
+    kinds = np.concatenate([np.full(len(part), kind, dtype=np.uint8) for kind, part in parts])
+    grid.SetCells(convert.numpy_to_vtk(kinds, deep=True), cells)
+    _add(convert, grid.GetCellData(), {"ModelRegionID": volume.cell_region.astype(np.int64) + 1})
+    return grid
+
+
+def volume_to_pyvista(volume: VolumeMesh) -> Any:
+    """The mesh as a pyvista.UnstructuredGrid with ModelRegionID; points are copied.
+
+    Raises ImportError without PyVista.
+    """
+    try:
+        import pyvista
+    except ImportError as error:
+        raise ImportError("PyVista is needed: pip install pyvista") from error
+    return pyvista.wrap(volume_to_vtk(volume))
+
+
 def from_vtk(poly: Any) -> Surface:
     """A Surface from the triangles of `poly`, a vtkPolyData or PyVista's PolyData, mm; polygons are triangulated."""
     vtk, convert = _import_vtk()
@@ -76,6 +116,10 @@ def _import_vtk() -> Any:
 
     class Names:
         vtkPolyData = vtkCommonDataModel.vtkPolyData
+        vtkUnstructuredGrid = vtkCommonDataModel.vtkUnstructuredGrid
+        VTK_TETRA = vtkCommonDataModel.VTK_TETRA
+        VTK_WEDGE = vtkCommonDataModel.VTK_WEDGE
+        VTK_PYRAMID = vtkCommonDataModel.VTK_PYRAMID
         vtkCellArray = vtkCommonDataModel.vtkCellArray
         vtkPoints = vtkCommonCore.vtkPoints
         vtkTriangleFilter = vtkFiltersCore.vtkTriangleFilter

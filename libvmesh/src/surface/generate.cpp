@@ -69,11 +69,12 @@ void add_warnings(const OptimizeReport& optimized, GenerateResult& result) {
        "for; expect folds");
 }
 
-// Proofs of an error limit need more than single precision.
+// Where triangles are proven as they grow, single precision is too little.
 VesselField& make_field(std::optional<VesselField>& field, const Centerline& centerline,
                         const GenerateOptions& options) {
   field.emplace(centerline, options.blend);
-  if (options.max_error.is_set()) field->use_double_precision();
+  const bool is_refined_later = options.growth == GrowthMethod::guided && options.elongation <= 1;
+  if (options.max_error.is_set() && !is_refined_later) field->use_double_precision();
   return *field;
 }
 

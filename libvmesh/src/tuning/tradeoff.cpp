@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <optional>
+#include <span>
 
 #include "vmesh/core/ascending.h"
 #include "vmesh/core/error.h"
@@ -21,14 +22,17 @@ namespace vmesh {
 namespace {
 
 constexpr int kArounds[] = {3, 4, 5, 6, 8, 10, 12, 16, 20};
+constexpr int kFineArounds[] = {24, 32, 48, 64, 96};
 constexpr double kBetas[] = {0, 0.15, 0.3, 0.6, 1};
 constexpr double kLimits[] = {0.4, 0.3, 0.2, 0.15, 0.1, 0.07, 0.05};  // of --max-error, local radii
+constexpr double kFineLimits[] = {0.03, 0.02, 0.01, 0.005, 0.0025};   // only of even triangles
 constexpr int kLimitAround = 5;                                       // so that the limit decides
 constexpr double kElongations[] = {1, 4, 16};                         // with each of these limits
 constexpr double kBlends[] = {0, 0.1, 0.25, 0.5, 1};
 constexpr int kEfforts[] = {0, 10, 20, 30, 60};               // sweeps
 constexpr double kVoxels[] = {1.4, 1, 0.7, 0.5, 0.35, 0.25};  // in mean radii
-constexpr double kMostVoxels = 1.5e8;                         // beyond, a voxel size is left out
+constexpr double kFineVoxels[] = {0.18, 0.125};
+constexpr double kMostVoxels = 1.5e8;  // beyond, a voxel size is left out
 constexpr std::size_t kMostRuns = 5;
 constexpr double kLongEnough = 0.5;                // seconds
 constexpr double kLimitWork = 7, kCountWork = 20;  // how much longer cases with a limit, or a number of vertices, take
@@ -73,19 +77,19 @@ double voxels_of_box(const Centerline& centerline, double voxel) {
 class Sweep {
  public:
   Sweep(const Centerline& centerline, const TradeoffOptions& options, const Progress& progress)
-      : centerline_(centerline), options_(options), progress_(progress), work_(work_for(options)) {}
+      : centerline_(centerline), options_(options), progress_(progress), work_(expected_work()) {}
 
   std::vector<TradeoffPoint> run() {
     const GenerateOptions& given = options_.generate;
     if (options_.resolution) {
-      for (const int around : kArounds) vary("around", std::to_string(around), [&](auto& o) { o.around = around; });
-      for (const int around : kArounds)
+      for (const int around : arounds()) vary("around", std::to_string(around), [&](auto& o) { o.around = around; });
+      for (const int around : arounds())
         vary("around, blend 0", std::to_string(around), [&](auto& o) { o.around = around, o.blend = 0; });
     }
     if (options_.max_error) {
       for (const double elongation : kElongations) {
         const std::string curve = elongation > 1 ? "max-error, elongation " + text_of(elongation) : "max-error";
-        for (const double limit : kLimits)
+        for (const double limit : limits(elongation))
           vary(
               curve, text_of(100 * limit) + " %",
               [&](GenerateOptions& o) {
@@ -133,17 +137,34 @@ class Sweep {
  private:
   static constexpr const char* kStage = "sweep";
 
+  // Of a curve: with `fine`, the settings at its accurate end as well.
+  template <class Value>
+  std::vector<Value> with_fine(std::span<const Value> settings, std::span<const Value> fine) const {
+    std::vector<Value> all(settings.begin(), settings.end());
+    if (options_.fine) all.insert(all.end(), fine.begin(), fine.end());
+    return all;
+  }
+  std::vector<int> arounds() const { return with_fine<int>(kArounds, kFineArounds); }
+  std::vector<double> limits(double elongation) const {
+    return elongation > 1 ? with_fine<double>(kLimits, {}) : with_fine<double>(kLimits, kFineLimits);
+  }
+  std::vector<double> voxels() const { return with_fine<double>(kVoxels, kFineVoxels); }
+
   // In cases of plain settings.
-  static double work_for(const TradeoffOptions& o) {
+  double expected_work() const {
+    const TradeoffOptions& o = options_;
     const auto size = [](const auto& list) { return static_cast<double>(std::size(list)); };
     const double counts = o.resolution ? size(kArounds) + 1 : 0;
     double work = 0;
-    if (o.resolution) work += 2 * size(kArounds);
-    if (o.max_error) work += kLimitWork * size(kLimits) * (size(kElongations) + 1) + kCountWork * counts;
+    if (o.resolution) work += 2 * size(arounds());
+    if (o.max_error) {
+      work += kLimitWork * size(kLimits) + kCountWork * counts;  // in mm, and for numbers of vertices
+      for (const double elongation : kElongations) work += kLimitWork * size(limits(elongation));
+    }
     if (o.blend) work += size(kBlends);
     if (o.beta) work += size(kBetas);
     if (o.effort) work += size(kEfforts);
-    if (o.marching_cubes) work += size(kVoxels) + size(kDecimations) * counts;
+    if (o.marching_cubes) work += size(voxels()) + size(kDecimations) * counts;
     if (o.cones) work += size(kSides);
     return work;
   }
@@ -193,11 +214,11 @@ class Sweep {
         curve, setting, [&] { return generate_surface(centerline_, options, alive()).mesh; }, work);
   }
 
-  // As many vertices as the even surfaces have, and half as many as the coarsest.
+  // As many vertices as the even surfaces have but at the accurate end, and half as many as the coarsest.
   std::vector<std::size_t> counts() const {
     std::vector<std::size_t> counts;
     for (const TradeoffPoint& point : points_) {
-      if (point.curve != "around") continue;
+      if (point.curve != "around" || counts.size() > std::size(kArounds)) continue;
       if (counts.empty()) counts.push_back(point.vertices / 2);
       counts.push_back(point.vertices);
     }
@@ -222,7 +243,7 @@ class Sweep {
     const double radius = mean_radius(centerline_);
     std::optional<TriMesh> finest;
     double seconds = 0;
-    for (const double share : kVoxels) {
+    for (const double share : voxels()) {
       const double voxel = share * radius;
       if (voxels_of_box(centerline_, voxel) > kMostVoxels) {
         ++done_;

@@ -145,6 +145,15 @@ struct GrowthSimplification {
 /// "merged_nodes", "buried_branch", "filled_loop".
 std::string_view to_string(GrowthSimplification::Kind kind);
 
+/// A piece of the surface that took far longer for a vertex than most.
+struct SlowPiece {
+  Vec3 position = Vec3::Zero();  ///< of its widest node or, without any, of a vertex; mm
+  std::size_t vertices = 0;
+  double seconds = 0;  ///< wall clock
+  double times = 0;    ///< the median piece's time for a vertex
+  std::string reason;  ///< why each further try was made, or what one try had to do
+};
+
 /// The graph that steered guided growth: junctions joined by tubes. The surface has its topology.
 struct GrowthSummary {
   std::size_t junctions = 0;
@@ -155,6 +164,9 @@ struct GrowthSummary {
   std::size_t pieces = 0;          ///< number of pieces in which the surface was made
   std::vector<std::size_t> rungs;  ///< number of pieces by the rung of the ladder on which they were sound or given up
   RefusedSteps refused;            ///< of guarded steps, while pieces were made and vertices left out
+  /// Pieces that took more than ten times the median piece's time for a vertex, slowest first. Times differ from run to
+  /// run; with more than one thread they may contain those of pieces that were made meanwhile.
+  std::vector<SlowPiece> slow_pieces;
 };
 
 /// A requested hole in the surface at an end of a vessel: a ring in the plane across the vessel through the end's node.

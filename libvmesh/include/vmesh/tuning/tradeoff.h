@@ -28,6 +28,7 @@ struct TradeoffPoint {
 struct TradeoffOptions {
   GenerateOptions generate;  ///< options that do not vary on a curve
   bool beta = true, resolution = true, max_error = true, blend = true, effort = true;  ///< curves of vmesh
+  bool fine = false;              ///< also up to 96 around, limits down to .25 % and finer voxels; many times as long
   bool marching_cubes = true;     ///< at several voxel sizes, and decimated
   bool cones = true;              ///< truncated cones
   std::size_t samples = 100'000;  ///< on each surface

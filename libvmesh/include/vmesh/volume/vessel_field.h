@@ -49,7 +49,7 @@ class VesselField {
   /// that are verified by other means. Uses double precision where vessels are very long or thin beside their
   /// neighbours. Same bits on every machine of one architecture.
   FieldSample sample_fast(const Vec3& p, Index hint) const;
-  /// Makes sample_fast() use double precision, too: for surfaces whose error is to be proven.
+  /// Makes sample_fast() use double precision, too: for surfaces whose triangles are proven as they grow.
   void use_double_precision() { only_double_ = true; }
 
   /// Signed distance of the union of all cones at `p`.

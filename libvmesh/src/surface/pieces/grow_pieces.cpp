@@ -12,6 +12,7 @@
 #include "surface/pieces/gathering.h"
 #include "surface/pieces/parting.h"
 #include "surface/pieces/piece_invariants.h"
+#include "surface/pieces/slow_pieces.h"
 #include "surface/pieces/whole_tasks.h"
 #include "surface/proof/coarsening.h"
 #include "surface/proof/notches.h"
@@ -228,6 +229,7 @@ class PieceGrower {
       ++growth.rungs[static_cast<std::size_t>(piece.rung)];
       for (GrowthSimplification& note : piece.simplifications) growth.simplifications.push_back(std::move(note));
     }
+    growth.slow_pieces = slow_pieces(pieces_, division_.plans, centerline);
     growth.tubes -= division_.seams.size();  // the tubes on both sides of a seam count as one
     growth.components = centerline.component_count();
     growth.cycle_rank = centerline.cycle_rank() - filled;
@@ -287,7 +289,9 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
   std::vector<std::pair<Index, Index>> crossings = grower.run(refined);
   if (!grower.has_met_limit()) {
     GenerateResult grown = result;
-    std::vector<std::pair<Index, Index>> others = PieceGrower(field, open, options, {}, progress).run(grown);
+    VesselField precise = field;
+    precise.use_double_precision();
+    std::vector<std::pair<Index, Index>> others = PieceGrower(precise, open, options, {}, progress).run(grown);
     if (grown.error.unproven_faces < refined.error.unproven_faces) {
       result = std::move(grown);
       return others;

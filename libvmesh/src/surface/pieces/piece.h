@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "vmesh/core/progress.h"
 #include "vmesh/surface/generate.h"
 
@@ -14,6 +17,13 @@ bool is_covered(const VesselField& field, const Vec3& p, Index cone);
 struct SeamVertex {
   RingPlace seam;
   Index number = 0;
+};
+
+/// What a try to make a piece ended with, if another followed.
+struct PieceTry {
+  std::optional<DefectKind> fault;  ///< the first of its faults; nothing if a junction hung
+  std::size_t faults = 0;
+  double worst_skewness = 0;  ///< why it was tried again if there was no fault
 };
 
 /// A finished piece: grown, docked, optimised and checked. Faces refer to its own vertices and, from vertices.size()
@@ -36,6 +46,8 @@ struct PieceSurface {
   double worst_skewness = 0;     ///< equiangle, of its triangles
   int rung = 0;                  ///< of the ladder on which it was made
   RefusedSteps refused;          ///< on that rung
+  std::vector<PieceTry> tries;   ///< before the last
+  double seconds = 0;            ///< wall clock
   std::vector<PieceFault> faults;
   bool cannot_be_sound = false;  ///< some rung found overlapping vessels in it: it cannot be sound
 };
