@@ -106,6 +106,24 @@ TEST_F(SweptTube, FinerIsCloser) {
   }
 }
 
+// From 12 to 24 to 48 to 96, each doubling divides the mean distance by about four, as what edges cut off.
+TEST(Sweep, HasAnAccurateEndOnRequest) {
+  TradeoffOptions options;
+  options.samples = 2000;
+  options.beta = options.max_error = options.blend = options.effort = options.marching_cubes = options.cones = false;
+  options.fine = true;
+  const std::vector<TradeoffPoint> points = sweep_tradeoff(testing::straight_tube(), options);
+  ASSERT_EQ(points.size(), 2 * 14u);
+  const auto at = [&](const std::string& setting) {
+    return std::find_if(points.begin(), points.end(),
+                        [&](const TradeoffPoint& p) { return p.curve == "around" && p.setting == setting; })
+        ->error_mean_mm;
+  };
+  EXPECT_GT(at("12") / at("24"), 3);
+  EXPECT_GT(at("24") / at("48"), 3);
+  EXPECT_GT(at("48") / at("96"), 3);
+}
+
 TEST_F(SweptTube, LimitsHold) {
   const double limits[] = {0.4, 0.3, 0.2, 0.15, 0.1, 0.07, 0.05};
   const std::vector<TradeoffPoint> points = curve("max-error");
