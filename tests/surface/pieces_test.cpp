@@ -132,7 +132,7 @@ TEST(Pieces, KeepTheirSeamsAsTheyWereLaid) {
   const GatheredSurface surface = gather(divided.tubes, divided.division, pieces);
   std::size_t v = 0;
   for (const RingPlace& seam : divided.division.seams) {
-    for (const BoundaryPoint& p : divided.tubes.layer().lifted(divided.tubes.rings(seam.branch)[seam.ring]))
+    for (const RingPoint& p : divided.tubes.layer().lifted(seam.branch, divided.tubes.rings(seam.branch)[seam.ring]))
       EXPECT_EQ(surface.mesh.vertices[v++], p.position);
   }
   for (const PieceSurface& piece : pieces) EXPECT_TRUE(piece.faults.empty());
