@@ -21,7 +21,7 @@ Index seam_number(const RingPlace& seam, const Division& division) {
 template <class T>
 void append_and_free(std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.end());
-  from = {};
+  std::vector<T>().swap(from);
 }
 
 /// Numbers the vertices of a piece as they are in the whole surface.
@@ -121,7 +121,7 @@ class Regatherer {
       if (known_[p] == kNone) {
         const PieceNumbers number = numbers_in(p);
         for (const Triangle& face : pieces_[p].faces) merged.push_back(number(face));
-        pieces_[p].faces = {};
+        std::vector<Triangle>().swap(pieces_[p].faces);
       } else {
         const Index q = known_[p];
         for (Index f = surface_.first_face[q]; f < surface_.first_face[q + 1]; ++f)
@@ -206,8 +206,8 @@ void Gatherer::append(PieceSurface& piece) {
   append_and_free(piece.vertices, surface_.mesh.vertices);
   append_and_free(piece.binding, surface_.binding);
   append_and_free(piece.radius, surface_.radius);
-  piece.faces = {};
-  if (piece.holes.empty()) piece.seam_vertices = {};
+  std::vector<Triangle>().swap(piece.faces);
+  if (piece.holes.empty()) std::vector<SeamVertex>().swap(piece.seam_vertices);
 }
 
 GatheredSurface Gatherer::finish() {

@@ -272,8 +272,8 @@ void VesselRings::lay_all() {
 }
 
 void VesselRings::release(Index branch) {
-  rings_[branch].rings = {};
-  rings_[branch].points = {};
+  std::vector<Ring>().swap(rings_[branch].rings);
+  std::vector<RingPoint>().swap(rings_[branch].points);
 }
 
 void VesselRings::lay_again(const std::vector<Index>& branches) {
