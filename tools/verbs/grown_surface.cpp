@@ -202,6 +202,10 @@ MeshAttributes GrownSurface::attributes() const {
   return attributes;
 }
 
+AttributeBlocks GrownSurface::attribute_blocks() const {
+  return {result().mesh, result().binding, result().radius, result().openings, report.cleaned->centerline};
+}
+
 std::unique_ptr<GrownSurface> grow_surface(const GenerateArguments& given, Console& console) {
   auto grown = std::make_unique<GrownSurface>(given);
   GenerateArguments& arguments = grown->arguments;
