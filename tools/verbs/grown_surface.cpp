@@ -115,6 +115,7 @@ void measure_distance(GenerateReport& report, const Centerline& grown) {
   const GenerateResult& result = *report.result;
   stop_if_interrupted();
   const GenerateOptions& options = report.arguments->production.growth;
+  release_freed_memory();
   std::optional<VesselField> field, plain;
   const bool with_rounding = !report.arguments->common.json.empty();  // reported there only
   tbb::parallel_invoke([&] { field.emplace(grown, options.blend); },
@@ -122,8 +123,7 @@ void measure_distance(GenerateReport& report, const Centerline& grown) {
                          if (with_rounding) plain.emplace(grown);
                        });
   report.deviation = measure_deviation(result.mesh, result.binding, *field, options.threads);
-  if (with_rounding)
-    report.rounding = measure_rounding(result.mesh, result.binding, *field, *plain, options.threads);
+  if (with_rounding) report.rounding = measure_rounding(result.mesh, result.binding, *field, *plain, options.threads);
   field.reset();
   plain.reset();
   release_freed_memory();

@@ -5,7 +5,8 @@
 
 namespace vmesh {
 
-VertexCorners::VertexCorners(const TriMesh& mesh) : first_(mesh.vertices.size() + 1, 0), corners_(3 * mesh.faces.size()) {
+VertexCorners::VertexCorners(const TriMesh& mesh)
+    : first_(mesh.vertices.size() + 1, 0), corners_(3 * mesh.faces.size()) {
   for (const Triangle& face : mesh.faces) {
     for (const Index v : face) ++first_[v];
   }
@@ -25,9 +26,8 @@ void list_sides(const TriMesh& mesh, const VertexCorners& corners, Index vertex,
     sides.push_back({next, k, true});
     if (previous != vertex) sides.push_back({previous, k, false});
   }
-  std::sort(sides.begin(), sides.end(), [](const SideAt& x, const SideAt& y) {
-    return std::tie(x.other, x.corner) < std::tie(y.other, y.corner);
-  });
+  std::sort(sides.begin(), sides.end(),
+            [](const SideAt& x, const SideAt& y) { return std::tie(x.other, x.corner) < std::tie(y.other, y.corner); });
 }
 
 }  // namespace vmesh

@@ -23,9 +23,9 @@ class VertexCorners {
 
 /// One side of a face as seen from a vertex at its end.
 struct SideAt {
-  Index other;   ///< the vertex at the other end
-  Index corner;  ///< which of the vertex's corners it is a side of
-  bool outwards; ///< the face runs from the vertex to the other one
+  Index other;    ///< the vertex at the other end
+  Index corner;   ///< which of the vertex's corners it is a side of
+  bool outwards;  ///< the face runs from the vertex to the other one
 };
 
 /// Fills in the sides at a vertex, those of an edge adjacent: by the other vertex, then by the face. A side that begins

@@ -37,11 +37,11 @@ std::vector<MeshAttribute> AttributeBlocks::of_vertices(std::size_t begin, std::
     branch.values.push_back(branch_of(v));
   }
   std::vector<MeshAttribute> attributes;
-  for (MeshAttribute* attribute : {&radius, &segment, &parameter, &branch})
-    attributes.push_back(std::move(*attribute));
+  for (MeshAttribute* attribute : {&radius, &segment, &parameter, &branch}) attributes.push_back(std::move(*attribute));
   if (has_openings_) {
     MeshAttribute opening{"opening", std::vector<double>(end - begin, 0), true};
-    const auto first = std::lower_bound(opening_.begin(), opening_.end(), std::pair(static_cast<Index>(begin), Index{0}));
+    const auto first =
+        std::lower_bound(opening_.begin(), opening_.end(), std::pair(static_cast<Index>(begin), Index{0}));
     for (auto it = first; it != opening_.end() && it->first < end; ++it)
       opening.values[it->first - begin] = it->second;  // of several the last
     attributes.push_back(std::move(opening));

@@ -21,9 +21,8 @@ MeshAttributes surface_attributes(const TriMesh& mesh, const std::vector<Centerl
 class AttributeBlocks {
  public:
   /// All but the centerline must outlive it. Throws InvalidInput like label_branches().
-  AttributeBlocks(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
-                  const std::vector<double>& radius, const std::vector<Opening>& openings,
-                  const Centerline& centerline);
+  AttributeBlocks(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding, const std::vector<double>& radius,
+                  const std::vector<Opening>& openings, const Centerline& centerline);
 
   /// Of the vertices from number `begin` to `end`, excluded.
   std::vector<MeshAttribute> of_vertices(std::size_t begin, std::size_t end) const;

@@ -194,7 +194,7 @@ class DefectSearch {
   const GenerateResult& result_;
   const TriMesh& mesh_;
   std::optional<TriMesh> with_lids_;  // where it has openings
-  std::vector<Index> branch_of_;  // of every segment, once that is needed
+  std::vector<Index> branch_of_;      // of every segment, once that is needed
 };
 
 }  // namespace

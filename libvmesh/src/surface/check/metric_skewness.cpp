@@ -71,8 +71,7 @@ std::vector<double> metric_skewness(const TriMesh& mesh, const std::vector<Vec3>
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(std::size_t{0}, skewness.size(), [&](std::size_t f) {
       const auto& [a, b, c] = mesh.faces[f];
-      skewness[f] =
-          metric_skewness({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {at(a), at(b), at(c)});
+      skewness[f] = metric_skewness({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {at(a), at(b), at(c)});
     });
   });
   return skewness;

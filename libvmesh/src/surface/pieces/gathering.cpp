@@ -10,7 +10,7 @@ namespace {
 // Room beyond the expected number of vertices: no memory is used unless it is filled.
 constexpr double kRoom = 1.2;
 // Freed memory is returned this often, but not for less than so many vertices.
-constexpr std::size_t kReleases = 8, kLeastRelease = 1 << 16;
+constexpr std::size_t kReleases = 16, kLeastRelease = 1 << 16;
 
 // The number of a seam in a division; kNone if it has been dissolved.
 Index seam_number(const RingPlace& seam, const Division& division) {
@@ -73,8 +73,7 @@ class Regatherer {
     surface_.first_vertex = std::move(first_vertex_);
     surface_.first_face = std::move(first_face_);
     surface_.openings.clear();
-    for (Index p = 0; p < pieces_.size(); ++p)
-      add_openings(pieces_[p], numbers_in(p), centerline, surface_.openings);
+    for (Index p = 0; p < pieces_.size(); ++p) add_openings(pieces_[p], numbers_in(p), centerline, surface_.openings);
     return std::move(surface_);
   }
 
@@ -84,8 +83,8 @@ class Regatherer {
     first_face_ = {0};
     for (Index p = 0; p < known_.size(); ++p) {
       const Index q = known_[p];
-      const std::size_t vertices = q == kNone ? pieces_[p].vertices.size()
-                                              : surface_.first_vertex[q + 1] - surface_.first_vertex[q];
+      const std::size_t vertices =
+          q == kNone ? pieces_[p].vertices.size() : surface_.first_vertex[q + 1] - surface_.first_vertex[q];
       const std::size_t faces =
           q == kNone ? pieces_[p].faces.size() : surface_.first_face[q + 1] - surface_.first_face[q];
       first_vertex_.push_back(first_vertex_.back() + static_cast<Index>(vertices));

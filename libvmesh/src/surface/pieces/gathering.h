@@ -38,9 +38,9 @@ class Gatherer {
   std::vector<PieceSurface>& pieces_;
   std::mutex adding_;
   std::vector<char> finished_;
-  Index around_ = 0;  // vertices of every seam
-  Index next_ = 0;    // piece to be appended
-  std::size_t release_at_ = 0;   // vertices, when freed memory is returned next
+  Index around_ = 0;            // vertices of every seam
+  Index next_ = 0;              // piece to be appended
+  std::size_t release_at_ = 0;  // vertices, when freed memory is returned next
   std::size_t release_step_ = 0;
   GatheredSurface surface_;
 };

@@ -156,7 +156,8 @@ std::vector<std::pair<Index, Index>> part_walls(SurfaceAround& surface, const Fi
     if (place == kNone) throw InvalidInput("the parts do not belong to this surface");
     return place;
   };
-  GatheredSurface gathered{{std::move(surface.mesh), std::move(surface.binding), std::move(surface.radius), {}}, {}, {}};
+  GatheredSurface gathered{
+      {std::move(surface.mesh), std::move(surface.binding), std::move(surface.radius), {}}, {}, {}};
   for (CenterlineBinding& binding : gathered.binding) binding.segment = place_of(binding.segment);
   std::vector<std::pair<Index, Index>> left = part_walls(gathered, field, crossings);
   for (CenterlineBinding& binding : gathered.binding) binding.segment = excerpt.cone[binding.segment];

@@ -311,8 +311,7 @@ PiecePlan whole_plan(const VesselRings& rings) {
   for (Index n = 0; n < centerline.nodes().size(); ++n) {
     if (centerline.degree(n) != 2) plan.nodes.push_back(n);
   }
-  for (Index b = 0; b < rings.axes().size(); ++b)
-    plan.stretches.push_back({b, 0, rings.ring_count(b)});
+  for (Index b = 0; b < rings.axes().size(); ++b) plan.stretches.push_back({b, 0, rings.ring_count(b)});
   return plan;
 }
 

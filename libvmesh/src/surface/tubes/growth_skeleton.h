@@ -110,7 +110,7 @@ std::vector<TubeEnd> docks_of(const Junction& junction);
 /// become separate tubes where their cross-sections separate, and a branch without a cross-section of its own belongs
 /// to a junction.
 struct GrowthSkeleton {
-  std::vector<std::vector<Ring>> rings;                 ///< of the plan's stretches
+  std::vector<std::vector<Ring>> rings;             ///< of the plan's stretches
   std::vector<std::vector<RingPoint>> seam_points;  ///< of the rings that are seams, lifted
   std::vector<Tube> tubes;
   std::vector<Junction> junctions;
