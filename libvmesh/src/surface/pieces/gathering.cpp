@@ -70,10 +70,10 @@ class Regatherer {
     merge(surface_.binding, &PieceSurface::binding);
     merge(surface_.radius, &PieceSurface::radius);
     merge_faces();
-    surface_.first_vertex = std::move(first_vertex_);
-    surface_.first_face = std::move(first_face_);
     surface_.openings.clear();
     for (Index p = 0; p < pieces_.size(); ++p) add_openings(pieces_[p], numbers_in(p), centerline, surface_.openings);
+    surface_.first_vertex = std::move(first_vertex_);
+    surface_.first_face = std::move(first_face_);
     return std::move(surface_);
   }
 
