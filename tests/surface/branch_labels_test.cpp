@@ -93,7 +93,7 @@ TEST(AttributeBlocks, AreTheAttributesOfTheWhole) {
   expect_same(whole.face, r.mesh.faces.size(), [&](auto b, auto e) { return blocks.of_faces(b, e); });
   ASSERT_EQ(whole.vertex.back().name, "opening");
   for (std::size_t i = 0; i < r.openings.size(); ++i) {
-    for (const Index v : r.openings[i].ring) EXPECT_EQ(whole.vertex.back().values[v], i + 1.0);
+    for (const Index v : r.openings[i].ring) EXPECT_EQ(whole.vertex.back().values[v], static_cast<double>(i + 1));
   }
 }
 
