@@ -77,9 +77,9 @@ enum Group { kTube = 0, kJunction = 1, kSeam = 2 };
 constexpr double kLine = 0.08;  // radii of the vessel, half the width of lines
 constexpr double kAxis = 0.15;  // the same for axes
 
-std::vector<Vec3> positions(std::span<const BoundaryPoint> points) {
+std::vector<Vec3> positions(std::span<const RingPoint> points) {
   std::vector<Vec3> result;
-  for (const BoundaryPoint& p : points) result.push_back(p.position);
+  for (const RingPoint& p : points) result.push_back(p.position);
   return result;
 }
 

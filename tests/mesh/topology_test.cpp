@@ -249,6 +249,36 @@ TEST(Valence, IsTheNumberOfEdges) {
   EXPECT_EQ(valences(open), (std::vector<Index>{2, 2, 2, 0}));
 }
 
+TEST(Topology, OfManyBodiesIsThatOfEach) {
+  constexpr Index kBodies = 9000;  // 36,000 vertices: more than one block
+  TriMesh mesh;
+  for (Index i = 0; i < kBodies; ++i) {
+    const auto first = static_cast<Index>(mesh.vertices.size());
+    const TriMesh body = moved(tetrahedron(), {2.0 * i, 0, 0});
+    mesh.vertices.insert(mesh.vertices.end(), body.vertices.begin(), body.vertices.end());
+    for (const auto& [a, b, c] : body.faces) mesh.faces.push_back({first + a, first + b, first + c});
+  }
+  Topology topology = measure_topology(mesh);
+  EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented && topology.outward);
+  EXPECT_EQ(topology.components, kBodies);
+  EXPECT_EQ(topology.euler_characteristic, 2 * kBodies);
+  EXPECT_EQ(valences(mesh), std::vector<Index>(4 * kBodies, 3));
+  std::vector<Vec3> points;
+  for (Index i = 0; i < kBodies; ++i) points.push_back({2.0 * i + (i % 2 == 0 ? 0.1 : 1.1), 0.1, 0.1});
+  const std::vector<bool> inside = points_inside(mesh, points);
+  for (Index i = 0; i < kBodies; ++i) EXPECT_EQ(inside[i], i % 2 == 0);
+  mesh.faces.pop_back();                // opens the last body
+  mesh.faces.push_back(mesh.faces[0]);  // the first has a face twice
+  topology = measure_topology(mesh);
+  EXPECT_FALSE(topology.closed || topology.manifold || topology.oriented);
+  EXPECT_EQ(topology.boundary_edges, 3u);
+  EXPECT_EQ(topology.boundary_loops, 1u);
+  EXPECT_EQ(topology.crowded_edges, 3u);
+  const std::vector<std::array<Index, 2>> boundary = boundary_edges(mesh);
+  ASSERT_EQ(boundary.size(), 3u);
+  for (const auto& [from, to] : boundary) EXPECT_GE(std::min(from, to), Index{4 * (kBodies - 1)});
+}
+
 TEST(EnclosedVolume, OfSimpleBodiesIsExact) {
   EXPECT_EQ(enclosed_volume({}), 0);
   // Products and sums of small whole numbers are exact, the division by 6 rounds once.

@@ -6,6 +6,7 @@
 
 #include "vmesh/centerline/branches.h"
 #include "vmesh/core/error.h"
+#include "vmesh/surface/surface_attributes.h"
 
 #include "centerlines.h"
 
@@ -67,6 +68,33 @@ TEST(BranchLabels, OfAGeneratedForkLieAroundTheirBranches) {
     ++faces_of[labels.face[f]];
   }
   for (const int count : faces_of) EXPECT_GT(count, 10);
+}
+
+TEST(AttributeBlocks, AreTheAttributesOfTheWhole) {
+  const Centerline centerline = testing::fork();
+  GenerateOptions options;
+  options.open_ends.all = true;
+  const GenerateResult r = generate_surface(centerline, options);
+  ASSERT_FALSE(r.openings.empty());
+  const MeshAttributes whole = surface_attributes(r.mesh, r.binding, r.radius, r.openings, centerline);
+  const AttributeBlocks blocks(r.mesh, r.binding, r.radius, r.openings, centerline);
+  const auto expect_same = [](const std::vector<MeshAttribute>& all, std::size_t count, const auto& block_of) {
+    for (std::size_t begin = 0; begin < count; begin += 7) {
+      const std::size_t end = std::min(count, begin + 7);
+      const std::vector<MeshAttribute> block = block_of(begin, end);
+      ASSERT_EQ(block.size(), all.size());
+      for (std::size_t a = 0; a < all.size(); ++a) {
+        EXPECT_EQ(block[a].name, all[a].name);
+        EXPECT_EQ(block[a].values, std::vector<double>(all[a].values.begin() + begin, all[a].values.begin() + end));
+      }
+    }
+  };
+  expect_same(whole.vertex, r.mesh.vertices.size(), [&](auto b, auto e) { return blocks.of_vertices(b, e); });
+  expect_same(whole.face, r.mesh.faces.size(), [&](auto b, auto e) { return blocks.of_faces(b, e); });
+  ASSERT_EQ(whole.vertex.back().name, "opening");
+  for (std::size_t i = 0; i < r.openings.size(); ++i) {
+    for (const Index v : r.openings[i].ring) EXPECT_EQ(whole.vertex.back().values[v], static_cast<double>(i + 1));
+  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "vmesh/surface/generate.h"
 
+#include <array>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -464,6 +465,33 @@ TEST(Generate, EachDoublingOfVerticesAroundDividesTheMeanDistance) {
       coarser = mean;
     }
   }
+}
+
+TEST(MeasureRounding, IsTheDistanceOfTheRoundedBoundaryFromThePlainOne) {
+  const Centerline centerline = testing::fork();
+  const GenerateResult result = generate_surface(centerline);
+  const VesselField rounded(centerline, 0.5), plain(centerline);
+  const Deviation measured = measure_rounding(result.mesh, result.binding, rounded, plain, 1);
+  // The farthest of the same sample points, found by Newton steps of our own and a query over all cones.
+  double farthest = 0;
+  for (const auto& [a, b, c] : result.mesh.faces) {
+    const auto& p = result.mesh.vertices;
+    for (const std::array<double, 3> w :
+         {std::array{1.0 / 3, 1.0 / 3, 1.0 / 3}, std::array{2.0 / 3, 1.0 / 6, 1.0 / 6},
+          std::array{1.0 / 6, 2.0 / 3, 1.0 / 6}, std::array{1.0 / 6, 1.0 / 6, 2.0 / 3}}) {
+      Vec3 at = w[0] * p[a] + w[1] * p[b] + w[2] * p[c];
+      for (int step = 0; step < 30; ++step) {
+        const FieldSample s = rounded.sample(at, result.binding[a].segment);
+        at -= s.distance / s.gradient.squaredNorm() * s.gradient;
+      }
+      farthest = std::max(farthest, std::abs(plain.sample_global(at).distance));
+    }
+  }
+  EXPECT_GT(farthest, 0.01);                     // the crotch is rounded
+  EXPECT_NEAR(measured.max_mm, farthest, 1e-5);  // projections end within 1e-6 radii of the boundary
+  const Deviation again = measure_rounding(result.mesh, result.binding, rounded, plain, 2);
+  EXPECT_EQ(measured.mean_mm, again.mean_mm);
+  EXPECT_EQ(measured.max_mm, again.max_mm);
 }
 
 }  // namespace

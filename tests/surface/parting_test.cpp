@@ -88,5 +88,20 @@ TEST(Parting, TellsWhatNoStepParts) {
   EXPECT_EQ(left, self_intersections(tubes.surface.mesh));
 }
 
+TEST(Parting, CanBeTakenBack) {
+  SideBySide tubes(0.3);
+  tubes.surface.mesh.vertices[tubes.nearest()].y() += 0.5;
+  const auto crossings = self_intersections(tubes.surface.mesh);
+  const GatheredSurface before = tubes.surface;
+  BeforeParting remembered;
+  part_walls(tubes.surface, tubes.field, crossings, &remembered);
+  ASSERT_NE(tubes.surface.mesh.vertices, before.mesh.vertices);
+  take_back(remembered, tubes.surface);
+  EXPECT_EQ(tubes.surface.mesh.vertices, before.mesh.vertices);
+  EXPECT_EQ(tubes.surface.mesh.faces, before.mesh.faces);
+  EXPECT_EQ(tubes.surface.radius, before.radius);
+  for (Index v = 0; v < before.binding.size(); ++v) EXPECT_EQ(tubes.surface.binding[v].t, before.binding[v].t);
+}
+
 }  // namespace
 }  // namespace vmesh

@@ -1,4 +1,6 @@
 // How a surface is divided into pieces, and that the result does not depend on it.
+#include <numeric>
+
 #include <gtest/gtest.h>
 
 #include "vmesh/mesh/topology.h"
@@ -132,12 +134,91 @@ TEST(Pieces, KeepTheirSeamsAsTheyWereLaid) {
   const GatheredSurface surface = gather(divided.tubes, divided.division, pieces);
   std::size_t v = 0;
   for (const RingPlace& seam : divided.division.seams) {
-    for (const BoundaryPoint& p : divided.tubes.layer().lifted(divided.tubes.rings(seam.branch)[seam.ring]))
+    for (const RingPoint& p : divided.tubes.layer().lifted(seam.branch, divided.tubes.rings(seam.branch)[seam.ring]))
       EXPECT_EQ(surface.mesh.vertices[v++], p.position);
   }
   for (const PieceSurface& piece : pieces) EXPECT_TRUE(piece.faults.empty());
   EXPECT_EQ(surface.piece_of(0), 0u);
   EXPECT_EQ(surface.piece_of(static_cast<Index>(surface.mesh.faces.size() - 1)), pieces.size() - 1);
+}
+
+bool same(const GatheredSurface& one, const GatheredSurface& other) {
+  const auto same_place = [](const CenterlineBinding& a, const CenterlineBinding& b) {
+    return a.segment == b.segment && a.t == b.t;
+  };
+  return one.mesh.vertices == other.mesh.vertices && one.mesh.faces == other.mesh.faces && one.radius == other.radius &&
+         one.first_vertex == other.first_vertex && one.first_face == other.first_face &&
+         std::equal(one.binding.begin(), one.binding.end(), other.binding.begin(), other.binding.end(), same_place) &&
+         std::equal(one.openings.begin(), one.openings.end(), other.openings.begin(), other.openings.end(),
+                    [](const Opening& a, const Opening& b) { return a.node == b.node && a.ring == b.ring; });
+}
+
+TEST(Pieces, AreGatheredInWhateverOrderTheyAreFinishedAndFreed) {
+  Divided divided(chain_of_forks(4));
+  for (Index n = 0; n < divided.open.size(); ++n) divided.open[n] = divided.centerline.degree(n) == 1;
+  std::vector<PieceSurface> pieces;
+  for (const PiecePlan& plan : divided.division.plans) pieces.push_back(divided.make(plan));
+  ASSERT_GT(pieces.size(), 3u);
+  const GatheredSurface in_turn = gather(divided.tubes, divided.division, pieces);
+  EXPECT_EQ(in_turn.openings.size(), 6u);
+  Gatherer gatherer(divided.tubes, divided.division, pieces, 1);  // far too few vertices expected
+  for (const Index p : {2u, 0u, 3u, 1u}) gatherer.add(p);
+  EXPECT_TRUE(same(gatherer.finish(), in_turn));
+  for (const PieceSurface& piece : pieces) {
+    EXPECT_EQ(piece.vertices.capacity() + piece.binding.capacity() + piece.radius.capacity() + piece.faces.capacity(),
+              0u);
+  }
+}
+
+TEST(Pieces, OfAnotherDivisionAreGatheredWithThoseThatStay) {
+  Divided divided(chain_of_forks(5));
+  for (Index n = 0; n < divided.open.size(); ++n) divided.open[n] = divided.centerline.degree(n) == 1;
+  const Division before = divided.division;
+  std::vector<PieceSurface> pieces;
+  for (const PiecePlan& plan : before.plans) pieces.push_back(divided.make(plan));
+  GatheredSurface surface = gather(divided.tubes, before, pieces);
+
+  const Division next = regrouped(RingCounts(divided.tubes), before, {before.seams[1]}, {});
+  ASSERT_EQ(next.plans.size() + 1, before.plans.size());
+  std::vector<Index> known;
+  std::vector<PieceSurface> made, all;
+  for (const PiecePlan& plan : next.plans) {
+    const auto it = std::find(before.plans.begin(), before.plans.end(), plan);
+    known.push_back(it == before.plans.end() ? kNone : static_cast<Index>(it - before.plans.begin()));
+    all.push_back(divided.make(plan));
+    made.push_back(all.back());
+    if (known.back() == kNone) continue;
+    made.back().vertices.clear();  // they are in the surface
+    made.back().faces.clear();
+  }
+  EXPECT_EQ(std::count(known.begin(), known.end(), kNone), 1);
+  surface = gather_again(std::move(surface), before, next, known, made, divided.centerline);
+  EXPECT_TRUE(same(surface, gather(divided.tubes, next, all)));
+}
+
+TEST(Rings, AreLaidAgainAsTheyWere) {
+  Divided divided(testing::plausible_tree(3));
+  std::vector<Vec3> before, after;
+  const auto collect = [&](std::vector<Vec3>& points) {
+    for (Index b = 0; b < divided.tubes.axes().size(); ++b) {
+      for (const Ring& ring : divided.tubes.rings(b)) {
+        for (const RingPoint& p : ring.points) points.push_back(p.position);
+      }
+    }
+  };
+  collect(before);
+  EXPECT_FALSE(before.empty());
+  std::vector<Index> all(divided.tubes.axes().size());
+  std::iota(all.begin(), all.end(), Index{0});
+  for (const Index b : all) {
+    const std::size_t count = divided.tubes.rings(b).size();
+    divided.tubes.release(b);
+    EXPECT_TRUE(divided.tubes.rings(b).empty());
+    EXPECT_EQ(divided.tubes.ring_count(b), count);
+  }
+  divided.tubes.lay_again(all);
+  collect(after);
+  EXPECT_EQ(before, after);
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <iostream>
+#include <span>
 
 #include "vmesh/core/atomic_file.h"
 #include "vmesh/core/version.h"
 #include "vmesh/io/centerline_io.h"
+#include "vmesh/io/ply_stream.h"
 #include "vmesh/io/surface_io.h"
 #include "vmesh/io/volume_io.h"
 #include "vmesh/render/render.h"
@@ -168,6 +170,33 @@ void write_surface(const fs::path& path, const TriMesh& mesh, MeshAttributes att
   metadata.unit = writing.unit;
   metadata.space = writing.space;
   vmesh::write_surface(path, mesh, attributes, metadata, {writing.encoding, skin});
+}
+
+bool can_be_written_by_blocks(const fs::path& path, const WritingArguments& writing) {
+  return extension_of(path) == ".ply" && writing == WritingArguments{};
+}
+
+void write_by_blocks(const fs::path& path, const TriMesh& mesh, const AttributeBlocks& attributes,
+                     const SurfaceMetadata& metadata) {
+  constexpr std::size_t kBlock = 1 << 15;
+  const auto of_vertices = [&](std::size_t begin, std::size_t end) {
+    std::vector<MeshAttribute> block = attributes.of_vertices(begin, end);
+    add_for_viewers(".ply", block);
+    return block;
+  };
+  const std::size_t vertices = mesh.vertices.size(), faces = mesh.faces.size();
+  PlyStream stream(path, vertices, faces, {of_vertices(0, 0), attributes.of_faces(0, 0), {}}, metadata);
+  const std::vector<Vec3> normals = vertex_normals(mesh);
+  for (std::size_t v = 0; v < vertices; v += kBlock) {
+    const std::size_t count = std::min(kBlock, vertices - v);
+    stream.add_vertices(std::span(mesh.vertices).subspan(v, count), std::span(normals).subspan(v, count),
+                        of_vertices(v, v + count));
+  }
+  for (std::size_t f = 0; f < faces; f += kBlock) {
+    const std::size_t count = std::min(kBlock, faces - f);
+    stream.add_faces(std::span(mesh.faces).subspan(f, count), attributes.of_faces(f, f + count));
+  }
+  stream.commit();
 }
 
 void write_centerline(const fs::path& path, const Centerline& centerline, const CenterlineMetadata& metadata,

@@ -7,6 +7,7 @@
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/io/surface_io.h"
 #include "vmesh/mesh/find_attribute.h"
+#include "vmesh/surface/surface_attributes.h"
 
 #include "command_line/arguments.h"
 #include "command_line/console.h"
@@ -32,6 +33,13 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 /// also gets `quality`, which MeshLab shows by default: the distance or displacement, else the radius.
 void write_surface(const std::filesystem::path& path, const TriMesh& mesh, MeshAttributes attributes,
                    SurfaceMetadata metadata, const WritingArguments& writing, const SurfaceSkin* skin = nullptr);
+
+/// Whether write_by_blocks() can write a surface so.
+bool can_be_written_by_blocks(const std::filesystem::path& path, const WritingArguments& writing);
+
+/// The same file as by write_surface(), without all attributes in memory.
+void write_by_blocks(const std::filesystem::path& path, const TriMesh& mesh, const AttributeBlocks& attributes,
+                     const SurfaceMetadata& metadata);
 
 /// write_centerline(); logs how many flat ends are lost if the format has no room for them.
 void write_centerline(const std::filesystem::path& path, const Centerline& centerline,

@@ -1,5 +1,7 @@
 #include "report/evaluation_report.h"
 
+#include <tbb/parallel_for.h>
+
 namespace vmesh::tool {
 namespace {
 
@@ -17,14 +19,12 @@ Json to_json(const Histogram& histogram) {
   return {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}};
 }
 
-Json measures_json(const FaceMeasures& measures) {
+Json measures_json(const std::vector<MeasureSummary>& summaries) {
   Json json = Json::object();
-  for_each_face_measure(measures, [&](const char* name, const std::vector<double>& values, double low, double high) {
-    const Distribution distribution = summarize(values);
-    if (low == high) low = distribution.min, high = distribution.max;
+  for (const auto& [name, distribution, histogram] : summaries) {
     json[name] = to_json(distribution);
-    json[name]["histogram"] = to_json(make_histogram(values, low, high, kBins));
-  });
+    json[name]["histogram"] = to_json(histogram);
+  }
   return json;
 }
 
@@ -62,6 +62,26 @@ Json defects_json(const DefectReport& defects) {
 }
 
 }  // namespace
+
+std::vector<MeasureSummary> summarize_measures(const FaceMeasures& measures) {
+  struct Measure {
+    const char* name;
+    const std::vector<double>* values;
+    double low, high;
+  };
+  std::vector<Measure> all;
+  for_each_face_measure(measures, [&](const char* name, const std::vector<double>& values, double low, double high) {
+    all.push_back({name, &values, low, high});
+  });
+  std::vector<MeasureSummary> summaries(all.size());
+  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+    auto [name, values, low, high] = all[i];
+    const Distribution distribution = summarize(*values);
+    if (low == high) low = distribution.min, high = distribution.max;
+    summaries[i] = {name, distribution, make_histogram(*values, low, high, kBins)};
+  });
+  return summaries;
+}
 
 Json side_json(const OneSidedHausdorff& side, const SampledDistance& sampled) {
   return {{"hausdorff_mm", interval_json(side.lower, side.upper)},
@@ -119,7 +139,7 @@ Json to_json(const EvaluationReport& report) {
           {"enclosed_volume_mm3", report.volume_mm3 ? Json(*report.volume_mm3) : Json()},
           {"topology", topology_json(report.defects.topology)},
           {"defects", defects_json(report.defects)},
-          {"face_measures", measures_json(report.measures)},
+          {"face_measures", measures_json(report.measure_summaries)},
           {"reference", report.reference ? to_json(*report.reference) : Json()},
           {"volume", report.volume ? to_json(*report.volume) : Json()},
           {"requirements", to_json(report.requirements)},
@@ -182,11 +202,9 @@ ReportTable surface_table(const EvaluationReport& report) {
            {"intersecting pairs of faces", std::to_string(report.defects.self_intersections.size())}}};
 }
 
-ReportTable measures_table(const FaceMeasures& measures) {
+ReportTable measures_table(const std::vector<MeasureSummary>& summaries) {
   ReportTable table = distribution_table("faces", "Faces", "measure");
-  for_each_face_measure(measures, [&](const char* name, const std::vector<double>& values, double, double) {
-    table.rows.push_back(distribution_row(name, summarize(values)));
-  });
+  for (const MeasureSummary& of : summaries) table.rows.push_back(distribution_row(of.name, of.distribution));
   return table;
 }
 
@@ -233,7 +251,7 @@ void add_tables(const VolumeComparison& volume, std::vector<ReportTable>& tables
 }  // namespace
 
 std::vector<ReportTable> to_tables(const EvaluationReport& report) {
-  std::vector<ReportTable> tables = {surface_table(report), measures_table(report.measures)};
+  std::vector<ReportTable> tables = {surface_table(report), measures_table(report.measure_summaries)};
   if (report.reference) add_tables(*report.reference, tables);
   if (report.volume) add_tables(*report.volume, tables);
   if (!report.requirements.empty()) {

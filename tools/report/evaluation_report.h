@@ -27,6 +27,16 @@ struct VolumeComparison {
   VesselDistance distance;
 };
 
+/// What a measure of all faces is like.
+struct MeasureSummary {
+  std::string name;
+  Distribution distribution;
+  Histogram histogram;
+};
+
+/// In the order of for_each_face_measure().
+std::vector<MeasureSummary> summarize_measures(const FaceMeasures& measures);
+
 /// A requirement of the caller and what was found.
 struct CheckedRequirement {
   std::string text;
@@ -41,6 +51,7 @@ struct EvaluationReport {
   double area_mm2 = 0;
   std::optional<double> volume_mm3;  ///< of a closed, oriented surface
   FaceMeasures measures;
+  std::vector<MeasureSummary> measure_summaries;
   DefectReport defects;
   std::optional<ReferenceComparison> reference;
   std::optional<VolumeComparison> volume;

@@ -1,3 +1,9 @@
+#include <exception>
+#include <functional>
+#include <optional>
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include "vmesh/io/sha256.h"
@@ -61,30 +67,46 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
   all.insert(all.end(), more.begin(), more.end());
 }
 
+/// Calls all of them side by side. If some throw, the error of the first in this order is thrown.
+void do_all(const std::vector<std::function<void()>>& work) {
+  std::vector<std::exception_ptr> errors(work.size());
+  tbb::parallel_for(std::size_t{0}, work.size(), [&](std::size_t i) {
+    try {
+      work[i]();
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
 Comparison load(const EvaluateArguments& arguments, std::vector<std::string>& warnings) {
   Comparison comparison;
-  comparison.surface = load_surface(arguments.input);
+  std::vector<std::string> of_centerline;
+  do_all({[&] { comparison.surface = load_surface(arguments.input); },
+          [&] {
+            if (!arguments.reference.path.empty()) comparison.reference = load_surface(arguments.reference);
+          },
+          [&] {
+            if (arguments.centerline.path.empty()) return;
+            comparison.centerline = clean(load_raw_centerline(arguments.centerline, of_centerline)).centerline;
+          }});
   append(warnings, comparison.surface.warnings);
-  if (!arguments.reference.path.empty()) {
-    comparison.reference = load_surface(arguments.reference);
-    append(warnings, comparison.reference->warnings);
-  }
-  if (!arguments.centerline.path.empty()) {
-    CleanedCenterline cleaned = clean(load_raw_centerline(arguments.centerline, warnings));
-    comparison.centerline = std::move(cleaned.centerline);
-  }
+  if (comparison.reference) append(warnings, comparison.reference->warnings);
+  append(warnings, of_centerline);
   return comparison;
 }
 
-EvaluationReport measure_surface_alone(const TriMesh& mesh) {
-  EvaluationReport report;
+void measure_surface_alone(const TriMesh& mesh, EvaluationReport& report) {
   report.vertices = mesh.vertices.size();
   report.faces = mesh.faces.size();
   report.area_mm2 = surface_area(mesh);
   report.measures = measure_faces(mesh);
-  report.defects = find_defects(mesh);
+  tbb::parallel_invoke([&] { report.measure_summaries = summarize_measures(report.measures); },
+                       [&] { report.defects = find_defects(mesh); });
   if (report.defects.topology.closed && report.defects.topology.oriented) report.volume_mm3 = enclosed_volume(mesh);
-  return report;
 }
 
 ReferenceComparison compare(const TriMesh& mesh, const ClosestPointIndex& index, const TriMesh& reference,
@@ -120,25 +142,23 @@ ClosestPointIndex index_of(const TriMesh& mesh, const std::filesystem::path& pat
 class Evaluation {
  public:
   Evaluation(const EvaluateArguments& arguments, const Comparison& comparison)
-      : arguments_(arguments),
-        mesh_(comparison.surface.mesh),
-        comparison_(comparison),
-        index_(index_of(mesh_, arguments.input.path)) {
-    if (comparison.reference) reference_index_ = index_of(comparison.reference->mesh, arguments.reference.path);
-    if (comparison.centerline) field_.emplace(*comparison.centerline);
+      : arguments_(arguments), mesh_(comparison.surface.mesh), comparison_(comparison) {
+    do_all({[&] { index_ = index_of(mesh_, arguments.input.path); },
+            [&] {
+              if (comparison.reference)
+                reference_index_ = index_of(comparison.reference->mesh, arguments.reference.path);
+            },
+            [&] {
+              if (comparison.centerline) field_.emplace(*comparison.centerline);
+            }});
   }
 
+  // Much of it is serial by itself: what does not depend on each other is done side by side.
   EvaluationReport measure(const Progress& progress) const {
-    EvaluationReport report = measure_surface_alone(mesh_);
+    EvaluationReport report;
+    do_all({[&] { measure_surface_alone(mesh_, report); }, [&] { compare_with_others(report, progress); },
+            [&] { report.sha256 = sha256_of_file(arguments_.input.path); }});
     stop_if_interrupted();
-    if (comparison_.reference) {
-      report.reference = compare(mesh_, index_, comparison_.reference->mesh, *reference_index_, arguments_, progress);
-      stop_if_interrupted();
-    }
-    if (field_) {
-      report.volume = VolumeComparison{arguments_.centerline.path.string(),
-                                       measure_vessel_distance(mesh_, index_, *field_, arguments_.samples, progress)};
-    }
     return report;
   }
 
@@ -152,11 +172,21 @@ class Evaluation {
   }
 
  private:
+  void compare_with_others(EvaluationReport& report, const Progress& progress) const {
+    if (comparison_.reference) {
+      report.reference = compare(mesh_, *index_, comparison_.reference->mesh, *reference_index_, arguments_, progress);
+      stop_if_interrupted();
+    }
+    if (field_) {
+      report.volume = VolumeComparison{arguments_.centerline.path.string(),
+                                       measure_vessel_distance(mesh_, *index_, *field_, arguments_.samples, progress)};
+    }
+  }
+
   const EvaluateArguments& arguments_;
   const TriMesh& mesh_;
   const Comparison& comparison_;
-  ClosestPointIndex index_;
-  std::optional<ClosestPointIndex> reference_index_;
+  std::optional<ClosestPointIndex> index_, reference_index_;
   std::optional<VesselField> field_;
 };
 
@@ -196,7 +226,6 @@ int evaluate(const EvaluateArguments& arguments, Console& console) {
   const Evaluation evaluation(arguments, comparison);
   EvaluationReport report = evaluation.measure(console.progress());
   report.file = arguments.input.path.string();
-  report.sha256 = sha256_of_file(arguments.input.path);
   report.warnings = warnings;
   for (const Requirement& requirement : requirements) {
     report.requirements.push_back(check_requirement(requirement, report));

@@ -106,11 +106,16 @@ void write(const GrownSurface& grown) {
   const GenerateReport& report = grown.report;
   const GenerateArguments& arguments = *report.arguments;
   const GenerateResult& result = *report.result;
+  const SurfaceMetadata metadata = {generator_name(), describe(arguments), file_name_of(arguments.input),
+                                    report.input_sha256};
+  if (grown.has_plain_attributes() && can_be_written_by_blocks(arguments.output, arguments.writing)) {
+    write_by_blocks(arguments.output, result.mesh, grown.attribute_blocks(), metadata);
+    return;
+  }
   std::optional<SurfaceSkin> skin;
   if (arguments.bones) skin = bones(result, report.cleaned->centerline);
-  write_surface(arguments.output, result.mesh, grown.attributes(),
-                {generator_name(), describe(arguments), file_name_of(arguments.input), report.input_sha256},
-                arguments.writing, skin ? &*skin : nullptr);
+  write_surface(arguments.output, result.mesh, grown.attributes(), metadata, arguments.writing,
+                skin ? &*skin : nullptr);
 }
 
 /// Refuses what can be refused before anything is read.

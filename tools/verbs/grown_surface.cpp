@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <sstream>
 #include <utility>
 
+#include <tbb/parallel_invoke.h>
+
+#include "vmesh/core/memory.h"
 #include "vmesh/core/text.h"
 #include "vmesh/mesh/patch_names.h"
 #include "vmesh/surface/flat_reference.h"
@@ -111,10 +115,18 @@ void measure_distance(GenerateReport& report, const Centerline& grown) {
   const GenerateResult& result = *report.result;
   stop_if_interrupted();
   const GenerateOptions& options = report.arguments->production.growth;
-  const VesselField field(grown, options.blend);
-  report.deviation = measure_deviation(result.mesh, result.binding, field, options.threads);
-  if (!report.arguments->common.json.empty())  // reported there only
-    report.rounding = measure_rounding(result.mesh, result.binding, field, VesselField(grown), options.threads);
+  release_freed_memory();
+  std::optional<VesselField> field, plain;
+  const bool with_rounding = !report.arguments->common.json.empty();  // reported there only
+  tbb::parallel_invoke([&] { field.emplace(grown, options.blend); },
+                       [&] {
+                         if (with_rounding) plain.emplace(grown);
+                       });
+  report.deviation = measure_deviation(result.mesh, result.binding, *field, options.threads);
+  if (with_rounding) report.rounding = measure_rounding(result.mesh, result.binding, *field, *plain, options.threads);
+  field.reset();
+  plain.reset();
+  release_freed_memory();
   stop_if_interrupted();
 }
 
@@ -200,6 +212,10 @@ MeshAttributes GrownSurface::attributes() const {
   if (!report.ends.ends.empty()) add_cap_labels(report.ends, attributes, report.end_names);
   if (arguments.wall_by_branch) divide_wall(attributes);
   return attributes;
+}
+
+AttributeBlocks GrownSurface::attribute_blocks() const {
+  return {result().mesh, result().binding, result().radius, result().openings, report.cleaned->centerline};
 }
 
 std::unique_ptr<GrownSurface> grow_surface(const GenerateArguments& given, Console& console) {

@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "vmesh/surface/surface_attributes.h"
+
 #include "command_line/console.h"
 #include "report/summary.h"
 #include "verbs/generate_input.h"
@@ -37,6 +39,9 @@ struct GrownSurface {
   const GenerateResult& result() const { return production.result; }
   /// Those that are written with it.
   MeshAttributes attributes() const;
+  /// Whether these are those of surface_attributes() alone; then attribute_blocks() has them, too.
+  bool has_plain_attributes() const { return report.ends.ends.empty() && !arguments.wall_by_branch; }
+  AttributeBlocks attribute_blocks() const;
 };
 
 /// Reads the input, extracts a centerline if it is a segmentation, grows the surface, fits it and finishes its ends.

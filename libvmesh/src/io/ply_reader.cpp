@@ -305,17 +305,28 @@ class PlyReader {
     auto& attributes = surface_.attributes.vertex;
     attributes = declare_attributes(element, element.count, is_vertex_attribute);
     surface_.mesh.vertices.reserve(element.count);
+    struct Column {
+      int axis = -1;                          // of the position
+      std::vector<double>* values = nullptr;  // of an attribute
+    };
+    std::vector<Column> columns;
+    std::size_t next_attribute = 0;
+    for (const auto& p : element.properties) {
+      Column& column = columns.emplace_back();
+      if (!p.is_list && (p.name == "x" || p.name == "y" || p.name == "z")) column.axis = p.name[0] - 'x';
+      if (is_vertex_attribute(p)) column.values = &attributes[next_attribute++].values;
+    }
     for (std::uint64_t i = 0; i < element.count; ++i) {
       Vec3 position = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-      std::size_t next_attribute = 0;
-      for (const auto& p : element.properties) {
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        const PlyProperty& p = element.properties[c];
         if (p.is_list) {
           skip(p, values, element.name, i);
           continue;
         }
         const double value = values.next(p.type, element.name, i);
-        if (p.name == "x" || p.name == "y" || p.name == "z") position[p.name[0] - 'x'] = value;
-        if (is_vertex_attribute(p)) attributes[next_attribute++].values.push_back(value);
+        if (columns[c].axis >= 0) position[columns[c].axis] = value;
+        if (columns[c].values != nullptr) columns[c].values->push_back(value);
       }
       surface_.mesh.vertices.push_back(position);
     }

@@ -5,6 +5,11 @@
 #include <limits>
 #include <span>
 
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+
+#include "mesh/blocks.h"
+
 namespace vmesh {
 namespace {
 
@@ -28,6 +33,17 @@ std::uint64_t spread(std::uint64_t x) {
   x = (x | x << 8) & 0x100F00F00F00F00F;
   x = (x | x << 4) & 0x10C30C30C30C30C3;
   return (x | x << 2) & 0x1249249249249249;
+}
+
+// Pieces of a growing surface are sorted on one thread each.
+template <class T>
+void sort_on_all_threads(std::vector<T>& items) {
+  constexpr std::size_t kLeast = 1 << 14;
+  if (items.size() < kLeast) {
+    std::sort(items.begin(), items.end());
+  } else {
+    tbb::this_task_arena::isolate([&] { tbb::parallel_sort(items.begin(), items.end()); });
+  }
 }
 
 }  // namespace
@@ -74,8 +90,10 @@ void CloseFaces::note_parts() {
 }
 
 void CloseFaces::build(const TriMesh& mesh) {
-  boxes_.reserve(faces_.size());
-  for (const Index f : faces_) boxes_.push_back(box_of(mesh, f));
+  boxes_.resize(faces_.size());
+  for_blocks(faces_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) boxes_[i] = box_of(mesh, faces_[i]);
+  });
   blocks_ = (faces_.size() + kBlock - 1) / kBlock;
   while (leaves_ < blocks_) leaves_ *= 2;
   const Box nothing{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
@@ -108,15 +126,16 @@ void CloseFaces::sort(const TriMesh& mesh, std::size_t begin, std::size_t end) {
   }
   const double size = (high - low).maxCoeff();
   const double scale = size > 0 ? ((1 << kBits) - 1) / size : 0;
-  std::vector<std::pair<std::uint64_t, Index>> order;
-  order.reserve(faces.size());
-  for (const Index f : faces) {
-    const Vec3 at = scale * (middle(f) - low);
-    std::uint64_t key = 0;
-    for (int i = 0; i < 3; ++i) key |= spread(static_cast<std::uint64_t>(at[i])) << i;
-    order.emplace_back(key, f);
-  }
-  std::sort(order.begin(), order.end());
+  std::vector<std::pair<std::uint64_t, Index>> order(faces.size());
+  for_blocks(faces.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      const Vec3 at = scale * (middle(faces[k]) - low);
+      std::uint64_t key = 0;
+      for (int i = 0; i < 3; ++i) key |= spread(static_cast<std::uint64_t>(at[i])) << i;
+      order[k] = {key, faces[k]};
+    }
+  });
+  sort_on_all_threads(order);
   for (std::size_t i = 0; i < order.size(); ++i) faces[i] = order[i].second;
 }
 

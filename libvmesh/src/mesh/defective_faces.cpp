@@ -7,21 +7,25 @@
 #include "vmesh/mesh/sorted_by_vertex.h"
 #include "vmesh/mesh/topology.h"
 
+#include "mesh/blocks.h"
+
 namespace vmesh {
 
 std::vector<Index> degenerate_faces(const TriMesh& mesh) {
   check_indices(mesh);
   using ExactPoint = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
-  std::vector<Index> degenerate;
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    const Vec3 &a = mesh.vertices[mesh.faces[f][0]], &b = mesh.vertices[mesh.faces[f][1]],
-               &c = mesh.vertices[mesh.faces[f][2]];
-    if (CGAL::collinear(ExactPoint(a.x(), a.y(), a.z()), ExactPoint(b.x(), b.y(), b.z()),
-                        ExactPoint(c.x(), c.y(), c.z()))) {
-      degenerate.push_back(f);
+  const auto is_degenerate = [&](const Triangle& face) {
+    const Vec3 &a = mesh.vertices[face[0]], &b = mesh.vertices[face[1]], &c = mesh.vertices[face[2]];
+    return CGAL::collinear(ExactPoint(a.x(), a.y(), a.z()), ExactPoint(b.x(), b.y(), b.z()),
+                           ExactPoint(c.x(), c.y(), c.z()));
+  };
+  return joined_lists(of_blocks<std::vector<Index>>(mesh.faces.size(), [&](std::size_t begin, std::size_t end) {
+    std::vector<Index> degenerate;
+    for (auto f = static_cast<Index>(begin); f < end; ++f) {
+      if (is_degenerate(mesh.faces[f])) degenerate.push_back(f);
     }
-  }
-  return degenerate;
+    return degenerate;
+  }));
 }
 
 std::vector<Index> duplicate_faces(const TriMesh& mesh) {

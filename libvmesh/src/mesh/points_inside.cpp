@@ -1,42 +1,60 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <span>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/topology.h"
 
+#include "mesh/blocks.h"
+#include "mesh/vertex_corners.h"
+
 namespace vmesh {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
+// What keeps the edges at some vertices from having one face on either side.
+struct Gaps {
+  bool repeated = false, open = false;
+
+  void operator|=(const Gaps& other) {
+    repeated |= other.repeated;
+    open |= other.open;
+  }
+};
+
+// `sides`: at a vertex, those of an edge adjacent. In a closed surface a face runs along every edge, and one back.
+Gaps gaps_at(Index vertex, const std::vector<SideAt>& sides) {
+  Gaps gaps;
+  for (std::size_t i = 0, next; i < sides.size(); i = next) {
+    int outwards = 0, back = 0;
+    for (next = i; next < sides.size() && sides[next].other == sides[i].other; ++next)
+      ++(sides[next].outwards ? outwards : back);
+    if (sides[i].other == vertex) back = outwards;  // listed once, leads both ways
+    gaps.repeated |= outwards > 1 || back > 1;
+    gaps.open |= outwards == 0 || back == 0;
+  }
+  return gaps;
+}
+
 // Throws unless every edge has one face on either side.
 void check_closed(const TriMesh& mesh) {
-  const auto visit_ways = [&](auto&& visit) {
-    for (const Triangle& face : mesh.faces) {
-      for (std::size_t i = 0; i < 3; ++i) visit(face[i], face[(i + 1) % 3]);
-    }
-  };
-  std::vector<std::size_t> end(mesh.vertices.size() + 1, 0);  // where the list of every vertex ends
-  visit_ways([&](Index from, Index) { ++end[from + 1]; });
-  for (std::size_t v = 0; v + 1 < end.size(); ++v) end[v + 1] += end[v];
-  std::vector<Index> to(end.back());
-  visit_ways([&](Index from, Index last) { to[end[from]++] = last; });
-  const auto ways = [&](Index v) { return std::span(to.data() + (v > 0 ? end[v - 1] : 0), to.data() + end[v]); };
-  for (Index v = 0; v < mesh.vertices.size(); ++v) {
-    const auto ends = ways(v);
-    std::sort(ends.begin(), ends.end());
-    if (std::adjacent_find(ends.begin(), ends.end()) != ends.end())
-      throw InvalidInput("inside is not defined: the mesh is not manifold");
-  }
-  bool closed = !mesh.faces.empty();
-  visit_ways([&](Index from, Index last) {
-    const auto back = ways(last);
-    closed = closed && std::binary_search(back.begin(), back.end(), from);
-  });
-  if (!closed) throw InvalidInput("inside is not defined: the mesh is open");
+  const VertexCorners corners(mesh);
+  Gaps all;
+  for (const Gaps& some : of_blocks<Gaps>(mesh.vertices.size(), [&](std::size_t begin, std::size_t end) {
+         Gaps gaps;
+         std::vector<SideAt> sides;
+         for (auto v = static_cast<Index>(begin); v < end; ++v) {
+           list_sides(mesh, corners, v, sides);
+           gaps |= gaps_at(v, sides);
+         }
+         return gaps;
+       }))
+    all |= some;
+  if (all.repeated) throw InvalidInput("inside is not defined: the mesh is not manifold");
+  if (all.open || mesh.faces.empty()) throw InvalidInput("inside is not defined: the mesh is open");
 }
 
 // Points in the cells of a grid perpendicular to x: there are few points and many faces.
@@ -155,15 +173,20 @@ std::vector<bool> points_inside(const TriMesh& mesh, const std::vector<Vec3>& po
   check_closed(mesh);
   const PointGrid grid(points);
   const RayTest ray(mesh);
-  std::vector<bool> inside(points.size(), false), on(points.size(), false);
-  for (const Triangle& face : mesh.faces) {
-    const Vec3 &a = mesh.vertices[face[0]], &b = mesh.vertices[face[1]], &c = mesh.vertices[face[2]];
-    grid.visit(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), [&](Index i) {
-      if (ray.is_on(face, points[i])) on[i] = true;
-      if (ray.meets(face, points[i])) inside[i] = !inside[i];
-    });
-  }
-  for (std::size_t i = 0; i < points.size(); ++i) inside[i] = inside[i] && !on[i];
+  constexpr unsigned char kInside = 1, kOn = 2;
+  std::vector<std::atomic<unsigned char>> found(points.size());  // the order in which faces are found does not matter
+  for_blocks(mesh.faces.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const Triangle& face = mesh.faces[f];
+      const Vec3 &a = mesh.vertices[face[0]], &b = mesh.vertices[face[1]], &c = mesh.vertices[face[2]];
+      grid.visit(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), [&](Index i) {
+        if (ray.is_on(face, points[i])) found[i].fetch_or(kOn, std::memory_order_relaxed);
+        if (ray.meets(face, points[i])) found[i].fetch_xor(kInside, std::memory_order_relaxed);
+      });
+    }
+  });
+  std::vector<bool> inside(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) inside[i] = found[i].load() == kInside;
   return inside;
 }
 

@@ -1,75 +1,104 @@
 #include "vmesh/mesh/topology.h"
 
 #include <algorithm>
-#include <tuple>
+#include <numeric>
 
 #include "vmesh/core/ascending.h"
 #include "vmesh/core/disjoint_sets.h"
 #include "vmesh/mesh/check_indices.h"
-#include "vmesh/mesh/sorted_by_vertex.h"
+
+#include "mesh/blocks.h"
+#include "mesh/vertex_corners.h"
 
 namespace vmesh {
 namespace {
 
-// One side of a face, keyed by its edge.
-struct Side {
-  Index low, high;  // the edge's vertices
-  Index face;
-  bool forward;  // the face runs from low to high
+// Calls visit(begin, end) for the runs of sides that lead to the same vertex.
+template <class Visit>
+void for_edges(const std::vector<SideAt>& sides, Visit&& visit) {
+  for (std::size_t i = 0, next; i < sides.size(); i = next) {
+    for (next = i + 1; next < sides.size() && sides[next].other == sides[i].other; ++next) {
+    }
+    visit(std::span(sides).subspan(i, next - i));
+  }
+}
 
-  auto key() const { return std::pair(low, high); }
+using Ways = std::vector<std::array<Index, 2>>;
+
+// What the edges around some vertices are like. Every edge is counted at its lower vertex.
+struct EdgeCounts {
+  std::int64_t edges = 0, vertices = 0;
+  std::size_t crowded = 0;
+  bool manifold = true, oriented = true;
+  bool one_fan_each = true;  // decisive only where edges are manifold
+  Ways boundary;             // edges with one face, in its direction
+
+  void add(EdgeCounts&& other) {
+    edges += other.edges;
+    vertices += other.vertices;
+    crowded += other.crowded;
+    manifold = manifold && other.manifold;
+    oriented = oriented && other.oriented;
+    one_fan_each = one_fan_each && other.one_fan_each;
+    boundary.insert(boundary.end(), other.boundary.begin(), other.boundary.end());
+  }
 };
 
-// All sides, those of an edge adjacent.
-std::vector<Side> sorted_sides(const TriMesh& mesh) {
-  const auto visit_sides = [&](auto&& visit) {
-    for (Index f = 0; f < mesh.faces.size(); ++f) {
-      for (int i = 0; i < 3; ++i) {
-        const Index a = mesh.faces[f][i], b = mesh.faces[f][(i + 1) % 3];
-        visit(std::min(a, b), Side{std::min(a, b), std::max(a, b), f, a < b});
-      }
-    }
-  };
-  return sorted_by_vertex<Side>(mesh.vertices.size(), visit_sides, [](const Side& x, const Side& y) {
-    return std::tie(x.high, x.face) < std::tie(y.high, y.face);
-  });
-}
+// Counts what there is around vertices, one after the other.
+class EdgeCounter {
+ public:
+  EdgeCounter(const TriMesh& mesh, const VertexCorners& corners) : mesh_(mesh), corners_(corners) {}
 
-// A vertex is manifold when its faces, joined across edges at it, form one fan: count fans as classes of face corners.
-bool one_fan_each(const TriMesh& mesh, const std::vector<Side>& sides) {
-  DisjointSets corners(3 * mesh.faces.size());
-  const auto corner_of = [&](Index face, Index vertex) {
-    const auto& f = mesh.faces[face];
-    return 3 * face + (f[0] == vertex ? 0 : f[1] == vertex ? 1 : 2);
-  };
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    if (sides[i].key() != sides[i + 1].key()) continue;
-    for (const Index v : {sides[i].low, sides[i].high}) {
-      corners.join(corner_of(sides[i].face, v), corner_of(sides[i + 1].face, v));
-    }
+  void visit(Index v) {
+    list_sides(mesh_, corners_, v, sides_);
+    if (sides_.empty()) return;
+    ++counts.vertices;
+    fans_.resize(corners_.at(v).size());
+    std::iota(fans_.begin(), fans_.end(), Index{0});
+    std::size_t fans = fans_.size();
+    for_edges(sides_, [&](std::span<const SideAt> edge) {
+      for (std::size_t i = 1; i < edge.size(); ++i) fans -= join(edge[i - 1].corner, edge[i].corner);
+      if (v <= edge.front().other) add_edge(v, edge);
+    });
+    if (fans > 1) counts.one_fan_each = false;
   }
-  std::vector<Index> fan(mesh.vertices.size(), kNone);
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    for (Index i = 0; i < 3; ++i) {
-      Index& known = fan[mesh.faces[f][i]];
-      const Index root = corners.find(3 * f + i);
-      if (known == kNone) known = root;
-      if (known != root) return false;
-    }
-  }
-  return true;
-}
 
-// Edges with a single side, in the direction of its face.
-std::vector<std::array<Index, 2>> boundary_of(const std::vector<Side>& sides) {
-  std::vector<std::array<Index, 2>> boundary;
-  for (std::size_t i = 0, next; i < sides.size(); i = next) {
-    for (next = i + 1; next < sides.size() && sides[next].key() == sides[i].key(); ++next) {
-    }
-    const Side& side = sides[i];
-    if (next - i == 1) boundary.push_back({side.forward ? side.low : side.high, side.forward ? side.high : side.low});
+  EdgeCounts counts;
+
+ private:
+  void add_edge(Index v, std::span<const SideAt> edge) {
+    const Index other = edge.front().other;
+    ++counts.edges;
+    if (edge.size() > 2) ++counts.crowded;
+    if (edge.size() > 2 || other == v) counts.manifold = false;
+    if (edge.size() == 2 && edge[0].outwards == edge[1].outwards) counts.oriented = false;
+    if (edge.size() == 1) counts.boundary.push_back({edge[0].outwards ? v : other, edge[0].outwards ? other : v});
   }
-  return boundary;
+
+  // Joins the fans of two corners; returns whether they were different.
+  bool join(Index i, Index j) {
+    while (fans_[i] != i) i = fans_[i];
+    while (fans_[j] != j) j = fans_[j];
+    fans_[std::max(i, j)] = std::min(i, j);
+    return i != j;
+  }
+
+  const TriMesh& mesh_;
+  const VertexCorners& corners_;
+  std::vector<SideAt> sides_;
+  std::vector<Index> fans_;  // of the corners at a vertex: another one of its fan
+};
+
+EdgeCounts count_edges(const TriMesh& mesh) {
+  const VertexCorners corners(mesh);
+  EdgeCounts all;
+  for (EdgeCounts& some : of_blocks<EdgeCounts>(mesh.vertices.size(), [&](std::size_t begin, std::size_t end) {
+         EdgeCounter counter(mesh, corners);
+         for (std::size_t v = begin; v < end; ++v) counter.visit(static_cast<Index>(v));
+         return std::move(counter.counts);
+       }))
+    all.add(std::move(some));
+  return all;
 }
 
 // Number of components of a graph, not counting isolated vertices.
@@ -82,76 +111,78 @@ std::size_t count_pieces(const std::vector<std::array<Index, 2>>& edges, std::si
   return roots.size();
 }
 
+// The lowest vertices of the components, ascending.
+std::vector<Index> components_of(const TriMesh& mesh, DisjointSets& sets) {
+  std::vector<Index> lowest;
+  for (const Triangle& face : mesh.faces) {
+    for (const Index v : face) {
+      if (sets.find(v) == v) lowest.push_back(v);
+    }
+  }
+  sort_unique(lowest);
+  return lowest;
+}
+
+// Six times the volume of every component.
+std::vector<double> volumes_of(const TriMesh& mesh, DisjointSets& sets, const std::vector<Index>& components) {
+  std::vector<double> volumes(components.size(), 0);
+  for (const auto& [a, b, c] : mesh.faces) {
+    // Relative to a vertex of the component, so that a far origin costs no precision.
+    const Index lowest = sets.find(a);
+    const Vec3& origin = mesh.vertices[lowest];
+    volumes[place_in(components, lowest)] +=
+        (mesh.vertices[a] - origin).dot((mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin));
+  }
+  return volumes;
+}
+
 }  // namespace
 
 Topology measure_topology(const TriMesh& mesh) {
   check_indices(mesh);
   Topology topology;
-  const std::vector<Side> sides = sorted_sides(mesh);
-  const std::vector<std::array<Index, 2>> boundary = boundary_of(sides);
-  std::int64_t edges = 0;
-  bool edge_manifold = true;
-  topology.oriented = true;
-  for (std::size_t i = 0, next; i < sides.size(); i = next) {
-    for (next = i + 1; next < sides.size() && sides[next].key() == sides[i].key(); ++next) {
-    }
-    ++edges;
-    if (next - i > 2) ++topology.crowded_edges;
-    if (next - i > 2 || sides[i].low == sides[i].high) edge_manifold = false;
-    if (next - i == 2 && sides[i].forward == sides[i + 1].forward) topology.oriented = false;
-  }
-  topology.oriented = topology.oriented && edge_manifold;
-  topology.manifold = edge_manifold && one_fan_each(mesh, sides);
-  topology.boundary_edges = boundary.size();
-  topology.boundary_loops = count_pieces(boundary, mesh.vertices.size());
+  const EdgeCounts counts = count_edges(mesh);
+  topology.crowded_edges = counts.crowded;
+  topology.oriented = counts.oriented && counts.manifold;
+  topology.manifold = counts.manifold && counts.one_fan_each;
+  topology.boundary_edges = counts.boundary.size();
+  topology.boundary_loops = count_pieces(counts.boundary, mesh.vertices.size());
   topology.closed = !mesh.faces.empty() && topology.boundary_edges == 0;
 
   DisjointSets sets(mesh.vertices.size());
-  std::vector<char> used(mesh.vertices.size(), 0);
   for (const auto& [a, b, c] : mesh.faces) {
-    used[a] = used[b] = used[c] = 1;
     sets.join(a, b);
     sets.join(a, c);
   }
-  std::int64_t vertices = 0;
-  for (Index v = 0; v < used.size(); ++v) {
-    vertices += used[v];
-    if (used[v] && sets.find(v) == v) ++topology.components;
-  }
-  topology.euler_characteristic = vertices - edges + static_cast<std::int64_t>(mesh.faces.size());
+  const std::vector<Index> components = components_of(mesh, sets);
+  topology.components = components.size();
+  topology.euler_characteristic = counts.vertices - counts.edges + static_cast<std::int64_t>(mesh.faces.size());
   if (topology.closed && topology.oriented) {
     if (topology.manifold) {
       topology.genus = static_cast<std::int64_t>(topology.components) - topology.euler_characteristic / 2;
     }
-    std::vector<double> volume(mesh.vertices.size(), 0);
-    for (const auto& [a, b, c] : mesh.faces) {
-      // Relative to a vertex of the component, so that a far origin costs no precision.
-      const Vec3& origin = mesh.vertices[sets.find(a)];
-      volume[sets.find(a)] +=
-          (mesh.vertices[a] - origin).dot((mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin));
-    }
-    topology.outward = true;
-    for (Index v = 0; v < used.size(); ++v) {
-      if (used[v] && sets.find(v) == v && !(volume[v] > 0)) topology.outward = false;
-    }
+    const std::vector<double> volumes = volumes_of(mesh, sets, components);
+    topology.outward = std::all_of(volumes.begin(), volumes.end(), [](double volume) { return volume > 0; });
   }
   return topology;
 }
 
 std::vector<std::array<Index, 2>> boundary_edges(const TriMesh& mesh) {
   check_indices(mesh);
-  return boundary_of(sorted_sides(mesh));
+  return count_edges(mesh).boundary;
 }
 
 std::vector<Index> valences(const TriMesh& mesh) {
   check_indices(mesh);
+  const VertexCorners corners(mesh);
   std::vector<Index> valence(mesh.vertices.size(), 0);
-  const std::vector<Side> sides = sorted_sides(mesh);
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (sides[i].low == sides[i].high || (i > 0 && sides[i].key() == sides[i - 1].key())) continue;
-    ++valence[sides[i].low];
-    ++valence[sides[i].high];
-  }
+  for_blocks(valence.size(), [&](std::size_t begin, std::size_t end) {
+    std::vector<SideAt> sides;
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      list_sides(mesh, corners, v, sides);
+      for_edges(sides, [&](std::span<const SideAt> edge) { valence[v] += edge.front().other != v; });
+    }
+  });
   return valence;
 }
 

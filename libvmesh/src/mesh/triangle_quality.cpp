@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/blocks.h"
+
 namespace vmesh {
 namespace {
 
@@ -64,11 +66,13 @@ double equiangle_skewness(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 std::vector<double> equiangle_skewness(const TriMesh& mesh) {
-  std::vector<double> skewness;
-  skewness.reserve(mesh.faces.size());
-  for (const auto& [a, b, c] : mesh.faces) {
-    skewness.push_back(equiangle_skewness(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]));
-  }
+  std::vector<double> skewness(mesh.faces.size());
+  for_blocks(skewness.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto& [a, b, c] = mesh.faces[f];
+      skewness[f] = equiangle_skewness(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+    }
+  });
   return skewness;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include "vmesh/core/error.h"
 
@@ -25,6 +26,21 @@ void check_faces(const TriMesh& mesh) {
 Vec3 center_of(const TriMesh& mesh, Index face) {
   const auto& [a, b, c] = mesh.faces[face];
   return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+}
+
+std::map<Index, std::size_t> count_valences(const TriMesh& mesh) {
+  std::map<Index, std::size_t> vertices;
+  for (const Index valence : valences(mesh)) {
+    if (valence > 0) ++vertices[valence];
+  }
+  return vertices;
+}
+
+std::vector<IntersectingFaces> intersecting_faces(const TriMesh& mesh) {
+  std::vector<IntersectingFaces> pairs;
+  for (const auto& [f, g] : self_intersections(mesh))
+    pairs.push_back({f, g, 0.5 * (center_of(mesh, f) + center_of(mesh, g))});
+  return pairs;
 }
 
 }  // namespace
@@ -51,15 +67,11 @@ FaceMeasures measure_faces(const TriMesh& mesh) {
 DefectReport find_defects(const TriMesh& mesh) {
   check_faces(mesh);
   DefectReport report;
-  report.topology = measure_topology(mesh);
-  report.degenerate_faces = degenerate_faces(mesh);
-  report.duplicate_faces = duplicate_faces(mesh);
-  for (const auto& [f, g] : self_intersections(mesh)) {
-    report.self_intersections.push_back({f, g, 0.5 * (center_of(mesh, f) + center_of(mesh, g))});
-  }
-  for (const Index valence : valences(mesh)) {
-    if (valence > 0) ++report.vertices_of_valence[valence];
-  }
+  tbb::parallel_invoke([&] { report.topology = measure_topology(mesh); },
+                       [&] { report.degenerate_faces = degenerate_faces(mesh); },
+                       [&] { report.duplicate_faces = duplicate_faces(mesh); },
+                       [&] { report.vertices_of_valence = count_valences(mesh); },
+                       [&] { report.self_intersections = intersecting_faces(mesh); });
   return report;
 }
 

@@ -8,6 +8,7 @@
 #include <tbb/task_arena.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/defects.h"
 #include "vmesh/surface/error_bound.h"
@@ -221,6 +222,7 @@ GenerateResult generate_simplified(const Centerline& centerline, const GenerateO
   } else {
     crossings = grow_guided(centerline, options, progress, clock, result);
   }
+  release_freed_memory();  // the field's
   warn_of_closed_ends(centerline, options.open_ends, result);
   clock.time("check", [&] { find_defects(centerline, crossings, result); });
   return result;

@@ -3,45 +3,73 @@
 #include <algorithm>
 #include <map>
 
+#include <tbb/parallel_for.h>
+
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/find_attribute.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/branch_labels.h"
 
 namespace vmesh {
-namespace {
-
-MeshAttribute branch_attribute(const std::vector<Index>& labels) {
-  return {"branch", {labels.begin(), labels.end()}, true};
-}
-
-MeshAttribute opening_labels(const TriMesh& mesh, const std::vector<Opening>& openings) {
-  MeshAttribute labels{"opening", std::vector<double>(mesh.vertices.size(), 0), true};
-  for (std::size_t i = 0; i < openings.size(); ++i) {
-    for (const Index v : openings[i].ring) labels.values[v] = static_cast<double>(i + 1);
+AttributeBlocks::AttributeBlocks(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
+                                 const std::vector<double>& radius, const std::vector<Opening>& openings,
+                                 const Centerline& centerline)
+    : mesh_(mesh),
+      binding_(binding),
+      radius_(radius),
+      has_openings_(!openings.empty()),
+      label_(branch_label_of_cones(centerline)) {
+  check_bindings(mesh, binding, label_.size());
+  for (Index i = 0; i < openings.size(); ++i) {
+    for (const Index v : openings[i].ring) opening_.emplace_back(v, i + 1);
   }
-  return labels;
+  std::sort(opening_.begin(), opening_.end());
 }
 
-}  // namespace
+std::vector<MeshAttribute> AttributeBlocks::of_vertices(std::size_t begin, std::size_t end) const {
+  MeshAttribute radius{"radius", {}}, segment{"segment", {}, true}, parameter{"parameter", {}},
+      branch{"branch", {}, true};
+  for (MeshAttribute* attribute : {&radius, &segment, &parameter, &branch}) attribute->values.reserve(end - begin);
+  if (!radius_.empty()) radius.values.assign(radius_.begin() + begin, radius_.begin() + end);
+  for (auto v = static_cast<Index>(begin); v < end; ++v) {
+    segment.values.push_back(binding_[v].segment);
+    parameter.values.push_back(binding_[v].t);
+    branch.values.push_back(branch_of(v));
+  }
+  std::vector<MeshAttribute> attributes;
+  for (MeshAttribute* attribute : {&radius, &segment, &parameter, &branch}) attributes.push_back(std::move(*attribute));
+  if (has_openings_) {
+    MeshAttribute opening{"opening", std::vector<double>(end - begin, 0), true};
+    const auto first =
+        std::lower_bound(opening_.begin(), opening_.end(), std::pair(static_cast<Index>(begin), Index{0}));
+    for (auto it = first; it != opening_.end() && it->first < end; ++it)
+      opening.values[it->first - begin] = it->second;  // of several the last
+    attributes.push_back(std::move(opening));
+  }
+  return attributes;
+}
+
+std::vector<MeshAttribute> AttributeBlocks::of_faces(std::size_t begin, std::size_t end) const {
+  MeshAttribute skewness{"EquiangleSkewness", std::vector<double>(end - begin)},
+      branch{"branch", std::vector<double>(end - begin), true};
+  tbb::parallel_for(begin, end, [&](std::size_t f) {
+    const auto& [a, b, c] = mesh_.faces[f];
+    skewness.values[f - begin] = equiangle_skewness(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
+    branch.values[f - begin] = label_of_face(branch_of(a), branch_of(b), branch_of(c));
+  });
+  std::vector<MeshAttribute> attributes;
+  attributes.push_back(std::move(skewness));
+  attributes.push_back(std::move(branch));
+  return attributes;
+}
 
 MeshAttributes surface_attributes(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
                                   const std::vector<double>& radius, const std::vector<Opening>& openings,
                                   const Centerline& centerline) {
+  const AttributeBlocks blocks(mesh, binding, radius, openings, centerline);
   MeshAttributes attributes;
-  const BranchLabels branch = label_branches(mesh, binding, centerline);
-  MeshAttribute segment{"segment", {}, true}, parameter{"parameter", {}};
-  for (const CenterlineBinding& place : binding) {
-    segment.values.push_back(place.segment);
-    parameter.values.push_back(place.t);
-  }
-  attributes.vertex.push_back({"radius", radius});
-  attributes.vertex.push_back(std::move(segment));
-  attributes.vertex.push_back(std::move(parameter));
-  attributes.vertex.push_back(branch_attribute(branch.vertex));
-  if (!openings.empty()) attributes.vertex.push_back(opening_labels(mesh, openings));
-  attributes.face.push_back({"EquiangleSkewness", equiangle_skewness(mesh)});
-  attributes.face.push_back(branch_attribute(branch.face));
+  attributes.vertex = blocks.of_vertices(0, mesh.vertices.size());
+  attributes.face = blocks.of_faces(0, mesh.faces.size());
   return attributes;
 }
 

@@ -19,6 +19,9 @@ struct BranchLabels {
 /// The label of every segment, then of every isolated node.
 std::vector<Index> branch_label_of_cones(const Centerline& centerline);
 
+/// Throws InvalidInput unless every vertex is bound to one of `cones` segments and isolated nodes.
+void check_bindings(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding, std::size_t cones);
+
 /// The label of a face whose corners have these labels.
 Index label_of_face(Index a, Index b, Index c);
 

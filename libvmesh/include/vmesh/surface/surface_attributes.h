@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vmesh/centerline/centerline.h"
@@ -15,6 +16,28 @@ namespace vmesh {
 MeshAttributes surface_attributes(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
                                   const std::vector<double>& radius, const std::vector<Opening>& openings,
                                   const Centerline& centerline);
+
+/// The same for some vertices or faces at a time: for surfaces that are written block by block.
+class AttributeBlocks {
+ public:
+  /// All but the centerline must outlive it. Throws InvalidInput like label_branches().
+  AttributeBlocks(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding, const std::vector<double>& radius,
+                  const std::vector<Opening>& openings, const Centerline& centerline);
+
+  /// Of the vertices from number `begin` to `end`, excluded.
+  std::vector<MeshAttribute> of_vertices(std::size_t begin, std::size_t end) const;
+  std::vector<MeshAttribute> of_faces(std::size_t begin, std::size_t end) const;
+
+ private:
+  Index branch_of(Index vertex) const { return label_[binding_[vertex].segment]; }
+
+  const TriMesh& mesh_;
+  const std::vector<CenterlineBinding>& binding_;
+  const std::vector<double>& radius_;
+  bool has_openings_;
+  std::vector<std::pair<Index, Index>> opening_;  // of vertices that belong to one, ascending
+  std::vector<Index> label_;                      // of cones
+};
 
 /// What a user calls the end of a vessel.
 struct EndName {

@@ -1,6 +1,7 @@
 #include "vmesh/surface/defects.h"
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "vmesh/centerline/branches.h"
@@ -39,7 +40,9 @@ std::string counted(std::size_t count, const char* singular, const char* plural)
 class DefectSearch {
  public:
   DefectSearch(const Centerline& centerline, const GenerateResult& result)
-      : centerline_(centerline), result_(result), mesh_(result.mesh), closed_(with_lids(result)) {}
+      : centerline_(centerline), result_(result), mesh_(result.mesh) {
+    if (!result.openings.empty()) with_lids_ = with_lids(result);
+  }
 
   void run(const std::vector<std::pair<Index, Index>>& crossings) {
     run_on_faces(crossings);
@@ -90,7 +93,7 @@ class DefectSearch {
   }
 
   void topology() {
-    const Topology& topology = check.topology = measure_topology(closed_);
+    const Topology& topology = check.topology = measure_topology(closed());
     const Vec3 somewhere = mesh_.vertices.empty() ? Vec3(Vec3::Zero()) : mesh_.vertices.front();
     if (!topology.closed)
       add(DefectKind::not_closed, somewhere, topology.boundary_edges,
@@ -111,6 +114,8 @@ class DefectSearch {
       add(DefectKind::wrong_topology, somewhere, 1,
           "genus " + std::to_string(topology.genus) + " where the centerline has " + counted(loops, "loop", "loops"));
   }
+
+  const TriMesh& closed() const { return with_lids_ ? *with_lids_ : mesh_; }
 
   Vec3 center(Index f) const {
     const auto& [a, b, c] = mesh_.faces[f];
@@ -172,7 +177,7 @@ class DefectSearch {
     if (!check.topology.closed) return;
     std::vector<Vec3> positions;
     for (const CenterlineNode& node : centerline_.nodes()) positions.push_back(node.position);
-    std::vector<bool> inside = points_inside(closed_, positions);
+    std::vector<bool> inside = points_inside(closed(), positions);
     for (const Opening& opening : result_.openings) inside[opening.node] = true;
     check.nodes_inside = static_cast<std::size_t>(std::count(inside.begin(), inside.end(), true));
     const std::vector<char> left_out = segments_left_out();
@@ -188,8 +193,8 @@ class DefectSearch {
   const Centerline& centerline_;
   const GenerateResult& result_;
   const TriMesh& mesh_;
-  TriMesh closed_;
-  std::vector<Index> branch_of_;  // of every segment, once that is needed
+  std::optional<TriMesh> with_lids_;  // where it has openings
+  std::vector<Index> branch_of_;      // of every segment, once that is needed
 };
 
 }  // namespace

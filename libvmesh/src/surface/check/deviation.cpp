@@ -94,7 +94,9 @@ Deviation measure_rounding(const TriMesh& mesh, const std::vector<CenterlineBind
                            const VesselField& rounded, const VesselField& plain, int threads) {
   return gather(mesh, binding, plain, threads, [&](const Vec3& p, Index hint) {
     const BoundaryPoint point = project_to_boundary(rounded, p, hint);
-    return plain.sample(point.position, point.sample.cone);
+    // Where nothing is rounded, the nearest cone is as near without rounding: fewer cones are local then.
+    const FieldSample nearest = rounded.sample_cone(point.position, point.sample.cone);
+    return nearest.distance == point.sample.distance ? nearest : plain.sample(point.position, point.sample.cone);
   });
 }
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include "vmesh/mesh/triangle_quality.h"
 
 #include "surface/remesh/least_skewness.h"
@@ -64,10 +67,13 @@ double metric_skewness(const std::array<Vec3, 3>& corners, const std::array<Vec3
 std::vector<double> metric_skewness(const TriMesh& mesh, const std::vector<Vec3>& elongation) {
   if (elongation.empty()) return equiangle_skewness(mesh);
   const auto at = [&](Index v) { return v < elongation.size() ? elongation[v] : Vec3(Vec3::Zero()); };
-  std::vector<double> skewness;
-  skewness.reserve(mesh.faces.size());
-  for (const auto& [a, b, c] : mesh.faces)
-    skewness.push_back(metric_skewness({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {at(a), at(b), at(c)}));
+  std::vector<double> skewness(mesh.faces.size());
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(std::size_t{0}, skewness.size(), [&](std::size_t f) {
+      const auto& [a, b, c] = mesh.faces[f];
+      skewness[f] = metric_skewness({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {at(a), at(b), at(c)});
+    });
+  });
   return skewness;
 }
 

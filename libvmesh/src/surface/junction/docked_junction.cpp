@@ -82,8 +82,8 @@ class JunctionDocker {
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t number = dock.at_end ? tube.rings.size() - 1 - k : k;
       std::vector<Vertex> ring;
-      for (const BoundaryPoint& p : tube.rings[number].points) {
-        ring.push_back(add_vertex(p.position, p.sample.cone));
+      for (const RingPoint& p : tube.rings[number].points) {
+        ring.push_back(add_vertex(p.position, p.cone));
         if (is_seam(tube, number)) surface_[ring.back()].lift = surface_[ring.back()].distance;
       }
       if (k + 1 == count) kept_.push_back({number_of_dock, ring});

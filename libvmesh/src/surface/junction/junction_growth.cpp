@@ -143,7 +143,8 @@ GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
 // The cross-section at which the junction ends, half a step before its tube.
 CrossSection JunctionGrowth::way_out(const TubeEnd& dock) const {
   const Tube& tube = skeleton_.tubes[dock.tube];
-  CrossSection section = (dock.at_end ? tube.rings.back() : tube.rings.front()).beside[dock.at_end];
+  const Ring& ring = dock.at_end ? tube.rings.back() : tube.rings.front();
+  CrossSection section = section_beside(axes_[tube.branch], ring, dock.at_end);
   if (dock.at_end) section.normal = -section.normal;
   return section;
 }

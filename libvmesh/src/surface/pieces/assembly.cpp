@@ -32,7 +32,7 @@ void Assembly::add_tube(Index number) {
   for (std::size_t k = begin; k < end; ++k) {
     first_[number][k] = size();
     const double lift = is_seam(tube, k) ? kAsLaid : 0;
-    for (const BoundaryPoint& p : tube.rings[k].points) vertices_.push_back({p.position, p.sample.cone, 1, lift});
+    for (const RingPoint& p : tube.rings[k].points) vertices_.push_back({p.position, p.cone, 1, lift});
   }
   for (std::size_t k = begin; k + 1 < end; ++k) band(ring_vertices(number, k), ring_vertices(number, k + 1));
   if (tube.periodic) band(ring_vertices(number, count - 1), ring_vertices(number, 0));
@@ -49,7 +49,7 @@ RingPlace Assembly::seam_at(const Tube& tube, bool at_last) const {
     const Ring* ring = at_last ? &rings.back() : &rings.front();
     if (ring != (at_last ? &tube.rings.back() : &tube.rings.front())) continue;
     const Stretch& s = plan_.stretches[i];
-    const auto count = static_cast<Index>(tubes_.rings(s.branch).size());
+    const auto count = tubes_.ring_count(s.branch);
     return {s.branch, at_last ? (s.first + s.count - 1) % count : s.first};
   }
   throw std::logic_error("a seam is not a ring of its piece");
@@ -138,7 +138,7 @@ void Assembly::cap(const Ring& ring, double side, std::vector<Index> loop) {
   const Vec3 pole = side * ring.normal;
   const Vec3 across = (vertices_[loop.front()].position - ring.center).normalized(), up = pole.cross(across);
   const auto add = [&](const Vec3& way) {
-    vertices_.push_back({ring.center + ring.radius * way, ring.points.front().sample.cone});
+    vertices_.push_back({ring.center + ring.radius * way, ring.points.front().cone});
     return static_cast<Index>(vertices_.size() - 1);
   };
   for (int k = 1; k < bands; ++k) {

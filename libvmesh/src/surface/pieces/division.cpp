@@ -30,9 +30,9 @@ struct Band {
 
   Band(const Ring& ring, const Ring& next) : metric(0.5 * (ring.metric() + next.metric())) {
     for (const Ring* r : {&ring, &next}) {
-      for (const BoundaryPoint& p : r->points) {
+      for (const RingPoint& p : r->points) {
         points.push_back(p.position);
-        cones.push_back(p.sample.cone);
+        cones.push_back(p.cone);
       }
     }
     const std::size_t count = ring.points.size();
@@ -137,8 +137,8 @@ class SeamSearch {
   // Near another wall it is not known yet how far vertices may be lifted.
   bool near_others(const Ring& ring) const {
     const double reach = kClear * ring.radius;
-    return std::any_of(ring.points.begin(), ring.points.end(), [&](const BoundaryPoint& p) {
-      return field_.distance_to_others(p.position, p.sample.cone, reach) < reach;
+    return std::any_of(ring.points.begin(), ring.points.end(), [&](const RingPoint& p) {
+      return field_.distance_to_others(p.position, p.cone, reach) < reach;
     });
   }
 
@@ -298,7 +298,7 @@ RingCounts::RingCounts(const VesselRings& tubes) : centerline_(tubes.centerline(
   for (Index b = 0; b < tubes.axes().size(); ++b) {
     const Branch& branch = tubes.branches()[b];
     ends_.push_back({branch.nodes.front(), branch.nodes.back()});
-    counts_.push_back(static_cast<Index>(tubes.rings(b).size()));
+    counts_.push_back(tubes.ring_count(b));
   }
 }
 

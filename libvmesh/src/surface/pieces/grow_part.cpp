@@ -96,8 +96,9 @@ class PartGrower {
     const VesselField& field = tubes_.field();
     for (const SurfacePart::Seam& seam : part_.seams) {
       result_.seams.push_back(seam.number);
-      for (const BoundaryPoint& p : tubes_.layer().lifted(tubes_.rings(seam.place.branch)[seam.place.ring])) {
-        const FieldSample sample = field.sample_fast(p.position, p.sample.cone);
+      const auto [branch, ring] = seam.place;
+      for (const RingPoint& p : tubes_.layer().lifted(branch, tubes_.rings(branch)[ring])) {
+        const FieldSample sample = field.sample_fast(p.position, p.cone);
         add_vertex(p.position, {sample.cone, sample.t}, field.relations().radius_at(sample.cone, sample.t));
       }
     }
@@ -155,7 +156,8 @@ std::vector<std::pair<Index, Index>> part_walls(SurfaceAround& surface, const Fi
     if (place == kNone) throw InvalidInput("the parts do not belong to this surface");
     return place;
   };
-  GatheredSurface gathered{{std::move(surface.mesh), std::move(surface.binding), std::move(surface.radius), {}}, {}};
+  GatheredSurface gathered{
+      {std::move(surface.mesh), std::move(surface.binding), std::move(surface.radius), {}}, {}, {}};
   for (CenterlineBinding& binding : gathered.binding) binding.segment = place_of(binding.segment);
   std::vector<std::pair<Index, Index>> left = part_walls(gathered, field, crossings);
   for (CenterlineBinding& binding : gathered.binding) binding.segment = excerpt.cone[binding.segment];

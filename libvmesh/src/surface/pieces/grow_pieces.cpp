@@ -1,10 +1,14 @@
 #include "surface/pieces/grow_pieces.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <optional>
 
+#include "vmesh/core/ascending.h"
+#include "vmesh/core/memory.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/error_bound.h"
 
@@ -39,15 +43,15 @@ class PieceGrower {
         division_(divide(tubes_, options)) {}
 
   std::vector<std::pair<Index, Index>> run(GenerateResult& result) {
-    make_pieces({});
+    make_all();
     for (int round = 0;; ++round) {
-      gathered_ = gather(tubes_, division_, pieces_);
       crossings_ = find_crossings();
-      if (!options_.max_error.is_set()) crossings_ = part_walls(gathered_, tubes_.field(), crossings_);
+      BeforeParting before;
+      if (!options_.max_error.is_set()) crossings_ = part_walls(gathered_, tubes_.field(), crossings_, &before);
       if (options_.max_error.is_set())
         unproven_ = unproven_faces(gathered_.mesh, gathered_.binding, tubes_.field(), options_.max_error,
                                    Shells::along_normals);
-      if (round == kRounds || !regroup()) break;
+      if (round == kRounds || !regroup(before)) break;
     }
     if (limit_.is_set()) refine_whole(result.error);
     if (!unproven_.empty()) result.error = close_notches_left();
@@ -60,27 +64,72 @@ class PieceGrower {
   bool has_met_limit() const { return has_met_limit_; }
 
  private:
-  // Makes the pieces that are not in `known`.
-  void make_pieces(std::map<PiecePlan, PieceSurface> known) {
-    check_division(rings_, division_);
-    pieces_.clear();
+  // Makes all pieces. Each goes into the whole surface in its turn, and rings are freed with the last piece along their
+  // branch.
+  void make_all() {
     pieces_.resize(division_.plans.size());
-    std::vector<Index> missing;
-    for (Index p = 0; p < pieces_.size(); ++p) {
-      const auto it = known.find(division_.plans[p]);
-      if (it == known.end()) {
-        missing.push_back(p);
-      } else {
-        pieces_[p] = std::move(it->second);
-      }
+    std::vector<Index> all(pieces_.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    const double expected = expected_vertices(tubes_.centerline(), options_.around) / options_.ring_spacing;
+    Gatherer gatherer(tubes_, division_, pieces_, expected);
+    make_pieces(all, [&](Index p) { gatherer.add(p); });
+    gathered_ = gatherer.finish();
+    release_freed_memory();
+  }
+
+  // Makes these pieces, and calls finished(p) as each is. They are begun in their order, whoever makes them.
+  template <class Finished>
+  void make_pieces(const std::vector<Index>& missing, const Finished& finished) {
+    check_division(rings_, division_);
+    std::vector<std::atomic<Index>> uses(tubes_.axes().size());  // of the rings of every branch
+    for (const Index p : missing) {
+      for (const Index b : branches_of(division_.plans[p])) ++uses[b];
     }
     done_ = pieces_.size() - missing.size();
-    for_whole_tasks(missing.size(), [&](std::size_t i) {
+    std::atomic<std::size_t> next{0};
+    for_whole_tasks(missing.size(), [&](std::size_t) {
       report_progress(ask_, "grow", 0);
-      pieces_[missing[i]] = make_piece(context_, division_.plans[missing[i]]);
+      const Index p = missing[next++];
+      pieces_[p] = make_piece(context_, division_.plans[p]);
+      for (const Index b : branches_of(division_.plans[p])) {
+        if (--uses[b] == 0) tubes_.release(b);
+      }
+      finished(p);
       const std::lock_guard lock(reporting_);
       ++done_;
     });
+  }
+
+  static std::vector<Index> branches_of(const PiecePlan& plan) {
+    std::vector<Index> branches;
+    for (const Stretch& stretch : plan.stretches) branches.push_back(stretch.branch);
+    sort_unique(branches);
+    return branches;
+  }
+
+  // Makes the pieces of another division that are not in this one. `before`: to take back that walls were parted.
+  void divide_anew(Division next, const BeforeParting& before) {
+    take_back(before, gathered_);
+    std::map<PiecePlan, Index> number;
+    for (Index p = 0; p < pieces_.size(); ++p) number.emplace(division_.plans[p], p);
+    std::vector<PieceSurface> pieces(next.plans.size());
+    std::vector<Index> known(pieces.size(), kNone), missing, branches;
+    for (Index p = 0; p < pieces.size(); ++p) {
+      const auto it = number.find(next.plans[p]);
+      if (it != number.end()) {
+        known[p] = it->second;
+        pieces[p] = std::move(pieces_[it->second]);
+      } else {
+        missing.push_back(p);
+        for (const Index b : branches_of(next.plans[p])) branches.push_back(b);
+      }
+    }
+    sort_unique(branches);
+    tubes_.lay_again(branches);
+    std::swap(division_, next);
+    pieces_ = std::move(pieces);
+    make_pieces(missing, [](Index) {});
+    gathered_ = gather_again(std::move(gathered_), next, division_, known, pieces_, tubes_.centerline());
   }
 
   // Crossings within a piece are its own faults; only those between pieces are looked for here.
@@ -92,12 +141,14 @@ class PieceGrower {
     return all_right ? intersections_between(gathered_.mesh, gathered_.first_face) : self_intersections(gathered_.mesh);
   }
 
-  // Merges pieces where there are faults between them. Returns whether there were any that this may mend.
-  bool regroup() {
+  // Merges pieces where there are faults between them. Returns whether there were any that this may mend. `before`: the
+  // surface before walls were parted.
+  bool regroup(const BeforeParting& before) {
     std::vector<RingPlace> dissolved;
     std::vector<std::pair<Anchor, Anchor>> joined;
     if (std::any_of(pieces_.begin(), pieces_.end(), [](const PieceSurface& p) { return p.cannot_be_sound; }))
       return false;
+    lay_rings_of_faulty_pieces();
     for (const auto& [f, g] : crossings_) {
       if (vessels_overlap(f, g)) return false;
       put_together(gathered_.piece_of(f), gathered_.piece_of(g), dissolved, joined);
@@ -118,10 +169,7 @@ class PieceGrower {
     dissolved.erase(std::unique(dissolved.begin(), dissolved.end()), dissolved.end());
     Division next = regrouped(rings_, division_, dissolved, joined);
     if (next.plans == division_.plans) return false;
-    std::map<PiecePlan, PieceSurface> known;
-    for (Index p = 0; p < pieces_.size(); ++p) known.emplace(std::move(division_.plans[p]), std::move(pieces_[p]));
-    division_ = std::move(next);
-    make_pieces(std::move(known));
+    divide_anew(std::move(next), before);
     return true;
   }
 
@@ -200,6 +248,14 @@ class PieceGrower {
     }
   }
 
+  void lay_rings_of_faulty_pieces() {
+    std::vector<Index> branches;
+    for_seams_of_faulty_pieces([&](const PieceSurface&, const RingPlace& seam) { branches.push_back(seam.branch); });
+    sort_unique(branches);
+    tubes_.lay_again(branches);
+  }
+
+  // Rings of faulty pieces must be laid.
   bool has_fault_near(const PieceSurface& piece, const RingPlace& seam) const {
     const Ring& ring = tubes_.rings(seam.branch)[seam.ring];
     return std::any_of(piece.faults.begin(), piece.faults.end(), [&](const PieceFault& fault) {

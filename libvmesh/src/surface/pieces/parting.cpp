@@ -156,6 +156,14 @@ class Parting {
   GuardedEdit<FinishedVertex> edit_;
 };
 
+BeforeParting remembered(const Neighbourhood& around, const GatheredSurface& whole) {
+  BeforeParting before{around.vertex, around.face, {}, {}, whole.mesh.vertices.size(), whole.mesh.faces.size()};
+  for (const Index v : around.vertex)
+    before.old_vertex.push_back({whole.mesh.vertices[v], whole.binding[v], whole.radius[v]});
+  for (const Index f : around.face) before.old_face.push_back(whole.mesh.faces[f]);
+  return before;
+}
+
 void put_back(const Neighbourhood& around, GatheredSurface& whole) {
   std::vector<Index> number = around.vertex;
   for (Index v = 0; v < around.mesh.vertices().size(); ++v) {
@@ -184,7 +192,7 @@ void put_back(const Neighbourhood& around, GatheredSurface& whole) {
 }  // namespace
 
 std::vector<FacePair> part_walls(GatheredSurface& surface, const VesselField& field,
-                                 const std::vector<FacePair>& crossings) {
+                                 const std::vector<FacePair>& crossings, BeforeParting* before) {
   if (crossings.empty()) return {};
   Neighbourhood around = NeighbourhoodMaker(surface, crossings).run();
   const auto local = [&](Index f) {
@@ -202,8 +210,24 @@ std::vector<FacePair> part_walls(GatheredSurface& surface, const VesselField& fi
   }
   // A step at a later pair may also have parted an earlier one.
   std::erase_if(left, [&](const FacePair& pair) { return !cross(pair); });
+  if (before != nullptr) *before = remembered(around, surface);
   put_back(around, surface);
   return left;
+}
+
+void take_back(const BeforeParting& before, GatheredSurface& surface) {
+  if (before.face.empty()) return;
+  surface.mesh.vertices.resize(before.vertices);
+  surface.binding.resize(before.vertices);
+  surface.radius.resize(before.vertices);
+  surface.mesh.faces.resize(before.faces);
+  for (std::size_t i = 0; i < before.vertex.size(); ++i) {
+    const auto& [position, binding, radius] = before.old_vertex[i];
+    surface.mesh.vertices[before.vertex[i]] = position;
+    surface.binding[before.vertex[i]] = binding;
+    surface.radius[before.vertex[i]] = radius;
+  }
+  for (std::size_t i = 0; i < before.face.size(); ++i) surface.mesh.faces[before.face[i]] = before.old_face[i];
 }
 
 }  // namespace vmesh

@@ -36,7 +36,7 @@ class SagSearch {
       add_nodes(last, ring.place);
       last = ring.place;
       double farthest = 0;
-      for (const BoundaryPoint& p : ring.points) farthest = std::max(farthest, (p.position - ring.center).norm());
+      for (const RingPoint& p : ring.points) farthest = std::max(farthest, (p.position - ring.center).norm());
       samples_.push_back({ring.place, ring.center, std::max(farthest, ring.radius)});
     }
   }

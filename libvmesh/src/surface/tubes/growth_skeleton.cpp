@@ -58,7 +58,7 @@ class SkeletonMaker {
       rings.push_back(all[number]);
       const bool is_seam = (k == 0 && stretch.seam_at_first) || (k + 1 == stretch.count && stretch.seam_at_last);
       if (is_seam) {
-        seam_points_.push_back(all_rings_.layer().lifted(rings.back()));
+        seam_points_.push_back(all_rings_.layer().lifted(stretch.branch, rings.back()));
         rings.back().points = seam_points_.back();
       }
       if (is_seam || !rings.back().free) continue;
@@ -234,7 +234,7 @@ class SkeletonMaker {
   const VesselRings& all_rings_;
   const PiecePlan& plan_;
   std::vector<std::vector<Ring>> rings_;  // of the stretches
-  std::vector<std::vector<BoundaryPoint>> seam_points_;
+  std::vector<std::vector<RingPoint>> seam_points_;
   std::map<Index, char> capped_;  // tips that a tube's cap closes
   std::vector<BareStretch> bare_;
   GrowthSkeleton skeleton_;
@@ -264,8 +264,23 @@ VesselRings::VesselRings(const VesselField& field, const RingOptions& rings, std
 
 void VesselRings::lay_all() {
   rings_.resize(axes().size());
-  tbb::parallel_for(std::size_t{0}, rings_.size(),
-                    [&](std::size_t b) { rings_[b] = layer().lay(static_cast<Index>(b)); });
+  counts_.resize(axes().size());
+  tbb::parallel_for(std::size_t{0}, rings_.size(), [&](std::size_t b) {
+    rings_[b] = layer().lay(static_cast<Index>(b));
+    counts_[b] = static_cast<Index>(rings_[b].rings.size());
+  });
+}
+
+void VesselRings::release(Index branch) {
+  std::vector<Ring>().swap(rings_[branch].rings);
+  std::vector<RingPoint>().swap(rings_[branch].points);
+}
+
+void VesselRings::lay_again(const std::vector<Index>& branches) {
+  tbb::parallel_for(std::size_t{0}, branches.size(), [&](std::size_t i) {
+    Rings& rings = rings_[branches[i]];
+    if (rings.rings.empty()) rings = layer().lay(branches[i]);
+  });
 }
 
 Elongation VesselRings::elongation_at(Index cone, double t) const {
@@ -296,8 +311,7 @@ PiecePlan whole_plan(const VesselRings& rings) {
   for (Index n = 0; n < centerline.nodes().size(); ++n) {
     if (centerline.degree(n) != 2) plan.nodes.push_back(n);
   }
-  for (Index b = 0; b < rings.axes().size(); ++b)
-    plan.stretches.push_back({b, 0, static_cast<Index>(rings.rings(b).size())});
+  for (Index b = 0; b < rings.axes().size(); ++b) plan.stretches.push_back({b, 0, rings.ring_count(b)});
   return plan;
 }
 

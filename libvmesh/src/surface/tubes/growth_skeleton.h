@@ -42,7 +42,13 @@ class VesselRings : public VesselAxes, public ElongationField {
   VesselRings(const VesselField& field, const RingOptions& rings);
   VesselRings(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches);
 
+  /// None while they are released.
   const std::vector<Ring>& rings(Index branch) const { return rings_[branch].rings; }
+  Index ring_count(Index branch) const { return counts_[branch]; }
+  /// Frees the rings of a branch. What elongation_at() needs stays.
+  void release(Index branch);
+  /// Lays those that were released, as they were; `branches`: different ones.
+  void lay_again(const std::vector<Index>& branches);
   Elongation elongation_at(Index cone, double t) const override;
   /// `times` along the vessel, whatever the error; none on an isolated node.
   Elongation longest_at(Index cone, double t, double times) const;
@@ -52,7 +58,8 @@ class VesselRings : public VesselAxes, public ElongationField {
  private:
   void lay_all();
 
-  std::vector<Rings> rings_;  // of every branch
+  std::vector<Rings> rings_;   // of every branch
+  std::vector<Index> counts_;  // of them, released or not
   bool elongated_;
 };
 
@@ -103,8 +110,8 @@ std::vector<TubeEnd> docks_of(const Junction& junction);
 /// become separate tubes where their cross-sections separate, and a branch without a cross-section of its own belongs
 /// to a junction.
 struct GrowthSkeleton {
-  std::vector<std::vector<Ring>> rings;                 ///< of the plan's stretches
-  std::vector<std::vector<BoundaryPoint>> seam_points;  ///< of the rings that are seams, lifted
+  std::vector<std::vector<Ring>> rings;             ///< of the plan's stretches
+  std::vector<std::vector<RingPoint>> seam_points;  ///< of the rings that are seams, lifted
   std::vector<Tube> tubes;
   std::vector<Junction> junctions;
 

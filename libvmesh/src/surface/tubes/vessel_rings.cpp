@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "surface/remesh/boundary_point.h"
 #include "surface/remesh/edge_lengths.h"
 
 namespace vmesh {
@@ -50,6 +51,13 @@ double on_boundary(const RingOptions& options) {
   return std::max(kRoughTolerance, kOnBoundary / (finer * finer));
 }
 
+CrossSection section_at(const BranchAxis& axis, double radii) {
+  if (axis.periodic()) radii -= axis.length_in_radii() * std::floor(radii / axis.length_in_radii());
+  const double place = axis.place_at_radii(radii);
+  const auto point = axis.at(place);
+  return {place, point.position, axis.direction(place, kSmoothing * point.radius), point.radius};
+}
+
 bool apart(const Ring& ring, const Ring& next, double gap) {
   for (const auto& p : next.points) {
     if ((p.position - ring.center).dot(ring.normal) < gap * ring.radius) return false;
@@ -70,6 +78,24 @@ bool is_straight_between(const Ring& ring, const Ring& next) {
 
 }  // namespace
 
+CrossSection section_beside(const BranchAxis& axis, const Ring& ring, bool after) {
+  return section_at(axis, after ? ring.radii + ring.step / 2 : ring.radii - ring.step / 2);
+}
+
+void Rings::shrink() {
+  std::size_t count = 0;
+  for (const Ring& ring : rings) count += ring.points.size();
+  std::vector<RingPoint> kept;
+  kept.reserve(count);
+  for (Ring& ring : rings) {
+    const std::size_t first = kept.size();
+    kept.insert(kept.end(), ring.points.begin(), ring.points.end());
+    ring.points = std::span(kept).subspan(first);
+  }
+  points = std::move(kept);
+  rings.shrink_to_fit();
+}
+
 double ring_pitch(int around) { return kPitch * balanced_ring_radius(around) * equilateral_height(around); }
 
 RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes,
@@ -79,7 +105,9 @@ RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& ax
 Rings RingLayer::lay(Index branch) const {
   std::vector<Vec3> sides;
   Rings even = lay_evenly(branch, sides);
-  return options_.elongation > 1 ? spread(branch, even, sides) : std::move(even);
+  Rings laid = options_.elongation > 1 ? spread(branch, even, sides) : std::move(even);
+  laid.shrink();
+  return laid;
 }
 
 // `sides`: of every ring, from where its angles count.
@@ -97,12 +125,13 @@ Rings RingLayer::lay_evenly(Index branch, std::vector<Vec3>& sides) const {
   Vec3 side = Vec3::Zero();
   for (std::size_t k = 0; k < count; ++k) {
     const double radii = step * static_cast<double>(k);
-    const CrossSection here = section(branch, radii);
+    const CrossSection here = section_at(axis, radii);
     side = k == 0 ? reference(branch, here.normal)
                   : Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, here.normal) * side);
     side = (side - side.dot(here.normal) * here.normal).normalized();
     rings.push_back(lay_one(branch, here, side, static_cast<double>(k % 2) / 2, laid.points));
-    rings.back().beside = {section(branch, radii - step / 2), section(branch, radii + step / 2)};
+    rings.back().radii = radii;
+    rings.back().step = step;
     sides.push_back(side);
   }
   std::vector<char> collides(rings.size(), 0);
@@ -117,14 +146,6 @@ Rings RingLayer::lay_evenly(Index branch, std::vector<Vec3>& sides) const {
   if (!axis.periodic() && !axis.ends_at_tip()) rings.back().free = false;
   clear_ends(branch, rings, axis.periodic());
   return laid;
-}
-
-CrossSection RingLayer::section(Index branch, double radii) const {
-  const BranchAxis& axis = axes_[branch];
-  if (axis.periodic()) radii -= axis.length_in_radii() * std::floor(radii / axis.length_in_radii());
-  const double place = axis.place_at_radii(radii);
-  const auto point = axis.at(place);
-  return {place, point.position, axis.direction(place, kSmoothing * point.radius), point.radius};
 }
 
 Vec3 RingLayer::direction_at(Index branch, double place) const {
@@ -181,7 +202,7 @@ Rings RingLayer::spread(Index branch, const Rings& even, const std::vector<Vec3>
 }
 
 std::vector<Ring> RingLayer::spread_run(Index branch, std::span<const Ring> run, const Vec3& side, double step,
-                                        ElongationProfile& profile, std::vector<BoundaryPoint>& points) const {
+                                        ElongationProfile& profile, std::vector<RingPoint>& points) const {
   const BranchAxis& axis = axes_[branch];
   const ElongationProfile here = elongation_of_run(axis, run, step, options_);
   const std::vector<double> places = here.spread(step);
@@ -189,12 +210,13 @@ std::vector<Ring> RingLayer::spread_run(Index branch, std::span<const Ring> run,
   std::vector<Ring> rings;
   Vec3 across = side;
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const CrossSection next = section(branch, places[k]);
+    const CrossSection next = section_at(axis, places[k]);
     if (k > 0) across = Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, next.normal) * across);
     across = (across - across.dot(next.normal) * next.normal).normalized();
     rings.push_back(lay_one(branch, next, across, static_cast<double>(k % 2) / 2, points));
     Ring& ring = rings.back();
-    ring.beside = {section(branch, places[k] - step / 2), section(branch, places[k] + step / 2)};
+    ring.radii = places[k];
+    ring.step = step;
     ring.elongation = here.at(places[k]);
     if (!ring.free || (k > 0 && !apart(rings[k - 1], ring, kMinSpacing * options_.pitch()))) return {};
   }
@@ -202,14 +224,16 @@ std::vector<Ring> RingLayer::spread_run(Index branch, std::span<const Ring> run,
   return rings;
 }
 
-std::vector<BoundaryPoint> RingLayer::lifted(const Ring& ring) const {
-  std::vector<BoundaryPoint> points(ring.points.begin(), ring.points.end());
+std::vector<RingPoint> RingLayer::lifted(Index branch, const Ring& ring) const {
+  std::vector<RingPoint> points(ring.points.begin(), ring.points.end());
   if (options_.placement == Placement::inscribed) return points;
   const double height = std::min((balanced_ring_radius(options_.around) - 1) * ring.radius,
                                  kShareOfLimit * options_.limit.at(ring.radius));
-  for (BoundaryPoint& p : points) {
+  const Index segment = segment_at(branch, ring);
+  for (RingPoint& p : points) {
     const Vec3 way = (p.position - ring.center).normalized();
-    p.position += height / std::max(kFacing, p.sample.gradient.dot(way)) * way;
+    const Vec3 gradient = field_.sample_fast(p.position, segment).gradient;  // as when it was laid
+    p.position += height / std::max(kFacing, gradient.dot(way)) * way;
   }
   return points;
 }
@@ -217,22 +241,22 @@ std::vector<BoundaryPoint> RingLayer::lifted(const Ring& ring) const {
 void RingLayer::clear_ends(Index branch, std::vector<Ring>& rings, bool loop) const {
   const std::size_t count = rings.size();
   const auto covered = [&](std::size_t k) { return !rings[k].free; };
-  std::vector<BoundaryPoint> points;
+  std::vector<RingPoint> points;
   points.reserve(static_cast<std::size_t>(options_.around));
-  const auto can_dock = [&](const Ring& ring, int side) {
+  const auto can_dock = [&](const Ring& ring, bool after) {
     const Vec3 across = ring.points.front().position - ring.center;
-    const CrossSection& next = ring.beside[side];
+    const CrossSection next = section_beside(axes_[branch], ring, after);
     points.clear();
     return lay_one(branch, next, (across - across.dot(next.normal) * next.normal).normalized(), 0, points).free;
   };
   const std::size_t laps = loop ? 2 * count : count;
   for (std::size_t k = 1; k < laps; ++k) {
     Ring& ring = rings[k % count];
-    if (ring.free && covered((k - 1) % count)) ring.free = can_dock(ring, 0);
+    if (ring.free && covered((k - 1) % count)) ring.free = can_dock(ring, false);
   }
   for (std::size_t k = laps - 1; k-- > 0;) {
     Ring& ring = rings[k % count];
-    if (ring.free && covered((k + 1) % count)) ring.free = can_dock(ring, 1);
+    if (ring.free && covered((k + 1) % count)) ring.free = can_dock(ring, true);
   }
 }
 
@@ -257,16 +281,17 @@ Vec3 RingLayer::reference(Index branch, const Vec3& normal) const {
 }
 
 Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
-                        std::vector<BoundaryPoint>& points) const {
+                        std::vector<RingPoint>& points) const {
   const BranchAxis::Point axis = axes_[branch].at(section.place);
-  Ring ring{section, {}, {}, 1, false, false};
+  Ring ring;
+  static_cast<CrossSection&>(ring) = section;
   const Vec3 up = section.normal.cross(side);
   ring.clear = goes_through(branch, section) && is_clear(branch, section, axis, side, up);
   if (!ring.clear) return ring;
   const std::size_t first = points.size();
   for (int j = 0; j < options_.around; ++j) {
     const double angle = 2 * std::numbers::pi * (j + phase) / options_.around;
-    BoundaryPoint seen;
+    RingPoint seen;
     if (!see(branch, ring, axis, std::cos(angle) * side + std::sin(angle) * up, seen)) {
       points.resize(first);
       return ring;
@@ -278,8 +303,12 @@ Ring RingLayer::lay_one(Index branch, const CrossSection& section, const Vec3& s
   return ring;
 }
 
+Index RingLayer::segment_at(Index branch, const CrossSection& section) const {
+  return axes_[branch].branch().segments[axes_[branch].at(section.place).nth];
+}
+
 bool RingLayer::see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way,
-                    BoundaryPoint& seen) const {
+                    RingPoint& seen) const {
   const Index segment = axes_[branch].branch().segments[axis.nth];
   const double near = on_boundary(options_) * ring.radius;
   double far = ring.radius;
@@ -293,7 +322,7 @@ bool RingLayer::see(Index branch, const Ring& ring, const BranchAxis::Point& axi
     if (!(far > kNearest * ring.radius && far < kFarthest * ring.radius)) return false;
   }
   if (!(std::abs(s.distance) < near) || s.gradient.dot(way) < kFacing) return false;
-  seen = {ring.center + far * way, s};
+  seen = {ring.center + far * way, s.cone};
   return is_own(branch, ring, s);
 }
 

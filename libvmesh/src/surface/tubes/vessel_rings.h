@@ -1,12 +1,11 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
 #include "vmesh/surface/generate.h"
+#include "vmesh/volume/vessel_field.h"
 
-#include "surface/remesh/boundary_point.h"
 #include "surface/remesh/elongated_metric.h"
 #include "surface/tubes/branch_axis.h"
 #include "surface/tubes/elongation_profile.h"
@@ -21,10 +20,16 @@ struct CrossSection {
   double radius = 0;
 };
 
+/// A point on the boundary of a cone.
+struct RingPoint {
+  Vec3 position;
+  Index cone = kNone;
+};
+
 /// A ring of vertices around a branch, on the vessel boundary, counter-clockwise about `normal`.
 struct Ring : CrossSection {
-  std::span<const BoundaryPoint> points;  ///< empty if any of them is not visible from the axis
-  std::array<CrossSection, 2> beside;     ///< half a step before and after it
+  std::span<const RingPoint> points;  ///< empty if any of them is not visible from the axis
+  double radii = 0, step = 0;         ///< its place and the distance of rings, as integrals of ds / radius
   double elongation = 1;  ///< how much longer than wide triangles may be here, see GenerateOptions::elongation
   /// Vector of the metric in which bands are even, see ElongatedMetric.
   Vec3 metric() const { return ElongatedMetric::vector(normal, elongation); }
@@ -32,14 +37,20 @@ struct Ring : CrossSection {
   bool free = false;   ///< clear, and the boundary is visible from the axis all around
 };
 
+/// The cross-section half a step before a ring or, with `after`, after it.
+CrossSection section_beside(const BranchAxis& axis, const Ring& ring, bool after);
+
 /// Rings and their points. Movable, not copyable: rings refer to the points by address.
 struct Rings {
   Rings() = default;
   Rings(Rings&&) = default;
   Rings& operator=(Rings&&) = default;
 
+  /// Gives back memory that was reserved in vain.
+  void shrink();
+
   std::vector<Ring> rings;
-  std::vector<BoundaryPoint> points;
+  std::vector<RingPoint> points;
   ElongationProfile elongation;
 };
 
@@ -84,7 +95,7 @@ class RingLayer {
   Vec3 direction_at(Index branch, double place) const;
 
   /// The ring's points as balanced placement lifts them off the boundary, so that the volume is kept.
-  std::vector<BoundaryPoint> lifted(const Ring& ring) const;
+  std::vector<RingPoint> lifted(Index branch, const Ring& ring) const;
 
   /// Keeps free only rings that can end a tube: where a run of free rings begins or ends away from a tip, the
   /// cross-section half a step further out must be free as well. `loop`: the first ring follows the last one.
@@ -92,17 +103,17 @@ class RingLayer {
 
  private:
   Rings lay_evenly(Index branch, std::vector<Vec3>& sides) const;
-  CrossSection section(Index branch, double radii) const;
   Vec3 reference(Index branch, const Vec3& normal) const;
+  Index segment_at(Index branch, const CrossSection& section) const;
   // Appends its points to `points`, which must have capacity for them.
   Ring lay_one(Index branch, const CrossSection& section, const Vec3& side, double phase,
-               std::vector<BoundaryPoint>& points) const;
+               std::vector<RingPoint>& points) const;
 
   static void leave_out_steps(std::vector<Ring>& rings, std::vector<Vec3>& sides, double least_gap);
   Rings spread(Index branch, const Rings& even, const std::vector<Vec3>& sides) const;
   // Rings in place of those of a run; none where one of them would not be free.
   std::vector<Ring> spread_run(Index branch, std::span<const Ring> run, const Vec3& side, double step,
-                               ElongationProfile& profile, std::vector<BoundaryPoint>& points) const;
+                               ElongationProfile& profile, std::vector<RingPoint>& points) const;
   // Whether no other vessel, nor a far part of this one, covers the cross-section or comes close.
   bool is_clear(Index branch, const CrossSection& section, const BranchAxis::Point& axis, const Vec3& side,
                 const Vec3& up) const;
@@ -110,7 +121,7 @@ class RingLayer {
   bool may_be_foreign(Index branch, const CrossSection& section, Index cone) const;
   bool is_own(Index branch, const CrossSection& section, const FieldSample& sample) const;
   // Finds the boundary point visible from `center` in direction `way`; false if it does not belong to this ring alone.
-  bool see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way, BoundaryPoint& seen) const;
+  bool see(Index branch, const Ring& ring, const BranchAxis::Point& axis, const Vec3& way, RingPoint& seen) const;
 
   const VesselField& field_;
   const std::vector<BranchAxis>& axes_;
