@@ -15,11 +15,14 @@ static_assert(LDBL_MANT_DIG == 113);
 template <long double (*function)(long double)>
 double remembered(double x) {
   struct Known {
-    double x = NAN, value = NAN;  // equal to none
+    std::uint64_t key;
+    double value;
   };
   static std::array<Known, 512> known;
-  Known& place = known[std::bit_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15 >> 55];
-  if (place.x != x) place = {x, static_cast<double>(function(x))};
+  if (!std::isfinite(x)) return NAN;
+  const auto key = ~std::bit_cast<std::uint64_t>(x);  // not 0
+  Known& place = known[key * 0x9E3779B97F4A7C15 >> 55];
+  if (place.key != key) place = {key, static_cast<double>(function(x))};
   return place.value;
 }
 
