@@ -65,6 +65,7 @@ def test_other_threads_go_on():
 def test_ctrl_c_raises_keyboard_interrupt(call):
     program = f"""
         import os, signal, threading, time, vmesh
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background begins without
         tree = vmesh.synthetic_tree(400)
         large = vmesh.synthetic_tree({10000 if "large" in call else 2})
         grown, other = vmesh.generate(tree), vmesh.generate(tree, around=12)

@@ -11,6 +11,7 @@ import sys
 
 import pytest
 import vmesh
+import vmesh._core
 
 ROOT = pathlib.Path(__file__).parents[2]
 
@@ -29,6 +30,23 @@ def test_every_public_name_is_documented():
 def test_the_version_is_that_of_the_project():
     text = (ROOT / "CMakeLists.txt").read_text()
     assert f"project(vmesh VERSION {vmesh.__version__} " in text
+
+
+def test_the_command_starts_without_numpy():
+    program = "import sys, vmesh.__main__; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    loaded = run.stdout.split()
+    assert "vmesh" in loaded
+    assert not {"numpy", "vmesh._core", "vmesh._public"} & set(loaded)
+
+
+def test_names_are_found_when_they_are_asked_for():
+    program = "from vmesh import *; print(generate.__name__, InvalidInput.__name__)"
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == ["generate", "InvalidInput"]
+    assert set(vmesh.__all__) <= set(dir(vmesh))
+    with pytest.raises(AttributeError, match="module 'vmesh' has no attribute 'nothing'"):
+        vmesh.nothing
 
 
 def test_errors_are_what_python_expects():

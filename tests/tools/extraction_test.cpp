@@ -104,6 +104,29 @@ TEST_F(Extraction, OptionsForImagesAreRefusedForWalls) {
   EXPECT_EQ(vmesh({"centerline", "@y.ply", "-o", "@c.json", "--require", "beauty=1"}).exit_code, 2);
 }
 
+TEST_F(Extraction, CenterlinesAreWrittenInTheUnitAndFrameOfTheSurface) {
+  write_bars("bars.nrrd", 6);
+  const auto generated = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"generate", "@bars.nrrd",          "--label", "2", "-o",
+                                          "@bar.ply", "--centerline-output", "@c.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome run = vmesh(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return nlohmann::json::parse(read("c.json"));
+  };
+  const auto usual = generated({});
+  const auto other = generated({"--output-space", "RAS", "--output-unit", "cm"});
+  EXPECT_EQ(other.at("space"), "RAS");
+  EXPECT_EQ(other.at("unit"), "cm");
+  EXPECT_EQ(usual.at("segments"), other.at("segments"));
+  ASSERT_EQ(usual.at("nodes").size(), other.at("nodes").size());
+  const double factors[] = {-0.1, -0.1, 0.1, 0.1};  // x, y, z and the radius
+  for (std::size_t n = 0; n < usual.at("nodes").size(); ++n)
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_NEAR(other.at("nodes").at(n).at(i).get<double>(), factors[i] * usual.at("nodes").at(n).at(i).get<double>(),
+                  1e-12);  // of numbers below 3, rounded twice
+}
+
 TEST_F(Extraction, AWallIsEnoughForASurface) {
   write_y("y.swc");
   ASSERT_EQ(vmesh({"generate", "@y.swc", "-o", "@open.ply", "--ends", "open", "--around", "12"}).exit_code, 0);

@@ -162,7 +162,8 @@ Json picture_json(const Pair& picture) {
 
 /// `text` as valid UTF-8.
 std::string repaired(const std::string& text) {
-  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+  using nlohmann::json;
+  return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ GenerateInput extract_input(const GenerateArguments& arguments, std::optional<Tr
   if (!arguments.centerline_output.empty())
     write_centerline(arguments.centerline_output, centerline,
                      {generator_name(), "extracted by generate", arguments.input.path.filename().string(),
-                      sha256_of_input(arguments.input.path)},
+                      sha256_of_input(arguments.input.path), arguments.writing.unit, arguments.writing.space},
                      extracted.end_sections, console);
   stop_if_interrupted();
   if (!reference) {

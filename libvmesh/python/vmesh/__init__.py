@@ -14,115 +14,26 @@ says where it is otherwise. Long calls let other threads run and end on Ctrl-C. 
 derived from vmesh.Error; bad arguments raise vmesh.InvalidInput, which is a ValueError too.
 """
 
-from ._errors import (
-    Cancelled,
-    DefectiveSurface,
-    DefectiveVolume,
-    Error,
-    InvalidInput,
-    ReadError,
-    SurfaceWarning,
-    Unsupported,
-    WriteError,
-)
-from ._core import (
-    Centerline,
-    Defect,
-    Deformation,
-    Distribution,
-    Evaluation,
-    FitDistance,
-    FitReport,
-    FlatEnd,
-    HandForce,
-    Hausdorff,
-    LayerSummary,
-    OneSidedHausdorff,
-    Opening,
-    OperatingPoint,
-    ReferenceDistance,
-    SampledDistance,
-    StepReport,
-    Surface,
-    ThinPlace,
-    Topology,
-    UnmatchedPart,
-    VesselDistance,
-    VesselDistanceSide,
-    VolumeDefect,
-    VolumeMeasures,
-    VolumeMesh,
-    __version__,
-    clean,
-    closest_points,
-    extract_centerline,
-    finish_ends,
-    read_centerline,
-    read_surface,
-    read_volume,
-    reference_surface,
-    synthetic_tree,
-)
-from ._functions import evaluate, fit, generate, hausdorff, page, render, volume
-from ._trimesh import from_trimesh, to_trimesh
-from ._vtk import from_vtk, to_pyvista, to_vtk
+TYPE_CHECKING = False  # for checkers of types it is true
 
-__all__ = [
-    "__version__",
-    "Cancelled",
-    "Centerline",
-    "clean",
-    "closest_points",
-    "Defect",
-    "DefectiveSurface",
-    "DefectiveVolume",
-    "Deformation",
-    "Distribution",
-    "Error",
-    "evaluate",
-    "Evaluation",
-    "extract_centerline",
-    "finish_ends",
-    "fit",
-    "FitDistance",
-    "FitReport",
-    "FlatEnd",
-    "from_trimesh",
-    "from_vtk",
-    "generate",
-    "HandForce",
-    "Hausdorff",
-    "hausdorff",
-    "InvalidInput",
-    "LayerSummary",
-    "OneSidedHausdorff",
-    "Opening",
-    "OperatingPoint",
-    "page",
-    "read_centerline",
-    "read_surface",
-    "read_volume",
-    "ReadError",
-    "reference_surface",
-    "ReferenceDistance",
-    "render",
-    "SampledDistance",
-    "StepReport",
-    "Surface",
-    "SurfaceWarning",
-    "synthetic_tree",
-    "ThinPlace",
-    "to_pyvista",
-    "to_trimesh",
-    "to_vtk",
-    "Topology",
-    "UnmatchedPart",
-    "Unsupported",
-    "VesselDistance",
-    "VesselDistanceSide",
-    "volume",
-    "VolumeDefect",
-    "VolumeMeasures",
-    "VolumeMesh",
-    "WriteError",
-]
+# NumPy and the compiled module are loaded when the first name is asked for; the command `vmesh` asks for none.
+if TYPE_CHECKING:
+    from ._public import *
+    from ._public import __all__, __version__
+else:
+
+    def _load():
+        import vmesh._public as public
+
+        globals().update({name: getattr(public, name) for name in ("__all__", *public.__all__)})
+
+    def __getattr__(name):
+        if not name.startswith("_") or name in ("__all__", "__version__"):
+            _load()
+            if name in globals():
+                return globals()[name]
+        raise AttributeError(f"module 'vmesh' has no attribute '{name}'")
+
+    def __dir__():
+        _load()
+        return sorted(globals())

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 import sys
-from pathlib import Path
 
 
 def main() -> None:
-    program = Path(__file__).parent / "bin" / "vmesh"
-    if not program.exists():
+    program = os.path.join(os.path.dirname(__file__), "bin", "vmesh")
+    if not os.path.exists(program):
         sys.exit("vmesh: this package has no command; it is in the package vmesh of Debian and in the wheel")
-    os.execv(program, [str(program), *sys.argv[1:]])
+    os.execv(program, [program, *sys.argv[1:]])
 
 
 if __name__ == "__main__":

@@ -10,15 +10,19 @@ namespace {
 
 constexpr std::size_t kLanes = SurfaceBinding::kLanes;
 using Eight = float __attribute__((vector_size(kLanes * sizeof(float))));
-using EightAnywhere = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(alignof(float)), may_alias));
 using Four = float __attribute__((vector_size(4 * sizeof(float))));
 using FourDoubles = double __attribute__((vector_size(4 * sizeof(double))));
-using FourDoublesAnywhere =
-    double __attribute__((vector_size(4 * sizeof(double)), aligned(alignof(double)), may_alias));
+/// At any address; a type that is only declared to be aligned less is taken by clang as aligned.
+template <class Vector>
+struct [[gnu::packed, gnu::may_alias]] Anywhere {
+  Vector value;
+};
 
-VMESH_INLINE Eight load(const float* from) { return *reinterpret_cast<const EightAnywhere*>(from); }
-VMESH_INLINE void store(Eight v, float* to) { *reinterpret_cast<EightAnywhere*>(to) = v; }
-VMESH_INLINE FourDoubles load4(const double* from) { return *reinterpret_cast<const FourDoublesAnywhere*>(from); }
+VMESH_INLINE Eight load(const float* from) { return reinterpret_cast<const Anywhere<Eight>*>(from)->value; }
+VMESH_INLINE void store(Eight v, float* to) { reinterpret_cast<Anywhere<Eight>*>(to)->value = v; }
+VMESH_INLINE FourDoubles load4(const double* from) {
+  return reinterpret_cast<const Anywhere<FourDoubles>*>(from)->value;
+}
 VMESH_INLINE Eight root(Eight v) {
   for (std::size_t i = 0; i < kLanes; ++i) v[i] = std::sqrt(v[i]);
   return v;

@@ -11,12 +11,15 @@ namespace {
 constexpr std::size_t kLanes = ConeLanes::kCount;
 constexpr float kNever = 1e30f;  // larger than any distance
 using Eight = float __attribute__((vector_size(kLanes * sizeof(float))));
-using EightAnywhere = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(alignof(float)), may_alias));
+/// At any address; a type that is only declared to be aligned less is taken by clang as aligned.
+struct [[gnu::packed, gnu::may_alias]] EightAnywhere {
+  Eight value;
+};
 using EightMask = decltype(Eight{} < Eight{});
 
-VMESH_INLINE Eight load(const float* from) { return *reinterpret_cast<const EightAnywhere*>(from); }
+VMESH_INLINE Eight load(const float* from) { return reinterpret_cast<const EightAnywhere*>(from)->value; }
 VMESH_INLINE Eight load(const ConeLanes::Numbers& from) { return load(from.data()); }
-VMESH_INLINE void store(Eight v, float* to) { *reinterpret_cast<EightAnywhere*>(to) = v; }
+VMESH_INLINE void store(Eight v, float* to) { reinterpret_cast<EightAnywhere*>(to)->value = v; }
 VMESH_INLINE Eight all(float v) { return Eight{v, v, v, v, v, v, v, v}; }
 VMESH_INLINE Eight smaller(Eight a, Eight b) { return a < b ? a : b; }
 VMESH_INLINE Eight root(Eight v) {

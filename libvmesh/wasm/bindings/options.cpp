@@ -11,7 +11,7 @@ namespace {
 
 /// A number without fraction that `Number` can hold.
 template <class Number>
-bool holds(const Json& value) {
+bool holds(const nlohmann::json& value) {
   if (!value.is_number()) return false;
   const double number = value.get<double>();
   return number == std::floor(number) && number >= static_cast<double>(std::numeric_limits<Number>::lowest()) &&
@@ -29,11 +29,11 @@ void take_parsed(GivenOptions& given, const char* name, Value& value, const Pars
 }  // namespace
 
 GivenOptions::GivenOptions(const char* text, std::string function)
-    : function_(std::move(function)), options_(Json::parse(text, nullptr, false)) {
+    : function_(std::move(function)), options_(nlohmann::json::parse(text, nullptr, false)) {
   if (!options_.is_object()) throw InvalidInput(function_ + ": the options must be an object");
 }
 
-const Json* GivenOptions::find(const char* name) {
+const nlohmann::json* GivenOptions::find(const char* name) {
   taken_.emplace_back(name);
   const auto found = options_.find(name);
   return found == options_.end() || found->is_null() ? nullptr : &*found;
@@ -44,44 +44,44 @@ void GivenOptions::refuse(const char* name, const char* type) const {
 }
 
 void GivenOptions::take(const char* name, double& value) {
-  const Json* given = find(name);
+  const nlohmann::json* given = find(name);
   if (given == nullptr) return;
   if (!given->is_number()) refuse(name, "a number");
   value = given->get<double>();
 }
 
 void GivenOptions::take(const char* name, int& value) {
-  const Json* given = find(name);
+  const nlohmann::json* given = find(name);
   if (given == nullptr) return;
   if (!holds<int>(*given)) refuse(name, "a whole number");
   value = static_cast<int>(given->get<double>());
 }
 
 void GivenOptions::take(const char* name, std::size_t& value) {
-  const Json* given = find(name);
+  const nlohmann::json* given = find(name);
   if (given == nullptr) return;
   if (!holds<std::uint32_t>(*given)) refuse(name, "a whole number, 0 or more");
   value = static_cast<std::size_t>(given->get<double>());
 }
 
 void GivenOptions::take(const char* name, bool& value) {
-  const Json* given = find(name);
+  const nlohmann::json* given = find(name);
   if (given == nullptr) return;
   if (!given->is_boolean()) refuse(name, "true or false");
   value = given->get<bool>();
 }
 
 void GivenOptions::take(const char* name, std::string& value) {
-  const Json* given = find(name);
+  const nlohmann::json* given = find(name);
   if (given == nullptr) return;
   if (!given->is_string()) refuse(name, "a text");
   value = given->get<std::string>();
 }
 
 void GivenOptions::take(const char* name, std::vector<std::string>& value) {
-  const Json* given = find(name);
+  const nlohmann::json* given = find(name);
   if (given == nullptr) return;
-  const auto is_text = [](const Json& element) { return element.is_string(); };
+  const auto is_text = [](const nlohmann::json& element) { return element.is_string(); };
   if (!given->is_array() || !std::all_of(given->begin(), given->end(), is_text)) refuse(name, "a list of texts");
   value = given->get<std::vector<std::string>>();
 }

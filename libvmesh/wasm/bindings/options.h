@@ -4,14 +4,13 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "vmesh/io/surface_io.h"
 
 #include "objects.h"
-#include "report/json.h"
 
 namespace vmesh::wasm {
-
-using tool::Json;
 
 /// An object whose members are taken one by one; what is left over is refused.
 class GivenOptions {
@@ -30,11 +29,11 @@ class GivenOptions {
   void finish() const;
 
  private:
-  const Json* find(const char* name);
+  const nlohmann::json* find(const char* name);
   [[noreturn]] void refuse(const char* name, const char* type) const;
 
   std::string function_;
-  Json options_;
+  nlohmann::json options_;
   std::vector<std::string> taken_;
 };
 

@@ -5,8 +5,11 @@
 #include <string>
 
 #include "options.h"
+#include "report/json.h"
 
 namespace vmesh::wasm {
+
+using tool::Json;
 
 std::shared_ptr<const CenterlineObject> read(const ReadRequest& request);
 

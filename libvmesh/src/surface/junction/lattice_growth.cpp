@@ -172,10 +172,13 @@ class LatticeGrowth {
         outside[n_out++] = corner[i];
       }
     }
+    // cut() numbers vertices: one after the other, as compilers evaluate arguments in orders of their own.
     if (n_in == 1) {
-      face(cut(inside[0], outside[0]), cut(inside[0], outside[1]), cut(inside[0], outside[2]), odd(inside_rank[0]));
+      const Index c = cut(inside[0], outside[2]), b = cut(inside[0], outside[1]), a = cut(inside[0], outside[0]);
+      face(a, b, c, odd(inside_rank[0]));
     } else if (n_out == 1) {
-      face(cut(inside[0], outside[0]), cut(inside[1], outside[0]), cut(inside[2], outside[0]), !odd(outside_rank[0]));
+      const Index c = cut(inside[2], outside[0]), b = cut(inside[1], outside[0]), a = cut(inside[0], outside[0]);
+      face(a, b, c, !odd(outside_rank[0]));
     } else {
       const bool flip = (inside_rank[0] == 0 && inside_rank[1] == 2) || (inside_rank[0] == 1 && inside_rank[1] == 3);
       const Index ac = cut(inside[0], outside[0]), ad = cut(inside[0], outside[1]), bc = cut(inside[1], outside[0]),

@@ -58,6 +58,22 @@ CrossSection section_at(const BranchAxis& axis, double radii) {
   return {place, point.position, axis.direction(place, kSmoothing * point.radius), point.radius};
 }
 
+/// `v` after the shortest turn that takes direction `from` to `to`: Eigen's Quaternion::FromTwoVectors(), but for
+/// opposite ones a half turn about any axis across, which needs no singular values (50 kB of WebAssembly).
+Vec3 turned(const Vec3& v, const Vec3& from, const Vec3& to) {
+  const Vec3 a = from.normalized(), b = to.normalized();
+  const double cosine = b.dot(a);
+  if (cosine < Eigen::NumTraits<double>::dummy_precision() - 1) {
+    const Vec3 axis = a.unitOrthogonal();
+    return 2 * axis.dot(v) * axis - v;
+  }
+  const double twice_w = std::sqrt(2 * (1 + cosine));
+  Eigen::Quaterniond turn;
+  turn.vec() = a.cross(b) * (1 / twice_w);
+  turn.w() = 0.5 * twice_w;
+  return turn * v;
+}
+
 bool apart(const Ring& ring, const Ring& next, double gap) {
   for (const auto& p : next.points) {
     if ((p.position - ring.center).dot(ring.normal) < gap * ring.radius) return false;
@@ -126,8 +142,7 @@ Rings RingLayer::lay_evenly(Index branch, std::vector<Vec3>& sides) const {
   for (std::size_t k = 0; k < count; ++k) {
     const double radii = step * static_cast<double>(k);
     const CrossSection here = section_at(axis, radii);
-    side = k == 0 ? reference(branch, here.normal)
-                  : Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, here.normal) * side);
+    side = k == 0 ? reference(branch, here.normal) : turned(side, rings.back().normal, here.normal);
     side = (side - side.dot(here.normal) * here.normal).normalized();
     rings.push_back(lay_one(branch, here, side, static_cast<double>(k % 2) / 2, laid.points));
     rings.back().radii = radii;
@@ -211,7 +226,7 @@ std::vector<Ring> RingLayer::spread_run(Index branch, std::span<const Ring> run,
   Vec3 across = side;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const CrossSection next = section_at(axis, places[k]);
-    if (k > 0) across = Vec3(Eigen::Quaterniond::FromTwoVectors(rings.back().normal, next.normal) * across);
+    if (k > 0) across = turned(across, rings.back().normal, next.normal);
     across = (across - across.dot(next.normal) * next.normal).normalized();
     rings.push_back(lay_one(branch, next, across, static_cast<double>(k % 2) / 2, points));
     Ring& ring = rings.back();
