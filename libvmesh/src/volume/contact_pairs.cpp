@@ -128,21 +128,26 @@ BoxTree::Box box_of(const AxisStretch& cone, double margin) {
   return box;
 }
 
+double most_rounding(double blend) { return std::min(blend / 2, kMostRounding); }
+
+Touch fork_touch(double gap) { return {std::max(kFork.smaller, gap / 0.8), kFork.larger}; }
+
 // Besides the gap, vessels must leave room for what the blend adds to each: at most half the blend, in its radii.
 class PairFinder {
  public:
   PairFinder(const ConeRelations& cones, double gap)
-      : cones_(cones), gap_(gap), most_rounding_(std::min(cones.blend() / 2, kMostRounding)) {
-    tree_ = BoxTree(static_cast<Index>(cones.cone_count()),
-                    [&](Index c) { return box_of(stretch_of(cones, c), most_rounding_); });
+      : cones_(cones), axes_(cones.centerline()), gap_(gap), most_rounding_(most_rounding(cones.blend())) {
+    tree_ = BoxTree(axes_.cone_count(), [&](Index c) { return box_of(axes_.stretch(c), most_rounding_); });
   }
 
-  std::vector<ContactPair> run() {
-    for (Index i = 0; i < cones_.cone_count(); ++i) {
-      const BoxTree::Box box = box_of(stretch_of(cones_, i), gap_ + most_rounding_);
+  // Pairs of which is_wanted(i, j), i < j.
+  template <class IsWanted>
+  std::vector<ContactPair> run(IsWanted&& is_wanted) {
+    for (Index i = 0; i < axes_.cone_count(); ++i) {
+      const BoxTree::Box box = box_of(axes_.stretch(i), gap_ + most_rounding_);
       near_.clear();
       tree_.visit_overlapping(box.low, box.high, [&](Index j) {
-        if (j > i) near_.push_back(j);
+        if (j > i && is_wanted(i, j)) near_.push_back(j);
       });
       std::sort(near_.begin(), near_.end());
       for (const Index j : near_) examine(i, j);
@@ -154,7 +159,7 @@ class PairFinder {
   // Whether the pair is at a fork: close along the graph in the wider sense of kFork.
   bool are_parting(Index i, Index j) {
     if (gap_ <= kForkGap) return false;
-    if (!parting_) parting_ = local_pairs(cones_.centerline(), {std::max(kFork.smaller, gap_ / 0.8), kFork.larger});
+    if (!parting_) parting_ = local_pairs(cones_.centerline(), fork_touch(gap_));
     return parting_->contains(i, j);
   }
 
@@ -166,7 +171,7 @@ class PairFinder {
   }
 
   void examine(Index i, Index j) {
-    const AxisStretch first = stretch_of(cones_, i), second = stretch_of(cones_, j);
+    const AxisStretch first = axes_.stretch(i), second = axes_.stretch(j);
     if (out_of_reach(first, second) || are_apart(first, second, gap_, most_rounding_) || cones_.are_one_volume(i, j))
       return;
     const double gap = are_parting(i, j) ? kForkGap : gap_;
@@ -214,6 +219,7 @@ class PairFinder {
   }
 
   const ConeRelations& cones_;
+  ConeAxes axes_;
   double gap_;            // smaller radii
   double most_rounding_;  // of either vessel, in its radii
   std::optional<PairSet> parting_;
@@ -222,8 +228,40 @@ class PairFinder {
   std::vector<ContactPair> pairs_;
 };
 
-// Pairs whose cones share a node on either side belong to one region.
-void number_regions(const ConeRelations& cones, std::vector<ContactPair>& pairs) {
+}  // namespace
+
+bool are_apart(const AxisStretch& first, const AxisStretch& second, double gap, double margin) {
+  const double r = std::max(first.r0, first.r1), q = std::max(second.r0, second.r1);
+  const double reach = (1 + margin) * (r + q) + gap * std::min(r, q);
+  const double size = first.axis.norm() + second.axis.norm() + reach;
+  return axis_distance(first, second) > reach + kNearlyParallel * size;
+}
+
+ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& second, double gap) {
+  return Approach(first, second, gap).closest();
+}
+
+double ContactQuestion::reach() const { return std::max({1.0, 2 * blend, gap + most_rounding(blend)}); }
+
+Touch ContactQuestion::widest_relation() const {
+  const Touch rounded{std::max(kOneVolume.smaller, 2 * blend), kOneVolume.larger};
+  if (gap <= kForkGap) return rounded;
+  const Touch fork = fork_touch(gap);
+  return {std::max(rounded.smaller, fork.smaller), std::max(rounded.larger, fork.larger)};
+}
+
+std::vector<ContactPair> find_contact_pairs(const ConeRelations& cones, double gap) {
+  std::vector<ContactPair> pairs = PairFinder(cones, gap).run([](Index, Index) { return true; });
+  number_regions(ConeAxes(cones.centerline()), pairs);
+  return pairs;
+}
+
+std::vector<ContactPair> find_contact_pairs_of(const ConeRelations& cones, double gap,
+                                               const std::vector<char>& marked) {
+  return PairFinder(cones, gap).run([&](Index i, Index j) { return marked[i] || marked[j]; });
+}
+
+void number_regions(const ConeAxes& cones, std::vector<ContactPair>& pairs) {
   DisjointSets joined(pairs.size());
   std::unordered_map<std::uint64_t, std::size_t> first_with;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
@@ -241,30 +279,6 @@ void number_regions(const ConeRelations& cones, std::vector<ContactPair>& pairs)
     const std::size_t first = joined.find(static_cast<Index>(n));
     pairs[n].region = first == n ? count++ : pairs[first].region;
   }
-}
-
-}  // namespace
-
-AxisStretch stretch_of(const ConeRelations& cones, Index cone, double first, double last) {
-  const Vec3 origin = cones.axis_point(cone, first);
-  return {origin, cones.axis_point(cone, last) - origin, cones.radius_at(cone, first), cones.radius_at(cone, last)};
-}
-
-bool are_apart(const AxisStretch& first, const AxisStretch& second, double gap, double margin) {
-  const double r = std::max(first.r0, first.r1), q = std::max(second.r0, second.r1);
-  const double reach = (1 + margin) * (r + q) + gap * std::min(r, q);
-  const double size = first.axis.norm() + second.axis.norm() + reach;
-  return axis_distance(first, second) > reach + kNearlyParallel * size;
-}
-
-ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& second, double gap) {
-  return Approach(first, second, gap).closest();
-}
-
-std::vector<ContactPair> find_contact_pairs(const ConeRelations& cones, double gap) {
-  std::vector<ContactPair> pairs = PairFinder(cones, gap).run();
-  number_regions(cones, pairs);
-  return pairs;
 }
 
 }  // namespace vmesh
