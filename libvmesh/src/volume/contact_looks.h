@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -24,24 +25,39 @@ class ContactLooks {
   double distance_to_others(const Vec3& p, Index cone, double limit) const;
 
  private:
+  struct Found {
+    std::vector<ContactPair> pairs;
+    std::vector<char> less_rounded;  // of cones: whether less than all of the blend is left to them
+  };
   struct Known {
     DividedCenterline vessels;
-    std::vector<ContactPair> pairs;
+    Found found;
+  };
+  struct Surroundings {
+    ConeAxes axes;
+    RelationExcerpts excerpts;
+
+    Surroundings(const Known& known, const ContactQuestion& question)
+        : axes(known.vessels.centerline), excerpts(axes, question, known.found.less_rounded) {}
   };
   struct Differences {
-    std::vector<Index> old_cones, new_cones;  ///< that the others do not have
-    std::vector<Index> new_number;            ///< of every old cone; kNone for those of old_cones
+    std::vector<Index> new_cones;   // that the old vessels do not have
+    std::vector<Index> new_number;  // of every old cone; kNone for those that the new vessels do not have
   };
 
   static Differences differences(const DividedCenterline& before, const DividedCenterline& after);
   std::size_t rounds_kept(std::size_t cones) const;
-  std::vector<ContactPair> all_pairs(const Centerline& vessels) const;
-  std::vector<ContactPair> updated(const Known& before, const DividedCenterline& after,
-                                   const Differences& differences) const;
+  Found find_all(const Centerline& vessels) const;
+  Found updated(const Known& before, const DividedCenterline& after, const Differences& differences) const;
+  void find_around(const ConeAxes& axes, const std::vector<Index>& changed, Found& found,
+                   std::vector<char>& is_seen) const;
+  bool find_in(const ConeAxes& axes, const RelationExcerpt& part, bool is_whole_at_ends, Found& found,
+               std::vector<char>& is_seen) const;
 
   ContactQuestion question_;
-  std::vector<std::optional<Known>> known_;  // by round
-  std::size_t last_ = 0;                     // looked at
+  std::vector<std::optional<Known>> known_;             // by round
+  std::size_t last_ = 0;                                // looked at
+  mutable std::unique_ptr<Surroundings> surroundings_;  // of these, once they are needed
 };
 
 }  // namespace vmesh

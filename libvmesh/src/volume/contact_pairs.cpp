@@ -27,29 +27,21 @@ constexpr Touch kFork{0.5, 0.25};  // at a fork, vessels are still parting up to
 constexpr double kNearlyParallel = 1e-6;
 constexpr double kContactRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
-// The sphere of a cone that is closest to a point, with its radii multiplied by `weight`.
-class NearestSphere {
- public:
-  NearestSphere(const AxisStretch& cone, double weight) : cone_(cone) {
-    const double length = cone.axis.norm(), taper = weight * (cone.r0 - cone.r1);
+// The sphere of a cone that is closest to a point, with its radii multiplied by a weight.
+struct NearestSphere {
+  double lag = 0, low = 0, high = 1;
+
+  NearestSphere(const AxisStretch& cone, double length, double weight) {
+    const double taper = weight * (cone.r0 - cone.r1);
     if (std::abs(taper) >= length) {
-      low_ = high_ = taper >= 0 ? 0 : 1;
+      low = high = taper >= 0 ? 0 : 1;
       return;
     }
-    inv_length2_ = 1 / (length * length);
     const double sine = taper / length;
-    lag_ = sine / std::sqrt(1 - sine * sine) / length;
+    lag = sine / std::sqrt(1 - sine * sine) / length;
   }
-  double operator()(const Vec3& p) const {
-    const Vec3 q = p - cone_.origin;
-    const double foot = q.dot(cone_.axis) * inv_length2_;
-    const double off_axis = (q - foot * cone_.axis).norm();
-    return std::clamp(foot - off_axis * lag_, low_, high_);
-  }
-
- private:
-  const AxisStretch& cone_;
-  double inv_length2_ = 0, lag_ = 0, low_ = 0, high_ = 1;
+  // `foot`: where the point's foot is on the axis.
+  double at(double foot, double off_axis) const { return std::clamp(foot - off_axis * lag, low, high); }
 };
 
 // The excess is jointly convex on the two axes: the norm of a linear map, minus linear radii, minus the gap times a
@@ -57,16 +49,25 @@ class NearestSphere {
 class Approach {
  public:
   Approach(const AxisStretch& first, const AxisStretch& second, double gap)
-      : first_(first), second_(second), gap_(gap), plain_(second, 1), widened_(second, 1 + gap) {}
+      : first_(first),
+        second_(second),
+        gap_(gap),
+        length_(second.axis.norm()),
+        inv_length2_(length_ > 0 ? 1 / (length_ * length_) : 0),
+        taper_(second.r1 - second.r0),
+        plain_(second, length_, 1),
+        widened_(second, length_, 1 + gap) {}
 
   ClosestApproach at(double s) const {
-    const Vec3 p = first_.point(s);
-    const double radius = first_.radius(s);
+    const Place place{s, first_.point(s), first_.radius(s)};
+    const Vec3 q = place.p - second_.origin;
+    const double foot = q.dot(second_.axis) * inv_length2_;
+    const double off_axis = (q - foot * second_.axis).norm();
     // Where the second vessel is the wider one, where it is the smaller one, and where they are equal.
-    ClosestApproach best = between(s, plain_(p));
-    keep_closer(best, between(s, widened_(p)));
-    const double taper = second_.r1 - second_.r0;
-    if (taper != 0) keep_closer(best, between(s, std::clamp((radius - second_.r0) / taper, 0.0, 1.0)));
+    ClosestApproach best = between(place, plain_.at(foot, off_axis));
+    if (taper_ == 0) return best;  // both are the same
+    keep_closer(best, between(place, widened_.at(foot, off_axis)));
+    keep_closer(best, between(place, std::clamp((place.radius - second_.r0) / taper_, 0.0, 1.0)));
     return best;
   }
 
@@ -91,17 +92,24 @@ class Approach {
   }
 
  private:
-  ClosestApproach between(double s, double t) const {
-    const double r = first_.radius(s), q = second_.radius(t);
-    const double distance = (first_.point(s) - second_.point(t)).norm();
-    return {distance - r - q - gap_ * std::min(r, q), s, t, distance};
+  // On the first axis.
+  struct Place {
+    double s;
+    Vec3 p;
+    double radius;
+  };
+
+  ClosestApproach between(const Place& place, double t) const {
+    const double r = place.radius, q = second_.radius(t);
+    const double distance = (place.p - second_.point(t)).norm();
+    return {distance - r - q - gap_ * std::min(r, q), place.s, t, distance};
   }
   static void keep_closer(ClosestApproach& best, const ClosestApproach& other) {
     if (other.excess < best.excess) best = other;
   }
 
   const AxisStretch &first_, &second_;
-  double gap_;
+  double gap_, length_, inv_length2_, taper_;
   NearestSphere plain_, widened_;
 };
 

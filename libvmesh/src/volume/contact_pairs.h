@@ -36,8 +36,7 @@ struct ContactQuestion {
   double gap = 0;    ///< smaller radii
   double blend = 0;  ///< of the field
 
-  /// No pair of cones is a contact, and none adds to the rounding at one, if their boxes, grown by this many of their
-  /// larger radii each, do not overlap.
+  /// Two cones are no contact if their boxes, grown by this many of their larger radii each, do not overlap.
   double reach() const;
   /// Spheres farther from each other than this are not related, whatever is between them.
   Touch widest_relation() const;

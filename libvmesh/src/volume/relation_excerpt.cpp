@@ -10,14 +10,6 @@
 #include "vmesh/core/ascending.h"
 
 namespace vmesh {
-namespace {
-
-// Mean radii along the graph over which a reduced blend grows back. Derived: 1 / kShareGrowth (segment_locality.cpp),
-// and what rounding may make of it.
-constexpr double kSharesReturn = 4.001;
-
-}  // namespace
-
 BoxTree::Box grown_box(const ConeAxes& cones, Index cone, const ContactQuestion& question) {
   const CenterlineNode& from = cones.centerline().node(cones.first_node(cone));
   const CenterlineNode& to = cones.centerline().node(cones.last_node(cone));
@@ -25,8 +17,9 @@ BoxTree::Box grown_box(const ConeAxes& cones, Index cone, const ContactQuestion&
   return {from.position.cwiseMin(to.position).array() - around, from.position.cwiseMax(to.position).array() + around};
 }
 
-RelationExcerpts::RelationExcerpts(const ConeAxes& cones, const ContactQuestion& question)
-    : cones_(cones), question_(question), widest_(question.widest_relation()) {
+RelationExcerpts::RelationExcerpts(const ConeAxes& cones, const ContactQuestion& question,
+                                   const std::vector<char>& less_rounded)
+    : cones_(cones), question_(question), less_rounded_(less_rounded), widest_(question.widest_relation()) {
   tree_ = BoxTree(cones.cone_count(), [this](Index c) { return grown_box(cones_, c, question_); });
 }
 
@@ -58,7 +51,7 @@ std::vector<Index> RelationExcerpts::faced_at(Index node) const {
   const Centerline& centerline = cones_.centerline();
   std::vector<Index> faced;
   const auto& [p, radius] = centerline.node(node);
-  const double around = (1 + question_.reach()) * radius;
+  const double around = (1 + widest_.smaller) * radius;
   tree_.visit_overlapping(p.array() - around, p.array() + around, [&](Index c) {
     if (may_face(node, c)) faced.push_back(c);
   });
@@ -81,8 +74,17 @@ std::vector<Index> RelationExcerpts::faced_at(Index node) const {
   return faced;
 }
 
-// The cones, those along the graph up to where shares have returned and parts may end, and those faced there.
-std::vector<Index> RelationExcerpts::closed(const std::vector<Index>& cones) const {
+// Whether the part may end at a node. Adds what it faces to `all`.
+bool RelationExcerpts::ends_at(Index node, std::vector<Index>& all) const {
+  const auto incident = cones_.centerline().incident_segments(node);
+  if (std::ranges::any_of(incident, [this](Index s) { return less_rounded_[s] != 0; })) return false;
+  const std::vector<Index> faced = faced_at(node);
+  all.insert(all.end(), faced.begin(), faced.end());
+  return !faced.empty();
+}
+
+// The cones, those along the graph up to where parts may end, and those faced there.
+std::vector<Index> RelationExcerpts::influenced_by(const std::vector<Index>& cones, double beyond) const {
   const Centerline& centerline = cones_.centerline();
   std::unordered_map<Index, double> away;  // of nodes, mean radii
   using Entry = std::pair<double, Index>;
@@ -106,11 +108,7 @@ std::vector<Index> RelationExcerpts::closed(const std::vector<Index>& cones) con
     if (distance > away.at(node)) continue;
     const auto incident = centerline.incident_segments(node);
     if (std::ranges::all_of(incident, [&](Index s) { return inner[s] != 0; })) continue;
-    if (distance >= kSharesReturn) {
-      const std::vector<Index> faced = faced_at(node);
-      all.insert(all.end(), faced.begin(), faced.end());
-      if (!faced.empty()) continue;
-    }
+    if (distance >= beyond && ends_at(node, all)) continue;
     for (const Index s : incident) {
       if (inner[s]) continue;
       inner[s] = 1;
@@ -126,11 +124,11 @@ RelationExcerpt RelationExcerpts::take(const std::vector<Index>& cones) const {
   std::vector<Index> around = cones;
   for (const Index c : cones) add_near(grown_box(cones_, c, question_), around);
   sort_unique(around);
-  return part(closed(around), cones);
+  return part(influenced_by(around), cones);
 }
 
 RelationExcerpt RelationExcerpts::take_alone(const std::vector<Index>& cones) const {
-  return part(closed(cones), cones);
+  return part(influenced_by(cones), cones);
 }
 
 RelationExcerpt RelationExcerpts::part(const std::vector<Index>& cones, const std::vector<Index>& near) const {

@@ -28,29 +28,31 @@ BoxTree::Box grown_box(const ConeAxes& cones, Index cone, const ContactQuestion&
 /// which is reached without it.
 class RelationExcerpts {
  public:
-  /// Both must outlive it.
-  RelationExcerpts(const ConeAxes& cones, const ContactQuestion& question);
+  /// `less_rounded`: of every cone, whether less than all of the blend is left to it. All must outlive it.
+  RelationExcerpts(const ConeAxes& cones, const ContactQuestion& question, const std::vector<char>& less_rounded);
 
   /// Adds the cones whose boxes (grown_box) overlap a box.
   void add_near(const BoxTree::Box& box, std::vector<Index>& near) const;
 
-  /// The cones on whose relations those of `cones` (ascending) may have an influence; ascending.
-  std::vector<Index> influenced_by(const std::vector<Index>& cones) const { return closed(cones); }
+  /// The cones on whose relations those of `cones` (ascending) may have an influence, and those up to `beyond` mean
+  /// radii farther along the graph; ascending.
+  std::vector<Index> influenced_by(const std::vector<Index>& cones, double beyond = 0) const;
 
-  /// A part in which all relations between `cones` (ascending) and others are known, and those between cones near them.
+  /// A part in which all relations of `cones` (ascending) are known, and those of the cones near them.
   RelationExcerpt take(const std::vector<Index>& cones) const;
   /// The same, without what is near in space but not along the graph.
   RelationExcerpt take_alone(const std::vector<Index>& cones) const;
 
  private:
+  bool ends_at(Index node, std::vector<Index>& all) const;
   std::vector<Index> faced_at(Index node) const;
-  std::vector<Index> closed(const std::vector<Index>& cones) const;
   RelationExcerpt part(const std::vector<Index>& cones, const std::vector<Index>& near) const;
   bool may_face(Index node, Index cone) const;
   bool faces_node(Index node, Index other) const;
 
   const ConeAxes& cones_;
   const ContactQuestion& question_;
+  const std::vector<char>& less_rounded_;
   Touch widest_;
   BoxTree tree_;
 };
