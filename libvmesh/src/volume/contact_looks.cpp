@@ -14,7 +14,7 @@ namespace {
 // Rounds whose vessels are kept, and cones in all of them together. Measured on VascularNetworkFixed-002 and
 // Neuron_3_random_walker.
 constexpr std::size_t kMostRounds = 100, kMostCones = 1'000'000;
-// Of the cones: where more have changed, all are looked at.
+// Of the cones: where more have changed, or may be influenced by that, all are looked at.
 constexpr double kMostChanged = 0.5;
 // Mean radii along the graph over which a reduced blend grows back. Derived: 1 / kShareGrowth (segment_locality.cpp),
 // and what rounding may make of it.
@@ -59,6 +59,7 @@ ContactLooks::Differences ContactLooks::differences(const DividedCenterline& bef
     if (same) {
       result.new_number[old_cone] = new_cone;
     } else {
+      result.old_cones.push_back(old_cone);
       result.new_cones.push_back(new_cone);
     }
   };
@@ -66,7 +67,7 @@ ContactLooks::Differences ContactLooks::differences(const DividedCenterline& bef
   Index i = 0, j = 0;
   while (i < before.pieces.size() || j < after.pieces.size()) {
     if (j == after.pieces.size() || (i < before.pieces.size() && key(before.pieces[i]) < key(after.pieces[j]))) {
-      ++i;
+      result.old_cones.push_back(i++);
     } else if (i == before.pieces.size() || key(after.pieces[j]) < key(before.pieces[i])) {
       result.new_cones.push_back(j++);
     } else {
@@ -94,7 +95,7 @@ const std::vector<ContactPair>& ContactLooks::look(DividedCenterline vessels, st
   const Known* nearest = nullptr;
   Differences least;
   for (const std::size_t r : {last_, round}) {
-    if (r >= known_.size() || !known_[r] || nearest == &*known_[r]) continue;
+    if (at_all_ || r >= known_.size() || !known_[r] || nearest == &*known_[r]) continue;
     Differences other = differences(known_[r]->vessels, vessels);
     if (nearest && other.new_cones.size() >= least.new_cones.size()) continue;
     nearest = &*known_[r];
@@ -107,14 +108,23 @@ const std::vector<ContactPair>& ContactLooks::look(DividedCenterline vessels, st
   return known_[round]->found.pairs;
 }
 
-// Looks around `changed` cones, farther where a change in the blend may extend beyond them.
-void ContactLooks::find_around(const ConeAxes& axes, const std::vector<Index>& changed, Found& found,
-                               std::vector<char>& is_seen) const {
+// Looks around what has changed, farther where a change in the blend may extend beyond them. Returns false if that is
+// hardly less than everything.
+bool ContactLooks::find_around(const ConeAxes& axes, const ConeAxes& old_axes, const Differences& differences,
+                               Found& found, std::vector<char>& is_seen) const {
   const RelationExcerpts excerpts(axes, question_, found.less_rounded);
+  std::vector<Index> changed = differences.new_cones;  // and what was beside cones that have gone
+  for (const Index c : differences.old_cones) excerpts.add_near(grown_box(old_axes, c, question_), changed);
+  sort_unique(changed);
+  const auto is_little = [&](const std::vector<Index>& cones) {
+    return static_cast<double>(cones.size()) <= kMostChanged * axes.cone_count();
+  };
   const std::vector<Index> influenced = excerpts.influenced_by(changed);
+  if (!is_little(influenced)) return false;
   const bool was_reduced = std::ranges::any_of(influenced, [&](Index c) { return found.less_rounded[c] != 0; });
-  if (!was_reduced && find_in(axes, excerpts.take(influenced), true, found, is_seen)) return;
-  find_in(axes, excerpts.take(excerpts.influenced_by(changed, kSharesReturn)), false, found, is_seen);
+  if (!was_reduced && find_in(axes, excerpts.take(influenced), true, found, is_seen)) return true;
+  const std::vector<Index> beyond = excerpts.influenced_by(changed, kSharesReturn);
+  return is_little(beyond) && find_in(axes, excerpts.take(beyond), false, found, is_seen);
 }
 
 // Looks at a part. Returns false, and has found nothing, if the blend has to be whole at its ends but is not.
@@ -147,7 +157,9 @@ ContactLooks::Found ContactLooks::updated(const Known& before, const DividedCent
     if (differences.new_number[c] != kNone)
       found.less_rounded[differences.new_number[c]] = before.found.less_rounded[c];
   }
-  if (!changed.empty()) find_around(axes, changed, found, is_seen);
+  if (!(changed.empty() && differences.old_cones.empty()) &&
+      !find_around(axes, ConeAxes(before.vessels.centerline), differences, found, is_seen))
+    return find_all(after.centerline);
   for (ContactPair pair : before.found.pairs) {
     pair.i = differences.new_number[pair.i];
     pair.j = differences.new_number[pair.j];
@@ -161,11 +173,15 @@ ContactLooks::Found ContactLooks::updated(const Known& before, const DividedCent
 
 double ContactLooks::distance_to_others(const Vec3& p, Index cone, double limit) const {
   if (!surroundings_) surroundings_ = std::make_unique<Surroundings>(*known_[last_], question_);
+  if (surroundings_->whole) return surroundings_->whole->distance_to_others(p, cone, limit);
   const RelationExcerpts& excerpts = surroundings_->excerpts;
   std::vector<Index> near = {cone};
   excerpts.add_near({p.array() - limit, p.array() + limit}, near);
   sort_unique(near);
   const RelationExcerpt part = excerpts.take_alone(near);
+  surroundings_->taken += part.cone.size();
+  if (surroundings_->taken > surroundings_->axes.cone_count())
+    surroundings_->whole.emplace(surroundings_->axes.centerline(), question_.blend);
   const ConeRelations relations(part.centerline, question_.blend);
   const auto local = relations.local_cones(place_in(part.cone, cone));
   double least = limit;

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "vmesh/volume/vessel_field.h"
+
 #include "volume/contact_pairs.h"
 #include "volume/divided_centerline.h"
 #include "volume/relation_excerpt.h"
@@ -14,7 +16,8 @@ namespace vmesh {
 /// vessels looked at before; what it finds is what find_contact_pairs() would.
 class ContactLooks {
  public:
-  explicit ContactLooks(const ContactQuestion& question) : question_(question) {}
+  /// `at_all`: looks at everything every time.
+  explicit ContactLooks(const ContactQuestion& question, bool at_all = false) : question_(question), at_all_(at_all) {}
 
   /// `vessels` divide the same centerline every time. `round` may be any number: those looked at last with the same one
   /// are likely to differ least.
@@ -36,11 +39,14 @@ class ContactLooks {
   struct Surroundings {
     ConeAxes axes;
     RelationExcerpts excerpts;
+    std::size_t taken = 0;             // cones in excerpts
+    std::optional<VesselField> whole;  // once they are more than there are
 
     Surroundings(const Known& known, const ContactQuestion& question)
         : axes(known.vessels.centerline), excerpts(axes, question, known.found.less_rounded) {}
   };
   struct Differences {
+    std::vector<Index> old_cones;   // that the new vessels do not have
     std::vector<Index> new_cones;   // that the old vessels do not have
     std::vector<Index> new_number;  // of every old cone; kNone for those that the new vessels do not have
   };
@@ -49,12 +55,13 @@ class ContactLooks {
   std::size_t rounds_kept(std::size_t cones) const;
   Found find_all(const Centerline& vessels) const;
   Found updated(const Known& before, const DividedCenterline& after, const Differences& differences) const;
-  void find_around(const ConeAxes& axes, const std::vector<Index>& changed, Found& found,
+  bool find_around(const ConeAxes& axes, const ConeAxes& old_axes, const Differences& differences, Found& found,
                    std::vector<char>& is_seen) const;
   bool find_in(const ConeAxes& axes, const RelationExcerpt& part, bool is_whole_at_ends, Found& found,
                std::vector<char>& is_seen) const;
 
   ContactQuestion question_;
+  bool at_all_;
   std::vector<std::optional<Known>> known_;             // by round
   std::size_t last_ = 0;                                // looked at
   mutable std::unique_ptr<Surroundings> surroundings_;  // of these, once they are needed

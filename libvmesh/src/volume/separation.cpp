@@ -219,7 +219,7 @@ struct Task {
   const Centerline& original;
   const SeparationOptions& options;
   const Progress& progress;
-  ContactLooks looks{{options.gap, options.blend}};
+  ContactLooks looks;
 };
 
 // Narrows vessels until those contacts are gone that can be.
@@ -327,16 +327,12 @@ SeparatedCenterline moved_and_narrowed(Task& task) {
   return best;
 }
 
-}  // namespace
-
-SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options,
-                                      const Progress& progress) {
-  check(options);
-  Task task{centerline, options, progress};
-  DividedCenterline whole = undivided(centerline);
-  std::vector<Contact> before = contacts_of(ConeAxes(centerline), task.looks.look(whole, 0));
+SeparatedCenterline separate(Task& task) {
+  const SeparationOptions& options = task.options;
+  DividedCenterline whole = undivided(task.original);
+  std::vector<Contact> before = contacts_of(ConeAxes(task.original), task.looks.look(whole, 0));
   if (before.empty()) return {std::move(whole.centerline), std::move(whole.pieces), {}};
-  SeparatedCenterline separated = narrow_moved(Moving(centerline, options.slope), task);
+  SeparatedCenterline separated = narrow_moved(Moving(task.original, options.slope), task);
   const bool enough = separated.report.left.empty() && separated.report.max_taken_relative <= options.move_beyond;
   if (!enough && options.move_beyond < options.most_taken && options.max_moves > 0) {
     SeparatedCenterline moved = moved_and_narrowed(task);
@@ -345,6 +341,24 @@ SeparatedCenterline separate_contacts(const Centerline& centerline, const Separa
   }
   separated.report.before = std::move(before);
   return separated;
+}
+
+// Whether those contacts are left that were found around what changed.
+bool is_as_reported(const SeparatedCenterline& separated, const SeparationOptions& options) {
+  const ConeRelations cones(separated.centerline, options.blend);
+  return find_contacts(cones, options.gap).size() == separated.report.left.size();
+}
+
+}  // namespace
+
+SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options,
+                                      const Progress& progress) {
+  check(options);
+  Task task{centerline, options, progress, ContactLooks({options.gap, options.blend})};
+  SeparatedCenterline separated = separate(task);
+  if (separated.report.before.empty() || is_as_reported(separated, options)) return separated;
+  task.looks = ContactLooks({options.gap, options.blend}, true);
+  return separate(task);
 }
 
 }  // namespace vmesh
