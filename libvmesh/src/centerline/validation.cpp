@@ -33,6 +33,7 @@ class Validator {
 
   void check_node(Index n) {
     const auto& [position, radius] = nodes_[n];
+    if (position.allFinite() && std::isfinite(radius) && radius > 0) return;
     const std::string name = "node " + std::to_string(n) + ": ";
     if (!position.allFinite()) {
       add(Kind::non_finite_position, Element::node, n,
@@ -73,6 +74,7 @@ class Validator {
 
   void check_segment(Index s) {
     const auto& [a, b] = segments_[s];
+    if (is_plain(s) && nodes_[a].position != nodes_[b].position && first_[s] == s) return;
     const std::string name =
         "segment " + std::to_string(s) + " (nodes " + std::to_string(a) + ", " + std::to_string(b) + "): ";
     if (a >= nodes_.size() || b >= nodes_.size()) {

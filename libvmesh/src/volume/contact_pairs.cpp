@@ -27,29 +27,21 @@ constexpr Touch kFork{0.5, 0.25};  // at a fork, vessels are still parting up to
 constexpr double kNearlyParallel = 1e-6;
 constexpr double kContactRounding = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
-// The sphere of a cone that is closest to a point, with its radii multiplied by `weight`.
-class NearestSphere {
- public:
-  NearestSphere(const AxisStretch& cone, double weight) : cone_(cone) {
-    const double length = cone.axis.norm(), taper = weight * (cone.r0 - cone.r1);
+// The sphere of a cone that is closest to a point, with its radii multiplied by a weight.
+struct NearestSphere {
+  double lag = 0, low = 0, high = 1;
+
+  NearestSphere(const AxisStretch& cone, double length, double weight) {
+    const double taper = weight * (cone.r0 - cone.r1);
     if (std::abs(taper) >= length) {
-      low_ = high_ = taper >= 0 ? 0 : 1;
+      low = high = taper >= 0 ? 0 : 1;
       return;
     }
-    inv_length2_ = 1 / (length * length);
     const double sine = taper / length;
-    lag_ = sine / std::sqrt(1 - sine * sine) / length;
+    lag = sine / std::sqrt(1 - sine * sine) / length;
   }
-  double operator()(const Vec3& p) const {
-    const Vec3 q = p - cone_.origin;
-    const double foot = q.dot(cone_.axis) * inv_length2_;
-    const double off_axis = (q - foot * cone_.axis).norm();
-    return std::clamp(foot - off_axis * lag_, low_, high_);
-  }
-
- private:
-  const AxisStretch& cone_;
-  double inv_length2_ = 0, lag_ = 0, low_ = 0, high_ = 1;
+  // `foot`: where the point's foot is on the axis.
+  double at(double foot, double off_axis) const { return std::clamp(foot - off_axis * lag, low, high); }
 };
 
 // The excess is jointly convex on the two axes: the norm of a linear map, minus linear radii, minus the gap times a
@@ -57,16 +49,25 @@ class NearestSphere {
 class Approach {
  public:
   Approach(const AxisStretch& first, const AxisStretch& second, double gap)
-      : first_(first), second_(second), gap_(gap), plain_(second, 1), widened_(second, 1 + gap) {}
+      : first_(first),
+        second_(second),
+        gap_(gap),
+        length_(second.axis.norm()),
+        inv_length2_(length_ > 0 ? 1 / (length_ * length_) : 0),
+        taper_(second.r1 - second.r0),
+        plain_(second, length_, 1),
+        widened_(second, length_, 1 + gap) {}
 
   ClosestApproach at(double s) const {
-    const Vec3 p = first_.point(s);
-    const double radius = first_.radius(s);
+    const Place place{s, first_.point(s), first_.radius(s)};
+    const Vec3 q = place.p - second_.origin;
+    const double foot = q.dot(second_.axis) * inv_length2_;
+    const double off_axis = (q - foot * second_.axis).norm();
     // Where the second vessel is the wider one, where it is the smaller one, and where they are equal.
-    ClosestApproach best = between(s, plain_(p));
-    keep_closer(best, between(s, widened_(p)));
-    const double taper = second_.r1 - second_.r0;
-    if (taper != 0) keep_closer(best, between(s, std::clamp((radius - second_.r0) / taper, 0.0, 1.0)));
+    ClosestApproach best = between(place, plain_.at(foot, off_axis));
+    if (taper_ == 0) return best;  // both are the same
+    keep_closer(best, between(place, widened_.at(foot, off_axis)));
+    keep_closer(best, between(place, std::clamp((place.radius - second_.r0) / taper_, 0.0, 1.0)));
     return best;
   }
 
@@ -91,17 +92,24 @@ class Approach {
   }
 
  private:
-  ClosestApproach between(double s, double t) const {
-    const double r = first_.radius(s), q = second_.radius(t);
-    const double distance = (first_.point(s) - second_.point(t)).norm();
-    return {distance - r - q - gap_ * std::min(r, q), s, t, distance};
+  // On the first axis.
+  struct Place {
+    double s;
+    Vec3 p;
+    double radius;
+  };
+
+  ClosestApproach between(const Place& place, double t) const {
+    const double r = place.radius, q = second_.radius(t);
+    const double distance = (place.p - second_.point(t)).norm();
+    return {distance - r - q - gap_ * std::min(r, q), place.s, t, distance};
   }
   static void keep_closer(ClosestApproach& best, const ClosestApproach& other) {
     if (other.excess < best.excess) best = other;
   }
 
   const AxisStretch &first_, &second_;
-  double gap_;
+  double gap_, length_, inv_length2_, taper_;
   NearestSphere plain_, widened_;
 };
 
@@ -128,21 +136,26 @@ BoxTree::Box box_of(const AxisStretch& cone, double margin) {
   return box;
 }
 
+double most_rounding(double blend) { return std::min(blend / 2, kMostRounding); }
+
+Touch fork_touch(double gap) { return {std::max(kFork.smaller, gap / 0.8), kFork.larger}; }
+
 // Besides the gap, vessels must leave room for what the blend adds to each: at most half the blend, in its radii.
 class PairFinder {
  public:
   PairFinder(const ConeRelations& cones, double gap)
-      : cones_(cones), gap_(gap), most_rounding_(std::min(cones.blend() / 2, kMostRounding)) {
-    tree_ = BoxTree(static_cast<Index>(cones.cone_count()),
-                    [&](Index c) { return box_of(stretch_of(cones, c), most_rounding_); });
+      : cones_(cones), axes_(cones.centerline()), gap_(gap), most_rounding_(most_rounding(cones.blend())) {
+    tree_ = BoxTree(axes_.cone_count(), [&](Index c) { return box_of(axes_.stretch(c), most_rounding_); });
   }
 
-  std::vector<ContactPair> run() {
-    for (Index i = 0; i < cones_.cone_count(); ++i) {
-      const BoxTree::Box box = box_of(stretch_of(cones_, i), gap_ + most_rounding_);
+  // Pairs of which is_wanted(i, j), i < j.
+  template <class IsWanted>
+  std::vector<ContactPair> run(IsWanted&& is_wanted) {
+    for (Index i = 0; i < axes_.cone_count(); ++i) {
+      const BoxTree::Box box = box_of(axes_.stretch(i), gap_ + most_rounding_);
       near_.clear();
       tree_.visit_overlapping(box.low, box.high, [&](Index j) {
-        if (j > i) near_.push_back(j);
+        if (j > i && is_wanted(i, j)) near_.push_back(j);
       });
       std::sort(near_.begin(), near_.end());
       for (const Index j : near_) examine(i, j);
@@ -154,7 +167,7 @@ class PairFinder {
   // Whether the pair is at a fork: close along the graph in the wider sense of kFork.
   bool are_parting(Index i, Index j) {
     if (gap_ <= kForkGap) return false;
-    if (!parting_) parting_ = local_pairs(cones_.centerline(), {std::max(kFork.smaller, gap_ / 0.8), kFork.larger});
+    if (!parting_) parting_ = local_pairs(cones_.centerline(), fork_touch(gap_));
     return parting_->contains(i, j);
   }
 
@@ -166,7 +179,7 @@ class PairFinder {
   }
 
   void examine(Index i, Index j) {
-    const AxisStretch first = stretch_of(cones_, i), second = stretch_of(cones_, j);
+    const AxisStretch first = axes_.stretch(i), second = axes_.stretch(j);
     if (out_of_reach(first, second) || are_apart(first, second, gap_, most_rounding_) || cones_.are_one_volume(i, j))
       return;
     const double gap = are_parting(i, j) ? kForkGap : gap_;
@@ -214,6 +227,7 @@ class PairFinder {
   }
 
   const ConeRelations& cones_;
+  ConeAxes axes_;
   double gap_;            // smaller radii
   double most_rounding_;  // of either vessel, in its radii
   std::optional<PairSet> parting_;
@@ -222,8 +236,40 @@ class PairFinder {
   std::vector<ContactPair> pairs_;
 };
 
-// Pairs whose cones share a node on either side belong to one region.
-void number_regions(const ConeRelations& cones, std::vector<ContactPair>& pairs) {
+}  // namespace
+
+bool are_apart(const AxisStretch& first, const AxisStretch& second, double gap, double margin) {
+  const double r = std::max(first.r0, first.r1), q = std::max(second.r0, second.r1);
+  const double reach = (1 + margin) * (r + q) + gap * std::min(r, q);
+  const double size = first.axis.norm() + second.axis.norm() + reach;
+  return axis_distance(first, second) > reach + kNearlyParallel * size;
+}
+
+ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& second, double gap) {
+  return Approach(first, second, gap).closest();
+}
+
+double ContactQuestion::reach() const { return std::max({1.0, 2 * blend, gap + most_rounding(blend)}); }
+
+Touch ContactQuestion::widest_relation() const {
+  const Touch rounded{std::max(kOneVolume.smaller, 2 * blend), kOneVolume.larger};
+  if (gap <= kForkGap) return rounded;
+  const Touch fork = fork_touch(gap);
+  return {std::max(rounded.smaller, fork.smaller), std::max(rounded.larger, fork.larger)};
+}
+
+std::vector<ContactPair> find_contact_pairs(const ConeRelations& cones, double gap) {
+  std::vector<ContactPair> pairs = PairFinder(cones, gap).run([](Index, Index) { return true; });
+  number_regions(ConeAxes(cones.centerline()), pairs);
+  return pairs;
+}
+
+std::vector<ContactPair> find_contact_pairs_of(const ConeRelations& cones, double gap,
+                                               const std::vector<char>& marked) {
+  return PairFinder(cones, gap).run([&](Index i, Index j) { return marked[i] || marked[j]; });
+}
+
+void number_regions(const ConeAxes& cones, std::vector<ContactPair>& pairs) {
   DisjointSets joined(pairs.size());
   std::unordered_map<std::uint64_t, std::size_t> first_with;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
@@ -241,30 +287,6 @@ void number_regions(const ConeRelations& cones, std::vector<ContactPair>& pairs)
     const std::size_t first = joined.find(static_cast<Index>(n));
     pairs[n].region = first == n ? count++ : pairs[first].region;
   }
-}
-
-}  // namespace
-
-AxisStretch stretch_of(const ConeRelations& cones, Index cone, double first, double last) {
-  const Vec3 origin = cones.axis_point(cone, first);
-  return {origin, cones.axis_point(cone, last) - origin, cones.radius_at(cone, first), cones.radius_at(cone, last)};
-}
-
-bool are_apart(const AxisStretch& first, const AxisStretch& second, double gap, double margin) {
-  const double r = std::max(first.r0, first.r1), q = std::max(second.r0, second.r1);
-  const double reach = (1 + margin) * (r + q) + gap * std::min(r, q);
-  const double size = first.axis.norm() + second.axis.norm() + reach;
-  return axis_distance(first, second) > reach + kNearlyParallel * size;
-}
-
-ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& second, double gap) {
-  return Approach(first, second, gap).closest();
-}
-
-std::vector<ContactPair> find_contact_pairs(const ConeRelations& cones, double gap) {
-  std::vector<ContactPair> pairs = PairFinder(cones, gap).run();
-  number_regions(cones, pairs);
-  return pairs;
 }
 
 }  // namespace vmesh

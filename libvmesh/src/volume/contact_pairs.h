@@ -3,20 +3,12 @@
 #include <vector>
 
 #include "vmesh/volume/cone_relations.h"
+#include "vmesh/volume/contacts.h"
+
+#include "volume/cone_axes.h"
+#include "volume/local_pairs.h"
 
 namespace vmesh {
-
-/// A stretch of a round cone's axis, with the radii at its ends.
-struct AxisStretch {
-  Vec3 origin, axis;
-  double r0 = 0, r1 = 0;
-
-  Vec3 point(double t) const { return origin + t * axis; }
-  double radius(double t) const { return r0 + t * (r1 - r0); }
-};
-
-/// The stretch of `cone` between parameters `first` and `last`.
-AxisStretch stretch_of(const ConeRelations& cones, Index cone, double first = 0, double last = 1);
 
 /// Where two cones come closest, in terms of the wall distance minus `gap` times the smaller local radius.
 struct ClosestApproach {
@@ -39,7 +31,27 @@ struct ContactPair {
   Index region = kNone;  ///< regions are numbered in the order of their first pairs
 };
 
+/// What is asked of vessels that are not neighbours, and how far it reaches.
+struct ContactQuestion {
+  double gap = 0;    ///< smaller radii
+  double blend = 0;  ///< of the field
+
+  /// Two cones are no contact if their boxes, grown by this many of their larger radii each, do not overlap.
+  double reach() const;
+  /// Spheres farther from each other than this are not related, whatever is between them.
+  Touch widest_relation() const;
+};
+
 /// All such pairs, ordered by (i, j).
 std::vector<ContactPair> find_contact_pairs(const ConeRelations& cones, double gap);
+
+/// Those with at least one marked cone, and without their regions.
+std::vector<ContactPair> find_contact_pairs_of(const ConeRelations& cones, double gap, const std::vector<char>& marked);
+
+/// Pairs whose cones share a node on either side belong to one region.
+void number_regions(const ConeAxes& cones, std::vector<ContactPair>& pairs);
+
+/// The contacts of these pairs, deepest first.
+std::vector<Contact> contacts_of(const ConeAxes& cones, const std::vector<ContactPair>& pairs);
 
 }  // namespace vmesh

@@ -13,7 +13,7 @@
 namespace vmesh {
 namespace {
 
-std::vector<Index> branch_of_cones(const ConeRelations& cones) {
+std::vector<Index> branch_of_cones(const ConeAxes& cones) {
   std::vector<Index> branch_of(cones.cone_count(), kNone);
   const BranchTable branches(cones.centerline());
   for (Index b = 0; b < branches.size(); ++b) {
@@ -22,7 +22,7 @@ std::vector<Index> branch_of_cones(const ConeRelations& cones) {
   return branch_of;
 }
 
-Contact contact_at(const ConeRelations& cones, const ContactPair& pair) {
+Contact contact_at(const ConeAxes& cones, const ContactPair& pair) {
   const double r = cones.radius_at(pair.i, pair.closest.s), q = cones.radius_at(pair.j, pair.closest.t);
   const Vec3 from = cones.axis_point(pair.i, pair.closest.s), to = cones.axis_point(pair.j, pair.closest.t);
   const double distance = pair.closest.distance;
@@ -38,8 +38,12 @@ Contact contact_at(const ConeRelations& cones, const ContactPair& pair) {
 
 std::vector<Contact> find_contacts(const ConeRelations& cones, double gap) {
   if (!(gap >= 0 && gap <= 1)) throw InvalidInput("gap must be in [0, 1]");
+  return contacts_of(ConeAxes(cones.centerline()), find_contact_pairs(cones, gap));
+}
+
+std::vector<Contact> contacts_of(const ConeAxes& cones, const std::vector<ContactPair>& pairs) {
   std::vector<Contact> contacts;
-  for (const ContactPair& pair : find_contact_pairs(cones, gap)) {
+  for (const ContactPair& pair : pairs) {
     Contact contact = contact_at(cones, pair);
     if (pair.region == contacts.size()) {
       contacts.push_back(contact);

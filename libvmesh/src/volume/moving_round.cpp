@@ -9,8 +9,6 @@
 
 #include <Eigen/Geometry>
 
-#include "vmesh/volume/vessel_field.h"
-
 #include "volume/contact_pairs.h"
 
 namespace vmesh {
@@ -42,8 +40,8 @@ struct CloseLeaf {
   ContactSide side, other_side;    // on the original
 };
 
-Vec3 tangent_of(const VesselField& field, Index cone) {
-  const Vec3 axis = field.relations().axis_point(cone, 1) - field.relations().axis_point(cone, 0);
+Vec3 tangent_of(const ConeAxes& cones, Index cone) {
+  const Vec3 axis = cones.axis_point(cone, 1) - cones.axis_point(cone, 0);
   const double length = axis.norm();
   return length > 0 ? Vec3(axis / length) : Vec3(Vec3::Zero());
 }
@@ -58,11 +56,7 @@ Vec3 some_perpendicular(const Vec3& direction) {
 class MovingRound {
  public:
   MovingRound(const MovingTask& task, Moving& moving)
-      : task_(task), moving_(moving), field_(task.narrowed.centerline, task.blend) {
-    for (Index n = 0; n < task.original.nodes().size(); ++n) {
-      if (task.original.degree(n) == 0) isolated_.push_back(n);
-    }
-  }
+      : task_(task), moving_(moving), cones_(task.narrowed.centerline) {}
 
   int run() {
     for (const auto& [region, leaves] : close_regions()) answer(leaves);
@@ -75,7 +69,7 @@ class MovingRound {
   // The leaves that would lose too much, by region.
   std::map<Index, Region> close_regions() const {
     std::map<Index, Region> regions;
-    for (const ContactPair& pair : find_contact_pairs(field_.relations(), task_.gap)) {
+    for (const ContactPair& pair : task_.pairs) {
       for (const auto& [cone, other] : {std::pair{pair.i, pair.j}, std::pair{pair.j, pair.i}}) {
         for (CloseLeaf& leaf : close_leaves(cone, other, pair.gap)) regions[pair.region].push_back(std::move(leaf));
       }
@@ -85,11 +79,11 @@ class MovingRound {
 
   Region close_leaves(Index cone, Index other, double gap) const {
     Region leaves;
-    const AxisStretch across = stretch_of(field_.relations(), other);
+    const AxisStretch across = cones_.stretch(other);
     const Index count = cone < task_.narrowed.pieces.size() ? leaf_count_of(task_.narrowed.centerline, cone) : 1;
     for (Index n = 0; n < count; ++n) {
       const double first = static_cast<double>(n) / count, last = static_cast<double>(n + 1) / count;
-      const AxisStretch part = stretch_of(field_.relations(), cone, first, last);
+      const AxisStretch part = cones_.stretch(cone, first, last);
       if (are_apart(part, across, gap, 0)) continue;
       const ClosestApproach closest = closest_approach(part, across, gap);
       if (closest.excess >= 0) continue;
@@ -115,10 +109,9 @@ class MovingRound {
   }
 
   ContactSide original_side(Index cone, double t) const {
-    if (cone >= task_.narrowed.pieces.size()) {
-      const auto rank = static_cast<Index>(cone - task_.narrowed.pieces.size());
-      const auto segment = static_cast<Index>(task_.original.segments().size() + rank);
-      return {segment, 0, kNone, task_.original.node(isolated_[rank]).radius};
+    if (cones_.is_sphere(cone)) {
+      const auto segment = static_cast<Index>(task_.original.segments().size() + cone - task_.narrowed.pieces.size());
+      return {segment, 0, kNone, task_.original.node(cones_.isolated_node(cone)).radius};
     }
     const SegmentPiece& piece = task_.narrowed.pieces[cone];
     const double original_t = piece.original_t(t);
@@ -126,7 +119,7 @@ class MovingRound {
   }
 
   MovedStretch original_stretch(Index cone, double first, double last) const {
-    if (cone >= task_.narrowed.pieces.size()) return {kNone, 0, 0, isolated_[cone - task_.narrowed.pieces.size()]};
+    if (cones_.is_sphere(cone)) return {kNone, 0, 0, cones_.isolated_node(cone)};
     const SegmentPiece& piece = task_.narrowed.pieces[cone];
     return {piece.segment, piece.original_t(first), piece.original_t(last), kNone};
   }
@@ -162,7 +155,7 @@ class MovingRound {
     }
     double further = 0;
     for (const CloseLeaf& leaf : along_the_same_vessel(region, anchor)) {
-      if (std::abs(shift.direction.dot(tangent_of(field_, leaf.cone))) > kSideways) continue;
+      if (std::abs(shift.direction.dot(tangent_of(cones_, leaf.cone))) > kSideways) continue;
       further = std::max(further, distance_to_go(leaf, shift.direction));
       shift.stretches.push_back(leaf.stretch);
     }
@@ -191,7 +184,7 @@ class MovingRound {
   }
 
   Vec3 direction_away(const CloseLeaf& leaf) const {
-    const Vec3 own = tangent_of(field_, leaf.cone), other = tangent_of(field_, leaf.other);
+    const Vec3 own = tangent_of(cones_, leaf.cone), other = tangent_of(cones_, leaf.other);
     const double apart = leaf.from_other.norm();
     const Vec3 sideways = leaf.from_other - leaf.from_other.dot(own) * own;
     if (apart > kFarApart * leaf.wanted && sideways.norm() > apart / 2) return sideways.normalized();
@@ -214,8 +207,8 @@ class MovingRound {
   // How far the walls of other vessels would be from the leaf's axis after it moved, mm.
   double room(const CloseLeaf& leaf, const Vec3& direction) const {
     const double t = task_.narrowed.pieces.size() > leaf.cone ? 0.5 : 0;
-    const Vec3 place = field_.relations().axis_point(leaf.cone, t) + distance_to_go(leaf, direction) * direction;
-    return field_.distance_to_others(place, leaf.cone, leaf.wanted);
+    const Vec3 place = cones_.axis_point(leaf.cone, t) + distance_to_go(leaf, direction) * direction;
+    return task_.looks.distance_to_others(place, leaf.cone, leaf.wanted);
   }
 
   // The leaves of a region that are on the anchor's side of it.
@@ -223,7 +216,7 @@ class MovingRound {
     const std::map<Index, double> away = walk(anchor, kAlong * (anchor.side.radius + anchor.other_side.radius));
     const auto distance = [&](Index cone) {
       double least = std::numeric_limits<double>::infinity();
-      for (const Index n : {field_.relations().first_node(cone), field_.relations().last_node(cone)}) {
+      for (const Index n : {cones_.first_node(cone), cones_.last_node(cone)}) {
         const auto found = away.find(n);
         if (found != away.end()) least = std::min(least, found->second);
       }
@@ -249,8 +242,8 @@ class MovingRound {
       known->second = distance;
       open.emplace(distance, node);
     };
-    reach(field_.relations().first_node(anchor.cone), 0);
-    reach(field_.relations().last_node(anchor.cone), 0);
+    reach(cones_.first_node(anchor.cone), 0);
+    reach(cones_.last_node(anchor.cone), 0);
     while (!open.empty()) {
       const auto [distance, node] = open.top();
       open.pop();
@@ -263,8 +256,8 @@ class MovingRound {
 
   const MovingTask& task_;
   Moving& moving_;
-  VesselField field_;
-  std::vector<Index> isolated_, changed_;
+  ConeAxes cones_;
+  std::vector<Index> changed_;
 };
 
 }  // namespace

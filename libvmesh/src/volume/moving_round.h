@@ -1,5 +1,6 @@
 #pragma once
 
+#include "volume/contact_looks.h"
 #include "volume/moving.h"
 
 namespace vmesh {
@@ -14,8 +15,10 @@ struct MovingChoice {
 struct MovingTask {
   const Centerline& original;
   const DividedCenterline& narrowed;
-  double gap, blend;     ///< as in SeparationOptions
-  double most_narrowed;  ///< share of a radius
+  const std::vector<ContactPair>& pairs;  ///< their contacts
+  const ContactLooks& looks;              ///< at them last
+  double gap;                             ///< as in SeparationOptions
+  double most_narrowed;                   ///< share of a radius
   MovingChoice choice = {};
 };
 

@@ -1,9 +1,12 @@
 #include "volume/rounded_over.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "vmesh/core/ascending.h"
+#include "vmesh/core/box_tree.h"
 #include "vmesh/volume/round_cone.h"
 
 namespace vmesh {
@@ -11,6 +14,7 @@ namespace {
 
 constexpr double kSphereStep = 0.5;  // mean radii between two spheres that represent a cone
 constexpr double kMostSpheres = 200;
+constexpr double kRoundingInBoxes = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
 using Lists = std::vector<std::vector<Index>>;
 
@@ -22,6 +26,7 @@ class RoundedOver {
     const Centerline& centerline = relations.centerline();
     for (Index c = 0; c < relations.cone_count(); ++c)
       cones_.emplace_back(centerline.node(relations.first_node(c)), centerline.node(relations.last_node(c)));
+    tree_ = BoxTree(static_cast<Index>(cones_.size()), [this](Index c) { return box_of(c, relations_.blend()); });
   }
 
   // What is added for one cone may make others reach it, so the cones next to it are visited again.
@@ -61,15 +66,25 @@ class RoundedOver {
     for (const Index i : added_[c]) visit(i);
   }
 
+  // The box of a cone, grown by `share` of its larger radius and more than rounding can make of that.
+  BoxTree::Box box_of(Index c, double share) const {
+    const RoundCone& cone = cones_[c];
+    const double widest = std::max(cone.r0, cone.r1);
+    const Vec3 end = cone.origin + cone.axis;
+    const double size = cone.origin.cwiseAbs().cwiseMax(end.cwiseAbs()).maxCoeff();
+    const double around = (1 + share) * widest + kRoundingInBoxes * (size + widest);
+    return {cone.origin.cwiseMin(end).array() - around, cone.origin.cwiseMax(end).array() + around};
+  }
+
   void visit(Index c, std::vector<std::pair<Index, Index>>& found) {
     for_local(c, [&](Index i) { mark_[i] = c; });
     others_.clear();
-    for_local(c, [&](Index i) {
-      for_local(i, [&](Index j) {
-        if (mark_[j] == c || apart(c, j)) return;
-        mark_[j] = c;
-        others_.push_back(j);
-      });
+    const BoxTree::Box box = box_of(c, 0);
+    tree_.visit_overlapping(box.low, box.high, [&](Index j) {
+      if (mark_[j] == c) return;
+      bool meet = false;
+      for_local(j, [&](Index i) { meet = meet || mark_[i] == c; });
+      if (meet && !apart(c, j)) others_.push_back(j);
     });
     if (!others_.empty()) {
       const RoundCone& cone = cones_[c];
@@ -83,18 +98,24 @@ class RoundedOver {
   void visit_sphere(Index c, double t, std::vector<std::pair<Index, Index>>& found) {
     const Vec3 p = cones_[c].origin + t * cones_[c].axis;
     const double radius = cones_[c].radius_at(t);
-    near_.clear();
-    for_local(c, [&](Index i) {
-      if (const Near n = near_at(p, i); n.value < radius + n.reach) near_.push_back(n);
-    });
+    bool is_known = false;  // near_
     std::erase_if(others_, [&](Index j) {
       const Near other = near_at(p, j);
       if (other.value >= radius + other.reach) return false;
+      if (!is_known) find_near(c, p, radius);
+      is_known = true;
       const bool reaches = std::any_of(near_.begin(), near_.end(), [&](const Near& n) {
         return rounding_reaches(n, other, radius) && !apart(n.cone, j) && are_local(n.cone, j);
       });
       if (reaches) found.push_back(std::minmax(c, j));
       return reaches;
+    });
+  }
+
+  void find_near(Index c, const Vec3& p, double radius) {
+    near_.clear();
+    for_local(c, [&](Index i) {
+      if (const Near n = near_at(p, i); n.value < radius + n.reach) near_.push_back(n);
     });
   }
 
@@ -125,6 +146,7 @@ class RoundedOver {
 
   const ConeRelations& relations_;
   std::vector<RoundCone> cones_;
+  BoxTree tree_;  // of what the blend of a cone reaches
   Lists added_;
   std::vector<Index> mark_;  // of the cone for which one was seen last
   std::vector<Index> others_;

@@ -6,7 +6,7 @@
 #include "vmesh/core/error.h"
 #include "vmesh/volume/contacts.h"
 
-#include "volume/contact_pairs.h"
+#include "volume/contact_looks.h"
 #include "volume/moving_round.h"
 #include "volume/narrowing.h"
 
@@ -38,22 +38,15 @@ struct Hold {
 // One round: finds the shares that must be held for the narrowed vessels to come apart.
 class Round {
  public:
-  Round(const Centerline& original, const Narrowing& narrowing, const DividedCenterline& narrowed,
-        const SeparationOptions& options, double most_taken)
+  Round(const Centerline& original, const Narrowing& narrowing, const DividedCenterline& narrowed, double most_taken)
       : original_(original),
         narrowing_(narrowing),
         narrowed_(narrowed),
-        options_(options),
         most_taken_(most_taken),
-        cones_(narrowed.centerline, options.blend) {
-    for (Index n = 0; n < original.nodes().size(); ++n) {
-      if (original.degree(n) == 0) isolated_.push_back(n);
-    }
-  }
+        cones_(narrowed.centerline) {}
 
-  /// Those for every contact that can be separated.
-  std::vector<Hold> holds() {
-    const std::vector<ContactPair> pairs = find_contact_pairs(cones_, options_.gap);
+  /// Those for every contact, of these, that can be separated.
+  std::vector<Hold> holds(const std::vector<ContactPair>& pairs) {
     Index regions = 0;
     for (const ContactPair& pair : pairs) regions = std::max(regions, pair.region + 1);
     std::vector<std::vector<Hold>> per_region(regions);
@@ -73,10 +66,10 @@ class Round {
 
  private:
   void hold_cone(Index cone, Index other, double gap, std::vector<Hold>& holds) const {
-    const AxisStretch across = stretch_of(cones_, other);
-    if (cone >= narrowed_.pieces.size()) {
-      const Index node = isolated_[cone - narrowed_.pieces.size()];
-      const double kept = kept_share(stretch_of(cones_, cone), across, gap);
+    const AxisStretch across = cones_.stretch(other);
+    if (cones_.is_sphere(cone)) {
+      const Index node = cones_.isolated_node(cone);
+      const double kept = kept_share(cones_.stretch(cone), across, gap);
       holds.push_back({node, kNone, kept * cones_.radius_at(cone, 0) / original_.node(node).radius});
       return;
     }
@@ -86,7 +79,7 @@ class Round {
       const double first = std::max(0.0, (leaf / count - piece.t_first) / width);
       const double last = std::min(1.0, ((leaf + 1) / count - piece.t_first) / width);
       if (!(first < last)) continue;
-      const AxisStretch part = stretch_of(cones_, cone, first, last);
+      const AxisStretch part = cones_.stretch(cone, first, last);
       if (are_apart(part, across, gap, 0)) continue;
       const ClosestApproach closest = closest_approach(part, across, gap);
       if (closest.excess >= 0) continue;
@@ -108,10 +101,8 @@ class Round {
   const Centerline& original_;
   const Narrowing& narrowing_;
   const DividedCenterline& narrowed_;
-  const SeparationOptions& options_;
   double most_taken_;
-  ConeRelations cones_;
-  std::vector<Index> isolated_;
+  ConeAxes cones_;
 };
 
 void hold_all(Narrowing& narrowing, const std::vector<Hold>& holds) {
@@ -135,9 +126,9 @@ std::vector<Index> branch_of_segments(const Centerline& centerline) {
 
 // Contacts of the narrowed centerline, named by segments and branches of the original.
 std::vector<Contact> contacts_left(const Centerline& original, const DividedCenterline& narrowed,
-                                   const SeparationOptions& options) {
+                                   const std::vector<ContactPair>& pairs) {
   const std::vector<Index> branch_of = branch_of_segments(original);
-  std::vector<Contact> contacts = find_contacts(ConeRelations(narrowed.centerline, options.blend), options.gap);
+  std::vector<Contact> contacts = contacts_of(ConeAxes(narrowed.centerline), pairs);
   for (Contact& contact : contacts) {
     for (ContactSide& side : contact.sides) {
       if (side.segment >= narrowed.pieces.size()) {
@@ -223,68 +214,81 @@ void tell_moved(const Centerline& original, const Moving& moving, const Separate
   report.moves = moves_of(original, moving);
 }
 
+// What separate_contacts() was asked for, and what it knows so far.
+struct Task {
+  const Centerline& original;
+  const SeparationOptions& options;
+  const Progress& progress;
+  ContactLooks looks;
+};
+
 // Narrows vessels until those contacts are gone that can be.
 class Narrower {
  public:
-  Narrower(const Centerline& vessels, const SeparationOptions& options, const Progress& progress)
-      : vessels_(vessels),
-        options_(options),
-        progress_(progress),
-        narrowing_(vessels, options.taper),
-        narrowed_(undivided(vessels)) {}
+  /// `moved` divides the task's centerline.
+  Narrower(const DividedCenterline& moved, Task& task)
+      : moved_(moved),
+        task_(task),
+        narrowing_(moved.centerline, task.options.taper),
+        narrowed_(undivided(moved.centerline)) {}
 
   /// Narrows at contacts that need at most this share.
   void narrow(double most_taken) {
-    for (; rounds_ < options_.max_rounds; ++rounds_) {
-      report_progress(progress_, "separate", static_cast<double>(rounds_) / options_.max_rounds);
-      const std::vector<Hold> holds = Round(vessels_, narrowing_, narrowed_, options_, most_taken).holds();
+    for (; rounds_ < task_.options.max_rounds; ++rounds_) {
+      report_progress(task_.progress, "separate", static_cast<double>(rounds_) / task_.options.max_rounds);
+      const std::vector<Hold> holds = Round(moved_.centerline, narrowing_, narrowed_, most_taken).holds(look());
       if (holds.empty()) return;
       hold_all(narrowing_, holds);
       narrowed_ = narrowing_.apply();
     }
   }
-  const DividedCenterline& narrowed() const { return narrowed_; }
+  /// The contacts of the narrowed vessels.
+  const std::vector<ContactPair>& look() const {
+    return task_.looks.look(narrowed(), static_cast<std::size_t>(rounds_));
+  }
+  /// Divides the task's centerline.
+  DividedCenterline narrowed() const { return composed(moved_, narrowed_); }
   int rounds() const { return rounds_; }
 
  private:
-  const Centerline& vessels_;
-  const SeparationOptions& options_;
-  const Progress& progress_;
+  const DividedCenterline& moved_;
+  Task& task_;
   Narrowing narrowing_;
   DividedCenterline narrowed_;
   int rounds_ = 0;
 };
 
-SeparatedCenterline narrow_moved(const Centerline& original, const Moving& moving, const SeparationOptions& options,
-                                 const Progress& progress) {
+SeparatedCenterline narrow_moved(const Moving& moving, Task& task) {
+  const SeparationOptions& options = task.options;
   const DividedCenterline moved = moving.apply();
-  Narrower narrower(moved.centerline, options, progress);
+  Narrower narrower(moved, task);
   narrower.narrow(std::min(options.move_beyond, options.most_taken));
   narrower.narrow(options.most_taken);
-  DividedCenterline narrowed = composed(moved, narrower.narrowed());
+  DividedCenterline narrowed = narrower.narrowed();
   SeparationReport report;
   report.rounds = narrower.rounds();
-  report.left = contacts_left(original, narrowed, options);
-  tell_taken(original, narrowed, report);
+  report.left = contacts_left(task.original, narrowed, narrower.look());
+  tell_taken(task.original, narrowed, report);
   SeparatedCenterline separated{std::move(narrowed.centerline), std::move(narrowed.pieces), {}};
-  tell_moved(original, moving, separated, report);
+  tell_moved(task.original, moving, separated, report);
   separated.report = std::move(report);
   return separated;
 }
 
 // Moves vessels apart until narrowing by a moderate share can do the rest, or the rounds run out.
-void move_vessels(const Centerline& original, const SeparationOptions& options, const MovingChoice& choice,
-                  const Progress& progress, Moving& moving) {
-  const auto look = [&](const DividedCenterline& vessels) {
-    return move_apart({original, vessels, options.gap, options.blend, options.move_beyond, choice}, moving) > 0;
+void move_vessels(const MovingChoice& choice, Task& task, Moving& moving) {
+  const SeparationOptions& options = task.options;
+  const auto look = [&](const DividedCenterline& vessels, const std::vector<ContactPair>& pairs) {
+    const MovingTask moves{task.original, vessels, pairs, task.looks, options.gap, options.move_beyond, choice};
+    return move_apart(moves, moving) > 0;
   };
   for (int round = 0; round < options.max_moves; ++round) {
-    report_progress(progress, "move", static_cast<double>(round) / options.max_moves);
+    report_progress(task.progress, "move", static_cast<double>(round) / options.max_moves);
     const DividedCenterline moved = moving.apply();
-    if (!look(moved)) {
-      Narrower narrower(moved.centerline, options, progress);
+    if (!look(moved, task.looks.look(moved, 0))) {
+      Narrower narrower(moved, task);
       narrower.narrow(options.move_beyond);
-      if (!look(composed(moved, narrower.narrowed()))) break;
+      if (!look(narrower.narrowed(), narrower.look())) break;
     }
   }
 }
@@ -305,17 +309,16 @@ bool take_back_moves_in_vain(const Centerline& original, Moving& moving, const s
 }
 
 // Undoes moves that were in vain and tries other choices for them, keeping those that helped.
-SeparatedCenterline moved_and_narrowed(const Centerline& original, const SeparationOptions& options,
-                                       const Progress& progress) {
-  Moving moving(original, options.slope);
-  move_vessels(original, options, {}, progress, moving);
-  SeparatedCenterline best = narrow_moved(original, moving, options, progress);
+SeparatedCenterline moved_and_narrowed(Task& task) {
+  Moving moving(task.original, task.options.slope);
+  move_vessels({}, task, moving);
+  SeparatedCenterline best = narrow_moved(moving, task);
   std::vector<Contact> left = best.report.left;
   for (const MovingChoice& choice : kAttempts) {
-    if (!take_back_moves_in_vain(original, moving, left)) break;
+    if (!take_back_moves_in_vain(task.original, moving, left)) break;
     for (const bool anew : {false, true}) {
-      if (anew) move_vessels(original, options, choice, progress, moving);
-      SeparatedCenterline other = narrow_moved(original, moving, options, progress);
+      if (anew) move_vessels(choice, task, moving);
+      SeparatedCenterline other = narrow_moved(moving, task);
       left = other.report.left;
       if (left.size() < best.report.left.size() + !anew) best = std::move(other);
       if (left.empty()) return best;
@@ -324,25 +327,38 @@ SeparatedCenterline moved_and_narrowed(const Centerline& original, const Separat
   return best;
 }
 
-}  // namespace
-
-SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options,
-                                      const Progress& progress) {
-  check(options);
-  std::vector<Contact> before = find_contacts(ConeRelations(centerline, options.blend), options.gap);
-  if (before.empty()) {
-    DividedCenterline whole = undivided(centerline);
-    return {std::move(whole.centerline), std::move(whole.pieces), {}};
-  }
-  SeparatedCenterline separated = narrow_moved(centerline, Moving(centerline, options.slope), options, progress);
+SeparatedCenterline separate(Task& task) {
+  const SeparationOptions& options = task.options;
+  DividedCenterline whole = undivided(task.original);
+  std::vector<Contact> before = contacts_of(ConeAxes(task.original), task.looks.look(whole, 0));
+  if (before.empty()) return {std::move(whole.centerline), std::move(whole.pieces), {}};
+  SeparatedCenterline separated = narrow_moved(Moving(task.original, options.slope), task);
   const bool enough = separated.report.left.empty() && separated.report.max_taken_relative <= options.move_beyond;
   if (!enough && options.move_beyond < options.most_taken && options.max_moves > 0) {
-    SeparatedCenterline moved = moved_and_narrowed(centerline, options, progress);
+    SeparatedCenterline moved = moved_and_narrowed(task);
     const std::size_t left = moved.report.left.size();
     if (left == 0 || left < separated.report.left.size()) separated = std::move(moved);
   }
   separated.report.before = std::move(before);
   return separated;
+}
+
+// Whether those contacts are left that were found around what changed.
+bool is_as_reported(const SeparatedCenterline& separated, const SeparationOptions& options) {
+  const ConeRelations cones(separated.centerline, options.blend);
+  return find_contacts(cones, options.gap).size() == separated.report.left.size();
+}
+
+}  // namespace
+
+SeparatedCenterline separate_contacts(const Centerline& centerline, const SeparationOptions& options,
+                                      const Progress& progress) {
+  check(options);
+  Task task{centerline, options, progress, ContactLooks({options.gap, options.blend})};
+  SeparatedCenterline separated = separate(task);
+  if (separated.report.before.empty() || is_as_reported(separated, options)) return separated;
+  task.looks = ContactLooks({options.gap, options.blend}, true);
+  return separate(task);
 }
 
 }  // namespace vmesh
