@@ -324,7 +324,8 @@ TriMesh mpu_surface(const Centerline& centerline, const MpuOptions& options) {
       field.values[voxel] += static_cast<float>(weight * leaf.fit.at(p));
     });
   }
-  for_voxels_in(field, box, [&](const Vec3& p, std::size_t voxel) {
+  const Box all(box.min().array() - options.step, box.max().array() + 2 * options.step);
+  for_voxels_in(field, all, [&](const Vec3& p, std::size_t voxel) {
     float& value = field.values[voxel];
     if (near[voxel] && weights[voxel] > 0) {
       value = -value / weights[voxel];

@@ -111,7 +111,12 @@ class TriangleTest {
   }
 
   bool is_outside(const Points& q, Range whole, int depth) {
-    const Range range = measure(q, whole);
+    // Most triangles are proven to be outside without their corners.
+    if (first_order_low(begin_measuring(q, whole)) >= 0) {
+      stack_.resize(whole_end_);
+      return true;
+    }
+    const Range range = finish_measuring();
     bool result = lower_bound(range) >= 0;
     if (!result && depth > 0 && value_at_center(range) >= 0) {
       const auto parts = quarters(q);
@@ -126,7 +131,8 @@ class TriangleTest {
     for (std::size_t i = whole.begin; i < whole.end; ++i) {
       if (holds(stack_[i].cone->shape, q)) return true;
     }
-    const Range range = measure(q, whole);
+    begin_measuring(q, whole);
+    const Range range = finish_measuring();
     bool result = upper_bound(range) <= 0;
     if (!result && depth > 0 && value_at_center(range) <= 0) {
       const auto parts = quarters(q);
@@ -141,12 +147,12 @@ class TriangleTest {
     return std::all_of(q.begin(), q.end(), [&](const Vec3& p) { return cone.distance_to(p).value <= 0; });
   }
 
-  // Pushes bounds for those cones of `whole` that can matter on the triangle.
-  Range measure(const Points& q, Range whole) {
+  // Pushes bounds for those cones of `whole` that may matter on the triangle; what its corners tell is not yet known.
+  Range begin_measuring(const Points& q, Range whole) {
     points_ = &q;
     center_ = triangle_center(q);
     reach_ = triangle_reach(q, center_);
-    const std::size_t begin = stack_.size();
+    whole_end_ = stack_.size();
     const double blend = field_.relations().blend();
     at_center_.clear();
     double least_at_center = std::numeric_limits<double>::infinity();
@@ -154,18 +160,34 @@ class TriangleTest {
       at_center_.push_back(stack_[i].cone->shape.distance_to(center_));
       least_at_center = std::min(least_at_center, at_center_.back().value);
     }
-    double least_high = std::numeric_limits<double>::infinity();
     for (std::size_t i = whole.begin; i < whole.end; ++i) {
       // Distances change by the way at most: most cones that are too far are so at the centroid already.
       const RoundCone& shape = stack_[i].cone->shape;
       const double excess = at_center_[i - whole.begin].value - least_at_center - 2 * reach_;
       if (excess > 2 * blend * std::max(shape.r0, shape.r1) + kSlack * reach_) continue;
       stack_.push_back(bounds_of(*stack_[i].cone, at_center_[i - whole.begin]));
-      least_high = std::min(least_high, stack_.back().high);
     }
+    return {whole_end_, stack_.size()};
+  }
+
+  // Adds what the corners tell, and leaves out the cones that do not matter.
+  Range finish_measuring() {
+    const Points& q = *points_;
+    double least_high = std::numeric_limits<double>::infinity();
+    for (std::size_t i = whole_end_; i < stack_.size(); ++i) {
+      ConeBounds& b = stack_[i];
+      b.high = -std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < 3; ++k) {
+        b.at[k] = b.cone->shape.distance_to(q[k]);
+        b.high = std::max(b.high, b.at[k].value);
+      }
+      least_high = std::min(least_high, b.high);
+    }
+    const double blend = field_.relations().blend();
     const auto too_far = [&](const ConeBounds& b) { return b.low > least_high + 2 * blend * b.most_radius; };
-    stack_.erase(std::remove_if(stack_.begin() + begin, stack_.end(), too_far), stack_.end());
-    return {begin, stack_.size()};
+    stack_.erase(std::remove_if(stack_.begin() + static_cast<std::ptrdiff_t>(whole_end_), stack_.end(), too_far),
+                 stack_.end());
+    return {whole_end_, stack_.size()};
   }
 
   ConeBounds bounds_of(const TestedCone& cone, const RoundCone::Distance& at_center) const {
@@ -174,12 +196,9 @@ class TriangleTest {
     b.cone = &cone;
     b.at_center = b.low = at_center.value;
     b.gradient = cone.shape.gradient(center_, at_center.t);
-    b.high = -std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < 3; ++k) {
-      b.at[k] = cone.shape.distance_to(q[k]);
       b.tangent[k] = at_center.value + b.gradient.dot(q[k] - center_);
       b.low = std::min(b.low, b.tangent[k]);
-      b.high = std::max(b.high, b.at[k].value);
     }
     if (field_.relations().blend() == 0) return b;
     const double first = cone.shape.r0, last = cone.shape.r1, radius = cone.shape.radius_at(at_center.t);
@@ -308,17 +327,27 @@ class TriangleTest {
   }
 
   // The smooth minimum grows with either distance and falls with the width.
+  double first_order_low(const ConeBounds& a, const ConeBounds& b) const {
+    const double difference = (a.gradient - b.gradient).norm() + a.turn + b.turn;
+    const double widest = width(std::min(a.most_reach, b.most_reach), difference);
+    const double gap = std::max(0.0, std::abs(a.at_center - b.at_center) - 2 * reach_);
+    const double low = std::min(a.low, b.low);
+    if (gap >= widest) return low;
+    const double h = 1 - gap / widest;
+    return std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+  }
+
+  double first_order_low(Range range) {
+    return least(
+        range, [](const ConeBounds& b) { return b.low; },
+        [this](const ConeBounds& a, const ConeBounds& b) { return first_order_low(a, b); });
+  }
+
   double lower_bound(Range range) {
     return least(
         range, [](const ConeBounds& b) { return b.low; },
         [this](ConeBounds& a, ConeBounds& b) {
-          const double difference = (a.gradient - b.gradient).norm() + a.turn + b.turn;
-          const double widest = width(std::min(a.most_reach, b.most_reach), difference);
-          const double gap = std::max(0.0, std::abs(a.at_center - b.at_center) - 2 * reach_);
-          const double low = std::min(a.low, b.low);
-          if (gap >= widest) return low;
-          const double h = 1 - gap / widest;
-          const double bound = std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+          const double bound = first_order_low(a, b);
           return bound >= 0 ? bound : std::max(bound, second_order_low(a, b));
         });
   }
@@ -352,6 +381,7 @@ class TriangleTest {
   Vec3 center_ = Vec3::Zero();
   double reach_ = 0;
   std::vector<RoundCone::Distance> at_center_;
+  std::size_t whole_end_ = 0;  // where its bounds begin on the stack
 };
 
 }  // namespace
