@@ -93,8 +93,8 @@ class Table {
     const double start = cpu_seconds();
     Made result{make(step), 0, step, 0};
     result.seconds = cpu_seconds() - start;
-    result.mean = std::max(sample_distance(result.mesh, index_, kSamples).mean,
-                           sample_distance(reference_, ClosestPointIndex(result.mesh), kSamples).mean);
+    result.mean = std::max(sample_distance(result.mesh, index_, kSamples).distance.mean,
+                           sample_distance(reference_, ClosestPointIndex(result.mesh), kSamples).distance.mean);
     return result;
   }
 

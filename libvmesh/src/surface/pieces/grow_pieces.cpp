@@ -340,7 +340,11 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
   const bool may_be_coarser = options.elongation > 1 && !options.deformable;
   const bool has_goal = options.max_error.is_set() || options.least_vertices > 0;
   const PieceGrower::Finish as_grown{{}, may_be_coarser && has_goal, options.elongation};
-  if (!options.max_error.is_set() || (options.elongation > 1 && !may_be_coarser))
+  // Triangles at openings stay as they are if they cannot be proven: they had better be long from the beginning. But
+  // those that grow long are skewer than those of an even surface, and many are left when a number of vertices is.
+  const bool grow_long =
+      options.least_vertices == 0 && std::any_of(open.begin(), open.end(), [](char is_open) { return is_open != 0; });
+  if (!options.max_error.is_set() || (options.elongation > 1 && (!may_be_coarser || grow_long)))
     return PieceGrower(field, open, options, as_grown, progress).run(result);
   // An even surface is refined as a whole, then left as long triangles as may be. What cannot be proven then may be
   // where pieces are refined as they grow.
