@@ -1,33 +1,62 @@
-// The results of `vmesh tradeoff`, with CGAL's Mesh_3 on the same field as an additional curve. Writes PREFIX.md and
-// PREFIX.svg. Usage: bench_tradeoff PREFIX [CENTERLINE]; without a centerline the synthetic portal vein of 1,560
-// vertices.
+// The results of `vmesh tradeoff`, with additional curves: CGAL's Mesh_3 on the same field, convolution surfaces, MPU
+// implicits and plain cylinders (related_work.h). Writes PREFIX.md and PREFIX.svg. Usage: bench_tradeoff PREFIX
+// [CENTERLINE]; without a centerline the synthetic portal vein of 1,560 vertices.
 #include "vmesh/tuning/tradeoff.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <numbers>
 
 #include "vmesh/io/centerline_io.h"
 #include "vmesh/synth/synthetic_tree.h"
 
 #include "mesh_3.h"
+#include "related_work.h"
 
 namespace {
 
 using namespace vmesh;
 using bench::mesh_3;
 
+constexpr double kWidth = 5 * std::numbers::ln2;  // of convolution surfaces: nearer than ln 2
+
+template <class Make>
+void add_point(std::vector<TradeoffPoint>& points, const Centerline& centerline, const std::string& curve,
+               const std::string& setting, const Make& make) {
+  TradeoffPoint point;
+  point.curve = curve;
+  point.setting = setting;
+  const auto begin = std::chrono::steady_clock::now();
+  const TriMesh mesh = make();
+  point.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  measure_tradeoff_point(point, mesh, centerline);
+  points.push_back(point);
+}
+
 void add_mesh_3(std::vector<TradeoffPoint>& points, const Centerline& centerline) {
-  for (const int around : {4, 6, 8, 12, 24, 48}) {
-    TradeoffPoint point;
-    point.curve = "CGAL Mesh_3";
-    point.setting = std::to_string(around) + " around";
-    const auto begin = std::chrono::steady_clock::now();
-    const TriMesh mesh = mesh_3(centerline, around);
-    point.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    measure_tradeoff_point(point, mesh, centerline);
-    points.push_back(point);
+  for (const int around : {4, 6, 8, 12, 24, 48})
+    add_point(points, centerline, "CGAL Mesh_3", std::to_string(around) + " around",
+              [&] { return mesh_3(centerline, around); });
+}
+
+// Steps and voxels relative to the thinnest radius.
+void add_related_work(std::vector<TradeoffPoint>& points, const Centerline& centerline) {
+  double thinnest = centerline.nodes().front().radius;
+  for (const CenterlineNode& node : centerline.nodes()) thinnest = std::min(thinnest, node.radius);
+  for (const double share : {2.0, 1.41, 1.0, 0.71, 0.5}) {
+    const double step = share * thinnest;
+    const std::string setting = "step " + std::to_string(step) + " mm";
+    add_point(points, centerline, "convolution surface", setting,
+              [&] { return bench::convolution_surface(centerline, kWidth, step); });
+    add_point(points, centerline, "MPU implicits", setting, [&] {
+      return bench::mpu_surface(centerline, {0.5 * step, 0.25 * step, step});
+    });
   }
+  for (const int sides : {6, 12, 18})
+    add_point(points, centerline, "plain cylinders", std::to_string(sides) + " around",
+              [&] { return bench::plain_cylinders(centerline, sides); });
 }
 
 void write_markdown(const std::string& file, const std::vector<TradeoffPoint>& points) {
@@ -45,8 +74,8 @@ void write_markdown(const std::string& file, const std::vector<TradeoffPoint>& p
   std::fprintf(out,
                "\n| theirs | vertices | ours | vertices at the same maximum error, ratio | mean error with as many "
                "vertices, ratio | mean skewness, ratio |\n|--|--:|--|--:|--:|--:|\n");
-  for (const char* theirs :
-       {"marching cubes", "marching cubes, decimated", "marching cubes, quadric decimation", "CGAL Mesh_3"}) {
+  for (const char* theirs : {"marching cubes", "marching cubes, decimated", "marching cubes, quadric decimation",
+                             "CGAL Mesh_3", "convolution surface", "MPU implicits", "plain cylinders"}) {
     for (const char* ours : {"around, blend 0", "max-error", "max-error, elongation 4", "max-error, elongation 16",
                              "max-error in mm, elongation 16", "vertices, elongation 16"}) {
       for (const CurveComparison& c : compare_curves(points, ours, theirs))
@@ -72,6 +101,7 @@ int main(int argc, char** argv) {
   options.fine = true;
   std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, options);
   add_mesh_3(points, centerline);
+  add_related_work(points, centerline);
   mark_best(points);
   write_markdown(prefix + ".md", points);
   std::ofstream(prefix + ".svg") << plot_tradeoff(points);

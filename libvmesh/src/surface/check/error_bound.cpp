@@ -32,6 +32,14 @@ void find_cones(const VesselField& field, const Vec3& center, double radius, Ind
   });
 }
 
+void find_cones(const VesselField& field, const ErrorProof::Face& face, const std::array<double, 3>& heights,
+                std::vector<Index>& cones) {
+  const TrianglePoints corners = {face[0].position, face[1].position, face[2].position};
+  const Vec3 center = triangle_center(corners);
+  find_cones(field, center, triangle_reach(corners, center) + *std::max_element(heights.begin(), heights.end()),
+             face[0].cone, cones);
+}
+
 // One side of a face's shell, on a grid of kPieces along each edge. Points on an edge depend on its ends alone. Heights
 // and normals are interpolated, to follow the boundary around a vessel, but where a corner is bent the ways of corners:
 // out of a notch, one may be many times as long as the other and across it.
@@ -58,6 +66,12 @@ std::vector<Points> shell(const ErrorProof::Face& face, const std::array<double,
     }
   }
   return parts;
+}
+
+bool copy_holds(const VesselField& field, const ErrorProof::Face& face, const std::array<double, 3>& heights,
+                ErrorProof::Side side, const std::vector<Index>& cones) {
+  const std::vector<Points> parts = shell(face, heights, side == ErrorProof::Side::inner ? -1 : 1);
+  return side == ErrorProof::Side::inner ? are_inside(field, parts, cones) : are_outside(field, parts, cones);
 }
 
 std::array<double, 3> heights_of(const ErrorProof::Face& face, double share) {
@@ -189,20 +203,20 @@ class BentCopy {
 }  // namespace
 
 bool ErrorProof::holds(const Face& face, const std::array<double, 3>& heights, Side side) const {
-  const Points corners = {face[0].position, face[1].position, face[2].position};
-  const Vec3 center = triangle_center(corners);
   thread_local std::vector<Index> cones;
-  find_cones(field_, center, triangle_reach(corners, center) + *std::max_element(heights.begin(), heights.end()),
-             face[0].cone, cones);
-  const std::vector<Points> parts = shell(face, heights, side == Side::inner ? -1 : 1);
-  return side == Side::inner ? are_inside(field_, parts, cones) : are_outside(field_, parts, cones);
+  find_cones(field_, face, heights, cones);
+  return copy_holds(field_, face, heights, side, cones);
 }
 
 ErrorProof::Shares ErrorProof::shares(const Face& face, const Shares& least) const {
+  thread_local std::vector<Index> cones;
+  const std::array<double, 3> highest = heights_of(face, 1);
+  find_cones(field_, face, highest, cones);
   Shares result;
   for (const Side side : {Side::inner, Side::outer}) {
     const double lowest = side == Side::inner ? least.inner : least.outer;
-    for (double s = 1; s > kLowestShell && s >= lowest && share(result, side) == 0; s *= kLowerShell) {
+    if (lowest <= 1 && copy_holds(field_, face, highest, side, cones)) share(result, side) = 1;
+    for (double s = kLowerShell; s > kLowestShell && s >= lowest && share(result, side) == 0; s *= kLowerShell) {
       if (holds(face, heights_of(face, s), side)) share(result, side) = s;
     }
   }

@@ -7,7 +7,8 @@
 namespace vmesh {
 namespace {
 
-constexpr int kMaxDepth = 5;  // of further subdivision, into four each; safe 4 to 7
+constexpr int kMaxDepth = 5;     // of further subdivision, into four each; safe 4 to 7
+constexpr double kSlack = 1e-6;  // derived: of a triangle, far more than distances are rounded by
 
 using Points = TrianglePoints;
 
@@ -16,17 +17,32 @@ std::array<Points, 4> quarters(const Points& q) {
   return {Points{q[0], c, b}, Points{c, q[1], a}, Points{b, a, q[2]}, Points{a, b, c}};
 }
 
+// A cone and what all bounds on its field need.
+struct TestedCone {
+  Index number = kNone;
+  RoundCone shape;
+  Vec3 first = Vec3::Zero(), axis = Vec3::Zero();
+  double length = 0, slope = 0;            // of the axis; of the radius of the touching sphere
+  double first_share = 1, last_share = 1;  // of the blend
+
+  double share_at(double t) const { return first_share + t * (last_share - first_share); }
+};
+
 // Bounds on a cone's field over a triangle.
 struct ConeBounds {
-  Index cone = kNone;
+  const TestedCone* cone = nullptr;
   double low = 0, high = 0;                  // of the signed distance
   double at_center = 0;                      // the signed distance at the centroid
   double least_radius = 0, most_radius = 0;  // of the sphere that touches the boundary
   double least_reach = 0, most_reach = 0;    // of the blend
   double turn = 0;                     // bound on the difference of the gradient from that at the centroid, at most 2
+  double from_center = 0;              // bound on the distance from the touching sphere's centre
   Vec3 gradient = Vec3::Zero();        // at the centroid
   std::array<double, 3> tangent = {};  // the tangent of the distance at the centroid, at the corners
-  std::array<FieldSample, 3> at = {};  // the corners
+  std::array<RoundCone::Distance, 3> at = {};  // the corners
+  // The second order, which few triangles need.
+  bool has_curvature = false;
+  std::array<Vec3, 3> corner_gradient = {};
   // Bounds on the first and the second derivative of the gradient along any line, and on the jump of the first where
   // the triangle may lie on two parts of the cone, its side and a cap; else 0. Infinite too near to the axis.
   double rate = 0, bend = 0, jump = 0;
@@ -60,14 +76,13 @@ double smooth_minimum(double a, double b, double width) { return SmoothMinimum(a
 // Decides for triangles whether they are inside or outside the volume of a few cones.
 class TriangleTest {
  public:
-  explicit TriangleTest(const VesselField& field) : field_(field) {}
+  TriangleTest(const VesselField& field, const std::vector<Index>& cones) : field_(field) {
+    cones_.reserve(cones.size());
+    for (const Index cone : cones) cones_.push_back(tested(field.relations(), cone));
+  }
 
-  bool outside(const Points& q, const std::vector<Index>& cones) {
-    return starting_with(cones, q, &TriangleTest::is_outside);
-  }
-  bool inside(const Points& q, const std::vector<Index>& cones) {
-    return starting_with(cones, q, &TriangleTest::is_inside);
-  }
+  bool outside(const Points& q) { return starting_with_all(q, &TriangleTest::is_outside); }
+  bool inside(const Points& q) { return starting_with_all(q, &TriangleTest::is_inside); }
 
  private:
   // The bounds for a triangle and all triangles that contain it lie on a stack; a subtriangle considers only the cones
@@ -76,15 +91,32 @@ class TriangleTest {
     std::size_t begin, end;
   };
 
-  bool starting_with(const std::vector<Index>& cones, const Points& q,
-                     bool (TriangleTest::*test)(const Points&, Range, int)) {
+  static TestedCone tested(const ConeRelations& relations, Index number) {
+    const Centerline& centerline = relations.centerline();
+    const CenterlineNode &first = centerline.node(relations.first_node(number)),
+                         &last = centerline.node(relations.last_node(number));
+    TestedCone cone{number, RoundCone(first, last), relations.axis_point(number, 0)};
+    cone.axis = relations.axis_point(number, 1) - cone.first;
+    cone.length = cone.axis.norm();
+    cone.slope = radius_slope(first.radius, last.radius, cone.length);
+    cone.first_share = relations.rounding_of(relations.first_node(number));
+    cone.last_share = relations.rounding_of(relations.last_node(number));
+    return cone;
+  }
+
+  bool starting_with_all(const Points& q, bool (TriangleTest::*test)(const Points&, Range, int)) {
     stack_.clear();
-    for (const Index cone : cones) stack_.push_back({.cone = cone});
+    for (const TestedCone& cone : cones_) stack_.push_back({.cone = &cone});
     return (this->*test)(q, {0, stack_.size()}, kMaxDepth);
   }
 
   bool is_outside(const Points& q, Range whole, int depth) {
-    const Range range = measure(q, whole);
+    // Most triangles are proven to be outside without their corners.
+    if (first_order_low(begin_measuring(q, whole)) >= 0) {
+      stack_.resize(whole_end_);
+      return true;
+    }
+    const Range range = finish_measuring();
     bool result = lower_bound(range) >= 0;
     if (!result && depth > 0 && value_at_center(range) >= 0) {
       const auto parts = quarters(q);
@@ -97,9 +129,10 @@ class TriangleTest {
 
   bool is_inside(const Points& q, Range whole, int depth) {
     for (std::size_t i = whole.begin; i < whole.end; ++i) {
-      if (highest(q, stack_[i].cone) <= 0) return true;
+      if (holds(stack_[i].cone->shape, q)) return true;
     }
-    const Range range = measure(q, whole);
+    begin_measuring(q, whole);
+    const Range range = finish_measuring();
     bool result = upper_bound(range) <= 0;
     if (!result && depth > 0 && value_at_center(range) <= 0) {
       const auto parts = quarters(q);
@@ -109,57 +142,75 @@ class TriangleTest {
     return result;
   }
 
-  // The distance is convex, so it is largest at a corner.
-  double highest(const Points& q, Index cone) const {
-    double high = field_.sample_cone(q[0], cone).distance;
-    for (int k = 1; k < 3; ++k) high = std::max(high, field_.sample_cone(q[k], cone).distance);
-    return high;
+  // Whether the cone contains the triangle: the distance is convex, so it is largest at a corner.
+  static bool holds(const RoundCone& cone, const Points& q) {
+    return std::all_of(q.begin(), q.end(), [&](const Vec3& p) { return cone.distance_to(p).value <= 0; });
   }
 
-  // Pushes bounds for those cones of `whole` that can matter on the triangle.
-  Range measure(const Points& q, Range whole) {
-    const Vec3 center = triangle_center(q);
-    reach_ = triangle_reach(q, center);
-    const std::size_t begin = stack_.size();
-    double least_high = std::numeric_limits<double>::infinity();
+  // Pushes bounds for those cones of `whole` that may matter on the triangle; what its corners tell is not yet known.
+  Range begin_measuring(const Points& q, Range whole) {
+    points_ = &q;
+    center_ = triangle_center(q);
+    reach_ = triangle_reach(q, center_);
+    whole_end_ = stack_.size();
+    const double blend = field_.relations().blend();
+    at_center_.clear();
+    double least_at_center = std::numeric_limits<double>::infinity();
     for (std::size_t i = whole.begin; i < whole.end; ++i) {
-      stack_.push_back(bounds_of(stack_[i].cone, q, center));
-      least_high = std::min(least_high, stack_.back().high);
+      at_center_.push_back(stack_[i].cone->shape.distance_to(center_));
+      least_at_center = std::min(least_at_center, at_center_.back().value);
     }
-    const auto too_far = [&](const ConeBounds& b) {
-      return b.low > least_high + 2 * field_.relations().blend() * b.most_radius;
-    };
-    stack_.erase(std::remove_if(stack_.begin() + begin, stack_.end(), too_far), stack_.end());
-    return {begin, stack_.size()};
+    for (std::size_t i = whole.begin; i < whole.end; ++i) {
+      // Distances change by the way at most: most cones that are too far are so at the centroid already.
+      const RoundCone& shape = stack_[i].cone->shape;
+      const double excess = at_center_[i - whole.begin].value - least_at_center - 2 * reach_;
+      if (excess > 2 * blend * std::max(shape.r0, shape.r1) + kSlack * reach_) continue;
+      stack_.push_back(bounds_of(*stack_[i].cone, at_center_[i - whole.begin]));
+    }
+    return {whole_end_, stack_.size()};
   }
 
-  ConeBounds bounds_of(Index cone, const Points& q, const Vec3& center) const {
-    const FieldSample s = field_.sample_cone(center, cone);
+  // Adds what the corners tell, and leaves out the cones that do not matter.
+  Range finish_measuring() {
+    const Points& q = *points_;
+    double least_high = std::numeric_limits<double>::infinity();
+    for (std::size_t i = whole_end_; i < stack_.size(); ++i) {
+      ConeBounds& b = stack_[i];
+      b.high = -std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < 3; ++k) {
+        b.at[k] = b.cone->shape.distance_to(q[k]);
+        b.high = std::max(b.high, b.at[k].value);
+      }
+      least_high = std::min(least_high, b.high);
+    }
+    const double blend = field_.relations().blend();
+    const auto too_far = [&](const ConeBounds& b) { return b.low > least_high + 2 * blend * b.most_radius; };
+    stack_.erase(std::remove_if(stack_.begin() + static_cast<std::ptrdiff_t>(whole_end_), stack_.end(), too_far),
+                 stack_.end());
+    return {whole_end_, stack_.size()};
+  }
+
+  ConeBounds bounds_of(const TestedCone& cone, const RoundCone::Distance& at_center) const {
+    const Points& q = *points_;
     ConeBounds b;
-    b.cone = cone;
-    b.at_center = b.low = s.distance;
-    b.gradient = s.gradient;
-    b.high = -std::numeric_limits<double>::infinity();
+    b.cone = &cone;
+    b.at_center = b.low = at_center.value;
+    b.gradient = cone.shape.gradient(center_, at_center.t);
     for (std::size_t k = 0; k < 3; ++k) {
-      b.at[k] = field_.sample_cone(q[k], cone);
-      b.tangent[k] = s.distance + s.gradient.dot(q[k] - center);
+      b.tangent[k] = at_center.value + b.gradient.dot(q[k] - center_);
       b.low = std::min(b.low, b.tangent[k]);
-      b.high = std::max(b.high, b.at[k].distance);
     }
     if (field_.relations().blend() == 0) return b;
-    const double first = field_.relations().radius_at(cone, 0), last = field_.relations().radius_at(cone, 1),
-                 radius = field_.relations().radius_at(cone, s.t);
-    const double length = (field_.relations().axis_point(cone, 1) - field_.relations().axis_point(cone, 0)).norm();
-    const double change = std::min(radius_slope(first, last, length) * reach_, std::abs(last - first));
+    const double first = cone.shape.r0, last = cone.shape.r1, radius = cone.shape.radius_at(at_center.t);
+    const double change = std::min(cone.slope * reach_, std::abs(last - first));
     b.least_radius = std::max(std::min(first, last), radius - change);
     b.most_radius = std::min(std::max(first, last), radius + change);
-    const auto [least_share, most_share] = shares_of(cone, s.t, length, radius_slope(first, last, length));
+    const auto [least_share, most_share] = shares_of(cone, at_center.t);
     b.least_reach = field_.relations().blend() * b.least_radius * least_share;
     b.most_reach = field_.relations().blend() * b.most_radius * most_share;
     // The gradient turns by the distance moved divided by the distance from the touching sphere's centre.
-    const double from_center = radius + s.distance - reach_ - change;
-    b.turn = from_center > 0.5 * reach_ ? reach_ / from_center : 2;
-    set_curvature(b, center, from_center);
+    b.from_center = radius + at_center.value - reach_ - change;
+    b.turn = b.from_center > 0.5 * reach_ ? reach_ / b.from_center : 2;
     return b;
   }
 
@@ -168,20 +219,23 @@ class TriangleTest {
   // speeds v_t across and v_r along the ray, the second is the root of (2 v_r v_t)^2 + v_t^4 over r^2, at most the root
   // of 4/3; the distance from the axis r is D times the cosine of the half angle. Between side and cap, the part along
   // the axis jumps by up to 1 / D.
-  void set_curvature(ConeBounds& b, const Vec3& center, double from_center) const {
+  void set_curvature(ConeBounds& b) const {
+    if (b.has_curvature) return;
+    b.has_curvature = true;
+    const TestedCone& cone = *b.cone;
+    for (std::size_t k = 0; k < 3; ++k) b.corner_gradient[k] = cone.shape.gradient((*points_)[k], b.at[k].t);
     b.rate = b.bend = b.jump = std::numeric_limits<double>::infinity();
-    const auto& relations = field_.relations();
-    const Vec3 first = relations.axis_point(b.cone, 0), axis = relations.axis_point(b.cone, 1) - first;
-    const double length = axis.norm(), widening = relations.radius_at(b.cone, 1) - relations.radius_at(b.cone, 0);
-    if (from_center <= 0.5 * reach_ || std::abs(widening) >= length) return;
-    const double sine = widening / length, cosine = std::sqrt(1 - sine * sine);
-    b.rate = 1 / from_center;
-    b.bend = std::sqrt(4.0 / 3) / (cosine * from_center * from_center);
+    const double widening = cone.shape.r1 - cone.shape.r0;
+    if (b.from_center <= 0.5 * reach_ || std::abs(widening) >= cone.length) return;
+    const double sine = widening / cone.length, cosine = std::sqrt(1 - sine * sine);
+    b.rate = 1 / b.from_center;
+    b.bend = std::sqrt(4.0 / 3) / (cosine * b.from_center * b.from_center);
     // Where the touching sphere would be on the line of the axis, and by how far it may be off on the triangle.
-    const double along = (center - first).dot(axis) / length, across = (center - first).cross(axis).norm() / length,
+    const Vec3 away = center_ - cone.first;
+    const double along = away.dot(cone.axis) / cone.length, across = away.cross(cone.axis).norm() / cone.length,
                  foot = along + across * sine / cosine, change = reach_ / cosine;
     const bool is_one_part =
-        foot + change <= 0 || foot - change >= length || (foot - change >= 0 && foot + change <= length);
+        foot + change <= 0 || foot - change >= cone.length || (foot - change >= 0 && foot + change <= cone.length);
     b.jump = is_one_part ? 0 : b.rate;
   }
 
@@ -193,9 +247,11 @@ class TriangleTest {
     std::array<double, 3> at;
     double tolerance;
   };
-  Opening opening_of(const ConeBounds& a, const ConeBounds& b) const {
+  Opening opening_of(ConeBounds& a, ConeBounds& b) const {
+    set_curvature(a);
+    set_curvature(b);
     Opening opening;
-    for (std::size_t k = 0; k < 3; ++k) opening.at[k] = 1 - a.at[k].gradient.dot(b.at[k].gradient);
+    for (std::size_t k = 0; k < 3; ++k) opening.at[k] = 1 - a.corner_gradient[k].dot(b.corner_gradient[k]);
     const double sine = std::min(1.0, (a.gradient - b.gradient).norm() + a.turn + b.turn);
     opening.tolerance =
         (a.bend + b.bend + 2 * a.rate * b.rate) * reach_ * reach_ / 2 + (a.jump + b.jump) * sine * reach_;
@@ -204,7 +260,7 @@ class TriangleTest {
 
   // Below: tangents of the convex distances, and a linear bound on the width. A concave function of linear ones is
   // least at a corner.
-  double second_order_low(const ConeBounds& a, const ConeBounds& b) const {
+  double second_order_low(ConeBounds& a, ConeBounds& b) const {
     const Opening opening = opening_of(a, b);
     if (!std::isfinite(opening.tolerance)) return -std::numeric_limits<double>::infinity();
     const double reach = std::min(a.most_reach, b.most_reach);
@@ -218,7 +274,7 @@ class TriangleTest {
 
   // Above: distances at the corners, linear between them, and a linear bound on the width. A concave function is below
   // its tangent, here at the means.
-  double second_order_high(const ConeBounds& a, const ConeBounds& b) const {
+  double second_order_high(ConeBounds& a, ConeBounds& b) const {
     const Opening opening = opening_of(a, b);
     if (!std::isfinite(opening.tolerance)) return std::numeric_limits<double>::infinity();
     const double reach = std::min(a.least_reach, b.least_reach);
@@ -228,25 +284,24 @@ class TriangleTest {
       if (width[k] < 0) return std::numeric_limits<double>::infinity();
     }
     const auto mean = [](double x, double y, double z) { return (x + y + z) / 3; };
-    const double of_a = mean(a.at[0].distance, a.at[1].distance, a.at[2].distance),
-                 of_b = mean(b.at[0].distance, b.at[1].distance, b.at[2].distance),
+    const double of_a = mean(a.at[0].value, a.at[1].value, a.at[2].value),
+                 of_b = mean(b.at[0].value, b.at[1].value, b.at[2].value),
                  of_width = mean(width[0], width[1], width[2]);
     const SmoothMinimum middle(of_a, of_b, of_width);
     double high = -std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < 3; ++k)
-      high = std::max(high, middle.value + middle.by_a * (a.at[k].distance - of_a) +
-                                middle.by_b * (b.at[k].distance - of_b) + middle.by_width * (width[k] - of_width));
+      high = std::max(high, middle.value + middle.by_a * (a.at[k].value - of_a) + middle.by_b * (b.at[k].value - of_b) +
+                                middle.by_width * (width[k] - of_width));
     return high;
   }
 
   // Least and greatest share of the blend left to a cone on the triangle. The touching sphere moves along the axis by
   // the distance moved divided by the cosine of the cone's half angle.
-  std::pair<double, double> shares_of(Index cone, double t, double length, double slope) const {
-    const auto [least, most] =
-        std::minmax({field_.relations().rounding_at(cone, 0), field_.relations().rounding_at(cone, 1)});
+  std::pair<double, double> shares_of(const TestedCone& cone, double t) const {
+    const auto [least, most] = std::minmax({cone.first_share, cone.last_share});
     if (least == most) return {least, most};
-    const double share = field_.relations().rounding_at(cone, t);
-    const double change = std::min(std::sqrt(1 + slope * slope) * reach_ / length, 1.0) * (most - least);
+    const double share = cone.share_at(t);
+    const double change = std::min(std::sqrt(1 + cone.slope * cone.slope) * reach_ / cone.length, 1.0) * (most - least);
     return {std::max(least, share - change), std::min(most, share + change)};
   }
 
@@ -258,13 +313,13 @@ class TriangleTest {
 
   // Calls visit for every cone and combine for every pair that may be blended; returns the least value.
   template <class Visit, class Combine>
-  double least(Range range, Visit&& visit, Combine&& combine) const {
+  double least(Range range, Visit&& visit, Combine&& combine) {
     double result = std::numeric_limits<double>::infinity();
     for (std::size_t i = range.begin; i < range.end; ++i) {
       result = std::min(result, visit(stack_[i]));
       if (field_.relations().blend() == 0) continue;
       for (std::size_t j = range.begin; j < i; ++j) {
-        if (field_.are_blended(stack_[i].cone, stack_[j].cone))
+        if (field_.are_blended(stack_[i].cone->number, stack_[j].cone->number))
           result = std::min(result, combine(stack_[i], stack_[j]));
       }
     }
@@ -272,25 +327,35 @@ class TriangleTest {
   }
 
   // The smooth minimum grows with either distance and falls with the width.
-  double lower_bound(Range range) const {
+  double first_order_low(const ConeBounds& a, const ConeBounds& b) const {
+    const double difference = (a.gradient - b.gradient).norm() + a.turn + b.turn;
+    const double widest = width(std::min(a.most_reach, b.most_reach), difference);
+    const double gap = std::max(0.0, std::abs(a.at_center - b.at_center) - 2 * reach_);
+    const double low = std::min(a.low, b.low);
+    if (gap >= widest) return low;
+    const double h = 1 - gap / widest;
+    return std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+  }
+
+  double first_order_low(Range range) {
     return least(
         range, [](const ConeBounds& b) { return b.low; },
-        [this](const ConeBounds& a, const ConeBounds& b) {
-          const double difference = (a.gradient - b.gradient).norm() + a.turn + b.turn;
-          const double widest = width(std::min(a.most_reach, b.most_reach), difference);
-          const double gap = std::max(0.0, std::abs(a.at_center - b.at_center) - 2 * reach_);
-          const double low = std::min(a.low, b.low);
-          if (gap >= widest) return low;
-          const double h = 1 - gap / widest;
-          const double bound = std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+        [this](const ConeBounds& a, const ConeBounds& b) { return first_order_low(a, b); });
+  }
+
+  double lower_bound(Range range) {
+    return least(
+        range, [](const ConeBounds& b) { return b.low; },
+        [this](ConeBounds& a, ConeBounds& b) {
+          const double bound = first_order_low(a, b);
           return bound >= 0 ? bound : std::max(bound, second_order_low(a, b));
         });
   }
 
-  double upper_bound(Range range) const {
+  double upper_bound(Range range) {
     return least(
         range, [](const ConeBounds& b) { return b.high; },
-        [this](const ConeBounds& a, const ConeBounds& b) {
+        [this](ConeBounds& a, ConeBounds& b) {
           const double difference = (a.gradient - b.gradient).norm() - a.turn - b.turn;
           const double bound =
               smooth_minimum(a.high, b.high, width(std::min(a.least_reach, b.least_reach), difference));
@@ -299,7 +364,7 @@ class TriangleTest {
   }
 
   // Approximate field at the centroid: if its sign is wrong already, subtriangles need not be considered.
-  double value_at_center(Range range) const {
+  double value_at_center(Range range) {
     return least(
         range, [](const ConeBounds& b) { return b.at_center; },
         [](const ConeBounds& a, const ConeBounds& b) {
@@ -309,8 +374,14 @@ class TriangleTest {
   }
 
   const VesselField& field_;
+  std::vector<TestedCone> cones_;
   std::vector<ConeBounds> stack_;
+  // Of the triangle that was measured last.
+  const Points* points_ = nullptr;
+  Vec3 center_ = Vec3::Zero();
   double reach_ = 0;
+  std::vector<RoundCone::Distance> at_center_;
+  std::size_t whole_end_ = 0;  // where its bounds begin on the stack
 };
 
 }  // namespace
@@ -325,16 +396,14 @@ double triangle_reach(const TrianglePoints& q, const Vec3& center) {
 
 bool are_outside(const VesselField& field, const std::vector<TrianglePoints>& triangles,
                  const std::vector<Index>& cones) {
-  TriangleTest test(field);
-  return std::all_of(triangles.begin(), triangles.end(),
-                     [&](const TrianglePoints& q) { return test.outside(q, cones); });
+  TriangleTest test(field, cones);
+  return std::all_of(triangles.begin(), triangles.end(), [&](const TrianglePoints& q) { return test.outside(q); });
 }
 
 bool are_inside(const VesselField& field, const std::vector<TrianglePoints>& triangles,
                 const std::vector<Index>& cones) {
-  TriangleTest test(field);
-  return std::all_of(triangles.begin(), triangles.end(),
-                     [&](const TrianglePoints& q) { return test.inside(q, cones); });
+  TriangleTest test(field, cones);
+  return std::all_of(triangles.begin(), triangles.end(), [&](const TrianglePoints& q) { return test.inside(q); });
 }
 
 }  // namespace vmesh

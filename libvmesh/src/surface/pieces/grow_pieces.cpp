@@ -31,13 +31,19 @@ constexpr double kNearSeam = 4.0;
 
 class PieceGrower {
  public:
-  /// `limit`: what the whole surface is refined to, if it is set; that of the options is proven piece by piece.
+  /// What becomes of the whole surface.
+  struct Finish {
+    ErrorLimit limit;     ///< what it is refined to, if set; that of the options is proven piece by piece
+    bool may_be_coarser;  ///< whether vertices are left out then
+    double elongation;    ///< how long triangles may be then
+  };
+
   PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
-              const ErrorLimit& limit, const Progress& progress)
+              const Finish& finish, const Progress& progress)
       : tubes_(field, RingOptions::of(options)),
         rings_(tubes_),
         options_(options),
-        limit_(limit),
+        finish_(finish),
         progress_(progress),
         context_{tubes_, open, options_, ask_},
         division_(divide(tubes_, options)) {}
@@ -53,9 +59,9 @@ class PieceGrower {
                                    Shells::along_normals);
       if (round == kRounds || !regroup(before)) break;
     }
-    if (limit_.is_set()) refine_whole(result.error);
+    if (finish_.limit.is_set()) refine_whole(result.error);
     if (!unproven_.empty()) result.error = close_notches_left();
-    if (may_be_coarser()) leave_out_vertices(result.error);
+    if (finish_.may_be_coarser && crossings_.empty()) leave_out_vertices(result.error);
     tell(result);
     return std::move(crossings_);
   }
@@ -174,7 +180,7 @@ class PieceGrower {
   }
 
   void refine_whole(ErrorSummary& summary) {
-    const RefinementGoal goal{limit_, options_.placement, static_cast<std::size_t>(options_.max_vertices)};
+    const RefinementGoal goal{finish_.limit, options_.placement, static_cast<std::size_t>(options_.max_vertices)};
     const RefinedError error = refine_to_limit(gathered_, tubes_.field(), goal, progress_);
     summary = error.summary;
     has_met_limit_ = error.is_met;
@@ -187,22 +193,17 @@ class PieceGrower {
     return summary;
   }
 
-  // Not with a ring at every node.
-  bool may_be_coarser() const {
-    const bool has_goal = options_.max_error.is_set() || options_.least_vertices > 0;
-    return has_goal && options_.elongation > 1 && !options_.deformable && crossings_.empty();
-  }
+  const ErrorLimit& limit() const { return finish_.limit.is_set() ? finish_.limit : options_.max_error; }
 
   void leave_out_vertices(ErrorSummary& summary) {
     FinishedSurface surface = gathered_;
     const auto longest = [&](const CenterlineBinding& at) {
-      return tubes_.longest_at(at.segment, at.t, options_.elongation);
+      return tubes_.longest_at(at.segment, at.t, finish_.elongation);
     };
-    refused_ += coarsen(surface, tubes_.field(), {options_.max_error, options_.least_vertices}, longest, progress_);
-    if (options_.max_error.is_set()) {
+    refused_ += coarsen(surface, tubes_.field(), {limit(), options_.least_vertices}, longest, progress_);
+    if (limit().is_set()) {
       // Faces that were proven by bending their shells are at corners that stay; neighbours may lower their shells.
-      const std::vector<Index> unproven =
-          unproven_faces(surface.mesh, surface.binding, tubes_.field(), options_.max_error);
+      const std::vector<Index> unproven = unproven_faces(surface.mesh, surface.binding, tubes_.field(), limit());
       if (unproven.size() > summary.unproven_faces) return;
       summary.unproven_faces = unproven.size();
       summary.unproven_places = places_of(surface.mesh, unproven);
@@ -213,7 +214,7 @@ class PieceGrower {
   }
 
   Elongation elongation_at(const CenterlineBinding& at) const {
-    return coarsened_ ? tubes_.longest_at(at.segment, at.t, options_.elongation)
+    return coarsened_ ? tubes_.longest_at(at.segment, at.t, finish_.elongation)
                       : tubes_.elongation_at(at.segment, at.t);
   }
 
@@ -296,7 +297,7 @@ class PieceGrower {
                " loops of the centerline are too short to have a hole; the surface is filled there"});
     result.mesh = std::move(gathered_.mesh);
     result.binding = std::move(gathered_.binding);
-    if (tubes_.elongation_field()) {
+    if (coarsened_ || tubes_.elongation_field()) {
       for (const CenterlineBinding& at : result.binding) {
         const Elongation allowed = elongation_at(at);
         result.elongation.push_back(allowed.times > 1 ? Vec3(allowed.times * allowed.direction) : Vec3(Vec3::Zero()));
@@ -309,7 +310,7 @@ class PieceGrower {
   VesselRings tubes_;
   RingCounts rings_;
   const GenerateOptions& options_;
-  const ErrorLimit limit_;
+  const Finish finish_;
   const Progress& progress_;
   std::mutex reporting_;
   std::size_t done_ = 0;
@@ -335,19 +336,29 @@ class PieceGrower {
 std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const std::vector<char>& open,
                                                  const GenerateOptions& options, const Progress& progress,
                                                  GenerateResult& result) {
-  if (!options.max_error.is_set() || options.elongation > 1)
-    return PieceGrower(field, open, options, {}, progress).run(result);
-  // An even surface is refined as a whole. What cannot be proven then may be where pieces are refined as they grow.
+  // Not with a ring at every node.
+  const bool may_be_coarser = options.elongation > 1 && !options.deformable;
+  const bool has_goal = options.max_error.is_set() || options.least_vertices > 0;
+  const PieceGrower::Finish as_grown{{}, may_be_coarser && has_goal, options.elongation};
+  // Triangles at openings stay as they are if they cannot be proven: they had better be long from the beginning. But
+  // those that grow long are skewer than those of an even surface, and many are left when a number of vertices is.
+  const bool grow_long =
+      options.least_vertices == 0 && std::any_of(open.begin(), open.end(), [](char is_open) { return is_open != 0; });
+  if (!options.max_error.is_set() || (options.elongation > 1 && (!may_be_coarser || grow_long)))
+    return PieceGrower(field, open, options, as_grown, progress).run(result);
+  // An even surface is refined as a whole, then left as long triangles as may be. What cannot be proven then may be
+  // where pieces are refined as they grow.
   GenerateOptions even = options;
   even.max_error = {};
+  even.elongation = 1;
   GenerateResult refined = result;
-  PieceGrower grower(field, open, even, options.max_error, progress);
+  PieceGrower grower(field, open, even, {options.max_error, may_be_coarser, options.elongation}, progress);
   std::vector<std::pair<Index, Index>> crossings = grower.run(refined);
   if (!grower.has_met_limit()) {
     GenerateResult grown = result;
     VesselField precise = field;
     precise.use_double_precision();
-    std::vector<std::pair<Index, Index>> others = PieceGrower(precise, open, options, {}, progress).run(grown);
+    std::vector<std::pair<Index, Index>> others = PieceGrower(precise, open, options, as_grown, progress).run(grown);
     if (grown.error.unproven_faces < refined.error.unproven_faces) {
       result = std::move(grown);
       return others;

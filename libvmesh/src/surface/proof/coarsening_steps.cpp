@@ -30,11 +30,12 @@ CoarseningSteps::CoarseningSteps(const SweepState& state, const ErrorLimit& limi
       measure_(state, limit),
       longest_(longest),
       worst_skewness_(worst_skewness),
+      has_limit_(limit.is_set()),
       is_fixed_(std::move(is_fixed)) {
   for (const Vertex v : mesh_.vertices()) elongation_.push_back(longest_at(v));
   deviation_.resize(mesh_.num_faces());
   tbb::parallel_for(Index{0}, static_cast<Index>(mesh_.num_faces()), [&](Index f) {
-    if (!is_fixed_(Face(f))) deviation_[f] = measure_.measure(Face(f)).deviation;
+    if (!is_fixed_(Face(f))) deviation_[f] = measure_.measure(Face(f));
   });
 }
 
@@ -43,14 +44,22 @@ std::optional<CoarseningStep> CoarseningSteps::collapse(Edge e) const {
   CoarseningStep step{surface_.collapsing(a, b, {})};
   if (replaces_fixed(step)) return std::nullopt;
   if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) return std::nullopt;
-  std::optional<CoarseningStep> best;
+  StepDeviation::Fan fan = measure_.fan_of(step, kShareForSamples);
+  std::optional<BoundaryPoint> best;
+  double least = 0;
   const auto attempt = [&](const Vec3& p, Vertex near) {
-    if (place(step, p, surface_[near].cone) && (!best || step.cost < best->cost)) best.emplace(step);
+    step.target = measure_.place(fan, p, surface_[near].cone);
+    if (!measure(step, fan) || (best && step.cost >= least)) return;
+    best = step.target;
+    least = step.cost;
   };
   attempt(0.5 * (state_.point(a) + state_.point(b)), a);
   attempt(state_.point(a), a);
   attempt(state_.point(b), b);
-  return best;
+  if (!best) return std::nullopt;
+  step.target = exact(*best);
+  step.cost = least;
+  return step;
 }
 
 std::optional<CoarseningStep> CoarseningSteps::split(Edge e) const {
@@ -62,70 +71,84 @@ std::optional<CoarseningStep> CoarseningSteps::split(Edge e) const {
   step.vertex = v;
   step.gone = {mesh_.face(h), mesh_.face(o)};
   step.faces = {{v, b, c}, {v, c, a}, {v, a, d}, {v, d, b}};
-  if (!place(step, 0.5 * (state_.point(a) + state_.point(b)), surface_[a].cone)) return std::nullopt;
+  StepDeviation::Fan fan = measure_.fan_of(step, kShareForSamples);
+  step.target = measure_.place(fan, 0.5 * (state_.point(a) + state_.point(b)), surface_[a].cone);
+  if (!measure(step, fan)) return std::nullopt;
+  step.target = exact(step.target);
   return step;
 }
 
 std::optional<CoarseningStep> CoarseningSteps::flip(Edge e) const {
   const Halfedge h = mesh_.halfedge(e), o = mesh_.opposite(h);
-  CoarseningStep step{surface_.flipping(h)};
-  if (replaces_fixed(step)) return std::nullopt;
   const Vertex a = mesh_.source(h), b = mesh_.target(h);
   const Vertex c = mesh_.target(mesh_.next(h)), d = mesh_.target(mesh_.next(o));
   if (mesh_.degree(a) <= 3 || mesh_.degree(b) <= 3 || mesh_.halfedge(c, d) != SurfaceMesh::null_halfedge())
     return std::nullopt;
-  if (!is_allowed(step) || step.cost >= enough_gain(step)) return std::nullopt;
+  CoarseningStep step{surface_.flipping(h)};
+  if (replaces_fixed(step)) return std::nullopt;
+  StepDeviation::Fan fan = measure_.fan_of(step, kShareForSamples);
+  if (!measure(step, fan) || step.cost >= enough_gain(step)) return std::nullopt;
   return step;
 }
 
 std::optional<CoarseningStep> CoarseningSteps::move(Vertex v) const {
   CoarseningStep step{surface_.moving(v, {state_.point(v), surface_.sample(v)})};
   if (replaces_fixed(step)) return std::nullopt;
+  StepDeviation::Fan fan = measure_.fan_of(step, kShareForSamples);
   Vec3 middle = Vec3::Zero();
   double count = 0;
   const Vec3 here = state_.point(v);
-  CoarseningStep best = step;
-  best.cost = enough_gain(step);
-  const double least = best.cost;
+  const double enough = enough_gain(step);
+  std::optional<BoundaryPoint> best;
+  double least = enough;
   const auto attempt = [&](const Vec3& p) {
-    if (place(step, p, surface_[v].cone) && step.cost < best.cost) best = step;
+    step.target = measure_.place(fan, p, surface_[v].cone);
+    if (!measure(step, fan) || step.cost >= least) return;
+    best = step.target;
+    least = step.cost;
   };
   for (const Vertex w : mesh_.vertices_around_target(mesh_.halfedge(v))) {
-    attempt(here + kToNeighbour * (state_.point(w) - here));
+    // With a limit, it is enough that vertices move at all: 2 % more vertices.
+    if (!has_limit_) attempt(here + kToNeighbour * (state_.point(w) - here));
     middle += state_.point(w);
     ++count;
   }
   attempt(here);
   attempt(here + kToMiddle * (middle / count - here));
-  if (best.cost >= least) return std::nullopt;
-  return best;
+  if (!best) return std::nullopt;
+  step.target = exact(*best);
+  step.cost = least;
+  return step;
+}
+
+// The deviation is measured in single precision.
+BoundaryPoint CoarseningSteps::exact(const BoundaryPoint& at) const {
+  return {at.position, state_.field.sample(at.position, at.sample.cone)};
 }
 
 bool CoarseningSteps::replaces_fixed(const CoarseningStep& step) const {
   return std::any_of(step.gone.begin(), step.gone.end(), is_fixed_);
 }
 
-void CoarseningSteps::note(Vertex v) {
-  if (elongation_.size() < mesh_.num_vertices()) elongation_.resize(mesh_.num_vertices());
-  if (deviation_.size() < mesh_.num_faces()) deviation_.resize(mesh_.num_faces());
-  elongation_[v.idx()] = longest_at(v);
-  for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-    if (!is_fixed_(f)) deviation_[f.idx()] = measure_.measure(f).deviation;
-  }
+void CoarseningSteps::note(const std::vector<Vertex>& changed) {
+  elongation_.resize(std::max<std::size_t>(elongation_.size(), mesh_.num_vertices()));
+  deviation_.resize(std::max<std::size_t>(deviation_.size(), mesh_.num_faces()));
+  tbb::parallel_for(std::size_t{0}, changed.size(), [&](std::size_t i) {
+    const Vertex v = changed[i];
+    elongation_[v.idx()] = longest_at(v);
+    for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
+      if (!is_fixed_(f)) deviation_[f.idx()] = measure_.measure(f);
+    }
+  });
 }
 
-// Puts the step's vertex where its faces deviate least, near `p`. Returns whether that is allowed.
-bool CoarseningSteps::place(CoarseningStep& step, const Vec3& p, Index hint) const {
-  measure_.place(step, p, hint, kShareForSamples);
-  return is_allowed(step);
-}
-
-// Whether the step's faces are close enough to the boundary and well-shaped. Sets its cost.
-bool CoarseningSteps::is_allowed(CoarseningStep& step) const {
+// Whether the step's faces are well-shaped and close enough to the boundary. Sets its cost.
+bool CoarseningSteps::measure(CoarseningStep& step, StepDeviation::Fan& fan) const {
   if (!is_well_shaped(step)) return false;
-  const StepDeviation::Measured after = measure_.measure(step);
-  step.cost = after.deviation - deviation_before(step);
-  return after.largest <= kShareForSamples;
+  const std::optional<double> after = measure_.measure(fan, step.target);
+  if (!after) return false;
+  step.cost = *after - deviation_before(step);
+  return true;
 }
 
 bool CoarseningSteps::is_well_shaped(const CoarseningStep& step) const {

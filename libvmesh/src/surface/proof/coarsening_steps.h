@@ -13,7 +13,7 @@ namespace vmesh {
 using LongestAt = std::function<Elongation(const CenterlineBinding&)>;
 
 struct CoarseningStep : SurfaceStep {
-  double cost = 0;  ///< by how much the deviation grows (StepDeviation::Measured)
+  double cost = 0;  ///< by how much the deviation grows (StepDeviation)
 };
 
 /// The best way to collapse, split or flip an edge or to move a vertex, if there is one that leaves the faces
@@ -37,13 +37,13 @@ class CoarseningSteps {
   /// Between its neighbours. Nothing unless it brings the faces closer.
   std::optional<CoarseningStep> move(Vertex v) const;
 
-  /// Tells that faces around `v` have changed, and perhaps `v`.
-  void note(Vertex v);
+  /// Tells that these vertices and the faces around them have changed.
+  void note(const std::vector<Vertex>& changed);
 
  private:
+  BoundaryPoint exact(const BoundaryPoint& at) const;
   bool replaces_fixed(const CoarseningStep& step) const;
-  bool place(CoarseningStep& step, const Vec3& p, Index hint) const;
-  bool is_allowed(CoarseningStep& step) const;
+  bool measure(CoarseningStep& step, StepDeviation::Fan& fan) const;
   bool is_well_shaped(const CoarseningStep& step) const;
   double enough_gain(const CoarseningStep& step) const;
   double deviation_before(const CoarseningStep& step) const;
@@ -56,6 +56,7 @@ class CoarseningSteps {
   StepDeviation measure_;
   const LongestAt& longest_;
   double worst_skewness_;
+  bool has_limit_;
   std::function<bool(Face)> is_fixed_;
   std::vector<Elongation> elongation_;  // by vertex
   std::vector<double> deviation_;       // by face

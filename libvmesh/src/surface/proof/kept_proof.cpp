@@ -103,7 +103,6 @@ std::optional<KeptProof::Outlook> KeptProof::after(const SurfaceStep& step) cons
       if (!is_proven(outlook.kept.back().second)) return std::nullopt;
     }
   }
-  if (!heights_hold(step, outlook)) return std::nullopt;
   return outlook;
 }
 
@@ -150,7 +149,7 @@ void KeptProof::add_around(Vertex v, const SurfaceStep& step, const Outlook& out
 
 // Where faces need shells of different heights at a corner, the lowest counts (ErrorProof::unproven). Whether all faces
 // whose heights the step may change hold with them.
-bool KeptProof::heights_hold(const SurfaceStep& step, const Outlook& outlook) const {
+bool KeptProof::holds(const SurfaceStep& step, const Outlook& outlook) const {
   Surroundings changed{outlook.made, {}};
   for (const auto& [f, shares] : outlook.kept) changed.faces.emplace_back(state_.corners(f), shares);
   Surroundings near{outlook.made, {}};
@@ -159,7 +158,7 @@ bool KeptProof::heights_hold(const SurfaceStep& step, const Outlook& outlook) co
   if (near.at_fixed) return false;  // heights of faces that are not proven must not change
   Surroundings wider = near;
   for (const Vertex v : near.vertices()) add_around(v, step, outlook, wider);
-  const auto holds = [&](const std::pair<FaceCorners, Shares>& face, ErrorProof::Side side) {
+  const auto face_holds = [&](const std::pair<FaceCorners, Shares>& face, ErrorProof::Side side) {
     const auto share = [&](const Shares& s) { return side == ErrorProof::Side::inner ? s.inner : s.outer; };
     const ErrorProof::Face corners = face_in(outlook, corner_, face.first);
     std::array<double, 3> own, heights;
@@ -174,7 +173,7 @@ bool KeptProof::heights_hold(const SurfaceStep& step, const Outlook& outlook) co
     return heights == own || proof_.holds(corners, heights, side);
   };
   return std::all_of(near.faces.begin(), near.faces.end(), [&](const auto& face) {
-    return holds(face, ErrorProof::Side::inner) && holds(face, ErrorProof::Side::outer);
+    return face_holds(face, ErrorProof::Side::inner) && face_holds(face, ErrorProof::Side::outer);
   });
 }
 

@@ -33,8 +33,12 @@ class KeptProof {
 
   bool is_fixed(Face f) const { return fixed_[f.idx()]; }
 
-  /// What the step would change; nothing if the surface would not be proven any more.
+  /// What the step would change; nothing if a face would not be proven any more. Looks at the faces that the step
+  /// replaces and at all that share a vertex with them.
   std::optional<Outlook> after(const SurfaceStep& step) const;
+
+  /// Whether the surface would be proven after a step, of which after() told this. Looks farther around.
+  bool holds(const SurfaceStep& step, const Outlook& outlook) const;
 
   /// Tells that the step has been taken. `v`: its vertex, as it is called now.
   void note(const SurfaceStep& step, const Outlook& outlook, Vertex v);
@@ -54,7 +58,6 @@ class KeptProof {
   ErrorProof::Corner corner_of(Vertex v) const;
   ErrorProof::Corner corner_after(const SurfaceStep& step, Vertex v) const;
   void add_around(Vertex v, const SurfaceStep& step, const Outlook& outlook, Surroundings& to) const;
-  bool heights_hold(const SurfaceStep& step, const Outlook& outlook) const;
 
   const SweepState& state_;
   const BoundSurface& surface_;
