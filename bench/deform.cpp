@@ -61,7 +61,7 @@ void step(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 
-/// Twenty balls press on segments from the side, to and fro; `counters` tell how many of them do.
+/// Thirty balls press on segments from the side, to and fro; `counters` tell how many of them do, about twenty.
 void step_with_contacts(benchmark::State& state) {
   const auto segments = static_cast<std::size_t>(state.range(0));
   const Centerline tree = synthetic_tree({.vertices = segments + 1, .seed = 1});
@@ -70,8 +70,8 @@ void step_with_contacts(benchmark::State& state) {
   CenterlineSimulation simulation(tree, segment_properties(tree, {.damping_s = 0.05}), options);
   simulation.clamp(0);
   std::vector<Vec3> from, towards;
-  for (std::size_t k = 1; from.size() < 20 && k < 60; ++k) {
-    const Index s = static_cast<Index>(k * segments / 60);
+  for (std::size_t k = 1; from.size() < 30 && k < 90; ++k) {
+    const Index s = static_cast<Index>(k * segments / 90);
     const Vec3 along = (tree.point_at(s, 1) - tree.point_at(s, 0)).normalized(), side = along.unitOrthogonal();
     const double radius = tree.radius_at(s, 0.5);
     InstrumentPose pose;
@@ -105,6 +105,21 @@ void step_in_tissue(benchmark::State& state) {
   Scene scene(static_cast<std::size_t>(state.range(0)), 2);
   for (Index s = 0; s < scene.tree.segments().size(); ++s) scene.simulation.set_tissue(s, {1e-3, 1});
   for (auto _ : state) benchmark::DoNotOptimize(scene.simulation.step());
+}
+
+/// A hundred steps from rest, in which a tree falls onto itself.
+void fall_onto_itself(benchmark::State& state) {
+  const Centerline tree = synthetic_tree({.vertices = static_cast<std::size_t>(state.range(0)) + 1, .seed = 1});
+  SimulationOptions options;
+  options.gravity_mm_s2 = Vec3(0, 0, -9810);
+  double iterations = 0;
+  for (auto _ : state) {
+    CenterlineSimulation simulation(tree, segment_properties(tree, {}), options);
+    simulation.clamp(0);
+    simulation.set_contact({.self = true});
+    for (int i = 0; i < 100; ++i) iterations += simulation.step().iterations;
+  }
+  state.counters["iterations"] = iterations / (100.0 * static_cast<double>(state.iterations()));
 }
 
 /// Only one end of the tree moves; everything else is at rest.
@@ -181,6 +196,7 @@ void bind_to_nearest(benchmark::State& state) {
 
 BENCHMARK(step)->ArgsProduct({{118, 1559, 10'000, 100'000}, {1, 2}})->Unit(benchmark::kMicrosecond);
 BENCHMARK(step_with_contacts)->Arg(1559)->Unit(benchmark::kMicrosecond);
+BENCHMARK(fall_onto_itself)->Arg(118)->Arg(1559)->Unit(benchmark::kMillisecond);
 BENCHMARK(step_in_tissue)->Arg(1559)->Unit(benchmark::kMicrosecond);
 BENCHMARK(step_of_a_twig)->Arg(118)->Arg(1559)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(synchronise)->ArgsProduct({{118, 1559, 10'000, 100'000}, {0, 1}})->Unit(benchmark::kMicrosecond);

@@ -11,13 +11,15 @@ namespace {
 constexpr double kRoundingOfEnergy = 1e-12, kRoundingOfPosition = 1e-15;
 /// Attempts at a move.
 constexpr int kMostTries = 40;
-/// Solutions in an iteration with more and more pairs stopped.
-constexpr int kMostStops = 5;
+/// Solutions in an iteration with more and more pairs stopped; and those after which stops may be left out again.
+constexpr int kMostStops = 16, kMostRevisions = 8;
 /// Tries after which nodes move along straight lines, so that a shorter move is part of a longer one.
 constexpr int kChainedTries = 4;
 /// The part of its way for which everything is made to go at once, at least; it is shorter after one that was too long
 /// for what is linear.
 constexpr double kLeastStride = 1e-3;
+/// An iteration whose move was shorter than this part of the solution has not converged, however short it was.
+constexpr double kHindered = 0.1;
 /// After an iteration that got less far, the next one relaxes without going on.
 constexpr double kStuck = 0.1;
 
@@ -62,7 +64,7 @@ bool ImplicitRods::is_done(const RodScene& scene, const StepReport& report, bool
   if (report.movement_mm == 0 && stands) return true;
   if (report.iterations < scene.options.iterations) return false;
   if (report.iterations >= scene.options.iterations + around_->options().iterations) return true;
-  return left_ == 0 && (!around_->acts() || report.movement_mm <= around_->precision());
+  return left_ == 0 && !blocked_ && (!around_->acts() || report.movement_mm <= around_->precision());
 }
 
 /// One Gauss-Newton iteration, in which instruments and what is dragged go on if `goes` is 1, as far as there is room.
@@ -82,13 +84,12 @@ double ImplicitRods::iterate_among(RodScene& scene, bool first, double goes, Ste
   standing += sum(begin_sums_.value);
   if (first) energy_bound_ = around_->moves() ? HUGE_VAL : standing_energy(scene, standing, goes) + tissue_offset_;
   double free = look_at(scene, by, goes);
+  if (free < 1) free = straighten(scene, by, free, goes);
   for (int attempt = 1; free < 1 || !is_lower(scene, by, standing, goes); ++attempt) {
     if (by.part == 0) break;
     ++report.rejections;
     shorten(by, free, attempt);
-    aim_held(scene, goes * by.part);
-    move(by);
-    aim_held(scene, goes);
+    move_part(scene, by, goes);
     free = look_at(scene, by, goes);
   }
   around_->accept();
@@ -98,15 +99,17 @@ double ImplicitRods::iterate_among(RodScene& scene, bool first, double goes, Ste
     stride_ = std::clamp(by.part < 0.5 ? 2 * goes * by.part : 4 * goes, kLeastStride, 1.0);
   }
   aim_held(scene, 1);
+  blocked_ = by.part < kHindered;
   return by.part * std::sqrt(largest(move_sums_.largest));
 }
 
 /// Solves and moves. What the solution lets run into each other is stopped, and it is solved again.
 void ImplicitRods::solve_among(const RodScene& scene, const RodMove& by, double goes) {
   move_sums_ = {};
-  if (!around_->is_near()) return solve(scene, &by);
+  if (!around_->may_touch()) return solve(scene, &by);
   for (int i = 0;; ++i) {
     solve(scene, nullptr);
+    eliminated_ = all_visited_ && scene.tree.ties.empty();
     if (i == kMostStops) break;
     for (const Index batch : visited_batches_) {
       const RodBatch& b = batches_.batches[batch];
@@ -116,12 +119,11 @@ void ImplicitRods::solve_among(const RodScene& scene, const RodMove& by, double 
               around_->present()[b.slot[l]] + Vec3(b.x.linear.x[l], b.x.linear.y[l], b.x.linear.z[l]);
     }
     around_->try_part(goes);
-    if (!around_->stop(goes)) break;
-    const std::size_t count = around_->loaded_slots().size();
-    if (loaded_.size() < count) loaded_.resize(count);
-    eliminated_ = false;
-    for (Loaded& loaded : loaded_) loaded.done = false;
+    if (!around_->stop(scene, goes, i < kMostRevisions)) break;
+
+    if (around_->loads_changed()) take_loads();
   }
+  eliminated_ = false;
   move(by);
 }
 
@@ -140,6 +142,23 @@ bool ImplicitRods::is_lower(const RodScene& scene, const RodMove& by, double sta
   const double energy = sum(move_sums_.value) + tie_energy(scene, 0) + around;
   pose_ = by.from;
   return energy <= reference + kRoundingOfEnergy * std::abs(reference) + rounding_;
+}
+
+/// What runs into something along arcs may not along straight lines, for which stops were made. Takes what is free for
+/// longer, and returns how much that is.
+double ImplicitRods::straighten(const RodScene& scene, RodMove& by, double free, double goes) {
+  by.chained = false;
+  move_part(scene, by, goes);
+  const double straight = look_at(scene, by, goes);
+  if (straight >= free) return straight;
+  by.chained = true;
+  return free;
+}
+
+void ImplicitRods::move_part(const RodScene& scene, const RodMove& by, double goes) {
+  aim_held(scene, goes * by.part);
+  move(by);
+  aim_held(scene, goes);
 }
 
 void ImplicitRods::shorten(RodMove& by, double free, int attempt) {

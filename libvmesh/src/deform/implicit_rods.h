@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "deform/one_lane.h"
 #include "deform/rod_batch.h"
 #include "deform/rod_kernels.h"
 #include "deform/rod_scene.h"
@@ -49,9 +50,26 @@ class ImplicitRods {
   /// The elimination of a slot that something acts on.
   struct Loaded {
     bool done = false;
-    Eigen::Matrix<double, 6, 6> own;  // of y: own stiffness and that across to the parent
-    Eigen::Matrix<double, 6, 1> gradient;
-    Eigen::LDLT<Eigen::Matrix<double, 6, 6>> sum;
+    Mat6 own;  // of y: own stiffness and that across to the parent
+    Vec6 gradient;
+    Eigen::LDLT<Mat6> sum;
+  };
+  /// A linked slot, or one between such a slot and its root.
+  struct Joint {
+    Index place = kNone, parent = kNone;  // the latter: number of a joint; kNone at a root
+    Hold hold = Hold::free;
+    Loaded* loaded = nullptr;
+    Vec3 z = Vec3::UnitZ(), lever = Vec3::Zero();
+    double stretch = 0, bend = 0, twist = 0;  // compliance of the spring to the parent
+    Mat6 reduced;                             // as in RodBatch; of a root: its compliance
+    Vec6 before;  // gradient that elimination has passed on, or left where something acts; of a root: x
+    Vec6 force, carried, passed, way;
+  };
+  /// Joints at which a link pulls, two at either end or one at a root.
+  struct LinkEnds {
+    std::size_t count = 0;
+    std::array<Index, 4> joint{};
+    std::array<Vec3, 4> pull;
   };
 
   StepReport step_among(RodScene& scene);
@@ -62,15 +80,28 @@ class ImplicitRods {
   void solve_among(const RodScene& scene, const RodMove& by, double goes);
   double look_at(const RodScene& scene, const RodMove& by, double goes);
   bool is_lower(const RodScene& scene, const RodMove& by, double standing, double goes);
+  double straighten(const RodScene& scene, RodMove& by, double free, double goes);
+  void move_part(const RodScene& scene, const RodMove& by, double goes);
   static void shorten(RodMove& by, double free, int attempt);
   void bind_to_tissue(Index batch, const char* active);
   void linearise(double part);
+  void take_loads();
   void eliminate_loaded(Index batch);
   void eliminate_loaded(const SegmentLoad& load, Index place, Loaded& loaded);
   void substitute_loaded(const RodScene& scene, Index batch, const FourFlags& rests);
+  Mat6 stiffness_below(Index place) const;
   void solve_links(const RodScene& scene, const RodMove* then);
-  void solve_linked(const RodScene& scene, const Eigen::VectorXd& force, Eigen::VectorXd& opening, const RodMove* then);
   void collect_links(const RodScene& scene);
+  void set_joints(const RodScene& scene);
+  Joint joint_at(Index place);
+  static Vec6 passed_on(Joint& joint);
+  static Vec6 yielding(const Joint& joint, const Vec6& force);
+  void give_way();
+  void pull_links(const Eigen::VectorXd& force);
+  template <class Way>
+  void open_links(const Way& way, Eigen::VectorXd& opening) const;
+  void let_go_on(double part);
+  void restore_roots();
   void aim_held(const RodScene& scene, double part);
   void read_positions(std::size_t pose, std::vector<Vec3>& into) const;
   double standing_energy(const RodScene& scene, double standing, double goes);
@@ -95,6 +126,8 @@ class ImplicitRods {
   /// `then`: the move to make once the solution is known; null: none.
   void solve(const RodScene& scene, const RodMove* then);
   void eliminate(Index batch);
+  void eliminate_all();
+  void substitute_all(const RodScene& scene, const RodMove* then);
   void solve_tree(const RodScene& scene, const RodMove* then);
   void solve_growing(const RodScene& scene, const RodMove* then);
   void solve_ties(const RodScene& scene, const RodMove* then);
@@ -138,8 +171,13 @@ class ImplicitRods {
   double rounding_ = 0;       // of the energy of a tree at rest, uJ
   double stride_ = 1;         // part of the rest of its way that everything is to go in an iteration
   double left_ = 0;           // of the way of what is dragged and of instruments, in this step
+  bool blocked_ = false;      // the last iteration's move
   std::vector<Loaded> loaded_;
   std::vector<VesselLink> links_;
+  std::vector<Joint> joints_;
+  std::vector<LinkEnds> link_ends_;
+  std::vector<std::pair<Index, Vec6>> moved_roots_;
+  std::vector<Index> joint_of_place_;
   std::vector<Vec3> standing_;
 
   std::vector<Vec3> tie_load_, tie_residual_, tie_direction_, tie_image_, tie_opening_;

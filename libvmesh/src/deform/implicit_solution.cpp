@@ -29,6 +29,7 @@ bool is_zero(const LanesSpatial& x, std::size_t lane) {
 }  // namespace
 
 void ImplicitRods::solve(const RodScene& scene, const RodMove* then) {
+  restore_roots();
   if (around_ && !around_->links().empty())
     solve_links(scene, then);
   else if (scene.tree.ties.empty())
@@ -43,13 +44,20 @@ void ImplicitRods::eliminate(Index batch) {
 }
 
 void ImplicitRods::solve_tree(const RodScene& scene, const RodMove* then) {
-  if (!eliminated_)
-    for (const Index batch : visited_batches_) eliminate(batch);
+  if (!eliminated_) eliminate_all();
   eliminated_ = false;
   if (all_visited_)
-    for (std::size_t i = visited_batches_.size(); i-- > 0;) solve_batch(scene, visited_batches_[i], then);
+    substitute_all(scene, then);
   else
     solve_growing(scene, then);
+}
+
+void ImplicitRods::eliminate_all() {
+  for (const Index batch : visited_batches_) eliminate(batch);
+}
+
+void ImplicitRods::substitute_all(const RodScene& scene, const RodMove* then) {
+  for (std::size_t i = visited_batches_.size(); i-- > 0;) solve_batch(scene, visited_batches_[i], then);
 }
 
 /// From the root outwards. Slots that move wake their children, whose batches come later but may not be listed yet.

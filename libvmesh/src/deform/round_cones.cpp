@@ -45,6 +45,21 @@ struct Pair {
   }
 };
 
+/// How far two can go until their distance along a fixed direction is `kept`. Their gap is at least that distance,
+/// which is least at two of the ends: linear in the way.
+double free_along(const Vec3& direction, const RoundCone& first, const RoundCone& second,
+                  const std::array<Vec3, 4>& way, double kept) {
+  const std::array<double, 4> at{direction.dot(first.a) - first.radius_a, direction.dot(first.b) - first.radius_b,
+                                 direction.dot(second.a) + second.radius_a, direction.dot(second.b) + second.radius_b};
+  double part = 1;
+  for (const std::size_t i : {0U, 1U})
+    for (const std::size_t j : {2U, 3U}) {
+      const double nearing = direction.dot(way[j] - way[i]);
+      if (nearing > 0) part = std::min(part, (at[i] - at[j] - kept) / nearing);
+    }
+  return part;
+}
+
 }  // namespace
 
 /// The distance of two points minus the radii there is convex in both parameters: the minimum lies where its
@@ -91,12 +106,13 @@ double free_part(const ConeMotion& first, const ConeMotion& second, double gap, 
   const double most = longest(0) + longest(2);
   const double kept = gap > 2 * least ? std::max(kKeptGap * gap, least) : kKeptNarrow * gap;
   if (most <= gap - kept) return 1;
-  double part = 0, now = gap;
+  double part = 0;
   for (int i = 0; i < kMostAdvances; ++i) {
-    part += (now - kept) / most;
+    const RoundCone a = between(first, part), b = between(second, part);
+    const ConeGap now = gap_between(a, b);
+    if (i > 0 && now.gap - kept < kNearlyThere * (gap - kept)) return part;
+    part += std::max((now.gap - kept) / most, free_along(now.direction, a, b, way, kept));
     if (part >= 1) return 1;
-    now = gap_between(between(first, part), between(second, part)).gap;
-    if (now - kept < kNearlyThere * (gap - kept)) return part;
   }
   return part;
 }

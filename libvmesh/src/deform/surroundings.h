@@ -74,7 +74,7 @@ class Surroundings {
   void begin(const RodScene& scene);
   bool moves() const { return moves_; }  ///< some instrument or jaw is not where it aims
   bool couples() const { return options_.self; }
-  bool is_near() const { return !pairs_.empty(); }  ///< some pair may come within reach
+  bool may_touch() const { return options_.self || !parts_.empty(); }
   /// Slots that what moves may touch in this step, or that a jaw holds.
   const std::vector<Index>& near_slots() const { return near_slots_; }
 
@@ -89,8 +89,10 @@ class Surroundings {
   Index load_index(Index slot) const { return load_of_slot_[slot]; }  ///< kNone: nothing acts on it
   const std::vector<VesselLink>& links() const { return links_; }
   /// Adds what stops pairs that would run into each other if slots went straight to the trial's positions, and
-  /// everything `part` of the rest of its way. False if there is none but those stopped already since linearise().
-  bool stop(double part);
+  /// everything `part` of the rest of its way. False if there is none.
+  bool stop(const RodScene& scene, double part, bool revises);
+  void forget_stops() { stops_.clear(); }
+  bool loads_changed() const { return loads_changed_; }  ///< by the last stop(), and not only links
 
   /// Puts instruments and jaws on trial that go `part` of the rest of their way.
   void try_part(double part);
@@ -98,7 +100,7 @@ class Surroundings {
   double free_part(const RodScene& scene);
   double energy(State state);
   /// Energy of instruments and jaws on trial with slots at `positions`.
-  double energy_at(const std::vector<Vec3>& positions) const;
+  double energy_at(const std::vector<Vec3>& positions);
   void accept();
 
   /// The end of a step: forces, slipping of jaws. Returns the work done by instruments and jaws, uJ.
@@ -135,7 +137,6 @@ class Surroundings {
     Barrier barrier;
     double rest_excess;  // the gap counts as larger by this: the two were nearer at rest
     ConeGap now, next;
-    bool stopped = false;
   };
   /// Friction at a contact of the step's start.
   struct Rub {
@@ -145,6 +146,12 @@ class Surroundings {
     Vec3 normal, surface;  // the other's surface from its axis
     double load, yield;    // mN, mm
     Vec3 first_start, second_start;
+    Vec3 expected;  // way in this step, as in the last one
+  };
+  /// Around a slot's segment.
+  struct Ball {
+    Vec3 middle;
+    double radius;
   };
   struct RestPair {
     Index a, b;
@@ -156,11 +163,21 @@ class Surroundings {
   double rest_excess(Index a, Index b) const;
   void set_radii(const RodScene& scene);
   void limit_radii(const RodScene& scene, std::vector<double>& wanted);
-  void find_pairs(const RodScene& scene, double slack);
+  void find_pairs(const RodScene& scene, const std::vector<Vec3>& ways, double slack);
+  double least_slack() const;
+  double slack_of(Index slot) const;
+  bool covers(const std::vector<Vec3>& positions, const std::vector<Vec3>& points) const;
+  double cover_trial(const RodScene& scene);
+  bool may_meet(Index a, Index b) const;
+  double nearing(Index a, Index b) const;
+  void set_balls(const std::vector<Vec3>& positions);
+  double ball_gap(Index a, Index b) const;
+  void note_gaps();
   void add_pair(const RodScene& scene, Index slot, Index other, bool is_part);
-  double farthest(const std::vector<Vec3>& positions, const std::vector<Vec3>& points) const;
+  double farthest(const std::vector<Vec3>& points) const;
   void expect(const RodScene& scene);
   void note_friction(const RodScene& scene);
+  void expect_ways(const std::vector<Rub>& before);
   void write_points(const InstrumentPose& pose, const Instrument& instrument, std::vector<Vec3>& points) const;
 
   RoundCone cone_of(Index slot, const std::vector<Vec3>& positions) const;
@@ -168,6 +185,8 @@ class Surroundings {
   RoundCone second_cone(const ContactPair& pair, const std::vector<Vec3>& positions,
                         const std::vector<Vec3>& points) const;
   ConeGap gap_of(const ContactPair& pair, const std::vector<Vec3>& positions, const std::vector<Vec3>& points) const;
+  ConeGap gap_or_less(const ContactPair& pair, const std::vector<Vec3>& positions,
+                      const std::vector<Vec3>& points) const;
   Vec3 on_slot(Index slot, double t, const std::vector<Vec3>& positions) const;
   Vec3 on_part(Index part, double t, const std::vector<Vec3>& points) const;
   struct PairMotion {
@@ -183,8 +202,9 @@ class Surroundings {
     double stiffness, way;
   };
   double way_at(const Stop& stop, const std::vector<Vec3>& positions) const;
-  void add_stop(ContactPair& pair, double free, double part);
-  void linearise_again(double part);
+  void add_stop(const ContactPair& pair, double free, double part);
+  static double deepest_part(const PairMotion& motion, double free);
+  void press_stop(const Stop& stop);
   PairMotion motion_of(const ContactPair& pair) const;
   double free_part_of(const ContactPair& pair) const;
   Vec3 surface_way(const Rub& rub, State state) const;
@@ -214,12 +234,17 @@ class Surroundings {
   std::vector<Vec3> present_, trial_, start_;
   SlotBoxes boxes_;
   std::vector<SlotBox> slot_boxes_;
-  std::vector<Vec3> found_at_, points_found_at_, points_found_aim_;
+  // Where pairs were found, and for which ways.
+  std::vector<Vec3> found_at_, found_way_, points_found_at_, points_found_aim_;
+  std::vector<double> slot_slack_;
   double slack_ = -1, last_way_ = 0, expected_way_ = 0;
   bool moves_ = false;
   std::vector<ContactPair> pairs_;
+  std::vector<Ball> balls_;
   std::vector<Rub> rubs_;
+  bool expects_ = false;  // nothing has moved yet in this step
   std::vector<Stop> stops_;
+  bool loads_changed_ = false;
   std::vector<Index> near_slots_;
 
   std::vector<SegmentLoad> loads_;

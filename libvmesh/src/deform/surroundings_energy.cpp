@@ -16,6 +16,8 @@ constexpr double kAhead = 0.5;
 constexpr double kStopsAt = 0.3;
 /// What meets within this many times the way to where the first meet is stopped with these.
 constexpr double kSoon = 2;
+/// Parts of a way at which the deepest place is looked for.
+constexpr int kLooks = 8;
 /// A step has converged when nothing moves by more than this share of a barrier's reach, and times what friction
 /// yields.
 constexpr double kConverged = 4e-2, kFrictionConverged = 5;
@@ -43,8 +45,6 @@ void Surroundings::press(Index slot, double t, const Mat3& stiffness, const Vec3
 }
 
 void Surroundings::linearise(double part) {
-  for (ContactPair& pair : pairs_) pair.stopped = false;
-  stops_.clear();
   for (const Index slot : loaded_slots_) load_of_slot_[slot] = kNone;
   loaded_slots_.clear();
   links_.clear();
@@ -76,19 +76,27 @@ void Surroundings::add_contacts(double part) {
 }
 
 /// Barriers are soft from afar. What would run into each other in a long step is stopped a share of the gap before,
-/// along the direction in which it meets: first what meets first. A stop that pulls is left out again.
-bool Surroundings::stop(double part) {
+/// along the direction in which it meets: first what meets first. A stop that pulls is left out again, while `revises`.
+bool Surroundings::stop(const RodScene& scene, double part, bool revises) {
+  cover_trial(scene);
+  const auto any_parts = [this] {
+    return std::any_of(stops_.begin(), stops_.end(), [](const Stop& stop) { return stop.is_part; });
+  };
+  loads_changed_ = any_parts();
   const std::size_t before = stops_.size();
-  std::erase_if(stops_, [&](const Stop& stop) { return way_at(stop, trial_) > stop.way + 1e-9 * std::abs(stop.way); });
+  if (revises)
+    std::erase_if(stops_,
+                  [this](const Stop& stop) { return way_at(stop, trial_) > stop.way + 1e-9 * std::abs(stop.way); });
   const bool left_out = stops_.size() < before;
   std::vector<double> free(pairs_.size(), 1);
   double first = 1;
-  for (std::size_t i = 0; i < pairs_.size(); ++i)
-    if (!pairs_[i].stopped) first = std::min(first, free[i] = free_part_of(pairs_[i]));
+  for (std::size_t i = 0; i < pairs_.size(); ++i) first = std::min(first, free[i] = free_part_of(pairs_[i]));
+  if (first >= 1 && !left_out) return false;
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (free[i] < 1 && free[i] <= kSoon * first) add_stop(pairs_[i], free[i], part);
-  if (first >= 1 && !left_out) return false;
-  linearise_again(part);
+  loads_changed_ = loads_changed_ || any_parts();
+  linearise(part);
+  for (const Stop& stop : stops_) press_stop(stop);
   return true;
 }
 
@@ -98,42 +106,54 @@ double Surroundings::way_at(const Stop& stop, const std::vector<Vec3>& positions
   return stop.direction.dot(stop.is_part ? first : Vec3(first - way(stop.other, stop.second_t)));
 }
 
-void Surroundings::add_stop(ContactPair& pair, double free, double part) {
-  pair.stopped = true;
+/// Not farther than to where they meet. Where two roll on each other, or one goes around the other, the place at which
+/// they meet is not where they get into each other: there the whole way is moved so that they do not.
+void Surroundings::add_stop(const ContactPair& pair, double free, double part) {
   const PairMotion motion = motion_of(pair);
-  const ConeGap meets = gap_between(between(motion.first, free), between(motion.second, free));
-  const double stiffness =
-      pair.is_part ? stop_stiffness_[pair.slot] : std::min(stop_stiffness_[pair.slot], stop_stiffness_[pair.other]);
-  Stop stop{pair.slot, pair.other, pair.is_part, meets.first_t, meets.second_t, meets.direction, stiffness, 0};
   const double left = kStopsAt * std::min(pair.now.gap, pair.barrier.reach);
-  // The way of the first relative to the second along the direction, at whose end the gap is `left`.
-  stop.way = left - meets.gap - pair.rest_excess + free * way_at(stop, trial_);
-  if (pair.is_part) {
-    const Vec3 goes =
-        part * (on_part(pair.other, stop.second_t, points_.aim) - on_part(pair.other, stop.second_t, points_.present));
-    stop.way += (1 - free) * stop.direction.dot(goes);
+  const auto stop_after = [&](double at) {
+    const ConeGap meets = gap_between(between(motion.first, at), between(motion.second, at));
+    const double stiffness =
+        pair.is_part ? stop_stiffness_[pair.slot] : std::min(stop_stiffness_[pair.slot], stop_stiffness_[pair.other]);
+    // `way`: what lacks for now.
+    return Stop{pair.slot,      pair.other,      pair.is_part, meets.first_t,
+                meets.second_t, meets.direction, stiffness,    left - meets.gap};
+  };
+  Stop stop = stop_after(free);
+  stop.way += free * way_at(stop, trial_);
+  if (pair.is_part)
+    stop.way += (1 - free) * part *
+                stop.direction.dot(on_part(pair.other, stop.second_t, points_.aim) -
+                                   on_part(pair.other, stop.second_t, points_.present));
+  if (way_at(stop, trial_) >= stop.way) {
+    const double deepest = deepest_part(motion, free);
+    stop = stop_after(deepest);
+    stop.way = way_at(stop, trial_) + stop.way / deepest;
   }
   stops_.push_back(stop);
 }
 
-void Surroundings::linearise_again(double part) {
-  const std::vector<Stop> stops = stops_;
-  std::vector<char> stopped;
-  for (const ContactPair& pair : pairs_) stopped.push_back(pair.stopped ? 1 : 0);
-  linearise(part);
-  stops_ = stops;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) pairs_[i].stopped = stopped[i] != 0;
-  for (const Stop& stop : stops_) {
-    if (stop.is_part)
-      press(stop.slot, stop.first_t, along(stop.direction, stop.stiffness),
-            -stop.stiffness * stop.way * stop.direction);
-    else
-      links_.push_back({stop.slot, stop.other, stop.first_t, stop.second_t, stop.direction, stop.stiffness,
-                        -stop.stiffness * stop.way});
+/// Of the rest of the way.
+double Surroundings::deepest_part(const PairMotion& motion, double free) {
+  double deepest = 1, least = HUGE_VAL;
+  for (int i = 1; i <= kLooks; ++i) {
+    const double part = free + (1 - free) * i / kLooks;
+    const double gap = gap_between(between(motion.first, part), between(motion.second, part)).gap;
+    if (gap < least) least = gap, deepest = part;
   }
+  return deepest;
+}
+
+void Surroundings::press_stop(const Stop& stop) {
+  if (stop.is_part)
+    press(stop.slot, stop.first_t, along(stop.direction, stop.stiffness), -stop.stiffness * stop.way * stop.direction);
+  else
+    links_.push_back({stop.slot, stop.other, stop.first_t, stop.second_t, stop.direction, stop.stiffness,
+                      -stop.stiffness * stop.way});
 }
 
 void Surroundings::note_friction(const RodScene& scene) {
+  std::vector<Rub> before = std::move(rubs_);
   rubs_.clear();
   for (const ContactPair& pair : pairs_) {
     const auto& [gap, s, t, n] = pair.now;
@@ -152,6 +172,7 @@ void Surroundings::note_friction(const RodScene& scene) {
             load,
             options_.slip_radii_per_s * radius * scene.options.step_s,
             on_slot(pair.slot, s, present_),
+            Vec3::Zero(),
             Vec3::Zero()};
     if (pair.is_part) {
       rub.surface = part_cone(pair.other, points_.present).radius_at(t) * n;
@@ -161,6 +182,22 @@ void Surroundings::note_friction(const RodScene& scene) {
     }
     rubs_.push_back(rub);
   }
+  expect_ways(before);
+}
+
+/// What rubbed in the last step, too, goes on as it did: `expected` there has become the way of that step.
+void Surroundings::expect_ways(const std::vector<Rub>& before) {
+  expects_ = true;
+  std::size_t next = 0;  // both are in the order of pairs, mostly
+  for (Rub& rub : rubs_)
+    for (std::size_t tried = 0; tried < before.size(); ++tried) {
+      const std::size_t i = (next + tried) % before.size();
+      const Rub& old = before[i];
+      if (old.slot != rub.slot || old.other != rub.other || old.is_part != rub.is_part) continue;
+      rub.expected = across(rub.normal, old.expected);
+      next = i + 1;
+      break;
+    }
 }
 
 /// How far the instrument's surface has gone at a contact since the start of the step.
@@ -179,10 +216,11 @@ Vec3 Surroundings::slipped(const Rub& rub, const std::vector<Vec3>& positions, S
   return across(rub.normal, Vec3(on_slot(rub.slot, rub.first_t, positions) - rub.first_start - second));
 }
 
-/// Stiff across the way, soft along it, where friction hardly grows any more.
+/// Stiff across the way, soft along it, where friction hardly grows any more. About the way so far, or, before anything
+/// has moved, about the way expected.
 void Surroundings::add_friction(double part) {
   for (const Rub& rub : rubs_) {
-    const Vec3 way = slipped(rub, present_, State::present);
+    const Vec3 so_far = slipped(rub, present_, State::present), way = expects_ ? rub.expected : so_far;
     const double length = way.norm(), sideways = rub.load * Slipping{rub.yield}.slope_over_way(length);
     const double lengthwise = rub.load * Slipping{rub.yield}.curvature(length);
     const Vec3 x = length > 0 ? Vec3(way / length) : rub.normal.unitOrthogonal(), y = rub.normal.cross(x);
@@ -190,14 +228,16 @@ void Surroundings::add_friction(double part) {
       const Mat3 stiffness = along(x, lengthwise) + along(y, sideways);
       const Vec3 goes =
           part * (on_part(rub.other, rub.second_t, points_.aim) - on_part(rub.other, rub.second_t, points_.present));
-      press(rub.slot, rub.first_t, stiffness, sideways * way - stiffness * goes);
+      press(rub.slot, rub.first_t, stiffness, sideways * way + stiffness * (so_far - way - goes));
       continue;
     }
     // A link needs some stiffness; a thousandth of that at rest does not show.
     const double least = 1e-3 * rub.load / rub.yield;
+    const double stiff_x = std::max(lengthwise, least), stiff_y = std::max(sideways, least);
+    const Vec3 behind = so_far - way;
     links_.push_back(
-        {rub.slot, rub.other, rub.first_t, rub.second_t, x, std::max(lengthwise, least), sideways * length});
-    links_.push_back({rub.slot, rub.other, rub.first_t, rub.second_t, y, std::max(sideways, least), 0});
+        {rub.slot, rub.other, rub.first_t, rub.second_t, x, stiff_x, sideways * length + stiff_x * x.dot(behind)});
+    links_.push_back({rub.slot, rub.other, rub.first_t, rub.second_t, y, stiff_y, stiff_y * y.dot(behind)});
   }
 }
 
@@ -228,17 +268,19 @@ double Surroundings::jaw_energy(const std::vector<Vec3>& positions, State state)
 
 double Surroundings::energy(State state) {
   double energy = 0;
+  if (state == State::trial) set_balls(trial_);
   for (ContactPair& pair : pairs_) {
-    if (state == State::trial) pair.next = gap_of(pair, trial_, points_.trial);
+    if (state == State::trial) pair.next = gap_or_less(pair, trial_, points_.trial);
     energy += pair.barrier.energy(state == State::trial ? pair.next.gap : pair.now.gap);
   }
   const std::vector<Vec3>& positions = state == State::trial ? trial_ : present_;
   return energy + friction_energy(positions, state) + jaw_energy(positions, state);
 }
 
-double Surroundings::energy_at(const std::vector<Vec3>& positions) const {
+double Surroundings::energy_at(const std::vector<Vec3>& positions) {
   double energy = friction_energy(positions, State::trial) + jaw_energy(positions, State::trial);
-  for (const ContactPair& pair : pairs_) energy += pair.barrier.energy(gap_of(pair, positions, points_.trial).gap);
+  set_balls(positions);
+  for (const ContactPair& pair : pairs_) energy += pair.barrier.energy(gap_or_less(pair, positions, points_.trial).gap);
   return energy;
 }
 
@@ -250,13 +292,15 @@ double Surroundings::stored() const {
 
 double Surroundings::smallest_gap() const {
   double smallest = HUGE_VAL;
-  for (const ContactPair& pair : pairs_) smallest = std::min(smallest, pair.now.gap);
+  for (const ContactPair& pair : pairs_)
+    if (pair.now.gap < smallest) smallest = std::min(smallest, gap_of(pair, present_, points_.present).gap);
   return smallest;
 }
 
 double Surroundings::precision() const {
   double precision = HUGE_VAL;
-  for (const ContactPair& pair : pairs_) precision = std::min(precision, kConverged * pair.barrier.reach);
+  for (const ContactPair& pair : pairs_)
+    if (pair.now.gap < pair.barrier.reach) precision = std::min(precision, kConverged * pair.barrier.reach);
   for (const Rub& rub : rubs_) precision = std::min(precision, kFrictionConverged * rub.yield);
   return precision;
 }
@@ -267,6 +311,7 @@ bool Surroundings::acts() const {
 
 double Surroundings::end(const RodScene& scene) {
   double work = act_on_instruments();
+  for (Rub& rub : rubs_) rub.expected = slipped(rub, present_, State::present);
   for (Jaw& jaw : jaws_) {
     if (!jaw.holds) continue;
     const Vec3 way = on_slot(jaw.slot, jaw.t, present_) - jaw.at;
