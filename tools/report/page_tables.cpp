@@ -6,7 +6,7 @@ namespace vmesh::tool {
 namespace {
 
 /// What a page shows elsewhere, or what is irrelevant on it.
-constexpr const char* kLeftOut[] = {"schema", "generator", "seconds", "warnings", "problems", "options"};
+constexpr const char* kLeftOut[] = {"schema", "generator", "seconds", "slow_pieces", "warnings", "problems", "options"};
 
 bool is_left_out(const std::string& key) {
   return std::find(std::begin(kLeftOut), std::end(kLeftOut), key) != std::end(kLeftOut) || key.ends_with("_s");

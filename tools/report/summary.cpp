@@ -241,6 +241,14 @@ Json error_bound_json(const GenerateArguments& arguments, const GenerateResult& 
   return json;
 }
 
+Json slow_piece_json(const SlowPiece& piece) {
+  return {{"position", to_json(piece.position)},
+          {"vertices", piece.vertices},
+          {"seconds", piece.seconds},
+          {"times_median", piece.times},
+          {"reason", piece.reason}};
+}
+
 Json stages_json(const std::vector<StageTime>& stages) {
   Json json = Json::object();
   double total = 0;
@@ -295,6 +303,7 @@ Json to_json(const GenerateReport& report) {
   if (report.separation) json["separation"] = to_json(*report.separation);
   if (report.extraction) json["extraction"] = to_json(*report.extraction);
   json["seconds"] = stages_json(report.stages);
+  json["slow_pieces"] = list_json(report.result->growth.slow_pieces, slow_piece_json);  // beside: it differs as well
   json["warnings"] = report.warnings;
   json["sound"] = report.result->is_sound();
   json["defects"] = to_json(report.result->defects);
@@ -384,13 +393,6 @@ Json to_json(const GrowthSummary& growth) {
                 {"segments", s.segments},
                 {"message", s.message}};
   };
-  const auto of_slow_piece = [](const SlowPiece& s) {
-    return Json{{"position", to_json(s.position)},
-                {"vertices", s.vertices},
-                {"seconds", s.seconds},
-                {"times_median", s.times},
-                {"reason", s.reason}};
-  };
   return {{"junctions", growth.junctions},
           {"tubes", growth.tubes},
           {"components", growth.components},
@@ -401,7 +403,6 @@ Json to_json(const GrowthSummary& growth) {
            {{"degenerate", growth.refused.degenerate},
             {"axis", growth.refused.axis},
             {"crossing", growth.refused.crossing}}},
-          {"slow_pieces", list_json(growth.slow_pieces, of_slow_piece)},
           {"simplifications", list_json(growth.simplifications, of_simplification)}};
 }
 
