@@ -74,7 +74,7 @@ def put(readme: str, name: str, lines: list[str]) -> None:
     path = ROOT / readme
     # On lines of their own: this script's manual names them as well.
     before, mark, rest = path.read_text().partition(f"\n<!-- figures: {name} -->\n")
-    old, end, after = rest.partition("\n<!-- end -->\n")
+    old, end, after = ("\n" + rest).partition("\n<!-- end -->\n")  # nothing between them yet, perhaps
     if not mark or not end or "<!-- figures: " in old:
         sys.exit(f"{readme}: there is no place for the table {name}")
     path.write_text(before + mark + "\n" + "\n".join(lines) + "\n" + end + after)
