@@ -105,3 +105,12 @@ def test_the_package_and_the_examples_are_typed(mypy, tmp_path):
     # Calls of others: ours are all typed, VTK's are or not, by its version.
     run = mypy("mypy", "--strict", "--allow-untyped-calls", "--ignore-missing-imports", str(package), *examples)
     assert run.returncode == 0, run.stdout + run.stderr
+
+
+def test_numpy_2_is_refused_where_arrays_would_be_wrong():
+    program = "import numpy; numpy.__version__ = '2.1.0'; import vmesh; vmesh.generate"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    if vmesh._core._knows_numpy_2:
+        assert done.returncode == 0
+    else:
+        assert "pybind11 before 2.12" in done.stderr

@@ -164,7 +164,10 @@ TEST(Pieces, AreGatheredInWhateverOrderTheyAreFinishedAndFreed) {
   Gatherer gatherer(divided.tubes, divided.division, pieces, 1);  // far too few vertices expected
   for (const Index p : {2u, 0u, 3u, 1u}) gatherer.add(p);
   EXPECT_TRUE(same(gatherer.finish(), in_turn));
-  for (const PieceSurface& piece : pieces) {
+  for (Index p = 0; p < pieces.size(); ++p) {
+    const PieceSurface& piece = pieces[p];
+    EXPECT_EQ(piece.work.vertices, in_turn.first_vertex[p + 1] - in_turn.first_vertex[p]) << "what it took is known";
+    EXPECT_GT(piece.work.seconds, 0);
     EXPECT_EQ(piece.vertices.capacity() + piece.binding.capacity() + piece.radius.capacity() + piece.faces.capacity(),
               0u);
   }

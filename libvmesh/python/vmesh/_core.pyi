@@ -10,6 +10,7 @@ _Floats = NDArray[np.float64]
 _Indices = NDArray[np.uint32]
 
 __version__: str
+_knows_numpy_2: bool
 
 class Centerline:
     def __init__(self, nodes: ArrayLike, radii: ArrayLike, segments: ArrayLike) -> None: ...

@@ -1,5 +1,15 @@
 """All that `import vmesh` has, see there."""
 
+import numpy as _numpy
+
+from ._core import _knows_numpy_2
+
+if int(_numpy.__version__.split(".")[0]) >= 2 and not _knows_numpy_2:
+    raise ImportError(
+        f"this vmesh was built with a pybind11 before 2.12, whose arrays are wrong with NumPy {_numpy.__version__}: "
+        "use a NumPy before 2, as Debian 12's, or the wheel (scripts/package --wheel)"
+    )
+
 from ._errors import (
     Cancelled,
     DefectiveSurface,

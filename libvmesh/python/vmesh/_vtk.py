@@ -17,16 +17,8 @@ def to_vtk(surface: Surface) -> Any:
     """
     vtk, convert = _import_vtk()
     poly = vtk.vtkPolyData()
-    points = vtk.vtkPoints()
-    points.SetData(convert.numpy_to_vtk(np.ascontiguousarray(surface.vertices), deep=True))
-    poly.SetPoints(points)
-    cells = vtk.vtkCellArray()
-    offsets = np.arange(0, 3 * len(surface.faces) + 1, 3, dtype=np.int64)
-    cells.SetData(
-        convert.numpy_to_vtkIdTypeArray(offsets, deep=True),
-        convert.numpy_to_vtkIdTypeArray(surface.faces.astype(np.int64).ravel(), deep=True),
-    )
-    poly.SetPolys(cells)
+    poly.SetPoints(_points(surface.vertices))
+    poly.SetPolys(_cells([surface.faces]))
     _add(convert, poly.GetPointData(), surface.vertex_attributes)
     _add(convert, poly.GetCellData(), surface.face_attributes)
     return poly
@@ -37,11 +29,7 @@ def to_pyvista(surface: Surface) -> Any:
 
     Raises ImportError without PyVista.
     """
-    try:
-        import pyvista
-    except ImportError as error:
-        raise ImportError("PyVista is needed: pip install pyvista") from error
-    return pyvista.wrap(to_vtk(surface))
+    return _import_pyvista().wrap(to_vtk(surface))
 
 
 def volume_to_vtk(volume: VolumeMesh) -> Any:
@@ -51,23 +39,16 @@ def volume_to_vtk(volume: VolumeMesh) -> Any:
     """
     vtk, convert = _import_vtk()
     grid = vtk.vtkUnstructuredGrid()
-    points = vtk.vtkPoints()
-    points.SetData(convert.numpy_to_vtk(np.ascontiguousarray(volume.points), deep=True))
-    grid.SetPoints(points)
-    # VTK's wedges have their first triangle look outwards.
+    grid.SetPoints(_points(volume.points))
+    # The first triangle of VTK's wedges looks outwards; since 9.7, to the other one, as ours.
+    order = [0, 1, 2, 3, 4, 5] if vtk.version >= (9, 7) else [0, 2, 1, 3, 5, 4]
     parts: Sequence[Tuple[int, NDArray[Any]]] = (
         (vtk.VTK_TETRA, volume.tetrahedra),
-        (vtk.VTK_WEDGE, volume.wedges[:, [0, 2, 1, 3, 5, 4]]),
+        (vtk.VTK_WEDGE, volume.wedges[:, order]),
         (vtk.VTK_PYRAMID, volume.pyramids),
     )
-    sizes = np.concatenate([np.full(len(cells), cells.shape[1], dtype=np.int64) for _, cells in parts])
-    cells = vtk.vtkCellArray()
-    cells.SetData(
-        convert.numpy_to_vtkIdTypeArray(np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64), deep=True),
-        convert.numpy_to_vtkIdTypeArray(np.concatenate([part.astype(np.int64).ravel() for _, part in parts]), deep=True),
-    )
     kinds = np.concatenate([np.full(len(part), kind, dtype=np.uint8) for kind, part in parts])
-    grid.SetCells(convert.numpy_to_vtk(kinds, deep=True), cells)
+    grid.SetCells(convert.numpy_to_vtk(kinds, deep=True), _cells([cells for _, cells in parts]))
     _add(convert, grid.GetCellData(), {"ModelRegionID": volume.cell_region.astype(np.int64) + 1})
     return grid
 
@@ -77,11 +58,7 @@ def volume_to_pyvista(volume: VolumeMesh) -> Any:
 
     Raises ImportError without PyVista.
     """
-    try:
-        import pyvista
-    except ImportError as error:
-        raise ImportError("PyVista is needed: pip install pyvista") from error
-    return pyvista.wrap(volume_to_vtk(volume))
+    return _import_pyvista().wrap(volume_to_vtk(volume))
 
 
 def from_vtk(poly: Any) -> Surface:
@@ -100,11 +77,40 @@ def from_vtk(poly: Any) -> Surface:
     return Surface(vertices, faces)
 
 
+def _points(positions: NDArray[Any]) -> Any:
+    """vtkPoints, copied."""
+    vtk, convert = _import_vtk()
+    points = vtk.vtkPoints()
+    points.SetData(convert.numpy_to_vtk(np.ascontiguousarray(positions), deep=True))
+    return points
+
+
+def _cells(parts: Sequence[NDArray[Any]]) -> Any:
+    """A vtkCellArray of cells, each part with rows of as many corners as its cells have."""
+    vtk, convert = _import_vtk()
+    sizes = np.concatenate([np.full(len(part), part.shape[1], dtype=np.int64) for part in parts])
+    offsets = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
+    corners = np.concatenate([part.astype(np.int64).ravel() for part in parts])
+    cells = vtk.vtkCellArray()
+    cells.SetData(
+        convert.numpy_to_vtkIdTypeArray(offsets, deep=True), convert.numpy_to_vtkIdTypeArray(corners, deep=True)
+    )
+    return cells
+
+
 def _add(convert: Any, data: Any, attributes: Dict[str, NDArray[Any]]) -> None:
     for name, values in attributes.items():
         array = convert.numpy_to_vtk(np.ascontiguousarray(values), deep=True)
         array.SetName(name)
         data.AddArray(array)
+
+
+def _import_pyvista() -> Any:
+    try:
+        import pyvista
+    except ImportError as error:
+        raise ImportError("PyVista is needed: pip install pyvista") from error
+    return pyvista
 
 
 def _import_vtk() -> Any:
@@ -114,9 +120,12 @@ def _import_vtk() -> Any:
     except ImportError as error:
         raise ImportError("VTK for Python is needed: pip install vtk; on Debian: apt install python3-vtk9") from error
 
+    _version = vtkCommonCore.vtkVersion
+
     class Names:
         vtkPolyData = vtkCommonDataModel.vtkPolyData
         vtkUnstructuredGrid = vtkCommonDataModel.vtkUnstructuredGrid
+        version = (_version.GetVTKMajorVersion(), _version.GetVTKMinorVersion())
         VTK_TETRA = vtkCommonDataModel.VTK_TETRA
         VTK_WEDGE = vtkCommonDataModel.VTK_WEDGE
         VTK_PYRAMID = vtkCommonDataModel.VTK_PYRAMID

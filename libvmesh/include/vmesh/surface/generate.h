@@ -151,7 +151,7 @@ struct SlowPiece {
   std::size_t vertices = 0;
   double seconds = 0;  ///< wall clock
   double times = 0;    ///< the median piece's time for a vertex
-  std::string reason;  ///< why each further try was made, or what one try had to do
+  std::string reason;  ///< what earlier tries ended with, or what the only one had to do
 };
 
 /// The graph that steered guided growth: junctions joined by tubes. The surface has its topology.

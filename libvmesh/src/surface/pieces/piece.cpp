@@ -107,31 +107,27 @@ class PieceMaker {
   PieceSurface run() {
     std::optional<PieceSurface> best;
     std::vector<PieceFault> last;
-    std::vector<PieceTry> tries;
+    std::vector<PieceTry> failed;
     const int first = is_hub() ? kFirstGuarded : 0;
     leave_room_at_hubs();
     for (int rung = first; rung < kRungs; ++rung) {
       if (rung > 0 && !climb(kLadder[rung], last)) continue;
       std::optional<PieceSurface> piece = make(kLadder[rung], last);
       if (!piece) {
-        tries.push_back({{}, last.size(), 0});
+        failed.push_back({{}, last.size(), 0});
         continue;
       }
       piece->rung = rung;
       last = piece->faults;
       const bool cannot_be_sound = vessels_overlap(last);
-      tries.push_back(
-          {last.empty() ? std::nullopt : std::optional(last.front().kind), last.size(), piece->worst_skewness});
+      const double worst = piece->worst_skewness;
       if (!best || badness(*piece, mended()) < badness(*best, mended())) best = std::move(piece);
       best->cannot_be_sound = cannot_be_sound && !best->faults.empty();
       if (badness(*best, mended()) == kNoBadness || cannot_be_sound) break;
+      failed.push_back({last.empty() ? std::nullopt : std::optional(last.front().kind), last.size(), worst});
     }
-    if (!best) {
-      best = make_hanging();
-    } else if (!tries.empty()) {
-      tries.pop_back();  // the last is the piece
-    }
-    best->tries = std::move(tries);
+    if (!best) best = make_hanging();
+    best->work.failed = std::move(failed);
     return *std::move(best);
   }
 
@@ -379,7 +375,11 @@ class PieceMaker {
 PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan) {
   const auto start = std::chrono::steady_clock::now();
   PieceSurface piece = PieceMaker(context, plan).run();
-  piece.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  PieceWork& work = piece.work;
+  work.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  work.vertices = piece.vertices.size();
+  work.seam_vertices = piece.seam_vertices.size();
+  if (!piece.vertices.empty()) work.position = piece.vertices.front();
   if (execution_params().intermediate_checks && piece.vertices.size() < kMadeTwice)
     check_repeatable(piece, PieceMaker(context, plan).run());
   return piece;

@@ -19,11 +19,19 @@ struct SeamVertex {
   Index number = 0;
 };
 
-/// What a try to make a piece ended with, if another followed.
+/// What a try to make a piece failed with.
 struct PieceTry {
   std::optional<DefectKind> fault;  ///< the first of its faults; nothing if a junction hung
   std::size_t faults = 0;
-  double worst_skewness = 0;  ///< why it was tried again if there was no fault
+  double worst_skewness = 0;  ///< why it failed if there was no fault
+};
+
+/// What it took to make a piece: known also when its vertices have gone into the whole surface.
+struct PieceWork {
+  double seconds = 0;  ///< wall clock
+  std::vector<PieceTry> failed;
+  std::size_t vertices = 0, seam_vertices = 0;
+  Vec3 position = Vec3::Zero();  ///< of one of them
 };
 
 /// A finished piece: grown, docked, optimised and checked. Faces refer to its own vertices and, from vertices.size()
@@ -46,8 +54,7 @@ struct PieceSurface {
   double worst_skewness = 0;     ///< equiangle, of its triangles
   int rung = 0;                  ///< of the ladder on which it was made
   RefusedSteps refused;          ///< on that rung
-  std::vector<PieceTry> tries;   ///< before the last
-  double seconds = 0;            ///< wall clock
+  PieceWork work;
   std::vector<PieceFault> faults;
   bool cannot_be_sound = false;  ///< some rung found overlapping vessels in it: it cannot be sound
 };
