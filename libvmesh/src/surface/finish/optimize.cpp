@@ -8,6 +8,7 @@
 #include "surface/remesh/relocation.h"
 #include "surface/remesh/remesher.h"
 #include "surface/remesh/untangle.h"
+#include "surface/remesh/valleys.h"
 
 namespace vmesh {
 namespace {
@@ -192,7 +193,14 @@ class Optimizer {
   // A bend turns the rings around it, so on its outside they are farther apart than along the vessel, the more so the
   // finer they are; and shape alone, which knows no size, makes the triangles between them wide as well.
   void even_out_stretched() {
-    for (int round = 0; round < kStretchRounds && touch_stretched(); ++round) resize();
+    for (int round = 0; round < kStretchRounds; ++round) {
+      if (state_.field.relations().blend() > 0) {
+        make_valleys_finer(state_);
+        state_.update_sizes(edge_per_radius_);
+      }
+      if (!touch_stretched()) break;
+      resize();
+    }
   }
 
   bool touch_stretched() {

@@ -42,6 +42,14 @@ double most_outwards(const SweepState& state, Vertex v, double most) {
   return kShareOfGap * std::max(0.0, gap);
 }
 
+// The largest along its edges, 1/mm.
+double valley_curvature(const BoundSurface& surface, Vertex v) {
+  double most = 0;
+  for (const Halfedge h : surface.mesh.halfedges_around_target(surface.mesh.halfedge(v)))
+    most = std::max(most, surface.valley_curvature(v, surface.mesh.source(h)));
+  return most;
+}
+
 void update_lifts(SweepState& state, const ErrorLimit& limit) {
   const FaceErrors errors = face_errors(state);
   for (const Vertex v : state.mesh.vertices()) {
@@ -54,8 +62,11 @@ void update_lifts(SweepState& state, const ErrorLimit& limit) {
     const double radius = state.surface.radius(v), size = state.size(v);
     const double balanced = limit.is_set() ? kBalancedWithLimit * radius : kBalanced * cut_off(size, radius);
     if (std::abs(sum) <= balanced * area) continue;
-    const double most = std::min(kMostLift * size * std::min(1.0, size / radius), kShareOfLimit * limit.at(radius));
-    state.surface[v].lift = std::clamp(state.surface[v].lift - sum / area, -most, most_outwards(state, v, most));
+    const auto most = [&](double curvature) {
+      return std::min(kMostLift * size * std::min(1.0, size * curvature), kShareOfLimit * limit.at(radius));
+    };
+    const double out = most(1 / radius), in = most(std::max(1 / radius, valley_curvature(state.surface, v)));
+    state.surface[v].lift = std::clamp(state.surface[v].lift - sum / area, -in, most_outwards(state, v, out));
   }
 }
 

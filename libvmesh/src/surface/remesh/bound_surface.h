@@ -139,6 +139,12 @@ class BoundSurface {
   }
   double radius(Vertex v) const { return field.relations().radius_at(vertex_[v].cone, vertex_[v].t); }
 
+  /// Curvature of the boundary between two neighbours towards the outside, 1/mm: greater than 0 in a valley.
+  double valley_curvature(Vertex a, Vertex b) const {
+    const Vec3 way = position(b) - position(a);
+    return (vertex_[a].gradient - vertex_[b].gradient).dot(way) / way.squaredNorm();
+  }
+
   /// Places `v` at `p`, bound as `sample` says.
   void place(Vertex v, const Vec3& p, const FieldSample& sample);
 
