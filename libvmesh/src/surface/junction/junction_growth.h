@@ -8,6 +8,9 @@
 
 namespace vmesh {
 
+/// Resolution, in vertices around a vessel, at which a junction is joined to its tubes.
+int docked_around(const GenerateOptions& options);
+
 /// Lift of a vertex that keeps its present distance from the boundary.
 inline constexpr double kAsLaid = std::numeric_limits<double>::infinity();
 
