@@ -122,7 +122,7 @@ class JunctionDocker {
       return;
     }
     const double radii = growth_.length_in_radii() + static_cast<double>(docks_.size() * (kRingsGivenAway + 1));
-    const GrownMesh grown{double(docked_around(options_)), expected_vertices(radii, options_.around / fineness),
+    const GrownMesh grown{double(growth_.docked_around()), expected_vertices(radii, options_.around / fineness),
                           GrownMesh::Stage::piece};
     const OptimizeReport report = optimize(surface_, options_, grown, progress_);
     docked.tangles = report.tangles;

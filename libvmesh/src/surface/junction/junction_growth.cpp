@@ -24,9 +24,11 @@ constexpr double kBeneath = 0.1;          // safe 0.07 to 0.14
 constexpr int kSweeps = 5;                // from the lattice's triangles to those of the size field; safe 4 to 7
 constexpr double kShortestRimEdge = 0.4;  // of the target edge length; safe 0.28 to 0.56
 constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move to reach the boundary; safe 0.21 to 0.42
-// Finest resolution at which junctions are docked. Measured on hepatic trees at 96 around: cones that the junction's
-// own field lacks move its boundary by more than an edge, and vertices stay behind.
+// Resolution up to which a junction is docked at the one asked for, and edges that are to fit between two docks.
+// Measured on hepatic trees at 96 around: cones that the junction's own field lacks move its boundary by more than an
+// edge, and vertices stay behind.
 constexpr int kMostDocked = 24;
+constexpr double kEdgesBetweenDocks = 3;
 constexpr double kOwnReach = 1.5;  // radii along the branch from which a tip's vertices come; safe 1 to 2.1
 
 Index widest_node(const Centerline& centerline) {
@@ -92,9 +94,20 @@ LatticeSurface grow_lattice(const VesselField& field) {
   return grow_in_lattice(field, lattice_around(field, start), hint, centerline.cycle_rank());
 }
 
-}  // namespace
+// Fine enough for edges between two docks of one vessel.
+int resolution_at_docks(const std::vector<BranchAxis>& axes, const Junction& junction, int around) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const BareStretch& bare : junction.bare_stretches) {
+    if (bare.docks[0].tube == kNone || bare.docks[1].tube == kNone) continue;
+    const double radius = axes[bare.branch].at(0.5 * (bare.begin + bare.end)).radius;
+    shortest = std::min(shortest, (bare.end - bare.begin) / radius);
+  }
+  int docked = std::min(around, kMostDocked);
+  while (docked < around && kEdgesBetweenDocks * edge_length_per_radius(docked) > shortest) ++docked;
+  return docked;
+}
 
-int docked_around(const GenerateOptions& options) { return std::min(options.around, kMostDocked); }
+}  // namespace
 
 JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes,
                                const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options,
@@ -105,6 +118,7 @@ JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<Branc
       junction_(junction),
       options_(options),
       progress_(progress),
+      docked_around_(resolution_at_docks(axes, junction, options.around)),
       local_(make_junction_centerline(field.relations().centerline(), axes, junction)),
       centerline_(local_.nodes, local_.segments),
       local_field_(centerline_, options.blend),
@@ -136,7 +150,7 @@ GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   GenerateOptions options = options_;
   options.sweeps = kSweeps;
   options.max_error = {};
-  options.around = std::max(3, static_cast<int>(finer * docked_around(options_)));
+  options.around = std::max(3, static_cast<int>(finer * docked_around_));
   const double expected = expected_vertices(centerline_, options.around);
   const double around = std::min<double>(finer * kGrownAround, options.around);
   optimize(surface, options, {around, expected, GrownMesh::Stage::piece, options_.max_error.is_set()}, progress_);
@@ -158,7 +172,7 @@ CrossSection JunctionGrowth::way_out(const TubeEnd& dock) const {
 std::vector<Index> JunctionGrowth::cut_at_dock(DiscCutter& cutter, const GenerateResult& closed, Index bare,
                                                bool at_end, bool smooth) const {
   const auto [place, center, normal, radius] = way_out(junction_.bare_stretches[bare].docks[at_end]);
-  const double shortest = smooth ? kShortestRimEdge * edge_length_per_radius(docked_around(options_)) * radius : 0;
+  const double shortest = smooth ? kShortestRimEdge * edge_length_per_radius(docked_around_) * radius : 0;
   std::vector<Index> rim =
       cutter.cut(center, normal, vertices_near_end(closed, bare, at_end, kOwnReach * radius), shortest);
   if (smooth) move_onto_boundary(cutter, rim, closed, kRimStep * radius);

@@ -8,9 +8,6 @@
 
 namespace vmesh {
 
-/// Resolution, in vertices around a vessel, at which a junction is joined to its tubes.
-int docked_around(const GenerateOptions& options);
-
 /// Lift of a vertex that keeps its present distance from the boundary.
 inline constexpr double kAsLaid = std::numeric_limits<double>::infinity();
 
@@ -53,6 +50,8 @@ class JunctionGrowth {
   /// Loops of the centerline that are too short to have a hole.
   std::size_t filled_loops() const { return centerline_.cycle_rank() - lattice_.handles; }
   double length_in_radii() const { return centerline_.length_in_radii(); }
+  /// Resolution, in vertices around a vessel, at which the junction is to be joined to its tubes.
+  int docked_around() const { return docked_around_; }
 
  private:
   GenerateResult onto_boundary(double finer, bool guarded) const;
@@ -70,6 +69,7 @@ class JunctionGrowth {
   const Junction& junction_;
   const GenerateOptions& options_;
   const Progress progress_;
+  const int docked_around_;
   JunctionCenterline local_;
   Centerline centerline_;
   VesselField local_field_;

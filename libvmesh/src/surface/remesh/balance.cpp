@@ -52,6 +52,7 @@ double valley_curvature(const BoundSurface& surface, Vertex v) {
 
 void update_lifts(SweepState& state, const ErrorLimit& limit) {
   const FaceErrors errors = face_errors(state);
+  const bool rounded = state.field.relations().blend() > 0 && !limit.is_set();  // valleys have a curvature
   for (const Vertex v : state.mesh.vertices()) {
     if (state.surface.held(v)) continue;
     double area = 0, sum = 0;
@@ -65,7 +66,8 @@ void update_lifts(SweepState& state, const ErrorLimit& limit) {
     const auto most = [&](double curvature) {
       return std::min(kMostLift * size * std::min(1.0, size * curvature), kShareOfLimit * limit.at(radius));
     };
-    const double out = most(1 / radius), in = most(std::max(1 / radius, valley_curvature(state.surface, v)));
+    const double out = most(1 / radius),
+                 in = rounded ? most(std::max(1 / radius, valley_curvature(state.surface, v))) : out;
     state.surface[v].lift = std::clamp(state.surface[v].lift - sum / area, -in, most_outwards(state, v, out));
   }
 }
