@@ -83,13 +83,13 @@ class Optimizer {
     } else {
       finish();
     }
-    return {crosses_, tangles_, remesher_.limited(), std::move(unproven_)};
+    return {is_hopeless(options_.around), crosses_, tangles_, remesher_.limited(), std::move(unproven_)};
   }
 
  private:
   void even_out(double around) {
     optimize_at(around);
-    while (around != options_.around) {
+    while (around != options_.around && !is_hopeless(around)) {
       around = std::min<double>(2 * around, options_.around);
       optimize_at(around);
     }
@@ -290,9 +290,14 @@ class Optimizer {
     }
   }
 
-  bool too_tangled(const std::vector<Vertex>& tangles) const {
-    return static_cast<double>(tangles.size()) > kMostTangled * state_.mesh.number_of_vertices();
+  bool too_tangled(const std::vector<Vertex>& tangles) const { return too_many(tangles.size()); }
+
+  bool too_many(std::size_t tangles) const {
+    return static_cast<double>(tangles) > kMostTangled * state_.mesh.number_of_vertices();
   }
+
+  // Tangles at this resolution stay where more vertices are added, at a price: their faces are nearly coplanar.
+  bool is_hopeless(double around) const { return around >= kFewAround && too_many(tangles_); }
 
   // Sweeps from number `first` on: towards the size field, then for shape alone, each until nothing changes. When the
   // rules change, `stir_again` reactivates vertices that had converged.

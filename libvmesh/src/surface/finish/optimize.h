@@ -8,6 +8,7 @@
 namespace vmesh {
 
 struct OptimizeReport {
+  bool hopeless = false;       ///< very many tangles in a fine surface: nothing will mend them
   bool crosses = false;        ///< faces intersect at the end, including those of vessels that are not neighbours
   std::size_t tangles = 0;     ///< vertices where faces still intersect within the volume's own neighbourhood
   bool limited = false;        ///< refinement stopped at the bound on the number of vertices

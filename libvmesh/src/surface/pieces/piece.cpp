@@ -226,8 +226,9 @@ class PieceMaker {
     if (context_.options.sweeps > 0) {
       const GrownMesh grown{double(context_.options.around),
                             expected_vertices(length_in_radii(), context_.options.around), GrownMesh::Stage::assembled};
-      const bool crosses = optimize(surface, context_.options, grown, context_.progress).crosses;
-      tested = !mend_worst_faces(surface, mended(), context_.progress) && !crosses;
+      const OptimizeReport report = optimize(surface, context_.options, grown, context_.progress);
+      const bool crosses = report.crosses;
+      tested = !report.hopeless && !mend_worst_faces(surface, mended(), context_.progress) && !crosses;
       // Guarded: improving adds no crossings. Not with an error limit: faces that are already proven would move.
       if (!crosses && !context_.options.max_error.is_set())
         improve_worst_faces(surface, kImproveAbove, context_.progress);
