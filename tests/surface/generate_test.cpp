@@ -12,6 +12,7 @@
 #include "vmesh/volume/vessel_field.h"
 
 #include "centerlines.h"
+#include "random_vessels.h"
 
 namespace vmesh {
 namespace {
