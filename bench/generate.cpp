@@ -1,10 +1,16 @@
 // The cost of a surface, from a centerline in memory to a checked mesh: user CPU on one thread, and wall time on one
 // and on two, medians. A table in Markdown, with CGAL's Mesh_3 on the same volume beside tree1560. Usage:
 //   bench_generate [--runs N] [--no-mesh-3] [FILE...]; without files, those of ../shared/data named below.
+//   bench_generate --costs [FOLDER or FILE...]: what every centerline in a folder costs for its output, dearest first;
+//   user CPU on one thread, once, and what may explain it.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <numeric>
+#include <optional>
 #include <string>
 
 #include <sys/resource.h>
@@ -90,9 +96,96 @@ void tell(const std::string& name, std::size_t nodes, const TriMesh& mesh, const
   std::fflush(stdout);
 }
 
+// One line of --costs.
+struct InputCost {
+  std::string name;
+  std::size_t nodes, grown_nodes, contacts, vertices, tried_again, pieces;
+  double preparing, growing;  // us of user CPU a vertex
+
+  double all() const { return preparing + growing; }
+};
+
+InputCost input_cost(const std::string& name, const Centerline& centerline) {
+  ProductionOptions options;
+  options.growth.threads = 1;
+  double preparing = 0, since = user_seconds();
+  const double begin = since;
+  ProductionSteps steps;
+  steps.prepared = [&](const PreparedCenterline&) { preparing += user_seconds() - since; };
+  steps.grow = [&](const Centerline& grown, const GenerateOptions& growth) {
+    GenerateResult result = generate_surface(grown, growth);
+    since = user_seconds();
+    return result;
+  };
+  const Production production = produce(centerline, {}, options, {}, steps);
+  const double all = user_seconds() - begin;
+  const auto& rungs = production.result.growth.rungs;
+  const std::size_t pieces = std::accumulate(rungs.begin(), rungs.end(), std::size_t{0});
+  const std::size_t vertices = production.result.mesh.vertices.size();
+  const double per_vertex = 1e6 / static_cast<double>(vertices);
+  return {name,
+          centerline.nodes().size(),
+          production.prepared.grown().nodes().size(),
+          production.prepared.contacts().size(),
+          vertices,
+          pieces - rungs[0],
+          pieces,
+          per_vertex * preparing,
+          per_vertex * (all - preparing)};
+}
+
+// The files in folders, and files; in order.
+std::vector<std::string> files_in(const std::vector<std::string>& given) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  for (const std::string& name : given) {
+    if (!fs::is_directory(name)) {
+      files.push_back(name);
+      continue;
+    }
+    for (const auto& entry : fs::recursive_directory_iterator(name)) {
+      if (entry.is_regular_file()) files.push_back(entry.path().string());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void tell_costs(const std::vector<std::string>& given) {
+  std::vector<InputCost> costs;
+  std::size_t others = 0;
+  for (const std::string& file : files_in(given)) {
+    std::optional<Centerline> centerline;
+    try {
+      centerline = load_centerline(file).cleaned.centerline;
+    } catch (const std::exception&) {
+      ++others;
+      continue;
+    }
+    try {
+      costs.push_back(input_cost(file.substr(file.rfind('/') + 1), *centerline));
+    } catch (const std::exception& error) {
+      std::printf("%s: %s\n", file.c_str(), error.what());
+    }
+  }
+  std::stable_sort(costs.begin(), costs.end(), [](const auto& a, const auto& b) { return a.all() > b.all(); });
+  std::printf(
+      "| centerline | nodes | of them grown around | contacts | vertices | pieces | not at the first try | us of CPU a "
+      "vertex | of them before growth |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+  for (const InputCost& c : costs)
+    std::printf("| %s | %zu | %zu | %zu | %zu | %zu | %zu | %.0f | %.0f |\n", c.name.c_str(), c.nodes, c.grown_nodes,
+                c.contacts, c.vertices, c.pieces, c.tried_again, c.all(), c.preparing);
+  std::printf("\n%zu other files\n", others);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string(argv[1]) == "--costs") {
+    tell_costs(argc > 2 ? std::vector<std::string>(argv + 2, argv + argc)
+                        : std::vector<std::string>{VMESH_SHARED_DATA});
+    return 0;
+  }
   int runs = 5;
   bool with_mesh_3 = true;
   std::vector<std::string> files;

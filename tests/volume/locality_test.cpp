@@ -6,6 +6,7 @@
 #include "vmesh/volume/contacts.h"
 #include "vmesh/volume/vessel_field.h"
 
+#include "hard_vessels.h"
 #include "random_centerline.h"
 #include "random_vessels.h"
 
@@ -167,6 +168,54 @@ TEST(Locality, IsTouchWithoutABreak) {
   EXPECT_GT(tested, 50);
   EXPECT_GT(local_pairs, 5000);
   EXPECT_GT(far_pairs, 5000);
+}
+
+// So many branches at one node that no pairs of them are listed: some go on straight, some turn and touch others, some
+// are so short that their second segments overlap, and radii differ.
+TEST(Locality, IsTouchWithoutABreakAroundANodeOfVeryManyBranchesToo) {
+  int tested = 0, own_pairs = 0, far_pairs = 0;
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    Draw draw(700 + seed);
+    CenterlineBuilder star;
+    star.add({0, 0, 0}, draw.uniform(0.2, 1));
+    constexpr int kBranches = 66;
+    for (int branch = 0; branch < kBranches; ++branch) {
+      const Vec3 way = draw.direction();
+      const Vec3 first = draw.uniform(0.3, 4) * way;
+      const Index middle = star.add(first, draw.uniform(0.1, 0.4), 0);
+      if (draw.chance(0.7)) star.add(first + draw.uniform(0.5, 3) * draw.direction(), draw.uniform(0.1, 0.4), middle);
+    }
+    const Centerline centerline = star.build();
+    ASSERT_EQ(centerline.degree(0), kBranches);
+    const VesselField field(centerline);
+    const Locality expected(field);
+    if (expected.undecided()) continue;
+    ++tested;
+    const auto segments = static_cast<Index>(centerline.segments().size());
+    for (Index i = 0; i < segments; ++i) {
+      const auto cones = field.relations().local_cones(i);
+      EXPECT_TRUE(std::is_sorted(cones.begin(), cones.end(), std::less_equal<>()));  // ascending, none twice
+      for (Index j = 0; j < segments; ++j) {
+        EXPECT_EQ(is_local(field, i, j), expected(i, j)) << "seed " << seed << ", cones " << i << " and " << j;
+        EXPECT_EQ(field.relations().are_one_volume(i, j), expected(i, j));
+        const bool at_hub = centerline.segment(i).a == 0 && centerline.segment(j).a == 0;
+        if (!expected(i, j)) ++far_pairs;
+        if (expected(i, j) && !at_hub && i != j) ++own_pairs;
+      }
+    }
+  }
+  EXPECT_GT(tested, 3);
+  EXPECT_GT(own_pairs, 1000);
+  EXPECT_GT(far_pairs, 1000);
+}
+
+// Where straight vessels part, their walls only move apart: nothing is there that the rounding must not join.
+TEST(Locality, LeavesTheRoundingBetweenStraightBranchesOfOneNode) {
+  for (const int branches : {40, 100, 250}) {
+    const Centerline centerline = testing::star(branches);
+    const VesselField field(centerline, 0.5);
+    EXPECT_EQ(field.relations().rounding_of(0), 1) << branches << " branches";
+  }
 }
 
 // An open ring whose ends touch in space.

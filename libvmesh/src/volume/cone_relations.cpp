@@ -7,6 +7,7 @@
 #include "vmesh/core/error.h"
 #include "vmesh/volume/field_excerpt.h"
 
+#include "volume/fans.h"
 #include "volume/rounded_over.h"
 #include "volume/segment_locality_regions.h"
 
@@ -38,6 +39,8 @@ void ConeRelations::measure_runs() {
 }
 
 void ConeRelations::find_local_cones() {
+  const Fans fans(*centerline_);
+  for (Index s = 0; !fans.empty() && s < centerline_->segments().size(); ++s) hub_of_.push_back(fans.hub_of(s));
   LocalityPairs locality = segment_locality_by_regions(*centerline_, blend_);
   apart_ = std::move(locality.apart);
   std::sort(apart_.begin(), apart_.end());
@@ -83,12 +86,54 @@ void ConeRelations::list_local_cones(const std::vector<std::pair<Index, Index>>&
     for (Index k = local_offsets_[c]; !partners.empty() && k < local_offsets_[c + 1]; ++k)
       is_parting_[k] = std::binary_search(partners.begin(), partners.end(), local_[k]);
   }
+  row_.clear();
+  if (!hub_of_.empty()) list_fans();
+}
+
+// Adds the segments of their fans to the lists of cones; those that have no others share one.
+void ConeRelations::list_fans() {
+  const std::vector<Index> offsets = std::move(local_offsets_), own = std::move(local_);
+  const std::vector<char> own_parting = std::move(is_parting_);
+  local_offsets_ = {0};
+  local_.clear();
+  is_parting_.clear();
+  row_.assign(cone_count(), kNone);
+  std::vector<Index> shared(centerline_->nodes().size(), kNone);  // rows of fans, by hub
+  for (Index c = 0; c < cone_count(); ++c) {
+    const Index hub = c < hub_of_.size() ? hub_of_[c] : kNone;
+    const bool has_others = offsets[c + 1] - offsets[c] > 1;
+    if (hub != kNone && !has_others && shared[hub] != kNone) {
+      row_[c] = shared[hub];
+      continue;
+    }
+    row_[c] = static_cast<Index>(local_offsets_.size() - 1);
+    if (hub != kNone && !has_others) shared[hub] = row_[c];
+    Index k = offsets[c];
+    const auto add_own_below = [&](Index end) {
+      for (; k < offsets[c + 1] && own[k] < end; ++k) {
+        if (hub != kNone && own[k] == c) continue;  // it is in the fan
+        local_.push_back(own[k]);
+        is_parting_.push_back(own_parting[k]);
+      }
+    };
+    if (hub != kNone) {
+      for (const Index s : centerline_->incident_segments(hub)) {  // ascending
+        if (hub_of_[s] != hub) continue;
+        add_own_below(s);
+        local_.push_back(s);
+        is_parting_.push_back(0);
+      }
+    }
+    add_own_below(kNone);
+    local_offsets_.push_back(static_cast<Index>(local_.size()));
+  }
 }
 
 bool ConeRelations::are_one_volume(Index i, Index j) const {
+  if (are_in_one_fan(i, j)) return true;
   const auto local = local_cones(i);
   const auto place = std::lower_bound(local.begin(), local.end(), j);
-  return place != local.end() && *place == j && !is_parting_[local_offsets_[i] + (place - local.begin())];
+  return place != local.end() && *place == j && !parting(i)[static_cast<std::size_t>(place - local.begin())];
 }
 
 void ConeRelations::throw_incomplete(Index cone) {

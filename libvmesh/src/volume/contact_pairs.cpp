@@ -155,7 +155,7 @@ class PairFinder {
       const BoxTree::Box box = box_of(axes_.stretch(i), gap_ + most_rounding_);
       near_.clear();
       tree_.visit_overlapping(box.low, box.high, [&](Index j) {
-        if (j > i && is_wanted(i, j)) near_.push_back(j);
+        if (j > i && is_wanted(i, j) && !cones_.are_in_one_fan(i, j)) near_.push_back(j);
       });
       std::sort(near_.begin(), near_.end());
       for (const Index j : near_) examine(i, j);
@@ -230,7 +230,7 @@ class PairFinder {
   ConeAxes axes_;
   double gap_;            // smaller radii
   double most_rounding_;  // of either vessel, in its radii
-  std::optional<PairSet> parting_;
+  std::optional<LocalSegments> parting_;
   BoxTree tree_;
   std::vector<Index> near_;
   std::vector<ContactPair> pairs_;

@@ -8,6 +8,8 @@
 
 #include "vmesh/centerline/centerline.h"
 
+#include "volume/fans.h"
+
 namespace vmesh {
 
 /// The gap between two spheres of the vessel volume up to which they touch: a multiple of the smaller radius, or, where
@@ -104,9 +106,17 @@ class PairSet {
   std::deque<std::pair<Index, Index>> pairs_;  // a deque, as they are many: growing must not copy them
 };
 
+/// Pairs of segments: those in one fan, and others.
+struct LocalSegments {
+  Fans fans;
+  PairSet others;
+
+  bool contains(Index i, Index j) const { return fans.are_in_one(i, j) || others.contains(i, j); }
+};
+
 /// The pairs of segments that are local to each other: starting from two copies of one sphere and moving either along
 /// the centerline without losing touch, a pair of spheres with one on each segment can be reached. A segment is
 /// represented by spheres half a mean radius apart.
-PairSet local_pairs(const Centerline& centerline, const Touch& touch);
+LocalSegments local_pairs(const Centerline& centerline, const Touch& touch);
 
 }  // namespace vmesh

@@ -92,7 +92,7 @@ class GapPairs {
   }
 
   void note(Index p, Index q) {
-    if (p == q || touching_.contains(p, q) || !chain_.touch(p, q, wide_)) return;
+    if (p == q || chain_.are_in_one_fan(p, q) || touching_.contains(p, q) || !chain_.touch(p, q, wide_)) return;
     const auto [it, is_new] = number_.try_emplace(key(p, q), kNone);
     if (!is_new || !is_outside(between(p, q), p) || !is_outside(between(p, q), q)) return;
     it->second = static_cast<Index>(facing_.size());
@@ -116,7 +116,9 @@ class GapPairs {
     };
     const auto segments = chain_.segments(p);
     return std::ranges::all_of(segments, [&](Index segment) {
-      return is_outside_of(segment) && std::ranges::all_of(local_of_[segment], is_outside_of);
+      const Index hub = chain_.fans().hub_of(segment);
+      return is_outside_of(segment) && std::ranges::all_of(local_of_[segment], is_outside_of) &&
+             (hub == kNone || !chain_.is_in_fan(x, hub));
     });
   }
 
@@ -131,8 +133,10 @@ class GapPairs {
     for (Index n = 0; n < facing_.size(); ++n) {
       const Pair& pair = facing_[n];
       bool parts = false;
-      chain_.visit_next_pairs(pair.p, pair.q,
-                              [&](Index p, Index q) { parts = parts || p == q || touching_.contains(p, q); });
+      chain_.visit_next_pairs(pair.p, pair.q, [&](Index p, Index q) {
+        parts = parts || p == q || touching_.contains(p, q) ||
+                (chain_.are_in_one_fan(p, q) && chain_.touch(p, q, wide_));  // within a fan, gaps only become wider
+      });
       if (parts) {
         reach(n, Side::parting);
       } else if (chain_.touch(pair.p, pair.q, kNearAgain)) {
@@ -196,10 +200,13 @@ class WidePairs {
 
   /// A pair that is not in touch, next to one that is.
   void note(Index p, Index q) {
-    if (!chain_.touch(p, q, wide_)) return;
+    if (chain_.are_in_one_fan(p, q) || !chain_.touch(p, q, wide_)) return;
     (chain_.touch(p, q, kNearAgain) ? near_again_ : parting_).insert(p, q);
   }
   void extend(const PairSet& touching) {
+    chain_.visit_touching_ends(wide_, [&](Index p, Index q) {
+      if (!touching.contains(p, q)) note(p, q);
+    });
     for (std::size_t n = 0; n < parting_.pairs().size(); ++n) {
       const auto [p, q] = parting_.pairs()[n];
       chain_.visit_next_pairs(p, q, [&](Index next_p, Index next_q) {
@@ -246,13 +253,20 @@ void part_unrelated_segments(const Centerline& centerline, const SphereChain& ch
   std::vector<std::pair<Index, Index>> unrelated;
   visit_near(centerline, wide, [&](Index i, Index j) {
     const bool known =
-        locality.local.contains(i, j) || locality.parting.contains(i, j) || locality.apart.contains(i, j);
+        locality.are_one_volume(i, j) || locality.parting.contains(i, j) || locality.apart.contains(i, j);
     if (!known && are_near(chain, i, j, wide)) unrelated.emplace_back(i, j);
   });
   if (unrelated.empty()) return;
   std::vector<char> is_unrelated(centerline.segments().size(), 0);
   for (const auto& [i, j] : unrelated) is_unrelated[i] = is_unrelated[j] = 1;
   std::vector<std::vector<Index>> local(is_unrelated.size());
+  for (Index s = 0; !locality.fans.empty() && s < local.size(); ++s) {
+    const Index hub = locality.fans.hub_of(s);
+    if (!is_unrelated[s] || hub == kNone) continue;
+    for (const Index other : centerline.incident_segments(hub)) {
+      if (other != s && locality.fans.hub_of(other) == hub) local[s].push_back(other);
+    }
+  }
   for (const PairSet* pairs : {&locality.local, &locality.parting}) {
     for (const auto& [i, j] : pairs->pairs()) {
       if (is_unrelated[i]) local[i].push_back(j);
@@ -273,7 +287,7 @@ template <class Visit>
 void visit_unrelated(const SphereChain& chain, std::initializer_list<const PairSet*> related,
                      const SegmentLocality& locality, Visit&& visit) {
   const auto are_related = [&](Index i, Index j) {
-    return i == j || locality.local.contains(i, j) || locality.parting.contains(i, j) || locality.apart.contains(i, j);
+    return i == j || locality.are_one_volume(i, j) || locality.parting.contains(i, j) || locality.apart.contains(i, j);
   };
   for (const PairSet* pairs : related) {
     for (const auto& [p, q] : pairs->pairs()) {
@@ -325,7 +339,7 @@ SegmentLocality segment_locality_at_gaps(const Centerline& centerline, double bl
   const PairSet touching = pairs_in_touch(chain, kOneVolume, [&](Index p, Index q) {
     if (has_wide_pairs) wide_pairs.note(p, q);
   });
-  SegmentLocality locality;
+  SegmentLocality locality{chain.fans(), {}, {}, {}, {}};
   locality.local = local_segments(chain, touching);
   if (!has_wide_pairs) return locality;
 
@@ -345,10 +359,10 @@ SegmentLocality segment_locality_at_gaps(const Centerline& centerline, double bl
     gap_pairs.visit_border([&](Index p, Index q) { rounding.end_before_gap(p, q); });
   }
   for (const auto& [i, j] : apart.pairs().pairs()) {
-    if (!locality.local.contains(i, j)) locality.apart.insert(i, j);
+    if (!locality.are_one_volume(i, j)) locality.apart.insert(i, j);
   }
   for (const auto& [i, j] : near_gaps.pairs().pairs()) {
-    if (!locality.local.contains(i, j) && !locality.apart.contains(i, j)) locality.parting.insert(i, j);
+    if (!locality.are_one_volume(i, j) && !locality.apart.contains(i, j)) locality.parting.insert(i, j);
   }
   if (blend > kMostBlend)
     visit_unrelated(chain, {&touching, &parting}, locality, [&](Index p, Index q) { rounding.end_before_gap(p, q); });

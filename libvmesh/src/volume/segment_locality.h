@@ -11,7 +11,8 @@ namespace vmesh {
 /// Which segments are local to each other, and how much of the blend is left to them, so that the boundary has no step
 /// where locality ends.
 struct SegmentLocality {
-  PairSet local;  ///< pairs that count as one volume
+  Fans fans;      ///< whose segments are local to each other
+  PairSet local;  ///< other pairs that count as one volume
   /// Pairs that are no longer one volume, but whose blend still spans the space between their walls.
   PairSet parting;
   /// Pairs that have parted and come near again, or are near without touching along the graph. They must not be joined,
@@ -21,6 +22,8 @@ struct SegmentLocality {
   /// The share of the blend left to every node; empty if it is 1 for all. At the border between parting and apart it is
   /// so small that the blend does not reach across the gap; from there it grows along the graph.
   std::vector<double> rounding;
+
+  bool are_one_volume(Index i, Index j) const { return fans.are_in_one(i, j) || local.contains(i, j); }
 };
 
 SegmentLocality segment_locality(const Centerline& centerline, double blend);

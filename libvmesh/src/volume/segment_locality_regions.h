@@ -11,7 +11,7 @@ namespace vmesh {
 struct LocalityPairs {
   using Pairs = std::vector<std::pair<Index, Index>>;
 
-  Pairs local, parting, apart;   ///< each pair with the lower index first
+  Pairs local, parting, apart;   ///< each pair with the lower index first; but for those in one fan (Fans)
   std::vector<double> rounding;  ///< of every node; empty where it is 1 for all
 };
 

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "vmesh/centerline/centerline.h"
+#include "vmesh/core/box_tree.h"
 
+#include "volume/fans.h"
 #include "volume/local_pairs.h"
 
 namespace vmesh {
@@ -16,7 +18,7 @@ namespace vmesh {
 /// segments, in order.
 class SphereChain {
  public:
-  explicit SphereChain(const Centerline& centerline) : centerline_(centerline) {
+  explicit SphereChain(const Centerline& centerline) : centerline_(centerline), fans_(centerline) {
     first_.reserve(centerline.segments().size() + 1);
     std::size_t within = 0;
     for (Index s = 0; s < centerline.segments().size(); ++s) within += static_cast<std::size_t>(steps_along(s) - 1);
@@ -33,6 +35,7 @@ class SphereChain {
       }
     }
     first_.push_back(size());
+    list_spheres_of_fans();
   }
 
   Index size() const { return static_cast<Index>(spheres_.size()); }
@@ -81,6 +84,49 @@ class SphereChain {
     return (spheres_[p].center - spheres_[q].center).squaredNorm() < reach * reach;
   }
 
+  const Fans& fans() const { return fans_; }
+
+  /// Whether both belong to one fan, and to nothing else but its hub: such pairs are not listed.
+  bool are_in_one_fan(Index p, Index q) const {
+    if (fans_.empty()) return false;
+    const Index hub = fan_at(p);
+    return hub != kNone && hub == fan_at(q) && (p != hub || q != hub);
+  }
+
+  /// Whether sphere `q` belongs to a segment of the fan at `hub`, its far end included.
+  bool is_in_fan_of(Index q, Index hub) const {
+    if (fans_.empty() || hub >= nodes()) return false;
+    return std::ranges::any_of(segments(q), [&](Index s) { return fans_.hub_of(s) == hub; });
+  }
+
+  /// Calls visit(p, q) for the ends p of a fan's segments and the spheres q of its other segments that touch them.
+  template <class Visit>
+  void visit_touching_ends(const Touch& touching, Visit&& visit) const {
+    for (const Index hub : fans_.hubs()) {
+      for (const Index s : centerline_.incident_segments(hub)) {
+        if (fans_.hub_of(s) != hub) continue;
+        const Index end = centerline_.other_node(s, hub);
+        if (touch(end, hub, touching)) visit(end, hub);
+        const double around = radius(end) + touching.gap(radius(end), widest_in_fans_);
+        fan_tree_.visit_overlapping(center(end).array() - around, center(end).array() + around, [&](Index item) {
+          const FanSphere& other = fan_spheres_[item];
+          if (fans_.hub_of(other.segment) != hub || other.segment == s || other.sphere == end) return;
+          if (touch(end, other.sphere, touching)) visit(end, other.sphere);
+        });
+      }
+    }
+  }
+
+  /// Whether a point is within a sphere of the fan at `hub`, other than the hub's own.
+  bool is_in_fan(const Vec3& x, Index hub) const {
+    bool inside = false;
+    fan_tree_.visit_overlapping(x, x, [&](Index item) {
+      const auto& [segment, p] = fan_spheres_[item];
+      inside = inside || (fans_.hub_of(segment) == hub && (center(p) - x).squaredNorm() <= radius(p) * radius(p));
+    });
+    return inside;
+  }
+
  private:
   // Mean radii between two spheres that represent a cone; safe 0.35 to 0.7.
   static constexpr double kSampling = 0.5;
@@ -90,6 +136,31 @@ class SphereChain {
     Vec3 center;
     double radius;
   };
+
+  struct FanSphere {
+    Index segment, sphere;
+  };
+
+  void list_spheres_of_fans() {
+    for (const Index hub : fans_.hubs()) {
+      for (const Index s : centerline_.incident_segments(hub)) {
+        if (fans_.hub_of(s) != hub) continue;
+        for (Index p = first_[s]; p < first_[s + 1]; ++p) fan_spheres_.push_back({s, p});
+        fan_spheres_.push_back({s, centerline_.other_node(s, hub)});
+      }
+    }
+    for (const FanSphere& one : fan_spheres_) widest_in_fans_ = std::max(widest_in_fans_, radius(one.sphere));
+    fan_tree_ = BoxTree(static_cast<Index>(fan_spheres_.size()), [this](Index item) {
+      const auto& [middle, around] = spheres_[fan_spheres_[item].sphere];
+      return BoxTree::Box{middle.array() - around, middle.array() + around};
+    });
+  }
+
+  // The hub, or that of the segment within which the sphere is.
+  Index fan_at(Index p) const {
+    if (p >= nodes()) return fans_.hub_of(segments_[p - nodes()]);
+    return centerline_.degree(p) >= Fans::kLeastSegments ? p : kNone;
+  }
 
   int steps_along(Index s) const {
     const double steps = std::ceil(centerline_.length(s) / (kSampling * centerline_.radius_at(s, 0.5)));
@@ -104,24 +175,30 @@ class SphereChain {
   }
 
   const Centerline& centerline_;
+  Fans fans_;
+  std::vector<FanSphere> fan_spheres_;  // but the hubs
+  double widest_in_fans_ = 0;
+  BoxTree fan_tree_;
   std::vector<Sphere> spheres_;
   std::vector<Index> first_;     // of the spheres within every segment; one more for the end
   std::vector<Index> segments_;  // of spheres within segments
 };
 
 /// All pairs of different spheres in touch that can be reached from two copies of one sphere by moving either along the
-/// centerline without losing touch. Calls visit_next(p, q), at least once, for the pairs one step further that are not
-/// in touch.
+/// centerline without losing touch, but for those in one fan (SphereChain::are_in_one_fan). Calls visit_next(p, q), at
+/// least once, for the pairs one step further that are not in touch.
 PairSet pairs_in_touch(const SphereChain& chain, const Touch& touch,
                        const std::function<void(Index, Index)>& visit_next = {});
 
-/// Collects the pairs of segments of given pairs of spheres.
+/// Collects the pairs of segments of given pairs of spheres, but for those in one fan.
 class SegmentPairs {
  public:
   explicit SegmentPairs(const SphereChain& chain) : chain_(chain) {}
 
   void join(Index p, Index q);
   void join_all(const PairSet& spheres);
+  /// The segments at every node.
+  void join_at_nodes();
   const PairSet& pairs() const { return pairs_; }
   PairSet take() { return std::move(pairs_); }
 
@@ -133,7 +210,7 @@ class SegmentPairs {
   PairSet joined_;  // nodes of many branches, and the segments joined to all of their branches
 };
 
-/// The pairs of segments that share a sphere or belong to one of these pairs.
+/// The pairs of segments that share a sphere or belong to one of these pairs, but for those in one fan.
 PairSet local_segments(const SphereChain& chain, const PairSet& touching);
 
 }  // namespace vmesh

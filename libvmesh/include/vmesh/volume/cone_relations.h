@@ -69,7 +69,13 @@ class ConeRelations {
   /// The cones that take part in a local query with hint `cone`, `cone` included, ascending.
   std::span<const Index> local_cones(Index cone) const {
     if (!complete_.empty() && !complete_[cone]) throw_incomplete(cone);
-    return {local_.data() + local_offsets_[cone], local_.data() + local_offsets_[cone + 1]};
+    const Index row = row_of(cone);
+    return {local_.data() + local_offsets_[row], local_.data() + local_offsets_[row + 1]};
+  }
+
+  /// Whether both begin at one node of very many segments, and so count as one volume; known at once.
+  bool are_in_one_fan(Index i, Index j) const {
+    return std::max(i, j) < hub_of_.size() && hub_of_[i] != kNone && hub_of_[i] == hub_of_[j];
   }
 
   /// Whether two cones count as one volume: they are local to each other, and not only because, where their vessels
@@ -82,7 +88,8 @@ class ConeRelations {
 
   /// For each of local_cones(cone), whether it is local only because of the rounding where vessels part.
   std::span<const char> parting(Index cone) const {
-    return {is_parting_.data() + local_offsets_[cone], is_parting_.data() + local_offsets_[cone + 1]};
+    const Index row = row_of(cone);
+    return {is_parting_.data() + local_offsets_[row], is_parting_.data() + local_offsets_[row + 1]};
   }
 
   /// Consecutive cones along the graph form a run. From sphere to sphere along it, neither a distance nor a distance
@@ -102,6 +109,8 @@ class ConeRelations {
   void find_local_cones();
   void list_local_cones(const std::vector<std::pair<Index, Index>>& local,
                         const std::vector<std::pair<Index, Index>>& parting);
+  void list_fans();
+  Index row_of(Index cone) const { return row_.empty() ? cone : row_[cone]; }
   [[noreturn]] static void throw_incomplete(Index cone);
 
   const Centerline* centerline_;
@@ -109,6 +118,8 @@ class ConeRelations {
   std::vector<Index> isolated_;  // nodes
   std::vector<Run> runs_;
   std::vector<Index> local_offsets_, local_;
+  std::vector<Index> row_;                      // of cones, in local_offsets_; empty: each has its own
+  std::vector<Index> hub_of_;                   // of segments in fans; empty if there are none
   std::vector<char> complete_;                  // of cones; empty: all are
   std::vector<char> is_parting_;                // of local_
   std::vector<std::pair<Index, Index>> apart_;  // ascending

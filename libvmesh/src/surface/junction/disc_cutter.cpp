@@ -41,19 +41,20 @@ Index DiscCutter::farthest(const Vec3& normal, const std::vector<Index>& own) co
 }
 
 std::vector<Index> DiscCutter::region_above(Index apex, const Height& height, const std::vector<Index>& own) const {
-  std::vector<char> open(mesh_.vertices().size(), 0);  // allowed to join, and has not joined yet
-  for (const Index v : own) open[v] = mesh_.has_vertex(v) && height(mesh_.position(v)) > 0;
+  open_.resize(mesh_.vertices().size(), 0);  // allowed to join, and has not joined yet
+  for (const Index v : own) open_[v] = mesh_.has_vertex(v) && height(mesh_.position(v)) > 0;
   std::vector<Index> region = {apex};
-  open[apex] = 0;
+  open_[apex] = 0;
   for (std::size_t i = 0; i < region.size(); ++i) {
     for (const Index f : mesh_.faces_around(region[i])) {
       for (const Index v : mesh_.faces()[f]) {
-        if (!open[v]) continue;
-        open[v] = 0;
+        if (!open_[v]) continue;
+        open_[v] = 0;
         region.push_back(v);
       }
     }
   }
+  for (const Index v : own) open_[v] = 0;
   return region;
 }
 

@@ -45,6 +45,7 @@ class DiscCutter {
   std::vector<Index> faces_around(const std::vector<Index>& region) const;
 
   EditMesh<Vertex> mesh_;
+  mutable std::vector<char> open_;  // of vertices, scratch of region_above(): kept, as there may be many cuts
 };
 
 }  // namespace vmesh

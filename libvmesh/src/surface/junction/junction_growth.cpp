@@ -128,10 +128,11 @@ JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarde
   const GenerateResult closed = onto_boundary(finer, guarded);
   JunctionSurface result;
   DiscCutter cutter(closed.mesh.vertices, closed.mesh.faces);
+  const std::vector<std::vector<Index>> bound = vertices_by_bare_stretch(closed);
   for (Index g = 0; g < junction_.bare_stretches.size(); ++g) {
     for (const bool at_end : {false, true}) {
       if (junction_.bare_stretches[g].docks[at_end].tube != kNone)
-        result.rims.push_back(cut_at_dock(cutter, closed, g, at_end, smooth_rims));
+        result.rims.push_back(cut_at_dock(cutter, closed, bound[g], g, at_end, smooth_rims));
     }
   }
   result.patch.faces = cutter.rest().faces;
@@ -169,12 +170,13 @@ CrossSection JunctionGrowth::way_out(const TubeEnd& dock) const {
 }
 
 // Returns the rim: moved onto the boundary and without short edges, or as it was cut.
-std::vector<Index> JunctionGrowth::cut_at_dock(DiscCutter& cutter, const GenerateResult& closed, Index bare,
-                                               bool at_end, bool smooth) const {
+std::vector<Index> JunctionGrowth::cut_at_dock(DiscCutter& cutter, const GenerateResult& closed,
+                                               const std::vector<Index>& own, Index bare, bool at_end,
+                                               bool smooth) const {
   const auto [place, center, normal, radius] = way_out(junction_.bare_stretches[bare].docks[at_end]);
   const double shortest = smooth ? kShortestRimEdge * edge_length_per_radius(docked_around_) * radius : 0;
   std::vector<Index> rim =
-      cutter.cut(center, normal, vertices_near_end(closed, bare, at_end, kOwnReach * radius), shortest);
+      cutter.cut(center, normal, vertices_near_end(closed, own, bare, at_end, kOwnReach * radius), shortest);
   if (smooth) move_onto_boundary(cutter, rim, closed, kRimStep * radius);
   return rim;
 }
@@ -200,17 +202,24 @@ Index JunctionGrowth::original_cone(Index cone) const {
   return axis.branch().segments[axis.at(0.5 * (origin.begin + origin.end)).nth];
 }
 
-// The vertices bound to a bare stretch that are near one of its ends, and nearer to it than to the other.
-std::vector<Index> JunctionGrowth::vertices_near_end(const GenerateResult& closed, Index bare, bool at_end,
-                                                     double reach) const {
+std::vector<std::vector<Index>> JunctionGrowth::vertices_by_bare_stretch(const GenerateResult& closed) const {
+  std::vector<std::vector<Index>> bound(junction_.bare_stretches.size());
+  for (Index v = 0; v < closed.binding.size() && !local_.origins.empty(); ++v)
+    bound[local_.origins[closed.binding[v].segment].bare].push_back(v);
+  return bound;
+}
+
+// The vertices bound to a bare stretch (`own`) that are near one of its ends, and nearer to it than to the other.
+std::vector<Index> JunctionGrowth::vertices_near_end(const GenerateResult& closed, const std::vector<Index>& own,
+                                                     Index bare, bool at_end, double reach) const {
   const double begin = junction_.bare_stretches[bare].begin, end = junction_.bare_stretches[bare].end;
   std::vector<Index> near;
-  for (Index v = 0; v < closed.binding.size(); ++v) {
+  for (const Index v : own) {
     const auto& [segment, t] = closed.binding[v];
     const auto& origin = local_.origins[segment];
     const double place = origin.begin + t * (origin.end - origin.begin);
     const double away = at_end ? end - place : place - begin;
-    if (origin.bare == bare && away < reach && away < 0.5 * (end - begin)) near.push_back(v);
+    if (away < reach && away < 0.5 * (end - begin)) near.push_back(v);
   }
   return near;
 }

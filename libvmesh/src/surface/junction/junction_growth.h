@@ -56,10 +56,13 @@ class JunctionGrowth {
  private:
   GenerateResult onto_boundary(double finer, bool guarded) const;
   CrossSection way_out(const TubeEnd& dock) const;
-  std::vector<Index> cut_at_dock(DiscCutter& cutter, const GenerateResult& closed, Index bare, bool at_end,
-                                 bool smooth) const;
+  // `own`: the vertices bound to the bare stretch.
+  std::vector<Index> cut_at_dock(DiscCutter& cutter, const GenerateResult& closed, const std::vector<Index>& own,
+                                 Index bare, bool at_end, bool smooth) const;
+  std::vector<std::vector<Index>> vertices_by_bare_stretch(const GenerateResult& closed) const;
   Index original_cone(Index cone) const;
-  std::vector<Index> vertices_near_end(const GenerateResult& closed, Index bare, bool at_end, double reach) const;
+  std::vector<Index> vertices_near_end(const GenerateResult& closed, const std::vector<Index>& own, Index bare,
+                                       bool at_end, double reach) const;
   void move_onto_boundary(DiscCutter& cutter, const std::vector<Index>& rim, const GenerateResult& closed,
                           double longest) const;
 
