@@ -11,7 +11,7 @@ namespace {
 
 // Tetrahedra of a worse shape than this (see tetrahedron_shape(); with an angle below 17 degrees) are worth work.
 constexpr double kGoodShape = 0.3;
-constexpr int kRounds = 8;
+constexpr int kRounds = 6, kRoundsOfGrowing = 2;
 // Steps of a search for the best position of a point: from this share of the edges around it, halved each time.
 constexpr double kFirstStep = 0.25;
 constexpr int kHalvings = 6, kTrialHalvings = 3;
@@ -81,7 +81,7 @@ class Improver {
 
   void run() {
     bool any = true;
-    for (int round = 0; any && round < kRounds; ++round) {
+    for (round_ = 0; any && round_ < kRounds; ++round_) {
       any = false;
       for (const Index t : bad_tetrahedra()) any = improve(t) || any;
     }
@@ -114,7 +114,35 @@ class Improver {
   }
 
   bool improve(Index t) {
-    if (!is_bad(t)) return false;  // it has become better already
+    if (!is_bad(t) || was_in_vain(t)) return false;  // it has become better already, or cannot
+    const Tetrahedron corners = cells_[t];
+    const bool any = change_around(t);
+    if (any) {
+      for (const Index v : corners) note_change(v);
+    } else {
+      tried_[t] = changes_;
+    }
+    return any;
+  }
+
+  // What has been tried where nothing has changed since.
+  bool was_in_vain(Index t) {
+    tried_.resize(cells_.size(), 0);
+    changed_.resize(cells_.point_count(), 1);
+    const Tetrahedron& cell = cells_[t];
+    return std::all_of(cell.begin(), cell.end(), [&](Index v) { return changed_[v] <= tried_[t]; });
+  }
+
+  // At a point, which its neighbours see.
+  void note_change(Index v) {
+    ++changes_;
+    changed_.resize(cells_.point_count(), changes_);
+    for (const Index t : cells_.around(v)) {
+      for (const Index w : cells_[t]) changed_[w] = changes_;
+    }
+  }
+
+  bool change_around(Index t) {
     bool any = false;
     for (const Index v : Tetrahedron(cells_[t])) any = move(v) || any;
     if (is_bad(t)) any = swap(t) || any;
@@ -161,27 +189,34 @@ class Improver {
   }
 
   bool move_column(Index v) {
-    const std::vector<Tetrahedron> cells = cells_.cells_of(cells_.around(v));
-    double best = cells_.worst_shape(cells);
     bool any = false;
     for (const double step : kColumnSteps) {
-      for (int move = 0; move < kMostMoves; ++move) {
-        const double thickness = columns_->thickness_mm(v);
-        const Vec3 before = cells_.position(v);
-        if (!columns_->set_thickness(v, step * thickness)) break;
-        cells_.position(v) = columns_->end(v);
-        const double needed = needed_after(best), found = cells_.worst_shape(cells, needed);
-        if (found > needed) {
-          best = found;
-          any = true;
-          continue;
-        }
-        columns_->restore(v, thickness);
-        cells_.position(v) = before;
-        break;
-      }
+      for (int move = 0; move < kMostMoves && try_thickness(v, step * columns_->thickness_mm(v)); ++move) any = true;
     }
     return any;
+  }
+
+  bool try_thickness(Index v, double thickness_mm) {
+    const std::vector<LayerColumns::Change> changes = columns_->set_thickness(v, thickness_mm);
+    if (changes.empty()) return false;
+    std::vector<Index> around;
+    for (const auto& change : changes) {
+      const std::vector<Index>& cells = cells_.around(change.vertex);
+      around.insert(around.end(), cells.begin(), cells.end());
+    }
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    const std::vector<Tetrahedron> cells = cells_.cells_of(around);
+    const double needed = needed_after(cells_.worst_shape(cells));
+    put_at_ends(changes);
+    if (cells_.worst_shape(cells, needed) > needed) return true;
+    columns_->take_back(changes);
+    put_at_ends(changes);
+    return false;
+  }
+
+  void put_at_ends(const std::vector<LayerColumns::Change>& changes) {
+    for (const auto& change : changes) cells_.position(change.vertex) = columns_->end(change.vertex);
   }
 
   bool swap(Index t) {
@@ -200,9 +235,8 @@ class Improver {
     const std::vector<Index> ring = cells_.ring(a, b);
     if (ring.size() < 3 || ring.size() > kMostAround) return;
     const std::vector<Index> cavity = cells_.at_edge(a, b);
-    const double before = cells_.worst_shape(cells_.cells_of(cavity));
     const RingFilling filling(cells_, ring, a, b);
-    if (is_worth(filling.shape(), before, best)) best = {filling.shape(), cavity, filling.filled(), {}};
+    take_if_better(cavity, filling.filled(), filling.shape(), {}, best);
   }
 
   void try_without_face(Index t, std::size_t corner, Replacement& best) const {
@@ -219,12 +253,22 @@ class Improver {
       // Of the three faces at the top, seen from outside: with the bottom, which is within, they are the new cells.
       if (std::find(face.begin(), face.end(), top) != face.end()) around.push_back({face[0], face[2], face[1], bottom});
     }
-    const double shape = cells_.worst_shape(around), before = cells_.worst_shape(cells_.cells_of(cavity));
-    if (is_worth(shape, before, best)) best = {shape, cavity, around, {}};
+    take_if_better(cavity, around, cells_.worst_shape(around), {}, best);
   }
 
-  static bool is_worth(double after, double before, const Replacement& best) {
-    return after > kLeastGain * std::max(before, 0.0) && after > best.shape;
+  // There must not be more bad cells than before either, or where nothing helps there would be more and more of them.
+  void take_if_better(const std::vector<Index>& cavity, const std::vector<Tetrahedron>& cells, double shape,
+                      const Vec3& position, Replacement& best) const {
+    if (!(shape > best.shape)) return;
+    const std::vector<Tetrahedron> before = cells_.cells_of(cavity);
+    if (!(shape > kLeastGain * std::max(cells_.worst_shape(before), 0.0))) return;
+    if (shape < kGoodShape && bad_count(cells) > bad_count(before)) return;
+    best = {shape, cavity, cells, position};
+  }
+
+  std::ptrdiff_t bad_count(const std::vector<Tetrahedron>& cells) const {
+    return std::count_if(cells.begin(), cells.end(),
+                         [&](const Tetrahedron& cell) { return cells_.shape(cell) < kGoodShape; });
   }
 
   bool insert_a_point(Index t) {
@@ -243,7 +287,7 @@ class Improver {
       try_insertion({t, other}, center_of(cell), best);
     }
     try_insertion(all, center_of(cell), best);
-    if (best.shape < kGoodShape) try_growing_cavity(t, best);
+    if (best.shape < kGoodShape && round_ < kRoundsOfGrowing) try_growing_cavity(t, best);
     if (best.cavity.empty()) return false;
     const Index m = cells_.add_point(best.position);
     cells_.replace(best.cavity, best.cells);
@@ -265,13 +309,12 @@ class Improver {
 
   // Returns where the point is best.
   Vec3 try_insertion(const std::vector<Index>& cavity, const Vec3& start, Replacement& best) {
-    const double before = cells_.worst_shape(cells_.cells_of(cavity));
     const Index m = cells_.add_point(start);
     const std::vector<Tetrahedron> cells = filled(cavity, m);
     const double after = settle(m, cells, kTrialHalvings);
     const Vec3 position = cells_.position(m);
+    take_if_better(cavity, cells, after, position, best);
     cells_.remove_last_point();
-    if (is_worth(after, before, best)) best = {after, cavity, cells, position};
     return position;
   }
 
@@ -308,6 +351,10 @@ class Improver {
 
   CoreCells& cells_;
   LayerColumns* columns_;  // null: the surface stays
+  int round_ = 0;
+  // Numbers of changes: so far, of the last one at a point, and when a cell was tried in vain.
+  std::size_t changes_ = 1;
+  std::vector<std::size_t> changed_, tried_;
 };
 
 BadPlaces bad_places(const CoreCells& cells, double limit) {

@@ -17,19 +17,25 @@ class LayerColumns {
   bool may_move(Index v) const { return v < may_move_.size() && may_move_[v]; }
   double thickness_mm(Index v) const { return stack_.reached_mm[v]; }
   Vec3 end(Index v) const { return stack_.at(frame_, v, 1); }
-  /// Unless the layers would be thicker than asked for, end, differ from those around by more than the gradation, or
-  /// not be well-shaped. Whether it is done.
-  bool set_thickness(Index v, double thickness_mm);
-  /// Back to one that there was.
-  void restore(Index v, double thickness_mm) { stack_.reached_mm[v] = thickness_mm; }
+  struct Change {
+    Index vertex;
+    double before_mm;
+  };
+  /// Changes the thickness, and where it then would differ by more than the gradation, makes layers around thinner too.
+  /// Returns what has changed: nothing if layers would be thicker than asked for, far thinner than at first, or end, or
+  /// not be well-shaped.
+  std::vector<Change> set_thickness(Index v, double thickness_mm);
+  void take_back(const std::vector<Change>& changes);
 
  private:
-  bool is_gradual(Index v) const;
-  bool is_good(Index v) const;
+  bool spread(std::vector<Change>& changes);
+  bool change(Index v, double thickness_mm, std::vector<Change>& changes);
+  bool are_good(const std::vector<Change>& changes) const;
 
   const WallFrame& frame_;
   LayerStack& stack_;
   std::vector<char> may_move_;
+  std::vector<double> least_mm_;
 };
 
 }  // namespace vmesh
