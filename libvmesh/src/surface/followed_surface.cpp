@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "vmesh/core/box_tree.h"
 #include "vmesh/core/error.h"
@@ -13,7 +15,7 @@ namespace vmesh {
 namespace {
 
 // By how many local radii another branch may be farther away than the nearest and still count.
-constexpr double kBlendRadii = 0.5;
+constexpr double kBlendRadii = 1.5;
 
 void check_followable(const CenterlineEdit& edit) {
   if (!edit.removed_branches.empty())
@@ -30,17 +32,18 @@ class BlendedEdit {
         boxes_(boxes_of_axes()) {
     for (Index cone = 0; cone < relations_.cone_count(); ++cone)
       widest_ = std::max(widest_, relations_.max_radius(cone));
+    find_meetings(centerline);
   }
 
   Vec3 moved(const Vec3& p) {
     find_places(p);
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Place& place : places_) nearest = std::min(nearest, place.radii);
+    const Place& nearest = *std::min_element(places_.begin(), places_.end(),
+                                             [](const Place& a, const Place& b) { return a.radii < b.radii; });
     Vec3 sum = Vec3::Zero();
     double weights = 0;
     for (const Place& place : places_) {
-      const double closeness = 1 - (place.radii - nearest) / kBlendRadii;
-      if (!(closeness > 0)) continue;
+      const double closeness = 1 - (place.radii - nearest.radii) / kBlendRadii;
+      if (!(closeness > 0) || !meet(nearest.branch, place.branch)) continue;
       const double weight = closeness * closeness;
       sum += weight * (radius_.factor(place.cone, place.t) - 1) * (p - relations_.axis_point(place.cone, place.t));
       weights += weight;
@@ -54,6 +57,19 @@ class BlendedEdit {
     Index branch, cone;
     double t, radii;
   };
+
+  void find_meetings(const Centerline& centerline) {
+    for (Index n = 0; n < centerline.nodes().size(); ++n) {
+      const auto around = centerline.incident_segments(n);
+      for (const Index s : around) {
+        for (const Index other : around) {
+          if (branch_[s] < branch_[other]) meetings_.emplace(branch_[s], branch_[other]);
+        }
+      }
+    }
+  }
+  // Others that come near are no part of the same volume.
+  bool meet(Index a, Index b) const { return a == b || meetings_.contains(std::minmax(a, b)); }
 
   BoxTree boxes_of_axes() const {
     std::vector<Vec3> low, high;
@@ -96,6 +112,7 @@ class BlendedEdit {
   ChangedRadius radius_;
   double scale_, widest_ = 0;
   BoxTree boxes_;
+  std::set<std::pair<Index, Index>> meetings_;  // branches with a node in common, the lower one first
   std::vector<Place> places_;
 };
 
