@@ -149,7 +149,9 @@ TEST_F(Volume, AFittedWallIsKeptBelowItsCap) {
     const VolumeResult volume = make_volume(wall);
     expect_sound_lumen(wall, volume);
     EXPECT_EQ(volume.layers.least_share == 0, !fitted);  // whether layers end
-    if (fitted) EXPECT_GT(measure_volume(volume.mesh).min_dihedral_deg, 8);
+    if (fitted) {
+      EXPECT_GT(measure_volume(volume.mesh).min_dihedral_deg, 8);
+    }
   }
 }
 
