@@ -23,8 +23,7 @@ constexpr double kLeastGrowth = 0.5, kMostGrowth = 5;
 // Tetrahedra with an angle of less than 10 degrees, see BadPlaces, are worth thinner layers, that many times.
 constexpr double kGoodEnough = 0.174;
 constexpr int kThinnings = 4;
-// A thinning is the last unless it makes the worst tetrahedron better by this factor, or as many corners of bad ones
-// fewer.
+// A thinning that makes the worst tetrahedron better by less than this is the last.
 constexpr double kLeastThinningGain = 1.05;
 
 void check_layers(const LayerOptions& options, const std::string& what) {
@@ -118,18 +117,11 @@ class VolumeMaker {
       const std::vector<Index> due = vertices_to_thin(best);
       if (due.empty()) break;
       Filling next = fill_once(thinned(frame_, best.layers, due, progress_));
-      if (!is_worth_it(best, next)) break;
+      if (next.shape() < kLeastThinningGain * best.shape()) break;
       best = std::move(next);
     }
     parts_.layers = best.layers;
     return best;
-  }
-
-  static bool is_worth_it(const Filling& before, const Filling& after) {
-    if (after.shape() >= kLeastThinningGain * before.shape()) return true;
-    return before.is_there() && after.shape() >= before.shape() &&
-           kLeastThinningGain * static_cast<double>(after.bad.vertices.size()) <
-               static_cast<double>(before.bad.vertices.size());
   }
 
   Filling fill_once(const LayerStack& layers) {
