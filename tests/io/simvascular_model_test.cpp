@@ -1,4 +1,5 @@
 // SimVascular's models, parsed as it does.
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -33,22 +34,43 @@ struct Face {
 };
 std::ostream& operator<<(std::ostream& out, const Face& face) { return out << face.name << " " << face.type; }
 
-/// As sv4guiModelIO::CreateGroupFromFile() goes through the file.
+/// A number all of whose text is one, as TinyXML's queries take it.
+double number_in(pugi::xml_node node, const char* name) {
+  const pugi::xml_attribute attribute = node.attribute(name);
+  EXPECT_FALSE(attribute.empty()) << name;
+  std::istringstream text(attribute.value());
+  double number = -1;
+  EXPECT_TRUE(text >> number && text.peek() == std::istringstream::traits_type::eof()) << name;
+  return number;
+}
+
+/// As sv4guiModelIO::CreateGroupFromFile() goes through the file: every attribute and element that it looks at.
 std::map<int, Face> faces_of_model(const std::string& text) {
   pugi::xml_document document;
   EXPECT_TRUE(document.load_string(text.c_str())) << text;
   const pugi::xml_node model = document.child("model");
   EXPECT_STREQ(model.attribute("type").value(), "PolyData");
-  const pugi::xml_node element = model.child("timestep").child("model_element");
-  EXPECT_STREQ(element.attribute("type").value(), "PolyData");
+  const pugi::xml_node step = model.child("timestep");
+  EXPECT_TRUE(step.next_sibling("timestep").empty());  // each would be a model of its own
+  const pugi::xml_node element = step.child("model_element");
+  EXPECT_STREQ(element.attribute("type").value(), "PolyData");  // so the surface is in the .vtp of the same name
+  EXPECT_EQ(number_in(element, "num_sampling"), 0);
+  EXPECT_EQ(number_in(element, "use_uniform"), 0);  // else it looks for what lofting needs
+  EXPECT_TRUE(element.child("segmentations").child("seg").empty());
+  EXPECT_TRUE(element.child("blend_radii").child("face_pair").empty());  // its loop over these would not end
   std::map<int, Face> faces;
   for (const pugi::xml_node face : element.child("faces").children("face")) {
     EXPECT_STREQ(face.attribute("visible").value(), "true");
-    const bool is_new = faces
-                            .emplace(face.attribute("id").as_int(),
-                                     Face{face.attribute("name").value(), face.attribute("type").value()})
-                            .second;
-    EXPECT_TRUE(is_new);
+    for (const char* share : {"opacity", "color1", "color2", "color3"}) {
+      EXPECT_GE(number_in(face, share), 0);
+      EXPECT_LE(number_in(face, share), 1);
+    }
+    const Face entry{face.attribute("name").value(), face.attribute("type").value()};
+    EXPECT_FALSE(entry.name.empty());
+    EXPECT_TRUE(entry.type == "wall" || entry.type == "cap") << entry.type;
+    const double id = number_in(face, "id");
+    EXPECT_EQ(id, std::floor(id));
+    EXPECT_TRUE(faces.emplace(static_cast<int>(id), entry).second) << id;
   }
   return faces;
 }

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cstring>
 
 #include <tbb/global_control.h>
 
 #include "vmesh/core/error.h"
 #include "vmesh/solid/make_volume.h"
+#include "vmesh/surface/flat_ends.h"
 #include "vmesh/synth/synthetic_tree.h"
 
 #include "random_vessels.h"
@@ -111,6 +113,46 @@ TEST_F(Volume, WhereTheWallBulgesOverItsCap) {
   expect_sound_lumen(wall, result);
   EXPECT_EQ(result.layers.least_share, 0);  // there is no way within the cap's plane
   EXPECT_GT(result.layers.full_share, 0.3);
+}
+
+/// A tube with open ends and a vertex next to a ring that is moved over the ring's plane, as a fit may.
+GenerateResult tube_over_its_end(const Centerline& centerline) {
+  GenerateOptions options;
+  options.open_ends.all = true;
+  GenerateResult result = generate_surface(centerline, options);
+  const Opening& end = result.openings.at(1);
+  for (const Triangle& face : result.mesh.faces) {
+    const auto is_on_ring = [&](Index v) { return std::find(end.ring.begin(), end.ring.end(), v) != end.ring.end(); };
+    if (std::count_if(face.begin(), face.end(), is_on_ring) != 2) continue;
+    for (const Index v : face) {
+      if (is_on_ring(v)) continue;
+      Vec3& p = result.mesh.vertices[v];
+      p = Vec3(20.1, 1.5 * p.y(), 1.5 * p.z());
+    }
+    break;
+  }
+  return result;
+}
+
+TEST_F(Volume, AFittedWallIsKeptBelowItsCap) {
+  const Centerline centerline = tube();
+  for (const bool fitted : {false, true}) {
+    GenerateResult result = tube_over_its_end(centerline);
+    FlatEndOptions options;
+    options.fitted = fitted;
+    const FlatEnds ends = finish_ends(result, centerline, options);
+    ASSERT_TRUE(result.is_sound());
+    MeshAttributes attributes =
+        surface_attributes(result.mesh, result.binding, result.radius, result.openings, centerline);
+    add_cap_labels(ends, attributes);
+    const VesselWall wall = vessel_wall(result.mesh, attributes);
+    const VolumeResult volume = make_volume(wall);
+    expect_sound_lumen(wall, volume);
+    EXPECT_EQ(volume.layers.least_share == 0, !fitted);  // whether layers end
+    if (fitted) {
+      EXPECT_GT(measure_volume(volume.mesh).min_dihedral_deg, 8);
+    }
+  }
 }
 
 TEST_F(Volume, WithoutLayersCapsKeepTheirTriangles) {

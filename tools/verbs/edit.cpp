@@ -9,7 +9,6 @@
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/solid/volume_check.h"
 #include "vmesh/surface/followed_surface.h"
-#include "vmesh/volume/vessel_field.h"
 
 #include "command_line/interrupt.h"
 #include "command_line/outputs.h"
@@ -121,17 +120,6 @@ MeshAttributes attributes_after(const LoadedSurface& surface, const TriMesh& mov
   return attributes;
 }
 
-/// The places of all points of a volume, those of the nearest vessels.
-std::vector<CenterlineBinding> nearest_places(const VolumeMesh& mesh, const Centerline& centerline) {
-  const VesselField field(centerline);
-  std::vector<CenterlineBinding> places;
-  for (const Vec3& p : mesh.points) {
-    const FieldSample sample = field.sample_global(p);
-    places.push_back({sample.cone, sample.t});
-  }
-  return places;
-}
-
 /// A surface or volume that was moved: what is wrong with it, and how it is written.
 struct Followed {
   std::vector<std::string> problems;
@@ -141,7 +129,7 @@ struct Followed {
 Followed follow_volume(const EditArguments& arguments, const Centerline& centerline, Console& console) {
   LoadedVolume volume = load_volume(arguments.follow.path, console);
   VolumeMesh& mesh = volume.mesh;
-  mesh.points = follow_edit(mesh.points, nearest_places(mesh, centerline), centerline, arguments.edit);
+  mesh.points = follow_edit_within(mesh.points, centerline, arguments.edit);
   Followed followed;
   for (const VolumeDefect& defect : find_volume_defects(mesh)) followed.problems.push_back(defect.message);
   followed.write = [&arguments, volume = std::move(volume)](const std::string& options) {

@@ -2,119 +2,185 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
-#include "vmesh/mesh/volume_faces.h"
+#include "solid/layer_columns.h"
 
 namespace vmesh {
 namespace {
 
-// Tetrahedra of a worse shape than this (see BadPlaces; with an angle below 15 degrees) are worth work.
-constexpr double kGoodShape = 0.26;
-constexpr int kRounds = 8;
+// Tetrahedra of a worse shape than this (see tetrahedron_shape(); with an angle below 17 degrees) are worth work.
+constexpr double kGoodShape = 0.3;
+constexpr int kRounds = 6, kRoundsOfGrowing = 2;
 // Steps of a search for the best position of a point: from this share of the edges around it, halved each time.
 constexpr double kFirstStep = 0.25;
 constexpr int kHalvings = 6, kTrialHalvings = 3;
 constexpr int kMostMoves = 4;  // of one length
 // A change must be worth its while, else rounds do not end.
 constexpr double kLeastGain = 1.02;
+// Factors of the thickness of layers that are tried.
+constexpr std::array<double, 6> kColumnSteps = {0.8, 0.9, 0.95, 0.98, 1.03, 1.1};
+constexpr std::size_t kMostAround = 8;   // cells at an edge that is swapped
+constexpr std::size_t kMostCavity = 16;  // cells that a point replaces
 
-double radius_ratio(const std::array<Vec3, 4>& p, double six_volumes, double twice_area) {
-  const Vec3 a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
-  const Vec3 center = a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b);
-  const double divisor = twice_area * center.norm();
-  return divisor > 0 ? 6 * six_volumes * six_volumes / divisor : 0;
-}
-
-class Improver {
+/// The best cells around two points in place of those at their edge.
+class RingFilling {
  public:
-  Improver(const CoreSurface& surface, Core& core)
-      : core_(core), fixed_(static_cast<Index>(surface.mesh.vertices.size())), points_(surface.mesh.vertices) {
-    points_.insert(points_.end(), core.added.begin(), core.added.end());
-    around_.resize(points_.size());
-    for (Index t = 0; t < core.tetrahedra.size(); ++t) enter(t);
-    for (const Triangle& face : surface.mesh.faces) {
-      for (std::size_t i = 0; i < 3; ++i) outside_.insert(std::minmax(face[i], face[(i + 1) % 3]));
+  RingFilling(const CoreCells& cells, const std::vector<Index>& ring, Index a, Index b)
+      : cells_(cells), ring_(ring), a_(a), b_(b), n_(ring.size()), best_(n_ * n_, 1), middle_(n_ * n_, 0) {
+    for (std::size_t length = 2; length < n_; ++length) {
+      for (std::size_t i = 0; i + length < n_; ++i) divide(i, i + length);
     }
   }
 
-  void run() {
-    bool any = true;
-    for (int round = 0; any && round < kRounds; ++round) {
-      any = false;
-      for (const Index t : bad_tetrahedra()) any = improve(t) || any;
-    }
-    core_.added.assign(points_.begin() + fixed_, points_.end());
+  double shape() const { return best_[n_ - 1]; }
+  std::vector<Tetrahedron> filled() const {
+    std::vector<Tetrahedron> cells;
+    add(0, n_ - 1, cells);
+    return cells;
   }
 
  private:
-  void enter(Index t) {
-    for (const Index v : core_.tetrahedra[t]) around_[v].push_back(t);
+  Tetrahedron above(std::size_t i, std::size_t k, std::size_t j) const { return {ring_[i], ring_[k], ring_[j], b_}; }
+  Tetrahedron below(std::size_t i, std::size_t k, std::size_t j) const { return {ring_[i], ring_[j], ring_[k], a_}; }
+
+  // The polygon of the ring's vertices from i to j is divided by a triangle.
+  void divide(std::size_t i, std::size_t j) {
+    double& best = best_[i * n_ + j];
+    best = -1;
+    for (std::size_t k = i + 1; k < j; ++k) {
+      double shape = std::min(best_[i * n_ + k], best_[k * n_ + j]);
+      if (shape > best) shape = std::min(shape, cells_.shape(above(i, k, j)));
+      if (shape > best) shape = std::min(shape, cells_.shape(below(i, k, j)));
+      if (shape <= best) continue;
+      best = shape;
+      middle_[i * n_ + j] = k;
+    }
   }
 
-  double quality(const Tetrahedron& t) const {
-    return tetrahedron_shape({points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]});
+  void add(std::size_t i, std::size_t j, std::vector<Tetrahedron>& cells) const {
+    if (j < i + 2) return;
+    const std::size_t k = middle_[i * n_ + j];
+    cells.push_back(above(i, k, j));
+    cells.push_back(below(i, k, j));
+    add(i, k, cells);
+    add(k, j, cells);
   }
-  // Of all cells, or of the first ones if that is below `enough` already.
-  double worst(const std::vector<Tetrahedron>& cells, double enough = -1) const {
-    double least = 1;
-    for (const Tetrahedron& cell : cells) {
-      least = std::min(least, quality(cell));
-      if (least < enough) break;
+
+  const CoreCells& cells_;
+  const std::vector<Index>& ring_;
+  Index a_, b_;
+  std::size_t n_;
+  std::vector<double> best_;  // of the polygon from i to j, at n i + j
+  std::vector<std::size_t> middle_;
+};
+
+class Improver {
+ public:
+  Improver(CoreCells& cells, LayerColumns* columns) : cells_(cells), columns_(columns) {}
+
+  void run() {
+    bool any = true;
+    for (round_ = 0; any && round_ < kRounds; ++round_) {
+      any = false;
+      for (const Index t : bad_tetrahedra()) any = improve(t) || any;
     }
-    return least;
   }
+
+ private:
+  /// What is to replace a few cells.
+  struct Replacement {
+    double shape = 0;
+    std::vector<Index> cavity;
+    std::vector<Tetrahedron> cells;
+    Vec3 position = Vec3::Zero();  // of the point that is added
+  };
+
+  bool is_bad(Index t) const { return cells_.is_there(t) && cells_.shape(cells_[t]) < kGoodShape; }
 
   // Worst first.
   std::vector<Index> bad_tetrahedra() const {
     std::vector<std::pair<double, Index>> bad;
-    for (Index t = 0; t < core_.tetrahedra.size(); ++t) {
-      const double q = quality(core_.tetrahedra[t]);
-      if (q < kGoodShape) bad.emplace_back(q, t);
+    for (Index t = 0; t < cells_.size(); ++t) {
+      if (!cells_.is_there(t)) continue;
+      const double shape = cells_.shape(cells_[t]);
+      if (shape < kGoodShape) bad.emplace_back(shape, t);
     }
     std::sort(bad.begin(), bad.end());
     std::vector<Index> numbers;
-    for (const auto& [q, t] : bad) numbers.push_back(t);
+    numbers.reserve(bad.size());
+    for (const auto& [shape, t] : bad) numbers.push_back(t);
     return numbers;
   }
 
   bool improve(Index t) {
-    const Tetrahedron cell = core_.tetrahedra[t];
-    if (quality(cell) >= kGoodShape) return false;  // it has become better already
-    bool any = false;
-    for (const Index v : cell) any = (v >= fixed_ && move(v)) || any;
-    if (quality(core_.tetrahedra[t]) >= kGoodShape) return any;
-    return insert_a_point(t) || any;
+    if (!is_bad(t) || was_in_vain(t)) return false;  // it has become better already, or cannot
+    const Tetrahedron corners = cells_[t];
+    const bool any = change_around(t);
+    if (any) {
+      for (const Index v : corners) note_change(v);
+    } else {
+      tried_[t] = changes_;
+    }
+    return any;
   }
 
-  std::vector<Tetrahedron> cells_at(Index v) const {
-    std::vector<Tetrahedron> cells;
-    for (const Index t : around_[v]) cells.push_back(core_.tetrahedra[t]);
-    return cells;
+  // What has been tried where nothing has changed since.
+  bool was_in_vain(Index t) {
+    tried_.resize(cells_.size(), 0);
+    changed_.resize(cells_.point_count(), 1);
+    const Tetrahedron& cell = cells_[t];
+    return std::all_of(cell.begin(), cell.end(), [&](Index v) { return changed_[v] <= tried_[t]; });
   }
+
+  // At a point, which its neighbours see.
+  void note_change(Index v) {
+    ++changes_;
+    changed_.resize(cells_.point_count(), changes_);
+    for (const Index t : cells_.around(v)) {
+      for (const Index w : cells_[t]) changed_[w] = changes_;
+    }
+  }
+
+  bool change_around(Index t) {
+    bool any = false;
+    for (const Index v : Tetrahedron(cells_[t])) any = move(v) || any;
+    if (is_bad(t)) any = swap(t) || any;
+    if (is_bad(t)) any = insert_a_point(t) || any;
+    return any;
+  }
+
+  bool move(Index v) {
+    if (columns_ && columns_->may_move(v)) return move_column(v);
+    if (!cells_.is_added(v)) return false;
+    const std::vector<Tetrahedron> cells = cells_.cells_of(cells_.around(v));
+    const double before = cells_.worst_shape(cells);
+    return settle(v, cells, kHalvings) > before;
+  }
+
+  static double needed_after(double before) { return before + (kLeastGain - 1) * std::abs(before); }
 
   /// Moves a point so that the worst of these cells, all at it, becomes as good as a search finds. Returns how good.
   double settle(Index v, const std::vector<Tetrahedron>& cells, int halvings) {
     double step = 0;
     for (const Tetrahedron& cell : cells) {
-      for (const Index w : cell) step = std::max(step, (points_[w] - points_[v]).norm());
+      for (const Index w : cell) step = std::max(step, (cells_.position(w) - cells_.position(v)).norm());
     }
     step *= kFirstStep;
-    double best = worst(cells);
+    double best = cells_.worst_shape(cells);
     for (int halving = 0; halving < halvings; ++halving, step /= 2) {
       bool moved = true;
       for (int move = 0; moved && move < kMostMoves; ++move) {
         moved = false;
         for (const Vec3& way : kWays) {
-          const Vec3 before = points_[v];
-          points_[v] += step * way;
-          const double needed = best + (kLeastGain - 1) * std::abs(best), found = worst(cells, needed);
+          const Vec3 before = cells_.position(v);
+          cells_.position(v) += step * way;
+          const double needed = needed_after(best), found = cells_.worst_shape(cells, needed);
           if (found > needed) {
             best = found;
             moved = true;
           } else {
-            points_[v] = before;
+            cells_.position(v) = before;
           }
         }
       }
@@ -122,163 +188,207 @@ class Improver {
     return best;
   }
 
-  bool move(Index v) {
-    const std::vector<Tetrahedron> cells = cells_at(v);
-    const double before = worst(cells);
-    return settle(v, cells, kHalvings) > before;
+  bool move_column(Index v) {
+    bool any = false;
+    for (const double step : kColumnSteps) {
+      for (int move = 0; move < kMostMoves && try_thickness(v, step * columns_->thickness_mm(v)); ++move) any = true;
+    }
+    return any;
   }
 
-  // A point with which the faces of a cavity form new cells.
-  struct Insertion {
-    double quality = 0;
-    std::vector<Index> cavity;  // cells to be replaced
-    Vec3 position = Vec3::Zero();
-  };
+  bool try_thickness(Index v, double thickness_mm) {
+    const std::vector<LayerColumns::Change> changes = columns_->set_thickness(v, thickness_mm);
+    if (changes.empty()) return false;
+    std::vector<Index> around;
+    for (const auto& change : changes) {
+      const std::vector<Index>& cells = cells_.around(change.vertex);
+      around.insert(around.end(), cells.begin(), cells.end());
+    }
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    const std::vector<Tetrahedron> cells = cells_.cells_of(around);
+    const double needed = needed_after(cells_.worst_shape(cells));
+    put_at_ends(changes);
+    if (cells_.worst_shape(cells, needed) > needed) return true;
+    columns_->take_back(changes);
+    put_at_ends(changes);
+    return false;
+  }
+
+  void put_at_ends(const std::vector<LayerColumns::Change>& changes) {
+    for (const auto& change : changes) cells_.position(change.vertex) = columns_->end(change.vertex);
+  }
+
+  bool swap(Index t) {
+    const Tetrahedron cell = cells_[t];
+    Replacement best;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < i; ++j) try_without_edge(cell[i], cell[j], best);
+      try_without_face(t, i, best);
+    }
+    if (best.cavity.empty()) return false;
+    cells_.replace(best.cavity, best.cells);
+    return true;
+  }
+
+  void try_without_edge(Index a, Index b, Replacement& best) const {
+    const std::vector<Index> ring = cells_.ring(a, b);
+    if (ring.size() < 3 || ring.size() > kMostAround) return;
+    const std::vector<Index> cavity = cells_.at_edge(a, b);
+    const RingFilling filling(cells_, ring, a, b);
+    take_if_better(cavity, filling.filled(), filling.shape(), {}, best);
+  }
+
+  void try_without_face(Index t, std::size_t corner, Replacement& best) const {
+    const Index other = cells_.beyond(t, corner);
+    if (other == kNone) return;
+    const std::vector<Index> cavity = {t, other};
+    const Index top = cells_[t][corner];
+    Index bottom = kNone;
+    for (const Index v : cells_[other]) {
+      if (!cells_.has(t, v)) bottom = v;
+    }
+    std::vector<Tetrahedron> around;
+    for (const auto& [face, of] : cells_.outer_faces(cavity)) {
+      // Of the three faces at the top, seen from outside: with the bottom, which is within, they are the new cells.
+      if (std::find(face.begin(), face.end(), top) != face.end()) around.push_back({face[0], face[2], face[1], bottom});
+    }
+    take_if_better(cavity, around, cells_.worst_shape(around), {}, best);
+  }
+
+  // There must not be more bad cells than before either, or where nothing helps there would be more and more of them.
+  void take_if_better(const std::vector<Index>& cavity, const std::vector<Tetrahedron>& cells, double shape,
+                      const Vec3& position, Replacement& best) const {
+    if (!(shape > best.shape)) return;
+    const std::vector<Tetrahedron> before = cells_.cells_of(cavity);
+    if (!(shape > kLeastGain * std::max(cells_.worst_shape(before), 0.0))) return;
+    if (shape < kGoodShape && bad_count(cells) > bad_count(before)) return;
+    best = {shape, cavity, cells, position};
+  }
+
+  std::ptrdiff_t bad_count(const std::vector<Tetrahedron>& cells) const {
+    return std::count_if(cells.begin(), cells.end(),
+                         [&](const Tetrahedron& cell) { return cells_.shape(cell) < kGoodShape; });
+  }
 
   bool insert_a_point(Index t) {
-    const Tetrahedron cell = core_.tetrahedra[t];
-    Insertion best;
+    const Tetrahedron cell = cells_[t];
+    Replacement best;
     std::vector<Index> all = {t};
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        if (!outside_.contains(std::minmax(cell[i], cell[j])))
-          try_insertion(at_edge(cell[i], cell[j]), (points_[cell[i]] + points_[cell[j]]) / 2, best);
+        if (!cells_.is_edge_of_surface(cell[i], cell[j]))
+          try_insertion(cells_.at_edge(cell[i], cell[j]), (cells_.position(cell[i]) + cells_.position(cell[j])) / 2,
+                        best);
       }
-      const Index other = beyond(t, i);
+      const Index other = cells_.beyond(t, i);
       if (other == kNone) continue;
       all.push_back(other);
       try_insertion({t, other}, center_of(cell), best);
     }
     try_insertion(all, center_of(cell), best);
+    if (best.shape < kGoodShape && round_ < kRoundsOfGrowing) try_growing_cavity(t, best);
     if (best.cavity.empty()) return false;
-    insert(best);
+    const Index m = cells_.add_point(best.position);
+    cells_.replace(best.cavity, best.cells);
+    move(m);
     return true;
   }
 
   Vec3 center_of(const Tetrahedron& cell) const {
-    return (points_[cell[0]] + points_[cell[1]] + points_[cell[2]] + points_[cell[3]]) / 4;
+    return (cells_.position(cell[0]) + cells_.position(cell[1]) + cells_.position(cell[2]) + cells_.position(cell[3])) /
+           4;
   }
 
-  // Cells with both of two points.
-  std::vector<Index> at_edge(Index a, Index b) const {
-    std::vector<Index> shared;
-    for (const Index t : around_[a]) {
-      if (has(t, b)) shared.push_back(t);
-    }
-    return shared;
-  }
-
-  bool has(Index t, Index v) const {
-    const Tetrahedron& cell = core_.tetrahedra[t];
-    return std::find(cell.begin(), cell.end(), v) != cell.end();
-  }
-
-  // The cell on the other side of the face opposite to a corner; kNone outside.
-  Index beyond(Index t, std::size_t corner) const {
-    const Tetrahedron& cell = core_.tetrahedra[t];
-    const Index a = cell[(corner + 1) % 4], b = cell[(corner + 2) % 4], c = cell[(corner + 3) % 4];
-    for (const Index other : around_[a]) {
-      if (other != t && has(other, b) && has(other, c)) return other;
-    }
-    return kNone;
-  }
-
-  // With the faces of a cavity as bases and `m` as their top.
+  // With the outer faces of a cavity as bases and `m` as their top.
   std::vector<Tetrahedron> filled(const std::vector<Index>& cavity, Index m) const {
-    std::map<Triangle, CellFace> outer;  // by their sorted corners
-    for (const Index t : cavity) {
-      for (const CellFace& face : faces_of(core_.tetrahedra[t])) {
-        Triangle key = {face[0], face[1], face[2]};
-        std::sort(key.begin(), key.end());
-        if (!outer.try_emplace(key, face).second) outer.erase(key);
-      }
-    }
     std::vector<Tetrahedron> cells;
-    for (const auto& [key, face] : outer) cells.push_back({face[0], face[2], face[1], m});
+    for (const auto& [face, t] : cells_.outer_faces(cavity)) cells.push_back({face[0], face[2], face[1], m});
     return cells;
   }
 
-  void try_insertion(const std::vector<Index>& cavity, const Vec3& start, Insertion& best) {
-    double before = 1;
-    for (const Index t : cavity) before = std::min(before, quality(core_.tetrahedra[t]));
-    const auto m = static_cast<Index>(points_.size());
-    points_.push_back(start);
-    const double after = settle(m, filled(cavity, m), kTrialHalvings);
-    if (after > kLeastGain * std::max(before, 0.0) && after > best.quality) best = {after, cavity, points_[m]};
-    points_.pop_back();
+  // Returns where the point is best.
+  Vec3 try_insertion(const std::vector<Index>& cavity, const Vec3& start, Replacement& best) {
+    const Index m = cells_.add_point(start);
+    const std::vector<Tetrahedron> cells = filled(cavity, m);
+    const double after = settle(m, cells, kTrialHalvings);
+    const Vec3 position = cells_.position(m);
+    take_if_better(cavity, cells, after, position, best);
+    cells_.remove_last_point();
+    return position;
   }
 
-  void insert(const Insertion& insertion) {
-    const auto m = static_cast<Index>(points_.size());
-    points_.push_back(insertion.position);
-    around_.emplace_back();
-    const std::vector<Tetrahedron> cells = filled(insertion.cavity, m);
-    for (const Index t : insertion.cavity) {
-      for (const Index v : core_.tetrahedra[t]) std::erase(around_[v], t);
+  // From a bad cell on, the cell beyond the face over which the point is worst is replaced too.
+  void try_growing_cavity(Index t, Replacement& best) {
+    std::vector<Index> cavity = {t};
+    Vec3 position = center_of(cells_[t]);
+    while (cavity.size() < kMostCavity) {
+      const Index next = worst_beyond(cavity, position);
+      if (next == kNone) return;
+      cavity.push_back(next);
+      position = try_insertion(cavity, position, best);
     }
-    // There are more new cells than old ones.
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const Index t = i < insertion.cavity.size() ? insertion.cavity[i] : static_cast<Index>(core_.tetrahedra.size());
-      if (t == core_.tetrahedra.size()) core_.tetrahedra.emplace_back();
-      core_.tetrahedra[t] = cells[i];
-      enter(t);
+  }
+
+  Index worst_beyond(const std::vector<Index>& cavity, const Vec3& position) {
+    const Index m = cells_.add_point(position);
+    double least = 1;
+    Index worst = kNone;
+    for (const auto& [face, t] : cells_.outer_faces(cavity)) {
+      const double shape = cells_.shape({face[0], face[2], face[1], m});
+      if (shape >= least) continue;
+      const Index other = cells_.beyond(t, face);
+      if (other == kNone) continue;
+      least = shape;
+      worst = other;
     }
-    move(m);
+    cells_.remove_last_point();
+    return worst;
   }
 
   static inline const std::array<Vec3, 6> kWays = {Vec3::UnitX(),  -Vec3::UnitX(), Vec3::UnitY(),
                                                    -Vec3::UnitY(), Vec3::UnitZ(),  -Vec3::UnitZ()};
 
-  Core& core_;
-  Index fixed_;  // points of the surface
-  std::vector<Vec3> points_;
-  std::vector<std::vector<Index>> around_;     // tetrahedra at every point
-  std::set<std::pair<Index, Index>> outside_;  // edges of the surface
+  CoreCells& cells_;
+  LayerColumns* columns_;  // null: the surface stays
+  int round_ = 0;
+  // Numbers of changes: so far, of the last one at a point, and when a cell was tried in vain.
+  std::size_t changes_ = 1;
+  std::vector<std::size_t> changed_, tried_;
 };
+
+BadPlaces bad_places(const CoreCells& cells, double limit) {
+  BadPlaces places;
+  std::set<Index> bad;
+  for (Index t = 0; t < cells.size(); ++t) {
+    if (!cells.is_there(t)) continue;
+    const double shape = cells.shape(cells[t]);
+    places.least = std::min(places.least, shape);
+    if (shape < limit) bad.insert(cells[t].begin(), cells[t].end());
+  }
+  places.vertices.assign(bad.begin(), bad.end());
+  return places;
+}
 
 }  // namespace
 
-double tetrahedron_shape(const std::array<Vec3, 4>& p) {
-  constexpr double kWeight = 1.2;
-  std::array<Vec3, 4> normal;  // opposite to every corner
-  double twice_area = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3 &a = p[(i + 1) % 4], &b = p[(i + 2) % 4], &c = p[(i + 3) % 4];
-    normal[i] = (b - a).cross(c - a);
-    twice_area += normal[i].norm();
-  }
-  const double six_volumes = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
-  double least = kWeight * radius_ratio(p, six_volumes, twice_area);
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      // Faces opposite to i and j meet at the edge between the other two corners.
-      std::size_t k = 0;
-      while (k == i || k == j) ++k;
-      const std::size_t l = 6 - i - j - k;
-      const double areas = normal[i].norm() * normal[j].norm();
-      least = std::min(least, areas > 0 ? std::abs(six_volumes) * (p[k] - p[l]).norm() / areas : 0);
-    }
-  }
-  return six_volumes > 0 ? least : -least;
+void improve_core(const CoreSurface& surface, Core& core) {
+  CoreCells cells(surface, core);
+  Improver(cells, nullptr).run();
+  cells.write_to(core);
 }
 
-void improve_core(const CoreSurface& surface, Core& core) { Improver(surface, core).run(); }
-
-BadPlaces bad_places(const CoreSurface& surface, const Core& core, double limit) {
-  const auto fixed = static_cast<Index>(surface.mesh.vertices.size());
-  const auto at = [&](Index v) -> const Vec3& { return v < fixed ? surface.mesh.vertices[v] : core.added[v - fixed]; };
-  BadPlaces places;
-  std::set<Index> vertices;
-  for (const auto& [a, b, c, d] : core.tetrahedra) {
-    const double shape = tetrahedron_shape({at(a), at(b), at(c), at(d)});
-    places.least = std::min(places.least, shape);
-    if (shape >= limit) continue;
-    for (const Index v : {a, b, c, d}) {
-      if (v < fixed) vertices.insert(v);
-    }
+BadPlaces improve_core(CoreSurface& surface, Core& core, const WallFrame& frame, LayerStack& layers, double limit) {
+  const std::vector<double> before = layers.reached_mm;
+  CoreCells cells(surface, core);
+  LayerColumns columns(frame, layers);
+  Improver(cells, &columns).run();
+  for (Index v = 0; v < frame.position.size(); ++v) {
+    if (layers.reached_mm[v] < before[v]) layers.limit[v] = LayerLimit::shape;
+    surface.mesh.vertices[v] = layers.at(frame, v, 1);
   }
-  places.vertices.assign(vertices.begin(), vertices.end());
-  return places;
+  cells.write_to(core);
+  return bad_places(cells, limit);
 }
 
 }  // namespace vmesh

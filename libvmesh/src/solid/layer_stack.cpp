@@ -8,6 +8,7 @@
 #include "vmesh/core/text.h"
 
 #include "solid/fan_direction.h"
+#include "solid/layer_columns.h"
 #include "solid/layer_room.h"
 #include "solid/layer_shape.h"
 
@@ -20,9 +21,6 @@ constexpr double kStepWhereBad = 0.6;  // where tetrahedra turned out bad
 // They end below this share of what the gradation leaves of what was asked for: cells would be flatter than any solver
 // likes.
 constexpr double kLeastShare = 0.02;
-// Largest difference of the thickness at two vertices by their distance: sizes that change by a fifth from cell to
-// cell, the gradation of volume meshers.
-constexpr double kGradation = 0.2;
 // Ways are lengthened where they meet faces obliquely, so that layers keep their height; at most by this factor.
 constexpr double kLongest = 2;
 // Layers inside leave half as much again free, where tetrahedra have room; those outside only keep off each other,
@@ -186,7 +184,7 @@ class StackBuilder {
       if (thickness > stack_.reached_mm[v]) continue;
       for (const Index f : frame_.fan[v]) {
         for (const Index w : frame_.faces[f]) {
-          const double most = thickness + kGradation * (frame_.position[w] - frame_.position[v]).norm();
+          const double most = thickness + kLayerGradation * (frame_.position[w] - frame_.position[v]).norm();
           if (w == v || stack_.reached_mm[w] <= most) continue;
           stack_.reached_mm[w] = most;
           stack_.limit[w] = LayerLimit::gradation;

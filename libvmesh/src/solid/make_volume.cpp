@@ -10,6 +10,7 @@
 
 #include "solid/core.h"
 #include "solid/core_improvement.h"
+#include "solid/layer_ends.h"
 #include "solid/layer_stack.h"
 #include "solid/volume_assembly.h"
 #include "solid/wall_bridges.h"
@@ -89,6 +90,7 @@ class VolumeMaker {
 
  private:
   struct Filling {
+    LayerStack layers;
     CoreSurface surface;
     Core core;
     BadPlaces bad;
@@ -114,29 +116,30 @@ class VolumeMaker {
     for (int round = 0; round < kThinnings; ++round) {
       const std::vector<Index> due = vertices_to_thin(best);
       if (due.empty()) break;
-      const LayerStack stack = thinned(frame_, parts_.layers, due, progress_);
-      Filling next = fill_once(stack);
+      Filling next = fill_once(thinned(frame_, best.layers, due, progress_));
       if (next.shape() < kLeastThinningGain * best.shape()) break;
       best = std::move(next);
-      parts_.layers = stack;
     }
+    parts_.layers = best.layers;
     return best;
   }
 
-  Filling fill_once(const LayerStack& stack) {
+  Filling fill_once(const LayerStack& layers) {
     report_progress(progress_, "core", 0);
     Filling filling;
-    filling.surface = core_surface(frame_, stack, options_.core_size);
+    filling.layers = layers;
+    filling.surface = core_surface(frame_, layers, options_.core_size);
     filling.core = fill_core(filling.surface);
     lap("core");
-    improve_core(filling.surface, filling.core);
-    filling.bad = bad_places(filling.surface, filling.core, kGoodEnough);
+    if (!filling.is_there()) return filling;
+    take_layer_ends(frame_, layers, filling.surface, filling.core);
+    filling.bad = improve_core(filling.surface, filling.core, frame_, filling.layers, kGoodEnough);
     lap("improvement");
     return filling;
   }
 
   std::vector<Index> vertices_to_thin(const Filling& filling) const {
-    const LayerStack& stack = parts_.layers;
+    const LayerStack& stack = filling.layers;
     std::vector<Index> due;
     if (stack.count() == 0) return due;
     const auto add = [&](Index v) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solid/layer_ends.h"
 #include "solid/wall_bridges.h"
 
 namespace vmesh {
@@ -58,6 +59,7 @@ class Assembly {
       layer_point_ = add_levels(parts_.layers);
       const std::size_t n = frame_.position.size();
       core_point_ = static_cast<Index>(mesh_.points.size() - n);
+      first_beside_ = static_cast<Index>(surface_.mesh.vertices.size());
       const auto& vertices = surface_.mesh.vertices;
       mesh_.points.insert(mesh_.points.end(), vertices.begin() + static_cast<std::ptrdiff_t>(n), vertices.end());
       mesh_.points.insert(mesh_.points.end(), core_.added.begin(), core_.added.end());
@@ -84,7 +86,12 @@ class Assembly {
   }
   // Of a vertex of the core's surface, or added.
   Index core_point(Index v) const {
-    return v < frame_.position.size() ? point(layer_point_, parts_.layers.count(), v) : core_point_ + v;
+    if (v < frame_.position.size()) return point(layer_point_, parts_.layers.count(), v);
+    if (v < first_beside_) return core_point_ + v;
+    const auto beside = static_cast<Index>(surface_.beside.size());
+    if (v >= first_beside_ + beside) return core_point_ + v - beside;
+    const LayerPoint& of_layers = surface_.beside[v - first_beside_];
+    return point(layer_point_, of_layers.level, of_layers.vertex);
   }
 
   Index outermost_point(Index v) const { return point(shell_point_, parts_.shell.count(), v); }
@@ -113,7 +120,10 @@ class Assembly {
   void add_layers(const LayerStack& stack, const std::vector<Index>& first, Index region) {
     for (std::size_t k = 0; k < stack.count(); ++k) {
       const auto [inner, outer] = stack.side == LayerSide::inside ? std::pair(k + 1, k) : std::pair(k, k + 1);
-      for (const auto& [a, b, c] : frame_.faces) {
+      for (const Triangle& face : frame_.faces) {
+        // There, the lumen's cells are the core's.
+        if (stack.side == LayerSide::inside && is_layer_end(stack, face)) continue;
+        const auto& [a, b, c] = face;
         add_cell({point(first, inner, a), point(first, inner, b), point(first, inner, c), point(first, outer, a),
                   point(first, outer, b), point(first, outer, c)});
       }
@@ -224,7 +234,8 @@ class Assembly {
   } region_;                                      // of every cell
   std::vector<Index> layer_point_, shell_point_;  // of add_levels()
   Index first_bridge_point_ = 0;
-  Index core_point_ = 0;  // to be added to a vertex of the core that is none of the wall's
+  Index core_point_ = 0;    // to be added to a vertex of the core that is none of the wall's
+  Index first_beside_ = 0;  // number in the core of the first point beside its surface
   Index lumen_wall_ = 0, first_shell_end_ = 0;
 };
 

@@ -20,7 +20,7 @@ struct VolumeParts {
 /// first, in the frame's numbers.
 CoreSurface core_surface(const WallFrame& frame, const LayerStack& layers, double core_size);
 
-/// The mesh. `core`: of `surface`, which is core_surface() of the layers.
+/// The mesh. `core`: of `surface`, which is core_surface() of the layers, with their ends (take_layer_ends()).
 VolumeMesh assemble(const VolumeParts& parts, const CoreSurface& surface, const Core& core);
 
 }  // namespace vmesh

@@ -1,16 +1,126 @@
 #include "vmesh/surface/followed_surface.h"
 
+#include <algorithm>
+#include <limits>
+#include <set>
 #include <string>
+#include <utility>
 
+#include "vmesh/core/box_tree.h"
 #include "vmesh/core/error.h"
+#include "vmesh/surface/branch_labels.h"
 #include "vmesh/volume/cone_relations.h"
 
 namespace vmesh {
+namespace {
+
+// By how many local radii another branch may be farther away than the nearest and still count.
+constexpr double kBlendRadii = 1.5;
+
+void check_followable(const CenterlineEdit& edit) {
+  if (!edit.removed_branches.empty())
+    throw InvalidInput("a surface cannot follow when branches are removed; grow one around the edited centerline");
+}
+
+class BlendedEdit {
+ public:
+  BlendedEdit(const Centerline& centerline, const CenterlineEdit& edit)
+      : relations_(centerline),
+        branch_(branch_label_of_cones(centerline)),
+        radius_(centerline, edit.radius),
+        scale_(edit.scale),
+        boxes_(boxes_of_axes()) {
+    for (Index cone = 0; cone < relations_.cone_count(); ++cone)
+      widest_ = std::max(widest_, relations_.max_radius(cone));
+    find_meetings(centerline);
+  }
+
+  Vec3 moved(const Vec3& p) {
+    find_places(p);
+    const Place& nearest = *std::min_element(places_.begin(), places_.end(),
+                                             [](const Place& a, const Place& b) { return a.radii < b.radii; });
+    Vec3 sum = Vec3::Zero();
+    double weights = 0;
+    for (const Place& place : places_) {
+      const double closeness = 1 - (place.radii - nearest.radii) / kBlendRadii;
+      if (!(closeness > 0) || !meet(nearest.branch, place.branch)) continue;
+      const double weight = closeness * closeness;
+      sum += weight * (radius_.factor(place.cone, place.t) - 1) * (p - relations_.axis_point(place.cone, place.t));
+      weights += weight;
+    }
+    return scale_ * (p + sum / weights);
+  }
+
+ private:
+  // The nearest of a branch, by distance in local radii.
+  struct Place {
+    Index branch, cone;
+    double t, radii;
+  };
+
+  void find_meetings(const Centerline& centerline) {
+    for (Index n = 0; n < centerline.nodes().size(); ++n) {
+      const auto around = centerline.incident_segments(n);
+      for (const Index s : around) {
+        for (const Index other : around) {
+          if (branch_[s] < branch_[other]) meetings_.emplace(branch_[s], branch_[other]);
+        }
+      }
+    }
+  }
+  // Others that come near are no part of the same volume.
+  bool meet(Index a, Index b) const { return a == b || meetings_.contains(std::minmax(a, b)); }
+
+  BoxTree boxes_of_axes() const {
+    std::vector<Vec3> low, high;
+    for (Index cone = 0; cone < relations_.cone_count(); ++cone) {
+      const Vec3 a = relations_.axis_point(cone, 0), b = relations_.axis_point(cone, 1);
+      low.push_back(a.cwiseMin(b));
+      high.push_back(a.cwiseMax(b));
+    }
+    return {low, high};
+  }
+
+  Place place_on(Index cone, const Vec3& p) const {
+    const Vec3 a = relations_.axis_point(cone, 0), along = relations_.axis_point(cone, 1) - a;
+    const double squared = along.squaredNorm(), t = squared > 0 ? std::clamp(along.dot(p - a) / squared, 0.0, 1.0) : 0;
+    return {branch_[cone], cone, t, (p - a - t * along).norm() / relations_.radius_at(cone, t)};
+  }
+
+  // One for each branch that may count.
+  void find_places(const Vec3& p) {
+    places_.clear();
+    double nearest = std::numeric_limits<double>::infinity(), limit = nearest;
+    boxes_.visit(p, limit, [&](Index cone) {
+      const Place place = place_on(cone, p);
+      nearest = std::min(nearest, place.radii);
+      limit = (nearest + kBlendRadii) * widest_;
+      const auto same = std::find_if(places_.begin(), places_.end(),
+                                     [&](const Place& other) { return other.branch == place.branch; });
+      if (same == places_.end()) {
+        places_.push_back(place);
+      } else if (place.radii < same->radii || (place.radii == same->radii && place.cone < same->cone)) {
+        *same = place;
+      }
+    });
+    // Sums do not depend on the order of boxes.
+    std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.branch < b.branch; });
+  }
+
+  ConeRelations relations_;
+  std::vector<Index> branch_;
+  ChangedRadius radius_;
+  double scale_, widest_ = 0;
+  BoxTree boxes_;
+  std::set<std::pair<Index, Index>> meetings_;  // branches with a node in common, the lower one first
+  std::vector<Place> places_;
+};
+
+}  // namespace
 
 std::vector<Vec3> follow_edit(const std::vector<Vec3>& vertices, const std::vector<CenterlineBinding>& binding,
                               const Centerline& centerline, const CenterlineEdit& edit) {
-  if (!edit.removed_branches.empty())
-    throw InvalidInput("a surface cannot follow when branches are removed; grow one around the edited centerline");
+  check_followable(edit);
   if (binding.size() != vertices.size())
     throw InvalidInput("the surface has " + std::to_string(vertices.size()) + " vertices, but " +
                        std::to_string(binding.size()) + " are bound to the centerline");
@@ -25,6 +135,17 @@ std::vector<Vec3> follow_edit(const std::vector<Vec3>& vertices, const std::vect
     const Vec3 axis = relations.axis_point(segment, t);
     moved.push_back(edit.scale * (axis + radius.factor(segment, t) * (vertices[v] - axis)));
   }
+  return moved;
+}
+
+std::vector<Vec3> follow_edit_within(const std::vector<Vec3>& points, const Centerline& centerline,
+                                     const CenterlineEdit& edit) {
+  check_followable(edit);
+  if (centerline.nodes().empty()) throw InvalidInput("there are no vessels for the points to follow");
+  BlendedEdit blended(centerline, edit);
+  std::vector<Vec3> moved;
+  moved.reserve(points.size());
+  for (const Vec3& p : points) moved.push_back(blended.moved(p));
   return moved;
 }
 

@@ -14,4 +14,10 @@ namespace vmesh {
 std::vector<Vec3> follow_edit(const std::vector<Vec3>& vertices, const std::vector<CenterlineBinding>& binding,
                               const Centerline& centerline, const CenterlineEdit& edit);
 
+/// Where points within the vessels, or near them, go: likewise, from the nearest place of their branch. Where branches
+/// meet, from all of them, the nearer the more, so that what is between two branches is stretched and not torn. Throws
+/// InvalidInput if the edit removes branches or the centerline is empty, and as edit_centerline() does.
+std::vector<Vec3> follow_edit_within(const std::vector<Vec3>& points, const Centerline& centerline,
+                                     const CenterlineEdit& edit);
+
 }  // namespace vmesh

@@ -14,6 +14,7 @@
 
 #include "surface/ends/extension_room.h"
 #include "surface/ends/opening_extension.h"
+#include "surface/ends/overhangs.h"
 #include "surface/ends/ring_moves.h"
 
 namespace vmesh {
@@ -37,6 +38,7 @@ class EndFinisher {
     ends_.narrowed = std::move(sections.narrowed);
     if (options_.keep_area && !options_.fitted) scale_rings(sections.kept);
     std::sort(ends_.narrowed.begin(), ends_.narrowed.end());
+    if (options_.fitted && options_.cap && options_.extension == 0) lower_overhangs(result_);
     if (options_.extension > 0) room_.emplace(result_);
     for (Opening& opening : result_.openings) {
       const bool at_section = std::binary_search(sections.kept.begin(), sections.kept.end(), opening.node);
