@@ -11,9 +11,12 @@ namespace {
 constexpr double kHardly = 1e-6;
 /// What will come within reach is pushed ahead, to this share of the reach.
 constexpr double kAhead = 0.5;
+/// Gaps below this share of the reach open as if they were as wide: a barrier's own slope only doubles them. They are
+/// not made narrower.
+constexpr double kOpensAs = 1e-3;
 
 /// Where what runs into each other is stopped, as a share of the gap, or of the barrier's reach if that is less.
-constexpr double kStopsAt = 0.3;
+constexpr double kStopsAt = 0.5;
 /// What meets within this many times the way to where the first meet is stopped with these.
 constexpr double kSoon = 2;
 /// Parts of a way at which the deepest place is looked for.
@@ -65,8 +68,9 @@ void Surroundings::add_contacts(double part) {
     if (std::abs(gap - reach) <= kHardly * reach && push <= 0) continue;
     if (gap >= reach && gap - push >= kAhead * reach) continue;
     const bool ahead = gap >= reach;
-    const double stiffness = pair.barrier.curvature(ahead ? kAhead * reach : gap);
-    const double slope = ahead ? stiffness * (gap - push - kAhead * reach) : pair.barrier.slope(gap) - stiffness * push;
+    const double at = ahead ? kAhead * reach : std::max(gap, kOpensAs * reach);
+    const double stiffness = pair.barrier.curvature(at);
+    const double slope = (ahead ? 0 : pair.barrier.slope(at)) + stiffness * (gap - at - push);
     if (slope >= 0) continue;
     if (pair.is_part)
       press(pair.slot, s, along(n, stiffness), slope * n);
@@ -110,7 +114,8 @@ double Surroundings::way_at(const Stop& stop, const std::vector<Vec3>& positions
 /// they meet is not where they get into each other: there the whole way is moved so that they do not.
 void Surroundings::add_stop(const ContactPair& pair, double free, double part) {
   const PairMotion motion = motion_of(pair);
-  const double left = kStopsAt * std::min(pair.now.gap, pair.barrier.reach);
+  const double reach = pair.barrier.reach;
+  const double left = (pair.now.gap < 2 * kOpensAs * reach ? 1 : kStopsAt) * std::min(pair.now.gap, reach);
   const auto stop_after = [&](double at) {
     const ConeGap meets = gap_between(between(motion.first, at), between(motion.second, at));
     const double stiffness =
