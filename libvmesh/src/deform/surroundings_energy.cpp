@@ -83,10 +83,7 @@ void Surroundings::add_contacts(double part) {
 /// along the direction in which it meets: first what meets first. A stop that pulls is left out again, while `revises`.
 bool Surroundings::stop(const RodScene& scene, double part, bool revises) {
   cover_trial(scene);
-  const auto any_parts = [this] {
-    return std::any_of(stops_.begin(), stops_.end(), [](const Stop& stop) { return stop.is_part; });
-  };
-  loads_changed_ = any_parts();
+  const bool had_loads = !loaded_slots_.empty();
   const std::size_t before = stops_.size();
   if (revises)
     std::erase_if(stops_,
@@ -98,9 +95,9 @@ bool Surroundings::stop(const RodScene& scene, double part, bool revises) {
   if (first >= 1 && !left_out) return false;
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (free[i] < 1 && free[i] <= kSoon * first) add_stop(pairs_[i], free[i], part);
-  loads_changed_ = loads_changed_ || any_parts();
   linearise(part);
   for (const Stop& stop : stops_) press_stop(stop);
+  loads_changed_ = had_loads || !loaded_slots_.empty();  // pairs may be others now, too
   return true;
 }
 
