@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "vmesh/core/error.h"
+#include "vmesh/synth/synthetic_tree.h"
 
 #include "chains.h"
 
@@ -352,6 +353,28 @@ TEST(Contact, WhatSlidesPastCloselyIsNotHeldUp) {
   EXPECT_NEAR(rods.position(7).x(), -26 + kSpeed_mm_s * 0.5, 0.02 * kSpeed_mm_s * 0.5);
   EXPECT_NEAR(rods.position(7).y(), 6.01, 0.05 * kSpeed_mm_s * 0.5);  // pushed off by the barrier, slowly
   EXPECT_GT(rods.position(7).y(), 6);
+}
+
+/// A tree so soft that its branches fall onto each other, many at a time, by many radii in a step: it comes to hang
+/// from its root, all of its weight, and does not remain where something was in the way.
+TEST(Contact, SoftTreeFallsIntoAHeapThatHangsFromItsRoot) {
+  const Centerline tree = synthetic_tree({.vertices = 119, .seed = 1});
+  SimulationOptions options = dynamics(0.02);
+  options.gravity_mm_s2 = Vec3(0, 0, -9810);
+  const std::vector<SegmentProperties> properties = segment_properties(tree, {.young_Pa = 1e3});
+  CenterlineSimulation simulation(tree, properties, options);
+  simulation.clamp(0);
+  simulation.set_contact({.self = true});
+  double work_J = 0;
+  for (int i = 0; i < 100; ++i) {
+    work_J += simulation.step().work_J;
+    ASSERT_GT(simulation.smallest_gap_mm(), 0) << i;
+    ASSERT_LE(energy_J(simulation) + simulation.contact_energy_J(), work_J + 1e-9 * std::abs(work_J)) << i;
+  }
+  double weight_N = 0;
+  for (const SegmentProperties& p : properties) weight_N += 9.81 * p.mass_kg;
+  // It still swings a little.
+  EXPECT_NEAR(-simulation.drag_force(0).force_N.z(), weight_N, 0.03 * weight_N);
 }
 
 TEST(Contact, RefusesWhatMakesNoSense) {

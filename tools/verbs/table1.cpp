@@ -9,6 +9,7 @@
 #include "command_line/outputs.h"
 #include "command_line/verb.h"
 #include "report/deform_trade.h"
+#include "report/pressed_tree.h"
 
 namespace vmesh::tool::table1_verb {
 namespace {
@@ -61,6 +62,7 @@ struct Cost {
   std::size_t segments = 0, vertices = 0, triangles = 0;
   double deform_1_ms = 0, deform_ms = 0;                // at one iteration and at two
   double synchronise_ms = 0, synchronise_plain_ms = 0;  // with normals and without
+  double contacts = 0, contacts_ms = 0, tissue_ms = 0;  // deformation while balls press, their mean; in tissue
 
   double total_ms() const { return deform_ms + synchronise_ms; }
 };
@@ -94,12 +96,42 @@ FrameTimes swing(const Centerline& centerline, const GenerateResult& grown, int 
   return times;
 }
 
+void measure_with_contacts(const Centerline& centerline, Cost& cost) {
+  PressedTree tree(centerline);
+  for (int i = 0; i < kFrames / 4; ++i) tree.step();  // until all balls are where they press
+  std::vector<double> times;
+  for (int i = 0; i < kFrames; ++i) {
+    stop_if_interrupted();
+    Stopwatch watch;
+    tree.step();
+    times.push_back(1e3 * watch.lap());
+    cost.contacts += static_cast<double>(tree.contacts()) / kFrames;
+  }
+  cost.contacts_ms = median(times);
+}
+
+double time_in_tissue_ms(const Centerline& centerline) {
+  Swing swing(centerline, {});
+  for (Index s = 0; s < centerline.segments().size(); ++s) swing.simulation().set_tissue(s, {1e-3, 1});
+  std::vector<double> times;
+  for (int i = 0; i < kFrames; ++i) {
+    stop_if_interrupted();
+    Stopwatch watch;
+    swing.step();
+    times.push_back(1e3 * watch.lap());
+  }
+  return median(times);
+}
+
 Cost measure(const PaperCase& paper) {
   const Centerline centerline = tree_of(paper.segments);
   const GenerateResult grown = surface_of(centerline, paper.vertices);
   const FrameTimes one = swing(centerline, grown, 1), two = swing(centerline, grown, 2);
-  return {centerline.segments().size(), grown.mesh.vertices.size(), grown.mesh.faces.size(),      median(one.deform),
-          median(two.deform),           median(two.synchronise),    median(two.synchronise_plain)};
+  Cost cost{centerline.segments().size(), grown.mesh.vertices.size(), grown.mesh.faces.size(),      median(one.deform),
+            median(two.deform),           median(two.synchronise),    median(two.synchronise_plain)};
+  measure_with_contacts(centerline, cost);
+  cost.tissue_ms = time_in_tissue_ms(centerline);
+  return cost;
 }
 
 std::string sizes(std::size_t a, std::size_t b) { return std::to_string(a) + "/" + std::to_string(b); }
@@ -115,6 +147,9 @@ ReportTable cost_table(const std::vector<Cost>& costs) {
                                                 {"the same without normals, ms"},
                                                 {"total, one iteration, ms"},
                                                 {"total, two iterations, ms"},
+                                                {"contacts with instruments"},
+                                                {"total with these, ms"},
+                                                {"total in tissue, ms"},
                                                 {"share of synchronisation, %"},
                                                 {"times faster"}};
   for (std::size_t i = 0; i < costs.size(); ++i) {
@@ -131,6 +166,9 @@ ReportTable cost_table(const std::vector<Cost>& costs) {
         {"", fixed(c.synchronise_plain_ms)},
         {"", fixed(c.deform_1_ms + c.synchronise_ms)},
         {fixed(p.total_ms), fixed(c.total_ms())},
+        {"", fixed(c.contacts)},
+        {"", fixed(c.contacts_ms + c.synchronise_ms)},
+        {"", fixed(c.tissue_ms + c.synchronise_ms)},
         {fixed(100 * p.synchronise_ms / p.total_ms), fixed(100 * c.synchronise_ms / c.total_ms())},
         {"1", fixed(p.total_ms / c.total_ms())}};
     for (std::size_t r = 0; r < rows.size(); ++r) rows[r].insert(rows[r].end(), cells[r].begin(), cells[r].end());
@@ -146,7 +184,10 @@ Json to_json(const Cost& cost) {
           {"deform_one_iteration_ms", cost.deform_1_ms},
           {"deform_ms", cost.deform_ms},
           {"synchronise_ms", cost.synchronise_ms},
-          {"synchronise_without_normals_ms", cost.synchronise_plain_ms}};
+          {"synchronise_without_normals_ms", cost.synchronise_plain_ms},
+          {"contacts", cost.contacts},
+          {"deform_with_contacts_ms", cost.contacts_ms},
+          {"deform_in_tissue_ms", cost.tissue_ms}};
 }
 
 Json to_json(const std::vector<Cost>& costs, const std::vector<DeformTrade>& trades) {

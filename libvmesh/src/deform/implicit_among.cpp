@@ -12,7 +12,7 @@ constexpr double kRoundingOfEnergy = 1e-12, kRoundingOfPosition = 1e-15;
 /// Attempts at a move.
 constexpr int kMostTries = 40;
 /// Solutions in an iteration with more and more pairs stopped; and those after which stops may be left out again.
-constexpr int kMostStops = 16, kMostRevisions = 8;
+constexpr int kMostStops = 5, kMostRevisions = 3;
 /// Tries after which nodes move along straight lines, so that a shorter move is part of a longer one.
 constexpr int kChainedTries = 4;
 /// The part of its way for which everything is made to go at once, at least; it is shorter after one that was too long

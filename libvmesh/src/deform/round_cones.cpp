@@ -10,7 +10,7 @@ namespace {
 /// Parallel lines have no point where they are nearest; from this sine squared on, the edges are tried, too.
 constexpr double kNearlyParallel = 1e-6;
 /// An advance keeps at least this share of the gap, of a narrow one nearly all, and ends once nearly there.
-constexpr double kKeptGap = 0.1, kKeptNarrow = 0.999, kNearlyThere = 0.1;
+constexpr double kKeptGap = 0.3, kKeptNarrow = 0.9, kNearlyThere = 0.1;
 constexpr int kMostAdvances = 128;
 
 /// Minimises |p + s q| - slope s for s in [0, 1]: convex.
@@ -96,7 +96,7 @@ RoundCone between(const ConeMotion& m, double part) {
           m.from.radius_b};
 }
 
-double free_part(const ConeMotion& first, const ConeMotion& second, double gap, double least) {
+double free_part(const ConeMotion& first, const ConeMotion& second, double gap, const KeptGap& keeps) {
   std::array<Vec3, 4> way{first.to.a - first.from.a, first.to.b - first.from.b, second.to.a - second.from.a,
                           second.to.b - second.from.b};
   const Vec3 common = 0.25 * (way[0] + way[1] + way[2] + way[3]);
@@ -104,7 +104,8 @@ double free_part(const ConeMotion& first, const ConeMotion& second, double gap, 
     return std::sqrt(std::max((way[i] - common).squaredNorm(), (way[i + 1] - common).squaredNorm()));
   };
   const double most = longest(0) + longest(2);
-  const double kept = gap > 2 * least ? std::max(kKeptGap * gap, least) : kKeptNarrow * gap;
+  const double kept =
+      gap > 2 * keeps.narrowest ? std::max(kKeptGap * std::min(gap, keeps.wide), keeps.narrowest) : kKeptNarrow * gap;
   if (most <= gap - kept) return 1;
   double part = 0;
   for (int i = 0; i < kMostAdvances; ++i) {

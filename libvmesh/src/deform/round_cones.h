@@ -21,13 +21,18 @@ struct ConeGap {
 };
 ConeGap gap_between(const RoundCone& first, const RoundCone& second);
 
+/// Two keep at least `narrowest` of a gap above twice that; beyond `wide`, all gaps are as good.
+struct KeptGap {
+  double narrowest, wide;
+};
+
 /// How far two cones whose ends move along lines, both from `from` to `to`, can go without their gap, now `gap`,
-/// falling to a tenth, nor below `least` if it is above twice that: the part of the way, 1 for all of it. By
+/// falling to a share of what it is, or of kept.wide if that is less: the part of the way, 1 for all of it. By
 /// conservative advancement: no gap changes by more than the ends move relative to each other.
 struct ConeMotion {
   RoundCone from, to;
 };
 RoundCone between(const ConeMotion& motion, double part);
-double free_part(const ConeMotion& first, const ConeMotion& second, double gap, double least);
+double free_part(const ConeMotion& first, const ConeMotion& second, double gap, const KeptGap& keeps);
 
 }  // namespace vmesh

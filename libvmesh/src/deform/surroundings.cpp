@@ -14,13 +14,14 @@
 namespace vmesh {
 namespace {
 
-/// Stiffness of barriers, in E A / r of the segment: that of a bent vessel about ten radii long, as vessels give way by
-/// bending. What presses harder comes nearer. At least what stops the mass of everything below within a step.
-constexpr double kBarrier = 1e-3;
+/// Stiffness of barriers, in E A / r of the segment: ten times that of a bent vessel about ten radii long, as vessels
+/// give way by bending. What presses harder comes nearer. At least what stops the mass of everything below within a
+/// step, when it comes from about thirty times the reach: of soft vessels that fall, gaps close step by step otherwise.
+constexpr double kBarrier = 1e-2, kBarrierOfMass = 30;
 /// Stiffness of what stops pairs that run into each other, in the larger of E A / r and what stops the mass below.
 constexpr double kStop = 100;
 /// Gaps narrower than this share of a barrier's reach, which holds a hundred times what crushes a vessel, are kept.
-constexpr double kNarrowestGap = 1e-5;
+constexpr double kNarrowestGap = 1e-4;
 /// Jaws are this much stiffer than the segment that they hold.
 constexpr double kJawFactor = 100;
 
@@ -50,7 +51,7 @@ Surroundings::Surroundings(const RodScene& scene, const ContactOptions& options)
     parent_.push_back(rod.parent == kNone ? j : rod.parent);
     radius_.push_back(rod.radius);
     const double section = rod.stretch * std::max(rod.length / rod.radius, 1e-3);  // E A / r
-    stiffness_.push_back(std::max(kBarrier * section, mass[j] / (step * step)));
+    stiffness_.push_back(std::max(kBarrier * section, kBarrierOfMass * mass[j] / (step * step)));
     stop_stiffness_.push_back(kStop * std::max(section, mass[j] / (step * step)));
   }
   present_ = trial_ = start_ = scene.pose.position;
@@ -238,7 +239,8 @@ Surroundings::PairMotion Surroundings::motion_of(const ContactPair& pair) const 
 
 double Surroundings::free_part_of(const ContactPair& pair) const {
   const PairMotion motion = motion_of(pair);
-  return vmesh::free_part(motion.first, motion.second, pair.now.gap, kNarrowestGap * pair.barrier.reach);
+  const double reach = pair.barrier.reach;
+  return vmesh::free_part(motion.first, motion.second, pair.now.gap, {kNarrowestGap * reach, reach});
 }
 
 double Surroundings::free_part(const RodScene& scene) {

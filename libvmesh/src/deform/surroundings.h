@@ -92,7 +92,7 @@ class Surroundings {
   /// everything `part` of the rest of its way. False if there is none.
   bool stop(const RodScene& scene, double part, bool revises);
   void forget_stops() { stops_.clear(); }
-  bool loads_changed() const { return loads_changed_; }  ///< by the last stop(), and not only links
+  bool loads_changed() const { return loads_changed_; }  ///< maybe, by the last stop(), and not only links
 
   /// Puts instruments and jaws on trial that go `part` of the rest of their way.
   void try_part(double part);

@@ -11,9 +11,12 @@ namespace {
 constexpr double kHardly = 1e-6;
 /// What will come within reach is pushed ahead, to this share of the reach.
 constexpr double kAhead = 0.5;
+/// Gaps below this share of the reach open as if they were as wide: a barrier's own slope only doubles them. They are
+/// not made narrower.
+constexpr double kOpensAs = 1e-3;
 
 /// Where what runs into each other is stopped, as a share of the gap, or of the barrier's reach if that is less.
-constexpr double kStopsAt = 0.3;
+constexpr double kStopsAt = 0.5;
 /// What meets within this many times the way to where the first meet is stopped with these.
 constexpr double kSoon = 2;
 /// Parts of a way at which the deepest place is looked for.
@@ -65,8 +68,9 @@ void Surroundings::add_contacts(double part) {
     if (std::abs(gap - reach) <= kHardly * reach && push <= 0) continue;
     if (gap >= reach && gap - push >= kAhead * reach) continue;
     const bool ahead = gap >= reach;
-    const double stiffness = pair.barrier.curvature(ahead ? kAhead * reach : gap);
-    const double slope = ahead ? stiffness * (gap - push - kAhead * reach) : pair.barrier.slope(gap) - stiffness * push;
+    const double at = ahead ? kAhead * reach : std::max(gap, kOpensAs * reach);
+    const double stiffness = pair.barrier.curvature(at);
+    const double slope = (ahead ? 0 : pair.barrier.slope(at)) + stiffness * (gap - at - push);
     if (slope >= 0) continue;
     if (pair.is_part)
       press(pair.slot, s, along(n, stiffness), slope * n);
@@ -79,10 +83,7 @@ void Surroundings::add_contacts(double part) {
 /// along the direction in which it meets: first what meets first. A stop that pulls is left out again, while `revises`.
 bool Surroundings::stop(const RodScene& scene, double part, bool revises) {
   cover_trial(scene);
-  const auto any_parts = [this] {
-    return std::any_of(stops_.begin(), stops_.end(), [](const Stop& stop) { return stop.is_part; });
-  };
-  loads_changed_ = any_parts();
+  const bool had_loads = !loaded_slots_.empty();
   const std::size_t before = stops_.size();
   if (revises)
     std::erase_if(stops_,
@@ -94,9 +95,9 @@ bool Surroundings::stop(const RodScene& scene, double part, bool revises) {
   if (first >= 1 && !left_out) return false;
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (free[i] < 1 && free[i] <= kSoon * first) add_stop(pairs_[i], free[i], part);
-  loads_changed_ = loads_changed_ || any_parts();
   linearise(part);
   for (const Stop& stop : stops_) press_stop(stop);
+  loads_changed_ = had_loads || !loaded_slots_.empty();  // pairs may be others now, too
   return true;
 }
 
@@ -110,7 +111,8 @@ double Surroundings::way_at(const Stop& stop, const std::vector<Vec3>& positions
 /// they meet is not where they get into each other: there the whole way is moved so that they do not.
 void Surroundings::add_stop(const ContactPair& pair, double free, double part) {
   const PairMotion motion = motion_of(pair);
-  const double left = kStopsAt * std::min(pair.now.gap, pair.barrier.reach);
+  const double reach = pair.barrier.reach;
+  const double left = (pair.now.gap < 2 * kOpensAs * reach ? 1 : kStopsAt) * std::min(pair.now.gap, reach);
   const auto stop_after = [&](double at) {
     const ConeGap meets = gap_between(between(motion.first, at), between(motion.second, at));
     const double stiffness =
