@@ -12,13 +12,14 @@ const MOST_LABELS = 6;
 const PROBE_REACH = 0.5, ROD_LENGTH = 10, PROBE_BESIDE = 3;
 const LEAST_BESIDE_PX = 60;
 
-/** 1 MPa, 30 kPa: with the prefix that leaves one to three digits. */
-function pressureText(pascal) {
-  const [unit, scale] = [["GPa", 1e9], ["MPa", 1e6], ["kPa", 1e3], ["Pa", 1]].find((u) => pascal >= 0.9995 * u[1]) || ["Pa", 1];
-  return `${Number((pascal / scale).toPrecision(3))} ${unit}`;
+/** With the prefix that leaves one to three digits before the point, and so many digits in all. */
+function withPrefix(value, unit, digits, prefixes) {
+  const [prefix, scale] = prefixes.find((p) => value >= 0.9995 * p[1]) || prefixes[prefixes.length - 1];
+  return `${Number((value / scale).toPrecision(digits))} ${prefix}${unit}`;
 }
 
-const forceText = (newton) => (newton < 0.9995 ? `${Number((1e3 * newton).toPrecision(2))} mN` : `${Number(newton.toPrecision(3))} N`);
+const pressureText = (pascal) => withPrefix(pascal, "Pa", 3, [["G", 1e9], ["M", 1e6], ["k", 1e3], ["", 1]]);
+const forceText = (newton) => withPrefix(newton, "N", 2, [["", 1], ["m", 1e-3], ["µ", 1e-6]]);
 const secondsText = (s) => (s < 0.9995 ? `${Number((1e3 * s).toPrecision(3))} ms` : `${Number(s.toPrecision(3))} s`);
 
 /** White, opaque within a circle. */
@@ -553,7 +554,7 @@ class Live {
     };
     return {
       tissue: { value: wanted.stiffness_N_mm2 > 0 ? Math.log10(wanted.stiffness_N_mm2) : none,
-        text: (x) => (x <= none ? "none" : `${Number((1e3 * 10 ** x).toPrecision(2))} mN/mm²`),
+        text: (x) => (x <= none ? "none" : `${forceText(10 ** x)}/mm²`),
         change: (x) => set({ stiffness_N_mm2: x <= none ? 0 : Number((10 ** x).toPrecision(3)) }) },
       tear: { value: wanted.tear_N_mm === null ? never : Math.log10(wanted.tear_N_mm),
         text: (x) => (x >= never ? "never" : `${forceText(10 ** x)}/mm`),
