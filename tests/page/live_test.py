@@ -304,6 +304,23 @@ class PageThatMoves(unittest.TestCase):
         scene = self.is_played(browser)
         self.assertEqual(scene["tissue"], [{"stiffness_N_mm2": 1e-3, "tear_N_mm": 3.16e-4}])
 
+    def test_it_is_drawn_coarser_while_it_moves_where_frames_take_long(self):
+        browser = self.open()
+        ratio = "vmesh.scene.renderer.getPixelRatio()"
+        node, x, y = browser.ask(LEAF)
+        fine = browser.ask(ratio)
+        browser.ask("(() => { vmesh.framesPerSecond = () => 60; })()")
+        hand = Hand(browser)
+        hand.draw([(x - i, y) for i in range(10)])
+        self.assertEqual(browser.ask(ratio), fine)
+        browser.ask("(() => { vmesh.framesPerSecond = () => 5; })()")
+        hand.draw([(x - 10 - i, y) for i in range(10)])
+        self.assertLess(browser.ask(ratio), fine)
+        self.picture(browser, "live-coarse")
+        hand.send("up", x, y)
+        browser.wait_for("!vmesh.looking")
+        self.assertEqual(browser.ask(ratio), fine)
+
     def test_the_first_picture_is_that_of_webgl(self):
         browser = self.open()
         covered, differ, shade = browser.ask("""(() => { vmesh.scene.render();

@@ -7,6 +7,8 @@ const PROBE_COLOR = 0x5f6b76;
 const MODES = ["pull", "grasp", "push", "cut", "pin"];
 const MOST_STEPS_A_FRAME = 4;
 const MOST_LABELS = 6;
+// With fewer frames a second than this, of a few, it is drawn with fewer pixels as long as it moves.
+const FEW_FRAMES = 25, FRAMES_LOOKED_AT = 6, COARSE = 0.5;
 // Of an instrument, in its radii: how far it goes in a step, how long a rod is, and how far beside a vessel on the screen
 // it may be put down.
 const PROBE_REACH = 0.5, ROD_LENGTH = 10, PROBE_BESIDE = 3;
@@ -71,8 +73,10 @@ class Live {
     this.mesh = new THREE.Mesh(this.geometry,
       new THREE.MeshLambertMaterial({ color: SURFACE_COLOR, side: THREE.DoubleSide }));
     this.mesh.frustumCulled = false;  // its bounds change
+    this.detail = this.scene.renderer.getPixelRatio();
+    this.isSlow = false;
     this.marks = new THREE.Points(new THREE.BufferGeometry(),
-      new THREE.PointsMaterial({ color: HELD_COLOR, size: 12 * this.scene.renderer.getPixelRatio(), sizeAttenuation: false,
+      new THREE.PointsMaterial({ color: HELD_COLOR, size: 12 * this.detail, sizeAttenuation: false,
         depthTest: false, map: discTexture(), alphaTest: 0.5 }));
     this.probeMaterial = new THREE.MeshLambertMaterial({ color: PROBE_COLOR });
     this.marks.frustumCulled = false;
@@ -178,6 +182,7 @@ class Live {
     this.looking = true;
     this.last = performance.now();
     this.backlog = 0;
+    if (this.isSlow) this.setDetail(COARSE);
     requestAnimationFrame((now) => this.frame(now));
   }
 
@@ -201,8 +206,21 @@ class Live {
       this.count(now);
     }
     this.showState();
-    if (moves) requestAnimationFrame((next) => this.frame(next));
-    else this.looking = false;
+    if (moves) {
+      requestAnimationFrame((next) => this.frame(next));
+      return;
+    }
+    this.looking = false;
+    this.setDetail(1);
+  }
+
+  /** Draws with a part of the screen's pixels; without a graphics card that takes less than half of the time. */
+  setDetail(part) {
+    const { renderer } = this.scene;
+    if (renderer.getPixelRatio() === part * this.detail) return;
+    renderer.setPixelRatio(part * this.detail);
+    this.marks.material.size = 12 * part * this.detail;
+    this.scene.render();
   }
 
   /** Frames of the last second of motion. */
@@ -211,6 +229,9 @@ class Live {
     if (frames.length > 0 && now - frames[frames.length - 1] > 500) frames.length = 0;
     frames.push(now);
     while (now - frames[0] > 1000) frames.shift();
+    if (this.isSlow || frames.length < FRAMES_LOOKED_AT || this.framesPerSecond() >= FEW_FRAMES) return;
+    this.isSlow = true;
+    this.setDetail(COARSE);
   }
 
   framesPerSecond() {
@@ -601,10 +622,9 @@ const drawn = () => new Promise((done) => { requestAnimationFrame(() => setTimeo
 async function start() {
   fillPanel(contents.data);
   try {
-    const module = createDeformer();  // meanwhile
     await drawn();
     const firstPicture_ms = performance.now();
-    window.vmesh = new Live(contents, await module);
+    window.vmesh = new Live(contents, await createDeformer());
     window.vmesh.firstPicture_ms = firstPicture_ms;
     await drawn();
     window.vmesh.ready_ms = performance.now();
