@@ -182,6 +182,8 @@ class Live {
     this.looking = true;
     this.last = performance.now();
     this.backlog = 0;
+    this.cost.frames.length = 0;
+    this.framesOfMotion = 0;
     if (this.isSlow) this.setDetail(COARSE);
     requestAnimationFrame((now) => this.frame(now));
   }
@@ -223,13 +225,12 @@ class Live {
     this.scene.render();
   }
 
-  /** Frames of the last second of motion. */
+  /** Frames of the last second of motion, two at least. */
   count(now) {
     const { frames } = this.cost;
-    if (frames.length > 0 && now - frames[frames.length - 1] > 500) frames.length = 0;
     frames.push(now);
-    while (now - frames[0] > 1000) frames.shift();
-    if (this.isSlow || frames.length < FRAMES_LOOKED_AT || this.framesPerSecond() >= FEW_FRAMES) return;
+    while (frames.length > 2 && now - frames[0] > 1000) frames.shift();
+    if (this.isSlow || ++this.framesOfMotion < FRAMES_LOOKED_AT || this.framesPerSecond() >= FEW_FRAMES) return;
     this.isSlow = true;
     this.setDetail(COARSE);
   }
