@@ -21,7 +21,7 @@ function withPrefix(value, unit, digits, prefixes) {
 }
 
 const pressureText = (pascal) => withPrefix(pascal, "Pa", 3, [["G", 1e9], ["M", 1e6], ["k", 1e3], ["", 1]]);
-const forceText = (newton) => withPrefix(newton, "N", 2, [["", 1], ["m", 1e-3], ["µ", 1e-6]]);
+const forceText = (newton) => (newton > 0 ? withPrefix(newton, "N", 2, [["", 1], ["m", 1e-3], ["µ", 1e-6]]) : "0 N");
 const secondsText = (s) => (s < 0.9995 ? `${Number((1e3 * s).toPrecision(3))} ms` : `${Number(s.toPrecision(3))} s`);
 
 /** White, opaque within a circle. */
@@ -213,7 +213,16 @@ class Live {
       return;
     }
     this.looking = false;
+    this.tellOfProbes();
     this.setDetail(1);
+  }
+
+  /** Instruments that a replay with other settings left out. */
+  tellOfProbes() {
+    const { left } = this.stage;
+    if (left > 0)
+      this.note(`${left} ${left > 1 ? "instruments" : "instrument"} had no room now where ${left > 1 ? "they" : "it"} came: left out.`);
+    this.stage.left = 0;
   }
 
   /** Draws with a part of the screen's pixels; without a graphics card that takes less than half of the time. */
@@ -376,7 +385,7 @@ class Live {
       this.showSurface();
       this.scene.draw();
     } catch (error) {
-      this.note(`${error.message}.`, 8000);
+      this.note(`${error.message[0].toUpperCase()}${error.message.slice(1)}.`, 8000);
     }
   }
 
