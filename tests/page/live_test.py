@@ -56,7 +56,7 @@ BESIDE = """(() => { const { tree, scene } = vmesh, degree = new Map(), box = sc
   return null; })()"""
 # After so many steps, or when everything is at rest.
 STEPS = """(count => new Promise(done => {
-  const stage = vmesh.stage, from = stage.steps, end = performance.now() + 60000;
+  const stage = vmesh.stage, from = stage.steps, end = performance.now() + 45000;
   const look = () => stage.steps >= from + count || !stage.awake || performance.now() > end ? done(stage.steps - from)
                                                                                          : setTimeout(look, 5);
   look();
