@@ -377,6 +377,94 @@ TEST(Contact, SoftTreeFallsIntoAHeapThatHangsFromItsRoot) {
   EXPECT_NEAR(-simulation.drag_force(0).force_N.z(), weight_N, 0.03 * weight_N);
 }
 
+/// Moves an instrument straight to a place in 50 steps, and waits until everything is at rest.
+void press(CenterlineSimulation& rod, Index instrument, const Vec3& to) {
+  const Vec3 from = rod.instrument_pose(instrument).position_mm;
+  for (int i = 1; i <= 50; ++i) {
+    rod.move_instrument(instrument, at(from + i / 50.0 * (to - from)));
+    rod.step();
+  }
+  for (int i = 0; i < 400; ++i) rod.step();
+}
+
+TEST(Contact, WhatAnInstrumentPressedReturnsWhenItIsRemoved) {
+  CenterlineSimulation rod = simulate(straight_rod(20, 100, 1), kVessel, dynamics(0.02, 5));
+  rod.clamp(0);
+  const Index ball = rod.add_instrument({{Vec3::Zero()}, {2}, 0.2}, at(Vec3(80, 0, 3.1)));
+  press(rod, ball, Vec3(80, 0, -1));
+  ASSERT_LT(rod.position(20).z(), -4);
+  rod.remove_instrument(ball);
+  for (int i = 0; i < 1000; ++i) rod.step();
+  // At rest when it moves by less than 1e-7 radii in a step, for ten of them.
+  EXPECT_NEAR(rod.position(20).z(), 0, 1e-3);
+  EXPECT_THROW(rod.move_instrument(ball, at(Vec3(80, 0, 3.1))), InvalidInput);
+  EXPECT_THROW(rod.instrument_force(ball), InvalidInput);
+  EXPECT_THROW(rod.remove_instrument(ball), InvalidInput);
+}
+
+TEST(Contact, TheOthersPressOnWhenOneIsRemoved) {
+  const InstrumentShape across = shaft(Vec3(0, 10, 0), 2, 0.1);
+  const auto pressed = [&](bool among_others) {
+    CenterlineSimulation rod = simulate(straight_rod(20, 100, 1), kVessel, dynamics(0.02, 5));
+    rod.clamp(0);
+    const Vec3 above(80, 0, 3.1), beside(30, 0, 3.1);
+    const Index first = among_others ? rod.add_instrument(across, at(beside)) : kNone;
+    const Index pressing =
+        rod.add_instrument({{Vec3(0, -9, 0), Vec3(0, 0, 0), Vec3(0, 9, 0)}, {2, 2, 2}, 0}, at(above));
+    const Index last = among_others ? rod.add_instrument(across, at(Vec3(60, 0, 3.05))) : kNone;
+    if (among_others) press(rod, first, beside - Vec3(0, 0, 0.3));
+    press(rod, pressing, Vec3(80, 0, 0));
+    if (among_others) {
+      rod.remove_instrument(first);
+      EXPECT_GT(rod.instrument_force(pressing).force_N.z(), 0);
+      rod.remove_instrument(last);
+    }
+    for (int i = 0; i < 1000; ++i) rod.step();
+    return rod.instrument_force(pressing).force_N.z();
+  };
+  const double alone = pressed(false);
+  ASSERT_GT(alone, 0);
+  EXPECT_NEAR(pressed(true), alone, 1e-3 * alone);
+}
+
+TEST(Contact, OneThatIsAddedDoesNotHoldUpAnother) {
+  CenterlineSimulation rod = simulate(straight_rod(20, 100, 1), kVessel, dynamics());
+  rod.clamp(0);
+  const Index ball = rod.add_instrument({{Vec3::Zero()}, {2}, 0}, at(Vec3(80, 0, 3.1)));
+  rod.move_instrument(ball, at(Vec3(80, 0, 2.5)));
+  rod.add_instrument({{Vec3::Zero()}, {2}, 0}, at(Vec3(20, 0, 10)));
+  rod.step();
+  EXPECT_EQ(rod.instrument_pose(ball).position_mm, Vec3(80, 0, 2.5));
+}
+
+TEST(Contact, AroundVesselsAtRestInstrumentsGoTheWayTheyAreMoved) {
+  CenterlineSimulation rod = simulate(straight_rod(20, 100, 1), kVessel, dynamics());
+  rod.clamp(0);
+  const Index ball = rod.add_instrument({{Vec3::Zero()}, {1}, 0}, at(Vec3(50, 0, 10)));
+  for (int i = 0; i < 50; ++i) rod.step();  // to rest
+  // Around the rod; straight from the first to the last it would be in the way.
+  for (const Vec3& to : {Vec3(50, 10, 10), Vec3(50, 10, -10), Vec3(50, 0, -10)}) {
+    rod.move_instrument(ball, at(to));
+    rod.step();
+    EXPECT_EQ(rod.instrument_pose(ball).position_mm, to);
+  }
+  EXPECT_EQ(rod.position(20), Vec3(100, 0, 0));
+}
+
+TEST(Contact, RoomForAnInstrumentIsItsGap) {
+  CenterlineSimulation rod = simulate(straight_rod(20, 100, 1), kVessel, dynamics());
+  const InstrumentShape across = shaft(Vec3(0, 10, 0), 2);
+  EXPECT_NEAR(rod.room_for_instrument_mm(across, at(Vec3(50, 0, 5))), 2, 1e-9);
+  EXPECT_NEAR(rod.room_for_instrument_mm({{Vec3::Zero()}, {2}, 0}, at(Vec3(103, 0, 4))), 2, 1e-9);
+  const InstrumentPose within = at(Vec3(50, 0, 2.5)), beside = at(Vec3(50, 0, 3.001));
+  EXPECT_LT(rod.room_for_instrument_mm(across, within), 0);
+  EXPECT_THROW(rod.add_instrument(across, within), InvalidInput);
+  EXPECT_GT(rod.room_for_instrument_mm(across, beside), 0);
+  EXPECT_NO_THROW(rod.add_instrument(across, beside));
+  // Asked again, beside what there is now: of vessels only.
+  EXPECT_NEAR(rod.room_for_instrument_mm(across, at(Vec3(50, 0, 5))), 2, 1e-9);
+}
+
 TEST(Contact, RefusesWhatMakesNoSense) {
   CenterlineSimulation rod = simulate(straight_rod(4, 10, 1), kVessel, dynamics());
   EXPECT_THROW(rod.add_instrument({{Vec3::Zero()}, {1}, 0}, at(Vec3(5, 0, 1.5))), InvalidInput);  // within the rod
@@ -384,6 +472,7 @@ TEST(Contact, RefusesWhatMakesNoSense) {
   EXPECT_THROW(rod.add_instrument({{Vec3::Zero()}, {0}, 0}, at(Vec3(5, 0, 9))), InvalidInput);
   EXPECT_THROW(rod.add_instrument({{Vec3::Zero()}, {1, 2}, 0}, at(Vec3(5, 0, 9))), InvalidInput);
   EXPECT_THROW(rod.move_instrument(0, at(Vec3::Zero())), InvalidInput);
+  EXPECT_THROW(rod.remove_instrument(0), InvalidInput);
   EXPECT_THROW(rod.grasp(4, 0), InvalidInput);
   EXPECT_THROW(rod.grasp(3, 1.5), InvalidInput);
   EXPECT_THROW(rod.set_tissue(0, {-1}), InvalidInput);

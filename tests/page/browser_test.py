@@ -109,6 +109,10 @@ class PageInABrowser(unittest.TestCase):
                 self.assertEqual(browser.ask("innerWidth"), width)
                 self.assertGreater(browser.ask(DRAWN), 0.03)
                 self.assertLessEqual(browser.ask("document.documentElement.scrollWidth"), width, "nothing sticks out")
+                if touch:  # legend and axes have a strip of their own below the tree
+                    above, below = browser.ask("""['#picture', '#legend, #axes'].map(all => Math.min(...
+                      Array.from(document.querySelectorAll(all), e => e.getBoundingClientRect()[all === '#picture' ? 'bottom' : 'top'])))""")
+                    self.assertLess(above, below)
                 self.assertGreater(browser.ask("document.querySelectorAll('#report table tr').length"), 20)
                 self.assertEqual(browser.problems, [])
 

@@ -85,6 +85,12 @@ TEST_F(Deform, ErrorsNameTheElementAndLeaveNothing) {
       {R"({"schema": "vmesh.scene/1", "instruments": [{"name": "probe", "points_mm": [[0, 0, 0]], "radius_mm": 1e3,
            "path": [[0, 0, 0, 0]]}]})",
        "instruments[0] (probe)"},
+      {R"({"schema": "vmesh.scene/1", "instruments": [{"name": "late", "points_mm": [[0, 0, 0]], "radius_mm": 1e3,
+           "enter_s": 0.5, "path": [[0, 0, 0, 0]]}]})",
+       "instruments[0] (late)"},
+      {R"({"schema": "vmesh.scene/1", "instruments": [{"points_mm": [[0, 0, 0]], "radius_mm": 1, "enter_s": 2,
+           "leave_s": 1, "path": [[0, 0, 0, 500]]}]})",
+       "instruments[0].leave_s"},
       {R"({"schema": "vmesh.scene/1", "grasp": [{"segment": 99, "path": [[0, 0, 0, 0]]}]})", "grasp[0].segment"},
       {R"({"schema": "vmesh.scene/1", "grasp": [{"segment": 1, "release_s": 0, "path": [[0, 0, 0, 0]]}]})",
        "grasp[0].release_s"},
@@ -200,11 +206,23 @@ TEST_F(Deform, APageThatMovesTakesMaterialAndHeldNodesOfAScene) {
   const Outcome paper = vmesh({"deform", "@y.swc", "@y.ply", "--live", "@other.html", "--script", "@paper.json"});
   EXPECT_EQ(paper.exit_code, 3);
   EXPECT_NE(paper.err.find("paper.json: integrator"), std::string::npos) << paper.err;
-  write("cut.json", R"({"schema": "vmesh.scene/1", "cut": [{"segment": 1, "parameter": 0.5, "time_s": 0.1}]})");
-  const Outcome cut = vmesh({"deform", "@y.swc", "@y.ply", "--live", "@other.html", "--script", "@cut.json"});
-  EXPECT_EQ(cut.exit_code, 3);
-  EXPECT_NE(cut.err.find("cut.json: pages that move"), std::string::npos) << cut.err;
-  EXPECT_FALSE(exists("other.html"));
+  for (const char* member : {R"("clip": [{"segment": 1, "parameter": 0.5, "time_s": 0.1}])",
+                             R"("tissue": [{"stiffness_N_mm2": 1, "segments": [1]}])"}) {
+    write("other.json", std::string(R"({"schema": "vmesh.scene/1", )") + member + "}");
+    const Outcome other = vmesh({"deform", "@y.swc", "@y.ply", "--live", "@other.html", "--script", "@other.json"});
+    EXPECT_EQ(other.exit_code, 3);
+    EXPECT_NE(other.err.find("other.json: " + std::string(member).substr(1, 4)), std::string::npos) << other.err;
+    EXPECT_NE(other.err.find("pages that move"), std::string::npos) << other.err;
+    EXPECT_FALSE(exists("other.html"));
+  }
+  write("tissue.json", R"({"schema": "vmesh.scene/1", "contact": {"self": true, "friction": 0.5},
+    "tissue": [{"stiffness_N_mm2": 0.25}], "cut": [{"segment": 1, "parameter": 0.5, "time_s": 0.1}]})");
+  const Outcome tissue = vmesh({"deform", "@y.swc", "@y.ply", "--live", "@other.html", "--script", "@tissue.json"});
+  ASSERT_EQ(tissue.exit_code, 0) << tissue.err;
+  EXPECT_NE(tissue.err.find("cut to your hands"), std::string::npos) << tissue.err;
+  const std::string soft = read("other.html");
+  EXPECT_NE(soft.find(R"("tissue":{"stiffness_N_mm2":0.25,"tear_N_mm":null})"), std::string::npos);
+  EXPECT_NE(soft.find(R"("friction":0.5)"), std::string::npos);
 }
 #else
 TEST_F(Deform, WithoutEmscriptenPagesThatMoveAreRefused) {

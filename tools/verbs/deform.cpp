@@ -45,7 +45,7 @@ void add_options(CLI::App& verb, DeformArguments& arguments) {
       ->type_name("FILE.json");
   verb.add_option("--live", arguments.live,
                   "write a page to this file in which the tree moves under your hands, for any browser, without a "
-                  "network (.html); with material, options and held nodes of the --script, if any")
+                  "network (.html); with material, options, tissue and held nodes of the --script, if any")
       ->type_name("FILE.html|.htm");
   add_output(verb, arguments.output, kFolder, "new or empty folder for the frames");
   verb.add_option("--format", arguments.format, "of the frames")
@@ -224,9 +224,11 @@ bool is_good(const std::vector<VolumeFrame>& frames, const DeformArguments& argu
 std::string live_page(const DeformArguments& arguments, const BoundTree& tree, Console& console) {
   if (arguments.live.empty()) return {};
   const Scene scene = live_scene(arguments.script, tree.centerline, console);
+  const std::vector<SceneTouching::Tissue>& tissues = scene.touching.tissues;
   return to_html(LivePage{arguments.input.path, arguments.surface.path, tree.centerline, tree.mesh,
                           vertex_normals(tree.mesh), places_on(tree.binding), scene.material, scene.options, scene.fix,
-                          scene.clamp});
+                          scene.clamp, scene.touching.contact,
+                          tissues.empty() ? std::nullopt : std::optional(tissues.front().properties)});
 }
 
 void write_live_page(const std::filesystem::path& path, const std::string& html, Console& console) {

@@ -1,5 +1,6 @@
 #include "verbs/live_scene.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,18 @@ Scene scene_of_hands(const Centerline& centerline) {
   return scene;
 }
 
+void check_tissue(const std::vector<SceneTouching::Tissue>& tissues, const std::string& name) {
+  const auto is_somewhere = [](const SceneTouching::Tissue& t) { return t.sphere || t.segments || t.branches; };
+  if (tissues.size() > 1 || std::any_of(tissues.begin(), tissues.end(), is_somewhere))
+    throw InvalidInput(name + ": tissue: pages that move have one, everywhere; leave out sphere, segments and " +
+                       "branches, and all but one, for --live");
+}
+
+bool leaves_to_hands(const Scene& scene) {
+  return !scene.drags.empty() || !scene.forces.empty() || !scene.scales.empty() || !scene.squeezes.empty() ||
+         !scene.touching.instruments.empty() || !scene.touching.grasps.empty() || !scene.cuts.empty();
+}
+
 }  // namespace
 
 Scene live_scene(const std::filesystem::path& script, const Centerline& centerline, Console& console) {
@@ -30,12 +43,11 @@ Scene live_scene(const std::filesystem::path& script, const Centerline& centerli
   const std::string name = script.string();
   if (scene.options.integrator != Integrator::implicit)
     throw InvalidInput(name + ": integrator: pages that move have \"implicit\" only; leave \"paper\" out for --live");
-  if (scene.touching.exists() || !scene.cuts.empty() || !scene.clips.empty())
-    throw InvalidInput(name +
-                       ": pages that move have no contact, instruments, grasp, tissue, cut and clip; leave them " +
-                       "out for --live");
-  if (!scene.drags.empty() || !scene.forces.empty() || !scene.scales.empty() || !scene.squeezes.empty())
-    console.warn(name + ": the page leaves drag, force, radial_scale and squeeze to your hands; it takes the rest");
+  if (!scene.clips.empty()) throw InvalidInput(name + ": clip: pages that move have none; leave it out for --live");
+  check_tissue(scene.touching.tissues, name);
+  if (leaves_to_hands(scene))
+    console.warn(name + ": the page leaves drag, force, radial_scale, squeeze, instruments, grasp and cut to your " +
+                 "hands; it takes the rest");
   return scene;
 }
 

@@ -73,7 +73,7 @@ InstrumentPath read_path(const Element& element) {
 }
 
 SceneTouching::Instrument read_instrument(const Element& element, std::size_t number) {
-  element.allow({"name", "points_mm", "radius_mm", "friction", "path"});
+  element.allow({"name", "points_mm", "radius_mm", "friction", "path", "enter_s", "leave_s"});
   SceneTouching::Instrument instrument;
   instrument.name = element.has("name") ? element.member("name").text() : "instrument " + std::to_string(number);
   for (const Element& point : element.member("points_mm").items()) instrument.shape.points_mm.push_back(vector3(point));
@@ -81,6 +81,9 @@ SceneTouching::Instrument read_instrument(const Element& element, std::size_t nu
   instrument.shape.radii_mm = read_radii(element.member("radius_mm"), instrument.shape.points_mm.size());
   element.take("friction", 0, 10, instrument.shape.friction);
   instrument.path = read_path(element.member("path"));
+  element.take("enter_s", 0, 1e6, instrument.enter_s);
+  element.take("leave_s", 0, 1e6, instrument.leave_s);
+  if (instrument.leave_s <= instrument.enter_s) element.member("leave_s").fail("it must enter (enter_s) before");
   return instrument;
 }
 
@@ -171,24 +174,45 @@ SceneTouching read_touching(const Element& root, std::size_t segments) {
 }
 
 TouchingStage::TouchingStage(const SceneTouching& scene, const Centerline& centerline, CenterlineSimulation& simulation)
-    : scene_(scene), jaws_(scene.grasps.size(), kNone), closed_at_(jaws_.size()), open_(jaws_.size(), 0) {
+    : scene_(scene),
+      instruments_(scene.instruments.size(), kNone),
+      left_(scene.instruments.size(), 0),
+      jaws_(scene.grasps.size(), kNone),
+      closed_at_(jaws_.size()),
+      open_(jaws_.size(), 0) {
   if (scene.contact) simulation.set_contact(*scene.contact);
-  for (std::size_t i = 0; i < scene.instruments.size(); ++i) {
-    try {
-      simulation.add_instrument(scene.instruments[i].shape, scene.instruments[i].path.at(0));
-    } catch (const InvalidInput& error) {
-      throw InvalidInput("instruments[" + std::to_string(i) + "] (" + scene.instruments[i].name + "): " + error.what());
-    }
-  }
+  for (std::size_t i = 0; i < scene.instruments.size(); ++i)
+    if (scene.instruments[i].enter_s == 0) enter(i, simulation, 0);
   for (std::size_t i = 0; i < scene.tissues.size(); ++i)
     for (const Index s : segments_of(scene.tissues[i], centerline, i))
       simulation.set_tissue(s, scene.tissues[i].properties);
 }
 
+void TouchingStage::enter(std::size_t i, CenterlineSimulation& simulation, double time_s) {
+  const SceneTouching::Instrument& instrument = scene_.instruments[i];
+  try {
+    instruments_[i] = simulation.add_instrument(instrument.shape, instrument.path.at(time_s));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput("instruments[" + std::to_string(i) + "] (" + instrument.name + "): " + error.what());
+  }
+}
+
+void TouchingStage::guide(std::size_t i, CenterlineSimulation& simulation, double time_s) {
+  const SceneTouching::Instrument& instrument = scene_.instruments[i];
+  if (left_[i] || time_s < instrument.enter_s) return;
+  if (time_s > instrument.leave_s) {
+    if (instruments_[i] != kNone) simulation.remove_instrument(instruments_[i]);
+    instruments_[i] = kNone;
+    left_[i] = 1;
+    return;
+  }
+  if (instruments_[i] == kNone) enter(i, simulation, instrument.enter_s);
+  simulation.move_instrument(instruments_[i], instrument.path.at(time_s));
+}
+
 void TouchingStage::act(CenterlineSimulation& simulation, double time_s,
                         const std::function<SegmentPlace(const SegmentPlace&)>& now) {
-  for (std::size_t i = 0; i < scene_.instruments.size(); ++i)
-    simulation.move_instrument(static_cast<Index>(i), scene_.instruments[i].path.at(time_s));
+  for (std::size_t i = 0; i < scene_.instruments.size(); ++i) guide(i, simulation, time_s);
   for (std::size_t i = 0; i < scene_.grasps.size(); ++i) {
     const SceneTouching::Grasp& grasp = scene_.grasps[i];
     if (open_[i] || time_s < grasp.close_s) continue;

@@ -21,6 +21,7 @@ struct SceneTouching {
     std::string name;
     InstrumentShape shape;
     InstrumentPath path;
+    double enter_s = 0, leave_s = std::numeric_limits<double>::infinity();
   };
   struct Grasp {
     std::string name;
@@ -63,9 +64,16 @@ class TouchingStage {
            const std::function<SegmentPlace(const SegmentPlace&)>& now);
 
   const std::vector<Index>& jaws() const { return jaws_; }  ///< kNone: not closed yet
+  /// kNone: has not entered yet, or has left.
+  const std::vector<Index>& instruments() const { return instruments_; }
 
  private:
+  void enter(std::size_t i, CenterlineSimulation& simulation, double time_s);
+  void guide(std::size_t i, CenterlineSimulation& simulation, double time_s);
+
   const SceneTouching& scene_;
+  std::vector<Index> instruments_;
+  std::vector<char> left_;
   std::vector<Index> jaws_;
   std::vector<Vec3> closed_at_;
   std::vector<char> open_;

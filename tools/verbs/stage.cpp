@@ -59,7 +59,8 @@ void Stage::note_forces(double time) {
     if (touching_->jaws()[i] != kNone)
       forces_.add(time, touching.grasps[i].name, simulation_.jaw_force(touching_->jaws()[i]));
   for (std::size_t i = 0; i < touching.instruments.size(); ++i)
-    forces_.add(time, touching.instruments[i].name, simulation_.instrument_force(static_cast<Index>(i)));
+    if (touching_->instruments()[i] != kNone)
+      forces_.add(time, touching.instruments[i].name, simulation_.instrument_force(touching_->instruments()[i]));
 }
 
 void Stage::pull(const Scene::Drag& drag, const Vec3& from, double time) {

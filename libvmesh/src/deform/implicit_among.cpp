@@ -39,7 +39,10 @@ StepReport ImplicitRods::step_among(RodScene& scene) {
     for (const Index place : pulled_places_) wake_place(place);
   around_->begin(scene);
   for (const Index slot : around_->near_slots()) wake(slot);
-  if (awake_count_ == 0) return report;
+  if (awake_count_ == 0) {
+    around_->go_alone();
+    return report;
+  }
   if ((!scene.tree.ties.empty() || around_->couples()) && awake_count_ < slot_count_) wake_all();
   choose_visited();
   tissue_offset_ = around_work_ = 0;

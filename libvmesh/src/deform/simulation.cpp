@@ -169,6 +169,12 @@ Index CenterlineSimulation::add_instrument(const InstrumentShape& shape, const I
   return state_->touching.add_instrument(shape, pose);
 }
 
+double CenterlineSimulation::room_for_instrument_mm(const InstrumentShape& shape, const InstrumentPose& pose) const {
+  return state_->touching.room_for(shape, pose);
+}
+
+void CenterlineSimulation::remove_instrument(Index instrument) { state_->touching.remove_instrument(instrument); }
+
 void CenterlineSimulation::move_instrument(Index instrument, const InstrumentPose& pose) {
   state_->touching.move_instrument(instrument, pose);
 }

@@ -37,6 +37,28 @@ bool same(const InstrumentPose& a, const InstrumentPose& b) {
   return a.position_mm == b.position_mm && a.rotation.coeffs() == b.rotation.coeffs();
 }
 
+void write_points(const InstrumentPose& pose, const InstrumentShape& shape, Vec3* points) {
+  const Mat3 turn = pose.rotation.toRotationMatrix();
+  for (std::size_t i = 0; i < shape.points_mm.size(); ++i) points[i] = turn * shape.points_mm[i] + pose.position_mm;
+}
+
+std::vector<Vec3> placed_points(const InstrumentShape& shape, const InstrumentPose& pose) {
+  std::vector<Vec3> points(shape.points_mm.size());
+  write_points(pose, shape, points.data());
+  return points;
+}
+
+/// Its parts; of one point, a ball.
+std::vector<RoundCone> cones_of(const InstrumentShape& shape, const InstrumentPose& pose) {
+  const std::vector<Vec3> points = placed_points(shape, pose);
+  std::vector<RoundCone> cones;
+  for (std::size_t i = 0; i < std::max<std::size_t>(points.size() - 1, 1); ++i) {
+    const std::size_t next = std::min(i + 1, points.size() - 1);
+    cones.push_back({points[i], points[next], shape.radii_mm[i], shape.radii_mm[next]});
+  }
+  return cones;
+}
+
 }  // namespace
 
 Surroundings::Surroundings(const RodScene& scene, const ContactOptions& options) : boxes_(scene.size()) {
@@ -86,42 +108,82 @@ void Surroundings::set_options(const RodScene& scene, const ContactOptions& opti
   if (options.self) find_rest_pairs(scene);
 }
 
+Surroundings::Nearest Surroundings::nearest_to(const RodScene& scene, const RoundCone& part) const {
+  Nearest nearest;
+  for (Index j = 0; j < scene.size(); ++j) {
+    if (scene.is_root(j) && scene.rods[j].first_child != kNone) continue;
+    const double gap = gap_between(cone_of(j, scene.pose.position), part).gap;
+    if (gap < nearest.gap) nearest = {j, gap};
+  }
+  return nearest;
+}
+
+double Surroundings::room_for(const RodScene& scene, const InstrumentShape& shape, const InstrumentPose& pose) const {
+  check_shape(shape);
+  check_pose(pose);
+  double room = HUGE_VAL;
+  for (const RoundCone& part : cones_of(shape, pose)) room = std::min(room, nearest_to(scene, part).gap);
+  return room;
+}
+
 Index Surroundings::add_instrument(const RodScene& scene, const InstrumentShape& shape, const InstrumentPose& pose) {
   check_shape(shape);
   check_pose(pose);
+  for (const RoundCone& part : cones_of(shape, pose)) {
+    const auto [slot, gap] = nearest_to(scene, part);
+    if (gap > 0) continue;
+    const Index segment = scene.tree.segment[slot];
+    throw InvalidInput(
+        "instrument: it overlaps " +
+        (segment == kNone ? "node " + std::to_string(scene.tree.node[slot]) : "segment " + std::to_string(segment)) +
+        " by " + std::to_string(-gap) + " mm where it starts; start outside of the vessels");
+  }
   const auto number = static_cast<Index>(instruments_.size());
-  Instrument instrument{shape, pose, pose, pose, pose, points_.present.size(), {}};
-  std::vector<Vec3> points = points_.present;
-  points.resize(points.size() + shape.points_mm.size());
-  write_points(pose, instrument, points);
-  const std::size_t first = instrument.first_point, count = shape.points_mm.size(), old_parts = parts_.size();
+  const std::size_t first = points_.present.size(), count = shape.points_mm.size();
   for (std::size_t i = 0; i < std::max<std::size_t>(count - 1, 1); ++i) {
     const std::size_t next = std::min(i + 1, count - 1);
     parts_.push_back({number, static_cast<Index>(first + i), static_cast<Index>(first + next), shape.radii_mm[i],
                       shape.radii_mm[next]});
   }
-  for (std::size_t p = old_parts; p < parts_.size(); ++p)
-    for (Index j = 0; j < scene.size(); ++j) {
-      if (scene.is_root(j) && scene.rods[j].first_child != kNone) continue;
-      const double gap = gap_between(cone_of(j, scene.pose.position), part_cone(static_cast<Index>(p), points)).gap;
-      if (gap > 0) continue;
-      parts_.resize(old_parts);
-      const Index segment = scene.tree.segment[j];
-      throw InvalidInput(
-          "instrument: it overlaps " +
-          (segment == kNone ? "node " + std::to_string(scene.tree.node[j]) : "segment " + std::to_string(segment)) +
-          " by " + std::to_string(-gap) + " mm where it starts; start outside of the vessels");
-    }
-  instruments_.push_back(std::move(instrument));
-  points_.present = points_.trial = points_.aim = points_.start = points;
+  instruments_.push_back({shape, pose, pose, pose, pose, first, {}});
+  const std::vector<Vec3> points = placed_points(shape, pose);
+  for (std::vector<Vec3>* all : {&points_.present, &points_.trial, &points_.aim, &points_.start})
+    all->insert(all->end(), points.begin(), points.end());
   slack_ = -1;
   return number;
+}
+
+/// Of contacts in the order of parts: those of the parts `first` to before `last` go, the others' parts are fewer.
+template <class Touch>
+void Surroundings::forget_parts(std::vector<Touch>& touches, Index first, Index last) const {
+  std::erase_if(touches, [&](const Touch& t) { return t.is_part && t.other >= first && t.other < last; });
+  for (Touch& t : touches)
+    if (t.is_part && t.other >= last) t.other -= last - first;
+}
+
+std::vector<Index> Surroundings::remove_instrument(Index number) {
+  const auto is_of = [&](const Part& part) { return part.instrument == number; };
+  const auto begin = std::find_if(parts_.begin(), parts_.end(), is_of);
+  const auto end = std::find_if_not(begin, parts_.end(), is_of);
+  const auto first = static_cast<Index>(begin - parts_.begin()), last = static_cast<Index>(end - parts_.begin());
+  std::vector<Index> near;
+  for (const ContactPair& pair : pairs_)
+    if (pair.is_part && pair.other >= first && pair.other < last) near.push_back(pair.slot);
+  forget_parts(pairs_, first, last);
+  forget_parts(rubs_, first, last);
+  parts_.erase(begin, end);
+  Instrument& instrument = instruments_[number];
+  aim_instrument(number, instrument.at);
+  instrument.force = {};
+  instrument.gone = true;
+  slack_ = -1;
+  return near;
 }
 
 void Surroundings::aim_instrument(Index instrument, const InstrumentPose& pose) {
   check_pose(pose);
   instruments_[instrument].aim = pose;
-  write_points(pose, instruments_[instrument], points_.aim);
+  write_points(pose, instruments_[instrument].shape, &points_.aim[instruments_[instrument].first_point]);
 }
 
 Index Surroundings::add_jaw(const RodScene& scene, Index slot, double t, double slips_mN) {
@@ -133,13 +195,6 @@ Index Surroundings::add_jaw(const RodScene& scene, Index slot, double t, double 
   jaws_.push_back(jaw);
   jaw_trial_.push_back(jaw.at);
   return static_cast<Index>(jaws_.size() - 1);
-}
-
-void Surroundings::write_points(const InstrumentPose& pose, const Instrument& instrument,
-                                std::vector<Vec3>& points) const {
-  const Mat3 turn = pose.rotation.toRotationMatrix();
-  for (std::size_t i = 0; i < instrument.shape.points_mm.size(); ++i)
-    points[instrument.first_point + i] = turn * instrument.shape.points_mm[i] + pose.position_mm;
 }
 
 RoundCone Surroundings::cone_of(Index slot, const std::vector<Vec3>& positions) const {
@@ -225,7 +280,7 @@ void Surroundings::limit_radii(const RodScene& scene, std::vector<double>& wante
 void Surroundings::try_part(double part) {
   for (Instrument& i : instruments_) {
     i.trial = between(i.at, i.aim, part);
-    write_points(i.trial, i, points_.trial);
+    write_points(i.trial, i.shape, &points_.trial[i.first_point]);
   }
   for (std::size_t i = 0; i < jaws_.size(); ++i) jaw_trial_[i] = jaws_[i].at + part * (jaws_[i].aim - jaws_[i].at);
 }
@@ -247,6 +302,16 @@ double Surroundings::free_part(const RodScene& scene) {
   double part = cover_trial(scene);
   for (const ContactPair& pair : pairs_) part = std::min(part, free_part_of(pair));
   return part;
+}
+
+void Surroundings::go_alone() {
+  if (!moves_) return;
+  try_part(1);
+  for (Instrument& i : instruments_) {
+    i.at = i.trial;
+    i.force = {};
+  }
+  points_.present = points_.trial;
 }
 
 void Surroundings::accept() {

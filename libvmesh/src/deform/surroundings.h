@@ -64,6 +64,11 @@ class Surroundings {
   const ContactOptions& options() const { return options_; }
   Index add_instrument(const RodScene& scene, const InstrumentShape& shape, const InstrumentPose& pose);
   void aim_instrument(Index instrument, const InstrumentPose& pose);
+  /// Takes it away; its number stays. Returns the slots near it.
+  std::vector<Index> remove_instrument(Index instrument);
+  bool is_there(Index instrument) const { return !instruments_[instrument].gone; }
+  /// The gap between it and the nearest vessel; negative if they overlap, infinite without vessels.
+  double room_for(const RodScene& scene, const InstrumentShape& shape, const InstrumentPose& pose) const;
   Index add_jaw(const RodScene& scene, Index slot, double t, double slips_mN);
   std::size_t instrument_count() const { return instruments_.size(); }
   std::vector<Jaw>& jaws() { return jaws_; }
@@ -73,6 +78,8 @@ class Surroundings {
   /// The start of a step, from the scene's pose.
   void begin(const RodScene& scene);
   bool moves() const { return moves_; }  ///< some instrument or jaw is not where it aims
+  /// A step in which everything else is at rest and nothing is near an instrument: they go where they aim.
+  void go_alone();
   bool couples() const { return options_.self; }
   bool may_touch() const { return options_.self || !parts_.empty(); }
   /// Slots that what moves may touch in this step, or that a jaw holds.
@@ -121,11 +128,17 @@ class Surroundings {
     InstrumentPose at, aim, start, trial;
     std::size_t first_point = 0;
     HandForce force;
+    bool gone = false;
   };
   /// Two neighbouring points of an instrument, or one.
   struct Part {
     Index instrument, a, b;  // points_
     double radius_a, radius_b;
+  };
+  /// The slot nearest to a part.
+  struct Nearest {
+    Index slot = kNone;
+    double gap = HUGE_VAL;
   };
   struct Points {
     std::vector<Vec3> present, trial, aim, start;
@@ -178,7 +191,9 @@ class Surroundings {
   void expect(const RodScene& scene);
   void note_friction(const RodScene& scene);
   void expect_ways(const std::vector<Rub>& before);
-  void write_points(const InstrumentPose& pose, const Instrument& instrument, std::vector<Vec3>& points) const;
+  Nearest nearest_to(const RodScene& scene, const RoundCone& part) const;
+  template <class Touch>
+  void forget_parts(std::vector<Touch>& touches, Index first, Index last) const;
 
   RoundCone cone_of(Index slot, const std::vector<Vec3>& positions) const;
   RoundCone part_cone(Index part, const std::vector<Vec3>& points) const;

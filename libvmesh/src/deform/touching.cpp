@@ -78,8 +78,23 @@ Index Touching::add_instrument(const InstrumentShape& shape, const InstrumentPos
   return around().add_instrument(scene_, shape, pose);
 }
 
+double Touching::room_for(const InstrumentShape& shape, const InstrumentPose& pose) const {
+  if (around_) return around_->room_for(scene_, shape, pose);
+  return Surroundings(scene_, ContactOptions{}).room_for(scene_, shape, pose);
+}
+
+void Touching::require_instrument(Index number) const {
+  require_index(number, around_ ? around_->instrument_count() : 0, "instrument");
+  if (!around_->is_there(number)) fail_touching("instrument " + std::to_string(number) + " has been removed");
+}
+
+void Touching::remove_instrument(Index instrument) {
+  require_instrument(instrument);
+  for (const Index slot : around_->remove_instrument(instrument)) rods_.wake(slot);
+}
+
 void Touching::move_instrument(Index instrument, const InstrumentPose& pose) {
-  require_index(instrument, around_ ? around_->instrument_count() : 0, "instrument");
+  require_instrument(instrument);
   around_->aim_instrument(instrument, pose);
 }
 
@@ -148,12 +163,12 @@ HandForce Touching::drag_force(Index slot) const {
 }
 
 InstrumentPose Touching::instrument_pose(Index instrument) const {
-  require_index(instrument, around_ ? around_->instrument_count() : 0, "instrument");
+  require_instrument(instrument);
   return around_->instrument_pose(instrument);
 }
 
 HandForce Touching::instrument_force(Index instrument) const {
-  require_index(instrument, around_ ? around_->instrument_count() : 0, "instrument");
+  require_instrument(instrument);
   return around_->instrument_force(instrument);
 }
 

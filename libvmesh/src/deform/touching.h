@@ -23,6 +23,8 @@ class Touching {
 
   void set_contact(const ContactOptions& options);
   Index add_instrument(const InstrumentShape& shape, const InstrumentPose& pose);
+  double room_for(const InstrumentShape& shape, const InstrumentPose& pose) const;
+  void remove_instrument(Index instrument);
   void move_instrument(Index instrument, const InstrumentPose& pose);
   Index grasp(Index segment, double t, double slips_N);
   void move_jaw(Index jaw, const Vec3& position_mm);
@@ -40,6 +42,7 @@ class Touching {
 
  private:
   Surroundings& around();
+  void require_instrument(Index number) const;
   Index slot_of(Index segment) const;
   const Jaw& jaw(Index number) const;
   TissueSpring spring_of(Index slot) const;

@@ -3,15 +3,25 @@
 const byId = (id) => document.getElementById(id);
 const SURFACE_COLOR = 0xc9504a;
 const HELD_COLOR = 0x1f6f8b;
+const PROBE_COLOR = 0x5f6b76;
+const MODES = ["pull", "grasp", "push", "cut", "pin"];
 const MOST_STEPS_A_FRAME = 4;
+const MOST_LABELS = 6;
+// With fewer frames a second than this, of a few, it is drawn with fewer pixels as long as it moves.
+const FEW_FRAMES = 25, FRAMES_LOOKED_AT = 6, COARSE = 0.5;
+// Of an instrument, in its radii: how far it goes in a step, how long a rod is, and how far beside a vessel on the screen
+// it may be put down.
+const PROBE_REACH = 0.5, ROD_LENGTH = 10, PROBE_BESIDE = 3;
+const LEAST_BESIDE_PX = 60;
 
-/** 1 MPa, 30 kPa: with the prefix that leaves one to three digits. */
-function pressureText(pascal) {
-  const [unit, scale] = [["GPa", 1e9], ["MPa", 1e6], ["kPa", 1e3], ["Pa", 1]].find((u) => pascal >= 0.9995 * u[1]) || ["Pa", 1];
-  return `${Number((pascal / scale).toPrecision(3))} ${unit}`;
+/** With the prefix that leaves one to three digits before the point, and so many digits in all. */
+function withPrefix(value, unit, digits, prefixes) {
+  const [prefix, scale] = prefixes.find((p) => value >= 0.9995 * p[1]) || prefixes[prefixes.length - 1];
+  return `${Number((value / scale).toPrecision(digits))} ${prefix}${unit}`;
 }
 
-const forceText = (newton) => (newton < 0.9995 ? `${Number((1e3 * newton).toPrecision(2))} mN` : `${Number(newton.toPrecision(3))} N`);
+const pressureText = (pascal) => withPrefix(pascal, "Pa", 3, [["G", 1e9], ["M", 1e6], ["k", 1e3], ["", 1]]);
+const forceText = (newton) => (newton > 0 ? withPrefix(newton, "N", 2, [["", 1], ["m", 1e-3], ["µ", 1e-6]]) : "0 N");
 const secondsText = (s) => (s < 0.9995 ? `${Number((1e3 * s).toPrecision(3))} ms` : `${Number(s.toPrecision(3))} s`);
 
 /** White, opaque within a circle. */
@@ -24,18 +34,24 @@ function discTexture() {
   return texture;
 }
 
+/** Around its position. */
+function probeGeometry({ points, radius }) {
+  if (points.length === 1) return new THREE.SphereGeometry(radius, 32, 20);
+  const end = new THREE.Vector3(...points[1]), length = end.length();
+  const geometry = new THREE.CapsuleGeometry(radius, length, 12, 24);
+  geometry.applyQuaternion(new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 1, 0), end.clone().divideScalar(length)));
+  return geometry.translate(end.x / 2, end.y / 2, end.z / 2);
+}
+
 class Live {
-  constructor(data, module) {
-    this.data = data;
-    this.tree = { positions: numbersOf(data.node_positions, Float64Array), radii: numbersOf(data.radii, Float64Array),
-      ends: numbersOf(data.ends, Uint32Array) };
-    this.surface = { positions: numbersOf(data.positions, Float64Array), normals: numbersOf(data.normals, Float64Array),
-      segment: numbersOf(data.place_segments, Uint32Array), t: numbersOf(data.place_parameters, Float64Array),
-      corners: numbersOf(data.corners, Uint32Array) };
+  constructor({ data, tree, surface }, module) {
+    Object.assign(this, { data, tree, surface });
     this.stage = new Stage(module, this.tree, this.surface, data.settings);
     this.origin = new THREE.Vector3(...this.stage.deformer.origin);
     this.mode = "pull";
-    this.hands = new Map();  // pointer: { node, plane, shift }
+    this.hands = new Map();  // pointer: { plane, move, end }
+    this.probeMeshes = new Map();  // Probe: mesh
+    this.forceLabels = [];
     this.cost = { steps: 0, milliseconds: 0, frames: [] };
     this.addPicture();
     this.addHands();
@@ -53,15 +69,16 @@ class Live {
     this.scene = new Scene(byId("picture"), boundsOf([about]));
     this.scene.canvas.setAttribute("aria-label", "The surface in 3D. Drag a vessel to pull it, drag beside it to rotate.");
     this.geometry = new THREE.BufferGeometry();
-    this.geometry.setIndex(new THREE.BufferAttribute(this.surface.corners, 1));
-    for (const name of ["position", "normal"])
-      this.geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(positions.length), 3).setUsage(THREE.DynamicDrawUsage));
+    this.shape = null;
     this.mesh = new THREE.Mesh(this.geometry,
       new THREE.MeshLambertMaterial({ color: SURFACE_COLOR, side: THREE.DoubleSide }));
     this.mesh.frustumCulled = false;  // its bounds change
+    this.detail = this.scene.renderer.getPixelRatio();
+    this.isSlow = false;
     this.marks = new THREE.Points(new THREE.BufferGeometry(),
-      new THREE.PointsMaterial({ color: HELD_COLOR, size: 12 * this.scene.renderer.getPixelRatio(), sizeAttenuation: false,
+      new THREE.PointsMaterial({ color: HELD_COLOR, size: 12 * this.detail, sizeAttenuation: false,
         depthTest: false, map: discTexture(), alphaTest: 0.5 }));
+    this.probeMaterial = new THREE.MeshLambertMaterial({ color: PROBE_COLOR });
     this.marks.frustumCulled = false;
     this.marks.renderOrder = 1;
     this.scene.scene.add(this.mesh, this.marks);
@@ -69,9 +86,24 @@ class Live {
     this.scene.viewAll(new THREE.Vector3(0, -1, 0.15), true);
   }
 
+  /** Other vertices and faces, after a cut or without it. */
+  setShape() {
+    const { deformer } = this.stage;
+    this.shape = deformer.shape;
+    this.geometry.dispose();
+    this.geometry = new THREE.BufferGeometry();
+    this.geometry.setIndex(new THREE.BufferAttribute(deformer.corners().slice(), 1));
+    for (const name of ["position", "normal"])
+      this.geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * deformer.vertexCount), 3).setUsage(THREE.DynamicDrawUsage));
+    this.mesh.geometry = this.geometry;
+    const { segment, t } = deformer.places();
+    this.places = { segment: segment.slice(), t: t.slice() };
+  }
+
   /** Positions as they are in WebAssembly. */
   showSurface() {
     const { deformer } = this.stage;
+    if (this.shape !== deformer.shape) this.setShape();
     deformer.follow();
     this.geometry.attributes.position.array.set(deformer.positions());
     this.geometry.attributes.normal.array.set(deformer.normals());
@@ -79,14 +111,23 @@ class Live {
     this.showMarks();
   }
 
+  /** Relative to the origin. */
+  relative(position) {
+    return new THREE.Vector3(...position).sub(this.origin);
+  }
+
+  /** What is held, instruments, and the forces on hands. */
   showMarks() {
-    const { settings, held, deformer } = this.stage;
-    const nodes = deformer.nodes();
-    const all = [...new Set([...settings.fix, ...settings.clamp, ...held.keys()])];
-    const at = new Float32Array(3 * all.length);
-    all.forEach((node, k) => {
-      for (let i = 0; i < 3; ++i) at[3 * k + i] = nodes[3 * node + i] - this.origin.getComponent(i);
-    });
+    const { settings, deformer } = this.stage;
+    const acting = this.stage.acting(), nodes = deformer.nodes();
+    const still = [...settings.fix, ...settings.clamp].map((node) => [...nodes.subarray(3 * node, 3 * node + 3)]);
+    this.showPoints([...still, ...acting.filter((hand) => !hand.probe).map((hand) => hand.position)]);
+    this.showProbes(acting.filter((hand) => hand.probe));
+    this.showForces(acting.filter((hand) => !(hand.held && hand.held.pinned)));
+  }
+
+  showPoints(positions) {
+    const at = Float32Array.from(positions.flatMap((position) => this.relative(position).toArray()));
     const old = this.marks.geometry.getAttribute("position");
     if (old && old.array.length === at.length) {
       old.array.set(at);
@@ -98,6 +139,41 @@ class Live {
     this.marks.geometry.setAttribute("position", new THREE.BufferAttribute(at, 3));
   }
 
+  showProbes(acting) {
+    const there = new Set(acting.map((hand) => hand.probe));
+    for (const [probe, mesh] of [...this.probeMeshes]) {
+      if (there.has(probe)) continue;
+      mesh.geometry.dispose();
+      this.scene.scene.remove(mesh);
+      this.probeMeshes.delete(probe);
+    }
+    for (const { probe, position } of acting) {
+      if (!this.probeMeshes.has(probe)) {
+        const mesh = new THREE.Mesh(probeGeometry(probe), this.probeMaterial);
+        this.probeMeshes.set(probe, mesh);
+        this.scene.scene.add(mesh);
+      }
+      this.probeMeshes.get(probe).position.copy(this.relative(position));
+    }
+  }
+
+  /** Beside the strongest. */
+  showForces(acting) {
+    const shown = acting.sort((a, b) => b.newton - a.newton).slice(0, MOST_LABELS);
+    while (this.forceLabels.length < shown.length) {
+      const label = Object.assign(document.createElement("output"), { className: "force" });
+      byId("picture").append(label);
+      this.forceLabels.push(label);
+    }
+    this.forceLabels.forEach((label, i) => {
+      const at = i < shown.length ? this.scene.onScreen(this.relative(shown[i].position)) : null;
+      label.hidden = at === null;
+      if (at === null) return;
+      label.textContent = forceText(shown[i].newton);
+      label.style.transform = `translate(${Math.round(at.x)}px, ${Math.round(at.y)}px)`;
+    });
+  }
+
   // Time
 
   /** Frames go on for as long as something moves. */
@@ -106,6 +182,9 @@ class Live {
     this.looking = true;
     this.last = performance.now();
     this.backlog = 0;
+    this.cost.frames.length = 0;
+    this.framesOfMotion = 0;
+    if (this.isSlow) this.setDetail(COARSE);
     requestAnimationFrame((now) => this.frame(now));
   }
 
@@ -129,16 +208,40 @@ class Live {
       this.count(now);
     }
     this.showState();
-    if (moves) requestAnimationFrame((next) => this.frame(next));
-    else this.looking = false;
+    if (moves) {
+      requestAnimationFrame((next) => this.frame(next));
+      return;
+    }
+    this.looking = false;
+    this.tellOfProbes();
+    this.setDetail(1);
   }
 
-  /** Frames of the last second of motion. */
+  /** Instruments that a replay with other settings left out. */
+  tellOfProbes() {
+    const { left } = this.stage;
+    if (left > 0)
+      this.note(`${left} ${left > 1 ? "instruments" : "instrument"} had no room now where ${left > 1 ? "they" : "it"} came: left out.`);
+    this.stage.left = 0;
+  }
+
+  /** Draws with a part of the screen's pixels; without a graphics card that takes less than half of the time. */
+  setDetail(part) {
+    const { renderer } = this.scene;
+    if (renderer.getPixelRatio() === part * this.detail) return;
+    renderer.setPixelRatio(part * this.detail);
+    this.marks.material.size = 12 * part * this.detail;
+    this.scene.render();
+  }
+
+  /** Frames of the last second of motion, two at least. */
   count(now) {
     const { frames } = this.cost;
-    if (frames.length > 0 && now - frames[frames.length - 1] > 500) frames.length = 0;
     frames.push(now);
-    while (now - frames[0] > 1000) frames.shift();
+    while (frames.length > 2 && now - frames[0] > 1000) frames.shift();
+    if (this.isSlow || ++this.framesOfMotion < FRAMES_LOOKED_AT || this.framesPerSecond() >= FEW_FRAMES) return;
+    this.isSlow = true;
+    this.setDetail(COARSE);
   }
 
   framesPerSecond() {
@@ -151,22 +254,27 @@ class Live {
     const fps = this.framesPerSecond();
     byId("status").textContent = stage.steps === 0 ? "" :
       `${stage.playing ? "replay, " : ""}${(stage.steps * stage.settings.step_s).toFixed(1)} s, ${stage.steps} steps` +
-      (fps > 0 ? `, ${Math.round(fps)} frames/s` : "") + this.forcesText();
-    byId("save").disabled = stage.playing || stage.motion.holds.length === 0 || stage.steps === 0;
+      (fps > 0 ? `, ${Math.round(fps)} frames/s` : "") + this.tornText() + this.forcesText();
+    byId("save").disabled = stage.playing || stage.motion.empty || stage.steps === 0;
     byId("replay").disabled = stage.playing || stage.steps === 0;
+  }
+
+  tornText() {
+    const torn = this.stage.settings.tissue ? this.stage.deformer.torn() : 0;
+    return torn > 0 ? `, tissue torn at ${torn} node${torn > 1 ? "s" : ""}` : "";
   }
 
   /** Of hands and pins, the strongest ones. */
   forcesText() {
-    const forces = [...this.stage.held.keys()].map((node) => this.stage.deformer.pull_N(node)).sort((a, b) => b - a);
+    const forces = this.stage.acting().map((hand) => hand.newton).sort((a, b) => b - a);
     return forces.length === 0 ? "" : `, ${forces.slice(0, 3).map(forceText).join(", ")}`;
   }
 
-  note(text) {
+  note(text, duration_ms = 4000) {
     byId("note").textContent = text;
     byId("note").hidden = false;
     clearTimeout(this.noting);
-    this.noting = setTimeout(() => { byId("note").hidden = true; }, 4000);
+    this.noting = setTimeout(() => { byId("note").hidden = true; }, duration_ms);
   }
 
   // Hands
@@ -179,31 +287,38 @@ class Live {
     return ray;
   }
 
-  /** The point of the surface under a pointer, and the node nearest to it along its segment; null: none. */
+  /** What of the surface is under a pointer: the point, its place, the node nearest to it along its segment; null: none. */
   under(event) {
     this.geometry.computeBoundingSphere();
     const hit = this.ray(event).intersectObject(this.mesh)[0];
     if (!hit) return null;
-    const positions = this.geometry.attributes.position.array;
-    const distance = (v) => hit.point.distanceToSquared(new THREE.Vector3().fromArray(positions, 3 * v));
-    const vertex = [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distance(a) - distance(b))[0];
-    return { point: hit.point, node: this.nodeAt(this.surface.segment[vertex], this.surface.t[vertex]) };
+    const place = this.placeOf(hit);
+    return { point: hit.point, ...place, node: this.nodeAt(place) };
   }
 
-  /** The nearer node of a segment that is not held from the start; isolated nodes are numbered after the segments. */
-  nodeAt(segment, t) {
-    const { ends, radii } = this.tree;
-    if (2 * segment >= ends.length) {
-      const joined = new Set(ends);
-      return [...radii.keys()].filter((node) => !joined.has(node))[segment - ends.length / 2];
+  /** Between the places of a face's corners, if they are on one segment, else of the nearest one. */
+  placeOf({ point, face }) {
+    const corners = [face.a, face.b, face.c], positions = this.geometry.attributes.position.array;
+    const [a, b, c] = corners.map((v) => new THREE.Vector3().fromArray(positions, 3 * v));
+    const { segment, t } = this.places;
+    const weights = THREE.Triangle.getBarycoord(point, a, b, c, new THREE.Vector3());
+    if (weights && corners.every((v) => segment[v] === segment[face.a])) {
+      const between = corners.reduce((sum, v, i) => sum + weights.getComponent(i) * t[v], 0);
+      return { segment: segment[face.a], t: Math.min(1, Math.max(0, between)) };
     }
-    const [a, b] = t < 0.5 ? [ends[2 * segment], ends[2 * segment + 1]] : [ends[2 * segment + 1], ends[2 * segment]];
-    return this.stage.heldFromStart(a) ? b : a;
+    const distances = [a, b, c].map((p) => p.distanceToSquared(point));
+    const nearest = corners[distances.indexOf(Math.min(...distances))];
+    return { segment: segment[nearest], t: t[nearest] };
   }
 
-  /** Relative to the origin. */
+  /** The nearer node of a segment that is not held from the start. */
+  nodeAt({ segment, t }) {
+    const [near, far] = this.stage.deformer.nodesNear(segment, t);
+    return this.stage.heldFromStart(near) ? far : near;
+  }
+
   nodePosition(node) {
-    return new THREE.Vector3().fromArray(this.stage.deformer.nodes(), 3 * node).sub(this.origin);
+    return this.relative(this.stage.deformer.nodes().subarray(3 * node, 3 * node + 3));
   }
 
   addHands() {
@@ -218,13 +333,19 @@ class Live {
   down(event) {
     if (event.button !== 0 || event.target !== this.scene.canvas || this.stage.playing) return;
     const found = this.under(event);
-    if (!found) return;
+    if (!(this.mode === "push" ? this.push(event, found) : found && this.touch(event, found))) return;
     event.stopPropagation();
     this.scene.stopFlight();
-    if (this.stage.heldFromStart(found.node)) this.note(`Node ${found.node} is held from the start.`);
-    else if (this.mode === "pin") this.pin(found.node);
-    else if (![...this.hands.values()].some((hand) => hand.node === found.node)) this.pull(event, found);
     this.go();
+  }
+
+  touch(event, found) {
+    if (this.mode === "cut") this.cut(found);
+    else if (this.mode === "grasp" || !this.stage.isOfScene(found.node)) this.grasp(event, found);
+    else if (this.stage.heldFromStart(found.node)) this.note(`Node ${found.node} is held from the start.`);
+    else if (this.mode === "pin") this.pin(found.node);
+    else if (!this.stage.held.has(found.node)) this.pull(event, found);
+    return true;
   }
 
   pin(node) {
@@ -235,12 +356,103 @@ class Live {
     this.scene.draw();
   }
 
-  pull(event, { point, node }) {
-    const normal = this.scene.camera.getWorldDirection(new THREE.Vector3());
-    this.hands.set(event.pointerId, { node, plane: new THREE.Plane().setFromNormalAndCoplanarPoint(normal, point),
-      shift: this.nodePosition(node).sub(point) });
-    this.stage.grab(node);
+  /** A pointer does something from now on. `move`: with points in the plane of view through `point`. */
+  addHand(event, point, move, end) {
+    this.hands.set(event.pointerId, { plane: new THREE.Plane().setFromNormalAndCoplanarPoint(this.forward(), point), move, end });
     this.scene.canvas.classList.add("pulling");
+  }
+
+  pull(event, { point, node }) {
+    const shift = this.nodePosition(node).sub(point).add(this.origin), rest = this.stage.restOf(node);
+    this.stage.grab(node);
+    this.addHand(event, point, (at) => this.stage.move(node, at.add(shift).toArray().map((x, i) => x - rest[i])), () => {
+      const held = this.stage.held.get(node);
+      if (held && !held.pinned) this.stage.release(node);
+    });
+  }
+
+  grasp(event, { point, segment, t }) {
+    const grasp = this.stage.grasp(segment, t, this.instrument.slips_N);
+    this.addHand(event, point, (at) => {
+      grasp.offset = at.sub(point).toArray();
+      this.stage.awake = true;
+    }, () => this.stage.finish(grasp));
+  }
+
+  cut({ segment, t }) {
+    try {
+      this.stage.cut(segment, t);
+      this.showSurface();
+      this.scene.draw();
+    } catch (error) {
+      this.note(`${error.message[0].toUpperCase()}${error.message.slice(1)}.`, 8000);
+    }
+  }
+
+  /** An instrument comes from where the viewer is, as far as there is room, and goes on to the depth of the vessel that is
+   * nearest under or beside the pointer. False if that is far. */
+  push(event, found) {
+    const { radius } = this.instrument;
+    const level = found ? this.axisBehind(found) : this.axisBeside(event, radius);
+    if (!level) return false;
+    const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(this.forward(), level);
+    const ray = this.ray(event).ray, at = ray.intersectPlane(plane, new THREE.Vector3());
+    if (!at) return false;
+    const points = this.probePoints();
+    const from = this.freePlace(points, radius, at, ray.direction);
+    const probe = this.stage.push(points, radius, from, PROBE_REACH * radius);
+    const aim = (to) => {
+      probe.aim = to.add(this.origin).toArray();
+      this.stage.awake = true;
+    };
+    aim(at.clone());
+    this.addHand(event, level, aim, () => this.stage.finish(probe));
+    return true;
+  }
+
+  /** The point of a vessel's axis at the depth of which an instrument touches it. */
+  axisBehind({ point, node }) {
+    return this.nodePosition(node).projectOnVector(this.forward()).add(point.clone().projectOnPlane(this.forward()));
+  }
+
+  /** The direction of view. */
+  forward() {
+    return this.scene.camera.getWorldDirection(new THREE.Vector3());
+  }
+
+  /** The node nearest to a pointer on the screen; null: none is near. */
+  axisBeside(event, radius) {
+    const box = this.scene.canvas.getBoundingClientRect();
+    const pointer = new THREE.Vector2(event.clientX - box.left, event.clientY - box.top);
+    let best = null;
+    for (let node = 0; node < this.stage.deformer.nodeCount; ++node) {
+      const position = this.nodePosition(node), at = this.scene.onScreen(position);
+      if (!at) continue;
+      const distance = Math.hypot(at.x - pointer.x, at.y - pointer.y);
+      if (!best || distance < best.distance) best = { position, distance };
+    }
+    if (!best) return null;
+    const far = best.position.distanceTo(this.scene.camera.position) * this.scene.spread().high;
+    const pixels = (PROBE_BESIDE * radius * box.height) / (2 * far);
+    return best.distance <= Math.max(LEAST_BESIDE_PX, pixels) ? best.position : null;
+  }
+
+  /** The nearest place on the way to the viewer with room for an instrument, mm. */
+  freePlace(points, radius, at, direction) {
+    const least = 0.1 * radius;
+    const place = at.clone();
+    for (;;) {
+      const room = this.stage.deformer.room({ points, radius }, place.clone().add(this.origin).toArray());
+      if (room >= least) return place.add(this.origin).toArray();
+      place.addScaledVector(direction, -Math.max(least, least - room));
+    }
+  }
+
+  /** Of the instrument as chosen: a ball, or a rod that comes from the lower right, mm from its tip. */
+  probePoints() {
+    if (this.instrument.shape === "ball") return [[0, 0, 0]];
+    const along = new THREE.Vector3(0.5, -0.45, 0.75).normalize().applyQuaternion(this.scene.camera.quaternion);
+    return [[0, 0, 0], rounded(along.multiplyScalar(ROD_LENGTH * this.instrument.radius).toArray())];
   }
 
   moved(event) {
@@ -248,8 +460,7 @@ class Live {
     if (!hand) return;
     const at = this.ray(event).ray.intersectPlane(hand.plane, new THREE.Vector3());
     if (!at) return;
-    const target = at.add(hand.shift).add(this.origin).toArray();
-    this.stage.move(hand.node, this.stage.restOf(hand.node).map((x, i) => target[i] - x));
+    hand.move(at);
     this.go();
   }
 
@@ -258,8 +469,7 @@ class Live {
     if (!hand) return;
     this.hands.delete(event.pointerId);
     if (this.hands.size === 0) this.scene.canvas.classList.remove("pulling");
-    const held = this.stage.held.get(hand.node);
-    if (held && !held.pinned) this.stage.release(hand.node);
+    hand.end();
     this.go();
   }
 
@@ -269,13 +479,16 @@ class Live {
     this.hovering = true;
     requestAnimationFrame(() => {
       this.hovering = false;
-      this.scene.canvas.classList.toggle("pulls", this.under(event) !== null);
+      const found = this.under(event) !== null;
+      this.scene.canvas.classList.toggle("pulls", found && this.mode !== "cut");
+      this.scene.canvas.classList.toggle("cuts", found && this.mode === "cut");
     });
   }
 
   // Buttons, keys, sliders
 
   letGo() {
+    for (const hand of this.hands.values()) hand.end();
     this.hands.clear();
     this.scene.canvas.classList.remove("pulling");
   }
@@ -301,7 +514,7 @@ class Live {
 
   setMode(mode) {
     this.mode = mode;
-    for (const name of ["pull", "pin"]) byId(name).setAttribute("aria-pressed", String(name === mode));
+    for (const name of MODES) byId(name).setAttribute("aria-pressed", String(name === mode));
   }
 
   save() {
@@ -314,11 +527,11 @@ class Live {
   }
 
   addTools() {
-    const acts = { pull: () => this.setMode("pull"), pin: () => this.setMode("pin"), rest: () => this.rest(),
+    const acts = { ...Object.fromEntries(MODES.map((mode) => [mode, () => this.setMode(mode)])), rest: () => this.rest(),
       replay: () => this.replay(), save: () => this.save(),
       all: () => this.scene.viewAll(new THREE.Vector3(0, -1, 0.15), false) };
     for (const [id, act] of Object.entries(acts)) byId(id).addEventListener("click", act);
-    const keys = { v: "pull", p: "pin", 0: "rest", r: "replay", s: "save", home: "all" };
+    const keys = { v: "pull", g: "grasp", u: "push", c: "cut", p: "pin", 0: "rest", r: "replay", s: "save", home: "all" };
     document.addEventListener("keydown", (event) => {
       const id = keys[event.key.toLowerCase()];
       if (!id || event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "INPUT") return;
@@ -339,19 +552,65 @@ class Live {
       gravity: { value: strength, text: (x) => `${x.toFixed(1)} m/s²`,
         change: (x) => { settings.gravity_m_s2 = down.map((d) => (d === 0 ? 0 : d * x)); } },
     };
-    for (const [id, { value, text, change }] of Object.entries(sliders)) {
-      const slider = byId(id);
-      const show = (x) => { byId(`${id}-text`).textContent = text(x); };
-      slider.value = String(value);  // which has steps and ends
-      show(value);
-      slider.addEventListener("input", () => show(Number(slider.value)));
-      slider.addEventListener("change", () => {
-        change(Number(slider.value));
-        this.letGo();
+    for (const [id, slider] of Object.entries({ ...sliders, ...this.tissueSliders() }))
+      this.addSlider(id, slider, () => {
         this.stage.change();
         this.refresh();
       });
-    }
+    for (const [id, slider] of Object.entries(this.instrumentSliders())) this.addSlider(id, slider, () => {});
+    for (const shape of ["ball", "rod"]) byId(shape).addEventListener("click", () => this.setProbe(shape));
+  }
+
+  addSlider(id, { ends, value, text, change }, changed) {
+    const slider = byId(id);
+    const show = (x) => { byId(`${id}-text`).textContent = text(x); };
+    if (ends) [slider.min, slider.max] = ends.map(String);
+    slider.value = String(value);  // which has steps and ends
+    show(value);
+    slider.addEventListener("input", () => show(Number(slider.value)));
+    slider.addEventListener("change", () => {
+      change(Number(slider.value));
+      changed();
+    });
+  }
+
+  /** Springs to where vessels rest; none, and torn by nothing, at one end of the sliders. */
+  tissueSliders() {
+    const { settings } = this.stage;
+    const none = Number(byId("tissue").min), never = Number(byId("tear").max);
+    const wanted = { stiffness_N_mm2: 0, tear_N_mm: null, ...settings.tissue };
+    const set = (change) => {
+      Object.assign(wanted, change);
+      settings.tissue = wanted.stiffness_N_mm2 > 0 ? { ...wanted } : null;
+    };
+    return {
+      tissue: { value: wanted.stiffness_N_mm2 > 0 ? Math.log10(wanted.stiffness_N_mm2) : none,
+        text: (x) => (x <= none ? "none" : `${forceText(10 ** x)}/mm²`),
+        change: (x) => set({ stiffness_N_mm2: x <= none ? 0 : Number((10 ** x).toPrecision(3)) }) },
+      tear: { value: wanted.tear_N_mm === null ? never : Math.log10(wanted.tear_N_mm),
+        text: (x) => (x >= never ? "never" : `${forceText(10 ** x)}/mm`),
+        change: (x) => set({ tear_N_mm: x >= never ? null : Number((10 ** x).toPrecision(3)) }) },
+    };
+  }
+
+  instrumentSliders() {
+    const radii = [...this.tree.radii].sort((a, b) => a - b);
+    const never = Number(byId("slips").max);
+    const usual = Number((1.5 * radii[radii.length >> 1]).toPrecision(2));
+    this.instrument = { shape: "ball", radius: usual, slips_N: Infinity };
+    const ends = [Math.log10(usual) - 1, Math.log10(usual) + 1];
+    const millimetres = (x) => Number((10 ** x).toPrecision(2));
+    return {
+      radius: { ends, value: Math.log10(usual), text: (x) => `${millimetres(x)} mm`,
+        change: (x) => { this.instrument.radius = millimetres(x); } },
+      slips: { value: never, text: (x) => (x >= never ? "never" : forceText(10 ** x)),
+        change: (x) => { this.instrument.slips_N = x >= never ? Infinity : Number((10 ** x).toPrecision(3)); } },
+    };
+  }
+
+  setProbe(shape) {
+    this.instrument.shape = shape;
+    for (const name of ["ball", "rod"]) byId(name).setAttribute("aria-pressed", String(name === shape));
   }
 }
 
@@ -367,12 +626,19 @@ function fillPanel(data) {
   }
 }
 
+/** After what was drawn is on the screen. */
+const drawn = () => new Promise((done) => { requestAnimationFrame(() => setTimeout(done, 0)); });
+
 async function start() {
-  const data = JSON.parse(byId("page-data").textContent);
-  fillPanel(data);
+  fillPanel(contents.data);
   try {
-    window.vmesh = new Live(data, await createDeformer());
-    window.vmesh.firstPicture_ms = performance.now();
+    await drawn();
+    const firstPicture_ms = performance.now();
+    window.vmesh = new Live(contents, await createDeformer());
+    window.vmesh.firstPicture_ms = firstPicture_ms;
+    await drawn();
+    window.vmesh.ready_ms = performance.now();
+    byId("poster").remove();
   } catch (error) {
     console.error(error);
     byId("no-picture").textContent = `This browser cannot show it: ${error.message}. It takes WebGL, and WebAssembly with ` +

@@ -1,6 +1,7 @@
 #include "page/live/live_page.h"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 
@@ -29,6 +30,19 @@ std::string raw(const std::vector<Vec3>& points) {
   return raw(numbers);
 }
 
+Json contact_of(const ContactOptions& contact) {
+  return {{"self", contact.self},
+          {"gap_ratio", contact.gap_ratio},
+          {"friction", contact.friction},
+          {"iterations", contact.iterations},
+          {"slip_radii_per_s", contact.slip_radii_per_s}};
+}
+
+Json tissue_of(const TissueProperties& tissue) {
+  const Json tear = std::isfinite(tissue.tear_N_mm) ? Json(tissue.tear_N_mm) : Json(nullptr);
+  return {{"stiffness_N_mm2", tissue.stiffness_N_mm2}, {"tear_N_mm", tear}};
+}
+
 Json settings_of(const LivePage& page) {
   const Material& m = page.material;
   Json material = {{"young_Pa", m.young_Pa},
@@ -49,7 +63,9 @@ Json settings_of(const LivePage& page) {
           {"drag_per_s", o.drag_per_s},
           {"squeeze_response_s", o.squeeze_response_s},
           {"fix", page.fix},
-          {"clamp", page.clamp}};
+          {"clamp", page.clamp},
+          {"contact", page.contact ? contact_of(*page.contact) : Json(nullptr)},
+          {"tissue", page.tissue ? tissue_of(*page.tissue) : Json(nullptr)}};
 }
 
 void add_tree(const Centerline& centerline, Json& json) {
@@ -110,6 +126,7 @@ std::string to_html(const LivePage& page) {
                              {"@STYLE@", parts.style},
                              {"@DATA@", data},
                              {"@LICENSE@", parts.license},
+                             {"@POSTER@", parts.poster},
                              {"@THREE@", parts.three},
                              {"@DEFORMER@", parts.deformer},
                              {"@SCRIPT@", parts.script}});

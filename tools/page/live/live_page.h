@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct LivePage {
   Material material;
   SimulationOptions options;
   std::vector<Index> fix, clamp;  ///< nodes held from the start
+  std::optional<ContactOptions> contact;
+  std::optional<TissueProperties> tissue;  ///< everywhere
 };
 
 /// The whole page, UTF-8. Deterministic. Only in a build with emscripten and three.js.

@@ -95,6 +95,10 @@ class CenterlineSimulation {
   /// Instruments and vessels never overlap at the end of a step; one that starts within a vessel is refused. The
   /// vessel's surface is that of its round cones with the profile's radii.
   Index add_instrument(const InstrumentShape& shape, const InstrumentPose& pose);
+  /// The gap between an instrument and the nearest vessel, were it added there: 0 or less if it would be refused.
+  double room_for_instrument_mm(const InstrumentShape& shape, const InstrumentPose& pose) const;
+  /// Takes it away; the others keep their numbers, and this one has none any more.
+  void remove_instrument(Index instrument);
   /// The next step moves it there, as far as there is room: HandForce::behind_mm.
   void move_instrument(Index instrument, const InstrumentPose& pose);
   InstrumentPose instrument_pose(Index instrument) const;
