@@ -14,10 +14,11 @@
 namespace vmesh {
 namespace {
 
-/// Stiffness of barriers, in E A / r of the segment: ten times that of a bent vessel about ten radii long, as vessels
-/// give way by bending. What presses harder comes nearer. At least what stops the mass of everything below within a
-/// step, when it comes from about thirty times the reach: of soft vessels that fall, gaps close step by step otherwise.
-constexpr double kBarrier = 1e-2, kBarrierOfMass = 30;
+/// Stiffness of barriers, in E A / r of the segment: that of a bent vessel about ten radii long, as vessels give way by
+/// bending (ten times that takes 1.5 times the iterations where instruments press). What presses harder comes nearer.
+/// At least what stops the mass of everything below within a step, when it comes from about thirty times the reach: of
+/// soft vessels that fall, gaps close step by step otherwise.
+constexpr double kBarrier = 1e-3, kBarrierOfMass = 30;
 /// Stiffness of what stops pairs that run into each other, in the larger of E A / r and what stops the mass below.
 constexpr double kStop = 100;
 /// Gaps narrower than this share of a barrier's reach, which holds a hundred times what crushes a vessel, are kept.
