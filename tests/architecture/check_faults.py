@@ -8,6 +8,7 @@ import tempfile
 FAULTS = {
     "private_header": ({"src/b/b.cpp": '#include "a/inner.h"\n'}, "private to a"),
     "circle": ({"src/b/x/x.h": '#include "b/y/y.h"\n', "src/b/y/y.h": '#include "b/x/x.h"\n'}, "b/x -> b/y -> b/x"),
+    "two_types": ({"src/b/b.h": "struct Place {\n", "src/a/a.h": "class Place : Point {\n"}, "Place is another type"),
     "third_party": ({"include/vmesh/a/a.h": "#include <tbb/parallel_for.h>\n"}, "tbb/parallel_for.h"),
 }
 SOUND = {

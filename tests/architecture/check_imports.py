@@ -1,5 +1,6 @@
 """Fails, and says where, on an include of another module's private header, a public header that includes more than Eigen
-and the standard library, and a circle between modules or between the folders of a module.
+and the standard library, a circle between modules or between the folders of a module, and a type whose name another
+header gives to another type: the linker would take the one for the other.
 
     check_imports.py LIBVMESH
 """
@@ -10,6 +11,8 @@ import sys
 from collections import defaultdict
 
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
+NAMESPACE = re.compile(r"namespace\s+([\w:]+)\s*{$")
+TYPE = re.compile(r"(?:struct|class)\s+(\w+)[^;]*$")
 
 
 def includes(path):
@@ -56,6 +59,21 @@ def check_private(root, problems, needs):
                 needs[str(folder)].add(str(other))
 
 
+def check_types(root, problems):
+    seen = {}
+    for path in sorted(root.rglob("*.h")):
+        namespaces = []
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            if match := NAMESPACE.match(line):
+                namespaces.append(match.group(1))
+            elif line.startswith("}  // namespace") and namespaces:
+                namespaces.pop()
+            elif match := TYPE.match(line):  # at the begin of a line: in no other type
+                name = "::".join([*namespaces, match.group(1)])
+                if (first := seen.setdefault(name, f"{path}:{number}")) != f"{path}:{number}":
+                    problems.append(f"{path}:{number}: {name} is another type in {first}")
+
+
 def circle_in(needs):
     """The first circle found, as a list that ends where it begins; empty without one."""
     done = set()
@@ -81,6 +99,7 @@ def main(root):
     problems, needs = [], defaultdict(set)
     check_public(root, problems, needs)
     check_private(root, problems, needs)
+    check_types(root, problems)
     if circle := circle_in(needs):
         problems.append("a circle: " + " -> ".join(circle))
     for problem in problems:

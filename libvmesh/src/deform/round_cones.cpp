@@ -28,7 +28,7 @@ struct Pair {
   Vec3 apart, u, v;  // apart + s u - t v is from the second to the first
   double radii, grows_u, grows_v;
 
-  Pair(const RoundCone& first, const RoundCone& second)
+  Pair(const ContactCone& first, const ContactCone& second)
       : apart(first.a - second.a),
         u(first.b - first.a),
         v(second.b - second.a),
@@ -47,7 +47,7 @@ struct Pair {
 
 /// How far two can go until their distance along a fixed direction is `kept`. Their gap is at least that distance,
 /// which is least at two of the ends: linear in the way.
-double free_along(const Vec3& direction, const RoundCone& first, const RoundCone& second,
+double free_along(const Vec3& direction, const ContactCone& first, const ContactCone& second,
                   const std::array<Vec3, 4>& way, double kept) {
   const std::array<double, 4> at{direction.dot(first.a) - first.radius_a, direction.dot(first.b) - first.radius_b,
                                  direction.dot(second.a) + second.radius_a, direction.dot(second.b) + second.radius_b};
@@ -64,7 +64,7 @@ double free_along(const Vec3& direction, const RoundCone& first, const RoundCone
 
 /// The distance of two points minus the radii there is convex in both parameters: the minimum lies where its
 /// derivatives vanish, or on an edge of the square of parameters.
-ConeGap gap_between(const RoundCone& first, const RoundCone& second) {
+ConeGap gap_between(const ContactCone& first, const ContactCone& second) {
   const Pair pair(first, second);
   const double uu = pair.u.squaredNorm(), vv = pair.v.squaredNorm(), uv = pair.u.dot(pair.v);
   const double det = uu * vv - uv * uv;
@@ -91,7 +91,7 @@ ConeGap gap_between(const RoundCone& first, const RoundCone& second) {
   return best;
 }
 
-RoundCone between(const ConeMotion& m, double part) {
+ContactCone between(const ConeMotion& m, double part) {
   return {m.from.a + part * (m.to.a - m.from.a), m.from.b + part * (m.to.b - m.from.b), m.from.radius_a,
           m.from.radius_b};
 }
@@ -109,7 +109,7 @@ double free_part(const ConeMotion& first, const ConeMotion& second, double gap, 
   if (most <= gap - kept) return 1;
   double part = 0;
   for (int i = 0; i < kMostAdvances; ++i) {
-    const RoundCone a = between(first, part), b = between(second, part);
+    const ContactCone a = between(first, part), b = between(second, part);
     const ConeGap now = gap_between(a, b);
     if (i > 0 && now.gap - kept < kNearlyThere * (gap - kept)) return part;
     part += std::max((now.gap - kept) / most, free_along(now.direction, a, b, way, kept));

@@ -5,7 +5,7 @@
 namespace vmesh {
 
 /// The convex hull of two balls.
-struct RoundCone {
+struct ContactCone {
   Vec3 a, b;
   double radius_a, radius_b;
 
@@ -19,7 +19,7 @@ struct ConeGap {
   double gap = 0, first_t = 0, second_t = 0;
   Vec3 direction = Vec3::UnitX();
 };
-ConeGap gap_between(const RoundCone& first, const RoundCone& second);
+ConeGap gap_between(const ContactCone& first, const ContactCone& second);
 
 /// Two keep at least `narrowest` of a gap above twice that; beyond `wide`, all gaps are as good.
 struct KeptGap {
@@ -30,9 +30,9 @@ struct KeptGap {
 /// falling to a share of what it is, or of kept.wide if that is less: the part of the way, 1 for all of it. By
 /// conservative advancement: no gap changes by more than the ends move relative to each other.
 struct ConeMotion {
-  RoundCone from, to;
+  ContactCone from, to;
 };
-RoundCone between(const ConeMotion& motion, double part);
+ContactCone between(const ConeMotion& motion, double part);
 double free_part(const ConeMotion& first, const ConeMotion& second, double gap, const KeptGap& keeps);
 
 }  // namespace vmesh

@@ -50,9 +50,9 @@ std::vector<Vec3> placed_points(const InstrumentShape& shape, const InstrumentPo
 }
 
 /// Its parts; of one point, a ball.
-std::vector<RoundCone> cones_of(const InstrumentShape& shape, const InstrumentPose& pose) {
+std::vector<ContactCone> cones_of(const InstrumentShape& shape, const InstrumentPose& pose) {
   const std::vector<Vec3> points = placed_points(shape, pose);
-  std::vector<RoundCone> cones;
+  std::vector<ContactCone> cones;
   for (std::size_t i = 0; i < std::max<std::size_t>(points.size() - 1, 1); ++i) {
     const std::size_t next = std::min(i + 1, points.size() - 1);
     cones.push_back({points[i], points[next], shape.radii_mm[i], shape.radii_mm[next]});
@@ -109,7 +109,7 @@ void Surroundings::set_options(const RodScene& scene, const ContactOptions& opti
   if (options.self) find_rest_pairs(scene);
 }
 
-Surroundings::Nearest Surroundings::nearest_to(const RodScene& scene, const RoundCone& part) const {
+Surroundings::Nearest Surroundings::nearest_to(const RodScene& scene, const ContactCone& part) const {
   Nearest nearest;
   for (Index j = 0; j < scene.size(); ++j) {
     if (scene.is_root(j) && scene.rods[j].first_child != kNone) continue;
@@ -123,14 +123,14 @@ double Surroundings::room_for(const RodScene& scene, const InstrumentShape& shap
   check_shape(shape);
   check_pose(pose);
   double room = HUGE_VAL;
-  for (const RoundCone& part : cones_of(shape, pose)) room = std::min(room, nearest_to(scene, part).gap);
+  for (const ContactCone& part : cones_of(shape, pose)) room = std::min(room, nearest_to(scene, part).gap);
   return room;
 }
 
 Index Surroundings::add_instrument(const RodScene& scene, const InstrumentShape& shape, const InstrumentPose& pose) {
   check_shape(shape);
   check_pose(pose);
-  for (const RoundCone& part : cones_of(shape, pose)) {
+  for (const ContactCone& part : cones_of(shape, pose)) {
     const auto [slot, gap] = nearest_to(scene, part);
     if (gap > 0) continue;
     const Index segment = scene.tree.segment[slot];
@@ -198,12 +198,12 @@ Index Surroundings::add_jaw(const RodScene& scene, Index slot, double t, double 
   return static_cast<Index>(jaws_.size() - 1);
 }
 
-RoundCone Surroundings::cone_of(Index slot, const std::vector<Vec3>& positions) const {
+ContactCone Surroundings::cone_of(Index slot, const std::vector<Vec3>& positions) const {
   const Index parent = parent_[slot];
   return {positions[parent], positions[slot], radius_[parent], radius_[slot]};
 }
 
-RoundCone Surroundings::part_cone(Index part, const std::vector<Vec3>& points) const {
+ContactCone Surroundings::part_cone(Index part, const std::vector<Vec3>& points) const {
   const Part& p = parts_[part];
   return {points[p.a], points[p.b], p.radius_a, p.radius_b};
 }

@@ -191,14 +191,14 @@ class Surroundings {
   void expect(const RodScene& scene);
   void note_friction(const RodScene& scene);
   void expect_ways(const std::vector<Rub>& before);
-  Nearest nearest_to(const RodScene& scene, const RoundCone& part) const;
+  Nearest nearest_to(const RodScene& scene, const ContactCone& part) const;
   template <class Touch>
   void forget_parts(std::vector<Touch>& touches, Index first, Index last) const;
 
-  RoundCone cone_of(Index slot, const std::vector<Vec3>& positions) const;
-  RoundCone part_cone(Index part, const std::vector<Vec3>& points) const;
-  RoundCone second_cone(const ContactPair& pair, const std::vector<Vec3>& positions,
-                        const std::vector<Vec3>& points) const;
+  ContactCone cone_of(Index slot, const std::vector<Vec3>& positions) const;
+  ContactCone part_cone(Index part, const std::vector<Vec3>& points) const;
+  ContactCone second_cone(const ContactPair& pair, const std::vector<Vec3>& positions,
+                          const std::vector<Vec3>& points) const;
   ConeGap gap_of(const ContactPair& pair, const std::vector<Vec3>& positions, const std::vector<Vec3>& points) const;
   ConeGap gap_or_less(const ContactPair& pair, const std::vector<Vec3>& positions,
                       const std::vector<Vec3>& points) const;

@@ -15,7 +15,7 @@ constexpr double kSlackInRadii = 0.25, kSlackInWays = 0.25;
 /// The ways for which pairs are looked for at once, at most: in largest movements of the last step.
 constexpr double kMostSteps = 30;
 
-SlotBox box_of(const RoundCone& cone, double around) {
+SlotBox box_of(const ContactCone& cone, double around) {
   const Vec3 a = Vec3::Constant(cone.radius_a + around), b = Vec3::Constant(cone.radius_b + around);
   SlotBox box{cone.a - a, cone.a + a};
   box.include({cone.b - b, cone.b + b});
@@ -40,7 +40,7 @@ void Surroundings::find_rest_pairs(const RodScene& scene) {
     slot_boxes_[j] = box_of(cone_of(j, at), options_.gap_ratio * std::max(radius_[j], radius_[parent_[j]]));
   boxes_.refit(slot_boxes_);
   boxes_.visit_pairs(slot_boxes_, [&](Index a, Index b) {
-    const RoundCone first = cone_of(a, at), second = cone_of(b, at);
+    const ContactCone first = cone_of(a, at), second = cone_of(b, at);
     const double gap = gap_between(first, second).gap;
     const double radii = std::max(first.radius_a, first.radius_b) + std::max(second.radius_a, second.radius_b);
     const double reach =
@@ -160,7 +160,7 @@ void Surroundings::find_pairs(const RodScene& scene, const std::vector<Vec3>& wa
   const double ratio = options_.gap_ratio;
   for (Index j = 0; j < present_.size(); ++j) {
     const double around = slack_of(j) + ratio * std::max(radius_[j], radius_[parent_[j]]);
-    RoundCone cone = cone_of(j, present_);
+    ContactCone cone = cone_of(j, present_);
     slot_boxes_[j] = box_of(cone, around);
     cone.a += ways[parent_[j]], cone.b += ways[j];
     slot_boxes_[j].include(box_of(cone, around));
@@ -200,8 +200,8 @@ void Surroundings::add_pair(const RodScene& scene, Index slot, Index other, bool
   if (only_a_root(slot) || (!is_part && only_a_root(other))) return;
   const double excess = is_part ? 0 : rest_excess(slot, other);
   if (std::isinf(excess)) return;
-  const RoundCone first = cone_of(slot, present_);
-  const RoundCone second = is_part ? part_cone(other, points_.present) : cone_of(other, present_);
+  const ContactCone first = cone_of(slot, present_);
+  const ContactCone second = is_part ? part_cone(other, points_.present) : cone_of(other, present_);
   const double smallest = std::min({first.radius_a, first.radius_b, second.radius_a, second.radius_b});
   const double stiffness = is_part ? stiffness_[slot] : std::min(stiffness_[slot], stiffness_[other]);
   ContactPair pair{slot, other, is_part, {stiffness, options_.gap_ratio * smallest}, excess, {}, {}};
@@ -228,8 +228,8 @@ void Surroundings::note_gaps() {
   for (ContactPair& pair : pairs_) pair.now = gap_or_less(pair, present_, points_.present);
 }
 
-RoundCone Surroundings::second_cone(const ContactPair& pair, const std::vector<Vec3>& positions,
-                                    const std::vector<Vec3>& points) const {
+ContactCone Surroundings::second_cone(const ContactPair& pair, const std::vector<Vec3>& positions,
+                                      const std::vector<Vec3>& points) const {
   return pair.is_part ? part_cone(pair.other, points) : cone_of(pair.other, positions);
 }
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kShortHandle = 6;  // rings; measured on random graphs with loops; safe 4 to 8
 
-std::vector<SegmentPlace> places_of(const Centerline& centerline, const std::vector<Branch>& branches) {
-  std::vector<SegmentPlace> places(centerline.segments().size());
+std::vector<BranchPlace> places_of(const Centerline& centerline, const std::vector<Branch>& branches) {
+  std::vector<BranchPlace> places(centerline.segments().size());
   for (Index b = 0; b < branches.size(); ++b) {
     const auto& segments = branches[b].segments;
     for (Index i = 0; i < segments.size(); ++i) places[segments[i]] = {b, i};

@@ -25,14 +25,14 @@ class VesselAxes {
   const RingLayer& layer() const { return layer_; }
 
  protected:
-  const SegmentPlace& place_of(Index segment) const { return places_[segment]; }
+  const BranchPlace& place_of(Index segment) const { return places_[segment]; }
   Index segment_count() const { return static_cast<Index>(places_.size()); }
 
  private:
   const VesselField& field_;
   std::vector<Branch> branches_;
   std::vector<BranchAxis> axes_;
-  std::vector<SegmentPlace> places_;
+  std::vector<BranchPlace> places_;
   RingLayer layer_;
 };
 

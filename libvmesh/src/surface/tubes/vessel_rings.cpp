@@ -115,7 +115,7 @@ void Rings::shrink() {
 double ring_pitch(int around) { return kPitch * balanced_ring_radius(around) * equilateral_height(around); }
 
 RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes,
-                     const std::vector<SegmentPlace>& places, const RingOptions& options)
+                     const std::vector<BranchPlace>& places, const RingOptions& options)
     : field_(field), axes_(axes), places_(places), options_(options) {}
 
 Rings RingLayer::lay(Index branch) const {
@@ -342,7 +342,7 @@ bool RingLayer::see(Index branch, const Ring& ring, const BranchAxis::Point& axi
 }
 
 bool RingLayer::is_own(Index branch, const CrossSection& section, const FieldSample& sample) const {
-  const SegmentPlace at = places_[sample.cone];
+  const BranchPlace at = places_[sample.cone];
   if (at.branch != branch) return false;
   const BranchAxis& axis = axes_[branch];
   const double radius = std::max(section.radius, field_.relations().radius_at(sample.cone, sample.t));

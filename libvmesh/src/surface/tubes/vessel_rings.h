@@ -73,7 +73,7 @@ struct RingOptions {
 };
 
 /// Where a segment lies: its branch and its number there.
-struct SegmentPlace {
+struct BranchPlace {
   Index branch = kNone;
   Index nth = kNone;
 };
@@ -86,7 +86,7 @@ struct SegmentPlace {
 /// error allows.
 class RingLayer {
  public:
-  RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes, const std::vector<SegmentPlace>& places,
+  RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes, const std::vector<BranchPlace>& places,
             const RingOptions& options);
 
   Rings lay(Index branch) const;
@@ -125,7 +125,7 @@ class RingLayer {
 
   const VesselField& field_;
   const std::vector<BranchAxis>& axes_;
-  const std::vector<SegmentPlace>& places_;
+  const std::vector<BranchPlace>& places_;
   RingOptions options_;
 };
 
