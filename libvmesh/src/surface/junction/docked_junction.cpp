@@ -5,6 +5,7 @@
 
 #include "surface/finish/optimize.h"
 #include "surface/junction/junction_growth.h"
+#include "surface/remesh/edge_lengths.h"
 #include "surface/remesh/untangle.h"
 #include "surface/tubes/stitch.h"
 
@@ -122,7 +123,9 @@ class JunctionDocker {
       return;
     }
     const double radii = growth_.length_in_radii() + static_cast<double>(docks_.size() * (kRingsGivenAway + 1));
-    const GrownMesh grown{double(growth_.docked_around()), expected_vertices(radii, options_.around / fineness),
+    const double finer = edge_length_per_radius(growth_.docked_around()) / edge_length_per_radius(options_.around);
+    const double added = (finer * finer - 1) * surface_.mesh.number_of_vertices();
+    const GrownMesh grown{double(growth_.docked_around()), added + expected_vertices(radii, options_.around / fineness),
                           GrownMesh::Stage::piece};
     const OptimizeReport report = optimize(surface_, options_, grown, progress_);
     docked.tangles = report.tangles;
