@@ -10,7 +10,7 @@ namespace {
 /// Parallel lines have no point where they are nearest; from this sine squared on, the edges are tried, too.
 constexpr double kNearlyParallel = 1e-6;
 /// An advance keeps at least this share of the gap, of a narrow one nearly all, and ends once nearly there.
-constexpr double kKeptGap = 0.3, kKeptNarrow = 0.9, kNearlyThere = 0.1;
+constexpr double kKeptGap = 0.3, kKeptNarrow = 0.999, kNearlyThere = 0.1;
 constexpr int kMostAdvances = 128;
 
 /// Minimises |p + s q| - slope s for s in [0, 1]: convex.
