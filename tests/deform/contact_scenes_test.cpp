@@ -255,5 +255,13 @@ TEST(ContactScenes, NothingOverlapsAndNoEnergyFromNowhere) {
   EXPECT_GE(touched, scenes / 4);  // otherwise this shows little
 }
 
+// Where an instrument presses on and on, a gap came to nothing, and forces were not finite: in step 433 of the first.
+TEST(ContactScenes, LongPressureLeavesAGap) {
+  for (const std::uint32_t seed : {4u, 222u}) {
+    SCOPED_TRACE("scene " + std::to_string(seed));
+    ContactScene(seed).run(500);
+  }
+}
+
 }  // namespace
 }  // namespace vmesh::testing

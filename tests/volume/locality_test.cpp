@@ -133,6 +133,21 @@ class Locality {
   bool undecided_ = false;
 };
 
+// Compares what the field without rounding knows of all pairs of segments with the definition; visits them.
+template <class Visit>
+void compare_segments(const VesselField& field, const Locality& expected, Index segments, const Visit& visit) {
+  for (Index i = 0; i < segments; ++i) {
+    const auto cones = field.relations().local_cones(i);
+    EXPECT_TRUE(std::is_sorted(cones.begin(), cones.end(), std::less_equal<>()));  // ascending, none twice
+    for (Index j = 0; j < segments; ++j) {
+      const bool local = expected(i, j);
+      EXPECT_EQ(is_local(field, i, j), local) << "cones " << i << " and " << j;
+      EXPECT_EQ(field.relations().are_one_volume(i, j), local) << "cones " << i << " and " << j;
+      visit(i, j, local);
+    }
+  }
+}
+
 TEST(Locality, IsTouchWithoutABreak) {
   Draw draw(61);
   int tested = 0, local_pairs = 0, far_pairs = 0;
@@ -153,15 +168,10 @@ TEST(Locality, IsTouchWithoutABreak) {
     const Locality expected(field);
     if (expected.undecided()) continue;
     ++tested;
+    SCOPED_TRACE("trial " + std::to_string(trial));
     const auto segments = static_cast<Index>(centerline.segments().size());
-    for (Index i = 0; i < segments; ++i) {
-      for (Index j = 0; j < segments; ++j) {
-        EXPECT_EQ(is_local(field, i, j), expected(i, j)) << "trial " << trial << ", cones " << i << " and " << j;
-        (expected(i, j) ? local_pairs : far_pairs) += 1;
-      }
-      const auto cones = field.relations().local_cones(i);
-      EXPECT_TRUE(std::is_sorted(cones.begin(), cones.end(), std::less_equal<>()));  // ascending, none twice
-    }
+    compare_segments(field, expected, segments,
+                     [&](Index, Index, bool local) { (local ? local_pairs : far_pairs) += 1; });
     const auto ball = field.relations().local_cones(segments);
     EXPECT_EQ(std::vector<Index>(ball.begin(), ball.end()), (std::vector<Index>{segments}));
   }
@@ -191,18 +201,13 @@ TEST(Locality, IsTouchWithoutABreakAroundANodeOfVeryManyBranchesToo) {
     const Locality expected(field);
     if (expected.undecided()) continue;
     ++tested;
+    SCOPED_TRACE("seed " + std::to_string(seed));
     const auto segments = static_cast<Index>(centerline.segments().size());
-    for (Index i = 0; i < segments; ++i) {
-      const auto cones = field.relations().local_cones(i);
-      EXPECT_TRUE(std::is_sorted(cones.begin(), cones.end(), std::less_equal<>()));  // ascending, none twice
-      for (Index j = 0; j < segments; ++j) {
-        EXPECT_EQ(is_local(field, i, j), expected(i, j)) << "seed " << seed << ", cones " << i << " and " << j;
-        EXPECT_EQ(field.relations().are_one_volume(i, j), expected(i, j));
-        const bool at_hub = centerline.segment(i).a == 0 && centerline.segment(j).a == 0;
-        if (!expected(i, j)) ++far_pairs;
-        if (expected(i, j) && !at_hub && i != j) ++own_pairs;
-      }
-    }
+    compare_segments(field, expected, segments, [&](Index i, Index j, bool local) {
+      const bool at_hub = centerline.segment(i).a == 0 && centerline.segment(j).a == 0;
+      if (!local) ++far_pairs;
+      if (local && !at_hub && i != j) ++own_pairs;
+    });
   }
   EXPECT_GT(tested, 3);
   EXPECT_GT(own_pairs, 1000);

@@ -96,31 +96,32 @@ FrameTimes swing(const Centerline& centerline, const GenerateResult& grown, int 
   return times;
 }
 
-void measure_with_contacts(const Centerline& centerline, Cost& cost) {
-  PressedTree tree(centerline);
-  for (int i = 0; i < kFrames / 4; ++i) tree.step();  // until all balls are where they press
+/// The median of all frames' times, ms.
+template <class Step>
+double median_step_ms(const Step& step) {
   std::vector<double> times;
   for (int i = 0; i < kFrames; ++i) {
     stop_if_interrupted();
     Stopwatch watch;
-    tree.step();
+    step();
     times.push_back(1e3 * watch.lap());
-    cost.contacts += static_cast<double>(tree.contacts()) / kFrames;
   }
-  cost.contacts_ms = median(times);
+  return median(times);
+}
+
+void measure_with_contacts(const Centerline& centerline, Cost& cost) {
+  PressedTree tree(centerline);
+  for (int i = 0; i < kFrames / 4; ++i) tree.step();  // until all balls are where they press
+  cost.contacts_ms = median_step_ms([&] {
+    tree.step();
+    cost.contacts += static_cast<double>(tree.contacts()) / kFrames;
+  });
 }
 
 double time_in_tissue_ms(const Centerline& centerline) {
   Swing swing(centerline, {});
   for (Index s = 0; s < centerline.segments().size(); ++s) swing.simulation().set_tissue(s, {1e-3, 1});
-  std::vector<double> times;
-  for (int i = 0; i < kFrames; ++i) {
-    stop_if_interrupted();
-    Stopwatch watch;
-    swing.step();
-    times.push_back(1e3 * watch.lap());
-  }
-  return median(times);
+  return median_step_ms([&] { swing.step(); });
 }
 
 Cost measure(const PaperCase& paper) {

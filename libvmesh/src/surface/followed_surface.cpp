@@ -1,11 +1,11 @@
 #include "vmesh/surface/followed_surface.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
-#include <set>
 #include <string>
-#include <utility>
 
+#include "vmesh/centerline/branches.h"
 #include "vmesh/core/box_tree.h"
 #include "vmesh/core/error.h"
 #include "vmesh/surface/branch_labels.h"
@@ -27,12 +27,12 @@ class BlendedEdit {
   BlendedEdit(const Centerline& centerline, const CenterlineEdit& edit)
       : relations_(centerline),
         branch_(branch_label_of_cones(centerline)),
+        ends_(ends_of_branches(centerline)),
         radius_(centerline, edit.radius),
         scale_(edit.scale),
         boxes_(boxes_of_axes()) {
     for (Index cone = 0; cone < relations_.cone_count(); ++cone)
       widest_ = std::max(widest_, relations_.max_radius(cone));
-    find_meetings(centerline);
   }
 
   Vec3 moved(const Vec3& p) {
@@ -58,18 +58,19 @@ class BlendedEdit {
     double t, radii;
   };
 
-  void find_meetings(const Centerline& centerline) {
-    for (Index n = 0; n < centerline.nodes().size(); ++n) {
-      const auto around = centerline.incident_segments(n);
-      for (const Index s : around) {
-        for (const Index other : around) {
-          if (branch_[s] < branch_[other]) meetings_.emplace(branch_[s], branch_[other]);
-        }
-      }
-    }
+  static std::vector<std::array<Index, 2>> ends_of_branches(const Centerline& centerline) {
+    const BranchTable branches(centerline);
+    std::vector<std::array<Index, 2>> ends;
+    for (Index b = 0; b < branches.size(); ++b) ends.push_back({branches.nodes(b).front(), branches.nodes(b).back()});
+    return ends;
   }
+
   // Others that come near are no part of the same volume.
-  bool meet(Index a, Index b) const { return a == b || meetings_.contains(std::minmax(a, b)); }
+  bool meet(Index a, Index b) const {
+    if (a == b) return true;
+    if (std::max(a, b) >= ends_.size()) return false;  // an isolated node
+    return std::ranges::find_first_of(ends_[a], ends_[b]) != ends_[a].end();
+  }
 
   BoxTree boxes_of_axes() const {
     std::vector<Vec3> low, high;
@@ -108,11 +109,11 @@ class BlendedEdit {
   }
 
   ConeRelations relations_;
-  std::vector<Index> branch_;
+  std::vector<Index> branch_;               // of cones
+  std::vector<std::array<Index, 2>> ends_;  // nodes, of branches
   ChangedRadius radius_;
   double scale_, widest_ = 0;
   BoxTree boxes_;
-  std::set<std::pair<Index, Index>> meetings_;  // branches with a node in common, the lower one first
   std::vector<Place> places_;
 };
 

@@ -1,9 +1,6 @@
 #include "surface/remesh/sweep_state.h"
 
-#include <limits>
 #include <numbers>
-
-#include "vmesh/core/box_tree.h"
 
 namespace vmesh {
 namespace {
@@ -21,35 +18,6 @@ constexpr double kFreeToTurn = 0.8;
 // at twelve around; but no less than single precision tells (kRoughTolerance). With an error limit, the first: finer
 // ones cost proofs, as what is made before the limit is known (share .0067) cost one of 5 % on a portal vein.
 constexpr double kProjectionTolerance = 1e-3, kProjectionShare = 0.029;
-
-// Target edge lengths around fine spots. A surface that crosses itself has thousands.
-class SpotSizes {
- public:
-  SpotSizes(const std::vector<BoundSurface::Spot>& spots, double edge_per_radius)
-      : spots_(spots), edge_per_radius_(edge_per_radius) {
-    std::vector<Vec3> places;
-    for (const auto& [position, radius] : spots) {
-      places.push_back(position);
-      shortest_ = std::min(shortest_, edge_per_radius * radius);
-    }
-    tree_ = BoxTree(places, places);
-  }
-
-  double at(const Vec3& p) const {
-    double size = std::numeric_limits<double>::infinity(), reach = size;
-    tree_.visit(p, reach, [&](Index i) {
-      size = std::min(size, edge_per_radius_ * spots_[i].radius + kGradation * (p - spots_[i].position).norm());
-      reach = (size - shortest_) / kGradation;
-    });
-    return size;
-  }
-
- private:
-  const std::vector<BoundSurface::Spot>& spots_;
-  const double edge_per_radius_;
-  double shortest_ = std::numeric_limits<double>::infinity();
-  BoxTree tree_;
-};
 
 }  // namespace
 
@@ -85,13 +53,14 @@ SweepState::~SweepState() { mesh.remove_property_map(stirred_); }
 void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
   surface.has_limit = limit.is_set();
   surface.update_elongation();
-  const SpotSizes at_spots(surface.fine_spots, edge_per_radius);
   for (const Vertex v : mesh.vertices()) {
     const double radius = surface.radius(v);
     double edge = edge_per_radius * radius;
     if (limit.is_set()) edge = std::min(edge, edge_length_for(limit.at(radius), radius));
     double& size = surface[v].size;
-    size = std::min(edge * surface[v].fineness, at_spots.at(point(v)));
+    size = edge * surface[v].fineness;
+    for (const auto& [spot, spot_radius] : surface.fine_spots)
+      size = std::min(size, edge_per_radius * spot_radius + kGradation * (point(v) - spot).norm());
   }
   for (int pass = 0; pass < kGradationPasses; ++pass) {
     for (const Edge e : mesh.edges()) {
