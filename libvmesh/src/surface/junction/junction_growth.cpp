@@ -26,7 +26,8 @@ constexpr double kShortestRimEdge = 0.4;  // of the target edge length; safe 0.2
 constexpr double kRimStep = 0.3;          // radii that a rim's vertex may move to reach the boundary; safe 0.21 to 0.42
 // Resolution up to which a junction is docked at the one asked for, and edges that are to fit between two docks.
 // Measured on hepatic trees at 96 around: cones that the junction's own field lacks move its boundary by more than an
-// edge, and vertices stay behind.
+// edge, and vertices stay behind. Of six random trees with docks so close, one takes 1.4 times as long without the
+// second.
 constexpr int kMostDocked = 24;
 constexpr double kEdgesBetweenDocks = 3;
 constexpr double kOwnReach = 1.5;  // radii along the branch from which a tip's vertices come; safe 1 to 2.1
