@@ -170,7 +170,7 @@ void tell_costs(const std::vector<std::string>& given) {
   }
   std::stable_sort(costs.begin(), costs.end(), [](const auto& a, const auto& b) { return a.all() > b.all(); });
   std::printf(
-      "| centerline | nodes | of them grown around | contacts | vertices | pieces | not at the first try | us of CPU a "
+      "| centerline | nodes | nodes grown around | contacts | vertices | pieces | not at the first try | us of CPU a "
       "vertex | of them before growth |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   for (const InputCost& c : costs)
     std::printf("| %s | %zu | %zu | %zu | %zu | %zu | %zu | %.0f | %.0f |\n", c.name.c_str(), c.nodes, c.grown_nodes,
