@@ -18,15 +18,15 @@ const farthest = (a, b) => a.reduce((most, x, i) => Math.max(most, Math.abs(x - 
 /** The scripts of a page but for three.js and what needs a document, and its data. */
 async function open(page) {
   const html = readFileSync(join(folder, page), "utf8");
-  const scripts = [...html.matchAll(/<script>\n([^]*?)<\/script>/g)].map((match) => match[1]);
+  const scripts = [...html.matchAll(/<script(?: type="text\/plain" class="after-first")?>\n([^]*?)<\/script>/g)].map((match) => match[1]);
   assert.equal(scripts.length, 4);
-  const [poster, , deformer, ours] = scripts;
+  const [first, , deformer, ours] = scripts;
   const data = JSON.parse(html.match(/<script type="application\/json" id="page-data">([^]*?)<\/script>/)[1]);
   const context = vm.createContext({ console, process, WebAssembly, require: createRequire(import.meta.url), atob, __dirname: folder,
     __filename: join(folder, "page.js"), TextDecoder, Buffer, performance, setTimeout });
   // Before what draws.
   const before = (script, comment) => script.slice(0, script.indexOf(comment));
-  vm.runInContext(`${before(poster, "// The surface at rest before")}\n${deformer}\n${before(ours, "// The picture:")}
+  vm.runInContext(`${before(first, "// The surface at rest before")}\n${deformer}\n${before(ours, "// The picture:")}
     globalThis.parts = { createDeformer, Stage, contentsOf };`, context);
   const { createDeformer, Stage, contentsOf } = context.parts;
   const { tree, surface } = contentsOf(data);

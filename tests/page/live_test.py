@@ -185,7 +185,7 @@ class PageThatMoves(unittest.TestCase):
         self.assertGreater(browser.ask(f"vmesh.stage.deformer.pull_N({node})"), 1e-6)
         self.assertRegex(browser.ask("document.getElementById('status').textContent"), r"steps.* [mµ]?N$")
         cost = browser.ask("[vmesh.cost.milliseconds / vmesh.cost.steps, vmesh.framesPerSecond(), vmesh.cost.steps]")
-        print(f"first picture {browser.ask('vmesh.firstPicture_ms') / 1e3:.2f} s, {self.seconds:.2f} s with the browser's "
+        print(f"first picture {browser.ask('contents.firstPicture_ms') / 1e3:.2f} s, {self.seconds:.2f} s with the browser's "
               f"work; {cost[0]:.2f} ms a step with the surface, {cost[1]:.0f} frames/s")
         hand.send("up", x - 120, y - 60)
         browser.ask(A_FEW_STEPS)

@@ -1,6 +1,5 @@
 // The page: picture, hands and sliders around a Stage.
 
-const byId = (id) => document.getElementById(id);
 const SURFACE_COLOR = 0xc9504a;
 const HELD_COLOR = 0x1f6f8b;
 const PROBE_COLOR = 0x5f6b76;
@@ -614,28 +613,9 @@ class Live {
   }
 }
 
-function fillPanel(data) {
-  byId("title").textContent = data.title;
-  byId("generator").textContent = data.generator;
-  byId("command").textContent = data.command;
-  for (const [name, value] of Object.entries(data.facts)) {
-    const fact = document.createElement("div");
-    fact.append(Object.assign(document.createElement("dt"), { textContent: name }),
-      Object.assign(document.createElement("dd"), { textContent: value.toLocaleString("en") }));
-    byId("facts").append(fact);
-  }
-}
-
-/** After what was drawn is on the screen. */
-const drawn = () => new Promise((done) => { requestAnimationFrame(() => setTimeout(done, 0)); });
-
 async function start() {
-  fillPanel(contents.data);
   try {
-    await drawn();
-    const firstPicture_ms = performance.now();
     window.vmesh = new Live(contents, await createDeformer());
-    window.vmesh.firstPicture_ms = firstPicture_ms;
     await drawn();
     window.vmesh.ready_ms = performance.now();
     byId("poster").remove();

@@ -126,7 +126,7 @@ std::string to_html(const LivePage& page) {
                              {"@STYLE@", parts.style},
                              {"@DATA@", data},
                              {"@LICENSE@", parts.license},
-                             {"@POSTER@", parts.poster},
+                             {"@FIRST@", parts.first},
                              {"@THREE@", parts.three},
                              {"@DEFORMER@", parts.deformer},
                              {"@SCRIPT@", parts.script}});
