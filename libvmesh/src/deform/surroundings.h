@@ -251,6 +251,7 @@ class Surroundings {
   std::vector<SlotBox> slot_boxes_;
   // Where pairs were found, and for which ways.
   std::vector<Vec3> found_at_, found_way_, points_found_at_, points_found_aim_;
+  double found_ways_squared_ = 0;
   std::vector<double> slot_slack_;
   double slack_ = -1, last_way_ = 0, expected_way_ = 0;
   bool moves_ = false;

@@ -111,12 +111,12 @@ double Surroundings::least_slack() const {
 /// near theirs.
 bool Surroundings::covers(const std::vector<Vec3>& positions, const std::vector<Vec3>& points) const {
   if (farthest(points) > slack_) return false;
-  double along = 0, all = 0;
-  for (std::size_t j = 0; j < positions.size(); ++j) {
-    along += found_way_[j].dot(positions[j] - found_at_[j]);
-    all += found_way_[j].squaredNorm();
+  double part = 0;
+  if (found_ways_squared_ > 0) {
+    double along = 0;
+    for (std::size_t j = 0; j < positions.size(); ++j) along += found_way_[j].dot(positions[j] - found_at_[j]);
+    part = std::clamp(along / found_ways_squared_, 0.0, 1.0);
   }
-  const double part = all > 0 ? std::clamp(along / all, 0.0, 1.0) : 0;
   for (std::size_t j = 0; j < positions.size(); ++j)
     if ((positions[j] - found_at_[j] - part * found_way_[j]).squaredNorm() > slot_slack_[j] * slot_slack_[j])
       return false;
@@ -152,6 +152,8 @@ double Surroundings::cover_trial(const RodScene& scene) {
 void Surroundings::find_pairs(const RodScene& scene, const std::vector<Vec3>& ways, double slack) {
   slack_ = slack;
   found_at_ = present_, found_way_ = ways;
+  found_ways_squared_ = 0;
+  for (const Vec3& way : ways) found_ways_squared_ += way.squaredNorm();
   points_found_at_ = points_.present, points_found_aim_ = points_.aim;
   slot_slack_.resize(ways.size());
   for (std::size_t j = 0; j < ways.size(); ++j) slot_slack_[j] = slack + kSlackInWays * ways[j].norm();
