@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "vmesh/core/error.h"
+
 #include "poly_lines.h"
 
 namespace vmesh::io {
