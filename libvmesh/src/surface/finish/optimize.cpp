@@ -4,6 +4,7 @@
 
 #include "surface/check/error_limit.h"
 #include "surface/remesh/balance.h"
+#include "surface/remesh/limit_sizes.h"
 #include "surface/remesh/polish.h"
 #include "surface/remesh/relocation.h"
 #include "surface/remesh/remesher.h"
@@ -41,7 +42,10 @@ constexpr int kErrorSweeps = 4;  // safe 3 to 6
 // the maximum distance is elsewhere (a portal vein at 24 around: .011 radii, .010 with it; at 48 .037 and .004).
 constexpr double kStretched = 1.6;
 constexpr int kFewAround = 24;
-constexpr int kStretchRounds = 4;     // each at least halves the longest
+constexpr int kStretchRounds = 4;  // each at least halves the longest
+// Of target lengths that a limit asks for where the surface is refined later; and rounds until edges are hardly longer.
+constexpr double kTooLong = 1.3;
+constexpr int kFitRounds = 2;
 constexpr int kSpotRounds = 10;       // each at most halves the edges; idle 7 to 14
 constexpr int kLeastWithLimit = 4;    // fewest vertices around with an error limit; idle 3 to 6
 constexpr double kMostRefined = 1.8;  // edge length before refinement relative to that after; idle 1.3 to 2.5
@@ -74,6 +78,7 @@ class Optimizer {
         refine();
       }
       if (!with_limit && options_.around > kFewAround) even_out_stretched();
+      if (state_.surface.refined_to.is_set()) fit_to_limit();
     } else {
       even_out(grown.around);
       lift_limit();
@@ -198,17 +203,26 @@ class Optimizer {
         make_valleys_finer(state_);
         state_.update_sizes(edge_per_radius_);
       }
-      if (!touch_stretched()) break;
+      if (!touch_stretched(kStretched)) break;
       resize();
     }
   }
 
-  bool touch_stretched() {
+  // What is refined later had better have the right sizes now.
+  void fit_to_limit() {
+    for (int round = 0; round < kFitRounds; ++round) {
+      make_finer_for(state_, edge_per_radius_, state_.surface.refined_to);
+      state_.update_sizes(edge_per_radius_);
+      if (!touch_stretched(kTooLong)) break;
+      resize();
+    }
+  }
+
+  bool touch_stretched(double most) {
     bool any = false;
     for (const Edge e : state_.mesh.edges()) {
       const Vertex a = state_.mesh.vertex(e, 0), b = state_.mesh.vertex(e, 1);
-      if ((state_.surface.held(a) && state_.surface.held(b)) ||
-          state_.length(e) <= kStretched * state_.target_length(e))
+      if ((state_.surface.held(a) && state_.surface.held(b)) || state_.length(e) <= most * state_.target_length(e))
         continue;
       state_.touch(a);
       state_.touch(b);

@@ -222,6 +222,7 @@ class PieceMaker {
     if (rung.guarded) surface.guard_crossings();
     if (rung.finer > 0) surface.fine_spots = fine_spots_;
     surface.calm_spots = calm_spots_;
+    surface.refined_to = context_.refined_to;
     bool tested = false;  // and found that no faces cross
     if (context_.options.sweeps > 0) {
       const GrownMesh grown{double(context_.options.around),

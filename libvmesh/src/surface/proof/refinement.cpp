@@ -32,10 +32,11 @@ constexpr int kImprovements = 3;      // passes of flips and moves after splits
 // shorter.
 constexpr double kShortest = 0.3;
 constexpr double kTolerance = 1e-3;   // radii, of vertices on the boundary
-constexpr double kLeastGain = 1e-3;   // of skewness, and relative of energy
+constexpr double kLeastGain = 1e-3;   // of skewness
+constexpr double kRounder = 0.03;     // relative, of energy; a smaller gain is not worth the proofs and the way on
 constexpr double kLongestMove = 0.3;  // in edges
 constexpr double kRound = 0.5;        // skewness up to which triangles may become worse for the sake of balance
-constexpr double kWorthALift = 0.05;  // of the most, a change of height
+constexpr double kWorthALift = 0.2;   // of the most, a change of height
 constexpr double kNearEnd = 0.2;  // share of an edge from its end within which its end is moved onto a crease instead
 constexpr double kSlides[] = {0.5, 0.4, 0.6};  // where edges are divided
 
@@ -397,7 +398,7 @@ class Refinement {
       const bool is_lower = on_crease && height > most && target.sample.distance < 0.9 * height;
       const Step step = mesh_.moving(v, finished_vertex(target, field_));
       const double worst = std::max(worst_now(step), kRound);
-      const bool is_rounder = energy(step) < (1 - kLeastGain) * shape.value;
+      const bool is_rounder = energy(step) < (1 - kRounder) * shape.value;
       const bool is_lifted = !crease_at_[v] && std::abs(lift - height) > kWorthALift * most;
       if (!(is_rounder || is_lifted || is_lower) || worst_skewness(step) > worst || !stays_upright(step, upright))
         continue;

@@ -63,8 +63,9 @@ void update_lifts(SweepState& state, const ErrorLimit& limit) {
     const double radius = state.surface.radius(v), size = state.size(v);
     const double balanced = limit.is_set() ? kBalancedWithLimit * radius : kBalanced * cut_off(size, radius);
     if (std::abs(sum) <= balanced * area) continue;
+    const double highest = std::min(limit.at(radius), state.surface.refined_to.at(radius));
     const auto most = [&](double curvature) {
-      return std::min(kMostLift * size * std::min(1.0, size * curvature), kShareOfLimit * limit.at(radius));
+      return std::min(kMostLift * size * std::min(1.0, size * curvature), kShareOfLimit * highest);
     };
     const double out = most(1 / radius),
                  in = rounded ? most(std::max(1 / radius, valley_curvature(state.surface, v))) : out;

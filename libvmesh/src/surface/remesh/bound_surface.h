@@ -64,6 +64,7 @@ class BoundSurface {
 
   const VesselField& field;
   bool has_limit = false;  ///< on the error, which is to be proven
+  ErrorLimit refined_to;   ///< what the finished surface is refined to, if set
   SurfaceMesh mesh;
 
   BoundVertex& operator[](Vertex v) { return vertex_[v]; }

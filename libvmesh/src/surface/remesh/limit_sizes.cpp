@@ -1,0 +1,67 @@
+#include "surface/remesh/limit_sizes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace vmesh {
+namespace {
+
+// How much of a vessel may be cut off, in limits: in balanced placement half of it is outside. The same as that of the
+// edges around a vessel that edge_length_for() gives.
+constexpr double kMostCutOff = 1.5;
+constexpr double kLeastFineness = 0.3;
+
+/// How much is cut off at the middle of edges and faces, by the square of their size, 1/mm: of edges around a vessel
+/// the eighth of its curvature, of faces on a sphere the sixth.
+class CutOff {
+ public:
+  explicit CutOff(const SweepState& state) : state_(state), at_(state.mesh.num_vertices()) {
+    for (const Edge e : state.mesh.edges())
+      add(std::array{state.mesh.vertex(e, 0), state.mesh.vertex(e, 1)}, state.length(e) * state.length(e));
+    for (const Face f : state.mesh.faces()) {
+      if (!state.surface.is_lid(f)) add(state.corners(f), mean_square_edge(f));
+    }
+  }
+
+  double at(Vertex v) const { return at_[v.idx()]; }
+
+ private:
+  void add(std::span<const Vertex> corners, double square_size) {
+    const double count = static_cast<double>(corners.size());
+    Vec3 middle = Vec3::Zero();
+    double height = 0;
+    for (const Vertex v : corners) {
+      middle += state_.point(v) / count;
+      height += state_.surface[v].distance / count;
+    }
+    const double off = state_.field.sample_fast(middle, state_.surface[corners[0]].cone).distance - height;
+    for (const Vertex v : corners) at_[v.idx()] = std::max(at_[v.idx()], std::abs(off) / square_size);
+  }
+
+  double mean_square_edge(Face f) const {
+    double sum = 0;
+    const auto corners = state_.corners(f);
+    for (int i = 0; i < 3; ++i) sum += (state_.point(corners[i]) - state_.point(corners[(i + 1) % 3])).squaredNorm();
+    return sum / 3;
+  }
+
+  const SweepState& state_;
+  std::vector<double> at_;  // by vertex, the most around it
+};
+
+}  // namespace
+
+void make_finer_for(SweepState& state, double edge_per_radius, const ErrorLimit& limit) {
+  const CutOff cut_off(state);
+  for (const Vertex v : state.mesh.vertices()) {
+    const double radius = state.surface.radius(v);
+    const double longest = std::sqrt(kMostCutOff * limit.at(radius) / cut_off.at(v));
+    double& fineness = state.surface[v].fineness;
+    fineness = std::min(fineness, std::max(kLeastFineness, longest / (edge_per_radius * radius)));
+  }
+}
+
+}  // namespace vmesh
