@@ -1,9 +1,11 @@
 // Volume meshes around centerlines, over files and over random trees: a table in Markdown, and one closing line. Usage:
 //   bench_volume [--round] [--around N] [--layers N] [--shell N] [--merge] [--wall-only] [--rotate] [--all] [FILE...]
-//   [--plausible FIRST COUNT]
+//   [--follow] [--plausible FIRST COUNT]
 // A file is a centerline, or a surface of vmesh generate with radii. Ends are flat unless --round. --rotate makes each
 // random tree with the next of a list of options for its surface and its layers; of random trees, only those that were
 // refused are listed, unless --all. A case that is not sound, or is refused without a place, makes the exit code 1.
+// With --follow, a mesh that was made around a centerline also follows eight studies, stenoses and aneurysms of half of
+// the diameter around nodes all over the vessels; those that it cannot follow are listed.
 // Options apply to what follows them.
 #include <algorithm>
 #include <cstdio>
@@ -15,6 +17,7 @@
 #include "vmesh/io/surface_io.h"
 #include "vmesh/mesh/find_attribute.h"
 #include "vmesh/production/produce.h"
+#include "vmesh/solid/followed_volume.h"
 #include "vmesh/solid/make_volume.h"
 #include "vmesh/surface/surface_attributes.h"
 
@@ -26,15 +29,18 @@ namespace {
 using namespace vmesh;
 
 struct Settings {
-  bool all = false, rotate = false;
+  bool all = false, rotate = false, follow = false;
   ProductionOptions production;
   VolumeOptions volume;
 };
 
 struct Tally {
   std::size_t cases = 0, unsound_surfaces = 0, refused = 0, failed = 0;
-  double least_dihedral = 180, seconds = 0;
+  std::size_t studies = 0, not_followed = 0, only_inverted = 0;  // of the latter, those of sound boundaries
+  double least_dihedral = 180, least_followed = 180, seconds = 0;
 };
+
+constexpr Index kStudies = 8;  // of each mesh
 
 /// In turn, with another period than that of rotated_options().
 VolumeOptions rotated_volume(std::uint32_t seed) {
@@ -86,7 +92,8 @@ void print(const std::string& name, const VesselWall& wall, const VolumeResult& 
   std::fflush(stdout);
 }
 
-void mesh_wall(const std::string& name, const VesselWall& wall, const VolumeOptions& options, bool show, Tally& tally) {
+VolumeResult mesh_wall(const std::string& name, const VesselWall& wall, const VolumeOptions& options, bool show,
+                       Tally& tally) {
   const std::clock_t start = std::clock();
   const VolumeResult result = make_volume(wall, options);
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
@@ -96,6 +103,34 @@ void mesh_wall(const std::string& name, const VesselWall& wall, const VolumeOpti
   if (result.is_sound())
     tally.least_dihedral = std::min(tally.least_dihedral, measure_volume(result.mesh).min_dihedral_deg);
   if (show || !result.is_sound()) print(name, wall, result, seconds);
+  return result;
+}
+
+/// Around a node: eight of its radii long.
+CenterlineEdit study(const Centerline& centerline, Index number) {
+  const auto nodes = static_cast<Index>(centerline.nodes().size());
+  const Index node = number * nodes / kStudies;
+  return {{{node, 8 * centerline.node(node).radius, number % 2 == 0 ? -0.5 : 0.5}}};
+}
+
+void follow_studies(const std::string& name, const Centerline& centerline, const VolumeMesh& mesh, Tally& tally) {
+  for (Index number = 0; number < kStudies; ++number) {
+    const CenterlineEdit edit = study(centerline, number);
+    VolumeMesh moved = mesh;
+    moved.points = follow_edit(mesh, centerline, edit);
+    const std::vector<VolumeDefect> defects = find_volume_defects(moved);
+    ++tally.studies;
+    if (defects.empty()) {
+      tally.least_followed = std::min(tally.least_followed, measure_volume(moved).min_dihedral_deg);
+      continue;
+    }
+    ++tally.not_followed;
+    tally.only_inverted += defects.size() == 1 && defects[0].kind == VolumeDefectKind::inverted_cell;
+    std::printf("| %s | study %u, at node %u, share %g |", name.c_str(), number, edit.radius[0].node,
+                edit.radius[0].share);
+    for (const VolumeDefect& defect : defects) std::printf(" %s;", defect.message.c_str());
+    std::printf("\n");
+  }
 }
 
 /// Does `work`, which is for one case. What is thrown has no place, and so is a failure.
@@ -113,11 +148,12 @@ void examine(const std::string& name, Tally& tally, const Work& work) {
 
 void examine_centerline(const std::string& name, const Centerline& centerline,
                         const ProductionOptions& production_options, const VolumeOptions& options, bool show,
-                        Tally& tally) {
+                        bool follow, Tally& tally) {
   examine(name, tally, [&] {
     const Production production = produce(centerline, {}, production_options);
     if (production.result.is_sound()) {
-      mesh_wall(name, wall_of(production, centerline), options, show, tally);
+      const VolumeResult result = mesh_wall(name, wall_of(production, centerline), options, show, tally);
+      if (follow && result.is_sound()) follow_studies(name, centerline, result.mesh, tally);
     } else {
       ++tally.unsound_surfaces;
     }
@@ -135,7 +171,7 @@ void examine_file(const std::string& path, const Settings& settings, Tally& tall
       }
     }
     examine_centerline(name, load_centerline(path).cleaned.centerline, settings.production, settings.volume, true,
-                       tally);
+                       settings.follow, tally);
   } catch (const std::exception& error) {
     std::printf("| %s | not read: %s |\n", path.c_str(), error.what());
   }
@@ -156,6 +192,8 @@ int main(int argc, char** argv) {
     const std::string word = argv[i];
     if (word == "--all") {
       settings.all = true;
+    } else if (word == "--follow") {
+      settings.follow = true;
     } else if (word == "--rotate") {
       settings.rotate = true;
     } else if (word == "--round") {
@@ -180,7 +218,8 @@ int main(int argc, char** argv) {
           production.growth.open_ends = {};
         }
         examine_centerline("plausible_" + std::to_string(seed), testing::plausible_tree(seed), production,
-                           settings.rotate ? rotated_volume(seed) : settings.volume, settings.all, tally);
+                           settings.rotate ? rotated_volume(seed) : settings.volume, settings.all, settings.follow,
+                           tally);
       }
       i += 2;
     } else {
@@ -191,5 +230,10 @@ int main(int argc, char** argv) {
       "\n%zu cases, %zu surfaces not sound, %zu meshes refused, %zu of them wrong; least angle %.2f degrees; %.1f s of "
       "CPU\n",
       tally.cases, tally.unsound_surfaces, tally.refused, tally.failed, tally.least_dihedral, tally.seconds);
+  if (tally.studies > 0)
+    std::printf(
+        "%zu studies, %zu not followed, %zu of them because cells turn over within a sound boundary; least angle "
+        "of the others %.2f degrees\n",
+        tally.studies, tally.not_followed, tally.only_inverted, tally.least_followed);
   return tally.failed > 0 ? 1 : 0;
 }

@@ -1,7 +1,11 @@
+#include "vmesh/solid/followed_volume.h"
+
 #include <gtest/gtest.h>
 
+#include "vmesh/solid/volume_check.h"
 #include "vmesh/surface/followed_surface.h"
 
+#include "random_vessels.h"
 #include "vessels.h"
 
 namespace vmesh {
@@ -37,6 +41,65 @@ TEST(FollowedVolume, IsNotTornBetweenBranches) {
       EXPECT_LT((moved[1] - moved[0]).norm(), 20 * kApart) << x << " " << z;
     }
   }
+}
+
+/// Corners of the boundary's triangles: of the wall, and of caps within the rings of layers.
+std::vector<char> on_triangles_outside(const VolumeMesh& mesh) {
+  std::vector<char> is_on(mesh.points.size(), 0);
+  for (const BoundaryFace& face : mesh.boundary) {
+    for (std::size_t i = 0; face.is_triangle() && i < 3; ++i) is_on[face.corners[i]] = 1;
+  }
+  return is_on;
+}
+
+// Edits after which cells are turned over if every point goes its own way.
+TEST(FollowedVolume, CellsDoNotTurnOverBetweenWallsThatDoNotCross) {
+  if (!can_mesh_lumen()) GTEST_SKIP() << "built without TetGen";
+  struct Study {
+    std::uint32_t seed;
+    Index node;
+    double share;
+  };
+  for (const auto& [seed, node, share] : {Study{30002, 10, -0.5}, Study{30008, 27, 0.5}, Study{30013, 19, -0.5}}) {
+    const Centerline centerline = plausible_tree(seed);
+    VolumeMesh mesh = make_volume(grown_wall(centerline)).mesh;
+    CenterlineEdit edit;
+    edit.radius = {{node, 8 * centerline.node(node).radius, share}};
+    const std::vector<Vec3> alone = follow_edit_within(mesh.points, centerline, edit);
+    const std::vector<Vec3> moved = follow_edit(mesh, centerline, edit);
+    const std::vector<char> is_outside = on_triangles_outside(mesh);
+    ASSERT_EQ(moved.size(), alone.size());
+    for (std::size_t v = 0; v < moved.size(); ++v) {
+      if (is_outside[v]) {
+        EXPECT_EQ(moved[v], alone[v]) << v;
+      }
+    }
+    mesh.points = alone;
+    EXPECT_GT(inverted_cells(mesh), 0u) << seed;
+    mesh.points = moved;
+    EXPECT_EQ(inverted_cells(mesh), 0u) << seed;
+    EXPECT_TRUE(find_volume_defects(mesh).empty()) << seed;
+  }
+}
+
+TEST(FollowedVolume, IsThatOfItsPointsWhereNothingTurnsOver) {
+  const Centerline centerline = bifurcation();
+  const VolumeMesh mesh = make_volume(grown_wall(centerline), {.shell = {.count = 2}, .shell_only = true}).mesh;
+  CenterlineEdit edit;
+  edit.radius = {{2, 8, -0.4}};
+  EXPECT_EQ(follow_edit(mesh, centerline, edit), follow_edit_within(mesh.points, centerline, edit));
+}
+
+// The wall of a vessel cannot follow into itself.
+TEST(FollowedVolume, WhatCannotBeMendedGoesByItsPoints) {
+  const Centerline corner = {{{{0, 0, 0}, 2}, {{0, 0, 10}, 2}, {{10, 0, 10}, 2}}, {{0, 1}, {1, 2}}};
+  VolumeMesh mesh = make_volume(grown_wall(corner), {.shell = {.count = 2}, .shell_only = true}).mesh;
+  CenterlineEdit edit;
+  edit.radius = {{1, 16, 3}};
+  const std::vector<Vec3> moved = follow_edit(mesh, corner, edit);
+  EXPECT_EQ(moved, follow_edit_within(mesh.points, corner, edit));
+  mesh.points = moved;
+  EXPECT_GT(inverted_cells(mesh), 0u);
 }
 
 }  // namespace

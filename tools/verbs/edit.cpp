@@ -7,6 +7,7 @@
 #include "vmesh/io/volume_io.h"
 #include "vmesh/mesh/topology.h"
 #include "vmesh/mesh/triangle_quality.h"
+#include "vmesh/solid/followed_volume.h"
 #include "vmesh/solid/volume_check.h"
 #include "vmesh/surface/followed_surface.h"
 
@@ -129,7 +130,7 @@ struct Followed {
 Followed follow_volume(const EditArguments& arguments, const Centerline& centerline, Console& console) {
   LoadedVolume volume = load_volume(arguments.follow.path, console);
   VolumeMesh& mesh = volume.mesh;
-  mesh.points = follow_edit_within(mesh.points, centerline, arguments.edit);
+  mesh.points = follow_edit(mesh, centerline, arguments.edit);
   Followed followed;
   for (const VolumeDefect& defect : find_volume_defects(mesh)) followed.problems.push_back(defect.message);
   followed.write = [&arguments, volume = std::move(volume)](const std::string& options) {

@@ -22,6 +22,11 @@ void check_followable(const CenterlineEdit& edit) {
     throw InvalidInput("a surface cannot follow when branches are removed; grow one around the edited centerline");
 }
 
+void check_edit_within(const Centerline& centerline, const CenterlineEdit& edit) {
+  check_followable(edit);
+  if (centerline.nodes().empty()) throw InvalidInput("there are no vessels for the points to follow");
+}
+
 class BlendedEdit {
  public:
   BlendedEdit(const Centerline& centerline, const CenterlineEdit& edit)
@@ -36,19 +41,18 @@ class BlendedEdit {
   }
 
   Vec3 moved(const Vec3& p) {
-    find_places(p);
-    const Place& nearest = *std::min_element(places_.begin(), places_.end(),
-                                             [](const Place& a, const Place& b) { return a.radii < b.radii; });
     Vec3 sum = Vec3::Zero();
-    double weights = 0;
-    for (const Place& place : places_) {
-      const double closeness = 1 - (place.radii - nearest.radii) / kBlendRadii;
-      if (!(closeness > 0) || !meet(nearest.branch, place.branch)) continue;
-      const double weight = closeness * closeness;
+    const double weights = visit_weighted(p, [&](const Place& place, double weight) {
       sum += weight * (radius_.factor(place.cone, place.t) - 1) * (p - relations_.axis_point(place.cone, place.t));
-      weights += weight;
-    }
+    });
     return scale_ * (p + sum / weights);
+  }
+
+  double widening(const Vec3& p) {
+    double sum = 0;
+    const double weights = visit_weighted(
+        p, [&](const Place& place, double weight) { sum += weight * radius_.factor(place.cone, place.t); });
+    return scale_ * sum / weights;
   }
 
  private:
@@ -57,6 +61,23 @@ class BlendedEdit {
     Index branch, cone;
     double t, radii;
   };
+
+  // Calls visit(place, weight) for the places that count at a point; returns the sum of weights.
+  template <class Visit>
+  double visit_weighted(const Vec3& p, const Visit& visit) {
+    find_places(p);
+    const Place& nearest = *std::min_element(places_.begin(), places_.end(),
+                                             [](const Place& a, const Place& b) { return a.radii < b.radii; });
+    double weights = 0;
+    for (const Place& place : places_) {
+      const double closeness = 1 - (place.radii - nearest.radii) / kBlendRadii;
+      if (!(closeness > 0) || !meet(nearest.branch, place.branch)) continue;
+      const double weight = closeness * closeness;
+      visit(place, weight);
+      weights += weight;
+    }
+    return weights;
+  }
 
   static std::vector<std::array<Index, 2>> ends_of_branches(const Centerline& centerline) {
     const BranchTable branches(centerline);
@@ -141,13 +162,22 @@ std::vector<Vec3> follow_edit(const std::vector<Vec3>& vertices, const std::vect
 
 std::vector<Vec3> follow_edit_within(const std::vector<Vec3>& points, const Centerline& centerline,
                                      const CenterlineEdit& edit) {
-  check_followable(edit);
-  if (centerline.nodes().empty()) throw InvalidInput("there are no vessels for the points to follow");
+  check_edit_within(centerline, edit);
   BlendedEdit blended(centerline, edit);
   std::vector<Vec3> moved;
   moved.reserve(points.size());
   for (const Vec3& p : points) moved.push_back(blended.moved(p));
   return moved;
+}
+
+std::vector<double> widening_within(const std::vector<Vec3>& points, const Centerline& centerline,
+                                    const CenterlineEdit& edit) {
+  check_edit_within(centerline, edit);
+  BlendedEdit blended(centerline, edit);
+  std::vector<double> widening;
+  widening.reserve(points.size());
+  for (const Vec3& p : points) widening.push_back(blended.widening(p));
+  return widening;
 }
 
 }  // namespace vmesh

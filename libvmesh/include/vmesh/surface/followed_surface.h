@@ -20,4 +20,8 @@ std::vector<Vec3> follow_edit(const std::vector<Vec3>& vertices, const std::vect
 std::vector<Vec3> follow_edit_within(const std::vector<Vec3>& points, const Centerline& centerline,
                                      const CenterlineEdit& edit);
 
+/// By which lengths across the vessels change at these points then, `scale` included. Throws as follow_edit_within().
+std::vector<double> widening_within(const std::vector<Vec3>& points, const Centerline& centerline,
+                                    const CenterlineEdit& edit);
+
 }  // namespace vmesh
