@@ -45,7 +45,7 @@ class PieceGrower {
         options_(options),
         finish_(finish),
         progress_(progress),
-        context_{tubes_, open, options_, ask_, finish.limit},
+        context_{tubes_, open, options_, ask_, field.relations().blend() > 0 ? finish.limit : ErrorLimit{}},
         division_(divide(tubes_, options)) {}
 
   std::vector<std::pair<Index, Index>> run(GenerateResult& result) {

@@ -65,7 +65,8 @@ struct PieceContext {
   const std::vector<char>& open;  ///< for every node, whether the surface is to be open there
   const GenerateOptions& options;
   const Progress& progress;
-  ErrorLimit refined_to = {};  ///< what the finished surface is refined to, if set
+  ErrorLimit refined_to = {};  ///< what the rounded surface is refined to later; not set where it has creases: on them
+                               ///< edges are to lie, not to be short
 };
 
 /// Makes a piece on a ladder of kRungs rungs, cheapest first: the piece as planned; rings around its faults left to

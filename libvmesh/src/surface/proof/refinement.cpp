@@ -31,12 +31,14 @@ constexpr int kImprovements = 3;      // passes of flips and moves after splits
 // Of the square root of limit times radius, which edges of even surfaces have about three times: no edge becomes
 // shorter.
 constexpr double kShortest = 0.3;
-constexpr double kTolerance = 1e-3;   // radii, of vertices on the boundary
-constexpr double kLeastGain = 1e-3;   // of skewness
-constexpr double kRounder = 0.03;     // relative, of energy; a smaller gain is not worth the proofs and the way on
+constexpr double kTolerance = 1e-3;  // radii, of vertices on the boundary
+constexpr double kLeastGain = 1e-3;  // of skewness
+// Relative gain of energy, and share of the most of a change of height, that are worth a move and the proofs after it;
+// at creases, where the triangles that are proven are hard to find, smaller ones are.
+constexpr double kRounder = 0.03, kRounderAtCreases = 1e-3;
+constexpr double kWorthALift = 0.2, kWorthALiftAtCreases = 0.05;
 constexpr double kLongestMove = 0.3;  // in edges
 constexpr double kRound = 0.5;        // skewness up to which triangles may become worse for the sake of balance
-constexpr double kWorthALift = 0.2;   // of the most, a change of height
 constexpr double kNearEnd = 0.2;  // share of an edge from its end within which its end is moved onto a crease instead
 constexpr double kSlides[] = {0.5, 0.4, 0.6};  // where edges are divided
 
@@ -398,8 +400,8 @@ class Refinement {
       const bool is_lower = on_crease && height > most && target.sample.distance < 0.9 * height;
       const Step step = mesh_.moving(v, finished_vertex(target, field_));
       const double worst = std::max(worst_now(step), kRound);
-      const bool is_rounder = energy(step) < (1 - kRounder) * shape.value;
-      const bool is_lifted = !crease_at_[v] && std::abs(lift - height) > kWorthALift * most;
+      const bool is_rounder = energy(step) < (1 - rounder_) * shape.value;
+      const bool is_lifted = !crease_at_[v] && std::abs(lift - height) > worth_a_lift_ * most;
       if (!(is_rounder || is_lifted || is_lower) || worst_skewness(step) > worst || !stays_upright(step, upright))
         continue;
       if (off_around(v, target.position) > std::max(kWorthAProof * 0.9, off_now)) continue;
@@ -450,6 +452,8 @@ class Refinement {
   FinishedSurface& surface_;
   const VesselField& field_;
   const bool has_creases_ = field_.relations().blend() == 0;
+  const double rounder_ = has_creases_ ? kRounderAtCreases : kRounder;
+  const double worth_a_lift_ = has_creases_ ? kWorthALiftAtCreases : kWorthALift;
   const RefinementGoal& goal_;
   const std::vector<HardPlace>& hard_;
   const Progress& progress_;
