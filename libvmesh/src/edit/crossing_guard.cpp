@@ -7,7 +7,6 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kMostLatest = 32;  // faces outside any layer, tested one by one; idle 22 to 45
 // Each part has its own box: the box of a whole oblique axis would be mostly empty; idle 6 to 11.
 constexpr int kPartsOfLine = 8;
 // Derived: relative rounding of an interpolated point, a few units in the last place.
@@ -22,6 +21,16 @@ std::pair<Vec3, Vec3> box_of(const std::array<Vec3, 3>& points) {
 
 bool are_apart(const Vec3& low, const Vec3& high, const Vec3& other_low, const Vec3& other_high) {
   return (low.array() > other_high.array()).any() || (other_low.array() > high.array()).any();
+}
+
+bool holds(const BoxTree::Box& box, const Vec3& low, const Vec3& high) {
+  return (box.low.array() <= low.array()).all() && (high.array() <= box.high.array()).all();
+}
+
+BoxTree::Box roomy_box(const PlacedFace& face) {
+  const auto [low, high] = box_of(face.points);
+  const double room = kRoom * (high - low).norm();
+  return {low.array() - room, high.array() + room};
 }
 
 bool cross_each_other(const std::vector<PlacedFace>& faces) {
@@ -48,48 +57,29 @@ CrossingGuard::CrossingGuard(std::size_t faces, FaceLookup face_at, std::vector<
     }
   }
   axis_tree_ = BoxTree(low, high);
-  std::vector<Entry> entries;
+  std::vector<ChangingBoxTree::Item> items;
   for (Index f = 0; f < faces; ++f) {
-    if (renew_box(f)) entries.push_back({f, box_[f].number});
+    if (const std::optional<PlacedFace> face = face_at_(f)) items.push_back({f, roomy_box(*face)});
   }
-  add_layer(std::move(entries));
-}
-
-// Whether the face has got a new box, as it is not inside its old one.
-bool CrossingGuard::renew_box(Index f) {
-  const std::optional<PlacedFace> face = face_at_(f);
-  if (!face) return false;
-  if (f >= box_.size()) box_.resize(f + 1);
-  Box& box = box_[f];
-  const auto [low, high] = box_of(face->points);
-  if ((box.low.array() <= low.array()).all() && (high.array() <= box.high.array()).all()) return false;
-  const double room = kRoom * (high - low).norm();
-  box = {low.array() - room, high.array() + room, next_number_++};
-  return true;
+  boxes_ = ChangingBoxTree(items);
 }
 
 void CrossingGuard::touch(Index f) {
-  if (!renew_box(f)) return;
-  latest_.push_back({f, box_[f].number});
-  if (latest_.size() < kMostLatest) return;
-  add_layer(std::move(latest_));
-  latest_.clear();
+  const std::optional<PlacedFace> face = face_at_(f);
+  if (!face) return;
+  const auto [low, high] = box_of(face->points);
+  if (boxes_.has(f) && holds(boxes_.box(f), low, high)) return;
+  boxes_.set(f, roomy_box(*face));
+  if (boxes_.changes() > boxes_.size()) make_anew();
 }
 
-void CrossingGuard::add_layer(std::vector<Entry> entries) {
-  while (!layers_.empty() && layers_.back().entries.size() < 2 * entries.size()) {
-    const std::vector<Entry>& last = layers_.back().entries;
-    entries.insert(entries.end(), last.begin(), last.end());
-    layers_.pop_back();
-  }
-  std::erase_if(entries, [&](const Entry& entry) { return !has_box(entry) || !face_at_(entry.face); });
-  std::vector<Vec3> low, high;
-  for (const Entry& entry : entries) {
-    low.push_back(box_[entry.face].low);
-    high.push_back(box_[entry.face].high);
-  }
-  BoxTree tree(low, high);
-  layers_.push_back({std::move(entries), std::move(tree)});
+// Without the faces that have been removed.
+void CrossingGuard::make_anew() {
+  std::vector<ChangingBoxTree::Item> items;
+  boxes_.visit([&](Index f, const BoxTree::Box& box) {
+    if (face_at_(f)) items.push_back({f, box});
+  });
+  boxes_ = ChangingBoxTree(items);
 }
 
 bool CrossingGuard::allows(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const {
@@ -132,29 +122,18 @@ bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std
     low = low.cwiseMin(box.first);
     high = high.cwiseMax(box.second);
   }
-  bool crossed = false;
-  const auto look_at = [&](const Entry& entry) {
-    if (crossed || !has_box(entry)) return;
-    const Box& room = box_[entry.face];
-    if (are_apart(room.low, room.high, low, high)) return;
-    const std::optional<PlacedFace> other = face_at_(entry.face);
-    if (!other) return;
+  return boxes_.any_overlapping(low, high, [&](Index f) {
+    if (std::find(gone.begin(), gone.end(), f) != gone.end()) return false;
+    const std::optional<PlacedFace> other = face_at_(f);
+    if (!other) return false;
     const auto other_box = box_of(other->points);
     const Vec3 &other_low = other_box.first, &other_high = other_box.second;
-    if (are_apart(other_low, other_high, low, high) || std::find(gone.begin(), gone.end(), entry.face) != gone.end() ||
-        is_degenerate(*other))
-      return;
-    crossed = std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
+    if (are_apart(other_low, other_high, low, high) || is_degenerate(*other)) return false;
+    return std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
       const auto box = box_of(face.points);
       return !are_apart(other_low, other_high, box.first, box.second) && intersect(face, *other);
     });
-  };
-  for (const Entry& entry : latest_) look_at(entry);
-  for (const Layer& layer : layers_) {
-    if (crossed) break;
-    layer.tree.visit_overlapping(low, high, [&](Index i) { look_at(layer.entries[i]); });
-  }
-  return crossed;
+  });
 }
 
 std::vector<std::pair<Index, Index>> crossing_pairs(const std::vector<Vec3>& positions,
