@@ -11,26 +11,13 @@ namespace {
 constexpr int kPartsOfLine = 8;
 // Derived: relative rounding of an interpolated point, a few units in the last place.
 constexpr double kRounding = 1e-15;
-// Margin around a face in its box, relative to the diagonal of the face's own bounds; idle 0.17 to 0.35.
-constexpr double kRoom = 0.25;
+// Changes, relative to the number of faces, after which the tree of boxes is made anew; that takes as long as about ten
+// changes of each.
+constexpr std::size_t kChanges = 8;
 
-std::pair<Vec3, Vec3> box_of(const std::array<Vec3, 3>& points) {
+BoxTree::Box box_of(const std::array<Vec3, 3>& points) {
   const auto& [a, b, c] = points;
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
-}
-
-bool are_apart(const Vec3& low, const Vec3& high, const Vec3& other_low, const Vec3& other_high) {
-  return (low.array() > other_high.array()).any() || (other_low.array() > high.array()).any();
-}
-
-bool holds(const BoxTree::Box& box, const Vec3& low, const Vec3& high) {
-  return (box.low.array() <= low.array()).all() && (high.array() <= box.high.array()).all();
-}
-
-BoxTree::Box roomy_box(const PlacedFace& face) {
-  const auto [low, high] = box_of(face.points);
-  const double room = kRoom * (high - low).norm();
-  return {low.array() - room, high.array() + room};
 }
 
 bool cross_each_other(const std::vector<PlacedFace>& faces) {
@@ -59,7 +46,7 @@ CrossingGuard::CrossingGuard(std::size_t faces, FaceLookup face_at, std::vector<
   axis_tree_ = BoxTree(low, high);
   std::vector<ChangingBoxTree::Item> items;
   for (Index f = 0; f < faces; ++f) {
-    if (const std::optional<PlacedFace> face = face_at_(f)) items.push_back({f, roomy_box(*face)});
+    if (const std::optional<PlacedFace> face = face_at_(f)) items.push_back({f, box_of(face->points)});
   }
   boxes_ = ChangingBoxTree(items);
 }
@@ -67,10 +54,8 @@ CrossingGuard::CrossingGuard(std::size_t faces, FaceLookup face_at, std::vector<
 void CrossingGuard::touch(Index f) {
   const std::optional<PlacedFace> face = face_at_(f);
   if (!face) return;
-  const auto [low, high] = box_of(face->points);
-  if (boxes_.has(f) && holds(boxes_.box(f), low, high)) return;
-  boxes_.set(f, roomy_box(*face));
-  if (boxes_.changes() > boxes_.size()) make_anew();
+  boxes_.set(f, box_of(face->points));
+  if (boxes_.changes() > kChanges * boxes_.size()) make_anew();
 }
 
 // Without the faces that have been removed.
@@ -115,24 +100,20 @@ bool CrossingGuard::cross_axes(const std::vector<PlacedFace>& faces, const std::
 
 bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const {
   if (faces.empty()) return false;
-  auto around = box_of(faces.front().points);
-  Vec3 &low = around.first, &high = around.second;
-  for (const PlacedFace& face : faces) {
-    const auto box = box_of(face.points);
-    low = low.cwiseMin(box.first);
-    high = high.cwiseMax(box.second);
-  }
-  return boxes_.any_overlapping(low, high, [&](Index f) {
+  std::vector<BoxTree::Box> boxes;
+  boxes.reserve(faces.size());
+  for (const PlacedFace& face : faces) boxes.push_back(box_of(face.points));
+  BoxTree::Box around = boxes.front();
+  for (const auto& [low, high] : boxes) around = {around.low.cwiseMin(low), around.high.cwiseMax(high)};
+  return boxes_.any_overlapping(around.low, around.high, [&](Index f) {
     if (std::find(gone.begin(), gone.end(), f) != gone.end()) return false;
     const std::optional<PlacedFace> other = face_at_(f);
-    if (!other) return false;
-    const auto other_box = box_of(other->points);
-    const Vec3 &other_low = other_box.first, &other_high = other_box.second;
-    if (are_apart(other_low, other_high, low, high) || is_degenerate(*other)) return false;
-    return std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
-      const auto box = box_of(face.points);
-      return !are_apart(other_low, other_high, box.first, box.second) && intersect(face, *other);
-    });
+    if (!other || is_degenerate(*other)) return false;
+    const BoxTree::Box box = box_of(other->points);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (boxes[i].overlaps(box.low, box.high) && intersect(faces[i], *other)) return true;
+    }
+    return false;
   });
 }
 
@@ -145,8 +126,8 @@ std::vector<std::pair<Index, Index>> crossing_pairs(const std::vector<Vec3>& pos
   };
   std::vector<Vec3> low, high;
   for (const Index f : changed) {
-    low.push_back(box(f).first);
-    high.push_back(box(f).second);
+    low.push_back(box(f).low);
+    high.push_back(box(f).high);
   }
   const BoxTree tree(low, high);
   TriMesh near;
@@ -155,7 +136,7 @@ std::vector<std::pair<Index, Index>> crossing_pairs(const std::vector<Vec3>& pos
     Triangle face = faces[f];
     if (face[0] == kNone) continue;
     bool meets = false;
-    tree.visit_overlapping(box(f).first, box(f).second, [&](Index) { meets = true; });
+    tree.visit_overlapping(box(f).low, box(f).high, [&](Index) { meets = true; });
     if (!meets) continue;
     for (Index& v : face) {
       if (number[v] == kNone) {
