@@ -11,8 +11,7 @@ namespace {
 constexpr int kPartsOfLine = 8;
 // Derived: relative rounding of an interpolated point, a few units in the last place.
 constexpr double kRounding = 1e-15;
-// Changes, relative to the number of faces, after which the tree of boxes is made anew; that takes as long as about ten
-// changes of each.
+// Changes, relative to the number of faces, after which the tree of boxes is made anew. Not surveyed.
 constexpr std::size_t kChanges = 8;
 
 BoxTree::Box box_of(const std::array<Vec3, 3>& points) {
