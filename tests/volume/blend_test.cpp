@@ -64,6 +64,31 @@ TEST(Blend, NeverLeavesThePlainUnionAndNeverExceedsItsWidth) {
   EXPECT_GT(blended_points, 1000);
 }
 
+// So many arms that queries beside a stretch of an axis know which cones are near; global ones look in the whole tree.
+TEST(Blend, IsTheSameForLocalQueriesAroundANodeOfManyBranches) {
+  Draw draw(59);
+  CenterlineBuilder star;
+  const Index center = star.add({0, 0, 0}, 0.5);
+  for (int i = 0; i < 300; ++i) star.add(draw.uniform(2, 12) * draw.direction(), draw.uniform(0.1, 0.6), center);
+  const Centerline centerline = star.build();
+  const VesselField field(centerline, 0.5);
+  int blended = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const auto hint = draw.below(static_cast<Index>(field.relations().cone_count()));
+    ASSERT_EQ(field.relations().local_cones(hint).size(), 300u);
+    const double t = draw.uniform(-0.1, 1.1);
+    const Vec3 axis = field.relations().axis_point(hint, 1) - field.relations().axis_point(hint, 0);
+    const Vec3 p =
+        field.relations().axis_point(hint, 0) + t * axis + draw.uniform(0, 0.9) * draw.across(axis.normalized());
+    const FieldSample local = field.sample(p, hint), global = field.sample_global(p);
+    EXPECT_EQ(local.distance, global.distance);
+    EXPECT_EQ(local.gradient, global.gradient);
+    EXPECT_EQ(local.cone, global.cone);
+    blended += local.distance < field.sample_cone(p, local.cone).distance;
+  }
+  EXPECT_GT(blended, 400);
+}
+
 TEST(Blend, VanishesWithItsParameter) {
   Draw draw(52);
   for (int trial = 0; trial < 20; ++trial) {

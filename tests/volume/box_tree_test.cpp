@@ -1,9 +1,12 @@
 #include "vmesh/core/box_tree.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
+
+#include "vmesh/core/changing_box_tree.h"
 
 #include "draw.h"
 
@@ -175,6 +178,69 @@ TEST(BoxTree, VisitsNothingWhenEmpty) {
     EXPECT_TRUE(overlapping(tree, {-1, -1, -1}, {1, 1, 1}).empty());
     tree.visit_pairs([](Index, Index) { FAIL(); });
   }
+}
+
+std::vector<Index> overlapping(const ChangingBoxTree& tree, const BoxTree::Box& box) {
+  std::vector<Index> found;
+  tree.any_overlapping(box.low, box.high, [&](Index i) {
+    found.push_back(i);
+    return false;
+  });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+BoxTree::Box random_box(Draw& draw, double size) {
+  const Vec3 low = draw.in_cube(10);
+  return {low, low + Vec3(draw.uniform(0, size), draw.uniform(0, size), draw.uniform(0, size))};
+}
+
+// Boxes of every second number from the start; then some move, near or far, and others are added.
+TEST(ChangingBoxTree, FindsExactlyWhatOverlapsWhileBoxesChange) {
+  Draw draw(27);
+  for (const Index count : {0u, 1u, 2u, 3u, 400u}) {
+    std::vector<std::optional<BoxTree::Box>> boxes(2 * count + 300);
+    std::vector<ChangingBoxTree::Item> items;
+    for (Index i = 0; i < count; ++i) {
+      boxes[2 * i] = random_box(draw, 3);
+      items.push_back({2 * i, *boxes[2 * i]});
+    }
+    ChangingBoxTree tree(items);
+    EXPECT_EQ(tree.size(), count);
+    for (std::size_t change = 0; change < 1000; ++change) {
+      EXPECT_EQ(tree.changes(), change);
+      const Index item = draw.below(static_cast<Index>(boxes.size()));
+      EXPECT_EQ(tree.has(item), boxes[item].has_value());
+      if (boxes[item] && draw.chance(0.7)) {
+        const Vec3 way = draw.uniform(0, 0.5) * draw.direction();
+        boxes[item] = {boxes[item]->low + way, boxes[item]->high + way};
+      } else {
+        boxes[item] = random_box(draw, 3);
+      }
+      tree.set(item, *boxes[item]);
+      EXPECT_EQ(tree.box(item).low, boxes[item]->low);
+      EXPECT_EQ(tree.box(item).high, boxes[item]->high);
+      const BoxTree::Box sought = random_box(draw, change % 2 == 0 ? 0 : 5);
+      std::vector<Index> expected;
+      for (Index i = 0; i < boxes.size(); ++i) {
+        if (boxes[i] && boxes[i]->overlaps(sought.low, sought.high)) expected.push_back(i);
+      }
+      EXPECT_EQ(overlapping(tree, sought), expected);
+    }
+    EXPECT_EQ(tree.size(), static_cast<std::size_t>(std::count_if(boxes.begin(), boxes.end(),
+                                                                  [](const auto& box) { return box.has_value(); })));
+  }
+}
+
+TEST(ChangingBoxTree, LooksNoFurtherThanTheFirstItemThatIsSought) {
+  const BoxTree::Box box{Vec3::Zero(), Vec3::Ones()};
+  const ChangingBoxTree tree({{0, box}, {1, box}, {2, box}});
+  int looked = 0;
+  const auto first = [&](Index) { return ++looked == 2; };
+  EXPECT_TRUE(tree.any_overlapping(box.low, box.high, first));
+  EXPECT_EQ(looked, 2);
+  EXPECT_FALSE(tree.any_overlapping(Vec3::Constant(2), Vec3::Constant(3), first));
+  EXPECT_EQ(looked, 2);
 }
 
 }  // namespace

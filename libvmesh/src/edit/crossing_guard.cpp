@@ -7,21 +7,16 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kMostLatest = 32;  // faces outside any layer, tested one by one; idle 22 to 45
 // Each part has its own box: the box of a whole oblique axis would be mostly empty; idle 6 to 11.
 constexpr int kPartsOfLine = 8;
 // Derived: relative rounding of an interpolated point, a few units in the last place.
 constexpr double kRounding = 1e-15;
-// Margin around a face in its box, relative to the diagonal of the face's own bounds; idle 0.17 to 0.35.
-constexpr double kRoom = 0.25;
+// Changes, relative to the number of faces, after which the tree of boxes is made anew. Not surveyed.
+constexpr std::size_t kChanges = 8;
 
-std::pair<Vec3, Vec3> box_of(const std::array<Vec3, 3>& points) {
+BoxTree::Box box_of(const std::array<Vec3, 3>& points) {
   const auto& [a, b, c] = points;
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
-}
-
-bool are_apart(const Vec3& low, const Vec3& high, const Vec3& other_low, const Vec3& other_high) {
-  return (low.array() > other_high.array()).any() || (other_low.array() > high.array()).any();
 }
 
 bool cross_each_other(const std::vector<PlacedFace>& faces) {
@@ -48,48 +43,27 @@ CrossingGuard::CrossingGuard(std::size_t faces, FaceLookup face_at, std::vector<
     }
   }
   axis_tree_ = BoxTree(low, high);
-  std::vector<Entry> entries;
+  std::vector<ChangingBoxTree::Item> items;
   for (Index f = 0; f < faces; ++f) {
-    if (renew_box(f)) entries.push_back({f, box_[f].number});
+    if (const std::optional<PlacedFace> face = face_at_(f)) items.push_back({f, box_of(face->points)});
   }
-  add_layer(std::move(entries));
-}
-
-// Whether the face has got a new box, as it is not inside its old one.
-bool CrossingGuard::renew_box(Index f) {
-  const std::optional<PlacedFace> face = face_at_(f);
-  if (!face) return false;
-  if (f >= box_.size()) box_.resize(f + 1);
-  Box& box = box_[f];
-  const auto [low, high] = box_of(face->points);
-  if ((box.low.array() <= low.array()).all() && (high.array() <= box.high.array()).all()) return false;
-  const double room = kRoom * (high - low).norm();
-  box = {low.array() - room, high.array() + room, next_number_++};
-  return true;
+  boxes_ = ChangingBoxTree(items);
 }
 
 void CrossingGuard::touch(Index f) {
-  if (!renew_box(f)) return;
-  latest_.push_back({f, box_[f].number});
-  if (latest_.size() < kMostLatest) return;
-  add_layer(std::move(latest_));
-  latest_.clear();
+  const std::optional<PlacedFace> face = face_at_(f);
+  if (!face) return;
+  boxes_.set(f, box_of(face->points));
+  if (boxes_.changes() > kChanges * boxes_.size()) make_anew();
 }
 
-void CrossingGuard::add_layer(std::vector<Entry> entries) {
-  while (!layers_.empty() && layers_.back().entries.size() < 2 * entries.size()) {
-    const std::vector<Entry>& last = layers_.back().entries;
-    entries.insert(entries.end(), last.begin(), last.end());
-    layers_.pop_back();
-  }
-  std::erase_if(entries, [&](const Entry& entry) { return !has_box(entry) || !face_at_(entry.face); });
-  std::vector<Vec3> low, high;
-  for (const Entry& entry : entries) {
-    low.push_back(box_[entry.face].low);
-    high.push_back(box_[entry.face].high);
-  }
-  BoxTree tree(low, high);
-  layers_.push_back({std::move(entries), std::move(tree)});
+// Without the faces that have been removed.
+void CrossingGuard::make_anew() {
+  std::vector<ChangingBoxTree::Item> items;
+  boxes_.visit([&](Index f, const BoxTree::Box& box) {
+    if (face_at_(f)) items.push_back({f, box});
+  });
+  boxes_ = ChangingBoxTree(items);
 }
 
 bool CrossingGuard::allows(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const {
@@ -125,36 +99,21 @@ bool CrossingGuard::cross_axes(const std::vector<PlacedFace>& faces, const std::
 
 bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const {
   if (faces.empty()) return false;
-  auto around = box_of(faces.front().points);
-  Vec3 &low = around.first, &high = around.second;
-  for (const PlacedFace& face : faces) {
-    const auto box = box_of(face.points);
-    low = low.cwiseMin(box.first);
-    high = high.cwiseMax(box.second);
-  }
-  bool crossed = false;
-  const auto look_at = [&](const Entry& entry) {
-    if (crossed || !has_box(entry)) return;
-    const Box& room = box_[entry.face];
-    if (are_apart(room.low, room.high, low, high)) return;
-    const std::optional<PlacedFace> other = face_at_(entry.face);
-    if (!other) return;
-    const auto other_box = box_of(other->points);
-    const Vec3 &other_low = other_box.first, &other_high = other_box.second;
-    if (are_apart(other_low, other_high, low, high) || std::find(gone.begin(), gone.end(), entry.face) != gone.end() ||
-        is_degenerate(*other))
-      return;
-    crossed = std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
-      const auto box = box_of(face.points);
-      return !are_apart(other_low, other_high, box.first, box.second) && intersect(face, *other);
-    });
-  };
-  for (const Entry& entry : latest_) look_at(entry);
-  for (const Layer& layer : layers_) {
-    if (crossed) break;
-    layer.tree.visit_overlapping(low, high, [&](Index i) { look_at(layer.entries[i]); });
-  }
-  return crossed;
+  std::vector<BoxTree::Box> boxes;
+  boxes.reserve(faces.size());
+  for (const PlacedFace& face : faces) boxes.push_back(box_of(face.points));
+  BoxTree::Box around = boxes.front();
+  for (const auto& [low, high] : boxes) around = {around.low.cwiseMin(low), around.high.cwiseMax(high)};
+  return boxes_.any_overlapping(around.low, around.high, [&](Index f) {
+    if (std::find(gone.begin(), gone.end(), f) != gone.end()) return false;
+    const std::optional<PlacedFace> other = face_at_(f);
+    if (!other || is_degenerate(*other)) return false;
+    const BoxTree::Box box = box_of(other->points);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (boxes[i].overlaps(box.low, box.high) && intersect(faces[i], *other)) return true;
+    }
+    return false;
+  });
 }
 
 std::vector<std::pair<Index, Index>> crossing_pairs(const std::vector<Vec3>& positions,
@@ -166,8 +125,8 @@ std::vector<std::pair<Index, Index>> crossing_pairs(const std::vector<Vec3>& pos
   };
   std::vector<Vec3> low, high;
   for (const Index f : changed) {
-    low.push_back(box(f).first);
-    high.push_back(box(f).second);
+    low.push_back(box(f).low);
+    high.push_back(box(f).high);
   }
   const BoxTree tree(low, high);
   TriMesh near;
@@ -176,7 +135,7 @@ std::vector<std::pair<Index, Index>> crossing_pairs(const std::vector<Vec3>& pos
     Triangle face = faces[f];
     if (face[0] == kNone) continue;
     bool meets = false;
-    tree.visit_overlapping(box(f).first, box(f).second, [&](Index) { meets = true; });
+    tree.visit_overlapping(box(f).low, box(f).high, [&](Index) { meets = true; });
     if (!meets) continue;
     for (Index& v : face) {
       if (number[v] == kNone) {

@@ -1,6 +1,10 @@
 // How a VesselField finds the cones that matter at a point, along the graph and in space.
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "vmesh/core/ascending.h"
 #include "vmesh/volume/vessel_field.h"
@@ -14,6 +18,13 @@ constexpr double kIndexRounding = 16 * std::numeric_limits<double>::epsilon();
 constexpr double kLongPiece = 2;
 constexpr int kMostPieces = 16;         // of a cone; idle 11 to 22
 constexpr std::size_t kFewCones = 100;  // up to here a linear scan is as fast; measured on stars: 60 to 512 are near
+
+// Of stretches of a hint's axis, in radii: their length, and the distance from its wall up to which points are beside
+// them. In profiles of stars of 250 branches, queries take less than a third of what searches took. Not surveyed.
+constexpr double kStretch = 1, kBeside = 0.25;
+constexpr double kMostStretches = 256;          // of a hint
+constexpr std::size_t kKeptVicinities = 16411;  // by each thread; a prime
+constexpr std::size_t kSpread = 37;             // stretches of a hint that are kept beside each other
 
 // Keeps those of `cones` that are in the ascending list.
 void keep_listed(std::span<const Index> list, std::vector<Index>& cones) {
@@ -66,6 +77,57 @@ void VesselField::local_cones_near(const Vec3& p, Index cone, double limit, std:
   keep_listed(local, near);
 }
 
+// The cones that may be nearest or blended at points beside a stretch of a hint's axis, where very many are local to
+// it.
+struct VesselField::Vicinity {
+  struct Near {
+    Index cone;
+    double distance;  // of `center`, less the widest blend
+  };
+
+  std::uint64_t field = 0;
+  Index hint = kNone;
+  std::size_t stretch = 0, stretches = 1;
+  Vec3 center = Vec3::Zero();
+  std::vector<Near> cones;  // ascending
+};
+
+const VesselField::Vicinity& VesselField::vicinity(Index hint, double t) const {
+  thread_local std::vector<Vicinity> kept(kKeptVicinities);
+  const Cone& own = cones_[hint];
+  const double stretches = std::ceil(own.axis.norm() / (kStretch * max_radius(hint)));
+  const auto count = static_cast<std::size_t>(std::clamp(stretches, 1.0, kMostStretches));
+  const std::size_t stretch = std::min(static_cast<std::size_t>(t * static_cast<double>(count)), count - 1);
+  Vicinity& v = kept[(std::size_t{hint} * kSpread + stretch) % kKeptVicinities];
+  if (v.field == number_ && v.hint == hint && v.stretch == stretch) return v;
+  v.field = number_;
+  v.hint = hint;
+  v.stretch = stretch;
+  v.stretches = count;
+  survey_vicinity(v);
+  return v;
+}
+
+// Distances change by no more than the way from one point to another.
+void VesselField::survey_vicinity(Vicinity& v) const {
+  const Cone& own = cones_[v.hint];
+  const double t0 = static_cast<double>(v.stretch) / static_cast<double>(v.stretches);
+  const double t1 = static_cast<double>(v.stretch + 1) / static_cast<double>(v.stretches);
+  v.center = own.origin + 0.5 * (t0 + t1) * own.axis;
+  const double beside = kBeside * max_radius(v.hint);
+  const double away = 0.5 * (t1 - t0) * own.axis.norm() + max_radius(v.hint) + beside;
+  const double most = away + beside + kIndexRounding * (v.center.norm() + away);
+  thread_local std::vector<Index> near;
+  near.clear();
+  visit_near(v.center, most, [&](Index c) { near.push_back(c); });
+  keep_listed(relations_.local_cones(v.hint), near);
+  v.cones.clear();
+  for (const Index c : near) {
+    const double distance = cones_[c].distance_to(v.center).value - 2 * blend_ * max_radius(c);
+    if (distance <= most) v.cones.push_back({c, distance});
+  }
+}
+
 // Same as blended(p, local_cones(hint), hint).
 FieldSample VesselField::blended_local(const Vec3& p, Index hint) const {
   const std::span<const Index> local = relations_.local_cones(hint);
@@ -73,7 +135,16 @@ FieldSample VesselField::blended_local(const Vec3& p, Index hint) const {
   thread_local std::vector<Index> near;
   near.clear();
   const double rounding = kIndexRounding * p.norm();
-  double limit = cones_[hint].distance_to(p).value + rounding;
+  const Distance own = cones_[hint].distance_to(p);
+  double limit = own.value + rounding;
+  if (own.value <= kBeside * max_radius(hint)) {
+    const Vicinity& v = vicinity(hint, own.t);
+    const double most = limit + (p - v.center).norm() + rounding;
+    for (const auto& [c, distance] : v.cones) {
+      if (distance <= most) near.push_back(c);
+    }
+    return blended(p, near, hint);
+  }
   visit_near(p, limit, [&](Index c) {
     const double value = cones_[c].distance_to(p).value;
     if (value > limit + 2 * blend_ * max_radius(c) || !std::binary_search(local.begin(), local.end(), c)) return;

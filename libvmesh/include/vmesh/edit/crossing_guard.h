@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "vmesh/core/box_tree.h"
+#include "vmesh/core/changing_box_tree.h"
 #include "vmesh/edit/refused_steps.h"
 #include "vmesh/mesh/face_pair.h"
 
 namespace vmesh {
 
 /// Tells whether a step would make faces of a surface cross each other, or cross an axis line that they did not cross
-/// before. Keeps the boxes of all faces in trees; faces that are new or have changed must be announced (touch).
+/// before. Keeps the boxes of all faces in a tree; faces that are new or have changed must be announced (touch).
 class CrossingGuard {
  public:
   using AxisLine = std::array<Vec3, 2>;
@@ -32,32 +33,14 @@ class CrossingGuard {
   const RefusedSteps& refused() const { return refused_; }
 
  private:
-  // A face keeps its box until it leaves it; then it gets a new one.
-  struct Box {
-    Vec3 low = Vec3::Ones(), high = -Vec3::Ones();
-    Index number = kNone;  // boxes are numbered in the order in which they were needed
-  };
-  struct Entry {
-    Index face;
-    Index number;  // of the box; outdated if it is not the face's current one
-  };
-  struct Layer {
-    std::vector<Entry> entries;
-    BoxTree tree;
-  };
-
-  bool renew_box(Index f);
-  void add_layer(std::vector<Entry> entries);
-  bool has_box(const Entry& entry) const { return box_[entry.face].number == entry.number; }
+  void make_anew();
   bool cross_others(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const;
   // Whether one of `faces` meets an axis line that none of `gone` meets.
   bool cross_axes(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const;
 
   FaceLookup face_at_;
-  std::vector<Box> box_;  // of every face
-  Index next_number_ = 0;
-  std::vector<Layer> layers_;  // each less than half as large as the one before
-  std::vector<Entry> latest_;  // not yet in a layer
+  // A face keeps its box until it leaves it; then it gets a new one. Some faces have been removed since.
+  ChangingBoxTree boxes_;
   std::vector<AxisLine> axes_;
   BoxTree axis_tree_;  // of the parts of axis lines
   mutable RefusedSteps refused_;

@@ -108,6 +108,9 @@ class VesselField {
   }
   std::span<Candidate> at_different_places(std::span<Candidate> candidates) const;
   void blend_candidates(const Vec3& p, std::span<Candidate> candidates, FieldSample& sample) const;
+  struct Vicinity;
+  const Vicinity& vicinity(Index hint, double t) const;
+  void survey_vicinity(Vicinity& vicinity) const;
   struct Surroundings;
   const Surroundings& surroundings(Index hint) const;
   void survey(Index hint, Surroundings& surroundings) const;

@@ -64,10 +64,8 @@ BoundSurface::BoundSurface(const VesselField& vessel_field)
     : field(vessel_field), vertex_(mesh.add_property_map<Vertex, BoundVertex>("v:bound").first) {}
 
 bool BoundSurface::is_lid(Face f) const {
-  for (const Vertex v : mesh.vertices_around_face(mesh.halfedge(f))) {
-    if (vertex_[v].role == Role::lid) return true;
-  }
-  return false;
+  const auto [a, b, c] = corners(f);
+  return vertex_[a].role == Role::lid || vertex_[b].role == Role::lid || vertex_[c].role == Role::lid;
 }
 
 void BoundSurface::close_with_lid(const std::vector<Vertex>& loop, const Vec3& center) {

@@ -240,8 +240,8 @@ class Mender {
 
   // Whether the faces around `v`, with `v` at `place`, are near the boundary or hardly farther from it than now.
   bool stays_near(Vertex v, const Vec3& place) const {
-    const double most = std::max(kFarther * error_around(v, mesh_.point(v)), kNear * surface_.radius(v));
-    return error_around(v, place) <= most;
+    const double error = error_around(v, place);
+    return error <= kNear * surface_.radius(v) || error <= kFarther * error_around(v, mesh_.point(v));
   }
 
   // Where `v` ends up with this lift when moved towards `place`.
