@@ -36,6 +36,8 @@ class PieceGrower {
     ErrorLimit limit;     ///< what it is refined to, if set; that of the options is proven piece by piece
     bool may_be_coarser;  ///< whether vertices are left out then
     double elongation;    ///< how long triangles may be then
+    bool has_sizes =
+        true;  ///< whether pieces have the sizes that the limit asks for; if not, another is tried after it
   };
 
   PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
@@ -45,7 +47,7 @@ class PieceGrower {
         options_(options),
         finish_(finish),
         progress_(progress),
-        context_{tubes_, open, options_, ask_, field.relations().blend() > 0 ? finish.limit : ErrorLimit{}},
+        context_{tubes_, open, options_, ask_, finish.has_sizes ? finish.limit : ErrorLimit{}},
         division_(divide(tubes_, options)) {}
 
   std::vector<std::pair<Index, Index>> run(GenerateResult& result) {
@@ -180,7 +182,8 @@ class PieceGrower {
   }
 
   void refine_whole(ErrorSummary& summary) {
-    const RefinementGoal goal{finish_.limit, options_.placement, static_cast<std::size_t>(options_.max_vertices)};
+    const RefinementGoal goal{finish_.limit, options_.placement, static_cast<std::size_t>(options_.max_vertices),
+                              finish_.has_sizes};
     const RefinedError error = refine_to_limit(gathered_, tubes_.field(), goal, progress_);
     summary = error.summary;
     has_met_limit_ = error.is_met;
@@ -352,9 +355,22 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
   even.max_error = {};
   even.elongation = 1;
   GenerateResult refined = result;
-  PieceGrower grower(field, open, even, {options.max_error, may_be_coarser, options.elongation}, progress);
-  std::vector<std::pair<Index, Index>> crossings = grower.run(refined);
-  if (!grower.has_met_limit()) {
+  std::vector<std::pair<Index, Index>> crossings;
+  bool is_met = false;
+  // Not at creases: edges are to lie on them, not to be short.
+  for (const bool has_sizes : {true, false}) {
+    if (is_met || (has_sizes && field.relations().blend() == 0)) continue;
+    GenerateResult grown = result;
+    PieceGrower grower(field, open, even, {options.max_error, may_be_coarser, options.elongation, has_sizes}, progress);
+    std::vector<std::pair<Index, Index>> others = grower.run(grown);
+    is_met = grower.has_met_limit();
+    if (!is_met && !has_sizes && field.relations().blend() > 0 &&
+        refined.error.unproven_faces <= grown.error.unproven_faces)
+      continue;
+    refined = std::move(grown);
+    crossings = std::move(others);
+  }
+  if (!is_met) {
     GenerateResult grown = result;
     VesselField precise = field;
     precise.use_double_precision();

@@ -65,8 +65,7 @@ struct PieceContext {
   const std::vector<char>& open;  ///< for every node, whether the surface is to be open there
   const GenerateOptions& options;
   const Progress& progress;
-  ErrorLimit refined_to = {};  ///< what the rounded surface is refined to later; not set where it has creases: on them
-                               ///< edges are to lie, not to be short
+  ErrorLimit refined_to = {};  ///< what the surface, which has no creases, is refined to later, if set
 };
 
 /// Makes a piece on a ladder of kRungs rungs, cheapest first: the piece as planned; rings around its faults left to

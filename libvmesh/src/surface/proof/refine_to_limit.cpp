@@ -9,7 +9,8 @@
 namespace vmesh {
 namespace {
 
-constexpr double kReach = 1.5;  // of a hard place, in radii
+constexpr double kReach = 1.5;         // of a hard place, in radii
+constexpr std::size_t kHopeful = 200;  // one of so many faces is unproven: another way may be enough
 
 // Takes the next way where one has failed. Returns whether there is any left.
 bool take_next_ways(const VesselField& field, const std::vector<UnprovenPlace>& unproven,
@@ -43,6 +44,7 @@ RefinedError refine_to_limit(FinishedSurface& surface, const VesselField& field,
   for (bool is_first = true;; is_first = false) {
     FinishedSurface refined = first;
     const std::vector<Index> unproven = refine(refined, field, goal, hard, progress);
+    const std::size_t refined_faces = refined.mesh.faces.size();
     ErrorSummary error;
     if (!unproven.empty() || !surface.openings.empty()) error = close_notches(refined, field, goal.limit);
     const bool any_way_left = take_next_ways(field, error.unproven_places, hard);
@@ -51,7 +53,8 @@ RefinedError refine_to_limit(FinishedSurface& surface, const VesselField& field,
       best = {std::move(error), is_met};
       surface = std::move(refined);
     }
-    if (is_met || !any_way_left) return best;
+    const bool is_hopeless = goal.may_give_up && unproven.size() * kHopeful > refined_faces;
+    if (is_met || !any_way_left || is_hopeless) return best;
   }
 }
 

@@ -12,7 +12,8 @@ namespace {
 // How much of a vessel may be cut off, in limits: in balanced placement half of it is outside. The same as that of the
 // edges around a vessel that edge_length_for() gives.
 constexpr double kMostCutOff = 1.5;
-constexpr double kLeastFineness = 0.3;
+// With .3, random trees with valleys that are very sharp were not proven.
+constexpr double kLeastFineness = 0.7;
 
 /// How much is cut off at the middle of edges and faces, by the square of their size, 1/mm: of edges around a vessel
 /// the eighth of its curvature, of faces on a sphere the sixth.
