@@ -9,8 +9,7 @@
 namespace vmesh {
 namespace {
 
-constexpr double kReach = 1.5;         // of a hard place, in radii
-constexpr std::size_t kHopeful = 200;  // one of so many faces is unproven: another way may be enough
+constexpr double kReach = 1.5;  // of a hard place, in radii
 
 // Takes the next way where one has failed. Returns whether there is any left.
 bool take_next_ways(const VesselField& field, const std::vector<UnprovenPlace>& unproven,
@@ -44,7 +43,6 @@ RefinedError refine_to_limit(FinishedSurface& surface, const VesselField& field,
   for (bool is_first = true;; is_first = false) {
     FinishedSurface refined = first;
     const std::vector<Index> unproven = refine(refined, field, goal, hard, progress);
-    const std::size_t refined_faces = refined.mesh.faces.size();
     ErrorSummary error;
     if (!unproven.empty() || !surface.openings.empty()) error = close_notches(refined, field, goal.limit);
     const bool any_way_left = take_next_ways(field, error.unproven_places, hard);
@@ -53,8 +51,7 @@ RefinedError refine_to_limit(FinishedSurface& surface, const VesselField& field,
       best = {std::move(error), is_met};
       surface = std::move(refined);
     }
-    const bool is_hopeless = goal.may_give_up && unproven.size() * kHopeful > refined_faces;
-    if (is_met || !any_way_left || is_hopeless) return best;
+    if (is_met || !any_way_left || goal.usual_way_only) return best;
   }
 }
 

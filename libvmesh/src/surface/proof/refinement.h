@@ -15,7 +15,7 @@ struct RefinementGoal {
   ErrorLimit limit;
   Placement placement = Placement::balanced;  ///< of vertices
   std::size_t most_vertices = 0;
-  bool may_give_up = false;  ///< where the usual way leaves very much unproven: there is another surface to refine
+  bool usual_way_only = false;  ///< there is another surface to refine
 };
 
 /// Adds vertices where the surface is not proven to be within the limit: first where it is farther at the middle of an
