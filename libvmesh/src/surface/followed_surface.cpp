@@ -90,7 +90,7 @@ class BlendedEdit {
   bool meet(Index a, Index b) const {
     if (a == b) return true;
     if (std::max(a, b) >= ends_.size()) return false;  // an isolated node
-    return std::ranges::find_first_of(ends_[a], ends_[b]) != ends_[a].end();
+    return std::find_first_of(ends_[a].begin(), ends_[a].end(), ends_[b].begin(), ends_[b].end()) != ends_[a].end();
   }
 
   BoxTree boxes_of_axes() const {
