@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "solid/layer_columns.h"
+#include "solid/worst_first.h"
 
 namespace vmesh {
 namespace {
@@ -98,19 +100,10 @@ class Improver {
 
   bool is_bad(Index t) const { return cells_.is_there(t) && cells_.shape(cells_[t]) < kGoodShape; }
 
-  // Worst first.
   std::vector<Index> bad_tetrahedra() const {
-    std::vector<std::pair<double, Index>> bad;
-    for (Index t = 0; t < cells_.size(); ++t) {
-      if (!cells_.is_there(t)) continue;
-      const double shape = cells_.shape(cells_[t]);
-      if (shape < kGoodShape) bad.emplace_back(shape, t);
-    }
-    std::sort(bad.begin(), bad.end());
-    std::vector<Index> numbers;
-    numbers.reserve(bad.size());
-    for (const auto& [shape, t] : bad) numbers.push_back(t);
-    return numbers;
+    return worst_first(cells_.size(), kGoodShape, [&](Index t) {
+      return cells_.is_there(t) ? cells_.shape(cells_[t]) : std::numeric_limits<double>::infinity();
+    });
   }
 
   bool improve(Index t) {

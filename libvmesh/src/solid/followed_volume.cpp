@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "vmesh/core/disjoint_sets.h"
 #include "vmesh/mesh/volume_faces.h"
 #include "vmesh/solid/volume_check.h"
 #include "vmesh/surface/followed_surface.h"
@@ -14,36 +15,20 @@
 namespace vmesh {
 namespace {
 
-/// The points of layers over each of the wall.
-class Columns {
- public:
-  explicit Columns(const VolumeMesh& mesh) : root_(mesh.points.size()) {
-    for (Index v = 0; v < root_.size(); ++v) root_[v] = v;
-    for (const Wedge& wedge : mesh.wedges) {
-      for (std::size_t i = 0; i < 3; ++i) join(wedge[i], wedge[i + 3]);
-    }
-    for (Index v = 0; v < root_.size(); ++v) root_[v] = root_of(v);
+/// Of every point of layers, the one of its column with the lowest number: make_volume() numbers those of the wall
+/// first.
+std::vector<Index> roots_of_columns(const VolumeMesh& mesh) {
+  DisjointSets columns(mesh.points.size());
+  for (const Wedge& wedge : mesh.wedges) {
+    for (std::size_t i = 0; i < 3; ++i) columns.join(wedge[i], wedge[i + 3]);
   }
-
-  /// The point of its column with the lowest number: make_volume() numbers those of the wall first.
-  Index root(Index v) const { return root_[v]; }
-
- private:
-  Index root_of(Index v) const {
-    while (root_[v] != v) v = root_[v];
-    return v;
-  }
-  void join(Index a, Index b) {
-    a = root_of(a);
-    b = root_of(b);
-    root_[std::max(a, b)] = std::min(a, b);
-  }
-
-  std::vector<Index> root_;
-};
+  std::vector<Index> roots(mesh.points.size());
+  for (Index v = 0; v < roots.size(); ++v) roots[v] = columns.find(v);
+  return roots;
+}
 
 /// By which the wall turns around the points of columns on it.
-std::vector<Eigen::Quaterniond> turns_at_roots(const VolumeMesh& mesh, const Columns& columns,
+std::vector<Eigen::Quaterniond> turns_at_roots(const VolumeMesh& mesh, const std::vector<Index>& roots,
                                                const std::vector<Vec3>& moved) {
   std::vector<Vec3> before(mesh.points.size(), Vec3::Zero()), after = before;
   const auto area = [](const std::vector<Vec3>& points, const Triangle& face) {
@@ -52,7 +37,7 @@ std::vector<Eigen::Quaterniond> turns_at_roots(const VolumeMesh& mesh, const Col
   for (const Wedge& wedge : mesh.wedges) {
     for (const std::size_t first : {0, 3}) {
       const Triangle face = {wedge[first], wedge[first + 1], wedge[first + 2]};
-      if (std::any_of(face.begin(), face.end(), [&](Index v) { return columns.root(v) != v; })) continue;
+      if (std::any_of(face.begin(), face.end(), [&](Index v) { return roots[v] != v; })) continue;
       const Vec3 was = area(mesh.points, face), is = area(moved, face);
       for (const Index v : face) {
         const double side = before[v].dot(was) < 0 ? -1 : 1;  // of the wall on which the wedge is
@@ -80,11 +65,11 @@ std::vector<char> points_of_sides(const VolumeMesh& mesh) {
 
 /// Where points of layers go with their points of the wall.
 void carry_layers(const VolumeMesh& mesh, const std::vector<double>& widening, std::vector<Vec3>& moved) {
-  const Columns columns(mesh);
+  const std::vector<Index> roots = roots_of_columns(mesh);
   const std::vector<char> is_side = points_of_sides(mesh);
-  const std::vector<Eigen::Quaterniond> turns = turns_at_roots(mesh, columns, moved);
+  const std::vector<Eigen::Quaterniond> turns = turns_at_roots(mesh, roots, moved);
   for (Index v = 0; v < mesh.points.size(); ++v) {
-    const Index root = columns.root(v);
+    const Index root = roots[v];
     if (root == v || is_side[v]) continue;
     moved[v] = moved[root] + turns[root] * (widening[root] * (mesh.points[v] - mesh.points[root]));
   }

@@ -12,6 +12,7 @@
 #include "vmesh/mesh/volume_faces.h"
 
 #include "solid/wedge_jacobian.h"
+#include "solid/worst_first.h"
 
 namespace vmesh {
 namespace {
@@ -142,16 +143,7 @@ class CellMender {
   }
 
   std::vector<Index> bad_among_all() const {
-    std::vector<std::pair<double, Index>> bad;
-    for (Index c = 0; c < cells_.size(); ++c) {
-      const double found = shape(c);
-      if (found < kMendedShape) bad.emplace_back(found, c);
-    }
-    std::sort(bad.begin(), bad.end());
-    std::vector<Index> cells;
-    cells.reserve(bad.size());
-    for (const auto& [found, c] : bad) cells.push_back(c);
-    return cells;
+    return worst_first(cells_.size(), kMendedShape, [&](Index c) { return shape(c); });
   }
 
   void find_kept() {

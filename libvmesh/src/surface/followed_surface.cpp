@@ -22,11 +22,6 @@ void check_followable(const CenterlineEdit& edit) {
     throw InvalidInput("a surface cannot follow when branches are removed; grow one around the edited centerline");
 }
 
-void check_edit_within(const Centerline& centerline, const CenterlineEdit& edit) {
-  check_followable(edit);
-  if (centerline.nodes().empty()) throw InvalidInput("there are no vessels for the points to follow");
-}
-
 class BlendedEdit {
  public:
   BlendedEdit(const Centerline& centerline, const CenterlineEdit& edit)
@@ -138,6 +133,18 @@ class BlendedEdit {
   std::vector<Place> places_;
 };
 
+template <class Value>
+std::vector<Value> at_all(const std::vector<Vec3>& points, const Centerline& centerline, const CenterlineEdit& edit,
+                          Value (BlendedEdit::*value)(const Vec3&)) {
+  check_followable(edit);
+  if (centerline.nodes().empty()) throw InvalidInput("there are no vessels for the points to follow");
+  BlendedEdit blended(centerline, edit);
+  std::vector<Value> values;
+  values.reserve(points.size());
+  for (const Vec3& p : points) values.push_back((blended.*value)(p));
+  return values;
+}
+
 }  // namespace
 
 std::vector<Vec3> follow_edit(const std::vector<Vec3>& vertices, const std::vector<CenterlineBinding>& binding,
@@ -162,22 +169,12 @@ std::vector<Vec3> follow_edit(const std::vector<Vec3>& vertices, const std::vect
 
 std::vector<Vec3> follow_edit_within(const std::vector<Vec3>& points, const Centerline& centerline,
                                      const CenterlineEdit& edit) {
-  check_edit_within(centerline, edit);
-  BlendedEdit blended(centerline, edit);
-  std::vector<Vec3> moved;
-  moved.reserve(points.size());
-  for (const Vec3& p : points) moved.push_back(blended.moved(p));
-  return moved;
+  return at_all(points, centerline, edit, &BlendedEdit::moved);
 }
 
 std::vector<double> widening_within(const std::vector<Vec3>& points, const Centerline& centerline,
                                     const CenterlineEdit& edit) {
-  check_edit_within(centerline, edit);
-  BlendedEdit blended(centerline, edit);
-  std::vector<double> widening;
-  widening.reserve(points.size());
-  for (const Vec3& p : points) widening.push_back(blended.widening(p));
-  return widening;
+  return at_all(points, centerline, edit, &BlendedEdit::widening);
 }
 
 }  // namespace vmesh

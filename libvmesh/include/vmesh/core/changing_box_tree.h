@@ -22,7 +22,7 @@ class ChangingBoxTree {
 
   /// The number of items.
   std::size_t size() const { return size_; }
-  /// How often set() was called since the tree was made: when that exceeds its size, it is time to make it anew.
+  /// How often set() was called since the tree was made: when that is many times its size, it is time to make it anew.
   std::size_t changes() const { return changes_; }
 
   bool has(Index item) const { return item < leaf_of_.size() && leaf_of_[item] != kNone; }

@@ -39,7 +39,7 @@ class CrossingGuard {
   bool cross_axes(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const;
 
   FaceLookup face_at_;
-  // A face keeps its box until it leaves it; then it gets a new one. Some faces have been removed since.
+  // Of all faces, and of some that have been removed since.
   ChangingBoxTree boxes_;
   std::vector<AxisLine> axes_;
   BoxTree axis_tree_;  // of the parts of axis lines

@@ -33,11 +33,10 @@ class PieceGrower {
  public:
   /// What becomes of the whole surface.
   struct Finish {
-    ErrorLimit limit;     ///< what it is refined to, if set; that of the options is proven piece by piece
-    bool may_be_coarser;  ///< whether vertices are left out then
-    double elongation;    ///< how long triangles may be then
-    bool has_sizes =
-        true;  ///< whether pieces have the sizes that the limit asks for; if not, another is tried after it
+    ErrorLimit limit;        ///< what it is refined to, if set; that of the options is proven piece by piece
+    bool may_be_coarser;     ///< whether vertices are left out then
+    double elongation;       ///< how long triangles may be then
+    bool has_sizes = false;  ///< those that the limit asks for; another surface is tried if that does not lead to it
   };
 
   PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
@@ -354,34 +353,35 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
   GenerateOptions even = options;
   even.max_error = {};
   even.elongation = 1;
-  GenerateResult refined = result;
-  std::vector<std::pair<Index, Index>> crossings;
-  bool is_met = false;
-  // Not at creases: edges are to lie on them, not to be short.
-  for (const bool has_sizes : {true, false}) {
-    if (is_met || (has_sizes && field.relations().blend() == 0)) continue;
-    GenerateResult grown = result;
-    PieceGrower grower(field, open, even, {options.max_error, may_be_coarser, options.elongation, has_sizes}, progress);
-    std::vector<std::pair<Index, Index>> others = grower.run(grown);
-    is_met = grower.has_met_limit();
-    if (!is_met && !has_sizes && field.relations().blend() > 0 &&
-        refined.error.unproven_faces <= grown.error.unproven_faces)
-      continue;
-    refined = std::move(grown);
-    crossings = std::move(others);
-  }
-  if (!is_met) {
-    GenerateResult grown = result;
+  struct Attempt {
+    GenerateResult result;
+    std::vector<std::pair<Index, Index>> crossings;
+    bool is_met = false;
+  };
+  const auto attempt = [&](const VesselField& of, const GenerateOptions& with, const PieceGrower::Finish& finish) {
+    Attempt made{result, {}};
+    PieceGrower grower(of, open, with, finish, progress);
+    made.crossings = grower.run(made.result);
+    made.is_met = grower.has_met_limit();
+    return made;
+  };
+  const auto refine_even = [&](bool has_sizes) {
+    return attempt(field, even, {options.max_error, may_be_coarser, options.elongation, has_sizes});
+  };
+  // At creases edges are to lie on them, not to be short.
+  const bool has_creases = field.relations().blend() == 0;
+  Attempt best = refine_even(!has_creases);
+  const auto try_also = [&best](Attempt other) {
+    if (other.is_met || other.result.error.unproven_faces < best.result.error.unproven_faces) best = std::move(other);
+  };
+  if (!best.is_met && !has_creases) try_also(refine_even(false));
+  if (!best.is_met) {
     VesselField precise = field;
     precise.use_double_precision();
-    std::vector<std::pair<Index, Index>> others = PieceGrower(precise, open, options, as_grown, progress).run(grown);
-    if (grown.error.unproven_faces < refined.error.unproven_faces) {
-      result = std::move(grown);
-      return others;
-    }
+    try_also(attempt(precise, options, as_grown));
   }
-  result = std::move(refined);
-  return crossings;
+  result = std::move(best.result);
+  return std::move(best.crossings);
 }
 
 }  // namespace vmesh
