@@ -23,7 +23,7 @@ class CutOff {
     for (const Edge e : state.mesh.edges())
       add(std::array{state.mesh.vertex(e, 0), state.mesh.vertex(e, 1)}, state.length(e) * state.length(e));
     for (const Face f : state.mesh.faces()) {
-      if (!state.surface.is_lid(f)) add(state.corners(f), mean_square_edge(f));
+      if (!state.surface.is_lid(f)) add(state.corners(f), state.mean_square_edge(f));
     }
   }
 
@@ -31,22 +31,8 @@ class CutOff {
 
  private:
   void add(std::span<const Vertex> corners, double square_size) {
-    const double count = static_cast<double>(corners.size());
-    Vec3 middle = Vec3::Zero();
-    double height = 0;
-    for (const Vertex v : corners) {
-      middle += state_.point(v) / count;
-      height += state_.surface[v].distance / count;
-    }
-    const double off = state_.field.sample_fast(middle, state_.surface[corners[0]].cone).distance - height;
-    for (const Vertex v : corners) at_[v.idx()] = std::max(at_[v.idx()], std::abs(off) / square_size);
-  }
-
-  double mean_square_edge(Face f) const {
-    double sum = 0;
-    const auto corners = state_.corners(f);
-    for (int i = 0; i < 3; ++i) sum += (state_.point(corners[i]) - state_.point(corners[(i + 1) % 3])).squaredNorm();
-    return sum / 3;
+    const double cut_off = std::abs(state_.off_at_middle(corners)) / square_size;
+    for (const Vertex v : corners) at_[v.idx()] = std::max(at_[v.idx()], cut_off);
   }
 
   const SweepState& state_;

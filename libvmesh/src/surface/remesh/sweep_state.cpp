@@ -50,6 +50,24 @@ SweepState::SweepState(BoundSurface& bound_surface)
 
 SweepState::~SweepState() { mesh.remove_property_map(stirred_); }
 
+double SweepState::mean_square_edge(Face f) const {
+  double mean = 0;
+  const auto vertices = corners(f);
+  for (int i = 0; i < 3; ++i) mean += (point(vertices[i]) - point(vertices[(i + 1) % 3])).squaredNorm() / 3;
+  return mean;
+}
+
+double SweepState::off_at_middle(std::span<const Vertex> corners) const {
+  const auto count = static_cast<double>(corners.size());
+  Vec3 middle = Vec3::Zero();
+  double at_corners = 0;
+  for (const Vertex v : corners) {
+    middle += point(v) / count;
+    at_corners += surface[v].distance / count;
+  }
+  return field.sample_fast(middle, surface[corners[0]].cone).distance - at_corners;
+}
+
 void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
   surface.has_limit = limit.is_set();
   surface.update_elongation();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "vmesh/mesh/triangle_energy.h"
 
@@ -48,6 +49,10 @@ class SweepState {
     const Vec3 way = p - point(v);
     return surface.elongation_field ? ElongatedMetric(surface[v].elongation).length(way) : way.norm();
   }
+  /// Of a face, mm^2.
+  double mean_square_edge(Face f) const;
+  /// How far the middle of an edge or a face is off the boundary, towards the outside, more than its corners are, mm.
+  double off_at_middle(std::span<const Vertex> corners) const;
   /// Target edge length at a vertex, mm; 0 before update_sizes().
   double size(Vertex v) const { return surface[v].size; }
   double target_length(Edge e) const { return 0.5 * (size(mesh.vertex(e, 0)) + size(mesh.vertex(e, 1))); }

@@ -40,19 +40,7 @@ class Valleys {
 
   // An edge of length h across a valley of curvature k leaves k h^2 / 8 of it open, a face k h^2 / 12 at its middle.
   // There creases show that the normals at its corners do not tell of, as where three vessels meet.
-  double curvature(Face f) const {
-    const BoundSurface& surface = state_.surface;
-    Vec3 middle = Vec3::Zero();
-    double at_corners = 0, edges2 = 0;
-    const auto corners = state_.corners(f);
-    for (int i = 0; i < 3; ++i) {
-      middle += state_.point(corners[i]) / 3;
-      at_corners += surface[corners[i]].distance / 3;
-      edges2 += (state_.point(corners[i]) - state_.point(corners[(i + 1) % 3])).squaredNorm() / 3;
-    }
-    const double open = state_.field.sample_fast(middle, surface[corners[0]].cone).distance - at_corners;
-    return 12 * open / edges2;
-  }
+  double curvature(Face f) const { return 12 * state_.off_at_middle(state_.corners(f)) / state_.mean_square_edge(f); }
 
   const SweepState& state_;
   std::vector<double> curvature_;
