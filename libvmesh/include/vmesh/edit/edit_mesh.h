@@ -64,6 +64,20 @@ class EditMesh : public FaceTable {
     for (const Index f : faces_around(v)) normal += area_normal(f);
     return unit_or_zero(normal);
   }
+  /// Unit, weighted by angles (angle_normal).
+  Vec3 middle_normal(Index v) const {
+    Vec3 normal = Vec3::Zero();
+    for (const Index f : faces_around(v)) {
+      const auto [a, b, c] = turned_to(v, faces()[f]);
+      normal += angle_normal(position(a), position(b), position(c));
+    }
+    return unit_or_zero(normal);
+  }
+  /// The corners of a face, beginning with `v`.
+  static Triangle turned_to(Index v, Triangle face) {
+    std::rotate(face.begin(), std::find(face.begin(), face.end(), v), face.end());
+    return face;
+  }
   double mean_edge(Index v) const {
     double sum = 0;
     for (const Index f : faces_around(v)) {

@@ -271,7 +271,10 @@ std::vector<Index> unproven_faces(const TriMesh& mesh, const std::vector<Centerl
     vertices[v] = {mesh.vertices[v], Vec3::Zero(), limit.at(field.relations().radius_at(cone, t)), cone};
   }
   for (Index f = 0; f < mesh.faces.size(); ++f) {
-    for (const Index v : mesh.faces[f]) vertices[v].normal += area_normal(mesh, f);
+    const Triangle& face = mesh.faces[f];
+    for (std::size_t k = 0; k < 3; ++k)
+      vertices[face[k]].normal +=
+          angle_normal(mesh.vertices[face[k]], mesh.vertices[face[(k + 1) % 3]], mesh.vertices[face[(k + 2) % 3]]);
   }
   for (ErrorProof::Corner& v : vertices) v.normal.normalize();
   const ErrorProof proof(field);

@@ -13,7 +13,7 @@ std::vector<Face> ErrorLimitCheck::unproven_faces(const SweepState& state) {
   std::vector<ErrorProof::Corner> vertices(state.mesh.num_vertices());
   for (const Vertex v : state.mesh.vertices()) {
     const double radius = surface.radius(v), most = kHighestShell * radius;
-    vertices[v.idx()] = {state.point(v), surface.vertex_normal(v), std::min(limit_.at(radius), most), surface[v].cone};
+    vertices[v.idx()] = {state.point(v), surface.middle_normal(v), std::min(limit_.at(radius), most), surface[v].cone};
   }
   std::vector<Face> faces;
   std::vector<Triangle> triangles;

@@ -368,13 +368,11 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
   const auto refine_even = [&](bool has_sizes) {
     return attempt(field, even, {options.max_error, may_be_coarser, options.elongation, has_sizes});
   };
-  // At creases edges are to lie on them, not to be short.
-  const bool has_creases = field.relations().blend() == 0;
-  Attempt best = refine_even(!has_creases);
+  Attempt best = refine_even(true);
   const auto try_also = [&best](Attempt other) {
     if (other.is_met || other.result.error.unproven_faces < best.result.error.unproven_faces) best = std::move(other);
   };
-  if (!best.is_met && !has_creases) try_also(refine_even(false));
+  if (!best.is_met) try_also(refine_even(false));
   if (!best.is_met) {
     VesselField precise = field;
     precise.use_double_precision();

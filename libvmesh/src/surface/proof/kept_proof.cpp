@@ -75,7 +75,7 @@ void KeptProof::fix_neighbours() {
 }
 
 Corner KeptProof::corner_of(Vertex v) const {
-  return {state_.point(v), surface_.vertex_normal(v), limit_.at(surface_.radius(v)), surface_[v].cone};
+  return {state_.point(v), surface_.middle_normal(v), limit_.at(surface_.radius(v)), surface_[v].cone};
 }
 
 std::optional<KeptProof::Outlook> KeptProof::after(const SurfaceStep& step) const {
@@ -111,12 +111,13 @@ Corner KeptProof::corner_after(const SurfaceStep& step, Vertex v) const {
     return x == step.vertex ? step.target.position : state_.point(x);
   };
   Vec3 normal = Vec3::Zero();
-  for (const FaceCorners& f : step.faces) {
-    if (!has(f, v)) continue;
-    normal += (position(f[1]) - position(f[0])).cross(position(f[2]) - position(f[0]));
-  }
+  const auto add = [&](const FaceCorners& f) {
+    const auto k = static_cast<std::size_t>(std::find(f.begin(), f.end(), v) - f.begin());
+    if (k < 3) normal += angle_normal(position(v), position(f[(k + 1) % 3]), position(f[(k + 2) % 3]));
+  };
+  for (const FaceCorners& f : step.faces) add(f);
   for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v))) {
-    if (!is_gone(step, f)) normal += surface_.face_area_normal(f);
+    if (!is_gone(step, f)) add(state_.corners(f));
   }
   normal.normalize();
   if (v != step.vertex) return {state_.point(v), normal, corner_[v.idx()].limit, corner_[v.idx()].cone};

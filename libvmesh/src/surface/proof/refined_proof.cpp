@@ -16,7 +16,7 @@ std::vector<Index> RefinedProof::unproven(const FinishedMesh& mesh, const std::v
   known_.resize(mesh.faces().size());
   const auto update = [&](Index v) {
     if (mesh.has_vertex(v))
-      corners_[v] = {mesh.position(v), mesh.vertex_normal(v), limit_at(v), mesh.vertex(v).binding.segment};
+      corners_[v] = {mesh.position(v), mesh.middle_normal(v), limit_at(v), mesh.vertex(v).binding.segment};
   };
   if (is_first_) {
     for (Index v = 0; v < corners_.size(); ++v) update(v);

@@ -14,6 +14,7 @@
 #include "vmesh/surface/soundness.h"
 
 #include "surface/check/error_limit.h"
+#include "surface/proof/by_slope.h"
 #include "surface/proof/crease.h"
 #include "surface/proof/gap.h"
 #include "surface/proof/refined_proof.h"
@@ -64,6 +65,7 @@ class Refinement {
   }
 
   std::vector<Index> run() {
+    bring_strays_back();
     for (int round = 0; round < kMostSplitRounds && split_where_far(); ++round) improve();
     prove();
     const double at_first = unproven_area();
@@ -97,6 +99,7 @@ class Refinement {
     return std::min(goal_.limit.at(radius), kHighestShell * radius);
   }
   double limit_of(const MeshEdge& e) const { return std::min(limit_at(e.a), limit_at(e.b)); }
+  double limit_of(const Triangle& f) const { return std::min({limit_at(f[0]), limit_at(f[1]), limit_at(f[2])}); }
   double length(const MeshEdge& e) const { return (point(e.a) - point(e.b)).norm(); }
   static std::array<MeshEdge, 3> edges_of(const Triangle& f) {
     return {MeshEdge{f[0], f[1]}, MeshEdge{f[1], f[2]}, MeshEdge{f[2], f[0]}};
@@ -108,14 +111,13 @@ class Refinement {
     return has_creases_ ? field_.sample(p, hint) : field_.sample_fast(p, hint);
   }
 
-  // Distance at the middle of an edge, by its limit.
-  double off_at(const MeshEdge& e) const {
-    return std::abs(rough_sample(0.5 * (point(e.a) + point(e.b)), cone(e.a)).distance) / limit_of(e);
-  }
+  // How far a point is off the boundary, mm.
+  double off_at(const Vec3& p, Index hint) const { return std::abs(distance_by_slope(rough_sample(p, hint))); }
+  // At the middle of an edge, by its limit.
+  double off_at(const MeshEdge& e) const { return off_at(0.5 * (point(e.a) + point(e.b)), cone(e.a)) / limit_of(e); }
   double off_at_center(const Triangle& f) const {
     const Vec3 center = (point(f[0]) + point(f[1]) + point(f[2])) / 3;
-    return std::abs(rough_sample(center, cone(f[0])).distance) /
-           std::min({limit_at(f[0]), limit_at(f[1]), limit_at(f[2])});
+    return off_at(center, cone(f[0])) / limit_of(f);
   }
 
   double unproven_area() const {
@@ -152,6 +154,16 @@ class Refinement {
     const double center = off_at_center(face);
     if (center > worst.off) worst = {center, longest};
     return worst;
+  }
+
+  // Whether a face is known to be beyond the limit: the boundary is nowhere nearer than the distance tells.
+  bool is_far(Index f) const {
+    const Triangle& face = mesh_.faces()[f];
+    const auto [a, b, c] = mesh_.corners(f);
+    const std::array<Vec3, 4> middles = {0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (a + b + c) / 3};
+    return std::any_of(middles.begin(), middles.end(), [&](const Vec3& p) {
+      return std::abs(rough_sample(p, cone(face[0])).distance) > limit_of(face);
+    });
   }
 
   bool split_where_far() {
@@ -209,7 +221,7 @@ class Refinement {
     for (const double height : {lift, 0.0}) {
       for (const double s : kSlides) {
         const Vec3 p = point(e.a) + s * (point(e.b) - point(e.a));
-        const BoundaryPoint at = project_to_boundary(field_, p, cone(e.a), kTolerance, height);
+        const BoundaryPoint at = onto_boundary(field_, p, cone(e.a), kTolerance, height);
         steps.push_back(mesh_.splitting(e, finished_vertex(at, field_)));
       }
     }
@@ -246,7 +258,7 @@ class Refinement {
   }
 
   bool is_balanced() const { return goal_.placement == Placement::balanced; }
-  double lift_of(Index v) const { return field_.sample(point(v), cone(v)).distance; }
+  double lift_of(Index v) const { return distance_by_slope(field_.sample(point(v), cone(v))); }
   Vec3 middle_of(const MeshEdge& e) const { return 0.5 * (point(e.a) + point(e.b)); }
 
   // Where the boundaries of two cones meet, near the middle of an edge that crosses there or runs along.
@@ -330,6 +342,35 @@ class Refinement {
     due_.erase(std::unique(due_.begin(), due_.end()), due_.end());
   }
 
+  // Vertices that growth left beyond the limit, in valleys where the field has hardly a slope: one alone keeps all
+  // faces around it from being proven, and what is added there crosses them.
+  void bring_strays_back() {
+    changed_.clear();
+    for (Index v = 0; v < mesh_.vertices().size(); ++v) {
+      if (!mesh_.has_vertex(v) || held_[v] || std::abs(lift_of(v)) <= limit_at(v)) continue;
+      const BoundaryPoint target = onto_boundary(field_, point(v), cone(v), kTolerance, 0);
+      if (!take_upright({mesh_.moving(v, finished_vertex(target, field_))}, v)) take_upright(merging(v), v);
+    }
+    improve();
+  }
+
+  // All ways to merge a vertex with one beside it, which stays where it is.
+  std::vector<Step> merging(Index v) const {
+    std::vector<Step> steps;
+    for (const Index f : mesh_.faces_around(v)) {
+      const Index w = FinishedMesh::turned_to(v, mesh_.faces()[f])[1];
+      if (mesh_.may_collapse({v, w})) steps.push_back(mesh_.collapsing(v, w, mesh_.vertex(w)));
+    }
+    return steps;
+  }
+
+  bool take_upright(std::vector<Step> steps, Index v) {
+    std::erase_if(steps, [&, least = way_around(hard_, point(v)).upright](const Step& step) {
+      return !stays_upright(step, least);
+    });
+    return take(steps, kWorstSkewness) != kNone;
+  }
+
   void flip(const MeshEdge& e) {
     if (!mesh_.is_inner(e) || !mesh_.may_flip(e)) return;
     const Step step = mesh_.flipping(e);
@@ -379,34 +420,46 @@ class Refinement {
     PlanarEnergy shape;
     const Vec3 normal = mesh_.vertex_normal(v), u = normal.unitOrthogonal(), w = normal.cross(u);
     for (const Index f : mesh_.faces_around(v)) {
-      auto face = mesh_.faces()[f];
-      while (face[0] != v) std::rotate(face.begin(), face.begin() + 1, face.end());
+      const Triangle face = FinishedMesh::turned_to(v, mesh_.faces()[f]);
       const Vec3 &a = point(v), &b = point(face[1]), &c = point(face[2]);
       const double weight = (b - a).cross(c - a).norm();
-      sum += weight * (0.75 * rough_sample((a + b + c) / 3, cone(v)).distance + 0.25 * height);
+      const double at_center = distance_by_slope(rough_sample((a + b + c) / 3, cone(v)));
+      sum += weight * (0.75 * at_center + 0.25 * height);
       area += weight;
       shape.add(a, b, c, u, w);
     }
     const double most = kShareOfLimit * limit_at(v);
     const double lift = is_balanced() ? std::clamp(height - sum / area, -most, most) : 0;
+    const bool at_crease = is_at_crease(v);
+    const double rounder = at_crease ? kRounderAtCreases : kRounder;
+    const double worth_a_lift = at_crease ? kWorthALiftAtCreases : kWorthALift;
     const double off_now = off_around(v), upright = way_around(hard_, point(v)).upright;
     const Vec3 way = best_way(shape, u, w, kLongestMove * mesh_.mean_edge(v));
     for (const double share : {1.0, 0.5, 0.0}) {
       const Vec3 p = point(v) + share * way;
       const auto on_crease = crease_at_[v] ? onto_crease(field_, *crease_at_[v], p, limit_at(v)) : std::nullopt;
       if (crease_at_[v] && !on_crease) continue;
-      const BoundaryPoint target = on_crease ? towards(*on_crease, p, mesh_.mean_edge(v))
-                                             : project_to_boundary(field_, p, cone(v), kTolerance, lift);
-      const bool is_lower = on_crease && height > most && target.sample.distance < 0.9 * height;
+      const BoundaryPoint target =
+          on_crease ? towards(*on_crease, p, mesh_.mean_edge(v)) : onto_boundary(field_, p, cone(v), kTolerance, lift);
+      const bool is_lower = on_crease && height > most && distance_by_slope(target.sample) < 0.9 * height;
       const Step step = mesh_.moving(v, finished_vertex(target, field_));
       const double worst = std::max(worst_now(step), kRound);
-      const bool is_rounder = energy(step) < (1 - rounder_) * shape.value;
-      const bool is_lifted = !crease_at_[v] && std::abs(lift - height) > worth_a_lift_ * most;
+      const bool is_rounder = energy(step) < (1 - rounder) * shape.value;
+      const bool is_lifted = !crease_at_[v] && std::abs(lift - height) > worth_a_lift * most;
       if (!(is_rounder || is_lifted || is_lower) || worst_skewness(step) > worst || !stays_upright(step, upright))
         continue;
       if (off_around(v, target.position) > std::max(kWorthAProof * 0.9, off_now)) continue;
       if (take({step}, worst) != kNone) break;
     }
+  }
+
+  // Whether a vertex or one beside it is on a crease.
+  bool is_at_crease(Index v) const {
+    const auto& fan = mesh_.faces_around(v);
+    return has_creases_ && std::any_of(fan.begin(), fan.end(), [&](Index f) {
+             const Triangle& face = mesh_.faces()[f];
+             return std::any_of(face.begin(), face.end(), [&](Index w) { return crease_at_[w].has_value(); });
+           });
   }
 
   // One Newton step, no longer than `longest`.
@@ -426,16 +479,16 @@ class Refinement {
       for (const Index w : mesh_.faces()[f]) {
         if (w == v) continue;
         center += point(w) / 3;
-        worst = std::max(worst, std::abs(rough_sample(0.5 * (p + point(w)), cone(w)).distance));
+        worst = std::max(worst, off_at(0.5 * (p + point(w)), cone(w)));
       }
-      worst = std::max(worst, std::abs(rough_sample(center, cone(v)).distance));
+      worst = std::max(worst, off_at(center, cone(v)));
     }
     return worst / limit_at(v);
   }
 
   void prove() {
     unproven_ = proof_.unproven(
-        mesh_, due_, [this](Index v) { return limit_at(v); }, [this](Index f) { return worst_of(f).off > 1; });
+        mesh_, due_, [this](Index v) { return limit_at(v); }, [this](Index f) { return is_far(f); });
     std::erase_if(unproven_, [this](Index f) { return is_at_opening(f); });
   }
 
@@ -452,8 +505,6 @@ class Refinement {
   FinishedSurface& surface_;
   const VesselField& field_;
   const bool has_creases_ = field_.relations().blend() == 0;
-  const double rounder_ = has_creases_ ? kRounderAtCreases : kRounder;
-  const double worth_a_lift_ = has_creases_ ? kWorthALiftAtCreases : kWorthALift;
   const RefinementGoal& goal_;
   const std::vector<HardPlace>& hard_;
   const Progress& progress_;

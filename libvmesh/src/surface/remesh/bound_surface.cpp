@@ -255,6 +255,15 @@ Vec3 BoundSurface::vertex_normal(Vertex v) const {
   return normal.normalized();
 }
 
+Vec3 BoundSurface::middle_normal(Vertex v) const {
+  Vec3 normal = Vec3::Zero();
+  for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
+    if (!mesh.is_border(h))
+      normal += angle_normal(mesh.point(v), mesh.point(mesh.target(mesh.next(h))), mesh.point(mesh.source(h)));
+  }
+  return normal.normalized();
+}
+
 Vertex BoundSurface::halve(Halfedge h) {
   const Vertex a = mesh.source(h), b = mesh.target(h);
   const Vec3 middle = middle_of(h);

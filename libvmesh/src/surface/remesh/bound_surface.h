@@ -154,6 +154,8 @@ class BoundSurface {
 
   Vec3 face_area_normal(Face f) const;
   Vec3 vertex_normal(Vertex v) const;
+  /// Unit, weighted by angles (angle_normal).
+  Vec3 middle_normal(Vertex v) const;
 
   /// Edge-centric split of a face: its edges are halved, it becomes four faces and each neighbour two.
   /// The three new vertices stay at the edges' midpoints.
