@@ -142,6 +142,27 @@ class EditMesh : public FaceTable {
     }
   }
 
+  /// Faces that are replaced by others, some with vertices that are added, which get the next numbers.
+  struct Patch {
+    std::vector<V> added;
+    std::vector<Index> gone;
+    std::vector<Triangle> faces;
+  };
+  /// The face as it will be with the patch.
+  PlacedFace placed(const Triangle& face, const Patch& patch) const {
+    PlacedFace result{face, {}};
+    for (std::size_t k = 0; k < 3; ++k)
+      result.points[k] =
+          face[k] < vertices_.size() ? position(face[k]) : patch.added[face[k] - vertices_.size()].position;
+    return result;
+  }
+  /// Takes a patch, allowed or not.
+  void take(const Patch& patch) {
+    for (const V& v : patch.added) add_vertex(v);
+    for (const Index f : patch.gone) remove_face(f);
+    for (const Triangle& f : patch.faces) add_face(f);
+  }
+
   /// Removes unused numbers; returns the new numbers of the vertices. Not in a transaction.
   std::vector<Index> pack() {
     std::vector<Index> number = pack_faces();

@@ -31,11 +31,14 @@ class GuardedEdit {
     std::sort(order.begin(), order.end());
     for (const auto& [leaves, i] : order) {
       if (leaves > worst) break;
-      if (!take(steps[i])) continue;
+      if (!take_allowed(steps[i])) continue;
       return steps[i].vertex != kNone ? steps[i].vertex : steps[i].faces[0][0];
     }
     return kNone;
   }
+
+  /// Takes a patch if it is allowed. Returns whether it was.
+  bool take(const typename EditMesh<V>::Patch& patch) { return take_allowed(patch); }
 
   /// Flips and collapses triangles of a skewness above `worst` that steps left, where that leaves none.
   void mend(double worst) {
@@ -60,13 +63,15 @@ class GuardedEdit {
     return worst;
   }
 
-  bool take(const Step& step) {
+  // Of a step or a patch.
+  template <class Change>
+  bool take_allowed(const Change& change) {
     std::vector<PlacedFace> faces;
-    for (const Triangle& f : step.faces) faces.push_back(mesh_.placed(f, step));
-    if (!guard_.allows(faces, step.gone)) return false;
+    for (const Triangle& f : change.faces) faces.push_back(mesh_.placed(f, change));
+    if (!guard_.allows(faces, change.gone)) return false;
     const auto first_new = static_cast<Index>(mesh_.faces().size());
-    mesh_.take(step);
-    std::vector<Index> changed = step.gone;
+    mesh_.take(change);
+    std::vector<Index> changed = change.gone;
     for (Index f = first_new; f < mesh_.faces().size(); ++f) changed.push_back(f);
     is_changed_.resize(mesh_.faces().size(), 0);
     for (const Index f : changed) {

@@ -49,7 +49,9 @@ std::optional<Notch> Gaps::notch_below(const Vec3& p, const FieldSample& a, cons
   const Vec3 across = a.gradient - b.gradient;
   const auto end = end_from(p, across, a.cone, 0, tolerance);
   if (!end) return std::nullopt;
-  return Notch{*end, walls_at(end->position, across, end->sample.cone)};
+  const Walls walls = walls_at(end->position, across, end->sample.cone);
+  if (walls.first_cone == kNone || walls.second_cone == kNone) return std::nullopt;
+  return Notch{*end, walls};
 }
 
 }  // namespace vmesh

@@ -16,6 +16,7 @@
 #include "surface/check/error_limit.h"
 #include "surface/proof/by_slope.h"
 #include "surface/proof/crease.h"
+#include "surface/proof/furrows.h"
 #include "surface/proof/gap.h"
 #include "surface/proof/refined_proof.h"
 #include "surface/remesh/edge_lengths.h"
@@ -66,6 +67,7 @@ class Refinement {
 
   std::vector<Index> run() {
     bring_strays_back();
+    go_down_into_gaps();
     for (int round = 0; round < kMostSplitRounds && split_where_far(); ++round) improve();
     prove();
     const double at_first = unproven_area();
@@ -75,6 +77,7 @@ class Refinement {
     since_best.emplace(mesh_);
     for (int round = 0, last = 0; !unproven_.empty() && round < last + kPatience; ++round) {
       report_progress(progress_, "refine", 1 - least / at_first);
+      go_down_into_gaps();
       if (!split_unproven()) break;
       improve();
       prove();
@@ -179,6 +182,7 @@ class Refinement {
   bool split_unproven() {
     std::vector<Candidate> candidates;
     for (const Index f : unproven_) {
+      if (!mesh_.has_face(f)) continue;
       Candidate c = worst_of(f);
       // Nothing is far; long edges make proofs hard.
       if (c.off <= kWorthAProof) {
@@ -188,7 +192,6 @@ class Refinement {
       }
       candidates.push_back(c);
     }
-    due_.clear();
     return split(std::move(candidates));
   }
 
@@ -354,6 +357,22 @@ class Refinement {
     improve();
   }
 
+  // Where walls meet in creases. Again when faces are smaller: then more strips have good triangles.
+  void go_down_into_gaps() {
+    if (!has_creases_) return;
+    changed_.clear();
+    const auto placed = plough(
+        mesh_, edit_, field_, [this](Index v) { return limit_at(v); }, held_);
+    held_.resize(mesh_.vertices().size(), 0);
+    crease_at_.resize(mesh_.vertices().size());
+    for (const auto& [v, crease] : placed) {
+      crease_at_[v] = crease;
+      const auto& fan = mesh_.faces_around(v);
+      changed_.insert(changed_.end(), fan.begin(), fan.end());
+    }
+    improve();
+  }
+
   // All ways to merge a vertex with one beside it, which stays where it is.
   std::vector<Step> merging(Index v) const {
     std::vector<Step> steps;
@@ -489,6 +508,7 @@ class Refinement {
   void prove() {
     unproven_ = proof_.unproven(
         mesh_, due_, [this](Index v) { return limit_at(v); }, [this](Index f) { return is_far(f); });
+    due_.clear();
     std::erase_if(unproven_, [this](Index f) { return is_at_opening(f); });
   }
 
