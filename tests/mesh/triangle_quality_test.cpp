@@ -147,5 +147,19 @@ TEST(VertexNormals, PointOutwardsWeightedByArea) {
   EXPECT_EQ(vertex_normals(mesh)[4], Vec3(0, 0, 0));
 }
 
+TEST(AngleNormal, PointsMidwayBetweenTwoWallsHoweverTheyAreDivided) {
+  // Half planes that meet in the x axis at a right angle; one is divided in two, the other in three.
+  const Vec3 at(0, 0, 0), left(-1, 0, 0), right(3, 0, 0);
+  Vec3 sum = Vec3::Zero();
+  const auto add = [&](const std::vector<Vec3>& around) {
+    for (std::size_t i = 0; i + 1 < around.size(); ++i) sum += angle_normal(at, around[i], around[i + 1]);
+  };
+  add({right, {0.3, 2, 0}, left});
+  add({left, {-1, 0, -0.1}, {5, 0, -7}, right});
+  EXPECT_LT((sum.normalized() - Vec3(0, -1, 1).normalized()).norm(), kRounding);
+  EXPECT_NEAR(angle_normal(at, right, {0, 5, 0}).norm(), std::numbers::pi / 2, kRounding);
+  EXPECT_EQ(angle_normal(at, right, 2 * right), Vec3(0, 0, 0));
+}
+
 }  // namespace
 }  // namespace vmesh

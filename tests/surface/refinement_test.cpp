@@ -1,10 +1,14 @@
 // Even surfaces that meet a limit on the error; that they do is measured in max_error_test.cpp.
+#include <cmath>
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "vmesh/surface/generate.h"
 #include "vmesh/volume/vessel_field.h"
 
 #include "centerlines.h"
+#include "surface/proof/by_slope.h"
 
 namespace vmesh {
 namespace {
@@ -78,6 +82,25 @@ TEST(Refinement, DoesNotDependOnTheNumberOfThreads) {
   const GenerateResult three = generate_surface(testing::fork(50), options);
   EXPECT_EQ(one.mesh.vertices, three.mesh.vertices);
   EXPECT_EQ(one.mesh.faces, three.mesh.faces);
+}
+
+// In the gap between two vessels that part at eight degrees and are blended, above where it ends.
+TEST(Refinement, TellsTheDistanceWhereTheFieldHasHardlyASlope) {
+  const double half = 4 * std::numbers::pi / 180;
+  const Vec3 up(40 * std::sin(half), 0, 40 * std::cos(half)), down(-up.x(), 0, up.z());
+  const Centerline centerline{{{{0, 0, 0}, 1}, {up, 1}, {down, 1}}, {{0, 1}, {0, 2}}};
+  const VesselField field(centerline, 0.5);
+  const auto at = [&](double z) { return field.sample_global({0, 0, z}); };
+  double end = 10;  // of the gap, on the way between the vessels
+  while (at(end).distance < 0) end += 1e-3;
+  const Vec3 above(0, 0, end + 0.3);
+  const FieldSample sample = field.sample_global(above);
+  // The field is a distance: it changes by no more than its argument.
+  ASSERT_LT(sample.distance, 0.5 * 0.3);
+  // Slopes change on the way there, by less than their half.
+  EXPECT_NEAR(distance_by_slope(sample), 0.3, 0.15);
+  const BoundaryPoint there = onto_boundary(field, above, sample.cone, 1e-3, 0);
+  EXPECT_NEAR(there.position.z(), end, 4e-3);  // steps of the search, and the tolerance by slope in single precision
 }
 
 }  // namespace
