@@ -9,7 +9,7 @@ namespace vmesh {
 namespace {
 
 // Each part has its own box: the box of a whole oblique axis would be mostly empty; idle 6 to 11.
-constexpr int kPartsOfLine = 8;
+constexpr Index kPartsOfLine = 8;
 // Derived: relative rounding of an interpolated point, a few units in the last place.
 constexpr double kRounding = 1e-15;
 // Boxes that a search in a tree that has just been made looks at, for each of its levels and each face found; and
@@ -20,6 +20,14 @@ constexpr std::size_t kVisitsOfLevel = 2, kVisitsOfFace = 4, kVisitsInVain = 32;
 BoxTree::Box box_of(const std::array<Vec3, 3>& points) {
   const auto& [a, b, c] = points;
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+}
+
+BoxTree::Box box_of_part(const CrossingGuard::AxisLine& axis, Index number) {
+  const auto& [from, to] = axis;
+  const double t0 = double(number) / kPartsOfLine, t1 = double(number + 1) / kPartsOfLine;
+  const Vec3 begin = (1 - t0) * from + t0 * to, end = (1 - t1) * from + t1 * to;
+  const double rounding = kRounding * (from.cwiseAbs() + to.cwiseAbs()).maxCoeff();
+  return {begin.cwiseMin(end).array() - rounding, begin.cwiseMax(end).array() + rounding};
 }
 
 bool cross_each_other(const std::vector<PlacedFace>& faces) {
@@ -36,13 +44,11 @@ bool cross_each_other(const std::vector<PlacedFace>& faces) {
 CrossingGuard::CrossingGuard(std::size_t faces, FaceLookup face_at, std::vector<AxisLine> axes)
     : face_at_(std::move(face_at)), axes_(std::move(axes)) {
   std::vector<Vec3> low, high;
-  for (const auto& [from, to] : axes_) {
-    for (int i = 0; i < kPartsOfLine; ++i) {
-      const double t0 = double(i) / kPartsOfLine, t1 = double(i + 1) / kPartsOfLine;
-      const Vec3 begin = (1 - t0) * from + t0 * to, end = (1 - t1) * from + t1 * to;
-      const double rounding = kRounding * (from.cwiseAbs() + to.cwiseAbs()).maxCoeff();
-      low.push_back(begin.cwiseMin(end).array() - rounding);
-      high.push_back(begin.cwiseMax(end).array() + rounding);
+  for (const AxisLine& axis : axes_) {
+    for (Index i = 0; i < kPartsOfLine; ++i) {
+      const BoxTree::Box box = box_of_part(axis, i);
+      low.push_back(box.low);
+      high.push_back(box.high);
     }
   }
   axis_tree_ = BoxTree(low, high);
@@ -96,7 +102,7 @@ bool CrossingGuard::cross_axes(const std::vector<PlacedFace>& faces, const std::
     bool crossed = false;
     axis_tree_.visit_overlapping(low, high, [&](Index part) {
       const Index axis = part / kPartsOfLine;
-      if (crossed || !meets(face, axis)) return;
+      if (crossed || !box_of_part(axes_[axis], part % kPartsOfLine).overlaps(low, high) || !meets(face, axis)) return;
       crossed = std::none_of(gone.begin(), gone.end(), [&](Index f) {
         const std::optional<PlacedFace> before = face_at_(f);
         return before && !is_degenerate(*before) && meets(*before, axis);
