@@ -2,9 +2,9 @@
 // some runs, and the exponent of the step from one line to the next beside that of n log n. Every run is a process of
 // its own, so that its peak memory is its own; all sizes are run once before any is run again, so that changes in the
 // machine's speed affect all. Measurements are reported on standard error as they are made. Usage: bench_scaling
-// [--runs=N] [--threads=N] [--shape=tree|star|chain|walk] [SEGMENTS...]; 3 runs each on one thread and on two, of 100
-// to 100,000. The other shapes are those of tests/support/hard_vessels.h; vessels that touch are separated first, which
-// counts.
+// [--runs=N] [--threads=N] [--shape=tree|star|short-star|chain|walk] [SEGMENTS...]; 3 runs each on one thread and on
+// two, of 100 to 100,000. The other shapes are those of tests/support/hard_vessels.h; vessels that touch are separated
+// first, which counts.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -53,6 +53,7 @@ double seconds_of(Work&& work) {
 
 Centerline vessels(std::string_view shape, int segments) {
   if (shape == "star") return testing::star(segments / 3);
+  if (shape == "short-star") return testing::short_star(segments / 2);
   if (shape == "chain") return testing::uneven_chain(segments + 1, 1);
   if (shape == "walk") return testing::random_walk(segments + 1, 1);
   SyntheticTreeOptions tree;

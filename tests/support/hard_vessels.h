@@ -11,23 +11,33 @@
 
 namespace vmesh::testing {
 
-/// Equal branches of one node, 120 radii long, spread evenly in all directions.
-inline Centerline star(int branches) {
-  constexpr double kLength = 60, kRadius = 0.5;
+namespace detail {
+
+// Straight branches of radius 0.5 in all directions from one node, as many segments each.
+inline Centerline star_of(int branches, double length, int segments_each) {
+  constexpr double kRadius = 0.5;
   std::vector<CenterlineNode> nodes = {{Vec3::Zero(), kRadius}};
   std::vector<CenterlineSegment> segments;
   for (int i = 0; i < branches; ++i) {
     const double z = 1 - (2.0 * i + 1) / branches, angle = i * std::numbers::pi * (3 - std::sqrt(5));
     const double across = std::sqrt(1 - z * z);
     Index last = 0;
-    for (const double t : {1.0 / 3, 2.0 / 3, 1.0}) {
-      nodes.push_back({t * kLength * Vec3(across * std::cos(angle), across * std::sin(angle), z), kRadius});
+    for (int k = 1; k <= segments_each; ++k) {
+      const double t = static_cast<double>(k) / segments_each;
+      nodes.push_back({t * length * Vec3(across * std::cos(angle), across * std::sin(angle), z), kRadius});
       segments.push_back({last, static_cast<Index>(nodes.size() - 1)});
       last = segments.back().b;
     }
   }
   return {nodes, segments};
 }
+
+}  // namespace detail
+
+/// Equal branches of one node, 120 radii long, spread evenly in all directions.
+inline Centerline star(int branches) { return detail::star_of(branches, 60, 3); }
+/// The same, but ending soon after the branches have parted, so that it is little more than its hub.
+inline Centerline short_star(int branches) { return detail::star_of(branches, 0.4 * std::sqrt(branches) + 6, 2); }
 
 namespace detail {
 

@@ -78,7 +78,6 @@ ChangingBoxTree::Box ChangingBoxTree::around_children(Index node) const {
 }
 
 void ChangingBoxTree::set(Index item, const Box& box) {
-  ++changes_;
   if (!has(item)) return add(item, box);
   Index node = leaf_of_[item];
   static_cast<Box&>(nodes_[node]) = box;

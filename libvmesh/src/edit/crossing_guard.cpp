@@ -1,6 +1,7 @@
 #include "vmesh/edit/crossing_guard.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "vmesh/mesh/topology.h"
 
@@ -8,15 +9,25 @@ namespace vmesh {
 namespace {
 
 // Each part has its own box: the box of a whole oblique axis would be mostly empty; idle 6 to 11.
-constexpr int kPartsOfLine = 8;
+constexpr Index kPartsOfLine = 8;
 // Derived: relative rounding of an interpolated point, a few units in the last place.
 constexpr double kRounding = 1e-15;
-// Changes, relative to the number of faces, after which the tree of boxes is made anew. Not surveyed.
-constexpr std::size_t kChanges = 8;
+// Boxes that a search in a tree that has just been made looks at, for each of its levels and each face found; and
+// boxes that searches may look at beyond that, for each face of the tree, before it is made anew, which takes about as
+// long.
+constexpr std::size_t kVisitsOfLevel = 2, kVisitsOfFace = 4, kVisitsInVain = 32;
 
 BoxTree::Box box_of(const std::array<Vec3, 3>& points) {
   const auto& [a, b, c] = points;
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+}
+
+BoxTree::Box box_of_part(const CrossingGuard::AxisLine& axis, Index number) {
+  const auto& [from, to] = axis;
+  const double t0 = double(number) / kPartsOfLine, t1 = double(number + 1) / kPartsOfLine;
+  const Vec3 begin = (1 - t0) * from + t0 * to, end = (1 - t1) * from + t1 * to;
+  const double rounding = kRounding * (from.cwiseAbs() + to.cwiseAbs()).maxCoeff();
+  return {begin.cwiseMin(end).array() - rounding, begin.cwiseMax(end).array() + rounding};
 }
 
 bool cross_each_other(const std::vector<PlacedFace>& faces) {
@@ -33,13 +44,11 @@ bool cross_each_other(const std::vector<PlacedFace>& faces) {
 CrossingGuard::CrossingGuard(std::size_t faces, FaceLookup face_at, std::vector<AxisLine> axes)
     : face_at_(std::move(face_at)), axes_(std::move(axes)) {
   std::vector<Vec3> low, high;
-  for (const auto& [from, to] : axes_) {
-    for (int i = 0; i < kPartsOfLine; ++i) {
-      const double t0 = double(i) / kPartsOfLine, t1 = double(i + 1) / kPartsOfLine;
-      const Vec3 begin = (1 - t0) * from + t0 * to, end = (1 - t1) * from + t1 * to;
-      const double rounding = kRounding * (from.cwiseAbs() + to.cwiseAbs()).maxCoeff();
-      low.push_back(begin.cwiseMin(end).array() - rounding);
-      high.push_back(begin.cwiseMax(end).array() + rounding);
+  for (const AxisLine& axis : axes_) {
+    for (Index i = 0; i < kPartsOfLine; ++i) {
+      const BoxTree::Box box = box_of_part(axis, i);
+      low.push_back(box.low);
+      high.push_back(box.high);
     }
   }
   axis_tree_ = BoxTree(low, high);
@@ -54,7 +63,12 @@ void CrossingGuard::touch(Index f) {
   const std::optional<PlacedFace> face = face_at_(f);
   if (!face) return;
   boxes_.set(f, box_of(face->points));
-  if (boxes_.changes() > kChanges * boxes_.size()) make_anew();
+  if (visited_in_vain_ > kVisitsInVain * boxes_.size()) make_anew();
+}
+
+void CrossingGuard::note_search(std::size_t visited, std::size_t found) const {
+  const std::size_t levels = std::bit_width(boxes_.size());
+  visited_in_vain_ += visited - std::min(visited, kVisitsOfLevel * levels + kVisitsOfFace * found);
 }
 
 // Without the faces that have been removed.
@@ -64,6 +78,7 @@ void CrossingGuard::make_anew() {
     if (face_at_(f)) items.push_back({f, box});
   });
   boxes_ = ChangingBoxTree(items);
+  visited_in_vain_ = 0;
 }
 
 bool CrossingGuard::allows(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const {
@@ -87,7 +102,7 @@ bool CrossingGuard::cross_axes(const std::vector<PlacedFace>& faces, const std::
     bool crossed = false;
     axis_tree_.visit_overlapping(low, high, [&](Index part) {
       const Index axis = part / kPartsOfLine;
-      if (crossed || !meets(face, axis)) return;
+      if (crossed || !box_of_part(axes_[axis], part % kPartsOfLine).overlaps(low, high) || !meets(face, axis)) return;
       crossed = std::none_of(gone.begin(), gone.end(), [&](Index f) {
         const std::optional<PlacedFace> before = face_at_(f);
         return before && !is_degenerate(*before) && meets(*before, axis);
@@ -104,16 +119,23 @@ bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std
   for (const PlacedFace& face : faces) boxes.push_back(box_of(face.points));
   BoxTree::Box around = boxes.front();
   for (const auto& [low, high] : boxes) around = {around.low.cwiseMin(low), around.high.cwiseMax(high)};
-  return boxes_.any_overlapping(around.low, around.high, [&](Index f) {
+  std::size_t visited = 0, found = 0;
+  const bool cross = boxes_.any_overlapping(around.low, around.high, visited, [&](Index f, const BoxTree::Box& box) {
+    const auto is_near = [&](const BoxTree::Box& own) { return own.overlaps(box.low, box.high); };
+    const auto first = std::find_if(boxes.begin(), boxes.end(), is_near);
+    if (first == boxes.end()) return false;
+    ++found;
     if (std::find(gone.begin(), gone.end(), f) != gone.end()) return false;
     const std::optional<PlacedFace> other = face_at_(f);
+    if (!other) --found;
     if (!other || is_degenerate(*other)) return false;
-    const BoxTree::Box box = box_of(other->points);
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      if (boxes[i].overlaps(box.low, box.high) && intersect(faces[i], *other)) return true;
+    for (auto own = first; own != boxes.end(); ++own) {
+      if (is_near(*own) && intersect(faces[static_cast<std::size_t>(own - boxes.begin())], *other)) return true;
     }
     return false;
   });
+  note_search(visited, found);
+  return cross;
 }
 
 std::vector<std::pair<Index, Index>> crossing_pairs(const std::vector<Vec3>& positions,

@@ -22,9 +22,10 @@ constexpr std::size_t kFewCones = 100;  // up to here a linear scan is as fast; 
 // Of stretches of a hint's axis, in radii: their length, and the distance from its wall up to which points are beside
 // them. In profiles of stars of 250 branches, queries take less than a third of what searches took. Not surveyed.
 constexpr double kStretch = 1, kBeside = 0.25;
-constexpr double kMostStretches = 256;          // of a hint
-constexpr std::size_t kKeptVicinities = 16411;  // by each thread; a prime
-constexpr std::size_t kSpread = 37;             // stretches of a hint that are kept beside each other
+constexpr double kMostStretches = 256;  // of a hint
+// By each thread; a prime, more than the stretches of the fan of a short star of 2,000 branches.
+constexpr std::size_t kKeptVicinities = 131101;
+constexpr std::size_t kSpread = 37;  // stretches of a hint that are kept beside each other
 
 // Keeps those of `cones` that are in the ascending list.
 void keep_listed(std::span<const Index> list, std::vector<Index>& cones) {

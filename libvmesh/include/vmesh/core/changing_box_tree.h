@@ -22,19 +22,17 @@ class ChangingBoxTree {
 
   /// The number of items.
   std::size_t size() const { return size_; }
-  /// How often set() was called since the tree was made: when that is many times its size, it is time to make it anew.
-  std::size_t changes() const { return changes_; }
-
   bool has(Index item) const { return item < leaf_of_.size() && leaf_of_[item] != kNone; }
   /// The box of an item that it has.
   const Box& box(Index item) const { return nodes_[leaf_of_[item]]; }
   /// Changes the item's box, or adds the item. O(depth).
   void set(Index item, const Box& box);
 
-  /// Whether test(item) holds for an item whose box overlaps the box [low, high]; calls it until it does.
+  /// Whether test(item, box) holds for an item whose box overlaps the box [low, high]; calls it until it does. Adds to
+  /// `visited` how many boxes it looked at.
   template <class Test>
-  bool any_overlapping(const Vec3& low, const Vec3& high, Test&& test) const {
-    return !nodes_.empty() && any_within(0, low, high, test);
+  bool any_overlapping(const Vec3& low, const Vec3& high, std::size_t& visited, Test&& test) const {
+    return !nodes_.empty() && any_within(0, low, high, visited, test);
   }
 
   /// Calls visit(item, box) for every item.
@@ -60,16 +58,17 @@ class ChangingBoxTree {
   Box around_children(Index node) const;
 
   template <class Test>
-  bool any_within(Index n, const Vec3& low, const Vec3& high, Test&& test) const {
+  bool any_within(Index n, const Vec3& low, const Vec3& high, std::size_t& visited, Test&& test) const {
     const Node& node = nodes_[n];
+    ++visited;
     if (!node.overlaps(low, high)) return false;
-    if (node.first == kNone) return test(node.item);
-    return any_within(node.first, low, high, test) || any_within(node.first + 1, low, high, test);
+    if (node.first == kNone) return test(node.item, static_cast<const Box&>(node));
+    return any_within(node.first, low, high, visited, test) || any_within(node.first + 1, low, high, visited, test);
   }
 
   std::vector<Node> nodes_;
   std::vector<Index> leaf_of_;  // of every item
-  std::size_t size_ = 0, changes_ = 0;
+  std::size_t size_ = 0;
 };
 
 }  // namespace vmesh

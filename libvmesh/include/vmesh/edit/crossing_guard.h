@@ -34,6 +34,8 @@ class CrossingGuard {
 
  private:
   void make_anew();
+  // Notes a search for faces that looked at `visited` boxes and found this many.
+  void note_search(std::size_t visited, std::size_t found) const;
   bool cross_others(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const;
   // Whether one of `faces` meets an axis line that none of `gone` meets.
   bool cross_axes(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const;
@@ -41,6 +43,7 @@ class CrossingGuard {
   FaceLookup face_at_;
   // Of all faces, and of some that have been removed since.
   ChangingBoxTree boxes_;
+  mutable std::size_t visited_in_vain_ = 0;  // boxes, since the tree was made
   std::vector<AxisLine> axes_;
   BoxTree axis_tree_;  // of the parts of axis lines
   mutable RefusedSteps refused_;

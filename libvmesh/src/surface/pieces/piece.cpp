@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -34,9 +35,10 @@ constexpr double kImproveAbove = 0.24;
 // at which finer triangles prove nothing and stand on edge.
 constexpr double kCalm = 2;       // idle 1.4 to 2.8
 constexpr int kFirstGuarded = 4;  // of the rungs below: where a hub starts; idle 3 to 6
-// Free rings next to a hub that are left to it. Measured on stars of 500 and 1,000 branches: with 0, rims cross; with 2
-// or 4, none do.
-constexpr int kRoomAtHub = 2;  // idle 1 to 3
+// Free rings next to a hub that are left to it: of 250 branches; of others as many more as it takes for the same gap,
+// which opens like the inverse square root of their number. Measured on short stars (bench/README.md): of 500, with 0,
+// rims cross; of 1,000, with 2, with 4 none do.
+constexpr double kRoomAtHub = 2, kBranchesAtHub = 250;  // kRoomAtHub: idle 1 to 3
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 constexpr Rung kLadder[kRungs] = {{0, 0, false}, {2, 0, false}, {3, 0, false},  {3, 1, false},
                                   {3, 0, true},  {3, 1, true},  {5, 0.5, true}, {kEverywhere, 0.5, true}};
@@ -142,6 +144,10 @@ class PieceMaker {
                        [&](Index n) { return tubes_.centerline().degree(n) >= kHub; });
   }
 
+  static int room_at_hub(std::size_t branches) {
+    return static_cast<int>(std::ceil(kRoomAtHub * std::sqrt(static_cast<double>(branches) / kBranchesAtHub)));
+  }
+
   // Where very many vessels part, the rounding between them ends in webs just where the first rings are free.
   void leave_room_at_hubs() {
     for (const Stretch& stretch : plan_.stretches) {
@@ -149,8 +155,9 @@ class PieceMaker {
       const std::vector<Index>& nodes = tubes_.axes()[stretch.branch].branch().nodes;
       for (const bool at_end : {false, true}) {
         if (at_end ? stretch.seam_at_last : stretch.seam_at_first) continue;
-        if (tubes_.centerline().degree(at_end ? nodes.back() : nodes.front()) < kHub) continue;
-        int left = kRoomAtHub;
+        const std::size_t branches = tubes_.centerline().degree(at_end ? nodes.back() : nodes.front());
+        if (branches < kHub) continue;
+        int left = room_at_hub(branches);
         for (Index k = 0; k < stretch.count && left > 0; ++k) {
           const auto number = static_cast<Index>((stretch.first + (at_end ? stretch.count - 1 - k : k)) % rings.size());
           if (!rings[number].free) continue;
