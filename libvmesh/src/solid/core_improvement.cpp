@@ -22,6 +22,9 @@ constexpr int kMostMoves = 4;  // of one length
 constexpr double kLeastGain = 1.02;
 // Factors of the thickness of layers that are tried.
 constexpr std::array<double, 6> kColumnSteps = {0.8, 0.9, 0.95, 0.98, 1.03, 1.1};
+// The same for all corners of a tetrahedron together, if nothing else makes it better than this (12 degrees).
+constexpr std::array<double, 2> kStepsTogether = {0.5, 0.2};
+constexpr double kWorthThinning = 0.208;
 constexpr std::size_t kMostAround = 8;   // cells at an edge that is swapped
 constexpr std::size_t kMostCavity = 16;  // cells that a point replaces
 
@@ -140,6 +143,7 @@ class Improver {
     for (const Index v : Tetrahedron(cells_[t])) any = move(v) || any;
     if (is_bad(t)) any = swap(t) || any;
     if (is_bad(t)) any = insert_a_point(t) || any;
+    if (cells_.is_there(t) && cells_.shape(cells_[t]) < kWorthThinning) any = thin_all_columns(t) || any;
     return any;
   }
 
@@ -189,8 +193,19 @@ class Improver {
     return any;
   }
 
-  bool try_thickness(Index v, double thickness_mm) {
-    const std::vector<LayerColumns::Change> changes = columns_->set_thickness(v, thickness_mm);
+  bool thin_all_columns(Index t) {
+    if (!columns_) return false;
+    bool any = false;
+    for (const double step : kStepsTogether) {
+      const std::vector<LayerColumns::Change> changes = columns_->thin_together(cells_[t], step);
+      any = keep_if_better(changes) || any;
+    }
+    return any;
+  }
+
+  bool try_thickness(Index v, double thickness_mm) { return keep_if_better(columns_->set_thickness(v, thickness_mm)); }
+
+  bool keep_if_better(const std::vector<LayerColumns::Change>& changes) {
     if (changes.empty()) return false;
     std::vector<Index> around;
     for (const auto& change : changes) {
