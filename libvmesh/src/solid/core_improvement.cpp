@@ -22,9 +22,8 @@ constexpr int kMostMoves = 4;  // of one length
 constexpr double kLeastGain = 1.02;
 // Factors of the thickness of layers that are tried.
 constexpr std::array<double, 6> kColumnSteps = {0.8, 0.9, 0.95, 0.98, 1.03, 1.1};
-// The same for all corners of a tetrahedron together, if nothing else makes it better than this (12 degrees).
+// The same for all corners of a tetrahedron together.
 constexpr std::array<double, 2> kStepsTogether = {0.5, 0.2};
-constexpr double kWorthThinning = 0.208;
 constexpr std::size_t kMostAround = 8;   // cells at an edge that is swapped
 constexpr std::size_t kMostCavity = 16;  // cells that a point replaces
 
@@ -88,7 +87,13 @@ class Improver {
     bool any = true;
     for (round_ = 0; any && round_ < kRounds; ++round_) {
       any = false;
-      for (const Index t : bad_tetrahedra()) any = improve(t) || any;
+      for (const Index t : bad_tetrahedra(kGoodShape)) any = improve(t) || any;
+    }
+  }
+
+  void thin_at_bad(double limit) {
+    for (const Index t : bad_tetrahedra(limit)) {
+      for (const double step : kStepsTogether) keep_if_better(columns_->thin_together(cells_[t], step));
     }
   }
 
@@ -103,8 +108,8 @@ class Improver {
 
   bool is_bad(Index t) const { return cells_.is_there(t) && cells_.shape(cells_[t]) < kGoodShape; }
 
-  std::vector<Index> bad_tetrahedra() const {
-    return worst_first(cells_.size(), kGoodShape, [&](Index t) {
+  std::vector<Index> bad_tetrahedra(double limit) const {
+    return worst_first(cells_.size(), limit, [&](Index t) {
       return cells_.is_there(t) ? cells_.shape(cells_[t]) : std::numeric_limits<double>::infinity();
     });
   }
@@ -143,7 +148,6 @@ class Improver {
     for (const Index v : Tetrahedron(cells_[t])) any = move(v) || any;
     if (is_bad(t)) any = swap(t) || any;
     if (is_bad(t)) any = insert_a_point(t) || any;
-    if (cells_.is_there(t) && cells_.shape(cells_[t]) < kWorthThinning) any = thin_all_columns(t) || any;
     return any;
   }
 
@@ -189,16 +193,6 @@ class Improver {
     bool any = false;
     for (const double step : kColumnSteps) {
       for (int move = 0; move < kMostMoves && try_thickness(v, step * columns_->thickness_mm(v)); ++move) any = true;
-    }
-    return any;
-  }
-
-  bool thin_all_columns(Index t) {
-    if (!columns_) return false;
-    bool any = false;
-    for (const double step : kStepsTogether) {
-      const std::vector<LayerColumns::Change> changes = columns_->thin_together(cells_[t], step);
-      any = keep_if_better(changes) || any;
     }
     return any;
   }
@@ -378,6 +372,22 @@ BadPlaces bad_places(const CoreCells& cells, double limit) {
   return places;
 }
 
+template <class Change>
+BadPlaces change_layers(CoreSurface& surface, Core& core, const WallFrame& frame, LayerStack& layers, double limit,
+                        const Change& change) {
+  const std::vector<double> before = layers.reached_mm;
+  CoreCells cells(surface, core);
+  LayerColumns columns(frame, layers);
+  Improver improver(cells, &columns);
+  change(improver);
+  for (Index v = 0; v < frame.position.size(); ++v) {
+    if (layers.reached_mm[v] < before[v]) layers.limit[v] = LayerLimit::shape;
+    surface.mesh.vertices[v] = layers.at(frame, v, 1);
+  }
+  cells.write_to(core);
+  return bad_places(cells, limit);
+}
+
 }  // namespace
 
 void improve_core(const CoreSurface& surface, Core& core) {
@@ -387,16 +397,12 @@ void improve_core(const CoreSurface& surface, Core& core) {
 }
 
 BadPlaces improve_core(CoreSurface& surface, Core& core, const WallFrame& frame, LayerStack& layers, double limit) {
-  const std::vector<double> before = layers.reached_mm;
-  CoreCells cells(surface, core);
-  LayerColumns columns(frame, layers);
-  Improver(cells, &columns).run();
-  for (Index v = 0; v < frame.position.size(); ++v) {
-    if (layers.reached_mm[v] < before[v]) layers.limit[v] = LayerLimit::shape;
-    surface.mesh.vertices[v] = layers.at(frame, v, 1);
-  }
-  cells.write_to(core);
-  return bad_places(cells, limit);
+  return change_layers(surface, core, frame, layers, limit, [](Improver& improver) { improver.run(); });
+}
+
+BadPlaces thin_at_bad_places(CoreSurface& surface, Core& core, const WallFrame& frame, LayerStack& layers,
+                             double limit) {
+  return change_layers(surface, core, frame, layers, limit, [&](Improver& improver) { improver.thin_at_bad(limit); });
 }
 
 }  // namespace vmesh
