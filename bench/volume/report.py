@@ -7,9 +7,10 @@ from collections.abc import Callable
 from tables import DASH, cpu, number, table
 
 NAMES = {"vmesh": "`vmesh volume --layers 0`", "vmesh-layers": "`vmesh volume`", "gmsh-delaunay": "Gmsh, Delaunay",
-         "gmsh-hxt": "Gmsh, HXT", "gmsh-core": "Gmsh on our core's boundary", "tetgen": "TetGen alone", "ftetwild": "fTetWild", "vmtk": "VMTK",
-         "vmtk-layers": "VMTK with layers"}
-LAYERED = {mesher: "vmesh-layers" for mesher in ("vmesh-layers", "gmsh-core", "vmtk-layers")}  # with which of ours a program is compared
+         "gmsh-hxt": "Gmsh, HXT", "gmsh-core": "Gmsh on our core's boundary", "tetgen": "TetGen alone",
+         "ftetwild": "fTetWild", "vmtk": "VMTK", "vmtk-layers": "VMTK with layers"}
+# With which of ours a program is compared.
+LAYERED = {mesher: "vmesh-layers" for mesher in ("vmesh-layers", "gmsh-core", "vmtk-layers")}
 KEPT = 1e-9  # volumes and areas that differ by less are the surface's
 
 
