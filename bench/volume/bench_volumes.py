@@ -23,8 +23,8 @@ sys.path.append(str(HERE.parent / "centerline"))
 
 import report  # noqa: E402
 from measures import measure  # noqa: E402
-from meshers import MESHERS  # noqa: E402
-from surfaces import read_grid, read_surface  # noqa: E402
+from meshers import MESHERS, core_of  # noqa: E402
+from surfaces import Surface, read_grid, read_surface  # noqa: E402
 
 LIVER = "liver_portal_centerlines/liverModelPatient1__"
 OTHER = "pulmonary_aorta_coronary_centerlines/"
@@ -44,6 +44,7 @@ SURFACES = {
 }
 FITTED = {"portal vein 008, fitted"}
 OURS = {"vmesh": ("--layers", "0"), "vmesh-layers": ()}
+NEEDS = {"ftetwild": "vmesh", "gmsh-core": "vmesh-layers"}  # programs that start from meshes of ours
 OF_VMTK = {"vmtk", "vmtk-layers"}
 ENOUGH = 5.  # CPU seconds after which a mesh is not made again for the median
 
@@ -133,7 +134,10 @@ class Bench:
         points, cells = read_grid(Path(result["output"]))
         if not cells:
             return {"refused": "a mesh without cells"} | result
-        return result | measure(read_surface(surface), points, cells)
+        return result | measure(self.meshed_surface(mesher, surface), points, cells)
+
+    def meshed_surface(self, mesher: str, surface: Path) -> Surface:
+        return core_of(surface.with_name("vmesh-layers.vtu")) if mesher == "gmsh-core" else read_surface(surface)
 
 
 def last_line(text: str) -> str:
@@ -172,8 +176,9 @@ def main() -> None:
     surfaces, meshers = chosen(SURFACES, options.surfaces), chosen([*OURS, *MESHERS], options.meshers)
     if not options.vmtk_python:
         meshers = [mesher for mesher in meshers if mesher not in OF_VMTK]
-    if "ftetwild" in meshers and "vmesh" not in meshers:
-        meshers.insert(0, "vmesh")  # whose tetrahedra carry its sizes
+    for mesher, ours in NEEDS.items():
+        if mesher in meshers and ours not in meshers:
+            meshers.insert(0, ours)
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     os.environ |= {"OMP_NUM_THREADS": "1", "VTK_SMP_MAX_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))

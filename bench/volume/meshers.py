@@ -21,6 +21,7 @@ import numpy as np
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
+from measures import boundary
 from surfaces import TETRAHEDRON, WALL, Surface, grid_of, polydata_of, read_grid, read_surface, write_grid
 
 # The default of `vmesh volume`: four layers of together .2 radii, each 1.2 times as thick as that nearer to the wall.
@@ -80,6 +81,19 @@ def gmsh_delaunay(surface: Surface, watch: Stopwatch, _: Path) -> vtk.vtkUnstruc
 
 def gmsh_hxt(surface: Surface, watch: Stopwatch, _: Path) -> vtk.vtkUnstructuredGrid:
     return gmsh_mesh(surface, watch, 10)
+
+
+def core_of(layered: Path) -> Surface:
+    """What bounds the tetrahedra of a mesh with layers, as one patch."""
+    points, cells = read_grid(layered)
+    faces = boundary({TETRAHEDRON: cells[TETRAHEDRON]})[0]
+    used, numbers = np.unique(faces, return_inverse=True)
+    return Surface(points[used], numbers.reshape(-1, 3), np.full(len(faces), WALL), np.full(len(used), np.nan))
+
+
+def gmsh_core(_: Surface, watch: Stopwatch, output: Path) -> vtk.vtkUnstructuredGrid:
+    """Of our core alone: what is possible inside our layers."""
+    return gmsh_mesh(core_of(output.with_name("vmesh-layers.vtu")), watch, 1)
 
 
 def run_tetgen(points: np.ndarray, faces: np.ndarray, sizes: np.ndarray, switches: str,
@@ -210,6 +224,7 @@ def vmtk_layers(surface: Surface, watch: Stopwatch, output: Path) -> vtk.vtkUnst
 MESHERS = {
     "gmsh-delaunay": (gmsh_delaunay, ["gmsh"]),
     "gmsh-hxt": (gmsh_hxt, ["gmsh"]),
+    "gmsh-core": (gmsh_core, ["gmsh"]),
     "tetgen": (tetgen, []),
     "vmtk": (vmtk, ["vmtk"]),
     "vmtk-layers": (vmtk_layers, ["vmtk"]),

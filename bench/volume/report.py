@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from tables import DASH, cpu, number, table
 
 NAMES = {"vmesh": "`vmesh volume --layers 0`", "vmesh-layers": "`vmesh volume`", "gmsh-delaunay": "Gmsh, Delaunay",
-         "gmsh-hxt": "Gmsh, HXT", "tetgen": "TetGen alone", "ftetwild": "fTetWild", "vmtk": "VMTK",
-         "vmtk-layers": "VMTK with layers"}
-LAYERED = {"vmesh-layers": "vmesh-layers", "vmtk-layers": "vmesh-layers"}  # with which of ours a program is compared
+         "gmsh-hxt": "Gmsh, HXT", "gmsh-core": "Gmsh on our core's boundary", "tetgen": "TetGen alone",
+         "ftetwild": "fTetWild", "vmtk": "VMTK", "vmtk-layers": "VMTK with layers"}
+# With which of ours a program is compared.
+LAYERED = {mesher: "vmesh-layers" for mesher in ("vmesh-layers", "gmsh-core", "vmtk-layers")}
 KEPT = 1e-9  # volumes and areas that differ by less are the surface's
 
 
@@ -97,12 +100,21 @@ def in_all(results: dict, meshers: list[str]) -> list[str]:
 
 def times(results: dict, meshers: list[str]) -> list[str]:
     """CPU seconds and the least angle of each mesh, a surface a row."""
+    return each(results, meshers, lambda made: f"{seconds(made['cpu_seconds'])}, {made['least_angle_deg']:.1f}")
+
+
+def radius_ratios(results: dict, meshers: list[str]) -> list[str]:
+    """The least of each mesh, a surface a row."""
+    return each(results, meshers, lambda made: number(made["least_radius_ratio"]))
+
+
+def each(results: dict, meshers: list[str], cell: Callable[[dict], str]) -> list[str]:
     rows = []
     for name, surface in results.items():
         row = [f"{name}, {surface['faces']:,}"]
         for mesher in meshers:
             result = surface["meshes"].get(mesher, {"refused": ""})
-            row.append(f"{seconds(result['cpu_seconds'])}, {result['least_angle_deg']:.1f}" if is_made(result) else DASH)
+            row.append(cell(result) if is_made(result) else DASH)
         rows.append(row)
     return table(["surface, faces", *(NAMES[mesher] for mesher in meshers)], rows)
 
@@ -117,4 +129,5 @@ def versions(results: dict) -> str:
 
 def markdown(results: dict, meshers: list[str]) -> str:
     return "\n".join(["Over all surfaces:", "", *in_all(results, meshers), "", "CPU seconds of meshing, least angle:",
-                      "", *times(results, meshers), "", *detail(results, meshers), "", versions(results)])
+                      "", *times(results, meshers), "", "Least radius ratio of tetrahedra:", "",
+                      *radius_ratios(results, meshers), "", *detail(results, meshers), "", versions(results)])

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "vmesh/mesh/topology.h"
+#include "vmesh/mesh/volume_faces.h"
 #include "vmesh/solid/volume_check.h"
 #include "vmesh/surface/followed_surface.h"
 
@@ -90,6 +92,45 @@ TEST(FollowedVolume, CellsDoNotTurnOverBetweenWallsThatDoNotCross) {
   std::vector<Study> studies = {{30001, 14, -0.5, shell}, {30002, 26, 0.5, shell}, {30005, 19, 0.5, shell}};
   if (can_mesh_lumen()) studies.insert(studies.end(), {{30002, 10, -0.5}, {30008, 27, 0.5}, {30013, 19, -0.5}});
   for (const Study& study : studies) expect_followed(study);
+}
+
+// Here the wall turns by so much that layers over the mean of its faces would turn over, or have no room.
+TEST(FollowedVolume, LayersLeanAndBecomeThinner) {
+  const VolumeOptions shell = {.shell = {.count = 2}, .shell_only = true};
+  std::vector<Study> studies = {{31010, 27, 0.5, shell}, {31026, 10, 0.5, shell}, {31032, 31, 0.5, shell}};
+  if (can_mesh_lumen()) studies.insert(studies.end(), {{31000, 65, 0.5}, {31003, 8, 0.5}, {31022, 11, 0.5}});
+  for (const Study& study : studies) expect_followed(study);
+}
+
+std::size_t crossings_outside(const VolumeMesh& mesh) { return self_intersections(boundary_surface(mesh).mesh).size(); }
+
+TEST(FollowedVolume, TheOutsideOfAShellIsThinnerWhereItWouldCross) {
+  const Centerline centerline = plausible_tree(31029);
+  VolumeMesh mesh = make_volume(grown_wall(centerline), {.shell = {.count = 2}, .shell_only = true}).mesh;
+  CenterlineEdit edit;
+  edit.radius = {{28, 8 * centerline.node(28).radius, 0.5}};
+  const std::vector<Vec3> moved = follow_edit(mesh, centerline, edit);
+  mesh.points = follow_edit_within(mesh.points, centerline, edit);
+  EXPECT_GT(crossings_outside(mesh), 0u);
+  mesh.points = moved;
+  EXPECT_EQ(crossings_outside(mesh), 0u);
+  EXPECT_TRUE(find_volume_defects(mesh).empty());
+}
+
+TEST(FollowedVolume, TetrahedraThatWouldBecomeFlatDoNot) {
+  if (!can_mesh_lumen()) GTEST_SKIP() << "built without TetGen";
+  const Centerline centerline = plausible_tree(31033);
+  VolumeMesh mesh = make_volume(grown_wall(centerline)).mesh;
+  CenterlineEdit edit;
+  edit.radius = {{12, 8 * centerline.node(12).radius, 0.5}};
+  const std::vector<Vec3> alone = follow_edit_within(mesh.points, centerline, edit);
+  const std::vector<Vec3> moved = follow_edit(mesh, centerline, edit);
+  mesh.points = alone;
+  EXPECT_EQ(inverted_cells(mesh), 0u);
+  EXPECT_LT(measure_volume(mesh).min_dihedral_deg, 5);
+  mesh.points = moved;
+  EXPECT_EQ(inverted_cells(mesh), 0u);
+  EXPECT_GT(measure_volume(mesh).min_dihedral_deg, 7.9);
 }
 
 TEST(FollowedVolume, IsThatOfItsPointsWhereNothingTurnsOver) {

@@ -1,5 +1,12 @@
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include "vmesh/core/error.h"
 
+#include "solid/layer_columns.h"
+#include "solid/layer_stack.h"
+#include "solid/wall_frame.h"
 #include "vessels.h"
 
 namespace vmesh {
@@ -54,6 +61,37 @@ TEST_F(Layers, BeginWithTheHeightOfTheFirst) {
   expect_sound_lumen(wall, result);
   for (std::size_t f = 0; f < result.mesh.wedges.size() / 6; f += 11)
     EXPECT_NEAR(heights_over(result.mesh, f, 6)[0], 0.05, 0.005);
+}
+
+void expect_gradual(const WallFrame& frame, const LayerStack& stack) {
+  for (const auto& [a, b, c] : frame.faces) {
+    for (const auto& [v, w] : {std::pair{a, b}, {b, c}, {c, a}}) {
+      const double distance = (frame.position[v] - frame.position[w]).norm();
+      EXPECT_LE(std::abs(stack.reached_mm[v] - stack.reached_mm[w]), kLayerGradation * distance * (1 + 1e-12));
+    }
+  }
+}
+
+TEST(LayerColumns, OfAFaceBecomeThinnerTogetherAndGradually) {
+  const VesselWall wall = grown_wall(tube(), EndShape::flat, 12);
+  const WallFrame frame = frame_of(wall);
+  LayerStack stack = lay_layers(frame, {.count = 4}, LayerSide::inside, {});
+  const LayerStack full = stack;
+  LayerColumns columns(frame, stack);
+  const Triangle& face = frame.faces[frame.faces.size() / 2];
+  const std::vector<LayerColumns::Change> changes = columns.thin_together(face, 0.3);
+  EXPECT_GT(changes.size(), 3u);  // those around must follow
+  for (const Index v : face) EXPECT_DOUBLE_EQ(stack.reached_mm[v], 0.3 * full.reached_mm[v]);
+  expect_gradual(frame, stack);
+  columns.take_back(changes);
+  EXPECT_EQ(stack.reached_mm, full.reached_mm);
+  while (!columns.thin_together(face, 0.3).empty()) {
+  }
+  for (const Index v : face) {
+    EXPECT_GT(stack.reached_mm[v], 0);
+    EXPECT_LT(stack.reached_mm[v], 0.3 * full.reached_mm[v]);
+  }
+  expect_gradual(frame, stack);
 }
 
 TEST_F(Layers, ASingleOne) {

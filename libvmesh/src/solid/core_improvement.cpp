@@ -22,6 +22,8 @@ constexpr int kMostMoves = 4;  // of one length
 constexpr double kLeastGain = 1.02;
 // Factors of the thickness of layers that are tried.
 constexpr std::array<double, 6> kColumnSteps = {0.8, 0.9, 0.95, 0.98, 1.03, 1.1};
+// The same for all corners of a tetrahedron together.
+constexpr std::array<double, 2> kStepsTogether = {0.5, 0.2};
 constexpr std::size_t kMostAround = 8;   // cells at an edge that is swapped
 constexpr std::size_t kMostCavity = 16;  // cells that a point replaces
 
@@ -85,7 +87,13 @@ class Improver {
     bool any = true;
     for (round_ = 0; any && round_ < kRounds; ++round_) {
       any = false;
-      for (const Index t : bad_tetrahedra()) any = improve(t) || any;
+      for (const Index t : bad_tetrahedra(kGoodShape)) any = improve(t) || any;
+    }
+  }
+
+  void thin_at_bad(double limit) {
+    for (const Index t : bad_tetrahedra(limit)) {
+      for (const double step : kStepsTogether) keep_if_better(columns_->thin_together(cells_[t], step));
     }
   }
 
@@ -100,8 +108,8 @@ class Improver {
 
   bool is_bad(Index t) const { return cells_.is_there(t) && cells_.shape(cells_[t]) < kGoodShape; }
 
-  std::vector<Index> bad_tetrahedra() const {
-    return worst_first(cells_.size(), kGoodShape, [&](Index t) {
+  std::vector<Index> bad_tetrahedra(double limit) const {
+    return worst_first(cells_.size(), limit, [&](Index t) {
       return cells_.is_there(t) ? cells_.shape(cells_[t]) : std::numeric_limits<double>::infinity();
     });
   }
@@ -189,8 +197,9 @@ class Improver {
     return any;
   }
 
-  bool try_thickness(Index v, double thickness_mm) {
-    const std::vector<LayerColumns::Change> changes = columns_->set_thickness(v, thickness_mm);
+  bool try_thickness(Index v, double thickness_mm) { return keep_if_better(columns_->set_thickness(v, thickness_mm)); }
+
+  bool keep_if_better(const std::vector<LayerColumns::Change>& changes) {
     if (changes.empty()) return false;
     std::vector<Index> around;
     for (const auto& change : changes) {
@@ -363,6 +372,22 @@ BadPlaces bad_places(const CoreCells& cells, double limit) {
   return places;
 }
 
+template <class Change>
+BadPlaces change_layers(CoreSurface& surface, Core& core, const WallFrame& frame, LayerStack& layers, double limit,
+                        const Change& change) {
+  const std::vector<double> before = layers.reached_mm;
+  CoreCells cells(surface, core);
+  LayerColumns columns(frame, layers);
+  Improver improver(cells, &columns);
+  change(improver);
+  for (Index v = 0; v < frame.position.size(); ++v) {
+    if (layers.reached_mm[v] < before[v]) layers.limit[v] = LayerLimit::shape;
+    surface.mesh.vertices[v] = layers.at(frame, v, 1);
+  }
+  cells.write_to(core);
+  return bad_places(cells, limit);
+}
+
 }  // namespace
 
 void improve_core(const CoreSurface& surface, Core& core) {
@@ -372,16 +397,12 @@ void improve_core(const CoreSurface& surface, Core& core) {
 }
 
 BadPlaces improve_core(CoreSurface& surface, Core& core, const WallFrame& frame, LayerStack& layers, double limit) {
-  const std::vector<double> before = layers.reached_mm;
-  CoreCells cells(surface, core);
-  LayerColumns columns(frame, layers);
-  Improver(cells, &columns).run();
-  for (Index v = 0; v < frame.position.size(); ++v) {
-    if (layers.reached_mm[v] < before[v]) layers.limit[v] = LayerLimit::shape;
-    surface.mesh.vertices[v] = layers.at(frame, v, 1);
-  }
-  cells.write_to(core);
-  return bad_places(cells, limit);
+  return change_layers(surface, core, frame, layers, limit, [](Improver& improver) { improver.run(); });
+}
+
+BadPlaces thin_at_bad_places(CoreSurface& surface, Core& core, const WallFrame& frame, LayerStack& layers,
+                             double limit) {
+  return change_layers(surface, core, frame, layers, limit, [&](Improver& improver) { improver.thin_at_bad(limit); });
 }
 
 }  // namespace vmesh

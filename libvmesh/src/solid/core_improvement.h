@@ -20,4 +20,11 @@ struct BadPlaces {
 /// become thinner or thicker, as far as they stay well-shaped. Returns what is still worse than `limit`.
 BadPlaces improve_core(CoreSurface& surface, Core& core, const WallFrame& frame, LayerStack& layers, double limit);
 
+/// Makes layers over all corners of tetrahedra that are worse than `limit` thinner together, even thinner than layers
+/// may else be, where that makes these better: between vertices of the wall at a crease nothing else does. No
+/// tetrahedron becomes worse than the worst beside it. Last, for layers that are made thinner once more would end
+/// there.
+BadPlaces thin_at_bad_places(CoreSurface& surface, Core& core, const WallFrame& frame, LayerStack& layers,
+                             double limit);
+
 }  // namespace vmesh

@@ -12,6 +12,9 @@ constexpr std::size_t kMostChanges = 40;
 // Share of the thickness at first that is left at least: cells of far thinner ones are worse than what they make
 // better.
 constexpr double kLeastLeft = 0.3;
+// At a crease between vertices of the wall, where nothing else helps and layers are thin anyway: also as a share of the
+// thickness below which they end.
+constexpr double kLeastLeftTogether = 0.05, kLeastShareTogether = 0.2;
 
 }  // namespace
 
@@ -19,6 +22,9 @@ LayerColumns::LayerColumns(const WallFrame& frame, LayerStack& stack) : frame_(f
   may_move_.resize(frame.position.size(), stack.count() > 0);
   for (Index v = 0; v < stack.least_mm.size(); ++v)
     least_mm_.push_back(std::max(stack.least_mm[v], kLeastLeft * stack.reached_mm[v]));
+  for (Index v = 0; v < stack.least_mm.size(); ++v)
+    least_together_mm_.push_back(
+        std::max(kLeastShareTogether * stack.least_mm[v], kLeastLeftTogether * stack.reached_mm[v]));
   for (const Triangle& face : frame.faces) {
     for (const Index v : face) may_move_[v] = may_move_[v] && !stack.ends_at(v) && !is_layer_end(stack, face);
   }
@@ -27,6 +33,20 @@ LayerColumns::LayerColumns(const WallFrame& frame, LayerStack& stack) : frame_(f
 std::vector<LayerColumns::Change> LayerColumns::set_thickness(Index v, double thickness_mm) {
   std::vector<Change> changes;
   if (change(v, thickness_mm, changes) && spread(changes) && are_good(changes)) return changes;
+  take_back(changes);
+  return {};
+}
+
+std::vector<LayerColumns::Change> LayerColumns::thin_together(std::span<const Index> vertices, double factor) {
+  std::vector<Change> changes;
+  for (const Index v : vertices) {
+    if (!may_move(v)) continue;
+    const double before = thickness_mm(v), thinner = std::max(least_together_mm_[v], factor * before);
+    if (!(thinner < before)) continue;
+    changes.push_back({v, before});
+    stack_.reached_mm[v] = thinner;
+  }
+  if (!changes.empty() && spread(changes) && are_good(changes)) return changes;
   take_back(changes);
   return {};
 }

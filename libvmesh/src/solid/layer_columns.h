@@ -1,5 +1,10 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
+#include "vmesh/core/types.h"
+
 #include "solid/layer_stack.h"
 
 namespace vmesh {
@@ -25,6 +30,9 @@ class LayerColumns {
   /// Returns what has changed: nothing if layers would be thicker than asked for, far thinner than at first, or end, or
   /// not be well-shaped.
   std::vector<Change> set_thickness(Index v, double thickness_mm);
+  /// Makes layers thinner by a factor at all of these vertices that may move, and around them as above. They may become
+  /// thinner than by set_thickness().
+  std::vector<Change> thin_together(std::span<const Index> vertices, double factor);
   void take_back(const std::vector<Change>& changes);
 
  private:
@@ -35,7 +43,7 @@ class LayerColumns {
   const WallFrame& frame_;
   LayerStack& stack_;
   std::vector<char> may_move_;
-  std::vector<double> least_mm_;
+  std::vector<double> least_mm_, least_together_mm_;
 };
 
 }  // namespace vmesh

@@ -23,6 +23,8 @@ constexpr double kLeastGrowth = 0.5, kMostGrowth = 5;
 // Tetrahedra with an angle of less than 10 degrees, see BadPlaces, are worth thinner layers, that many times.
 constexpr double kGoodEnough = 0.174;
 constexpr int kThinnings = 4;
+// With one of less than 12 degrees, layers become thinner than they may be otherwise.
+constexpr double kWorthVeryThin = 0.208;
 // A thinning that makes the worst tetrahedron better by less than this is the last.
 constexpr double kLeastThinningGain = 1.05;
 
@@ -120,6 +122,8 @@ class VolumeMaker {
       if (next.shape() < kLeastThinningGain * best.shape()) break;
       best = std::move(next);
     }
+    if (best.is_there() && best.layers.count() > 0 && best.shape() < kWorthVeryThin)
+      best.bad = thin_at_bad_places(best.surface, best.core, frame_, best.layers, kWorthVeryThin);
     parts_.layers = best.layers;
     return best;
   }

@@ -11,6 +11,7 @@
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/volume_faces.h"
 
+#include "solid/core_cells.h"
 #include "solid/wedge_jacobian.h"
 #include "solid/worst_first.h"
 
@@ -19,6 +20,8 @@ namespace {
 
 // Cells of a worse shape than this, by what they were at rest, see shape(), are worth work.
 constexpr double kMendedShape = 0.2;
+// Tetrahedra with a smaller sine of an angle between faces count as such, unless they had that at rest: 8 degrees.
+constexpr double kFlatSine = 0.139, kLeastSine = 1e-6;
 constexpr int kMostMendRounds = 20;
 constexpr int kRingsAround = 2;  // of points around bad cells, which make room
 // Steps of the search for a point's best position: from this share of its longest edge, halved each time.
@@ -106,23 +109,29 @@ class CellMender {
     }
   }
 
+  // Whatever is turned over first, for it decides.
   std::size_t run() {
-    std::vector<Index> bad = bad_among_all();
-    if (bad.empty()) return 0;
-    find_kept();
     const std::vector<Vec3> before = mesh_.points;
-    for (int round = 0; round < kMostMendRounds && !bad.empty(); ++round) {
-      bool any = false;
-      for (const Index v : points_near(bad)) any = move(v) || any;
-      if (!any) break;
-      bad = bad_among_all();
-    }
+    mend_bad();
+    sees_angles_ = true;
+    mend_bad();
     std::size_t moved = 0;
     for (std::size_t v = 0; v < before.size(); ++v) moved += mesh_.points[v] != before[v];
     return moved;
   }
 
  private:
+  void mend_bad() {
+    std::vector<Index> bad = bad_among_all();
+    if (!bad.empty() && is_kept_.empty()) find_kept();
+    for (int round = 0; round < kMostMendRounds && !bad.empty(); ++round) {
+      bool any = false;
+      for (const Index v : points_near(bad)) any = move(v) || any;
+      if (!any) break;
+      bad = bad_among_all();
+    }
+  }
+
   std::span<const Index> around(Index v) const {
     return {around_.data() + around_begin_[v], around_begin_[v + 1] - around_begin_[v]};
   }
@@ -139,7 +148,18 @@ class CellMender {
     if (least <= 0) return least;
     for (std::size_t k = 0; k < now.edges; ++k) stretch += now.edge[k] / rest.edge[k];
     stretch /= static_cast<double>(now.edges);
-    return least / (stretch * std::sqrt(stretch));
+    const double similar = least / (stretch * std::sqrt(stretch));
+    return sees_angles_ && cells_[c].count == 4 ? std::min(similar, kMendedShape * evenness(c)) : similar;
+  }
+
+  // Of a tetrahedron: below 1 if it is flatter than is good, and than it was.
+  double evenness(Index c) const {
+    return sine_of(c, mesh_.points) / std::min(kFlatSine, std::max(sine_of(c, rest_), kLeastSine));
+  }
+
+  double sine_of(Index c, const std::vector<Vec3>& points) const {
+    const auto& corner = cells_[c].corner;
+    return vmesh::least_sine({points[corner[0]], points[corner[1]], points[corner[2]], points[corner[3]]});
   }
 
   std::vector<Index> bad_among_all() const {
@@ -249,6 +269,7 @@ class CellMender {
   std::vector<std::size_t> around_begin_;
   std::vector<Index> around_;  // cells at every point
   std::vector<char> is_kept_;
+  bool sees_angles_ = false;
 };
 
 }  // namespace
