@@ -98,11 +98,12 @@ bool CrossingGuard::cross_axes(const std::vector<PlacedFace>& faces, const std::
     return meets_segment(face, axes_[axis][0], axes_[axis][1]);
   };
   return std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
-    const auto [low, high] = box_of(face.points);
+    const BoxTree::Box box = box_of(face.points);
     bool crossed = false;
-    axis_tree_.visit_overlapping(low, high, [&](Index part) {
+    axis_tree_.visit_overlapping(box.low, box.high, [&](Index part) {
       const Index axis = part / kPartsOfLine;
-      if (crossed || !box_of_part(axes_[axis], part % kPartsOfLine).overlaps(low, high) || !meets(face, axis)) return;
+      if (crossed || !box_of_part(axes_[axis], part % kPartsOfLine).overlaps(box.low, box.high) || !meets(face, axis))
+        return;
       crossed = std::none_of(gone.begin(), gone.end(), [&](Index f) {
         const std::optional<PlacedFace> before = face_at_(f);
         return before && !is_degenerate(*before) && meets(*before, axis);
