@@ -117,9 +117,9 @@ TEST(ErrorLimit, IsProvenOnAFork) {
   EXPECT_FALSE(unproven_faces(result.mesh, result.binding, field, parse_error_limit("0.1%")).empty());
 }
 
-// Two daughters that part at 18 degrees, without rounding: the notch between them is sharper than triangles can follow.
+// Two daughters that part at five degrees, without rounding: the notch between them is sharper than triangles can follow.
 TEST(ErrorLimit, IsSaidNotToHoldWhereItCannot) {
-  const double half = 6 * std::numbers::pi / 180, length = 15;
+  const double half = 2.5 * std::numbers::pi / 180, length = 30;
   const Vec3 up = length * Vec3(std::cos(half), std::sin(half), 0);
   const Vec3 down = length * Vec3(std::cos(half), -std::sin(half), 0);
   const Centerline centerline({{{-6, 0, 0}, 1}, {{0, 0, 0}, 1}, {up, 0.8}, {down, 0.7}}, {{0, 1}, {1, 2}, {1, 3}});

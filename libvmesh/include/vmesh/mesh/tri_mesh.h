@@ -37,8 +37,8 @@ inline Vec3 area_normal(const TriMesh& mesh, Index f) {
   return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
 }
 
-/// Normal of the triangle `a`, `b`, `c`, its length the angle at `a`; zero without an area. The sum around a vertex does
-/// not depend on how walls are divided into triangles: on a crease it points midway between them (Thuermer and
+/// Normal of the triangle `a`, `b`, `c`, its length the angle at `a`; zero without an area. The sum around a vertex
+/// does not depend on how walls are divided into triangles: on a crease it points midway between them (Thuermer and
 /// Wuethrich 1998, Computing vertex normals from polygonal facets).
 Vec3 angle_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 

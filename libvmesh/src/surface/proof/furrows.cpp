@@ -19,7 +19,6 @@ constexpr int kTries = 4;       // of a strip; each leaves out what was in the w
 
 // An edge across a gap, and the point of the crease below it.
 struct Crossing {
-  MeshEdge edge;
   double cosine;  // between the walls
   Crease crease;
   BoundaryPoint below;
@@ -32,8 +31,8 @@ class Plough {
          const std::function<double(Index)>& limit_at, const std::vector<char>& held)
       : mesh_(mesh), edit_(edit), field_(field), limit_at_(limit_at), held_(held) {}
 
-  std::vector<std::pair<Index, Crease>> run() {
-    find_crossings();
+  std::vector<std::pair<Index, Crease>> run(const std::vector<Index>& faces) {
+    find_crossings(faces);
     for (int round = 0; round < kTries; ++round) {
       leave_two_of_three();
       bool any_left_out = false;
@@ -49,13 +48,26 @@ class Plough {
   const Vec3& point(Index v) const { return mesh_.position(v); }
   static MeshEdge sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-  void find_crossings() {
-    std::vector<FieldSample> samples(mesh_.vertices().size());
-    for (Index v = 0; v < samples.size(); ++v) {
-      if (mesh_.has_vertex(v)) samples[v] = field_.sample(point(v), mesh_.vertex(v).binding.segment);
+  std::vector<MeshEdge> edges_of(const std::vector<Index>& faces) const {
+    std::vector<MeshEdge> edges;
+    for (const Index f : faces) {
+      if (!mesh_.has_face(f)) continue;
+      const auto& [a, b, c] = mesh_.faces()[f];
+      edges.insert(edges.end(), {sorted(a, b), sorted(b, c), sorted(c, a)});
     }
-    for (const MeshEdge& e : mesh_.edges()) {
-      const FieldSample &a = samples[e.a], &b = samples[e.b];
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
+  }
+
+  void find_crossings(const std::vector<Index>& faces) {
+    std::vector<FieldSample> samples(mesh_.vertices().size());  // of vertices that are asked for
+    const auto sample_at = [&](Index v) -> const FieldSample& {
+      if (samples[v].cone == kNone) samples[v] = field_.sample(point(v), mesh_.vertex(v).binding.segment);
+      return samples[v];
+    };
+    for (const MeshEdge& e : edges_of(faces)) {
+      const FieldSample &a = sample_at(e.a), &b = sample_at(e.b);
       const double cosine = a.gradient.dot(b.gradient);
       if (cosine > kAcross || held_[e.a] || held_[e.b] || !mesh_.is_inner(e)) continue;
       const Vec3 middle = 0.5 * (point(e.a) + point(e.b));
@@ -66,7 +78,7 @@ class Plough {
         const double depth = (below->position - middle).norm();
         if (depth < kShallow * length || depth > kDeepest * length) continue;
         if ((below->position - middle).dot(a.gradient + b.gradient) > 0) continue;
-        crossings_.emplace(sorted(e.a, e.b), Crossing{e, cosine, crease, *below, depth});
+        crossings_.emplace(e, Crossing{cosine, crease, *below, depth});
         break;
       }
     }
@@ -259,9 +271,10 @@ class Plough {
 }  // namespace
 
 std::vector<std::pair<Index, Crease>> plough(FinishedMesh& mesh, GuardedEdit<FinishedVertex>& edit,
-                                             const VesselField& field, const std::function<double(Index)>& limit_at,
+                                             const VesselField& field, const std::vector<Index>& faces,
+                                             const std::function<double(Index)>& limit_at,
                                              const std::vector<char>& held) {
-  return Plough(mesh, edit, field, limit_at, held).run();
+  return Plough(mesh, edit, field, limit_at, held).run(faces);
 }
 
 }  // namespace vmesh

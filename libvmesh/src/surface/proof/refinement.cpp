@@ -67,7 +67,7 @@ class Refinement {
 
   std::vector<Index> run() {
     bring_strays_back();
-    go_down_into_gaps();
+    go_down_into_gaps(due_);
     for (int round = 0; round < kMostSplitRounds && split_where_far(); ++round) improve();
     prove();
     const double at_first = unproven_area();
@@ -77,7 +77,7 @@ class Refinement {
     since_best.emplace(mesh_);
     for (int round = 0, last = 0; !unproven_.empty() && round < last + kPatience; ++round) {
       report_progress(progress_, "refine", 1 - least / at_first);
-      go_down_into_gaps();
+      go_down_into_gaps(unproven_);
       if (!split_unproven()) break;
       improve();
       prove();
@@ -358,11 +358,11 @@ class Refinement {
   }
 
   // Where walls meet in creases. Again when faces are smaller: then more strips have good triangles.
-  void go_down_into_gaps() {
+  void go_down_into_gaps(const std::vector<Index>& faces) {
     if (!has_creases_) return;
     changed_.clear();
     const auto placed = plough(
-        mesh_, edit_, field_, [this](Index v) { return limit_at(v); }, held_);
+        mesh_, edit_, field_, faces, [this](Index v) { return limit_at(v); }, held_);
     held_.resize(mesh_.vertices().size(), 0);
     crease_at_.resize(mesh_.vertices().size());
     for (const auto& [v, crease] : placed) {
