@@ -30,11 +30,8 @@ constexpr double kWorthAProof = 0.97;
 constexpr int kPatience = 6;
 constexpr int kMostSplitRounds = 12;  // each halves edges
 constexpr int kImprovements = 3;      // passes of flips and moves after splits
-// Of the square root of limit times radius, which edges of even surfaces have about three times: no edge becomes
-// shorter.
-constexpr double kShortest = 0.3;
-constexpr double kTolerance = 1e-3;  // radii, of vertices on the boundary
-constexpr double kLeastGain = 1e-3;  // of skewness
+constexpr double kTolerance = 1e-3;   // radii, of vertices on the boundary
+constexpr double kLeastGain = 1e-3;   // of skewness
 // Relative gain of energy, and share of the most of a change of height, that are worth a move and the proofs after it;
 // at creases, where the triangles that are proven are hard to find, smaller ones are.
 constexpr double kRounder = 0.03, kRounderAtCreases = 1e-3;
@@ -132,7 +129,7 @@ class Refinement {
   bool may_split(const MeshEdge& e) const {
     if (!mesh_.is_inner(e) || (held_[e.a] && held_[e.b])) return false;
     const double radius = std::min(mesh_.vertex(e.a).radius, mesh_.vertex(e.b).radius);
-    return length(e) > kShortest * std::sqrt(limit_of(e) * radius);
+    return length(e) > way_around(hard_, middle_of(e)).shortest * std::sqrt(limit_of(e) * radius);
   }
 
   bool is_at_opening(Index f) const {

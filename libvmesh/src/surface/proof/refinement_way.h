@@ -14,6 +14,9 @@ struct RefinementWay {
   bool descends;                         ///< edges far above a crease are divided on the way down
   std::array<double, 2> upright_splits;  ///< least cosines between faces' normals and the gradient, tried one by one
   double upright;                        ///< the same for flips and moves
+  /// Of the square root of limit times radius, which edges of even surfaces have about three times: no edge becomes
+  /// shorter.
+  double shortest = 0.3;
 };
 
 /// A ball in which another way is taken, because those before did not do.
