@@ -117,7 +117,8 @@ TEST(ErrorLimit, IsProvenOnAFork) {
   EXPECT_FALSE(unproven_faces(result.mesh, result.binding, field, parse_error_limit("0.1%")).empty());
 }
 
-// Two daughters that part at five degrees, without rounding: the notch between them is sharper than triangles can follow.
+// Two daughters that part at five degrees, without rounding: the notch between them is sharper than triangles can
+// follow.
 TEST(ErrorLimit, IsSaidNotToHoldWhereItCannot) {
   const double half = 2.5 * std::numbers::pi / 180, length = 30;
   const Vec3 up = length * Vec3(std::cos(half), std::sin(half), 0);
