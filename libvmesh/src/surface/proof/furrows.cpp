@@ -1,7 +1,7 @@
 #include "surface/proof/furrows.h"
 
 #include <algorithm>
-#include <map>
+#include <array>
 #include <utility>
 
 #include "vmesh/mesh/triangle_quality.h"
@@ -19,10 +19,13 @@ constexpr int kTries = 4;       // of a strip; each leaves out what was in the w
 
 // An edge across a gap, and the point of the crease below it.
 struct Crossing {
+  MeshEdge edge;  // with its smaller end first
   double cosine;  // between the walls
   Crease crease;
   BoundaryPoint below;
-  double depth;  // mm
+  double depth;          // mm
+  bool counts = true;    // until it is in the way, or replaced
+  Index vertex = kNone;  // what its strip is to have there
 };
 
 class Plough {
@@ -78,27 +81,35 @@ class Plough {
         const double depth = (below->position - middle).norm();
         if (depth < kShallow * length || depth > kDeepest * length) continue;
         if ((below->position - middle).dot(a.gradient + b.gradient) > 0) continue;
-        crossings_.emplace(e, Crossing{cosine, crease, *below, depth});
+        crossings_.push_back({e, cosine, crease, *below, depth});
         break;
       }
     }
   }
 
-  std::vector<MeshEdge> crossings_of(Index f) const {
-    std::vector<MeshEdge> edges;
+  Crossing* crossing_at(Index a, Index b) {
+    const MeshEdge e = sorted(a, b);
+    const auto it = std::lower_bound(crossings_.begin(), crossings_.end(), e,
+                                     [](const Crossing& c, const MeshEdge& edge) { return c.edge < edge; });
+    return it != crossings_.end() && it->edge == e && it->counts ? &*it : nullptr;
+  }
+
+  std::vector<Crossing*> crossings_of(Index f) {
+    std::vector<Crossing*> crossings;
     const Triangle& face = mesh_.faces()[f];
     for (std::size_t k = 0; k < 3; ++k) {
-      const MeshEdge e = sorted(face[k], face[(k + 1) % 3]);
-      if (crossings_.contains(e)) edges.push_back(e);
+      if (Crossing* crossing = crossing_at(face[k], face[(k + 1) % 3])) crossings.push_back(crossing);
     }
-    return edges;
+    return crossings;
   }
 
   std::vector<Index> faces_across() const {
     std::vector<Index> faces;
-    for (const auto& [e, crossing] : crossings_) {
-      faces.push_back(mesh_.face_of(e.a, e.b));
-      faces.push_back(mesh_.face_of(e.b, e.a));
+    for (const Crossing& crossing : crossings_) {
+      if (!crossing.counts) continue;
+      const auto [a, b] = crossing.edge;
+      faces.push_back(mesh_.face_of(a, b));
+      faces.push_back(mesh_.face_of(b, a));
     }
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
@@ -108,26 +119,29 @@ class Plough {
   // Where three vessels meet, the edge between the walls that face each other least.
   void leave_two_of_three() {
     for (const Index f : faces_across()) {
-      const std::vector<MeshEdge> edges = crossings_of(f);
-      if (edges.size() < 3) continue;
-      crossings_.erase(*std::max_element(edges.begin(), edges.end(), [&](const MeshEdge& d, const MeshEdge& e) {
-        return crossings_.at(d).cosine < crossings_.at(e).cosine;
-      }));
+      const std::vector<Crossing*> crossings = crossings_of(f);
+      if (crossings.size() < 3) continue;
+      Crossing* least = crossings[0];
+      for (Crossing* crossing : crossings) {
+        if (crossing->cosine > least->cosine) least = crossing;
+      }
+      least->counts = false;
     }
   }
 
   // Faces joined by edges across the gap, in the order in which they lie; each has one or two of these.
-  std::vector<std::vector<Index>> strips() const {
+  std::vector<std::vector<Index>> strips() {
     std::vector<std::vector<Index>> all;
     const std::vector<Index> faces = faces_across();
-    std::map<Index, char> seen;
+    std::vector<char> seen(mesh_.faces().size(), 0);
     const auto follow = [&](Index f) {
       std::vector<Index> strip;
       while (f != kNone && !std::exchange(seen[f], char{1})) {
         strip.push_back(f);
         Index next = kNone;
-        for (const MeshEdge& e : crossings_of(f)) {
-          for (const Index g : {mesh_.face_of(e.a, e.b), mesh_.face_of(e.b, e.a)}) {
+        for (const Crossing* crossing : crossings_of(f)) {
+          const auto [a, b] = crossing->edge;
+          for (const Index g : {mesh_.face_of(a, b), mesh_.face_of(b, a)}) {
             if (g != f && !seen[g]) next = g;
           }
         }
@@ -147,22 +161,22 @@ class Plough {
   struct Furrow {
     Patch patch;
     std::vector<Crease> creases;  // of the vertices added
-    std::map<MeshEdge, Index> below;
   };
-  Furrow furrow_below(const std::vector<Index>& strip) const {
-    Furrow furrow;
+  Furrow furrow_below(const std::vector<Index>& strip) {
     for (const Index f : strip) {
-      for (const MeshEdge& e : crossings_of(f)) {
-        if (furrow.below.contains(e)) continue;
-        const Crossing& crossing = crossings_.at(e);
-        const bool is_apart =
-            furrow.creases.empty() ||
-            (furrow.patch.added.back().position - crossing.below.position).norm() > kApart * crossing.depth;
-        if (is_apart) {
-          furrow.patch.added.push_back(finished_vertex(crossing.below, field_));
-          furrow.creases.push_back(crossing.crease);
+      for (Crossing* crossing : crossings_of(f)) crossing->vertex = kNone;
+    }
+    Furrow furrow;
+    std::vector<FinishedVertex>& added = furrow.patch.added;
+    for (const Index f : strip) {
+      for (Crossing* crossing : crossings_of(f)) {
+        if (crossing->vertex != kNone) continue;
+        const Vec3& below = crossing->below.position;
+        if (added.empty() || (added.back().position - below).norm() > kApart * crossing->depth) {
+          added.push_back(finished_vertex(crossing->below, field_));
+          furrow.creases.push_back(crossing->crease);
         }
-        furrow.below[e] = static_cast<Index>(mesh_.vertices().size() + furrow.patch.added.size() - 1);
+        crossing->vertex = static_cast<Index>(mesh_.vertices().size() + added.size() - 1);
       }
     }
     return furrow;
@@ -178,10 +192,10 @@ class Plough {
   }
 
   // What becomes of a face of the strip.
-  std::vector<Triangle> parts_of(Index f, const Furrow& furrow) const {
+  std::vector<Triangle> parts_of(Index f, const Furrow& furrow) {
     const auto below = [&](Index a, Index b) {
-      const auto it = furrow.below.find(sorted(a, b));
-      return it == furrow.below.end() ? kNone : it->second;
+      const Crossing* crossing = crossing_at(a, b);
+      return crossing ? crossing->vertex : kNone;
     };
     Triangle face = mesh_.faces()[f];
     // With one crossing it becomes the first edge, with two their common corner the first.
@@ -204,12 +218,10 @@ class Plough {
 
   // Whether the faces around a vertex will be one fan.
   bool stays_manifold(Index v, const Patch& patch) const {
-    std::map<Index, Index> next;  // corners around the vertex
-    std::size_t faces = 0;
+    std::vector<std::array<Index, 2>> sides;  // of faces, opposite the vertex
     const auto add = [&](const Triangle& face) {
       const auto [at, a, b] = FinishedMesh::turned_to(v, face);
-      next[a] = b;
-      ++faces;
+      sides.push_back({a, b});
     };
     if (v < mesh_.vertices().size()) {
       for (const Index f : mesh_.faces_around(v)) {
@@ -219,15 +231,13 @@ class Plough {
     for (const Triangle& f : patch.faces) {
       if (has_corner(f, v)) add(f);
     }
-    if (faces == 0) return true;
-    const Index first = next.begin()->first;
-    Index at = first;
-    for (std::size_t i = 1; i < faces; ++i) {
-      const auto it = next.find(at);
-      if (it == next.end() || it->second == first) return false;
-      at = it->second;
+    Index at = sides[0][0];
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      const auto next = std::find_if(sides.begin(), sides.end(), [&](const auto& side) { return side[0] == at; });
+      if (next == sides.end() || (i > 0 && at == sides[0][0])) return false;
+      at = (*next)[1];
     }
-    return next.contains(at) && next.at(at) == first;
+    return at == sides[0][0];
   }
   bool stays_manifold(const Patch& patch) const {
     return std::all_of(patch.faces.begin(), patch.faces.end(), [&](const Triangle& f) {
@@ -238,13 +248,14 @@ class Plough {
   // Returns whether the strip was replaced; else the edges that are in the way do not count any more.
   bool replace(const std::vector<Index>& strip) {
     Furrow furrow = furrow_below(strip);
-    std::vector<MeshEdge> in_the_way;
+    std::vector<Crossing*> all, in_the_way;
     for (const Index f : strip) {
+      const std::vector<Crossing*> crossings = crossings_of(f);
+      all.insert(all.end(), crossings.begin(), crossings.end());
       furrow.patch.gone.push_back(f);
       for (const Triangle& part : parts_of(f, furrow)) {
         furrow.patch.faces.push_back(part);
-        if (is_good(part, furrow.patch)) continue;
-        for (const MeshEdge& e : crossings_of(f)) in_the_way.push_back(e);
+        if (!is_good(part, furrow.patch)) in_the_way.insert(in_the_way.end(), crossings.begin(), crossings.end());
       }
     }
     const auto first = static_cast<Index>(mesh_.vertices().size());
@@ -252,10 +263,7 @@ class Plough {
     if (is_taken) {
       for (Index i = 0; i < furrow.creases.size(); ++i) on_creases_.emplace_back(first + i, furrow.creases[i]);
     }
-    if (in_the_way.empty()) {
-      for (const auto& [e, below] : furrow.below) in_the_way.push_back(e);
-    }
-    for (const MeshEdge& e : in_the_way) crossings_.erase(e);
+    for (Crossing* crossing : in_the_way.empty() ? all : in_the_way) crossing->counts = false;
     return is_taken;
   }
 
@@ -264,7 +272,7 @@ class Plough {
   const VesselField& field_;
   const std::function<double(Index)>& limit_at_;
   const std::vector<char>& held_;
-  std::map<MeshEdge, Crossing> crossings_;  // by edge with its smaller end first
+  std::vector<Crossing> crossings_;  // ascending
   std::vector<std::pair<Index, Crease>> on_creases_;
 };
 
