@@ -80,6 +80,18 @@ TEST(MendCells, SoAreTetrahedraAndPyramids) {
   expect_mended(octahedron_with_a_pyramid(), {0.9, 0.7, 0.4});
 }
 
+// None is turned over; the point inside has come close to a face outside.
+TEST(MendCells, FlatTetrahedraBecomeLessFlat) {
+  VolumeMesh mesh = octahedron_with_a_pyramid();
+  const std::vector<Vec3> rest = mesh.points;
+  mesh.points.back() = Vec3(0.32, 0.32, 0.32);
+  ASSERT_EQ(inverted_cells(mesh), 0u);
+  ASSERT_LT(measure_volume(mesh).min_dihedral_deg, 5);
+  EXPECT_EQ(mend_cells(mesh, rest), 1u);
+  EXPECT_EQ(inverted_cells(mesh), 0u);
+  EXPECT_GE(measure_volume(mesh).min_dihedral_deg, 7.9);  // 8 degrees as a sine of three digits
+}
+
 TEST(MendCells, WhereRegionsMeetPointsStay) {
   for (const auto& [regions, may_move] : {std::pair<std::vector<std::string>, bool>{{"lumen", "wall"}, false},
                                           {{"lumen_3", "wall_3"}, false},

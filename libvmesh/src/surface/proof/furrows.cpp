@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "vmesh/core/ascending.h"
 #include "vmesh/mesh/triangle_quality.h"
 #include "vmesh/surface/soundness.h"
 
@@ -58,8 +59,7 @@ class Plough {
       const auto& [a, b, c] = mesh_.faces()[f];
       edges.insert(edges.end(), {sorted(a, b), sorted(b, c), sorted(c, a)});
     }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    sort_unique(edges);
     return edges;
   }
 
@@ -111,8 +111,7 @@ class Plough {
       faces.push_back(mesh_.face_of(a, b));
       faces.push_back(mesh_.face_of(b, a));
     }
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    sort_unique(faces);
     return faces;
   }
 
