@@ -7,6 +7,7 @@
 
 #include "vmesh/core/error.h"
 #include "vmesh/mesh/volume_faces.h"
+#include "vmesh/solid/volume_check.h"
 
 #include "vessels.h"
 
