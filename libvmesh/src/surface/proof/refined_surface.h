@@ -52,7 +52,7 @@ class RefinedSurface {
   }
 
   /// Decides what is tried, not what is proven: single precision will do. Not at creases, where the cones of two walls
-  // are equally near, and which of them is taken decides how much is tried in vain.
+  /// are equally near, and which of them is taken decides how much is tried in vain.
   FieldSample rough_sample(const Vec3& p, Index hint) const {
     return has_creases ? field_.sample(p, hint) : field_.sample_fast(p, hint);
   }
