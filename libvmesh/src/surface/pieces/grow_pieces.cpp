@@ -25,18 +25,34 @@
 namespace vmesh {
 namespace {
 
+// Even surfaces that are refined to a limit until one is proven: with the sizes that a share of the limit asks for
+// (edges as long, a ninth, a quarter shorter), in the usual way of refining only; without, in all; with more vertices
+// around.
+struct Start {
+  double sizes;
+  bool usual_way_only;
+  int times_around;
+};
+constexpr Start kStarts[] = {{1, true, 1}, {0.8, true, 1}, {0.55, true, 1}, {0, false, 1}, {0, false, 2}};
+
 constexpr int kRounds = 3;  // of remaking pieces as one; idle 2 to 4
 // Radii: a fault this near to a seam may be caused by it; idle 2.8 to 5.6.
 constexpr double kNearSeam = 4.0;
+
+// Not set: 0 of it.
+ErrorLimit share_of(const ErrorLimit& limit, double share) {
+  return share > 0 ? ErrorLimit{share * limit.mm, share * limit.relative} : ErrorLimit{};
+}
 
 class PieceGrower {
  public:
   /// What becomes of the whole surface.
   struct Finish {
-    ErrorLimit limit;        ///< what it is refined to, if set; that of the options is proven piece by piece
-    bool may_be_coarser;     ///< whether vertices are left out then
-    double elongation;       ///< how long triangles may be then
-    bool has_sizes = false;  ///< those that the limit asks for; another surface is tried if that does not lead to it
+    ErrorLimit limit;             ///< what it is refined to, if set; that of the options is proven piece by piece
+    bool may_be_coarser;          ///< whether vertices are left out then
+    double elongation;            ///< how long triangles may be then
+    double sizes = 0;             ///< those that this share of the limit asks for, if set
+    bool usual_way_only = false;  ///< of refining
   };
 
   PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
@@ -46,7 +62,7 @@ class PieceGrower {
         options_(options),
         finish_(finish),
         progress_(progress),
-        context_{tubes_, open, options_, ask_, finish.has_sizes ? finish.limit : ErrorLimit{}},
+        context_{tubes_, open, options_, ask_, share_of(finish.limit, finish.sizes)},
         division_(divide(tubes_, options)) {}
 
   std::vector<std::pair<Index, Index>> run(GenerateResult& result) {
@@ -182,7 +198,7 @@ class PieceGrower {
 
   void refine_whole(ErrorSummary& summary) {
     const RefinementGoal goal{finish_.limit, options_.placement, static_cast<std::size_t>(options_.max_vertices),
-                              finish_.has_sizes};
+                              finish_.usual_way_only};
     const RefinedError error = refine_to_limit(gathered_, tubes_.field(), goal, progress_);
     summary = error.summary;
     has_met_limit_ = error.is_met;
@@ -365,14 +381,17 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
     made.is_met = grower.has_met_limit();
     return made;
   };
-  const auto refine_even = [&](bool has_sizes) {
-    return attempt(field, even, {options.max_error, may_be_coarser, options.elongation, has_sizes});
+  const auto refine_even = [&](const Start& start) {
+    GenerateOptions finer = even;
+    finer.around *= start.times_around;
+    return attempt(field, finer,
+                   {options.max_error, may_be_coarser, options.elongation, start.sizes, start.usual_way_only});
   };
-  Attempt best = refine_even(true);
+  Attempt best = refine_even(kStarts[0]);
   const auto try_also = [&best](Attempt other) {
     if (other.is_met || other.result.error.unproven_faces < best.result.error.unproven_faces) best = std::move(other);
   };
-  if (!best.is_met) try_also(refine_even(false));
+  for (std::size_t i = 1; i < std::size(kStarts) && !best.is_met; ++i) try_also(refine_even(kStarts[i]));
   if (!best.is_met) {
     VesselField precise = field;
     precise.use_double_precision();
