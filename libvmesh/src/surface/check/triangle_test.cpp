@@ -112,13 +112,13 @@ class TriangleTest {
 
   bool is_outside(const Points& q, Range whole, int depth) {
     // Most triangles are proven to be outside without their corners.
-    if (first_order_low(begin_measuring(q, whole)) >= 0) {
+    if (is_outside_to_first_order(begin_measuring(q, whole))) {
       stack_.resize(whole_end_);
       return true;
     }
     const Range range = finish_measuring();
-    bool result = lower_bound(range) >= 0;
-    if (!result && depth > 0 && value_at_center(range) >= 0) {
+    bool result = is_outside_to_second_order(range);
+    if (!result && depth > 0 && is_outside_at_center(range)) {
       const auto parts = quarters(q);
       result =
           std::all_of(parts.begin(), parts.end(), [&](const Points& p) { return is_outside(p, range, depth - 1); });
@@ -133,8 +133,8 @@ class TriangleTest {
     }
     begin_measuring(q, whole);
     const Range range = finish_measuring();
-    bool result = upper_bound(range) <= 0;
-    if (!result && depth > 0 && value_at_center(range) <= 0) {
+    bool result = is_inside_by_bounds(range);
+    if (!result && depth > 0 && is_inside_at_center(range)) {
       const auto parts = quarters(q);
       result = std::all_of(parts.begin(), parts.end(), [&](const Points& p) { return is_inside(p, range, depth - 1); });
     }
@@ -311,25 +311,32 @@ class TriangleTest {
     return reach * d * d / 2;
   }
 
-  // Calls visit for every cone and combine for every pair that may be blended; returns the least value.
-  template <class Visit, class Combine>
-  double least(Range range, Visit&& visit, Combine&& combine) {
-    double result = std::numeric_limits<double>::infinity();
+  // Whether holds(bounds) for every cone and holds(bounds, bounds) for every pair that may be blended. The dent of a
+  // blend is at most a quarter of its width: what is farther outside by `value` than that needs no closer look.
+  template <class Value, class Widest, class Holds>
+  bool all_outside(Range range, const Value& value, const Widest& widest, const Holds& holds) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      result = std::min(result, visit(stack_[i]));
-      if (field_.relations().blend() == 0) continue;
+      if (value(stack_[i]) < 0) return false;
+    }
+    if (field_.relations().blend() == 0) return true;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
       for (std::size_t j = range.begin; j < i; ++j) {
-        if (field_.are_blended(stack_[i].cone->number, stack_[j].cone->number))
-          result = std::min(result, combine(stack_[i], stack_[j]));
+        ConeBounds &a = stack_[i], &b = stack_[j];
+        const double width = widest(a, b);
+        if (std::min(value(a), value(b)) - width / 4 >= 0) continue;
+        if (field_.are_blended(a.cone->number, b.cone->number) && !holds(a, b, width)) return false;
       }
     }
-    return result;
+    return true;
+  }
+
+  // Over which two cones are blended at most on the triangle.
+  static double widest_blend(const ConeBounds& a, const ConeBounds& b) {
+    return width(std::min(a.most_reach, b.most_reach), (a.gradient - b.gradient).norm() + a.turn + b.turn);
   }
 
   // The smooth minimum grows with either distance and falls with the width.
-  double first_order_low(const ConeBounds& a, const ConeBounds& b) const {
-    const double difference = (a.gradient - b.gradient).norm() + a.turn + b.turn;
-    const double widest = width(std::min(a.most_reach, b.most_reach), difference);
+  double first_order_low(const ConeBounds& a, const ConeBounds& b, double widest) const {
     const double gap = std::max(0.0, std::abs(a.at_center - b.at_center) - 2 * reach_);
     const double low = std::min(a.low, b.low);
     if (gap >= widest) return low;
@@ -337,40 +344,64 @@ class TriangleTest {
     return std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
   }
 
-  double first_order_low(Range range) {
-    return least(
-        range, [](const ConeBounds& b) { return b.low; },
-        [this](const ConeBounds& a, const ConeBounds& b) { return first_order_low(a, b); });
+  static double low_of(const ConeBounds& b) { return b.low; }
+
+  bool is_outside_to_first_order(Range range) {
+    return all_outside(range, low_of, widest_blend, [this](const ConeBounds& a, const ConeBounds& b, double widest) {
+      return first_order_low(a, b, widest) >= 0;
+    });
   }
 
-  double lower_bound(Range range) {
-    return least(
-        range, [](const ConeBounds& b) { return b.low; },
-        [this](ConeBounds& a, ConeBounds& b) {
-          const double bound = first_order_low(a, b);
-          return bound >= 0 ? bound : std::max(bound, second_order_low(a, b));
-        });
+  bool is_outside_to_second_order(Range range) {
+    return all_outside(range, low_of, widest_blend, [this](ConeBounds& a, ConeBounds& b, double widest) {
+      return first_order_low(a, b, widest) >= 0 || second_order_low(a, b) >= 0;
+    });
   }
 
-  double upper_bound(Range range) {
-    return least(
-        range, [](const ConeBounds& b) { return b.high; },
-        [this](ConeBounds& a, ConeBounds& b) {
-          const double difference = (a.gradient - b.gradient).norm() - a.turn - b.turn;
-          const double bound =
-              smooth_minimum(a.high, b.high, width(std::min(a.least_reach, b.least_reach), difference));
-          return bound <= 0 ? bound : std::min(bound, second_order_high(a, b));
-        });
+  bool is_inside_by_bounds(Range range) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      if (stack_[i].high <= 0) return true;
+    }
+    return any_pair(range, [this](ConeBounds& a, ConeBounds& b) {
+      const double difference = (a.gradient - b.gradient).norm() - a.turn - b.turn;
+      const double widest = width(std::min(a.least_reach, b.least_reach), difference);
+      return smooth_minimum(a.high, b.high, widest) <= 0 || second_order_high(a, b) <= 0;
+    });
   }
 
-  // Approximate field at the centroid: if its sign is wrong already, subtriangles need not be considered.
-  double value_at_center(Range range) {
-    return least(
-        range, [](const ConeBounds& b) { return b.at_center; },
-        [](const ConeBounds& a, const ConeBounds& b) {
-          const double reach = 0.5 * std::min(a.least_reach + a.most_reach, b.least_reach + b.most_reach);
-          return smooth_minimum(a.at_center, b.at_center, width(reach, (a.gradient - b.gradient).norm()));
-        });
+  // Whether a pair that may be blended is such.
+  template <class Test>
+  bool any_pair(Range range, const Test& test) {
+    if (field_.relations().blend() == 0) return false;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      for (std::size_t j = range.begin; j < i; ++j) {
+        if (field_.are_blended(stack_[i].cone->number, stack_[j].cone->number) && test(stack_[i], stack_[j]))
+          return true;
+      }
+    }
+    return false;
+  }
+
+  // By the approximate field at the centroid: if its sign is wrong already, subtriangles need not be considered.
+  bool is_outside_at_center(Range range) {
+    return all_outside(range, at_center_of, blend_at_center, [](const ConeBounds& a, const ConeBounds& b, double blend) {
+      return smooth_minimum(a.at_center, b.at_center, blend) >= 0;
+    });
+  }
+  bool is_inside_at_center(Range range) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      if (stack_[i].at_center <= 0) return true;
+    }
+    return any_pair(range, [](const ConeBounds& a, const ConeBounds& b) {
+      return smooth_minimum(a.at_center, b.at_center, blend_at_center(a, b)) <= 0;
+    });
+  }
+
+  static double at_center_of(const ConeBounds& b) { return b.at_center; }
+
+  static double blend_at_center(const ConeBounds& a, const ConeBounds& b) {
+    const double reach = 0.5 * std::min(a.least_reach + a.most_reach, b.least_reach + b.most_reach);
+    return width(reach, (a.gradient - b.gradient).norm());
   }
 
   const VesselField& field_;
