@@ -24,11 +24,13 @@ constexpr double kSkewestOfFew = 0.86;
 constexpr double kBatch = 0.1;
 constexpr double kBatchOfFew = 0.04;  // down to a number, when the order matters more
 constexpr std::size_t kLeastBatch = 8;
-constexpr int kRounds = 5, kRoundsWithLimit = 12;
+constexpr int kRounds = 5, kRoundsWithLimit = 24;
 constexpr int kExchanges = 6;  // 8 and 16: at most 0.3 % less mean error
 // At the end. With a limit they leave out no vertices, and each step is proven.
 constexpr int kRelaxations = 6, kRelaxationsWithLimit = 3;
-constexpr double kFewSteps = 0.02;  // of the vertices: not worth another round
+// Of the vertices: not worth another round. Late rounds are cheap, as only what has changed is looked at. With a limit,
+// 0.02 and 12 rounds: 1 to 10 % more vertices in .95 of the time.
+constexpr double kFewSteps = 0.02, kFewStepsWithLimit = 0.01;
 // An edge is split if that gains this multiple of what leaving out a vertex costs: less than once, as flips and moves
 // follow. 0.25 and 1: mean error within 0.7 %.
 constexpr double kPays = 0.5;
@@ -134,7 +136,8 @@ class Coarsener {
   std::size_t vertices() const { return mesh_.number_of_vertices() - lids_; }
 
   bool is_few(std::size_t steps) const {
-    return static_cast<double>(steps) < kFewSteps * static_cast<double>(mesh_.number_of_vertices());
+    const double few = proof_ ? kFewStepsWithLimit : kFewSteps;
+    return static_cast<double>(steps) < few * static_cast<double>(mesh_.number_of_vertices());
   }
 
   int rounds_to_collapse() const { return proof_ ? kRoundsWithLimit : kRounds; }
