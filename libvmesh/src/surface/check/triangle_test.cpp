@@ -98,15 +98,16 @@ class TriangleTest {
   TriangleTest(const VesselField& field, const std::vector<Index>& cones) : field_(field) {
     cones_.reserve(cones.size());
     for (const Index cone : cones) cones_.push_back(tested(field.relations(), cone));
+    for (const TestedCone& cone : cones_) stack_.push_back({.cone = &cone});
     folds_.assign(cones_.size() * cones_.size(), kNotYet);
   }
 
-  bool outside(const Points& q) { return starting_with_all(q, &TriangleTest::is_outside); }
-  bool inside(const Points& q) { return starting_with_all(q, &TriangleTest::is_inside); }
+  bool outside(const Points& q) { return is_outside(q, all(), kMaxDepth); }
+  bool inside(const Points& q) { return is_inside(q, all(), kMaxDepth); }
 
  private:
-  // The bounds for a triangle and all triangles that contain it lie on a stack; a subtriangle considers only the cones
-  // kept for the containing one.
+  // The bounds for a triangle and all triangles that contain it lie on a stack, above all cones; a subtriangle
+  // considers only the cones kept for the containing one.
   struct Range {
     std::size_t begin, end;
   };
@@ -125,11 +126,7 @@ class TriangleTest {
     return cone;
   }
 
-  bool starting_with_all(const Points& q, bool (TriangleTest::*test)(const Points&, Range, int)) {
-    stack_.clear();
-    for (const TestedCone& cone : cones_) stack_.push_back({.cone = &cone});
-    return (this->*test)(q, {0, stack_.size()}, kMaxDepth);
-  }
+  Range all() const { return {0, cones_.size()}; }
 
   bool is_outside(const Points& q, Range whole, int depth) {
     // Most triangles are proven to be outside without their corners.

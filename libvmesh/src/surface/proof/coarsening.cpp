@@ -225,18 +225,23 @@ class Coarsener {
     measure(edges, collapses_, [&](Edge e) { return steps_.collapse(e); });
   }
 
-  // Up to which cost collapses are taken next.
-  double next_cost() const {
-    std::vector<double> costs;
+  std::vector<Candidate> collapses_left() const {
+    std::vector<Candidate> left;
     for (const Edge e : mesh_.edges()) {
-      if (std::isfinite(collapses_[e.idx()].cost)) costs.push_back(collapses_[e.idx()].cost);
+      if (std::isfinite(collapses_[e.idx()].cost)) left.push_back({collapses_[e.idx()].cost, e.idx()});
     }
-    if (costs.empty()) return -kNever;
+    return left;
+  }
+
+  // Leaves those that are taken next, and those that cost the same. None of them costs more than what is returned.
+  double keep_cheapest(std::vector<Candidate>& left) const {
     const double share = proof_ ? kBatch : kBatchOfFew;
     const auto rank = std::min(
-        costs.size() - 1, std::max(kLeastBatch, static_cast<std::size_t>(share * static_cast<double>(costs.size()))));
-    std::nth_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(rank), costs.end());
-    return costs[rank];
+        left.size() - 1, std::max(kLeastBatch, static_cast<std::size_t>(share * static_cast<double>(left.size()))));
+    std::nth_element(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(rank), left.end());
+    const double most = left[rank].cost;
+    std::erase_if(left, [most](const Candidate& c) { return c.cost > most; });
+    return most;
   }
 
   // One pass over all edges. What has changed is measured again when it is its turn. Returns how many were collapsed.
@@ -244,27 +249,22 @@ class Coarsener {
     update_costs();
     std::size_t count = 0;
     while (vertices() > least_vertices_) {
-      const double most = next_cost();
+      std::vector<Candidate> cheapest = collapses_left();
+      if (cheapest.empty()) break;
+      const double most = keep_cheapest(cheapest);
       std::vector<Edge> changed;
-      bool any = false;
-      for (const Edge e : mesh_.edges()) {
-        const Known& known = collapses_[e.idx()];
-        if (!(known.cost <= most)) continue;
-        any = true;
-        if (has_changed(e, known.when)) changed.push_back(e);
+      for (const Candidate& c : cheapest) {
+        if (has_changed(Edge(c.item), collapses_[c.item].when)) changed.emplace_back(c.item);
       }
-      if (!any) break;
       measure(changed, collapses_, [&](Edge e) { return steps_.collapse(e); });
-      count += collapse_up_to(most);
+      for (Candidate& c : cheapest) c.cost = collapses_[c.item].cost;
+      std::erase_if(cheapest, [most](const Candidate& c) { return c.cost > most; });
+      count += collapse(std::move(cheapest));
     }
     return count;
   }
 
-  std::size_t collapse_up_to(double cost) {
-    std::vector<Candidate> candidates;
-    for (const Edge e : mesh_.edges()) {
-      if (collapses_[e.idx()].cost <= cost) candidates.push_back({collapses_[e.idx()].cost, e.idx()});
-    }
+  std::size_t collapse(std::vector<Candidate> candidates) {
     auto batch = that_do_not_touch<Edge>(std::move(candidates), [&](Edge e) {
       return surface_.collapsing(mesh_.vertex(e, 0), mesh_.vertex(e, 1), collapses_[e.idx()].target);
     });
