@@ -384,7 +384,7 @@ class TriangleTest {
   double dent_at_node(const ConeBounds& a, const ConeBounds& b, double low) {
     const double fold = fold_of(*a.cone, *b.cone);
     const double reach = std::min(a.most_reach, b.most_reach);
-    const double away = std::max(low, 0.0) + radius_at_common_node(*a.cone, *b.cone);
+    const double away = low + radius_at_common_node(*a.cone, *b.cone);
     if (!std::isfinite(fold) || low < 0 || reach >= away) return std::numeric_limits<double>::infinity();
     const double share = reach / away;
     return reach * fold * (share <= 0.5 ? 1 : 1 / (4 * share * (1 - share)));
