@@ -70,12 +70,18 @@ void add_warnings(const OptimizeReport& optimized, GenerateResult& result) {
        "for; expect folds");
 }
 
+// Whether pieces are grown even, and the whole surface is refined to the limit (grow_pieces()).
+bool is_refined_as_a_whole(const GenerateOptions& options) {
+  if (options.growth != GrowthMethod::guided) return false;
+  const bool may_have_openings = options.open_ends.all || !options.open_ends.nodes.empty();
+  return options.elongation <= 1 || (!options.deformable && (options.least_vertices > 0 || !may_have_openings));
+}
+
 // Where triangles are proven as they grow, single precision is too little.
 VesselField& make_field(std::optional<VesselField>& field, const Centerline& centerline,
                         const GenerateOptions& options) {
   field.emplace(centerline, options.blend);
-  const bool is_refined_later = options.growth == GrowthMethod::guided && options.elongation <= 1;
-  if (options.max_error.is_set() && !is_refined_later) field->use_double_precision();
+  if (options.max_error.is_set() && !is_refined_as_a_whole(options)) field->use_double_precision();
   return *field;
 }
 

@@ -27,7 +27,8 @@ namespace vmesh {
 /// Whether a copy is inside or outside is decided for whole triangles. The signed distance to a round cone is convex:
 /// over a triangle it is at most its largest value at a corner, and at least that of any of its tangent planes. Where
 /// cones are blended, bounds follow from those of their distances and of the angle between their gradients, which turn
-/// by at most the distance moved divided by the distance from the axis. Undecided triangles are subdivided.
+/// by at most the distance moved divided by the distance from the axis; two cones with a common node, no more than they
+/// bend there. Undecided triangles are subdivided.
 class ErrorProof {
  public:
   struct Corner {

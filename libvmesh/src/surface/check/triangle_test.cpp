@@ -19,7 +19,7 @@ std::array<Points, 4> quarters(const Points& q) {
 
 // A cone and what all bounds on its field need.
 struct TestedCone {
-  Index number = kNone;
+  Index number = kNone, first_node = kNone, last_node = kNone;
   RoundCone shape;
   Vec3 first = Vec3::Zero(), axis = Vec3::Zero();
   double length = 0, slope = 0;            // of the axis; of the radius of the touching sphere
@@ -27,6 +27,25 @@ struct TestedCone {
 
   double share_at(double t) const { return first_share + t * (last_share - first_share); }
 };
+
+// At every point, the gradient of one of two cones at least is turned by no more than some angle against the direction
+// from their common node: half of the bend there, to which cones that widen away from the node add. 1 - cos of that
+// angle; infinite without a common node.
+double fold_between(const TestedCone& a, const TestedCone& b) {
+  for (const bool at_first_of_a : {true, false}) {
+    for (const bool at_first_of_b : {true, false}) {
+      if ((at_first_of_a ? a.first_node : a.last_node) != (at_first_of_b ? b.first_node : b.last_node)) continue;
+      const double way_a = at_first_of_a ? 1 : -1, way_b = at_first_of_b ? 1 : -1;  // away from the node
+      const double widening_a = way_a * (a.shape.r1 - a.shape.r0), widening_b = way_b * (b.shape.r1 - b.shape.r0);
+      if (std::abs(widening_a) >= a.length || std::abs(widening_b) >= b.length) continue;
+      const double cosine = -(way_a * a.axis).dot(way_b * b.axis) / (a.length * b.length);
+      const double bend = std::acos(std::clamp(cosine, -1.0, 1.0)) + std::asin(widening_a / a.length) +
+                          std::asin(widening_b / b.length);
+      return bend > 0 ? 1 - std::cos(bend / 2) : 0;
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
 
 // Bounds on a cone's field over a triangle.
 struct ConeBounds {
@@ -79,14 +98,16 @@ class TriangleTest {
   TriangleTest(const VesselField& field, const std::vector<Index>& cones) : field_(field) {
     cones_.reserve(cones.size());
     for (const Index cone : cones) cones_.push_back(tested(field.relations(), cone));
+    for (const TestedCone& cone : cones_) stack_.push_back({.cone = &cone});
+    folds_.assign(cones_.size() * cones_.size(), kNotYet);
   }
 
-  bool outside(const Points& q) { return starting_with_all(q, &TriangleTest::is_outside); }
-  bool inside(const Points& q) { return starting_with_all(q, &TriangleTest::is_inside); }
+  bool outside(const Points& q) { return is_outside(q, all(), kMaxDepth); }
+  bool inside(const Points& q) { return is_inside(q, all(), kMaxDepth); }
 
  private:
-  // The bounds for a triangle and all triangles that contain it lie on a stack; a subtriangle considers only the cones
-  // kept for the containing one.
+  // The bounds for a triangle and all triangles that contain it lie on a stack, above all cones; a subtriangle
+  // considers only the cones kept for the containing one.
   struct Range {
     std::size_t begin, end;
   };
@@ -95,7 +116,8 @@ class TriangleTest {
     const Centerline& centerline = relations.centerline();
     const CenterlineNode &first = centerline.node(relations.first_node(number)),
                          &last = centerline.node(relations.last_node(number));
-    TestedCone cone{number, RoundCone(first, last), relations.axis_point(number, 0)};
+    TestedCone cone{number, relations.first_node(number), relations.last_node(number), RoundCone(first, last),
+                    relations.axis_point(number, 0)};
     cone.axis = relations.axis_point(number, 1) - cone.first;
     cone.length = cone.axis.norm();
     cone.slope = radius_slope(first.radius, last.radius, cone.length);
@@ -104,21 +126,17 @@ class TriangleTest {
     return cone;
   }
 
-  bool starting_with_all(const Points& q, bool (TriangleTest::*test)(const Points&, Range, int)) {
-    stack_.clear();
-    for (const TestedCone& cone : cones_) stack_.push_back({.cone = &cone});
-    return (this->*test)(q, {0, stack_.size()}, kMaxDepth);
-  }
+  Range all() const { return {0, cones_.size()}; }
 
   bool is_outside(const Points& q, Range whole, int depth) {
     // Most triangles are proven to be outside without their corners.
-    if (first_order_low(begin_measuring(q, whole)) >= 0) {
+    if (is_outside_to_first_order(begin_measuring(q, whole))) {
       stack_.resize(whole_end_);
       return true;
     }
     const Range range = finish_measuring();
-    bool result = lower_bound(range) >= 0;
-    if (!result && depth > 0 && value_at_center(range) >= 0) {
+    bool result = is_outside_to_second_order(range);
+    if (!result && depth > 0 && is_outside_at_center(range)) {
       const auto parts = quarters(q);
       result =
           std::all_of(parts.begin(), parts.end(), [&](const Points& p) { return is_outside(p, range, depth - 1); });
@@ -133,8 +151,8 @@ class TriangleTest {
     }
     begin_measuring(q, whole);
     const Range range = finish_measuring();
-    bool result = upper_bound(range) <= 0;
-    if (!result && depth > 0 && value_at_center(range) <= 0) {
+    bool result = is_inside_by_bounds(range);
+    if (!result && depth > 0 && is_inside_at_center(range)) {
       const auto parts = quarters(q);
       result = std::all_of(parts.begin(), parts.end(), [&](const Points& p) { return is_inside(p, range, depth - 1); });
     }
@@ -152,6 +170,7 @@ class TriangleTest {
     points_ = &q;
     center_ = triangle_center(q);
     reach_ = triangle_reach(q, center_);
+    normal_ = (q[1] - q[0]).cross(q[2] - q[0]).normalized();
     whole_end_ = stack_.size();
     const double blend = field_.relations().blend();
     at_center_.clear();
@@ -200,6 +219,7 @@ class TriangleTest {
       b.tangent[k] = at_center.value + b.gradient.dot(q[k] - center_);
       b.low = std::min(b.low, b.tangent[k]);
     }
+    b.low = std::max(b.low, distance_of_plane(cone, b.gradient));
     if (field_.relations().blend() == 0) return b;
     const double first = cone.shape.r0, last = cone.shape.r1, radius = cone.shape.radius_at(at_center.t);
     const double change = std::min(cone.slope * reach_, std::abs(last - first));
@@ -212,6 +232,14 @@ class TriangleTest {
     b.from_center = radius + at_center.value - reach_ - change;
     b.turn = b.from_center > 0.5 * reach_ ? reach_ / b.from_center : 2;
     return b;
+  }
+
+  // How far the triangle's plane is from the cone on the side of the gradient: none of its points is nearer. This is
+  // what tells of triangles that are long for the cone.
+  double distance_of_plane(const TestedCone& cone, const Vec3& gradient) const {
+    const Vec3 normal = normal_.dot(gradient) < 0 ? Vec3(-normal_) : normal_;
+    const double of_first = normal.dot(center_ - cone.first);
+    return std::min(of_first - cone.shape.r0, of_first - normal.dot(cone.axis) - cone.shape.r1);
   }
 
   // On the side of a cone, the gradient turns around the axis by the way across it over the distance from the touching
@@ -311,74 +339,145 @@ class TriangleTest {
     return reach * d * d / 2;
   }
 
-  // Calls visit for every cone and combine for every pair that may be blended; returns the least value.
-  template <class Visit, class Combine>
-  double least(Range range, Visit&& visit, Combine&& combine) {
-    double result = std::numeric_limits<double>::infinity();
+  // Whether holds(bounds) for every cone and holds(bounds, bounds) for every pair that may be blended. The dent of a
+  // blend is at most a quarter of its width: what is farther outside by `value` than that needs no closer look.
+  template <class Value, class Widest, class Holds>
+  bool all_outside(Range range, const Value& value, const Widest& widest, const Holds& holds) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      result = std::min(result, visit(stack_[i]));
-      if (field_.relations().blend() == 0) continue;
+      if (value(stack_[i]) < 0) return false;
+    }
+    if (field_.relations().blend() == 0) return true;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
       for (std::size_t j = range.begin; j < i; ++j) {
-        if (field_.are_blended(stack_[i].cone->number, stack_[j].cone->number))
-          result = std::min(result, combine(stack_[i], stack_[j]));
+        ConeBounds &a = stack_[i], &b = stack_[j];
+        const double width = widest(a, b);
+        if (std::min(value(a), value(b)) - width / 4 >= 0) continue;
+        if (field_.are_blended(a.cone->number, b.cone->number) && !holds(a, b, width)) return false;
       }
     }
-    return result;
+    return true;
+  }
+
+  // Over which two cones are blended at most on the triangle.
+  static double widest_blend(const ConeBounds& a, const ConeBounds& b) {
+    return width(std::min(a.most_reach, b.most_reach), (a.gradient - b.gradient).norm() + a.turn + b.turn);
   }
 
   // The smooth minimum grows with either distance and falls with the width.
-  double first_order_low(const ConeBounds& a, const ConeBounds& b) const {
-    const double difference = (a.gradient - b.gradient).norm() + a.turn + b.turn;
-    const double widest = width(std::min(a.most_reach, b.most_reach), difference);
+  double first_order_low(const ConeBounds& a, const ConeBounds& b, double widest) {
     const double gap = std::max(0.0, std::abs(a.at_center - b.at_center) - 2 * reach_);
     const double low = std::min(a.low, b.low);
     if (gap >= widest) return low;
     const double h = 1 - gap / widest;
-    return std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+    double bound = std::max(low - h * h * widest / 4, smooth_minimum(a.low, b.low, widest));
+    if (bound < 0) bound = std::max(bound, low - dent_at_node(a, b, low));
+    if (bound < 0) bound = std::max(bound, low_by_tangents(a, b, widest));
+    return bound;
   }
 
-  double first_order_low(Range range) {
-    return least(
-        range, [](const ConeBounds& b) { return b.low; },
-        [this](const ConeBounds& a, const ConeBounds& b) { return first_order_low(a, b); });
+  // By how much two cones with a common node are blended at most. At a point that is d from the node's ball and L from
+  // its centre, each is no farther than d - L e, where e is 1 - cos of its gradient's turn against the direction from
+  // the node: the gap is L (e - e'), and the width at most reach (sqrt e + sqrt e')^2, for the turns add up at most.
+  // With the lesser e', the width less the gap is at most 4 reach e' whatever e is, or L e' / (1 - reach / L) where L
+  // is less than twice the reach. A blend takes away a quarter of that at most, and nothing where the node's ball is
+  // what is nearest of one of them. L is at least the radius of the ball and how far outside the point is.
+  double dent_at_node(const ConeBounds& a, const ConeBounds& b, double low) {
+    const double fold = fold_of(*a.cone, *b.cone);
+    const double reach = std::min(a.most_reach, b.most_reach);
+    const double away = low + radius_at_common_node(*a.cone, *b.cone);
+    if (!std::isfinite(fold) || low < 0 || reach >= away) return std::numeric_limits<double>::infinity();
+    const double share = reach / away;
+    return reach * fold * (share <= 0.5 ? 1 : 1 / (4 * share * (1 - share)));
   }
 
-  double lower_bound(Range range) {
-    return least(
-        range, [](const ConeBounds& b) { return b.low; },
-        [this](ConeBounds& a, ConeBounds& b) {
-          const double bound = first_order_low(a, b);
-          return bound >= 0 ? bound : std::max(bound, second_order_low(a, b));
-        });
+  // Distances are above their tangents, and a concave function of linear ones is least at a corner.
+  static double low_by_tangents(const ConeBounds& a, const ConeBounds& b, double widest) {
+    double low = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) low = std::min(low, smooth_minimum(a.tangent[k], b.tangent[k], widest));
+    return low;
   }
 
-  double upper_bound(Range range) {
-    return least(
-        range, [](const ConeBounds& b) { return b.high; },
-        [this](ConeBounds& a, ConeBounds& b) {
-          const double difference = (a.gradient - b.gradient).norm() - a.turn - b.turn;
-          const double bound =
-              smooth_minimum(a.high, b.high, width(std::min(a.least_reach, b.least_reach), difference));
-          return bound <= 0 ? bound : std::min(bound, second_order_high(a, b));
-        });
+  double fold_of(const TestedCone& a, const TestedCone& b) {
+    double& fold = folds_[index_of(a) * cones_.size() + index_of(b)];
+    if (fold == kNotYet) fold = fold_between(a, b);
+    return fold;
   }
 
-  // Approximate field at the centroid: if its sign is wrong already, subtriangles need not be considered.
-  double value_at_center(Range range) {
-    return least(
-        range, [](const ConeBounds& b) { return b.at_center; },
-        [](const ConeBounds& a, const ConeBounds& b) {
-          const double reach = 0.5 * std::min(a.least_reach + a.most_reach, b.least_reach + b.most_reach);
-          return smooth_minimum(a.at_center, b.at_center, width(reach, (a.gradient - b.gradient).norm()));
-        });
+  std::size_t index_of(const TestedCone& cone) const { return static_cast<std::size_t>(&cone - cones_.data()); }
+
+  static double radius_at_common_node(const TestedCone& a, const TestedCone& b) {
+    return a.first_node == b.first_node || a.first_node == b.last_node ? a.shape.r0 : a.shape.r1;
+  }
+
+  static double low_of(const ConeBounds& b) { return b.low; }
+
+  bool is_outside_to_first_order(Range range) {
+    return all_outside(range, low_of, widest_blend, [this](const ConeBounds& a, const ConeBounds& b, double widest) {
+      return first_order_low(a, b, widest) >= 0;
+    });
+  }
+
+  bool is_outside_to_second_order(Range range) {
+    return all_outside(range, low_of, widest_blend, [this](ConeBounds& a, ConeBounds& b, double widest) {
+      return first_order_low(a, b, widest) >= 0 || second_order_low(a, b) >= 0;
+    });
+  }
+
+  bool is_inside_by_bounds(Range range) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      if (stack_[i].high <= 0) return true;
+    }
+    return any_pair(range, [this](ConeBounds& a, ConeBounds& b) {
+      const double difference = (a.gradient - b.gradient).norm() - a.turn - b.turn;
+      const double widest = width(std::min(a.least_reach, b.least_reach), difference);
+      return smooth_minimum(a.high, b.high, widest) <= 0 || second_order_high(a, b) <= 0;
+    });
+  }
+
+  // Whether a pair that may be blended is such.
+  template <class Test>
+  bool any_pair(Range range, const Test& test) {
+    if (field_.relations().blend() == 0) return false;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      for (std::size_t j = range.begin; j < i; ++j) {
+        if (field_.are_blended(stack_[i].cone->number, stack_[j].cone->number) && test(stack_[i], stack_[j]))
+          return true;
+      }
+    }
+    return false;
+  }
+
+  // By the approximate field at the centroid: if its sign is wrong already, subtriangles need not be considered.
+  bool is_outside_at_center(Range range) {
+    return all_outside(range, at_center_of, blend_at_center,
+                       [](const ConeBounds& a, const ConeBounds& b, double blend) {
+                         return smooth_minimum(a.at_center, b.at_center, blend) >= 0;
+                       });
+  }
+  bool is_inside_at_center(Range range) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      if (stack_[i].at_center <= 0) return true;
+    }
+    return any_pair(range, [](const ConeBounds& a, const ConeBounds& b) {
+      return smooth_minimum(a.at_center, b.at_center, blend_at_center(a, b)) <= 0;
+    });
+  }
+
+  static double at_center_of(const ConeBounds& b) { return b.at_center; }
+
+  static double blend_at_center(const ConeBounds& a, const ConeBounds& b) {
+    const double reach = 0.5 * std::min(a.least_reach + a.most_reach, b.least_reach + b.most_reach);
+    return width(reach, (a.gradient - b.gradient).norm());
   }
 
   const VesselField& field_;
   std::vector<TestedCone> cones_;
+  static constexpr double kNotYet = -1;
+  std::vector<double> folds_;  // by pairs of cones, once asked for
   std::vector<ConeBounds> stack_;
   // Of the triangle that was measured last.
   const Points* points_ = nullptr;
-  Vec3 center_ = Vec3::Zero();
+  Vec3 center_ = Vec3::Zero(), normal_ = Vec3::Zero();
   double reach_ = 0;
   std::vector<RoundCone::Distance> at_center_;
   std::size_t whole_end_ = 0;  // where its bounds begin on the stack

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -65,7 +66,8 @@ class PieceGrower {
         context_{tubes_, open, options_, ask_, share_of(finish.limit, finish.sizes)},
         division_(divide(tubes_, options)) {}
 
-  std::vector<std::pair<Index, Index>> run(GenerateResult& result) {
+  /// Grows the surface, and refines it to the limit.
+  void grow() {
     make_all();
     for (int round = 0;; ++round) {
       crossings_ = find_crossings();
@@ -76,15 +78,20 @@ class PieceGrower {
                                    Shells::along_normals);
       if (round == kRounds || !regroup(before)) break;
     }
-    if (finish_.limit.is_set()) refine_whole(result.error);
-    if (!unproven_.empty()) result.error = close_notches_left();
-    if (finish_.may_be_coarser && crossings_.empty()) leave_out_vertices(result.error);
+    if (finish_.limit.is_set()) refine_whole();
+    if (!unproven_.empty()) close_notches_left();
+  }
+
+  /// After grow(): whether the whole surface was refined to the limit, but at openings.
+  bool has_met_limit() const { return has_met_limit_; }
+  std::size_t unproven_faces_left() const { return error_.unproven_faces; }
+
+  /// After grow(), once: leaves out vertices, and hands over the surface. Returns which faces cross.
+  std::vector<std::pair<Index, Index>> finish(GenerateResult& result) {
+    if (finish_.may_be_coarser && crossings_.empty()) leave_out_vertices();
     tell(result);
     return std::move(crossings_);
   }
-
-  /// After run(): whether the whole surface was refined to the limit, but at openings.
-  bool has_met_limit() const { return has_met_limit_; }
 
  private:
   // Makes all pieces. Each goes into the whole surface in its turn, and rings are freed with the last piece along their
@@ -196,24 +203,23 @@ class PieceGrower {
     return true;
   }
 
-  void refine_whole(ErrorSummary& summary) {
+  void refine_whole() {
     const RefinementGoal goal{finish_.limit, options_.placement, static_cast<std::size_t>(options_.max_vertices),
                               finish_.usual_way_only};
     const RefinedError error = refine_to_limit(gathered_, tubes_.field(), goal, progress_);
-    summary = error.summary;
+    error_ = error.summary;
     has_met_limit_ = error.is_met;
     if (!crossings_.empty()) crossings_ = self_intersections(gathered_.mesh);  // by their new numbers
   }
 
-  ErrorSummary close_notches_left() {
-    ErrorSummary summary = close_notches(gathered_, tubes_.field(), options_.max_error);
+  void close_notches_left() {
+    error_ = close_notches(gathered_, tubes_.field(), options_.max_error);
     crossings_ = self_intersections(gathered_.mesh);
-    return summary;
   }
 
   const ErrorLimit& limit() const { return finish_.limit.is_set() ? finish_.limit : options_.max_error; }
 
-  void leave_out_vertices(ErrorSummary& summary) {
+  void leave_out_vertices() {
     FinishedSurface surface = gathered_;
     const auto longest = [&](const CenterlineBinding& at) {
       return tubes_.longest_at(at.segment, at.t, finish_.elongation);
@@ -222,9 +228,9 @@ class PieceGrower {
     if (limit().is_set()) {
       // Faces that were proven by bending their shells are at corners that stay; neighbours may lower their shells.
       const std::vector<Index> unproven = unproven_faces(surface.mesh, surface.binding, tubes_.field(), limit());
-      if (unproven.size() > summary.unproven_faces) return;
-      summary.unproven_faces = unproven.size();
-      summary.unproven_places = places_of(surface.mesh, unproven);
+      if (unproven.size() > error_.unproven_faces) return;
+      error_.unproven_faces = unproven.size();
+      error_.unproven_places = places_of(surface.mesh, unproven);
     }
     static_cast<FinishedSurface&>(gathered_) = std::move(surface);
     crossings_ = self_intersections(gathered_.mesh);
@@ -290,6 +296,7 @@ class PieceGrower {
   }
 
   void tell(GenerateResult& result) {
+    result.error = std::move(error_);
     const Centerline& centerline = tubes_.centerline();
     GrowthSummary& growth = result.growth;
     std::size_t filled = 0;
@@ -327,7 +334,7 @@ class PieceGrower {
 
   VesselRings tubes_;
   RingCounts rings_;
-  const GenerateOptions& options_;
+  const GenerateOptions options_;
   const Finish finish_;
   const Progress& progress_;
   std::mutex reporting_;
@@ -344,6 +351,7 @@ class PieceGrower {
   GatheredSurface gathered_;
   std::vector<std::pair<Index, Index>> crossings_;
   std::vector<Index> unproven_;
+  ErrorSummary error_;
   bool has_met_limit_ = false;
   bool coarsened_ = false;
   RefusedSteps refused_;  // of steps on the whole surface
@@ -362,43 +370,36 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
   // those that grow long are skewer than those of an even surface, and many are left when a number of vertices is.
   const bool grow_long =
       options.least_vertices == 0 && std::any_of(open.begin(), open.end(), [](char is_open) { return is_open != 0; });
-  if (!options.max_error.is_set() || (options.elongation > 1 && (!may_be_coarser || grow_long)))
-    return PieceGrower(field, open, options, as_grown, progress).run(result);
+  if (!options.max_error.is_set() || (options.elongation > 1 && (!may_be_coarser || grow_long))) {
+    PieceGrower grower(field, open, options, as_grown, progress);
+    grower.grow();
+    return grower.finish(result);
+  }
   // An even surface is refined as a whole, then left as long triangles as may be. What cannot be proven then may be
   // where pieces are refined as they grow.
   GenerateOptions even = options;
   even.max_error = {};
   even.elongation = 1;
-  struct Attempt {
-    GenerateResult result;
-    std::vector<std::pair<Index, Index>> crossings;
-    bool is_met = false;
-  };
+  std::optional<VesselField> precise;
+  std::unique_ptr<PieceGrower> best;
   const auto attempt = [&](const VesselField& of, const GenerateOptions& with, const PieceGrower::Finish& finish) {
-    Attempt made{result, {}};
-    PieceGrower grower(of, open, with, finish, progress);
-    made.crossings = grower.run(made.result);
-    made.is_met = grower.has_met_limit();
-    return made;
+    auto grower = std::make_unique<PieceGrower>(of, open, with, finish, progress);
+    grower->grow();
+    if (!best || grower->has_met_limit() || grower->unproven_faces_left() < best->unproven_faces_left())
+      best = std::move(grower);
   };
-  const auto refine_even = [&](const Start& start) {
+  for (const Start& start : kStarts) {
+    if (best && best->has_met_limit()) break;
     GenerateOptions finer = even;
     finer.around *= start.times_around;
-    return attempt(field, finer,
-                   {options.max_error, may_be_coarser, options.elongation, start.sizes, start.usual_way_only});
-  };
-  Attempt best = refine_even(kStarts[0]);
-  const auto try_also = [&best](Attempt other) {
-    if (other.is_met || other.result.error.unproven_faces < best.result.error.unproven_faces) best = std::move(other);
-  };
-  for (std::size_t i = 1; i < std::size(kStarts) && !best.is_met; ++i) try_also(refine_even(kStarts[i]));
-  if (!best.is_met) {
-    VesselField precise = field;
-    precise.use_double_precision();
-    try_also(attempt(precise, options, as_grown));
+    attempt(field, finer, {options.max_error, may_be_coarser, options.elongation, start.sizes, start.usual_way_only});
   }
-  result = std::move(best.result);
-  return std::move(best.crossings);
+  if (!best->has_met_limit()) {
+    precise = field;
+    precise->use_double_precision();
+    attempt(*precise, options, as_grown);
+  }
+  return best->finish(result);
 }
 
 }  // namespace vmesh

@@ -24,11 +24,13 @@ constexpr double kSkewestOfFew = 0.86;
 constexpr double kBatch = 0.1;
 constexpr double kBatchOfFew = 0.04;  // down to a number, when the order matters more
 constexpr std::size_t kLeastBatch = 8;
-constexpr int kRounds = 5, kRoundsWithLimit = 12;
+constexpr int kRounds = 5, kRoundsWithLimit = 24;
 constexpr int kExchanges = 6;  // 8 and 16: at most 0.3 % less mean error
 // At the end. With a limit they leave out no vertices, and each step is proven.
 constexpr int kRelaxations = 6, kRelaxationsWithLimit = 3;
-constexpr double kFewSteps = 0.02;  // of the vertices: not worth another round
+// Of the vertices: not worth another round. Late rounds are cheap, as only what has changed is looked at. With a limit,
+// 0.02 and 12 rounds, on two veins: 2 to 8 % more vertices in .9 to 1 of the time.
+constexpr double kFewSteps = 0.02, kFewStepsWithLimit = 0.01;
 // An edge is split if that gains this multiple of what leaving out a vertex costs: less than once, as flips and moves
 // follow. 0.25 and 1: mean error within 0.7 %.
 constexpr double kPays = 0.5;
@@ -134,7 +136,8 @@ class Coarsener {
   std::size_t vertices() const { return mesh_.number_of_vertices() - lids_; }
 
   bool is_few(std::size_t steps) const {
-    return static_cast<double>(steps) < kFewSteps * static_cast<double>(mesh_.number_of_vertices());
+    const double few = proof_ ? kFewStepsWithLimit : kFewSteps;
+    return static_cast<double>(steps) < few * static_cast<double>(mesh_.number_of_vertices());
   }
 
   int rounds_to_collapse() const { return proof_ ? kRoundsWithLimit : kRounds; }
@@ -222,18 +225,23 @@ class Coarsener {
     measure(edges, collapses_, [&](Edge e) { return steps_.collapse(e); });
   }
 
-  // Up to which cost collapses are taken next.
-  double next_cost() const {
-    std::vector<double> costs;
+  std::vector<Candidate> collapses_left() const {
+    std::vector<Candidate> left;
     for (const Edge e : mesh_.edges()) {
-      if (std::isfinite(collapses_[e.idx()].cost)) costs.push_back(collapses_[e.idx()].cost);
+      if (std::isfinite(collapses_[e.idx()].cost)) left.push_back({collapses_[e.idx()].cost, e.idx()});
     }
-    if (costs.empty()) return -kNever;
+    return left;
+  }
+
+  // Leaves those that are taken next, and those that cost the same. None of them costs more than what is returned.
+  double keep_cheapest(std::vector<Candidate>& left) const {
     const double share = proof_ ? kBatch : kBatchOfFew;
     const auto rank = std::min(
-        costs.size() - 1, std::max(kLeastBatch, static_cast<std::size_t>(share * static_cast<double>(costs.size()))));
-    std::nth_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(rank), costs.end());
-    return costs[rank];
+        left.size() - 1, std::max(kLeastBatch, static_cast<std::size_t>(share * static_cast<double>(left.size()))));
+    std::nth_element(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(rank), left.end());
+    const double most = left[rank].cost;
+    std::erase_if(left, [most](const Candidate& c) { return c.cost > most; });
+    return most;
   }
 
   // One pass over all edges. What has changed is measured again when it is its turn. Returns how many were collapsed.
@@ -241,27 +249,22 @@ class Coarsener {
     update_costs();
     std::size_t count = 0;
     while (vertices() > least_vertices_) {
-      const double most = next_cost();
+      std::vector<Candidate> cheapest = collapses_left();
+      if (cheapest.empty()) break;
+      const double most = keep_cheapest(cheapest);
       std::vector<Edge> changed;
-      bool any = false;
-      for (const Edge e : mesh_.edges()) {
-        const Known& known = collapses_[e.idx()];
-        if (!(known.cost <= most)) continue;
-        any = true;
-        if (has_changed(e, known.when)) changed.push_back(e);
+      for (const Candidate& c : cheapest) {
+        if (has_changed(Edge(c.item), collapses_[c.item].when)) changed.emplace_back(c.item);
       }
-      if (!any) break;
       measure(changed, collapses_, [&](Edge e) { return steps_.collapse(e); });
-      count += collapse_up_to(most);
+      for (Candidate& c : cheapest) c.cost = collapses_[c.item].cost;
+      std::erase_if(cheapest, [most](const Candidate& c) { return c.cost > most; });
+      count += collapse(std::move(cheapest));
     }
     return count;
   }
 
-  std::size_t collapse_up_to(double cost) {
-    std::vector<Candidate> candidates;
-    for (const Edge e : mesh_.edges()) {
-      if (collapses_[e.idx()].cost <= cost) candidates.push_back({collapses_[e.idx()].cost, e.idx()});
-    }
+  std::size_t collapse(std::vector<Candidate> candidates) {
     auto batch = that_do_not_touch<Edge>(std::move(candidates), [&](Edge e) {
       return surface_.collapsing(mesh_.vertex(e, 0), mesh_.vertex(e, 1), collapses_[e.idx()].target);
     });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include <CGAL/boost/graph/Euler_operations.h>
 
@@ -142,7 +143,7 @@ class Mender {
     const double before = std::max(worst_around(a), worst_around(b));
     for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       const Vec3 place = (1 - t) * mesh_.point(a) + t * mesh_.point(b);
-      offer({Kind::collapse, h, {}, place, before, worst_with_both(a, b, place)}, steps);
+      offer({Kind::collapse, h, {}, place, before, worst_with_both(a, b, place, kPaysOff * before)}, steps);
     }
   }
 
@@ -175,9 +176,9 @@ class Mender {
     }
     center /= static_cast<double>(mesh_.degree(v));
     length /= static_cast<double>(mesh_.degree(v));
-    const double before = worst_around(v);
-    const auto offer_place = [&](const Vec3& place) {
-      offer({Kind::move, {}, v, place, before, worst_with(v, v, place, kPaysOff * before)}, steps);
+    const auto [before, at_worst] = worst_face_around(v);
+    const auto offer_place = [&, before = before, at_worst = at_worst](const Vec3& place) {
+      offer({Kind::move, {}, v, place, before, worst_with(at_worst, v, place, kPaysOff * before)}, steps);
     };
     const Vec3 normal = surface_[v].gradient, side = towards_neighbour(v, normal), across = normal.cross(side);
     if (keeps_ == Keeps::to_boundary) center -= normal.dot(center - mesh_.point(v)) * normal;
@@ -200,10 +201,25 @@ class Mender {
 
   double worst_around(Vertex v) const { return worst_with(v, v, mesh_.point(v), 1); }
 
+  // With the halfedge of that face that leads to `v`.
+  std::pair<double, Halfedge> worst_face_around(Vertex v) const {
+    std::pair<double, Halfedge> worst(0, mesh_.halfedge(v));
+    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+      const double s = skewness(v, mesh_.target(mesh_.next(h)), mesh_.source(h));
+      if (s > worst.first) worst = {s, h};
+    }
+    return worst;
+  }
+
   // Worst skewness of the faces of `v` not at `other`, with `v` at `place`; may stop at any value of at least `enough`.
   double worst_with(Vertex v, Vertex other, const Vec3& place, double enough) const {
+    return worst_with(mesh_.halfedge(v), other, place, enough);
+  }
+  // Of the target of `first`, whose face is looked at first.
+  double worst_with(Halfedge first, Vertex other, const Vec3& place, double enough) const {
+    const Vertex v = mesh_.target(first);
     double worst = 0;
-    for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+    for (const Halfedge h : mesh_.halfedges_around_target(first)) {
       const Vertex b = mesh_.target(mesh_.next(h)), c = mesh_.source(h);
       if (other != v && (b == other || c == other)) continue;
       worst = std::max(worst, skewness(v, b, c, place));
@@ -213,8 +229,9 @@ class Mender {
   }
 
   // The same after the edge ab has collapsed to a vertex.
-  double worst_with_both(Vertex a, Vertex b, const Vec3& place) const {
-    return std::max(worst_with(a, b, place, 1), worst_with(b, a, place, 1));
+  double worst_with_both(Vertex a, Vertex b, const Vec3& place, double enough) const {
+    const double worst = worst_with(a, b, place, enough);
+    return worst >= enough ? worst : std::max(worst, worst_with(b, a, place, enough));
   }
 
   // Whether flipping ab to cd gives no sharper an edge, or hardly any edge at all.
@@ -277,7 +294,7 @@ class Mender {
         const Vertex a = mesh_.source(step.edge), b = mesh_.target(step.edge);
         const double lift = 0.5 * (surface_[a].lift + surface_[b].lift);
         const BoundaryPoint target = belongs(a, step.place, lift);
-        if (worst_with_both(a, b, target.position) >= step.before) return false;
+        if (worst_with_both(a, b, target.position, step.before) >= step.before) return false;
         if (!surface_.may_collapse(a, b, target.position)) return false;
         put(surface_.collapse_edge(mesh_.edge(step.edge), target), target);
         return true;
