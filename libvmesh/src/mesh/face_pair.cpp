@@ -21,7 +21,7 @@ Kernel::Triangle_3 triangle(const PlacedFace& f) { return {point(f, 0), point(f,
 bool has(const PlacedFace& f, Index v) { return f.vertices[0] == v || f.vertices[1] == v || f.vertices[2] == v; }
 
 // Whether the corners of `other` that are not common are certainly on one side of the plane of `face`: the two then
-// meet at most in common corners. The margin is far above the rounding of the determinant.
+// meet at most in what they have in common. The margin is far above the rounding of the determinant.
 bool on_one_side(const PlacedFace& face, const PlacedFace& other) {
   const Vec3& base = face.points[0];
   const Vec3 first = face.points[1] - base, second = face.points[2] - base;
@@ -69,7 +69,7 @@ bool intersect(const PlacedFace& x, const PlacedFace& y) {
     }
   }
   if (count == 3) return true;
-  if (count < 2 && (on_one_side(x, y) || on_one_side(y, x))) return false;
+  if (on_one_side(x, y) || (count < 2 && on_one_side(y, x))) return false;
   if (count == 2) return folded(x, y);
   if (count == 1) return opposite_edge_meets(x, y, in_x) || opposite_edge_meets(y, x, in_y);
   return CGAL::do_intersect(triangle(x), triangle(y));
