@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "vmesh/mesh/face_plane.h"
 #include "vmesh/mesh/topology.h"
 
 namespace vmesh {
@@ -45,8 +46,9 @@ BoxTree::Box box_of_part(const CrossingGuard::AxisLine& axis, Index number) {
 
 bool cross_each_other(const std::vector<PlacedFace>& faces) {
   for (std::size_t i = 0; i < faces.size(); ++i) {
+    const FacePlane plane(faces[i]);
     for (std::size_t j = 0; j < i; ++j) {
-      if (intersect(faces[i], faces[j])) return true;
+      if (!plane.has_on_one_side(faces[j]) && intersect(faces[i], faces[j])) return true;
     }
   }
   return false;
@@ -134,6 +136,7 @@ bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std
   if (faces.empty()) return false;
   const std::vector<BoxTree::Box> boxes = boxes_of(faces);
   const BoxTree::Box around = box_around(boxes);
+  const std::vector<FacePlane> planes(faces.begin(), faces.end());
   std::size_t visited = 0, found = 0;
   const bool cross = boxes_.any_overlapping(around.low, around.high, visited, [&](Index f, const BoxTree::Box& box) {
     const auto is_near = [&](const BoxTree::Box& own) { return own.overlaps(box.low, box.high); };
@@ -145,7 +148,8 @@ bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std
     if (!other) --found;
     if (!other || is_degenerate(*other)) return false;
     for (auto own = first; own != boxes.end(); ++own) {
-      if (is_near(*own) && intersect(faces[static_cast<std::size_t>(own - boxes.begin())], *other)) return true;
+      const auto i = static_cast<std::size_t>(own - boxes.begin());
+      if (is_near(*own) && !planes[i].has_on_one_side(*other) && intersect(faces[i], *other)) return true;
     }
     return false;
   });

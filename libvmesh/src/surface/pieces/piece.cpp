@@ -39,8 +39,6 @@ constexpr int kFirstGuarded = 4;  // of the rungs below: where a hub starts; idl
 // which opens like the inverse square root of their number. Measured on short stars (bench/README.md): of 500, with 0,
 // rims cross; of 1,000, with 2, with 4 none do.
 constexpr double kRoomAtHub = 2, kBranchesAtHub = 250;  // kRoomAtHub: idle 1 to 3
-// Most branches of a node around which faces are not crowded: the more, the longer and narrower the pits between them.
-constexpr std::size_t kUncrowded = 250;
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 constexpr Rung kLadder[kRungs] = {{0, 0, false}, {2, 0, false}, {3, 0, false},  {3, 1, false},
                                   {3, 0, true},  {3, 1, true},  {5, 0.5, true}, {kEverywhere, 0.5, true}};
