@@ -197,6 +197,9 @@ TEST(SoundShapes, ATwigBetweenThickVessels) {
 
 TEST(SoundShapes, AHubOfVeryManyBranches) { expect_sound(testing::star(160)); }
 
+// The pits between its branches are narrower than the faces in them would have to be.
+TEST(SoundShapes, AHubWhosePitsAreCrowded) { expect_sound(testing::short_star(300)); }
+
 TEST(SoundShapes, UnevenChains) {
   for (const std::uint32_t seed : {1, 2}) expect_sound(testing::uneven_chain(200, seed));
 }

@@ -5,6 +5,7 @@
 
 #include "vmesh/volume/vessel_field.h"
 
+#include "hard_vessels.h"
 #include "random_centerline.h"
 
 namespace vmesh {
@@ -215,6 +216,24 @@ TEST(Blend, OfAStarIsTheSameLocallyAndGlobally) {
       EXPECT_EQ(field.sample_global(p).distance, field.sample(p, draw.below(5)).distance);
     }
   }
+}
+
+// All of a hub's cones are local to each other. In the pits between them and beside their walls, what is near is known;
+// elsewhere it is searched for.
+TEST(Blend, AroundAHubIsTheSameLocallyAndGlobally) {
+  Draw draw(57);
+  const Centerline centerline = testing::detail::star_of(400, 14, 1);
+  const VesselField field(centerline, 0.5);
+  int in_pits = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3 p = draw.uniform(3, 9) * draw.direction();  // branches touch their neighbours up to about 5.6
+    const FieldSample local = field.sample(p, draw.below(400)), global = field.sample_global(p);
+    EXPECT_EQ(local.distance, global.distance) << p.transpose();
+    EXPECT_EQ(local.gradient, global.gradient) << p.transpose();
+    const double beside = field.sample_cone(p, local.cone).distance / 0.5;
+    in_pits += beside > 0.25 && beside < 0.5;
+  }
+  EXPECT_GT(in_pits, 100);
 }
 
 TEST(Blend, OfSeveralConesIsTheLeastOfTheirPairs) {

@@ -1,6 +1,8 @@
 #include "vmesh/core/box_tree.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 
@@ -132,6 +134,31 @@ TEST(BoxTree, VisitsAllOverlappingItems) {
   }
 }
 
+TEST(BoxTree, FindsAnyOverlappingItemThatIsSought) {
+  Draw draw(28);
+  for (const Index count : {0u, 1u, 5u, 300u}) {
+    const Boxes boxes = random_boxes(draw, count, 3);
+    const BoxTree tree(boxes.low, boxes.high);
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 low = draw.in_cube(10), high = low + Vec3::Constant(draw.uniform(0, 4));
+      const Index divisor = 1 + draw.below(20);
+      const auto is_sought = [&](Index item) {
+        return item % divisor == 0 && (boxes.low[item].array() <= high.array()).all() &&
+               (boxes.high[item].array() >= low.array()).all();
+      };
+      bool expected = false;
+      for (Index item = 0; item < count; ++item) expected = expected || is_sought(item);
+      bool last = false;
+      EXPECT_EQ(tree.any_overlapping(low, high,
+                                     [&](Index item) {
+                                       EXPECT_FALSE(last) << "called after it held";
+                                       return last = is_sought(item);
+                                     }),
+                expected);
+    }
+  }
+}
+
 TEST(BoxTree, VisitsEveryPairThatMeetsOnce) {
   Draw draw(26);
   for (const Index count : {1u, 2u, 4u, 5u, 9u, 300u}) {
@@ -232,6 +259,24 @@ TEST(ChangingBoxTree, FindsExactlyWhatOverlapsWhileBoxesChange) {
     }
     EXPECT_EQ(tree.size(), static_cast<std::size_t>(std::count_if(boxes.begin(), boxes.end(),
                                                                   [](const auto& box) { return box.has_value(); })));
+  }
+}
+
+// Boxes that touch or just do not, at coordinates that single precision can and cannot hold.
+TEST(ChangingBoxTree, TellsBoxesThatTouchFromThoseThatDoNot) {
+  for (const double at : {0.0, 1.0, 0.1, 1.0 / 3, 12345.678901, 1e-30, 1e-42, 1e300}) {
+    for (const double x : {at, -at}) {
+      const double below = std::nextafter(x, -std::numeric_limits<double>::infinity());
+      const double above = std::nextafter(x, std::numeric_limits<double>::infinity());
+      const auto box = [](double from, double to) { return BoxTree::Box{{from, 0, 0}, {to, 1, 1}}; };
+      const double left = x - 1 - std::abs(x), right = x + 1 + std::abs(x);
+      ChangingBoxTree tree({{0, box(left, x)}, {1, box(x, right)}});
+      tree.set(2, box(left, below));
+      tree.set(3, box(above, right));
+      EXPECT_EQ(overlapping(tree, box(x, x)), (std::vector<Index>{0, 1})) << x;
+      EXPECT_EQ(overlapping(tree, box(below, below)), (std::vector<Index>{0, 2})) << x;
+      EXPECT_EQ(overlapping(tree, box(above, above)), (std::vector<Index>{1, 3})) << x;
+    }
   }
 }
 

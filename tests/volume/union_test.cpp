@@ -1,4 +1,5 @@
 // The plain union of round cones: blend 0.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -94,6 +95,31 @@ TEST(Union, LocalDistanceIsTheLeastAroundANodeOfManyBranchesToo) {
     EXPECT_GT(field.relations().local_cones(0).size(), 512u);
     expect_same(s, closest_of(field, p, field.relations().local_cones(s.cone)));
   }
+}
+
+TEST(Union, DistanceToOthersIsTheLeastOfThoseThatAreNotLocal) {
+  Draw draw(47);
+  int limited = 0, unlimited = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const Centerline centerline =
+        trial % 2 == 0 ? testing::random_graph(draw, 1 + draw.below(40)) : testing::random_grid_graph(draw, 24, 1);
+    const VesselField field(centerline);
+    for (int i = 0; i < 50; ++i) {
+      const auto cone = draw.below(static_cast<Index>(field.relations().cone_count()));
+      const auto local = field.relations().local_cones(cone);
+      const Vec3 p = field.relations().axis_point(cone, draw.uniform(0, 1)) + draw.uniform(0, 2) * draw.direction();
+      const double limit = draw.uniform(-0.5, 2);
+      double least = limit;
+      for (Index other = 0; other < field.relations().cone_count(); ++other) {
+        if (!std::binary_search(local.begin(), local.end(), other))
+          least = std::min(least, field.sample_cone(p, other).distance);
+      }
+      EXPECT_EQ(field.distance_to_others(p, cone, limit), least);
+      ++(least < limit ? limited : unlimited);
+    }
+  }
+  EXPECT_GT(limited, 100);
+  EXPECT_GT(unlimited, 100);
 }
 
 // Whatever the direction: the union is outside all its cones, and within a cone the distance is the depth.

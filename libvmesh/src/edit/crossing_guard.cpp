@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "vmesh/mesh/face_plane.h"
 #include "vmesh/mesh/topology.h"
 
 namespace vmesh {
@@ -22,6 +23,19 @@ BoxTree::Box box_of(const std::array<Vec3, 3>& points) {
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
 }
 
+std::vector<BoxTree::Box> boxes_of(const std::vector<PlacedFace>& faces) {
+  std::vector<BoxTree::Box> boxes;
+  boxes.reserve(faces.size());
+  for (const PlacedFace& face : faces) boxes.push_back(box_of(face.points));
+  return boxes;
+}
+
+BoxTree::Box box_around(const std::vector<BoxTree::Box>& boxes) {
+  BoxTree::Box around = boxes.front();
+  for (const auto& [low, high] : boxes) around = {around.low.cwiseMin(low), around.high.cwiseMax(high)};
+  return around;
+}
+
 BoxTree::Box box_of_part(const CrossingGuard::AxisLine& axis, Index number) {
   const auto& [from, to] = axis;
   const double t0 = double(number) / kPartsOfLine, t1 = double(number + 1) / kPartsOfLine;
@@ -32,8 +46,9 @@ BoxTree::Box box_of_part(const CrossingGuard::AxisLine& axis, Index number) {
 
 bool cross_each_other(const std::vector<PlacedFace>& faces) {
   for (std::size_t i = 0; i < faces.size(); ++i) {
+    const FacePlane plane(faces[i]);
     for (std::size_t j = 0; j < i; ++j) {
-      if (intersect(faces[i], faces[j])) return true;
+      if (!plane.has_on_one_side(faces[j]) && intersect(faces[i], faces[j])) return true;
     }
   }
   return false;
@@ -97,29 +112,31 @@ bool CrossingGuard::cross_axes(const std::vector<PlacedFace>& faces, const std::
   const auto meets = [&](const PlacedFace& face, Index axis) {
     return meets_segment(face, axes_[axis][0], axes_[axis][1]);
   };
-  return std::any_of(faces.begin(), faces.end(), [&](const PlacedFace& face) {
-    const BoxTree::Box box = box_of(face.points);
-    bool crossed = false;
-    axis_tree_.visit_overlapping(box.low, box.high, [&](Index part) {
-      const Index axis = part / kPartsOfLine;
-      if (crossed || !box_of_part(axes_[axis], part % kPartsOfLine).overlaps(box.low, box.high) || !meets(face, axis))
-        return;
-      crossed = std::none_of(gone.begin(), gone.end(), [&](Index f) {
-        const std::optional<PlacedFace> before = face_at_(f);
-        return before && !is_degenerate(*before) && meets(*before, axis);
-      });
+  const auto was_met = [&](Index axis) {
+    return std::any_of(gone.begin(), gone.end(), [&](Index f) {
+      const std::optional<PlacedFace> before = face_at_(f);
+      return before && !is_degenerate(*before) && meets(*before, axis);
     });
-    return crossed;
+  };
+  if (faces.empty()) return false;
+  const std::vector<BoxTree::Box> boxes = boxes_of(faces);
+  const BoxTree::Box around = box_around(boxes);
+  return axis_tree_.any_overlapping(around.low, around.high, [&](Index number) {
+    const Index axis = number / kPartsOfLine;
+    const BoxTree::Box part = box_of_part(axes_[axis], number % kPartsOfLine);
+    if (!part.overlaps(around.low, around.high)) return false;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (part.overlaps(boxes[i].low, boxes[i].high) && meets(faces[i], axis) && !was_met(axis)) return true;
+    }
+    return false;
   });
 }
 
 bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const {
   if (faces.empty()) return false;
-  std::vector<BoxTree::Box> boxes;
-  boxes.reserve(faces.size());
-  for (const PlacedFace& face : faces) boxes.push_back(box_of(face.points));
-  BoxTree::Box around = boxes.front();
-  for (const auto& [low, high] : boxes) around = {around.low.cwiseMin(low), around.high.cwiseMax(high)};
+  const std::vector<BoxTree::Box> boxes = boxes_of(faces);
+  const BoxTree::Box around = box_around(boxes);
+  const std::vector<FacePlane> planes(faces.begin(), faces.end());
   std::size_t visited = 0, found = 0;
   const bool cross = boxes_.any_overlapping(around.low, around.high, visited, [&](Index f, const BoxTree::Box& box) {
     const auto is_near = [&](const BoxTree::Box& own) { return own.overlaps(box.low, box.high); };
@@ -131,7 +148,8 @@ bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std
     if (!other) --found;
     if (!other || is_degenerate(*other)) return false;
     for (auto own = first; own != boxes.end(); ++own) {
-      if (is_near(*own) && intersect(faces[static_cast<std::size_t>(own - boxes.begin())], *other)) return true;
+      const auto i = static_cast<std::size_t>(own - boxes.begin());
+      if (is_near(*own) && !planes[i].has_on_one_side(*other) && intersect(faces[i], *other)) return true;
     }
     return false;
   });

@@ -5,38 +5,19 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 
+#include "vmesh/mesh/face_plane.h"
+
 namespace vmesh {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 
-constexpr double kMargin =
-    1e-9;  // relative to edges and distance: below, exact predicates decide; rounding is about 1e-15
-
 // Corners are numbered 0 to 2 within their faces.
 Point point(const PlacedFace& f, int i) { return {f.points[i].x(), f.points[i].y(), f.points[i].z()}; }
 Kernel::Triangle_3 triangle(const PlacedFace& f) { return {point(f, 0), point(f, 1), point(f, 2)}; }
 
 bool has(const PlacedFace& f, Index v) { return f.vertices[0] == v || f.vertices[1] == v || f.vertices[2] == v; }
-
-// Whether the corners of `other` that are not common are certainly on one side of the plane of `face`: the two then
-// meet at most in common corners. The margin is far above the rounding of the determinant.
-bool on_one_side(const PlacedFace& face, const PlacedFace& other) {
-  const Vec3& base = face.points[0];
-  const Vec3 first = face.points[1] - base, second = face.points[2] - base;
-  const Vec3 normal = first.cross(second);
-  const double margin = kMargin * kMargin * first.squaredNorm() * second.squaredNorm();
-  int above = 0, below = 0;
-  for (int i = 0; i < 3; ++i) {
-    if (has(face, other.vertices[i])) continue;
-    const Vec3 away = other.points[i] - base;
-    const double height = normal.dot(away);
-    if (!(height * height > margin * away.squaredNorm())) return false;
-    ++(height > 0 ? above : below);
-  }
-  return above == 0 || below == 0;
-}
 
 int apex(const PlacedFace& f, const PlacedFace& other) {
   for (int i = 0; i < 3; ++i) {
@@ -69,7 +50,7 @@ bool intersect(const PlacedFace& x, const PlacedFace& y) {
     }
   }
   if (count == 3) return true;
-  if (count < 2 && (on_one_side(x, y) || on_one_side(y, x))) return false;
+  if (FacePlane(x).has_on_one_side(y) || (count < 2 && FacePlane(y).has_on_one_side(x))) return false;
   if (count == 2) return folded(x, y);
   if (count == 1) return opposite_edge_meets(x, y, in_x) || opposite_edge_meets(y, x, in_y);
   return CGAL::do_intersect(triangle(x), triangle(y));

@@ -19,18 +19,38 @@ constexpr double kLongPiece = 2;
 constexpr int kMostPieces = 16;         // of a cone; idle 11 to 22
 constexpr std::size_t kFewCones = 100;  // up to here a linear scan is as fast; measured on stars: 60 to 512 are near
 
-// Of stretches of a hint's axis, in radii: their length, and the distance from its wall up to which points are beside
-// them. In profiles of stars of 250 branches, queries take less than a third of what searches took. Not surveyed.
+// Of stretches of a hint's axis, in radii: their length, and the distance from its wall up to which all points are
+// beside them; those beside the middle are so up to nearly twice that. In profiles of stars of 250 branches, queries
+// take less than a third of what searches took. Not surveyed.
 constexpr double kStretch = 1, kBeside = 0.25;
 constexpr double kMostStretches = 256;  // of a hint
 // By each thread; a prime, more than the stretches of the fan of a short star of 2,000 branches.
 constexpr std::size_t kKeptVicinities = 131101;
 constexpr std::size_t kSpread = 37;  // stretches of a hint that are kept beside each other
 
-// Keeps those of `cones` that are in the ascending list.
+// Length of a list, relative to what is sought in it, up to which walking along it is faster than sorting and
+// searching; deep within a node of many branches, nearly all are sought. Not surveyed.
+constexpr std::size_t kWalked = 16;
+
+// Keeps those of `cones` that are in the ascending list, ascending.
 void keep_listed(std::span<const Index> list, std::vector<Index>& cones) {
-  sort_unique(cones);
-  std::erase_if(cones, [&](Index c) { return !std::binary_search(list.begin(), list.end(), c); });
+  if (cones.size() * kWalked < list.size()) {
+    sort_unique(cones);
+    std::erase_if(cones, [&](Index c) { return !std::binary_search(list.begin(), list.end(), c); });
+    return;
+  }
+  thread_local std::vector<Index> sought;
+  thread_local std::vector<char> is_sought;  // of all cones; all 0 between calls
+  sought.swap(cones);
+  cones.clear();
+  for (const Index c : sought) {
+    if (c >= is_sought.size()) is_sought.resize(c + std::size_t{1}, 0);
+    is_sought[c] = 1;
+  }
+  for (const Index c : list) {
+    if (c < is_sought.size() && is_sought[c] != 0) cones.push_back(c);
+  }
+  for (const Index c : sought) is_sought[c] = 0;
 }
 
 }  // namespace
@@ -89,6 +109,7 @@ struct VesselField::Vicinity {
   std::uint64_t field = 0;
   Index hint = kNone;
   std::size_t stretch = 0, stretches = 1;
+  double most = 0;  // `distance` up to which cones are listed, mm
   Vec3 center = Vec3::Zero();
   std::vector<Near> cones;  // ascending
 };
@@ -117,7 +138,7 @@ void VesselField::survey_vicinity(Vicinity& v) const {
   v.center = own.origin + 0.5 * (t0 + t1) * own.axis;
   const double beside = kBeside * max_radius(v.hint);
   const double away = 0.5 * (t1 - t0) * own.axis.norm() + max_radius(v.hint) + beside;
-  const double most = away + beside + kIndexRounding * (v.center.norm() + away);
+  const double most = v.most = away + beside + kIndexRounding * (v.center.norm() + away);
   thread_local std::vector<Index> near;
   near.clear();
   visit_near(v.center, most, [&](Index c) { near.push_back(c); });
@@ -138,13 +159,15 @@ FieldSample VesselField::blended_local(const Vec3& p, Index hint) const {
   const double rounding = kIndexRounding * p.norm();
   const Distance own = cones_[hint].distance_to(p);
   double limit = own.value + rounding;
-  if (own.value <= kBeside * max_radius(hint)) {
+  if (own.value <= 2 * kBeside * max_radius(hint)) {
     const Vicinity& v = vicinity(hint, own.t);
     const double most = limit + (p - v.center).norm() + rounding;
-    for (const auto& [c, distance] : v.cones) {
-      if (distance <= most) near.push_back(c);
+    if (most <= v.most) {
+      for (const auto& [c, distance] : v.cones) {
+        if (distance <= most) near.push_back(c);
+      }
+      return blended(p, near, hint);
     }
-    return blended(p, near, hint);
   }
   visit_near(p, limit, [&](Index c) {
     const double value = cones_[c].distance_to(p).value;

@@ -34,7 +34,6 @@ struct VesselField::Surroundings {
   double range = 0;               // units from the centre; 0: double precision only
   std::size_t first = 0;          // the hint's number
   std::vector<ConeLanes> lanes;
-  Vec3 lonely_low = Vec3::Zero(), lonely_high = Vec3::Zero();  // a box without other cones, or empty
 };
 
 std::uint64_t VesselField::new_number() {
@@ -56,10 +55,6 @@ void VesselField::survey(Index hint, Surroundings& s) const {
   const Cone& own = cones_[hint];
   s.field = number_;
   s.hint = hint;
-  const double around = kLonely * max_radius(hint);
-  s.lonely_low = (own.origin.cwiseMin(own.origin + own.axis).array() - around).matrix();
-  s.lonely_high = (own.origin.cwiseMax(own.origin + own.axis).array() + around).matrix();
-  if (!is_lonely(hint, s.lonely_low, s.lonely_high)) s.lonely_high = s.lonely_low;
   s.range = 0;
   if (local.size() > kMostConeLanes * ConeLanes::kCount || !all_are_blended(local)) return;
   s.center = own.origin + 0.5 * own.axis;
@@ -93,24 +88,25 @@ bool VesselField::all_are_blended(std::span<const Index> cones) const {
   return true;
 }
 
-// Determined once and kept: around a node of very many branches, cached surroundings are soon replaced.
+// Determined once and kept.
 bool VesselField::is_lonely(Index cone, const Vec3& low, const Vec3& high) const {
   const std::atomic_ref<char> known(lonely_[cone]);
   if (known.load(std::memory_order_relaxed) == not_asked) {
     const std::span<const Index> local = relations_.local_cones(cone);
-    bool alone = true;
-    tree_.visit_overlapping(low, high, [&](Index item) {
-      alone = alone && std::binary_search(local.begin(), local.end(), cone_of_item_[item]);
-    });
+    const auto is_other = [&](Index item) {
+      return !std::binary_search(local.begin(), local.end(), cone_of_item_[item]);
+    };
+    const bool alone = local.size() == cones_.size() || !tree_.any_overlapping(low, high, is_other);
     known.store(alone ? lonely : in_company, std::memory_order_relaxed);
   }
   return known.load(std::memory_order_relaxed) == lonely;
 }
 
 double VesselField::distance_to_others(const Vec3& p, Index cone, double limit) const {
-  const Surroundings& s = surroundings(cone);
-  const double reach = std::max(limit, 0.0);
-  if ((p.array() - reach > s.lonely_low.array()).all() && (p.array() + reach < s.lonely_high.array()).all())
+  const double reach = std::max(limit, 0.0), around = kLonely * max_radius(cone);
+  const Vec3 begin = cones_[cone].origin, end = begin + cones_[cone].axis;
+  const Vec3 low = begin.cwiseMin(end).array() - around, high = begin.cwiseMax(end).array() + around;
+  if ((p.array() - reach > low.array()).all() && (p.array() + reach < high.array()).all() && is_lonely(cone, low, high))
     return limit;
   const std::span<const Index> local = relations_.local_cones(cone);
   visit_near(p, limit, [&](Index c) {

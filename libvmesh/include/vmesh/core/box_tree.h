@@ -41,6 +41,13 @@ class BoxTree {
     if (!nodes_.empty()) visit_overlapping_node(0, low, high, visit_item);
   }
 
+  /// Whether test(item) holds for an item whose box overlaps the box [low, high], or for one in a leaf with it; calls
+  /// it until it does.
+  template <class Test>
+  bool any_overlapping(const Vec3& low, const Vec3& high, Test&& test) const {
+    return !nodes_.empty() && any_overlapping_within(0, low, high, test);
+  }
+
   /// Calls visit(item, item) once for every two items whose boxes overlap, and for a few whose boxes do not.
   template <class Visit>
   void visit_pairs(Visit&& visit_pair) const {
@@ -88,6 +95,20 @@ class BoxTree {
     }
     visit_overlapping_node(node.first, low, high, visit_item);
     visit_overlapping_node(node.first + 1, low, high, visit_item);
+  }
+
+  template <class Test>
+  bool any_overlapping_within(Index n, const Vec3& low, const Vec3& high, Test&& test) const {
+    const Node& node = nodes_[n];
+    if (!node.overlaps(low, high)) return false;
+    if (node.count == 0) {
+      return any_overlapping_within(node.first, low, high, test) ||
+             any_overlapping_within(node.first + 1, low, high, test);
+    }
+    for (Index i = 0; i < node.count; ++i) {
+      if (test(order_[node.first + i])) return true;
+    }
+    return false;
   }
 
   template <class Visit>

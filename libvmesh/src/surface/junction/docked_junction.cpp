@@ -54,6 +54,7 @@ class JunctionDocker {
     for (const Vertex v : surface_.mesh.vertices()) surface_[v].fineness = variant.fineness;
     for (Index i = 0; i < docks_.size(); ++i) dock(i, junction.rims[i]);
     if (variant.guarded) surface_.guard_crossings();
+    surface_.crowded = growth_.is_crowded();
     DockedJunction docked;
     docked.filled_loops = growth_.filled_loops();
     finish(variant.fineness, docked);

@@ -11,6 +11,8 @@ namespace vmesh {
 /// surface. Measured on stars of equal branches, without this: the first sound rung of the ladder is the first with 64,
 /// the second with 100, the fifth with 250.
 inline constexpr std::size_t kHub = 160;  // idle 112 to 224
+/// Most branches of a node around which faces are not crowded: the more, the longer and narrower the pits between them.
+inline constexpr std::size_t kUncrowded = 250;
 
 /// A vertex of the surface; where it belongs to a kept ring, which vertex of which ring.
 struct DockedVertex {

@@ -1,8 +1,10 @@
 #include "surface/junction/junction_growth.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "surface/finish/optimize.h"
+#include "surface/junction/docked_junction.h"
 #include "surface/junction/node_frame.h"
 #include "surface/junction/thinning.h"
 #include "surface/remesh/sweep_state.h"
@@ -144,11 +146,18 @@ JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarde
   return result;
 }
 
+bool JunctionGrowth::is_crowded() const {
+  const Centerline& whole = field_.relations().centerline();
+  return std::any_of(junction_.nodes.begin(), junction_.nodes.end(),
+                     [&](Index n) { return whole.degree(n) > kUncrowded; });
+}
+
 GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   BoundSurface surface(local_field_);
   // A thinned surface converges sooner, but may intersect itself.
   fill(surface, guarded || finer > 1 ? lattice_ : thinned(lattice_));
   if (guarded) surface.guard_crossings();
+  surface.crowded = is_crowded();
   GenerateOptions options = options_;
   options.sweeps = kSweeps;
   options.max_error = {};

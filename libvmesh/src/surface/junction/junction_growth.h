@@ -50,6 +50,8 @@ class JunctionGrowth {
   /// Loops of the centerline that are too short to have a hole.
   std::size_t filled_loops() const { return centerline_.cycle_rank() - lattice_.handles; }
   double length_in_radii() const { return centerline_.length_in_radii(); }
+  /// Whether faces are crowded (BoundSurface::crowded).
+  bool is_crowded() const;
   /// Resolution, in vertices around a vessel, at which the junction is to be joined to its tubes.
   int docked_around() const { return docked_around_; }
 

@@ -138,11 +138,14 @@ class PieceMaker {
   // only the unsound ones are.
   double mended() const { return context_.options.max_error.is_set() ? kWorstSkewness : kMended; }
 
-  // Where very many vessels meet at a node, some walls always nearly touch.
-  bool is_hub() const {
-    return std::any_of(plan_.nodes.begin(), plan_.nodes.end(),
-                       [&](Index n) { return tubes_.centerline().degree(n) >= kHub; });
+  std::size_t most_branches() const {
+    std::size_t most = 0;
+    for (const Index n : plan_.nodes) most = std::max<std::size_t>(most, tubes_.centerline().degree(n));
+    return most;
   }
+  // Where very many vessels meet at a node, some walls always nearly touch.
+  bool is_hub() const { return most_branches() >= kHub; }
+  bool is_crowded() const { return most_branches() > kUncrowded; }
 
   static int room_at_hub(std::size_t branches) {
     return static_cast<int>(std::ceil(kRoomAtHub * std::sqrt(static_cast<double>(branches) / kBranchesAtHub)));
@@ -227,6 +230,7 @@ class PieceMaker {
     const std::vector<PieceLoop> loops = assembly.build(surface);
     const PieceInvariants invariants(tubes_, plan_, piece.filled_loops, surface, loops);
     if (rung.guarded) surface.guard_crossings();
+    surface.crowded = is_crowded();
     if (rung.finer > 0) surface.fine_spots = fine_spots_;
     surface.calm_spots = calm_spots_;
     surface.refined_to = context_.refined_to;

@@ -61,17 +61,20 @@ BoundVertex BoundVertex::merged(const BoundVertex& a, const BoundVertex& b) {
 }
 
 BoundSurface::BoundSurface(const VesselField& vessel_field)
-    : field(vessel_field), vertex_(mesh.add_property_map<Vertex, BoundVertex>("v:bound").first) {}
+    : field(vessel_field),
+      vertex_(mesh.add_property_map<Vertex, BoundVertex>("v:bound").first),
+      is_lid_(mesh.add_property_map<Vertex, char>("v:lid", 0).first) {}
 
 bool BoundSurface::is_lid(Face f) const {
   const auto [a, b, c] = corners(f);
-  return vertex_[a].role == Role::lid || vertex_[b].role == Role::lid || vertex_[c].role == Role::lid;
+  return is_lid_[a] != 0 || is_lid_[b] != 0 || is_lid_[c] != 0;
 }
 
 void BoundSurface::close_with_lid(const std::vector<Vertex>& loop, const Vec3& center) {
   const Vertex middle = mesh.add_vertex(center);
   place(middle, center, field.sample(center, vertex_[loop.front()].cone));
   vertex_[middle].role = Role::lid;
+  is_lid_[middle] = 1;
   for (std::size_t j = 0; j < loop.size(); ++j) {
     vertex_[loop[j]].role = Role::held;
     mesh.add_face(loop[j], loop[(j + 1) % loop.size()], middle);
@@ -136,8 +139,7 @@ void BoundSurface::guard_crossings(Axes kept) {
 // Nothing for removed faces and those of lids.
 std::optional<PlacedFace> BoundSurface::placed(Face f) const {
   if (f.idx() >= mesh.num_faces() || mesh.is_removed(f) || is_lid(f)) return std::nullopt;
-  const Halfedge h = mesh.halfedge(f);
-  const Vertex a = mesh.source(h), b = mesh.target(h), c = mesh.target(mesh.next(h));
+  const auto [a, b, c] = corners(f);
   return PlacedFace{{a.idx(), b.idx(), c.idx()}, {mesh.point(a), mesh.point(b), mesh.point(c)}};
 }
 

@@ -63,6 +63,9 @@ class BoundSurface {
   BoundSurface& operator=(const BoundSurface&) = delete;
 
   const VesselField& field;
+  /// Around a node of very many branches: many faces lie in pits too narrow for good ones, so that not everything is
+  /// tried at each of them.
+  bool crowded = false;
   bool has_limit = false;  ///< on the error, which is to be proven
   ErrorLimit refined_to;   ///< what the finished surface is refined to, if set
   SurfaceMesh mesh;
@@ -180,6 +183,7 @@ class BoundSurface {
   std::optional<PlacedFace> placed(Face f) const;
 
   SurfaceMesh::Property_map<Vertex, BoundVertex> vertex_;
+  SurfaceMesh::Property_map<Vertex, char> is_lid_;  // as in vertex_; small, as guards ask it of all that is near
   std::unique_ptr<CrossingGuard> guard_;
 };
 

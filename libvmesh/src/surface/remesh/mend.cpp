@@ -13,6 +13,9 @@ namespace {
 constexpr int kRounds = 20;          // through all bad faces; idle 14 to 28
 constexpr double kTolerance = 1e-3;  // vessel radii: distance of an improved vertex from its lift
 constexpr double kPaysOff = 0.998;   // ratio of the worst skewness around after a step to that before; safe 0.7 to 1.4
+// The same where improving crowded surfaces. Measured on short stars of 1,000 branches: with kPaysOff instead,
+// improving takes three times as long, and the mean skewness is the same (.095).
+constexpr double kPaysOffInPits = 0.95;
 
 // Cosine between two faces down to which improving may fold their edge further; idle 0.5 to 0.85 on ten synthetic
 // trees.
@@ -101,6 +104,7 @@ class Mender {
   }
 
   bool mend(Face f) {
+    errors_.clear();
     std::vector<Repair> steps;
     for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
       add_flip(h, steps);
@@ -120,7 +124,7 @@ class Mender {
 
   // Offers a step if it lowers the worst skewness of the faces it changes.
   void offer(const Repair& step, std::vector<Repair>& steps) const {
-    if (step.worst < kPaysOff * step.before) steps.push_back(step);
+    if (step.worst < pays_off_ * step.before) steps.push_back(step);
   }
 
   void add_flip(Halfedge h, std::vector<Repair>& steps) const {
@@ -143,7 +147,7 @@ class Mender {
     const double before = std::max(worst_around(a), worst_around(b));
     for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       const Vec3 place = (1 - t) * mesh_.point(a) + t * mesh_.point(b);
-      offer({Kind::collapse, h, {}, place, before, worst_with_both(a, b, place, kPaysOff * before)}, steps);
+      offer({Kind::collapse, h, {}, place, before, worst_with_both(a, b, place, pays_off_ * before)}, steps);
     }
   }
 
@@ -178,7 +182,7 @@ class Mender {
     length /= static_cast<double>(mesh_.degree(v));
     const auto [before, at_worst] = worst_face_around(v);
     const auto offer_place = [&, before = before, at_worst = at_worst](const Vec3& place) {
-      offer({Kind::move, {}, v, place, before, worst_with(at_worst, v, place, kPaysOff * before)}, steps);
+      offer({Kind::move, {}, v, place, before, worst_with(at_worst, v, place, pays_off_ * before)}, steps);
     };
     const Vec3 normal = surface_[v].gradient, side = towards_neighbour(v, normal), across = normal.cross(side);
     if (keeps_ == Keeps::to_boundary) center -= normal.dot(center - mesh_.point(v)) * normal;
@@ -256,9 +260,16 @@ class Mender {
   }
 
   // Whether the faces around `v`, with `v` at `place`, are near the boundary or hardly farther from it than now.
-  bool stays_near(Vertex v, const Vec3& place) const {
+  bool stays_near(Vertex v, const Vec3& place) {
     const double error = error_around(v, place);
-    return error <= kNear * surface_.radius(v) || error <= kFarther * error_around(v, mesh_.point(v));
+    return error <= kNear * surface_.radius(v) || error <= kFarther * error_around(v);
+  }
+
+  // As it is, determined once for all the steps at a face.
+  double error_around(Vertex v) {
+    const auto known = std::find_if(errors_.begin(), errors_.end(), [v](const auto& e) { return e.first == v; });
+    if (known != errors_.end()) return known->second;
+    return errors_.emplace_back(v, error_around(v, mesh_.point(v))).second;
   }
 
   // Where `v` ends up with this lift when moved towards `place`.
@@ -319,8 +330,10 @@ class Mender {
   SurfaceMesh& mesh_;
   double limit_;
   Keeps keeps_;
+  const double pays_off_ = keeps_ == Keeps::to_boundary && surface_.crowded ? kPaysOffInPits : kPaysOff;
   const Progress& progress_;
-  std::vector<Face> changed_;  // in this round
+  std::vector<Face> changed_;                      // in this round
+  std::vector<std::pair<Vertex, double>> errors_;  // around vertices of the face at which steps are tried
 };
 
 }  // namespace

@@ -8,8 +8,11 @@ namespace vmesh {
 namespace {
 
 constexpr int kRounds = 2, kSweeps = 20;  // kRounds: safe 1 to 3; kSweeps: safe 14 to 28
-constexpr int kPower = 32;                // of the energies in a sum that approximates their maximum; safe 22 to 45
-constexpr int kRelaxSweeps = 6;           // that improve all faces without making the worst worse; safe 4 to 8
+// Of crowded surfaces. Measured on short stars of 1,000 branches: with kSweeps, polishing takes half as long again, and
+// the mean skewness is the same (.095).
+constexpr int kSweepsInPits = 6;
+constexpr int kPower = 32;       // of the energies in a sum that approximates their maximum; safe 22 to 45
+constexpr int kRelaxSweeps = 6;  // that improve all faces without making the worst worse; safe 4 to 8
 // Move, in target lengths, from which on the neighbours are revisited; safe 0.0035 to 0.007.
 constexpr double kNoticeableMove = 0.005;
 constexpr int kPatience = 10;  // patience limit: faces in a row without a helpful flip; safe 7 to 14
@@ -42,7 +45,8 @@ class Polisher {
   void improve_shape() {
     state_.stir_all();
     std::vector<Face> bad = bad_faces({mesh_.faces().begin(), mesh_.faces().end()});
-    for (int sweep = 0; sweep < kSweeps && state_.next_sweep() > 0; ++sweep) {
+    const int sweeps = surface_.crowded ? kSweepsInPits : kSweeps;
+    for (int sweep = 0; sweep < sweeps && state_.next_sweep() > 0; ++sweep) {
       const std::vector<Vertex> vertices = active(with_neighbours(corners_of(bad)));
       for (const Edge e : edges_of(vertices)) remesher_.flip_for_shape(e);
       relocate_vertices(state_, vertices, {.power = kPower, .noticeable = kNoticeableMove});
