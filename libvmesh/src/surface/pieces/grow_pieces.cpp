@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -26,15 +27,16 @@
 namespace vmesh {
 namespace {
 
-// Even surfaces that are refined to a limit until one is proven: with the sizes that a share of the limit asks for
-// (edges as long, a ninth, a quarter shorter), in the usual way of refining only; without, in all; with more vertices
-// around.
+// Even surfaces that are refined to a limit until one is proven. First with the sizes that a share of the limit asks
+// for: edges as long, a ninth, a quarter shorter. Which of them fails is chance as much as geometry, and the usual way
+// of refining takes a second. Then without such sizes and in all ways, with more vertices around each time.
 struct Start {
   double sizes;
   bool usual_way_only;
-  int times_around;
+  double times_around;
 };
-constexpr Start kStarts[] = {{1, true, 1}, {0.8, true, 1}, {0.55, true, 1}, {0, false, 1}, {0, false, 2}};
+constexpr Start kStarts[] = {{1, true, 1},  {0.8, true, 1},        {0.55, true, 1},
+                             {0, false, 1}, {0, false, 4.0 / 3.0}, {0, false, 2}};
 
 constexpr int kRounds = 3;  // of remaking pieces as one; idle 2 to 4
 // Radii: a fault this near to a seam may be caused by it; idle 2.8 to 5.6.
@@ -391,7 +393,7 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
   for (const Start& start : kStarts) {
     if (best && best->has_met_limit()) break;
     GenerateOptions finer = even;
-    finer.around *= start.times_around;
+    finer.around = static_cast<int>(std::lround(start.times_around * finer.around));
     attempt(field, finer, {options.max_error, may_be_coarser, options.elongation, start.sizes, start.usual_way_only});
   }
   if (!best->has_met_limit()) {
