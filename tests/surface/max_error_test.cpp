@@ -325,7 +325,7 @@ Centerline thin_daughters(double angle_deg, double radius) {
   return {{{{0, 0, -12}, 2}, {{0, 0, 0}, 2}, {up, radius}, {down, radius}}, {{0, 1}, {1, 2}, {1, 3}}};
 }
 
-// Down edge by edge, 33 to 149 faces were not proven on each of these. (Of 48 such forks of 9 to 24 degrees, 3 are not
+// Down edge by edge, 33 to 149 faces were not proven on each of these. (Of 48 such forks of 9 to 24 degrees, 1 is not
 // proven now, 22 were not.)
 TEST(NarrowNotches, BetweenThinDaughtersAreProven) {
   for (const auto& [angle, radius] : {std::pair(10.0, 1.0), std::pair(12.0, 1.0), std::pair(12.0, 1.5)}) {
