@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "surface/check/tested_cone.h"
 
 namespace vmesh {
 namespace {
@@ -15,36 +18,6 @@ using Points = TrianglePoints;
 std::array<Points, 4> quarters(const Points& q) {
   const Vec3 a = 0.5 * (q[1] + q[2]), b = 0.5 * (q[2] + q[0]), c = 0.5 * (q[0] + q[1]);
   return {Points{q[0], c, b}, Points{c, q[1], a}, Points{b, a, q[2]}, Points{a, b, c}};
-}
-
-// A cone and what all bounds on its field need.
-struct TestedCone {
-  Index number = kNone, first_node = kNone, last_node = kNone;
-  RoundCone shape;
-  Vec3 first = Vec3::Zero(), axis = Vec3::Zero();
-  double length = 0, slope = 0;            // of the axis; of the radius of the touching sphere
-  double first_share = 1, last_share = 1;  // of the blend
-
-  double share_at(double t) const { return first_share + t * (last_share - first_share); }
-};
-
-// At every point, the gradient of one of two cones at least is turned by no more than some angle against the direction
-// from their common node: half of the bend there, to which cones that widen away from the node add. 1 - cos of that
-// angle; infinite without a common node.
-double fold_between(const TestedCone& a, const TestedCone& b) {
-  for (const bool at_first_of_a : {true, false}) {
-    for (const bool at_first_of_b : {true, false}) {
-      if ((at_first_of_a ? a.first_node : a.last_node) != (at_first_of_b ? b.first_node : b.last_node)) continue;
-      const double way_a = at_first_of_a ? 1 : -1, way_b = at_first_of_b ? 1 : -1;  // away from the node
-      const double widening_a = way_a * (a.shape.r1 - a.shape.r0), widening_b = way_b * (b.shape.r1 - b.shape.r0);
-      if (std::abs(widening_a) >= a.length || std::abs(widening_b) >= b.length) continue;
-      const double cosine = -(way_a * a.axis).dot(way_b * b.axis) / (a.length * b.length);
-      const double bend = std::acos(std::clamp(cosine, -1.0, 1.0)) + std::asin(widening_a / a.length) +
-                          std::asin(widening_b / b.length);
-      return bend > 0 ? 1 - std::cos(bend / 2) : 0;
-    }
-  }
-  return std::numeric_limits<double>::infinity();
 }
 
 // Bounds on a cone's field over a triangle.
@@ -82,14 +55,6 @@ struct SmoothMinimum {
   }
 };
 
-// Bound on how much the radius of the touching sphere changes per distance moved: the tangent of the cone's half angle.
-double radius_slope(double first, double last, double length) {
-  const double change = std::abs(last - first);
-  if (change >= length) return std::numeric_limits<double>::infinity();
-  const double sine = change / length;
-  return sine / std::sqrt(1 - sine * sine);
-}
-
 double smooth_minimum(double a, double b, double width) { return SmoothMinimum(a, b, width).value; }
 
 // Decides for triangles whether they are inside or outside the volume of a few cones.
@@ -97,9 +62,8 @@ class TriangleTest {
  public:
   TriangleTest(const VesselField& field, const std::vector<Index>& cones) : field_(field) {
     cones_.reserve(cones.size());
-    for (const Index cone : cones) cones_.push_back(tested(field.relations(), cone));
+    for (const Index cone : cones) cones_.emplace_back(field.relations(), cone);
     for (const TestedCone& cone : cones_) stack_.push_back({.cone = &cone});
-    folds_.assign(cones_.size() * cones_.size(), kNotYet);
   }
 
   bool outside(const Points& q) { return is_outside(q, all(), kMaxDepth); }
@@ -111,20 +75,6 @@ class TriangleTest {
   struct Range {
     std::size_t begin, end;
   };
-
-  static TestedCone tested(const ConeRelations& relations, Index number) {
-    const Centerline& centerline = relations.centerline();
-    const CenterlineNode &first = centerline.node(relations.first_node(number)),
-                         &last = centerline.node(relations.last_node(number));
-    TestedCone cone{number, relations.first_node(number), relations.last_node(number), RoundCone(first, last),
-                    relations.axis_point(number, 0)};
-    cone.axis = relations.axis_point(number, 1) - cone.first;
-    cone.length = cone.axis.norm();
-    cone.slope = radius_slope(first.radius, last.radius, cone.length);
-    cone.first_share = relations.rounding_of(relations.first_node(number));
-    cone.last_share = relations.rounding_of(relations.last_node(number));
-    return cone;
-  }
 
   Range all() const { return {0, cones_.size()}; }
 
@@ -381,13 +331,14 @@ class TriangleTest {
   // With the lesser e', the width less the gap is at most 4 reach e' whatever e is, or L e' / (1 - reach / L) where L
   // is less than twice the reach. A blend takes away a quarter of that at most, and nothing where the node's ball is
   // what is nearest of one of them. L is at least the radius of the ball and how far outside the point is.
-  double dent_at_node(const ConeBounds& a, const ConeBounds& b, double low) {
-    const double fold = fold_of(*a.cone, *b.cone);
-    const double reach = std::min(a.most_reach, b.most_reach);
-    const double away = low + radius_at_common_node(*a.cone, *b.cone);
-    if (!std::isfinite(fold) || low < 0 || reach >= away) return std::numeric_limits<double>::infinity();
-    const double share = reach / away;
-    return reach * fold * (share <= 0.5 ? 1 : 1 / (4 * share * (1 - share)));
+  static double dent_at_node(const ConeBounds& a, const ConeBounds& b, double low) {
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    if (low < 0) return kAny;
+    const std::optional<Fold> fold = fold_between(*a.cone, *b.cone);
+    if (!fold) return kAny;
+    const double reach = std::min(a.most_reach, b.most_reach), share = reach / (low + fold->radius);
+    if (share >= 1) return kAny;
+    return reach * fold->height * (share <= 0.5 ? 1 : 1 / (4 * share * (1 - share)));
   }
 
   // Distances are above their tangents, and a concave function of linear ones is least at a corner.
@@ -395,18 +346,6 @@ class TriangleTest {
     double low = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < 3; ++k) low = std::min(low, smooth_minimum(a.tangent[k], b.tangent[k], widest));
     return low;
-  }
-
-  double fold_of(const TestedCone& a, const TestedCone& b) {
-    double& fold = folds_[index_of(a) * cones_.size() + index_of(b)];
-    if (fold == kNotYet) fold = fold_between(a, b);
-    return fold;
-  }
-
-  std::size_t index_of(const TestedCone& cone) const { return static_cast<std::size_t>(&cone - cones_.data()); }
-
-  static double radius_at_common_node(const TestedCone& a, const TestedCone& b) {
-    return a.first_node == b.first_node || a.first_node == b.last_node ? a.shape.r0 : a.shape.r1;
   }
 
   static double low_of(const ConeBounds& b) { return b.low; }
@@ -472,8 +411,6 @@ class TriangleTest {
 
   const VesselField& field_;
   std::vector<TestedCone> cones_;
-  static constexpr double kNotYet = -1;
-  std::vector<double> folds_;  // by pairs of cones, once asked for
   std::vector<ConeBounds> stack_;
   // Of the triangle that was measured last.
   const Points* points_ = nullptr;
