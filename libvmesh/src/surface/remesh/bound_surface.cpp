@@ -61,20 +61,17 @@ BoundVertex BoundVertex::merged(const BoundVertex& a, const BoundVertex& b) {
 }
 
 BoundSurface::BoundSurface(const VesselField& vessel_field)
-    : field(vessel_field),
-      vertex_(mesh.add_property_map<Vertex, BoundVertex>("v:bound").first),
-      is_lid_(mesh.add_property_map<Vertex, char>("v:lid", 0).first) {}
+    : field(vessel_field), vertex_(mesh.add_property_map<Vertex, BoundVertex>("v:bound").first) {}
 
 bool BoundSurface::is_lid(Face f) const {
   const auto [a, b, c] = corners(f);
-  return is_lid_[a] != 0 || is_lid_[b] != 0 || is_lid_[c] != 0;
+  return vertex_[a].role == Role::lid || vertex_[b].role == Role::lid || vertex_[c].role == Role::lid;
 }
 
 void BoundSurface::close_with_lid(const std::vector<Vertex>& loop, const Vec3& center) {
   const Vertex middle = mesh.add_vertex(center);
   place(middle, center, field.sample(center, vertex_[loop.front()].cone));
   vertex_[middle].role = Role::lid;
-  is_lid_[middle] = 1;
   for (std::size_t j = 0; j < loop.size(); ++j) {
     vertex_[loop[j]].role = Role::held;
     mesh.add_face(loop[j], loop[(j + 1) % loop.size()], middle);

@@ -183,7 +183,6 @@ class BoundSurface {
   std::optional<PlacedFace> placed(Face f) const;
 
   SurfaceMesh::Property_map<Vertex, BoundVertex> vertex_;
-  SurfaceMesh::Property_map<Vertex, char> is_lid_;  // as in vertex_; small, as guards ask it of all that is near
   std::unique_ptr<CrossingGuard> guard_;
 };
 
