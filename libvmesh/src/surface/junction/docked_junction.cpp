@@ -55,6 +55,7 @@ class JunctionDocker {
     for (Index i = 0; i < docks_.size(); ++i) dock(i, junction.rims[i]);
     if (variant.guarded) surface_.guard_crossings();
     surface_.crowded = growth_.is_crowded();
+    surface_.fine_places = growth_.fine_places();
     DockedJunction docked;
     docked.filled_loops = growth_.filled_loops();
     finish(variant.fineness, docked);
@@ -196,13 +197,13 @@ Index kept_ring(const Tube& tube, bool at_end) {
 }
 
 DockedJunction make_docked_junction(const VesselRings& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
-                                    const GenerateOptions& options, bool guarded, bool may_hang,
-                                    const Progress& progress) {
+                                    const GenerateOptions& options, const std::vector<FinePlace>& fine_places,
+                                    bool guarded, bool may_hang, const Progress& progress) {
   const VesselField& field = tubes.field();
   const std::vector<TubeEnd> docks = docks_of(junction);
   const auto flaws = [](const DockedJunction& p) { return std::tuple(p.crossings, p.tangles, p.unproven); };
   std::optional<DockedJunction> best;
-  const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options, progress);
+  const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options, fine_places, progress);
   // When guarded, refinement for the error limit is left to the whole piece.
   GenerateOptions own_options = options;
   if (guarded) own_options.max_error = {};

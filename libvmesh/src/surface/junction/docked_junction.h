@@ -49,7 +49,7 @@ Index kept_ring(const Tube& tube, bool at_end);
 /// others do as well. `guarded`: also tries variants in which only guarded steps
 /// are taken.
 DockedJunction make_docked_junction(const VesselRings& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
-                                    const GenerateOptions& options, bool guarded, bool may_hang,
-                                    const Progress& progress);
+                                    const GenerateOptions& options, const std::vector<FinePlace>& fine_places,
+                                    bool guarded, bool may_hang, const Progress& progress);
 
 }  // namespace vmesh

@@ -69,7 +69,7 @@ std::vector<LatticeBall> balls_along(const VesselField& field, double cube, doub
 }
 
 // Cubes as large as the widest vessel allows: the thinnest vessel's cubes, doubled repeatedly.
-GradedLattice lattice_around(const VesselField& field, Index start) {
+GradedLattice lattice_around(const VesselField& field, Index start, const std::vector<FinePlace>& fine_places) {
   const Centerline& centerline = field.relations().centerline();
   double thinnest = std::numeric_limits<double>::infinity(), widest = 0;
   for (const auto& node : centerline.nodes()) {
@@ -78,7 +78,12 @@ GradedLattice lattice_around(const VesselField& field, Index start) {
   }
   double spacing = kSpacing * thinnest;
   while (2 * spacing <= kFiner * widest) spacing *= 2;
-  return {centerline.node(start).position, frame_at(centerline, start), spacing, balls_along(field, spacing, thinnest)};
+  std::vector<LatticeBall> balls = balls_along(field, spacing, thinnest);
+  for (const FinePlace& place : fine_places) {
+    const FieldSample s = field.sample_global(place.center);
+    if (s.distance < place.reach) balls.push_back({place.center, place.reach, place.edge});
+  }
+  return {centerline.node(start).position, frame_at(centerline, start), spacing, balls};
 }
 
 // The lattice's surface in a mesh that is bound to the field.
@@ -90,11 +95,11 @@ void fill(BoundSurface& surface, const LatticeSurface& lattice) {
   for (const auto& [a, b, c] : lattice.faces) surface.mesh.add_face(Vertex(a), Vertex(b), Vertex(c));
 }
 
-LatticeSurface grow_lattice(const VesselField& field) {
+LatticeSurface grow_lattice(const VesselField& field, const std::vector<FinePlace>& fine_places) {
   const Centerline& centerline = field.relations().centerline();
   const Index start = widest_node(centerline);
   const Index hint = centerline.degree(start) > 0 ? centerline.incident_segments(start)[0] : 0;
-  return grow_in_lattice(field, lattice_around(field, start), hint, centerline.cycle_rank());
+  return grow_in_lattice(field, lattice_around(field, start, fine_places), hint, centerline.cycle_rank());
 }
 
 // Fine enough for edges between two docks of one vessel.
@@ -114,18 +119,19 @@ int resolution_at_docks(const std::vector<BranchAxis>& axes, const Junction& jun
 
 JunctionGrowth::JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes,
                                const GrowthSkeleton& skeleton, const Junction& junction, const GenerateOptions& options,
-                               const Progress& progress)
+                               const std::vector<FinePlace>& fine_places, const Progress& progress)
     : field_(field),
       axes_(axes),
       skeleton_(skeleton),
       junction_(junction),
       options_(options),
+      fine_places_(fine_places),
       progress_(progress),
       docked_around_(resolution_at_docks(axes, junction, options.around)),
       local_(make_junction_centerline(field.relations().centerline(), axes, junction)),
       centerline_(local_.nodes, local_.segments),
       local_field_(centerline_, options.blend),
-      lattice_(grow_lattice(local_field_)) {}
+      lattice_(grow_lattice(local_field_, fine_places)) {}
 
 JunctionSurface JunctionGrowth::make(double finer, bool smooth_rims, bool guarded) const {
   const GenerateResult closed = onto_boundary(finer, guarded);
@@ -158,6 +164,7 @@ GenerateResult JunctionGrowth::onto_boundary(double finer, bool guarded) const {
   fill(surface, guarded || finer > 1 ? lattice_ : thinned(lattice_));
   if (guarded) surface.guard_crossings();
   surface.crowded = is_crowded();
+  surface.fine_places = fine_places_;
   GenerateOptions options = options_;
   options.sweeps = kSweeps;
   options.max_error = {};

@@ -5,6 +5,7 @@
 #include "surface/junction/disc_cutter.h"
 #include "surface/junction/junction_centerline.h"
 #include "surface/junction/lattice_growth.h"
+#include "surface/remesh/bound_surface.h"
 
 namespace vmesh {
 
@@ -37,7 +38,8 @@ struct JunctionSurface {
 class JunctionGrowth {
  public:
   JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes, const GrowthSkeleton& skeleton,
-                 const Junction& junction, const GenerateOptions& options, const Progress& progress = {});
+                 const Junction& junction, const GenerateOptions& options,
+                 const std::vector<FinePlace>& fine_places, const Progress& progress = {});
 
   /// The surface at `finer` times the requested resolution. `smooth_rims`: rims are moved onto the boundary and lose
   /// their short edges; otherwise they stay as cut. `guarded`: faces never cross on the way from the lattice to the
@@ -52,6 +54,7 @@ class JunctionGrowth {
   double length_in_radii() const { return centerline_.length_in_radii(); }
   /// Whether faces are crowded (BoundSurface::crowded).
   bool is_crowded() const;
+  const std::vector<FinePlace>& fine_places() const { return fine_places_; }
   /// Resolution, in vertices around a vessel, at which the junction is to be joined to its tubes.
   int docked_around() const { return docked_around_; }
 
@@ -73,6 +76,7 @@ class JunctionGrowth {
   const GrowthSkeleton& skeleton_;
   const Junction& junction_;
   const GenerateOptions& options_;
+  const std::vector<FinePlace>& fine_places_;
   const Progress progress_;
   const int docked_around_;
   JunctionCenterline local_;

@@ -15,6 +15,7 @@
 #include "vmesh/surface/error_bound.h"
 
 #include "surface/check/error_limit.h"
+#include "surface/pieces/fine_places.h"
 #include "surface/pieces/gathering.h"
 #include "surface/pieces/parting.h"
 #include "surface/pieces/piece_invariants.h"
@@ -27,26 +28,10 @@
 namespace vmesh {
 namespace {
 
-// Even surfaces that are refined to a limit until one is proven. First with the sizes that a share of the limit asks
-// for: edges as long, a ninth, a quarter shorter. Which of them fails is chance as much as geometry, and the usual way
-// of refining takes a second, all of them half a minute. Then without such sizes, a third more vertices around, as
-// many, but in all ways, and twice as many.
-struct Start {
-  double sizes;
-  bool usual_way_only;
-  double times_around;
-};
-constexpr Start kStarts[] = {{1, true, 1},         {0.8, true, 1}, {0.55, true, 1},
-                             {0, true, 4.0 / 3.0}, {0, false, 1},  {0, true, 2}};
-
 constexpr int kRounds = 3;  // of remaking pieces as one; idle 2 to 4
 // Radii: a fault this near to a seam may be caused by it; idle 2.8 to 5.6.
 constexpr double kNearSeam = 4.0;
-
-// Not set: 0 of it.
-ErrorLimit share_of(const ErrorLimit& limit, double share) {
-  return share > 0 ? ErrorLimit{share * limit.mm, share * limit.relative} : ErrorLimit{};
-}
+constexpr double kNearOpening = 1.5;  // radii: faces there have a corner on its ring
 
 class PieceGrower {
  public:
@@ -55,8 +40,8 @@ class PieceGrower {
     ErrorLimit limit;             ///< what it is refined to, if set; that of the options is proven piece by piece
     bool may_be_coarser;          ///< whether vertices are left out then
     double elongation;            ///< how long triangles may be then
-    double sizes = 0;             ///< those that this share of the limit asks for, if set
     bool usual_way_only = false;  ///< of refining
+    std::vector<FinePlace> fine_places = {};
   };
 
   PieceGrower(const VesselField& field, const std::vector<char>& open, const GenerateOptions& options,
@@ -66,7 +51,7 @@ class PieceGrower {
         options_(options),
         finish_(finish),
         progress_(progress),
-        context_{tubes_, open, options_, ask_, share_of(finish.limit, finish.sizes)},
+        context_{tubes_, open, options_, ask_, finish.limit, finish.fine_places},
         division_(divide(tubes_, options)) {}
 
   /// Grows the surface, and refines it to the limit.
@@ -88,6 +73,17 @@ class PieceGrower {
   /// After grow(): whether the whole surface was refined to the limit, but at openings.
   bool has_met_limit() const { return has_met_limit_; }
   std::size_t unproven_faces_left() const { return error_.unproven_faces; }
+
+  /// The places that are not proven, without those at openings, which cannot be.
+  std::vector<UnprovenPlace> unproven_places() const {
+    std::vector<UnprovenPlace> places = error_.unproven_places;
+    std::erase_if(places, [&](const UnprovenPlace& place) {
+      return std::any_of(gathered_.openings.begin(), gathered_.openings.end(), [&](const Opening& opening) {
+        return (place.position - opening.center).norm() < kNearOpening * opening.radius;
+      });
+    });
+    return places;
+  }
 
   /// After grow(), once: leaves out vertices, and hands over the surface. Returns which faces cross.
   std::vector<std::pair<Index, Index>> finish(GenerateResult& result) {
@@ -388,14 +384,18 @@ std::vector<std::pair<Index, Index>> grow_pieces(const VesselField& field, const
   const auto attempt = [&](const VesselField& of, const GenerateOptions& with, const PieceGrower::Finish& finish) {
     auto grower = std::make_unique<PieceGrower>(of, open, with, finish, progress);
     grower->grow();
+    std::vector<UnprovenPlace> unproven = grower->unproven_places();
     if (!best || grower->has_met_limit() || grower->unproven_faces_left() < best->unproven_faces_left())
       best = std::move(grower);
+    return unproven;
   };
-  for (const Start& start : kStarts) {
-    if (best && best->has_met_limit()) break;
-    GenerateOptions finer = even;
-    finer.around = static_cast<int>(std::lround(start.times_around * finer.around));
-    attempt(field, finer, {options.max_error, may_be_coarser, options.elongation, start.sizes, start.usual_way_only});
+  // The usual way of refining takes a second where all ways take half a minute.
+  PieceGrower::Finish finish{options.max_error, may_be_coarser, options.elongation, true};
+  FinePlaces fine(field, options.max_error);
+  while (fine.draw(attempt(field, even, finish)) && !best->has_met_limit()) finish.fine_places = fine.places();
+  if (!best->has_met_limit()) {
+    finish.usual_way_only = false;
+    attempt(field, even, finish);
   }
   if (!best->has_met_limit()) {
     precise = field;

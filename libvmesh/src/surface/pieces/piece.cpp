@@ -234,6 +234,7 @@ class PieceMaker {
     if (rung.finer > 0) surface.fine_spots = fine_spots_;
     surface.calm_spots = calm_spots_;
     surface.refined_to = context_.refined_to;
+    surface.fine_places = context_.fine_places;
     bool tested = false;  // and found that no faces cross
     if (context_.options.sweeps > 0) {
       const GrownMesh grown{double(context_.options.around),
@@ -282,7 +283,8 @@ class PieceMaker {
     for_whole_tasks(missing.size(), [&](std::size_t i) {
       const auto& [junction, known] = missing[i];
       known->docked =
-          make_docked_junction(tubes_, skeleton, *junction, context_.options, guarded, may_hang_, context_.progress);
+          make_docked_junction(tubes_, skeleton, *junction, context_.options, context_.fine_places, guarded, may_hang_,
+                               context_.progress);
       known->guarded = guarded;
     });
     return docked;

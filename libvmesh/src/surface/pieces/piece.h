@@ -7,6 +7,7 @@
 #include "vmesh/surface/generate.h"
 
 #include "surface/pieces/division.h"
+#include "surface/remesh/bound_surface.h"
 
 namespace vmesh {
 
@@ -66,6 +67,7 @@ struct PieceContext {
   const GenerateOptions& options;
   const Progress& progress;
   ErrorLimit refined_to = {};  ///< what the surface, which has no creases, is refined to later, if set
+  std::vector<FinePlace> fine_places = {};  ///< see BoundSurface
 };
 
 /// Makes a piece on a ladder of kRungs rungs, cheapest first: the piece as planned; rings around its faults left to

@@ -53,6 +53,12 @@ struct BoundVertex {
 /// A step on a halfedge mesh; the vertex is null_vertex() where one is to be added.
 using SurfaceStep = Step<Vertex, Face, BoundaryPoint>;
 
+/// A ball in which edges are no longer than `edge`; around it they may be, the more the farther away.
+struct FinePlace {
+  Vec3 center = Vec3::Zero();
+  double reach = 0, edge = 0;  ///< mm
+};
+
 /// A surface under construction: a halfedge mesh whose vertices know their place on the centerline.
 class BoundSurface {
  public:
@@ -92,6 +98,8 @@ class BoundSurface {
   };
   /// Spots around which edges are as short as on a vessel of that radius; the target length grows with the distance.
   std::vector<Spot> fine_spots;
+  /// Where a surface that is refined later must be fine from the beginning.
+  std::vector<FinePlace> fine_places;
   /// Balls in which nothing is refined for the error limit.
   std::vector<Spot> calm_spots;
 

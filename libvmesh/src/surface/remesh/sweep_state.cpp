@@ -79,6 +79,8 @@ void SweepState::update_sizes(double edge_per_radius, const ErrorLimit& limit) {
     size = edge * surface[v].fineness;
     for (const auto& [spot, spot_radius] : surface.fine_spots)
       size = std::min(size, edge_per_radius * spot_radius + kGradation * (point(v) - spot).norm());
+    for (const FinePlace& place : surface.fine_places)
+      size = std::min(size, place.edge + kGradation * std::max(0.0, (point(v) - place.center).norm() - place.reach));
   }
   for (int pass = 0; pass < kGradationPasses; ++pass) {
     for (const Edge e : mesh.edges()) {
