@@ -41,6 +41,9 @@ class ErrorProof {
     bool operator==(const Corner&) const = default;
   };
   using Face = std::array<Corner, 3>;
+  static Face face_of(const std::vector<Corner>& vertices, const Triangle& face) {
+    return {vertices[face[0]], vertices[face[1]], vertices[face[2]]};
+  }
   enum class Side { inner, outer };
 
   /// For either side of a face, the largest share of the limit found for which a shell of that height is proven; 0:

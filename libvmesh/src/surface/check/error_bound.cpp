@@ -82,10 +82,6 @@ double& share(ErrorProof::Shares& shares, ErrorProof::Side side) {
   return side == ErrorProof::Side::inner ? shares.inner : shares.outer;
 }
 
-ErrorProof::Face face_of(const std::vector<ErrorProof::Corner>& vertices, const Triangle& f) {
-  return {vertices[f[0]], vertices[f[1]], vertices[f[2]]};
-}
-
 double sign_of(ErrorProof::Side side) { return side == ErrorProof::Side::inner ? -1 : 1; }
 
 // One side of the shell of a whole surface. Where the proof fails along the normals, the shell is bent.
@@ -108,7 +104,7 @@ class BentCopy {
     for (Index f = 0; f < faces.size(); ++f) {
       ErrorProof::Shares own = shares[f];
       const double s = share(own, side);
-      if (s > 0 && heights(f) != heights_of(face_of(corners_, faces[f]), s)) lowered.push_back(f);
+      if (s > 0 && heights(f) != heights_of(ErrorProof::face_of(corners_, faces[f]), s)) lowered.push_back(f);
     }
     keep_open(lowered);
   }
@@ -141,7 +137,7 @@ class BentCopy {
   void keep_open(const std::vector<Index>& faces) {
     std::vector<char> holds(faces.size());
     tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
-      holds[i] = proof_.holds(face_of(corners_, faces_[faces[i]]), heights(faces[i]), side_);
+      holds[i] = proof_.holds(ErrorProof::face_of(corners_, faces_[faces[i]]), heights(faces[i]), side_);
     });
     for (std::size_t i = 0; i < faces.size(); ++i) {
       if (!holds[i]) open_.push_back(faces[i]);
@@ -239,7 +235,7 @@ std::vector<Index> ErrorProof::unproven(const std::vector<Corner>& vertices, con
     tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t f) {
       if (!proven[f]) return;
       Shares own = shares[f];
-      const Face face = face_of(vertices, faces[f]);
+      const Face face = ErrorProof::face_of(vertices, faces[f]);
       const std::array<double, 3> heights = {height[faces[f][0]], height[faces[f][1]], height[faces[f][2]]};
       if (heights != heights_of(face, share(own, side))) proven[f] = holds(face, heights, side);
     });
@@ -261,29 +257,6 @@ std::vector<Index> ErrorProof::unproven_if_bent(const std::vector<Corner>& verti
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
-}
-
-std::vector<Index> unproven_faces(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
-                                  const VesselField& field, const ErrorLimit& limit, Shells shells) {
-  std::vector<ErrorProof::Corner> vertices(mesh.vertices.size());
-  for (Index v = 0; v < vertices.size(); ++v) {
-    const auto& [cone, t] = binding[v];
-    vertices[v] = {mesh.vertices[v], Vec3::Zero(), limit.at(field.relations().radius_at(cone, t)), cone};
-  }
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    const Triangle& face = mesh.faces[f];
-    for (std::size_t k = 0; k < 3; ++k)
-      vertices[face[k]].normal +=
-          angle_normal(mesh.vertices[face[k]], mesh.vertices[face[(k + 1) % 3]], mesh.vertices[face[(k + 2) % 3]]);
-  }
-  for (ErrorProof::Corner& v : vertices) v.normal.normalize();
-  const ErrorProof proof(field);
-  std::vector<ErrorProof::Shares> shares(mesh.faces.size());
-  tbb::parallel_for(std::size_t{0}, mesh.faces.size(),
-                    [&](std::size_t f) { shares[f] = proof.shares(face_of(vertices, mesh.faces[f])); });
-  std::vector<Index> unproven = proof.unproven(vertices, mesh.faces, shares);
-  if (unproven.empty() || shells == Shells::along_normals) return unproven;
-  return proof.unproven_if_bent(vertices, mesh.faces, shares);
 }
 
 }  // namespace vmesh

@@ -11,6 +11,7 @@
 #include "vmesh/surface/soundness.h"
 
 #include "surface/check/error_limit.h"
+#include "surface/check/surface_proof.h"
 #include "surface/proof/gap.h"
 
 namespace vmesh {
@@ -235,7 +236,8 @@ std::size_t count_bad(const TriMesh& mesh) {
 }  // namespace
 
 ErrorSummary close_notches(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit) {
-  const auto find_unproven = [&](const FinishedSurface& s) { return unproven_faces(s.mesh, s.binding, field, limit); };
+  SurfaceProof proof(field, limit);
+  const auto find_unproven = [&](const FinishedSurface& s) { return proof.unproven(s.mesh, s.binding); };
   const FinishedSurface first = surface;
   const std::vector<Index> at_first = find_unproven(first);
   const std::size_t bad_at_first = count_bad(first.mesh);
