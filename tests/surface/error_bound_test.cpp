@@ -12,6 +12,7 @@
 #include "vmesh/core/error.h"
 
 #include "centerlines.h"
+#include "surface/check/surface_proof.h"
 
 namespace vmesh {
 namespace {
@@ -169,6 +170,24 @@ TEST(ErrorProof, HoldsOnlyWhatDensePointsConfirmOfLongTriangles) {
     EXPECT_GT(all.proven, 500);
     EXPECT_GT(all.clear_and_proven, 0.95 * all.clear) << "of " << all.clear;
   }
+}
+
+// Also of versions that differ in some faces: what is known of the first must not be taken for those.
+TEST(SurfaceProof, FindsTheSameFacesAsOneThatKnowsNothing) {
+  const Centerline centerline = testing::fork(40);
+  const VesselField field(centerline);
+  GenerateResult result = generate_surface(centerline, {});
+  ErrorLimit limit;
+  limit.relative = 0.12;
+  SurfaceProof proof(field, limit);
+  for (const Index v : {0u, 10u, 20u}) {
+    const std::vector<Index> unproven = proof.unproven(result.mesh, result.binding);
+    EXPECT_EQ(unproven, unproven_faces(result.mesh, result.binding, field, limit)) << "before vertex " << v << " moves";
+    EXPECT_LT(unproven.size(), result.mesh.faces.size());
+    result.mesh.vertices[v] += Vec3(0, 0.2, 0.1);
+    std::rotate(result.mesh.faces.begin(), result.mesh.faces.begin() + 7, result.mesh.faces.end());
+  }
+  EXPECT_FALSE(proof.unproven(result.mesh, result.binding).empty());
 }
 
 TEST(ErrorLimit, IsReadAndWritten) {

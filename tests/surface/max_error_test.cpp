@@ -342,8 +342,8 @@ TEST(NarrowNotches, BetweenThinDaughtersAreProven) {
 TEST(NarrowNotches, AreClosedWithinTheLimit) {
   std::size_t closed = 0;
   for (const auto& [angle, radius, limit] :
-       {std::tuple(30.0, 0.5, 0.05), std::tuple(30.0, 1.5, 0.05), std::tuple(20.0, 0.5, 0.1),
-        std::tuple(18.0, 1.5, 0.1), std::tuple(25.0, 0.8, 0.2), std::tuple(16.0, 1.5, 0.2)}) {
+       {std::tuple(26.0, 0.5, 0.05), std::tuple(26.0, 1.0, 0.05), std::tuple(32.0, 1.0, 0.1),
+        std::tuple(18.0, 1.5, 0.2), std::tuple(24.0, 1.8, 0.2), std::tuple(34.0, 0.5, 0.2)}) {
     const GenerateResult result = generate(thin_daughters(angle, radius), limit, 0);
     EXPECT_EQ(result.error.unproven_faces, 0u) << angle << " degrees, radius " << radius;
     EXPECT_TRUE(result.is_sound());

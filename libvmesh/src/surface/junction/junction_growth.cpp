@@ -20,6 +20,7 @@ constexpr double kSpacing = 1, kFiner = 0.7;
 // Balls in which the lattice is that fine: their distance along the axis and their radius, in vessel radii. Derived:
 // between two balls they reach 1.25 radii from the axis, enough for the boundary with the default rounding.
 constexpr double kBallStep = 1, kReach = 1.35;  // kBallStep: safe 0.7 to 1.4; kReach: safe 0.94 to 1.9
+constexpr double kFinestPlace = 0.1;  // radii: where the lattice is to be fine; memory grows as its inverse cube
 // Radii below a thicker vessel's wall from which on no balls are laid. Not 0: without rounding, an axis lies exactly at
 // its own vessel's depth, up to the last bits, which differ between machines.
 constexpr double kBeneath = 0.1;          // safe 0.07 to 0.14
@@ -81,7 +82,9 @@ GradedLattice lattice_around(const VesselField& field, Index start, const std::v
   std::vector<LatticeBall> balls = balls_along(field, spacing, thinnest);
   for (const FinePlace& place : fine_places) {
     const FieldSample s = field.sample_global(place.center);
-    if (s.distance < place.reach) balls.push_back({place.center, place.reach, place.edge});
+    if (s.distance > place.reach) continue;
+    const double finest = kFinestPlace * field.relations().radius_at(s.cone, s.t);
+    balls.push_back({place.center, place.reach, std::max(place.edge, finest)});
   }
   return {centerline.node(start).position, frame_at(centerline, start), spacing, balls};
 }
