@@ -282,9 +282,8 @@ class PieceMaker {
     }
     for_whole_tasks(missing.size(), [&](std::size_t i) {
       const auto& [junction, known] = missing[i];
-      known->docked =
-          make_docked_junction(tubes_, skeleton, *junction, context_.options, context_.fine_places, guarded, may_hang_,
-                               context_.progress);
+      known->docked = make_docked_junction(tubes_, skeleton, *junction, context_.options, context_.fine_places, guarded,
+                                           may_hang_, context_.progress);
       known->guarded = guarded;
     });
     return docked;

@@ -66,7 +66,7 @@ struct PieceContext {
   const std::vector<char>& open;  ///< for every node, whether the surface is to be open there
   const GenerateOptions& options;
   const Progress& progress;
-  ErrorLimit refined_to = {};  ///< what the surface, which has no creases, is refined to later, if set
+  ErrorLimit refined_to = {};               ///< what the surface, which has no creases, is refined to later, if set
   std::vector<FinePlace> fine_places = {};  ///< see BoundSurface
 };
 
