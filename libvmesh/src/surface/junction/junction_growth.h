@@ -76,7 +76,7 @@ class JunctionGrowth {
   const GrowthSkeleton& skeleton_;
   const Junction& junction_;
   const GenerateOptions& options_;
-  const std::vector<FinePlace>& fine_places_;
+  const std::vector<FinePlace> fine_places_;
   const Progress progress_;
   const int docked_around_;
   JunctionCenterline local_;

@@ -7,7 +7,6 @@
 #include "vmesh/core/disjoint_sets.h"
 #include "vmesh/edit/guarded_edit.h"
 #include "vmesh/mesh/triangle_quality.h"
-#include "vmesh/surface/error_bound.h"
 #include "vmesh/surface/soundness.h"
 
 #include "surface/check/error_limit.h"
