@@ -38,8 +38,8 @@ struct JunctionSurface {
 class JunctionGrowth {
  public:
   JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes, const GrowthSkeleton& skeleton,
-                 const Junction& junction, const GenerateOptions& options, const std::vector<FinePlace>& fine_places,
-                 const Progress& progress = {});
+                 const Junction& junction, const GenerateOptions& options,
+                 const std::vector<FinePlace>& fine_places = {}, const Progress& progress = {});
 
   /// The surface at `finer` times the requested resolution. `smooth_rims`: rims are moved onto the boundary and lose
   /// their short edges; otherwise they stay as cut. `guarded`: faces never cross on the way from the lattice to the
