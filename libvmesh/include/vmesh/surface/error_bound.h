@@ -41,6 +41,7 @@ class ErrorProof {
     bool operator==(const Corner&) const = default;
   };
   using Face = std::array<Corner, 3>;
+  /// The corners of a face of a surface.
   static Face face_of(const std::vector<Corner>& vertices, const Triangle& face) {
     return {vertices[face[0]], vertices[face[1]], vertices[face[2]]};
   }

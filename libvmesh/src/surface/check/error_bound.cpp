@@ -235,7 +235,7 @@ std::vector<Index> ErrorProof::unproven(const std::vector<Corner>& vertices, con
     tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t f) {
       if (!proven[f]) return;
       Shares own = shares[f];
-      const Face face = ErrorProof::face_of(vertices, faces[f]);
+      const Face face = face_of(vertices, faces[f]);
       const std::array<double, 3> heights = {height[faces[f][0]], height[faces[f][1]], height[faces[f][2]]};
       if (heights != heights_of(face, share(own, side))) proven[f] = holds(face, heights, side);
     });

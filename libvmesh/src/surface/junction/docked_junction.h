@@ -46,8 +46,8 @@ Index kept_ring(const Tube& tube, bool at_end);
 
 /// Grows a junction, docks its tubes and optimises the surface around the docks. Where faces intersect, other variants
 /// are tried (resolution, rims as cut) and the best is kept; unless it `may_hang`, not where the first hangs, which
-/// others do as well. `guarded`: also tries variants in which only guarded steps
-/// are taken.
+/// others do as well. `fine_places`: where the lattice and edges are finer. `guarded`: also tries variants in which
+/// only guarded steps are taken.
 DockedJunction make_docked_junction(const VesselRings& tubes, const GrowthSkeleton& skeleton, const Junction& junction,
                                     const GenerateOptions& options, const std::vector<FinePlace>& fine_places,
                                     bool guarded, bool may_hang, const Progress& progress);

@@ -69,7 +69,7 @@ std::vector<LatticeBall> balls_along(const VesselField& field, double cube, doub
   return balls;
 }
 
-// Cubes as large as the widest vessel allows: the thinnest vessel's cubes, doubled repeatedly.
+// Cubes as large as the widest vessel allows: the thinnest vessel's cubes, doubled repeatedly. Finer at fine places.
 GradedLattice lattice_around(const VesselField& field, Index start, const std::vector<FinePlace>& fine_places) {
   const Centerline& centerline = field.relations().centerline();
   double thinnest = std::numeric_limits<double>::infinity(), widest = 0;

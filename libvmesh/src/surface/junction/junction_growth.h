@@ -37,6 +37,7 @@ struct JunctionSurface {
 /// moves it onto the boundary, remeshes it to a size field, and cuts it at its docks.
 class JunctionGrowth {
  public:
+  /// `fine_places`: where the lattice and edges are finer.
   JunctionGrowth(const VesselField& field, const std::vector<BranchAxis>& axes, const GrowthSkeleton& skeleton,
                  const Junction& junction, const GenerateOptions& options,
                  const std::vector<FinePlace>& fine_places = {}, const Progress& progress = {});
