@@ -46,8 +46,8 @@ void FinePlaces::add(const Vec3& center) {
 void FinePlaces::take_draw(std::size_t place) {
   FinePlace& at = places_[place];
   const Draw& draw = kDraws[draws_[place]];
-  const FieldSample s = field_.sample_global(at.center);
-  const double radius = field_.relations().radius_at(s.cone, s.t);
+  const FieldSample s = field_->sample_global(at.center);
+  const double radius = field_->relations().radius_at(s.cone, s.t);
   at.reach = draw.reach * radius;
   at.edge = draw.edge * std::sqrt(limit_.at(radius) * radius);
 }

@@ -16,9 +16,10 @@ namespace vmesh {
 class FinePlaces {
  public:
   /// Keeps a reference.
-  FinePlaces(const VesselField& field, const ErrorLimit& limit) : field_(field), limit_(limit) {}
+  FinePlaces(const VesselField& field, const ErrorLimit& limit) : field_(&field), limit_(limit) {}
 
   const std::vector<FinePlace>& places() const { return places_; }
+  bool operator==(const FinePlaces& other) const { return places_ == other.places_; }
 
   /// Takes the next draw wherever the last was not proven. Returns whether there is any left.
   bool draw(const std::vector<UnprovenPlace>& unproven);
@@ -27,8 +28,8 @@ class FinePlaces {
   void add(const Vec3& center);
   void take_draw(std::size_t place);
 
-  const VesselField& field_;
-  const ErrorLimit limit_;
+  const VesselField* field_;
+  ErrorLimit limit_;
   std::vector<FinePlace> places_;
   std::vector<std::size_t> draws_;  // by place: the one it has now
 };

@@ -112,7 +112,8 @@ class PieceMaker {
     std::vector<PieceTry> failed;
     const int first = is_hub() ? kFirstGuarded : 0;
     leave_room_at_hubs();
-    for (int rung = first; rung < kRungs; ++rung) {
+    const int end = std::min(kRungs, first + context_.most_rungs);
+    for (int rung = first; rung < end; ++rung) {
       if (rung > 0 && !climb(kLadder[rung], last)) continue;
       std::optional<PieceSurface> piece = make(kLadder[rung], last);
       if (!piece) {
@@ -128,6 +129,7 @@ class PieceMaker {
       if (badness(*best, mended()) == kNoBadness || cannot_be_sound) break;
       failed.push_back({last.empty() ? std::nullopt : std::optional(last.front().kind), last.size(), worst});
     }
+    if (!best && end < kRungs) best.emplace().faults = last;
     if (!best) best = make_hanging();
     best->work.failed = std::move(failed);
     return *std::move(best);

@@ -68,12 +68,14 @@ struct PieceContext {
   const Progress& progress;
   ErrorLimit refined_to = {};               ///< what the surface, which has no creases, is refined to later, if set
   std::vector<FinePlace> fine_places = {};  ///< see BoundSurface
+  int most_rungs = kRungs;                  ///< of the ladder that are tried
 };
 
 /// Makes a piece on a ladder of kRungs rungs, cheapest first: the piece as planned; rings around its faults left to
 /// junctions, over a growing distance; finer triangles around the faults; the same with guarded steps; everything from
 /// one lattice. Returns the piece of the first rung on which it is sound and without bad triangles, else the one with
-/// the fewest faults. Stops climbing once vessels are found to overlap that are not local to each other.
+/// the fewest faults; without vertices if junctions hang on all of fewer rungs. Stops climbing once vessels are found
+/// to overlap that are not local to each other.
 PieceSurface make_piece(const PieceContext& context, const PiecePlan& plan);
 
 }  // namespace vmesh

@@ -15,7 +15,6 @@ struct RefinementGoal {
   ErrorLimit limit;
   Placement placement = Placement::balanced;  ///< of vertices
   std::size_t most_vertices = 0;
-  bool usual_way_only = false;  ///< there is another surface to refine
 };
 
 /// Adds vertices where the surface is not proven to be within the limit: first where it is farther at the middle of an

@@ -24,6 +24,8 @@ struct HardPlace {
   Vec3 center = Vec3::Zero();
   double reach = 0;  ///< mm
   int way = 0;       ///< below refinement_ways()
+
+  bool operator==(const HardPlace&) const = default;
 };
 
 int refinement_ways();

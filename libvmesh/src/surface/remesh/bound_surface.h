@@ -57,6 +57,8 @@ using SurfaceStep = Step<Vertex, Face, BoundaryPoint>;
 struct FinePlace {
   Vec3 center = Vec3::Zero();
   double reach = 0, edge = 0;  ///< mm
+
+  bool operator==(const FinePlace&) const = default;
 };
 
 /// A surface under construction: a halfedge mesh whose vertices know their place on the centerline.
