@@ -1,7 +1,6 @@
 #include "surface/pieces/grow_pieces.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "vmesh/mesh/topology.h"
 #include "vmesh/surface/error_bound.h"
@@ -27,11 +26,10 @@ struct WholeSurface {
   bool has_met_limit = false;  ///< was refined to it everywhere but at openings
 };
 
-WholeSurface put_together(Grown grown, RefinementOutcome refined) {
-  const bool is_met = refined.is_met();
+WholeSurface put_together(Grown grown, RefinementOutcome refined, bool has_met_limit) {
   static_cast<FinishedSurface&>(grown.surface) = std::move(refined.surface);
   if (!grown.crossings.empty()) grown.crossings = self_intersections(grown.surface.mesh);  // by their new numbers
-  return {std::move(grown), std::move(refined.error), is_met};
+  return {std::move(grown), std::move(refined.error), has_met_limit};
 }
 
 // Pieces keep to the limit of the options, if there is one, as they grow.
@@ -59,8 +57,9 @@ class RefinedGrowth {
       grown = first_;
       try_remedies(grown, best);
     }
+    const bool has_met_limit = best.is_met();
     if (!best.surface.openings.empty()) close_notches(best, field_, goal_.limit);  // refining did not look at them
-    return put_together(std::move(grown), std::move(best));
+    return put_together(std::move(grown), std::move(best), has_met_limit);
   }
 
  private:

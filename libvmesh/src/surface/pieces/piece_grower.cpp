@@ -71,9 +71,14 @@ PieceGrower::PieceGrower(const VesselField& field, const std::vector<char>& open
       }),
       context_{tubes_, open, options_, ask_, refined_to, {}} {}
 
+void PieceGrower::begin(const std::vector<FinePlace>& fine_places, int most_rungs, const Progress* polled) {
+  context_.fine_places = fine_places;
+  context_.most_rungs = most_rungs;
+  polled_ = polled;
+}
+
 Grown PieceGrower::grow() {
-  context_.fine_places.clear();
-  context_.most_rungs = kRungs;
+  begin({}, kRungs, nullptr);
   now_ = {};
   now_.division = divide(tubes_, options_);
   check_division(rings_, now_.division);
@@ -84,8 +89,7 @@ Grown PieceGrower::grow() {
 
 Grown PieceGrower::grow_anew(const Grown& first, const std::vector<Index>& pieces,
                              const std::vector<FinePlace>& fine_places) {
-  context_.fine_places = fine_places;
-  context_.most_rungs = kRungs;
+  begin(fine_places, kRungs, nullptr);
   now_ = first;
   std::vector<Index> known = numbers(first.pieces.size());
   for (const Index p : pieces) known[p] = kNone;
@@ -97,16 +101,14 @@ Grown PieceGrower::grow_anew(const Grown& first, const std::vector<Index>& piece
 std::optional<FinishedSurface> PieceGrower::grow_some(const Grown& first, const std::vector<Index>& pieces,
                                                       const std::vector<FinePlace>& fine_places,
                                                       const Progress& progress) {
-  context_.fine_places = fine_places;
-  context_.most_rungs = kRungsOfTrials;
-  for (const Index p : pieces) context_.most_rungs = std::max(context_.most_rungs, first.pieces[p].rung + 1);
+  int most_rungs = kRungsOfTrials;
+  for (const Index p : pieces) most_rungs = std::max(most_rungs, first.pieces[p].rung + 1);
+  begin(fine_places, most_rungs, &progress);
   now_ = {};
   now_.division = part_of(rings_, first.division, pieces);
   tubes_.lay_again(branches_of(now_.division, numbers(pieces.size())));
   std::vector<Opening> openings = outer_seams();
-  polled_ = &progress;
   make_all(0);
-  polled_ = nullptr;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (!now_.pieces[i].faults.empty() && first.pieces[pieces[i]].faults.empty()) return std::nullopt;
   }
@@ -247,8 +249,7 @@ bool PieceGrower::regroup() {
   if (dissolved.empty() && joined.empty())
     for_seams_of_faulty_pieces([&](const PieceSurface&, const RingPlace& seam) { dissolved.push_back(seam); });
   if (dissolved.empty() && joined.empty()) return false;
-  std::sort(dissolved.begin(), dissolved.end());
-  dissolved.erase(std::unique(dissolved.begin(), dissolved.end()), dissolved.end());
+  sort_unique(dissolved);
   Division next = regrouped(rings_, now_.division, dissolved, joined);
   if (next.plans == now_.division.plans) return false;
   divide_anew(std::move(next));

@@ -40,6 +40,7 @@ class PieceGrower {
   const VesselRings& tubes() const { return tubes_; }
 
  private:
+  void begin(const std::vector<FinePlace>& fine_places, int most_rungs, const Progress* polled);
   std::vector<Opening> outer_seams() const;
   void make_all(double expected_vertices);
   template <class Finished>

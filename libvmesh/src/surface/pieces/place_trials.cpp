@@ -8,8 +8,8 @@
 namespace vmesh {
 namespace {
 
-constexpr double kAround = 4;  // radii: more than that of any draw, and what its edges need to become as long as
-                               // elsewhere
+// Radii: more than that of any draw, and what its edges need to become as long as elsewhere.
+constexpr double kAround = 4;
 // The first in the usual way of refining only: other ways take longer than growing anew.
 constexpr int kDrawsFirst = 3;
 // Unproven faces: where there are more, closing notches does not do, nor other ways of refining.

@@ -39,15 +39,14 @@ class PlaceTrials {
     std::vector<Index> pieces;
     std::vector<UnprovenPlace> places;
   };
-
-  std::vector<Index> pieces_near(const Vec3& place) const;
-  std::vector<Group> groups_of(const std::vector<UnprovenPlace>& unproven) const;
   struct Trial {
     FinePlaces fine;
     FinishedSurface grown;
     RefinementOutcome outcome;
   };
 
+  std::vector<Index> pieces_near(const Vec3& place) const;
+  std::vector<Group> groups_of(const std::vector<UnprovenPlace>& unproven) const;
   void try_group(const Group& group);
   bool is_known(const Trial& trial) const;
   std::optional<Trial> try_with(const FinePlaces& fine, const Group& group);
