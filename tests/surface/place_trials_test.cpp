@@ -5,50 +5,17 @@
 
 #include <gtest/gtest.h>
 
+#include "grown_study.h"
 #include "random_vessels.h"
+#include "surface/proof/place_repair.h"
 
 namespace vmesh {
 namespace {
 
-const Progress kSilent;
-
-// A trunk and two daughters, 20 times as long as wide.
-Centerline long_fork() {
-  return {{{{0, 0, -20}, 1}, {{0, 0, 0}, 1}, {{10, 0, 20}, 0.8}, {{-10, 0, 20}, 0.8}}, {{0, 1}, {1, 2}, {1, 3}}};
-}
-
-ErrorLimit relative_limit(double relative) {
-  ErrorLimit limit;
-  limit.relative = relative;
-  return limit;
-}
-
-RefinementGoal goal_of(double relative, std::size_t most_vertices = 1'000'000) {
-  return {relative_limit(relative), Placement::balanced, most_vertices};
-}
-
-// Grown to be refined, with plain unions.
-struct Study {
-  explicit Study(const Centerline& vessels, double relative)
-      : centerline(vessels),
-        field(centerline, 0),
-        open(centerline.nodes().size(), 0),
-        grower(field, open, options(), relative_limit(relative), kSilent),
-        first(grower.grow()) {}
-
-  static GenerateOptions options() {
-    GenerateOptions options;
-    options.around = 18;
-    options.blend = 0;
-    return options;
-  }
-
-  Centerline centerline;
-  VesselField field;
-  std::vector<char> open;
-  PieceGrower grower;
-  Grown first;
-};
+using testing::goal_of;
+using testing::kSilent;
+using testing::long_fork;
+using testing::Study;
 
 bool is_before(const Vec3& p, const Vec3& q) { return std::tie(p.x(), p.y(), p.z()) < std::tie(q.x(), q.y(), q.z()); }
 
@@ -90,13 +57,13 @@ TEST(PieceGrower, ChangesOnlySomePieces) {
 TEST(PlaceTrials, FindWhatTheWholeSurfaceNeeds) {
   Study study(testing::plausible_tree(7011), 0.01);
   const RefinementGoal goal = goal_of(0.01);
-  const RefinementOutcome usual = refine_once(study.first.surface, study.field, goal, {}, kSilent);
+  const RefinementOutcome usual = refine_once(study.first.surface, study.field, goal, kSilent);
   ASSERT_FALSE(usual.is_met());
   PlaceTrials trials(study.grower, study.first, goal, kSilent);
   ASSERT_TRUE(trials.run(usual.unproven));
   const Grown anew = study.grower.grow_anew(study.first, trials.changed_pieces(), trials.fine_places());
-  RefinementOutcome refined = refine_once(anew.surface, study.field, goal, trials.hard_places(), kSilent);
-  if (!refined.is_met()) close_notches(refined, study.field, goal.limit);
+  RefinementOutcome refined = refine_once(anew.surface, study.field, goal, kSilent);
+  if (!refined.is_met()) repair_places(refined, study.field, goal, {1000, 1000}, kSilent);
   EXPECT_TRUE(refined.is_met());
   // Finer there only.
   EXPECT_LT(static_cast<double>(refined.surface.mesh.vertices.size()),

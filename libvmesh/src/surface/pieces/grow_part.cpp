@@ -157,7 +157,7 @@ std::vector<std::pair<Index, Index>> part_walls(SurfaceAround& surface, const Fi
     return place;
   };
   GatheredSurface gathered{
-      {std::move(surface.mesh), std::move(surface.binding), std::move(surface.radius), {}}, {}, {}};
+      {std::move(surface.mesh), std::move(surface.binding), std::move(surface.radius), {}, {}}, {}, {}};
   for (CenterlineBinding& binding : gathered.binding) binding.segment = place_of(binding.segment);
   std::vector<std::pair<Index, Index>> left = part_walls(gathered, field, crossings);
   for (CenterlineBinding& binding : gathered.binding) binding.segment = excerpt.cone[binding.segment];

@@ -11,6 +11,7 @@
 #include "surface/pieces/slow_pieces.h"
 #include "surface/proof/coarsening.h"
 #include "surface/proof/notches.h"
+#include "surface/proof/place_repair.h"
 #include "surface/proof/refine_to_limit.h"
 
 namespace vmesh {
@@ -18,6 +19,8 @@ namespace {
 
 // Rounds of growing anew where trials have found how fine. One does, unless trial and whole surface differ.
 constexpr int kMostRounds = 4;
+// What is small is repaired before anything is tried; the rest when nothing is left to be tried.
+constexpr RepairEffort kQuickRepair{60, 150}, kThoroughRepair{1000, 1000};
 
 // What has grown, refined if there is a limit.
 struct WholeSurface {
@@ -49,7 +52,8 @@ class RefinedGrowth {
 
   /// Once.
   WholeSurface run() {
-    RefinementOutcome best = refine_once(first_.surface, field_, goal_, {}, progress_);
+    RefinementOutcome best = refine_once(first_.surface, field_, goal_, progress_);
+    if (!best.is_met()) repair_places(best, field_, goal_, kQuickRepair, progress_);
     Grown grown;
     if (best.is_met()) {
       grown = std::move(first_);
@@ -68,8 +72,8 @@ class RefinedGrowth {
     std::vector<UnprovenPlace> unproven = best.unproven;
     for (int round = 0; round < kMostRounds && !best.is_met() && trials.run(unproven); ++round) {
       Grown anew = grower_.grow_anew(first_, trials.changed_pieces(), trials.fine_places());
-      RefinementOutcome refined = refine_once(anew.surface, field_, goal_, trials.hard_places(), progress_);
-      if (!refined.is_met()) close_notches(refined, field_, goal_.limit);
+      RefinementOutcome refined = refine_once(anew.surface, field_, goal_, progress_);
+      if (!refined.is_met()) repair_places(refined, field_, goal_, kThoroughRepair, progress_);
       unproven = refined.unproven;
       if (refined.unproven_faces() >= best.unproven_faces()) continue;
       grown = std::move(anew);

@@ -5,15 +5,14 @@
 #include "vmesh/core/ascending.h"
 #include "vmesh/core/disjoint_sets.h"
 
+#include "surface/proof/place_repair.h"
+
 namespace vmesh {
 namespace {
 
 // Radii: more than that of any draw, and what its edges need to become as long as elsewhere.
 constexpr double kAround = 4;
-// The first in the usual way of refining only: other ways take longer than growing anew.
-constexpr int kDrawsFirst = 3;
-// Unproven faces: where there are more, closing notches does not do, nor other ways of refining.
-constexpr std::size_t kMostAtNotches = 1000, kMostForOtherWays = 100;
+constexpr RepairEffort kRepair{60, 250};
 
 }  // namespace
 
@@ -26,7 +25,7 @@ PlaceTrials::PlaceTrials(PieceGrower& grower, const Grown& first, const Refineme
       most_draws_(most_draws),
       boxes_(first.pieces.size()),
       is_given_up_(first.pieces.size(), 0),
-      remedy_{FinePlaces(grower.tubes().field(), goal.limit), {}} {
+      fine_(grower.tubes().field(), goal.limit) {
   const GatheredSurface& surface = first.surface;
   for (Index p = 0; p < boxes_.size(); ++p) {
     for (Index f = surface.first_face[p]; f < surface.first_face[p + 1]; ++f) {
@@ -90,27 +89,41 @@ std::vector<PlaceTrials::Group> PlaceTrials::groups_of(const std::vector<Unprove
 }
 
 void PlaceTrials::try_group(const Group& group) {
-  FinePlaces fine = remedy_.fine;
+  FinePlaces last = fine_;
   std::optional<Trial> best;
   std::vector<UnprovenPlace> unproven = group.places;
-  for (int draws = 0; draws <= most_draws_; ++draws) {
-    if (draws > 0 && !fine.draw(unproven)) break;
+  std::size_t in_vain = 0;
+  for (int draws = 0; draws < most_draws_; ++draws) {
+    FinePlaces fine = last;
+    if (!draw(fine, unproven, in_vain)) break;
     std::optional<Trial> trial = try_with(fine, group);
-    if (trial && draws > kDrawsFirst) try_other_ways(*trial);
-    if (trial && is_known(*trial)) trial.reset();
-    if (trial) unproven = trial->outcome.unproven;
-    if (trial && (!best || trial->outcome.unproven_faces() < best->outcome.unproven_faces())) best = std::move(trial);
-    if (best && draws == kDrawsFirst) try_other_ways(*best);
-    if (best && best->outcome.is_met()) break;
+    if (!trial || is_known(*trial)) {
+      ++in_vain;
+      continue;
+    }
+    in_vain = 0;
+    last = fine;
+    unproven = trial->unproven;
+    if (!best || trial->unproven_faces < best->unproven_faces) best.emplace(*std::move(trial));
+    if (best->unproven.empty()) break;
   }
-  if (best) remedy_ = {best->fine, best->outcome.hard};
-  if (best && best->outcome.is_met()) return;
+  if (best) fine_ = best->fine;
+  if (best && best->unproven.empty()) return;
   for (const Index p : group.pieces) is_given_up_[p] = 1;
+}
+
+// All places; where that was in vain, one of them after the other.
+bool PlaceTrials::draw(FinePlaces& fine, const std::vector<UnprovenPlace>& unproven, std::size_t in_vain) {
+  if (in_vain == 0) return fine.draw(unproven);
+  bool any = false;
+  for (std::size_t time = 0; time <= (in_vain - 1) / unproven.size(); ++time)
+    any = fine.draw({unproven[(in_vain - 1) % unproven.size()]});
+  return any;
 }
 
 // Whether it is proven with what the whole surface was not proven with.
 bool PlaceTrials::is_known(const Trial& trial) const {
-  return was_run_ && trial.outcome.is_met() && trial.outcome.hard == remedy_.hard && trial.fine == remedy_.fine;
+  return was_run_ && trial.unproven.empty() && trial.fine == fine_;
 }
 
 // Nothing if it does not grow.
@@ -118,14 +131,9 @@ std::optional<PlaceTrials::Trial> PlaceTrials::try_with(const FinePlaces& fine, 
   const VesselField& field = grower_.tubes().field();
   std::optional<FinishedSurface> grown = grower_.grow_some(first_, group.pieces, fine.places(), poll_);
   if (!grown) return std::nullopt;
-  RefinementOutcome outcome = refine_once(*grown, field, goal_, remedy_.hard, poll_);
-  if (!outcome.is_met() && outcome.unproven_faces() <= kMostAtNotches) close_notches(outcome, field, goal_.limit);
-  return Trial{fine, *std::move(grown), std::move(outcome)};
-}
-
-void PlaceTrials::try_other_ways(Trial& trial) {
-  if (trial.outcome.unproven_faces() > kMostForOtherWays) return;
-  trial.outcome = refine_in_other_ways(trial.grown, std::move(trial.outcome), grower_.tubes().field(), goal_, poll_);
+  RefinementOutcome outcome = refine_once(*std::move(grown), field, goal_, poll_);
+  if (!outcome.is_met()) repair_places(outcome, field, goal_, kRepair, poll_);
+  return Trial{fine, outcome.unproven_faces(), std::move(outcome.unproven)};
 }
 
 }  // namespace vmesh

@@ -11,8 +11,8 @@
 
 namespace vmesh {
 
-/// Finds out how fine a surface is to be grown, and in which way refined, where it could not be refined to a limit: by
-/// trials with the pieces around these places alone.
+/// Finds out how fine a surface is to be grown where it could not be refined to a limit: by trials with the pieces
+/// around these places alone.
 class PlaceTrials {
  public:
   /// Keeps references. Progress is reported as "try". `first`: what has grown without fine places.
@@ -24,25 +24,20 @@ class PlaceTrials {
   /// leaves these places alone from then on. Returns whether there was any to try.
   bool run(const std::vector<UnprovenPlace>& unproven);
 
-  // What the surface is to be grown and refined with.
-  const std::vector<FinePlace>& fine_places() const { return remedy_.fine.places(); }
-  const std::vector<HardPlace>& hard_places() const { return remedy_.hard; }
+  /// What the surface is to be grown with.
+  const std::vector<FinePlace>& fine_places() const { return fine_.places(); }
   /// Pieces that are not the same with these fine places, ascending.
   std::vector<Index> changed_pieces() const;
 
  private:
-  struct Remedy {
-    FinePlaces fine;
-    std::vector<HardPlace> hard;
-  };
   struct Group {
     std::vector<Index> pieces;
     std::vector<UnprovenPlace> places;
   };
   struct Trial {
     FinePlaces fine;
-    FinishedSurface grown;
-    RefinementOutcome outcome;
+    std::size_t unproven_faces;
+    std::vector<UnprovenPlace> unproven;
   };
 
   std::vector<Index> pieces_near(const Vec3& place) const;
@@ -50,7 +45,7 @@ class PlaceTrials {
   void try_group(const Group& group);
   bool is_known(const Trial& trial) const;
   std::optional<Trial> try_with(const FinePlaces& fine, const Group& group);
-  void try_other_ways(Trial& trial);
+  static bool draw(FinePlaces& fine, const std::vector<UnprovenPlace>& unproven, std::size_t in_vain);
 
   PieceGrower& grower_;
   const Grown& first_;
@@ -60,7 +55,7 @@ class PlaceTrials {
   double done_ = 0;                         // share of the groups
   std::vector<Eigen::AlignedBox3d> boxes_;  // of the pieces
   std::vector<char> is_given_up_;           // by piece
-  Remedy remedy_;
+  FinePlaces fine_;
   bool was_run_ = false;
 };
 

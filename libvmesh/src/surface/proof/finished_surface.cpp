@@ -2,6 +2,15 @@
 
 namespace vmesh {
 
+std::vector<FinishedMesh::Step> merges(const FinishedMesh& mesh, Index v) {
+  std::vector<FinishedMesh::Step> steps;
+  for (const Index f : mesh.faces_around(v)) {
+    const Index w = FinishedMesh::turned_to(v, mesh.faces()[f])[1];
+    if (mesh.may_collapse({v, w})) steps.push_back(mesh.collapsing(v, w, mesh.vertex(w)));
+  }
+  return steps;
+}
+
 FinishedMesh finished_mesh(const FinishedSurface& surface) {
   std::vector<FinishedVertex> vertices;
   for (Index v = 0; v < surface.mesh.vertices.size(); ++v)
@@ -21,6 +30,7 @@ std::vector<Index> put_back(FinishedMesh mesh, FinishedSurface& surface) {
   for (Opening& opening : surface.openings) {
     for (Index& v : opening.ring) v = number[v];
   }
+  for (Index& v : surface.held) v = number[v];
   return number;
 }
 

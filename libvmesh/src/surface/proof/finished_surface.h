@@ -15,6 +15,7 @@ struct FinishedSurface {
   std::vector<CenterlineBinding> binding;  ///< of every vertex
   std::vector<double> radius;              ///< of the vessel there, mm
   std::vector<Opening> openings;           ///< node, centre, radius and ring
+  std::vector<Index> held;                 ///< other vertices that stay, and faces there
 };
 
 struct FinishedVertex {
@@ -29,6 +30,9 @@ inline FinishedVertex finished_vertex(const BoundaryPoint& at, const VesselField
   const FieldSample& sample = at.sample;
   return {at.position, {sample.cone, sample.t}, field.relations().radius_at(sample.cone, sample.t)};
 }
+
+/// All ways to merge a vertex with one beside it, which stays where it is.
+std::vector<FinishedMesh::Step> merges(const FinishedMesh& mesh, Index v);
 
 /// To change a finished surface.
 FinishedMesh finished_mesh(const FinishedSurface& surface);

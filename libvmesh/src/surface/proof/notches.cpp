@@ -48,6 +48,8 @@ class Closing {
   // Works at the unproven faces. Returns whether anything was done.
   bool improve(const std::vector<Index>& unproven) {
     mesh_ = finished_mesh(surface_);
+    held_.assign(mesh_.vertices().size(), 0);
+    for (const Index v : surface_.held) held_[v] = 1;
     edit_.emplace(mesh_);
     const std::vector<MeshEdge> edges = edges_of(unproven);
     bool any = close_all(edges, kWorstSkewness);
@@ -104,6 +106,7 @@ class Closing {
     for (const Index f : faces) {
       for (std::size_t k = 0; k < 3; ++k) {
         const Index a = mesh_.faces()[f][k], b = mesh_.faces()[f][(k + 1) % 3];
+        if (held_[a] || held_[b]) continue;
         edges.push_back({std::min(a, b), std::max(a, b)});
       }
     }
@@ -223,6 +226,7 @@ class Closing {
   const Way& way_;
   FinishedMesh mesh_;  // while improve() works on it
   std::optional<GuardedEdit<FinishedVertex>> edit_;
+  std::vector<char> held_;        // by vertex that it had
   std::map<Index, Vec3> across_;  // vertices at the ends of gaps, with the direction across
 };
 

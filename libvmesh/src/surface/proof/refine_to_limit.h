@@ -8,8 +8,8 @@ namespace vmesh {
 
 struct RefinementOutcome {
   FinishedSurface surface;
-  std::vector<HardPlace> hard;  ///< with which it was refined
   ErrorSummary error;
+  std::vector<Index> faces;             ///< unproven, other than at openings
   std::vector<UnprovenPlace> unproven;  ///< without those at openings: there is no boundary to compare with
 
   bool is_met() const { return unproven.empty(); }
@@ -18,15 +18,12 @@ struct RefinementOutcome {
 
 /// refine().
 RefinementOutcome refine_once(FinishedSurface surface, const VesselField& field, const RefinementGoal& goal,
-                              std::vector<HardPlace> hard, const Progress& progress);
+                              const Progress& progress);
+
+/// Notes which faces are unproven.
+void note_unproven(RefinementOutcome& outcome, std::vector<Index> faces);
 
 /// close_notches() of its surface.
 void close_notches(RefinementOutcome& outcome, const VesselField& field, const ErrorLimit& limit);
-
-/// refine() and close_notches() of a surface from the beginning, in other ways where it is not proven, until everything
-/// is proven or no way is left. `first`: what is known of the first way. Takes the surface with the fewest unproven
-/// faces.
-RefinementOutcome refine_in_other_ways(const FinishedSurface& surface, RefinementOutcome first,
-                                       const VesselField& field, const RefinementGoal& goal, const Progress& progress);
 
 }  // namespace vmesh

@@ -43,7 +43,8 @@ std::vector<Index> RefinedProof::unproven(const FinishedMesh& mesh, const std::v
     shares[i] = known.shares;
   });
   std::vector<Index> left = proof_.unproven(corners_, triangles, shares);
-  if (!left.empty() && left.size() < faces.size() / kMany) left = proof_.unproven_if_bent(corners_, triangles, shares);
+  if (!left.empty() && (bends_at_once_ || left.size() < faces.size() / kMany))
+    left = proof_.unproven_if_bent(corners_, triangles, shares);
   for (Index& i : left) i = faces[i];
   return left;
 }

@@ -13,7 +13,7 @@ namespace vmesh {
 class RefinedProof {
  public:
   /// Keeps a reference to `field`.
-  explicit RefinedProof(const VesselField& field) : proof_(field) {}
+  RefinedProof(const VesselField& field, bool bends_at_once) : proof_(field), bends_at_once_(bends_at_once) {}
 
   /// Faces that are not proven, ascending. `changed`: those that are new or have moved since the last call; the first
   /// looks at all. `limit_at`: mm, of a vertex; `is_far`: whether a face is known to be beyond it.
@@ -27,6 +27,7 @@ class RefinedProof {
   };
 
   ErrorProof proof_;
+  const bool bends_at_once_;
   bool is_first_ = true;
   std::vector<ErrorProof::Corner> corners_;  // by vertex
   std::vector<Known> known_;                 // by face

@@ -34,8 +34,7 @@ Vec3 best_way(const PlanarEnergy& shape, const Vec3& u, const Vec3& w, double lo
 
 }  // namespace
 
-RefinedSurface::RefinedSurface(const FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal,
-                               const std::vector<HardPlace>& hard)
+RefinedSurface::RefinedSurface(const FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal)
     : mesh(finished_mesh(surface)),
       edit(mesh),
       held(mesh.vertices().size(), 0),
@@ -43,10 +42,11 @@ RefinedSurface::RefinedSurface(const FinishedSurface& surface, const VesselField
       has_creases(field.relations().blend() == 0),
       field_(field),
       goal_(goal),
-      hard_(hard) {
+      way_(refinement_way(goal.way)) {
   for (const Opening& opening : surface.openings) {
     for (const Index v : opening.ring) held[v] = 1;
   }
+  for (const Index v : surface.held) held[v] = 1;
 }
 
 Index RefinedSurface::take(const std::vector<Step>& steps, double worst) {
@@ -107,8 +107,7 @@ void RefinedSurface::flip(const MeshEdge& e) {
   const bool is_nearer = off_now > kWorthAProof && off_then < 0.7 * off_now && then < kWorstSkewness;
   const bool is_better = then < now - kLeastGain && off_then < std::max(off_now, 0.7 * kWorthAProof);
   const bool is_regular = then < kRound && off_then < kWorthAProof * 0.9 && irregularity_after(e, c, d) < 0;
-  if ((is_nearer || is_better || is_regular) && stays_upright(step, way_around(hard_, point(e.a)).upright))
-    take({step}, kWorstSkewness);
+  if ((is_nearer || is_better || is_regular) && stays_upright(step, way_.upright)) take({step}, kWorstSkewness);
 }
 
 // How the squares of the differences from six edges at a vertex change by a flip.
@@ -161,7 +160,7 @@ void RefinedSurface::move(Index v) {
   const bool at_crease = is_at_crease(v);
   const double rounder = at_crease ? kRounderAtCreases : kRounder;
   const double worth_a_lift = at_crease ? kWorthALiftAtCreases : kWorthALift;
-  const double off_now = off_around(v), upright = way_around(hard_, point(v)).upright;
+  const double off_now = off_around(v);
   const Vec3 way = best_way(shape, u, w, kLongestMove * mesh.mean_edge(v));
   for (const double share : {1.0, 0.5, 0.0}) {
     const Vec3 p = point(v) + share * way;
@@ -174,7 +173,7 @@ void RefinedSurface::move(Index v) {
     const double worst = std::max(worst_now(step), kRound);
     const bool is_rounder = energy(step) < (1 - rounder) * shape.value;
     const bool is_lifted = !crease_at[v] && std::abs(lift - height) > worth_a_lift * most;
-    if (!(is_rounder || is_lifted || is_lower) || worst_skewness(step) > worst || !stays_upright(step, upright))
+    if (!(is_rounder || is_lifted || is_lower) || worst_skewness(step) > worst || !stays_upright(step, way_.upright))
       continue;
     if (off_around(v, target.position) > std::max(kWorthAProof * 0.9, off_now)) continue;
     if (take({step}, worst) != kNone) break;

@@ -28,12 +28,11 @@ class RefinedSurface {
   using Step = FinishedMesh::Step;
 
   /// Keeps references, but for the surface.
-  RefinedSurface(const FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal,
-                 const std::vector<HardPlace>& hard);
+  RefinedSurface(const FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal);
 
   FinishedMesh mesh;
   GuardedEdit<FinishedVertex> edit;
-  std::vector<char> held;                        ///< by vertex: on openings
+  std::vector<char> held;                        ///< by vertex: on openings, and others that stay
   std::vector<std::optional<Crease>> crease_at;  ///< of every vertex on one
   std::vector<Index> changed;                    ///< faces, by the steps of this pass
   const bool has_creases;
@@ -96,7 +95,7 @@ class RefinedSurface {
 
   const VesselField& field_;
   const RefinementGoal& goal_;
-  const std::vector<HardPlace>& hard_;
+  const RefinementWay& way_;
 };
 
 }  // namespace vmesh

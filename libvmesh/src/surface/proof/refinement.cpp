@@ -18,24 +18,21 @@
 namespace vmesh {
 namespace {
 
-// Rounds in which no area is proven.
-constexpr int kPatience = 6;
 constexpr int kMostSplitRounds = 12;  // each halves edges
 constexpr double kNearEnd = 0.2;  // share of an edge from its end within which its end is moved onto a crease instead
 constexpr double kSlides[] = {0.5, 0.4, 0.6};  // where edges are divided
 
 class Refinement {
  public:
-  Refinement(FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal,
-             const std::vector<HardPlace>& hard, const Progress& progress)
+  Refinement(FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal, const Progress& progress)
       : finished_(surface),
         field_(field),
         goal_(goal),
-        hard_(hard),
+        way_(refinement_way(goal.way)),
         progress_(progress),
-        proof_(field),
+        proof_(field, goal.bends_at_once),
         gaps_(field),
-        surface_(surface, field, goal, hard) {
+        surface_(surface, field, goal) {
     for (Index f = 0; f < surface_.mesh.faces().size(); ++f) due_.push_back(f);
   }
 
@@ -49,7 +46,7 @@ class Refinement {
     std::vector<Index> best = unproven_;
     std::optional<FinishedMesh::Transaction> since_best;
     since_best.emplace(surface_.mesh);
-    for (int round = 0, last = 0; !unproven_.empty() && round < last + kPatience; ++round) {
+    for (int round = 0, last = 0; !unproven_.empty() && round < last + goal_.patience; ++round) {
       report_progress(progress_, "refine", 1 - least / at_first);
       go_down_into_gaps(unproven_);
       if (!split_unproven()) break;
@@ -83,8 +80,7 @@ class Refinement {
   bool may_split(const MeshEdge& e) const {
     if (!surface_.mesh.is_inner(e) || (surface_.held[e.a] && surface_.held[e.b])) return false;
     const double radius = std::min(surface_.mesh.vertex(e.a).radius, surface_.mesh.vertex(e.b).radius);
-    return surface_.length(e) >
-           way_around(hard_, surface_.middle_of(e)).shortest * std::sqrt(surface_.limit_of(e) * radius);
+    return surface_.length(e) > way_.shortest * std::sqrt(surface_.limit_of(e) * radius);
   }
 
   bool is_at_opening(Index f) const {
@@ -167,9 +163,8 @@ class Refinement {
 
   // Halves an edge on the boundary, or divides it where it meets a crease; a vertex near the crease is moved onto it.
   void divide(const MeshEdge& e) {
-    const RefinementWay& way = way_around(hard_, surface_.middle_of(e));
-    if (const auto crease = crease_on(e, way)) {
-      if (divide_at(*crease, e, way)) return;
+    if (const auto crease = crease_on(e)) {
+      if (divide_at(*crease, e)) return;
     }
     std::vector<Step> steps;
     const double lift = surface_.crease_at[e.a] || surface_.crease_at[e.b] || !surface_.is_balanced()
@@ -182,29 +177,29 @@ class Refinement {
         steps.push_back(surface_.mesh.splitting(e, finished_vertex(at, field_)));
       }
     }
-    place(steps, std::nullopt, way);
+    place(steps, std::nullopt);
   }
 
-  bool divide_at(const CreasePoint& crease, const MeshEdge& e, const RefinementWay& way) {
+  bool divide_at(const CreasePoint& crease, const MeshEdge& e) {
     const BoundaryPoint& at = crease.at;
     const double share = (at.position - surface_.point(e.a)).dot(surface_.point(e.b) - surface_.point(e.a)) /
                          (surface_.length(e) * surface_.length(e));
     if ((at.position - surface_.middle_of(e)).norm() > surface_.length(e)) {
-      if (!way.descends) return false;
+      if (!way_.descends) return false;
       const BoundaryPoint lower = surface_.towards(at, surface_.middle_of(e), surface_.length(e));
-      return place({surface_.mesh.splitting(e, finished_vertex(lower, field_))}, crease.crease, way);
+      return place({surface_.mesh.splitting(e, finished_vertex(lower, field_))}, crease.crease);
     }
     if (share > kNearEnd && share < 1 - kNearEnd)
-      return place({surface_.mesh.splitting(e, finished_vertex(at, field_))}, crease.crease, way);
+      return place({surface_.mesh.splitting(e, finished_vertex(at, field_))}, crease.crease);
     const Index end = share <= kNearEnd ? e.a : e.b;
     return !surface_.held[end] && !surface_.crease_at[end] &&
-           place({surface_.mesh.moving(end, finished_vertex(at, field_))}, crease.crease, way);
+           place({surface_.mesh.moving(end, finished_vertex(at, field_))}, crease.crease);
   }
 
   // Takes the best of the steps by which no triangle turns over.
-  bool place(std::vector<Step> steps, const std::optional<Crease>& crease, const RefinementWay& way) {
+  bool place(std::vector<Step> steps, const std::optional<Crease>& crease) {
     Index placed = kNone;
-    for (const double least : way.upright_splits) {
+    for (const double least : way_.upright_splits) {
       std::vector<Step> upright;
       std::copy_if(steps.begin(), steps.end(), std::back_inserter(upright),
                    [&](const Step& step) { return surface_.stays_upright(step, least); });
@@ -216,12 +211,12 @@ class Refinement {
   }
 
   // Where the boundaries of two cones meet, near the middle of an edge that crosses there or runs along.
-  std::optional<CreasePoint> crease_on(const MeshEdge& e, const RefinementWay& way) const {
+  std::optional<CreasePoint> crease_on(const MeshEdge& e) const {
     for (const Crease& crease : creases_between(e)) {
       if (const auto at = onto_crease(field_, crease, surface_.middle_of(e), surface_.limit_of(e)))
         return CreasePoint{crease, *at};
     }
-    return way.into_gaps ? end_of_gap(e) : std::nullopt;
+    return way_.into_gaps ? end_of_gap(e) : std::nullopt;
   }
 
   // Of an edge from wall to wall across a gap: the end of the gap.
@@ -249,7 +244,8 @@ class Refinement {
       if (!surface_.mesh.has_vertex(v) || surface_.held[v] || std::abs(surface_.lift_of(v)) <= surface_.limit_at(v))
         continue;
       const BoundaryPoint target = onto_boundary(field_, surface_.point(v), surface_.cone(v), kRefinedTolerance, 0);
-      if (!take_upright({surface_.mesh.moving(v, finished_vertex(target, field_))}, v)) take_upright(merging(v), v);
+      if (!take_upright({surface_.mesh.moving(v, finished_vertex(target, field_))}))
+        take_upright(merges(surface_.mesh, v));
     }
     surface_.improve(due_);
   }
@@ -267,20 +263,8 @@ class Refinement {
     surface_.improve(due_);
   }
 
-  // All ways to merge a vertex with one beside it, which stays where it is.
-  std::vector<Step> merging(Index v) const {
-    std::vector<Step> steps;
-    for (const Index f : surface_.mesh.faces_around(v)) {
-      const Index w = FinishedMesh::turned_to(v, surface_.mesh.faces()[f])[1];
-      if (surface_.mesh.may_collapse({v, w})) steps.push_back(surface_.mesh.collapsing(v, w, surface_.mesh.vertex(w)));
-    }
-    return steps;
-  }
-
-  bool take_upright(std::vector<Step> steps, Index v) {
-    std::erase_if(steps, [&, least = way_around(hard_, surface_.point(v)).upright](const Step& step) {
-      return !surface_.stays_upright(step, least);
-    });
+  bool take_upright(std::vector<Step> steps) {
+    std::erase_if(steps, [&](const Step& step) { return !surface_.stays_upright(step, way_.upright); });
     return surface_.take(steps, kWorstSkewness) != kNone;
   }
 
@@ -304,7 +288,7 @@ class Refinement {
   FinishedSurface& finished_;
   const VesselField& field_;
   const RefinementGoal& goal_;
-  const std::vector<HardPlace>& hard_;
+  const RefinementWay& way_;
   const Progress& progress_;
   RefinedProof proof_;
   Gaps gaps_;
@@ -316,8 +300,8 @@ class Refinement {
 }  // namespace
 
 std::vector<Index> refine(FinishedSurface& surface, const VesselField& field, const RefinementGoal& goal,
-                          const std::vector<HardPlace>& hard, const Progress& progress) {
-  return Refinement(surface, field, goal, hard, progress).run();
+                          const Progress& progress) {
+  return Refinement(surface, field, goal, progress).run();
 }
 
 }  // namespace vmesh

@@ -1,6 +1,5 @@
 #include "surface/proof/refinement_way.h"
 
-#include <algorithm>
 #include <iterator>
 
 namespace vmesh {
@@ -17,11 +16,6 @@ const RefinementWay kWays[] = {{true, false, {0, 0}, 0},           {true, false,
 
 int refinement_ways() { return static_cast<int>(std::size(kWays)); }
 
-const RefinementWay& way_around(const std::vector<HardPlace>& hard, const Vec3& p) {
-  const auto it = std::find_if(hard.begin(), hard.end(), [&](const HardPlace& place) {
-    return (p - place.center).squaredNorm() < place.reach * place.reach;
-  });
-  return kWays[it == hard.end() ? 0 : it->way];
-}
+const RefinementWay& refinement_way(int number) { return kWays[number]; }
 
 }  // namespace vmesh

@@ -1,9 +1,6 @@
 #pragma once
 
 #include <array>
-#include <vector>
-
-#include "vmesh/core/types.h"
 
 namespace vmesh {
 
@@ -19,17 +16,8 @@ struct RefinementWay {
   double shortest = 0.3;
 };
 
-/// A ball in which another way is taken, because those before did not do.
-struct HardPlace {
-  Vec3 center = Vec3::Zero();
-  double reach = 0;  ///< mm
-  int way = 0;       ///< below refinement_ways()
-
-  bool operator==(const HardPlace&) const = default;
-};
-
+/// The first is the usual one.
+const RefinementWay& refinement_way(int number);
 int refinement_ways();
-/// That of the first place that holds `p`, else the usual one.
-const RefinementWay& way_around(const std::vector<HardPlace>& hard, const Vec3& p);
 
 }  // namespace vmesh
