@@ -42,7 +42,8 @@ std::vector<Index> unproven_with(const ErrorProof& proof, const Corners& corners
                                  const std::vector<ErrorProof::Shares>& shares, Shells shells) {
   std::vector<Index> unproven = proof.unproven(corners, faces, shares);
   if (unproven.empty() || shells == Shells::along_normals) return unproven;
-  return proof.unproven_if_bent(corners, faces, shares);
+  std::vector<Index> if_bent = proof.unproven_if_bent(corners, faces, shares);  // neighbours may lose by it
+  return if_bent.size() < unproven.size() ? if_bent : unproven;
 }
 
 }  // namespace

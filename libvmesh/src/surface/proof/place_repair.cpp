@@ -85,9 +85,10 @@ class PlaceRepair {
   // Returns whether anything has changed.
   bool run(FinishedSurface& place, const RepairEffort& effort) {
     SurfaceProof proof(field_, goal_.limit);
+    const std::size_t at_first = unproven_inside(place, proof).size();
+    if (at_first > effort.most_unproven) return false;
+    notches_ = close_notches(place, field_, goal_.limit).closed_notches;
     std::vector<Index> unproven = unproven_inside(place, proof);
-    if (unproven.size() > effort.most_unproven) return false;
-    const std::size_t at_first = unproven.size();
     std::size_t in_vain = 0;
     for (std::size_t tries = 0; in_vain <= effort.most_in_vain && !unproven.empty(); ++tries) {
       poll_();

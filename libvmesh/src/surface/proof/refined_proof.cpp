@@ -1,5 +1,7 @@
 #include "surface/proof/refined_proof.h"
 
+#include <utility>
+
 #include <tbb/parallel_for.h>
 
 namespace vmesh {
@@ -43,8 +45,10 @@ std::vector<Index> RefinedProof::unproven(const FinishedMesh& mesh, const std::v
     shares[i] = known.shares;
   });
   std::vector<Index> left = proof_.unproven(corners_, triangles, shares);
-  if (!left.empty() && (bends_at_once_ || left.size() < faces.size() / kMany))
-    left = proof_.unproven_if_bent(corners_, triangles, shares);
+  if (!left.empty() && (bends_at_once_ || left.size() < faces.size() / kMany)) {
+    std::vector<Index> if_bent = proof_.unproven_if_bent(corners_, triangles, shares);  // neighbours may lose by it
+    if (if_bent.size() < left.size()) left = std::move(if_bent);
+  }
   for (Index& i : left) i = faces[i];
   return left;
 }
