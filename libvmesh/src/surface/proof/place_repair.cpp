@@ -42,6 +42,11 @@ class Chance {
   std::mt19937 random_;
 };
 
+// How many vertices an excerpt may have where the whole may have so many.
+std::size_t most_in(const SurfaceExcerpt& excerpt, const FinishedSurface& whole, std::size_t most_in_whole) {
+  return most_in_whole - std::min(most_in_whole, whole.mesh.vertices.size() - excerpt.vertex.size());
+}
+
 // Unproven faces of an excerpt, but those with a corner at its border.
 std::vector<Index> unproven_inside(const FinishedSurface& excerpt, SurfaceProof& proof) {
   std::vector<Index> faces = proof.unproven(excerpt.mesh, excerpt.binding);
@@ -115,7 +120,7 @@ class PlaceRepair {
     const Extent now = unproven_extent(excerpt.surface, proof);
     FinishedSurface changed = excerpt.surface;
     leave_out(changed, around, thinned * unit_);
-    refine(changed, field_, goal_of(excerpt), {});
+    refine(changed, field_, goal_of(excerpt, place), {});
     Extent then = unproven_extent(changed, proof);
     std::vector<ClosedNotch> notches;
     if (then.faces > 0 && then.faces < kWorthClosing * now.faces) {
@@ -129,10 +134,10 @@ class PlaceRepair {
   }
 
   // The usual way of refining every other time.
-  RefinementGoal goal_of(const SurfaceExcerpt& excerpt) {
+  RefinementGoal goal_of(const SurfaceExcerpt& excerpt, const FinishedSurface& place) {
     RefinementGoal goal = goal_;
     goal.way = chance_.below(2) == 0 ? 0 : static_cast<int>(chance_.below(static_cast<std::size_t>(refinement_ways())));
-    goal.most_vertices = std::min(goal.most_vertices,
+    goal.most_vertices = std::min(most_in(excerpt, place, goal.most_vertices),
                                   static_cast<std::size_t>(kMostVertices * static_cast<double>(excerpt.vertex.size())));
     return goal;
   }
@@ -228,7 +233,7 @@ void repair_places(RefinementOutcome& outcome, const VesselField& field, const R
     };
     const SurfaceExcerpt excerpt = cut_out(whole, center, kChanges * unit, kExcerpt * unit);
     RefinementGoal in_excerpt = goal;
-    in_excerpt.most_vertices -= std::min(goal.most_vertices, whole.mesh.vertices.size() - excerpt.vertex.size());
+    in_excerpt.most_vertices = most_in(excerpt, whole, goal.most_vertices);
     FinishedSurface changed = excerpt.surface;
     PlaceRepair repair(field, in_excerpt, unit, poll);
     if (!repair.run(changed, effort)) continue;
