@@ -210,6 +210,25 @@ TEST(ErrorLimit, IsProvenOnAFork) {
   EXPECT_FALSE(unproven_faces(result.mesh, result.binding, field, parse_error_limit("0.1%")).empty());
 }
 
+// At an open end the surface ends, and the boundary does not.
+TEST(ErrorLimit, IsSaidNotToHoldWhereItCannot) {
+  GenerateOptions options;
+  options.blend = 0;
+  options.max_error.relative = 0.02;
+  options.open_ends.all = true;
+  const GenerateResult result = generate_surface(testing::fork(40), options);
+  ASSERT_GT(result.error.unproven_faces, 0u);
+  EXPECT_TRUE(result.is_sound());
+  std::size_t faces = 0;
+  for (const UnprovenPlace& place : result.error.unproven_places) {
+    faces += place.faces;
+    EXPECT_TRUE(std::any_of(result.openings.begin(), result.openings.end(), [&](const Opening& opening) {
+      return (place.position - opening.center).norm() < 2 * opening.radius;
+    })) << "beside the openings";
+  }
+  EXPECT_EQ(faces, result.error.unproven_faces);
+}
+
 // A coarse surface is not within a limit that it was not made for.
 TEST(ErrorLimit, IsSaidNotToHoldWhereItDoesNot) {
   const Centerline centerline = testing::fork(40);
