@@ -62,11 +62,20 @@ class RefinedGrowth {
       try_remedies(grown, best);
     }
     const bool has_met_limit = best.is_met();
-    if (!best.surface.openings.empty()) close_notches(best, field_, goal_.limit);  // refining did not look at them
+    if (!best.surface.openings.empty()) close_notches_at_openings(best);
     return put_together(std::move(grown), std::move(best), has_met_limit);
   }
 
  private:
+  // Refining does not look there.
+  void close_notches_at_openings(RefinementOutcome& best) {
+    std::vector<ClosedNotch> known = std::move(best.error.closed_notches);
+    best.error = close_notches(best.surface, field_, goal_.limit);
+    std::vector<ClosedNotch>& notches = best.error.closed_notches;
+    notches.insert(notches.end(), known.begin(), known.end());
+    deepest_first(notches);
+  }
+
   void try_remedies(Grown& grown, RefinementOutcome& best) {
     PlaceTrials trials(grower_, first_, goal_, progress_);
     std::vector<UnprovenPlace> unproven = best.unproven;

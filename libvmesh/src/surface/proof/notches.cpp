@@ -85,8 +85,7 @@ class Closing {
       notch.depth = depth;
       notch.position = surface_.mesh.vertices[v];
     }
-    std::stable_sort(notches.begin(), notches.end(),
-                     [](const ClosedNotch& a, const ClosedNotch& b) { return a.depth > b.depth; });
+    deepest_first(notches);
     return notches;
   }
 
@@ -237,6 +236,11 @@ std::size_t count_bad(const TriMesh& mesh) {
 }
 
 }  // namespace
+
+void deepest_first(std::vector<ClosedNotch>& notches) {
+  std::stable_sort(notches.begin(), notches.end(),
+                   [](const ClosedNotch& a, const ClosedNotch& b) { return a.depth > b.depth; });
+}
 
 ErrorSummary close_notches(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit) {
   SurfaceProof proof(field, limit);

@@ -27,4 +27,7 @@ namespace vmesh {
 /// faces unproven. Returns what is known of the error.
 ErrorSummary close_notches(FinishedSurface& surface, const VesselField& field, const ErrorLimit& limit);
 
+/// Sorts them as summaries have them.
+void deepest_first(std::vector<ClosedNotch>& notches);
+
 }  // namespace vmesh

@@ -247,6 +247,7 @@ void repair_places(RefinementOutcome& outcome, const VesselField& field, const R
     return std::find(whole.mesh.vertices.begin(), whole.mesh.vertices.end(), notch.position) ==
            whole.mesh.vertices.end();
   });
+  deepest_first(notches);
   outcome.error.closed_notches = std::move(notches);
 }
 

@@ -5,23 +5,11 @@
 #include <utility>
 
 #include "surface/check/error_limit.h"
-#include "surface/proof/notches.h"
 
 namespace vmesh {
 namespace {
 
 constexpr double kNearOpening = 1.5;  // radii: faces there have a corner on its ring
-
-void note_error(ErrorSummary error, RefinementOutcome& outcome) {
-  outcome.error = std::move(error);
-  outcome.unproven = outcome.error.unproven_places;
-  std::erase_if(outcome.unproven, [&](const UnprovenPlace& place) {
-    const std::vector<Opening>& openings = outcome.surface.openings;
-    return std::any_of(openings.begin(), openings.end(), [&](const Opening& opening) {
-      return (place.position - opening.center).norm() < kNearOpening * opening.radius;
-    });
-  });
-}
 
 }  // namespace
 
@@ -38,12 +26,15 @@ RefinementOutcome refine_once(FinishedSurface surface, const VesselField& field,
 }
 
 void note_unproven(RefinementOutcome& outcome, std::vector<Index> faces) {
-  note_error({faces.size(), places_of(outcome.surface.mesh, faces), {}}, outcome);
+  outcome.error = {faces.size(), places_of(outcome.surface.mesh, faces), {}};
   outcome.faces = std::move(faces);
-}
-
-void close_notches(RefinementOutcome& outcome, const VesselField& field, const ErrorLimit& limit) {
-  note_error(close_notches(outcome.surface, field, limit), outcome);
+  outcome.unproven = outcome.error.unproven_places;
+  std::erase_if(outcome.unproven, [&](const UnprovenPlace& place) {
+    const std::vector<Opening>& openings = outcome.surface.openings;
+    return std::any_of(openings.begin(), openings.end(), [&](const Opening& opening) {
+      return (place.position - opening.center).norm() < kNearOpening * opening.radius;
+    });
+  });
 }
 
 }  // namespace vmesh

@@ -20,10 +20,7 @@ struct RefinementOutcome {
 RefinementOutcome refine_once(FinishedSurface surface, const VesselField& field, const RefinementGoal& goal,
                               const Progress& progress);
 
-/// Notes which faces are unproven.
+/// Notes which faces are unproven, ascending.
 void note_unproven(RefinementOutcome& outcome, std::vector<Index> faces);
-
-/// close_notches() of its surface.
-void close_notches(RefinementOutcome& outcome, const VesselField& field, const ErrorLimit& limit);
 
 }  // namespace vmesh
