@@ -223,6 +223,38 @@ TEST(Contacts, AForkHasNone) {
   }
 }
 
+// Two vessels of radius 1 that begin at one node, part by `gap`, and meet again.
+Centerline lens(double gap) {
+  constexpr double kLength = 12;
+  CenterlineBuilder builder;
+  const Index trunk = builder.add({-4, 0, 0}, 1);
+  const Index fork = builder.add({0, 0, 0}, 1, trunk);
+  const double aside = 1 + gap / 2;
+  for (const double side : {-1.0, 1.0}) {
+    const Index middle = add_vessel(builder, {0, 0, 0}, {kLength / 2, side * aside, 0}, 1, 12, fork);
+    add_vessel(builder, {kLength / 2, side * aside, 0}, {kLength, side * 0.8, 0}, 1, 12, middle);
+  }
+  return builder.build();
+}
+
+// Otherwise the volume has a tunnel that the graph lacks.
+TEST(Contacts, AreWhereVesselsMeetAgainIfTheRoundingDoesNotFillTheGap) {
+  for (const double gap : {0.15, 0.3, 0.45}) {
+    for (const double blend : {0.0, 0.1, 0.2, 0.35, 0.4, 0.5}) {
+      SCOPED_TRACE("gap " + std::to_string(gap) + ", blend " + std::to_string(blend));
+      const Centerline vessels = lens(gap);
+      const std::vector<Contact> contacts = find_contacts(ConeRelations(vessels, blend), 0.1);
+      if (blend > gap) {
+        EXPECT_TRUE(contacts.empty());
+      } else {
+        ASSERT_EQ(contacts.size(), 1u);
+        EXPECT_NEAR(contacts[0].depth, 0.4, 0.05);
+        EXPECT_GT(contacts[0].position.x(), 6);
+      }
+    }
+  }
+}
+
 TEST(Contacts, OfSpheresWithoutSegments) {
   const Centerline balls({{{0, 0, 0}, 1}, {{1.5, 0, 0}, 1}, {{9, 0, 0}, 1}}, {});
   const auto contacts = contacts_of(balls, 0.1);

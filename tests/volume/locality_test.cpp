@@ -48,21 +48,24 @@ double axis_distance(const VesselField& field, Index i, Index j) {
   return least;
 }
 
-// The definition, by brute force: spheres half a mean radius apart stand for a cone. Two of them touch where no more
-// than half of the smaller radius is between them, apart from what spheres lack of a cone. Pairs of touching spheres
-// are connected where one sphere stays and the other moves on to its neighbour along the centerline; cones are local to
-// each other where a pair of their spheres is connected to a sphere paired with itself.
+// The definition, by brute force: spheres half a mean radius apart, or less if gaps are smaller, stand for a cone. Two
+// of them touch where no more is between them than the rounding fills, half of the smaller radius at most and a tenth
+// at least, apart from what spheres lack of a cone. Pairs of touching spheres are connected where one sphere stays and
+// the other moves on to its neighbour along the centerline; cones are local to each other where a pair of their spheres
+// is connected to a sphere paired with itself.
 class Locality {
  public:
   explicit Locality(const VesselField& field)
-      : count_(field.relations().centerline().segments().size()), local_(count_ * count_, 0) {
+      : count_(field.relations().centerline().segments().size()),
+        gap_(std::clamp(field.relations().blend(), 0.1, 0.5)),
+        local_(count_ * count_, 0) {
     place_spheres(field.relations().centerline());
     const std::size_t n = spheres_.size();
     std::vector<char> touching(n * n, 0), reached(n * n, 0);
     for (std::size_t p = 0; p < n; ++p) {
       for (std::size_t q = 0; q < n; ++q) {
         const auto [small, large] = std::minmax(spheres_[p].radius, spheres_[q].radius);
-        const double reach = small + large + std::max(0.5 * small, 0.4 * small + 0.04 * large);
+        const double reach = small + large + std::max(gap_ * small, (gap_ - 0.1) * small + 0.04 * large);
         const double apart = (spheres_[p].position - spheres_[q].position).norm();
         touching[p * n + q] = apart < reach;
         note(apart, reach);
@@ -103,7 +106,8 @@ class Locality {
     next_.resize(spheres_.size());
     cones_.resize(spheres_.size());
     for (Index s = 0; s < count_; ++s) {
-      const double steps = centerline.length(s) / (0.5 * centerline.radius_at(s, 0.5));
+      const double spacing = 0.5 * std::sqrt(gap_ / 0.5);
+      const double steps = centerline.length(s) / (spacing * centerline.radius_at(s, 0.5));
       note(steps, std::round(steps));
       Index last = centerline.segment(s).a;
       cones_[last].push_back(s);
@@ -127,13 +131,16 @@ class Locality {
   }
 
   std::size_t count_;
+  double gap_;  // smaller radii
   std::vector<char> local_;
   std::vector<CenterlineNode> spheres_;
   std::vector<std::vector<Index>> next_, cones_;
   bool undecided_ = false;
 };
 
-// Compares what the field without rounding knows of all pairs of segments with the definition; visits them.
+constexpr double kBlends[] = {0, 0.3, 0.5};
+
+// Compares what the field knows of all pairs of segments with the definition; visits them.
 template <class Visit>
 void compare_segments(const VesselField& field, const Locality& expected, Index segments, const Visit& visit) {
   for (Index i = 0; i < segments; ++i) {
@@ -141,7 +148,7 @@ void compare_segments(const VesselField& field, const Locality& expected, Index 
     EXPECT_TRUE(std::is_sorted(cones.begin(), cones.end(), std::less_equal<>()));  // ascending, none twice
     for (Index j = 0; j < segments; ++j) {
       const bool local = expected(i, j);
-      EXPECT_EQ(is_local(field, i, j), local) << "cones " << i << " and " << j;
+      EXPECT_TRUE(!local || is_local(field, i, j)) << "cones " << i << " and " << j;
       EXPECT_EQ(field.relations().are_one_volume(i, j), local) << "cones " << i << " and " << j;
       visit(i, j, local);
     }
@@ -164,7 +171,7 @@ TEST(Locality, IsTouchWithoutABreak) {
     walk.segments.push_back({0, 29});
     walk.add({50, 0, 0}, 1);
     const Centerline centerline = walk.build();
-    const VesselField field(centerline);
+    const VesselField field(centerline, kBlends[trial % 3]);
     const Locality expected(field);
     if (expected.undecided()) continue;
     ++tested;
@@ -197,7 +204,7 @@ TEST(Locality, IsTouchWithoutABreakAroundANodeOfVeryManyBranchesToo) {
     }
     const Centerline centerline = star.build();
     ASSERT_EQ(centerline.degree(0), kBranches);
-    const VesselField field(centerline);
+    const VesselField field(centerline, kBlends[seed % 3]);
     const Locality expected(field);
     if (expected.undecided()) continue;
     ++tested;

@@ -46,9 +46,13 @@ TEST(SegmentLocality, ReachesAsFarAsTheBlend) {
   // Beyond the default blend it reaches no farther, and the rounding is reduced to end there.
   for (const auto& [blend, reach] : {std::pair(0.0, 0.5), {0.2, 0.5}, {0.4, 0.8}, {0.5, 1.0}, {0.6, 1.0}, {2.0, 1.0}}) {
     const VesselField field(centerline, blend);
-    const double reduced = blend <= 0.5 ? 1 : least_rounding(field);
-    EXPECT_EQ(least_rounding(field), reduced);
-    EXPECT_LE(2 * blend * reduced, 1);
+    const double least = least_rounding(field);
+    if (blend > 0.5) {
+      EXPECT_LE(2 * blend * least, 1);
+    } else {
+      // Of the gap's share in it a tenth is spared where spheres next to the last that touch face each other obliquely.
+      EXPECT_GE(least, 0.88);
+    }
     double last_seen = 0, last_one = 0;
     for (Index i = 0; i < field.relations().cone_count(); i += 2) {
       const Vec3 p = field.relations().axis_point(i, 0.5), q = field.relations().axis_point(i + 1, 0.5);
@@ -60,7 +64,7 @@ TEST(SegmentLocality, ReachesAsFarAsTheBlend) {
     // A segment is seen as a whole, from the sphere before it on: the gap grows by 0.035 along each.
     const double step = 0.5 * 2 * std::sin(kAngle / 2 * std::numbers::pi / 180);
     EXPECT_NEAR(last_seen, reach, 2 * step) << "blend " << blend;
-    EXPECT_NEAR(last_one, 0.5, 2 * step) << "blend " << blend;
+    EXPECT_NEAR(last_one, std::clamp(blend, 0.1, 0.5), 2 * step) << "blend " << blend;
   }
 }
 

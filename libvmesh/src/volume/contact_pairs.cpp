@@ -14,10 +14,7 @@
 namespace vmesh {
 namespace {
 
-constexpr int kSectionSteps = 48;  // derived: 0.618^48 = 1e-10 of the axis
-// Vessels that part have walls of their own from a gap of half a smaller radius on (kOneVolume); no larger gap than
-// this is required there.
-constexpr double kForkGap = 0.4;       // idle 0.28 to 0.56
+constexpr int kSectionSteps = 48;      // derived: 0.618^48 = 1e-10 of the axis
 constexpr double kMostRounding = 0.2;  // sums of radii; safe 0.14 to 0.28
 // Largest ratio of a cone's greatest radius to the one by which a gap in mm is expressed in radii. Without it, a waist
 // of 1e-6 mm would require a gap of 260 radii; idle 5.6 to 11.
@@ -140,11 +137,18 @@ double most_rounding(double blend) { return std::min(blend / 2, kMostRounding); 
 
 Touch fork_touch(double gap) { return {std::max(kFork.smaller, gap / 0.8), kFork.larger}; }
 
+// No larger gap is required of vessels that part: they have walls of their own from a little more on.
+double fork_gap(double blend) { return near_again(blend).smaller; }
+
 // Besides the gap, vessels must leave room for what the blend adds to each: at most half the blend, in its radii.
 class PairFinder {
  public:
   PairFinder(const ConeRelations& cones, double gap)
-      : cones_(cones), axes_(cones.centerline()), gap_(gap), most_rounding_(most_rounding(cones.blend())) {
+      : cones_(cones),
+        axes_(cones.centerline()),
+        gap_(gap),
+        fork_gap_(fork_gap(cones.blend())),
+        most_rounding_(most_rounding(cones.blend())) {
     tree_ = BoxTree(axes_.cone_count(), [&](Index c) { return box_of(axes_.stretch(c), most_rounding_); });
   }
 
@@ -166,7 +170,7 @@ class PairFinder {
  private:
   // Whether the pair is at a fork: close along the graph in the wider sense of kFork.
   bool are_parting(Index i, Index j) {
-    if (gap_ <= kForkGap) return false;
+    if (gap_ <= fork_gap_) return false;
     if (!parting_) parting_ = local_pairs(cones_.centerline(), fork_touch(gap_));
     return parting_->contains(i, j);
   }
@@ -182,14 +186,14 @@ class PairFinder {
     const AxisStretch first = axes_.stretch(i), second = axes_.stretch(j);
     if (out_of_reach(first, second) || are_apart(first, second, gap_, most_rounding_) || cones_.are_one_volume(i, j))
       return;
-    const double gap = are_parting(i, j) ? kForkGap : gap_;
+    const double gap = are_parting(i, j) ? fork_gap_ : gap_;
     ContactPair pair{i, j, gap, closest_approach(first, second, gap), kNone};
     if (pair.closest.excess >= 0) {
       const double r = first.radius(pair.closest.s), q = second.radius(pair.closest.t);
       if (pair.closest.excess >= most_rounding_ * (r + q)) return;
       // The gap is required all along the cones, also where radii are much larger.
       const double smaller = std::max(std::min(r, q), std::min(cones_.max_radius(i), cones_.max_radius(j)) / kThinnest);
-      const double most = std::max(gap, are_parting(i, j) ? kForkGap : kMostRounding * (r + q) / smaller);
+      const double most = std::max(gap, are_parting(i, j) ? fork_gap_ : kMostRounding * (r + q) / smaller);
       pair.gap = std::min(gap + rounding(pair) / smaller, most);
       pair.closest = closest_approach(first, second, pair.gap);
     }
@@ -228,8 +232,8 @@ class PairFinder {
 
   const ConeRelations& cones_;
   ConeAxes axes_;
-  double gap_;            // smaller radii
-  double most_rounding_;  // of either vessel, in its radii
+  double gap_, fork_gap_;  // smaller radii
+  double most_rounding_;   // of either vessel, in its radii
   std::optional<LocalSegments> parting_;
   BoxTree tree_;
   std::vector<Index> near_;
@@ -252,8 +256,8 @@ ClosestApproach closest_approach(const AxisStretch& first, const AxisStretch& se
 double ContactQuestion::reach() const { return std::max({1.0, 2 * blend, gap + most_rounding(blend)}); }
 
 Touch ContactQuestion::widest_relation() const {
-  const Touch rounded{std::max(kOneVolume.smaller, 2 * blend), kOneVolume.larger};
-  if (gap <= kForkGap) return rounded;
+  const Touch rounded = farthest_local(blend);
+  if (gap <= fork_gap(blend)) return rounded;
   const Touch fork = fork_touch(gap);
   return {std::max(rounded.smaller, fork.smaller), std::max(rounded.larger, fork.larger)};
 }

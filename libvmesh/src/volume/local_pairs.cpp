@@ -69,7 +69,7 @@ PairSet local_segments(const SphereChain& chain, const PairSet& touching) {
 }
 
 LocalSegments local_pairs(const Centerline& centerline, const Touch& touch) {
-  const SphereChain chain(centerline);
+  const SphereChain chain(centerline, sphere_spacing(touch));
   return {chain.fans(), local_segments(chain, pairs_in_touch(chain, touch))};
 }
 

@@ -17,15 +17,10 @@ namespace {
 
 // Opposite walls are rounded over a gap of 2 * blend smaller radii, and meet at half of it.
 constexpr double kReach = 2;  // safe 1.4 to 2.8
-// Vessels have parted once they are farther from each other than kOneVolume, and come near again where they are nearer
-// than this. In between they are still local to each other, but the blend must not join them. (contact_pairs.cpp
-// requires no more at a fork.) On vessel_portal, whose hairpin has a gap of 0.42, the mean error is 3 % larger with
-// 0.5.
-constexpr Touch kNearAgain{0.4, kOneVolume.larger};
 // Vessels that part are local to each other as far as this blend reaches; if they were as far as a larger one does,
 // many walls that part and come near again would be joined. A larger one ends there; safe 0.35 to 0.7.
 constexpr double kMostBlend = 0.5;
-// Of a gap: margin because spheres half a radius apart do not fill a cone (kOneVolume); safe 0.63 to 1.3.
+// Of a gap: margin because spheres half a radius apart do not fill a cone (one_volume); safe 0.63 to 1.3.
 constexpr double kSpare = 0.9;
 // Growth of the blend's share per mean radius along the graph. With 1, errors at creases next to turns are harder to
 // prove.
@@ -36,8 +31,8 @@ constexpr double kShareGrowth = 0.25;  // safe 0.17 to 0.35
 class GapPairs {
  public:
   GapPairs(const Centerline& centerline, const SphereChain& chain, const PairSet& touching, const PairSet& local,
-           const Touch& wide)
-      : chain_(chain), touching_(touching), wide_(wide), local_of_(centerline.segments().size()) {
+           const Touch& near_again, const Touch& wide)
+      : chain_(chain), touching_(touching), near_(near_again), wide_(wide), local_of_(centerline.segments().size()) {
     for (const auto& [i, j] : local.pairs()) {
       local_of_[i].push_back(j);
       local_of_[j].push_back(i);
@@ -139,7 +134,7 @@ class GapPairs {
       });
       if (parts) {
         reach(n, Side::parting);
-      } else if (chain_.touch(pair.p, pair.q, kNearAgain)) {
+      } else if (chain_.touch(pair.p, pair.q, near_)) {
         reach(n, Side::apart);
       }
     }
@@ -156,7 +151,7 @@ class GapPairs {
 
   const SphereChain& chain_;
   const PairSet& touching_;
-  const Touch& wide_;
+  const Touch &near_, &wide_;
   std::vector<std::vector<Index>> local_of_;
   std::vector<Pair> facing_;
   std::unordered_map<std::uint64_t, Index> number_;  // index into facing_, or kNone, of every visited pair
@@ -177,6 +172,7 @@ class Rounding {
  private:
   // The thinner of the two decides.
   void narrow(Index p, Index q, double times) {
+    if (blend_ == 0) return;
     const Index thinner = chain_.radius(p) <= chain_.radius(q) ? p : q;
     const double most = std::max(0.0, kSpare * chain_.gap(p, q) / (times * blend_ * chain_.radius(thinner)));
     const auto keep = [&](Index node) { share_[node] = std::min(share_[node], most); };
@@ -193,15 +189,16 @@ class Rounding {
 };
 
 // Pairs of spheres reached from touching ones through pairs in touch only in the wider sense, and those of them that
-// are near again.
+// are near again. In between vessels are still local to each other, but the blend must not join them.
 class WidePairs {
  public:
-  WidePairs(const SphereChain& chain, const Touch& wide) : chain_(chain), wide_(wide) {}
+  WidePairs(const SphereChain& chain, const Touch& near_again, const Touch& wide)
+      : chain_(chain), near_(near_again), wide_(wide) {}
 
   /// A pair that is not in touch, next to one that is.
   void note(Index p, Index q) {
     if (chain_.are_in_one_fan(p, q) || !chain_.touch(p, q, wide_)) return;
-    (chain_.touch(p, q, kNearAgain) ? near_again_ : parting_).insert(p, q);
+    (chain_.touch(p, q, near_) ? near_again_ : parting_).insert(p, q);
   }
   void extend(const PairSet& touching) {
     chain_.visit_touching_ends(wide_, [&](Index p, Index q) {
@@ -219,7 +216,7 @@ class WidePairs {
 
  private:
   const SphereChain& chain_;
-  const Touch& wide_;
+  const Touch &near_, &wide_;
   PairSet parting_, near_again_;
 };
 
@@ -332,17 +329,12 @@ SegmentLocality segment_locality(const Centerline& centerline, double blend) {
 }
 
 SegmentLocality segment_locality_at_gaps(const Centerline& centerline, double blend) {
-  const SphereChain chain(centerline);
-  const Touch wide{kReach * std::min(blend, kMostBlend), kOneVolume.larger};
-  const bool has_wide_pairs = wide.smaller > kOneVolume.smaller;
-  WidePairs wide_pairs(chain, wide);
-  const PairSet touching = pairs_in_touch(chain, kOneVolume, [&](Index p, Index q) {
-    if (has_wide_pairs) wide_pairs.note(p, q);
-  });
+  const Touch one = one_volume(blend), near = near_again(blend), wide = farthest_local(std::min(blend, kMostBlend));
+  const SphereChain chain(centerline, sphere_spacing(one));
+  WidePairs wide_pairs(chain, near, wide);
+  const PairSet touching = pairs_in_touch(chain, one, [&](Index p, Index q) { wide_pairs.note(p, q); });
   SegmentLocality locality{chain.fans(), {}, {}, {}, {}};
   locality.local = local_segments(chain, touching);
-  if (!has_wide_pairs) return locality;
-
   wide_pairs.extend(touching);
   const PairSet &parting = wide_pairs.parting(), &near_again = wide_pairs.near_again();
   SegmentPairs near_gaps(chain), apart(chain);
@@ -350,10 +342,10 @@ SegmentLocality segment_locality_at_gaps(const Centerline& centerline, double bl
   apart.join_all(near_again);
   Rounding rounding(centerline, chain, blend);
   for (const auto& [p, q] : parting.pairs()) {
-    if (chain.touch(p, q, kOneVolume)) rounding.keep_gap_open(p, q);
+    if (chain.touch(p, q, one)) rounding.keep_gap_open(p, q);
   }
   if (!near_again.pairs().empty()) {
-    GapPairs gap_pairs(centerline, chain, touching, locality.local, wide);
+    GapPairs gap_pairs(centerline, chain, touching, locality.local, near, wide);
     gap_pairs.find(near_again);
     gap_pairs.visit_apart([&](Index p, Index q) { apart.join(p, q); });
     gap_pairs.visit_border([&](Index p, Index q) { rounding.end_before_gap(p, q); });

@@ -21,8 +21,7 @@ constexpr double kStraight = 0.8, kEven = 0.4;
 // of spheres are followed from sphere to sphere, so none gets past such a node.
 class Borders {
  public:
-  Borders(const Centerline& centerline, double blend)
-      : centerline_(centerline), wide_{std::max(kOneVolume.smaller, 2 * blend), kOneVolume.larger} {
+  Borders(const Centerline& centerline, double blend) : centerline_(centerline), wide_(farthest_local(blend)) {
     boxes_ = BoxTree(static_cast<Index>(centerline.segments().size()), [&](Index s) {
       const auto &from = centerline.node(centerline.segment(s).a), &to = centerline.node(centerline.segment(s).b);
       const double widest = std::max(from.radius, to.radius), reach = widest + wide_.gap(widest, widest);

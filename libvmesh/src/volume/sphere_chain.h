@@ -14,11 +14,12 @@
 
 namespace vmesh {
 
-/// Spheres at all nodes and along all segments, half a mean radius apart: first those of the nodes, then those within
-/// segments, in order.
+/// Spheres at all nodes and along all segments, a share of the mean radius apart: first those of the nodes, then those
+/// within segments, in order.
 class SphereChain {
  public:
-  explicit SphereChain(const Centerline& centerline) : centerline_(centerline), fans_(centerline) {
+  SphereChain(const Centerline& centerline, double spacing)
+      : centerline_(centerline), spacing_(spacing), fans_(centerline) {
     first_.reserve(centerline.segments().size() + 1);
     std::size_t within = 0;
     for (Index s = 0; s < centerline.segments().size(); ++s) within += static_cast<std::size_t>(steps_along(s) - 1);
@@ -128,8 +129,6 @@ class SphereChain {
   }
 
  private:
-  // Mean radii between two spheres that represent a cone; safe 0.35 to 0.7.
-  static constexpr double kSampling = 0.5;
   static constexpr int kMaxSamples = 200;  // per cone; safe 140 to 280
 
   struct Sphere {
@@ -163,7 +162,7 @@ class SphereChain {
   }
 
   int steps_along(Index s) const {
-    const double steps = std::ceil(centerline_.length(s) / (kSampling * centerline_.radius_at(s, 0.5)));
+    const double steps = std::ceil(centerline_.length(s) / (spacing_ * centerline_.radius_at(s, 0.5)));
     return static_cast<int>(std::clamp(steps, 1.0, double{kMaxSamples}));
   }
 
@@ -175,6 +174,7 @@ class SphereChain {
   }
 
   const Centerline& centerline_;
+  double spacing_;  // mean radii
   Fans fans_;
   std::vector<FanSphere> fan_spheres_;  // but the hubs
   double widest_in_fans_ = 0;

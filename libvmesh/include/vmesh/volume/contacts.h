@@ -30,10 +30,10 @@ struct Contact {
 
 /// All regions where vessels that are not neighbours come closer than `gap` times the smaller of their radii. Each is
 /// described at its deepest pair of cones. Deepest first, ties by segments. Time is near linear in the cones and linear
-/// in the pairs of cones whose boxes overlap. At a fork, the walls count as two vessels once they have parted by a
-/// quarter of the sum of the radii; there a gap of at most 0.4 is required of them. Rounding at branches (the blend)
-/// counts where it narrows the gap, up to a fifth of the sum of the radii. Throws InvalidInput unless `gap` is in
-/// [0, 1].
+/// in the pairs of cones whose boxes overlap. At a fork, the walls count as two vessels once more is between them than
+/// rounding at branches fills: the blend, at least 0.1 and at most 0.5 smaller radii. A gap of at most 0.8 of that is
+/// required of them there. Rounding counts where it narrows the gap, up to a fifth of the sum of the radii. Throws
+/// InvalidInput unless `gap` is in [0, 1].
 std::vector<Contact> find_contacts(const ConeRelations& cones, double gap);
 
 struct SeparationOptions {
