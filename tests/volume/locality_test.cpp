@@ -65,7 +65,7 @@ class Locality {
     for (std::size_t p = 0; p < n; ++p) {
       for (std::size_t q = 0; q < n; ++q) {
         const auto [small, large] = std::minmax(spheres_[p].radius, spheres_[q].radius);
-        const double reach = small + large + std::max(gap_ * small, (gap_ - 0.1) * small + 0.04 * large);
+        const double reach = small + large + std::max(gap_ * small, (gap_ - 0.1) * small + 0.08 * gap_ * large);
         const double apart = (spheres_[p].position - spheres_[q].position).norm();
         touching[p * n + q] = apart < reach;
         note(apart, reach);

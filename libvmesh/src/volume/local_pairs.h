@@ -29,13 +29,14 @@ struct Touch {
 
 /// Up to this gap vessels that part count as one volume: the rounding at branches fills the space between them
 /// (VesselField: opposite walls meet where the gap is `blend` smaller radii). A larger one would hide a gap that stays
-/// open: the volume would have a tunnel that the graph lacks. Vessels are represented by spheres half a radius apart,
-/// between which the larger one's wall recedes by 1 - sqrt(1 - 0.25^2) = 0.032 radii; a little more than that is
-/// allowed where one vessel is less than two fifths of the other.
+/// open: the volume would have a tunnel that the graph lacks. Vessels are represented by spheres, between which the
+/// larger one's wall recedes: where they are half a radius apart, by 1 - sqrt(1 - 0.25^2) = 0.032 radii. A little more
+/// than that is allowed where one vessel is less than two fifths of the other.
 inline Touch one_volume(double blend) {
   constexpr double kLeast = 0.1;    // so that the default gap between vessels may be less
   constexpr double kLargest = 0.5;  // the default blend
-  return {std::clamp(blend, kLeast, kLargest), 0.04};
+  const double gap = std::clamp(blend, kLeast, kLargest);
+  return {gap, 0.08 * gap};
 }
 
 /// Mean radii between two spheres that represent a cone, so that the wall recedes between them by a fixed share of the
@@ -48,7 +49,7 @@ inline Touch near_again(double blend) { return {0.8 * one_volume(blend).smaller,
 
 /// Spheres farther from each other than this are not local to each other: opposite walls are rounded over a gap of
 /// 2 * blend smaller radii.
-inline Touch farthest_local(double blend) { return {std::max(0.5, 2 * blend), one_volume(blend).larger}; }
+inline Touch farthest_local(double blend) { return {std::max(0.5, 2 * blend), 0.04}; }
 
 /// A growing symmetric relation between indices. Rows rather than one hash table, so that indices used in turn are near
 /// each other in memory. Short rows are sorted; long ones, as around a node of many branches, are hash tables.
